@@ -1,0 +1,491 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+
+   See the README file in the package's directory.
+------------------------------------------------------------------------- */
+
+/* One step:
+     initial_integrate   predict every body, place its sites
+     LAMMPS              forces at the predicted sites, once
+     final_integrate     gather force and torque, correct, project, place its sites */
+
+#include "fix_gear_quat.h"
+
+#include "gear_quat_arguments.h"
+#include "gear_quat_bodies.h"
+#include "gear_quat_bootstrap.h"
+
+#include "atom.h"
+#include "citeme.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "library.h"
+#include "memory.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace GearQuat;
+
+static const char cite_gear_quat[] =
+    "fix gear/quat: quaternions in the equations of motion, first-order form\n\n"
+    "@Article{Evans1977,\n"
+    " author = {Denis J. Evans},\n"
+    " title = {On the Representation of Orientation Space},\n"
+    " journal = {Molecular Physics},\n"
+    " year = 1977,\n"
+    " volume = 34,\n"
+    " pages = {317--325}\n"
+    "}\n\n"
+    "fix gear/quat: quaternions in the equations of motion, second-order form\n\n"
+    "@Article{Rapaport1985,\n"
+    " author = {Dennis C. Rapaport},\n"
+    " title = {Molecular Dynamics Simulation Using Quaternions},\n"
+    " journal = {Journal of Computational Physics},\n"
+    " year = 1985,\n"
+    " volume = 60,\n"
+    " pages = {306--314}\n"
+    "}\n\n";
+
+// |q|^2 of four squares carries this rounding itself; less is reported as zero
+
+static constexpr double NORM_ROUNDING = 1.0e-15;
+
+/* ---------------------------------------------------------------------- */
+
+FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), started(false), h(0.0), energy_here(0.0),
+    f_sum(nullptr), nmax_sum(0)
+{
+  if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
+
+  time_integrate = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 3;
+  global_freq = 1;
+  extscalar = 1;
+  extvector = -1;
+  extlist = new int[size_vector]{1, 1, 0};
+  energy_global_flag = 1;
+  virial_global_flag = virial_peratom_flag = 1;
+  thermo_virial = 1;
+  dof_flag = 1;
+  create_attribute = 1;
+  restart_global = restart_peratom = 1;
+
+  if (atom->map_style == Atom::MAP_NONE)
+    error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
+  if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
+
+  args = new GearQuatArguments(lmp, narg, arg);
+  bodies = new GearQuatBodies(lmp, this, args->scheme);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+  maxexchange = bodies->max_exchange();
+  comm_forward = bodies->max_forward();
+  comm_reverse = sizeof(Load) / sizeof(double);
+
+  GivenBodies given;
+  if (!args->infile.empty()) given = read_given_bodies(lmp, args->infile);
+  bodies->create(args->body_ids(lmp, groupbit), given);
+
+  bigint nbodies, natoms;
+  bodies->count(nbodies, natoms);
+  if (nbodies == 0) error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
+  if (comm->me == 0) utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", nbodies, natoms);
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixGearQuat::~FixGearQuat()
+{
+  if (copymode) return;
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+  delete args;
+  delete bodies;
+  delete[] extlist;
+  memory->destroy(f_sum);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixGearQuat::setmask()
+{
+  return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR | INITIAL_INTEGRATE_RESPA |
+      FINAL_INTEGRATE_RESPA;
+}
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+void FixGearQuat::init()
+{
+  if (update->whichflag == 2)
+    error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
+  if (update->dt == 0.0 || !std::isfinite(update->dt))
+    error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}", update->dt);
+  if (domain->box_change)
+    error->all(FLERR, "Fix gear/quat requires a box that does not change");
+  refuse_respa_with_steps();
+  refuse_other_integrators();
+  follow_time_step();
+}
+
+/// One force evaluation a step: all levels of r-RESPA have to have the same step.
+void FixGearQuat::refuse_respa_with_steps()
+{
+  if (!utils::strmatch(update->integrate_style, "^respa")) return;
+  const auto *levels = (int *) lammps_extract_global(lmp, "respa_levels");
+  const auto *steps = (double *) lammps_extract_global(lmp, "respa_dt");
+  for (int level = 1; level < *levels; ++level)
+    if (steps[level] != steps[0])
+      error->all(FLERR, "Fix gear/quat requires run_style respa to have the same step at all levels "
+                 "(loop factors of 1); levels 1 and {} have {} and {}", level + 1, steps[0],
+                 steps[level]);
+}
+
+void FixGearQuat::refuse_other_integrators()
+{
+  for (auto *other : modify->get_fix_list()) {
+    if (other == this || !other->time_integrate) continue;
+    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other : nullptr;
+    int dim;
+    const int *its_body = utils::strmatch(other->style, "^rigid") &&
+            !utils::strmatch(other->style, "/small")
+        ? (int *) other->extract("body", dim)
+        : nullptr;
+    tagint shared = 0, any;
+    for (int i = 0; i < atom->nlocal; ++i) {
+      if (!bodies->in_body(i) || !(atom->mask[i] & other->groupbit)) continue;
+      if (same && !same->moves(i)) continue;
+      if (its_body && its_body[i] < 0) continue;
+      shared = atom->tag[i];
+    }
+    MPI_Allreduce(&shared, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    if (any)
+      error->all(FLERR, "Fix gear/quat: atom {} is also moved by fix {} ({}); take it out of the "
+                 "group of one of the two", any, other->id, other->style);
+  }
+}
+
+bool FixGearQuat::moves(int i) const
+{
+  return bodies->in_body(i);
+}
+
+/// Called whenever the time step may have changed; histories keep their polynomials.
+void FixGearQuat::follow_time_step()
+{
+  const double step = update->dt;
+  if (step == h || step == 0.0 || !std::isfinite(step)) return;
+  if (started)
+    for (int ibody = 0; ibody < bodies->nowned(); ++ibody)
+      nordsieck_rescale(bodies->history(ibody), args->scheme.values(), args->scheme.width(),
+                        step / h);
+  h = step;
+}
+
+void FixGearQuat::reset_dt()
+{
+  follow_time_step();
+}
+
+/// Bodies keep their state between runs; what the user changed in the atoms is taken over.
+void FixGearQuat::setup_pre_neighbor()
+{
+  bodies->check_whole();
+  bodies->update_ghosts(true);
+  if (args->reinit && !bodies->atoms_match()) {
+    bodies->recreate();
+    bodies->update_ghosts(true);
+    if (started && comm->me == 0)
+      utils::logmesg(lmp, "Fix gear/quat: atoms were changed since the last run, bodies start "
+                          "anew from them\n");
+    started = false;
+  }
+}
+
+void FixGearQuat::setup(int vflag)
+{
+  bodies->spread_states();
+  bodies->place_velocities();
+  energy_here = 0.0;
+  v_init(vflag);
+  if (evflag) tally_virial(atom->f);
+}
+
+void FixGearQuat::pre_neighbor()
+{
+  bodies->update_ghosts(false);
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+void FixGearQuat::initial_integrate(int vflag)
+{
+  v_init(vflag);
+  if (!started) {
+    // forces of the step before are still there, those of all other fixes among them
+    bodies->spread_states();
+    bodies->gather_loads(atom->f);
+    start();
+  }
+  begin_step();
+}
+
+void FixGearQuat::final_integrate()
+{
+  finish_step(atom->f);
+}
+
+/// Higher rows of the histories: `h`, poses, velocities and present loads are known.
+void FixGearQuat::start()
+{
+  GearQuatBootstrap bootstrap(lmp, this, *bodies, args->scheme, h);
+  if (args->start == GearQuatArguments::Start::ZERO)
+    bootstrap.zero();
+  else
+    bootstrap.run();
+  started = true;
+}
+
+void FixGearQuat::begin_step()
+{
+  const Integrator integrator(args->scheme, h);
+  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
+    double *rows = bodies->history(ibody);
+    integrator.predict(rows);
+    bodies->state[ibody] = integrator.body_state(bodies->body[ibody].rigid, rows);
+  }
+  bodies->spread_states();
+  bodies->place_sites();
+}
+
+void FixGearQuat::finish_step(double **f)
+{
+  bodies->gather_loads(f);
+  if (evflag) tally_virial(f);
+
+  const Integrator integrator(args->scheme, h);
+  energy_here = 0.0;
+  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
+    double *rows = bodies->history(ibody);
+    const RigidBody &rigid = bodies->body[ibody].rigid;
+    const Load &load = bodies->load[ibody];
+    const Shift shift = integrator.correct(rigid, load, rows);
+    energy_here -= dot3(load.force, shift.center) + dot3(load.torque_space, shift.angle_space);
+    bodies->state[ibody] = integrator.body_state(rigid, rows);
+  }
+  bodies->spread_states();
+  bodies->place_sites();
+}
+
+/// Virial of the constraint forces m a - f, at the pose where the forces were taken.
+void FixGearQuat::tally_virial(double **f)
+{
+  bodies->spread_loads();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!bodies->in_body(i)) continue;
+    double arm[3], constraint[3], virial_i[6];
+    bodies->constraint_force(i, f, arm, constraint);
+    for (int k = 0; k < 3; ++k) virial_i[k] = arm[k] * constraint[k];
+    virial_i[3] = arm[0] * constraint[1];
+    virial_i[4] = arm[0] * constraint[2];
+    virial_i[5] = arm[1] * constraint[2];
+    v_tally(1, &i, 1.0, virial_i);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   r-RESPA with one step for all levels: forces are summed over the levels
+------------------------------------------------------------------------- */
+
+void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
+{
+  const auto *levels = (int *) lammps_extract_global(lmp, "respa_levels");
+  if (ilevel != *levels - 1) return;
+  v_init(vflag);
+  if (!started) {
+    GearQuatBootstrap::gather_present_loads(lmp, this, *bodies);
+    start();
+  }
+  begin_step();
+  if (atom->nmax > nmax_sum) {
+    nmax_sum = atom->nmax;
+    memory->destroy(f_sum);
+    memory->create(f_sum, nmax_sum, 3, "gear/quat:f_sum");
+  }
+  std::fill_n(f_sum[0], 3 * (size_t) nmax_sum, 0.0);
+}
+
+void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
+{
+  const auto *levels = (int *) lammps_extract_global(lmp, "respa_levels");
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int k = 0; k < 3; ++k) f_sum[i][k] += atom->f[i][k];
+  if (ilevel == *levels - 1) finish_step(f_sum);
+}
+
+/* ----------------------------------------------------------------------
+   outputs
+------------------------------------------------------------------------- */
+
+/// Energy that takes thermo's potential energy from the predicted to the corrected pose.
+double FixGearQuat::compute_scalar()
+{
+  double all;
+  MPI_Allreduce(&energy_here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all / force->ftm2v;
+}
+
+/// Translational and rotational kinetic energy, largest deviation of |q|^2 from 1.
+double FixGearQuat::compute_vector(int n)
+{
+  double here = 0.0, all;
+  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
+    const RigidBody &rigid = bodies->body[ibody].rigid;
+    const BodyState &s = bodies->state[ibody];
+    if (n == 0)
+      here += translational_energy(rigid, s.velocity);
+    else if (n == 1)
+      here += rotational_energy(rigid, s.omega_body);
+    else
+      here = std::max(here, std::fabs(dot4(s.q, s.q) - 1.0));
+  }
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, n == 2 ? MPI_MAX : MPI_SUM, world);
+  if (n == 2) return all < NORM_ROUNDING ? 0.0 : all;
+  return all * force->mvv2e;
+}
+
+bigint FixGearQuat::dof(int tgroup)
+{
+  return bodies->removed_freedoms(group->bitmask[tgroup]);
+}
+
+double FixGearQuat::memory_usage()
+{
+  return bodies->memory_usage() + 3.0 * nmax_sum * sizeof(double);
+}
+
+/* ----------------------------------------------------------------------
+   per-atom data, forwarded to the body store
+------------------------------------------------------------------------- */
+
+void FixGearQuat::grow_arrays(int nmax)
+{
+  bodies->grow_arrays(nmax);
+}
+
+void FixGearQuat::copy_arrays(int i, int j, int delflag)
+{
+  bodies->copy_arrays(i, j, delflag);
+}
+
+void FixGearQuat::set_arrays(int i)
+{
+  bodies->set_arrays(i);
+}
+
+int FixGearQuat::pack_exchange(int i, double *buf)
+{
+  return bodies->pack_exchange(i, buf);
+}
+
+int FixGearQuat::unpack_exchange(int nlocal, double *buf)
+{
+  return bodies->unpack_exchange(nlocal, buf);
+}
+
+int FixGearQuat::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
+{
+  return bodies->pack_forward(n, list, buf);
+}
+
+void FixGearQuat::unpack_forward_comm(int n, int first, double *buf)
+{
+  bodies->unpack_forward(n, first, buf);
+}
+
+int FixGearQuat::pack_reverse_comm(int n, int first, double *buf)
+{
+  return bodies->pack_reverse(n, first, buf);
+}
+
+void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  bodies->unpack_reverse(n, list, buf);
+}
+
+/* ----------------------------------------------------------------------
+   restart: the global part says what the histories are, the per-atom part holds them
+------------------------------------------------------------------------- */
+
+struct GlobalRestart {
+  double formulation, size, started, h;
+};
+
+void FixGearQuat::write_restart(FILE *fp)
+{
+  if (comm->me != 0) return;
+  const GlobalRestart data = {(double) args->scheme.first(), (double) args->scheme.size(),
+                              (double) started, h};
+  const int size = sizeof(data);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&data, size, 1, fp);
+}
+
+/// Called before the per-atom data arrive: what the constructor made of the atoms is dropped.
+void FixGearQuat::restart(char *buf)
+{
+  GlobalRestart data;
+  std::memcpy(&data, buf, sizeof(data));
+  bodies->clear();
+  const bool same = data.formulation == (double) args->scheme.first() &&
+      data.size == (double) args->scheme.size();
+  started = data.started != 0.0 && same;
+  h = data.h;
+  if (data.started != 0.0 && !same && comm->me == 0)
+    error->warning(FLERR, "Fix gear/quat: the restart file has histories of another formulation; "
+                   "poses and velocities are kept, the higher derivatives start anew");
+}
+
+int FixGearQuat::pack_restart(int i, double *buf)
+{
+  const int n = 1 + bodies->pack_exchange(i, buf + 1);
+  buf[0] = ubuf(n).d;
+  return n;
+}
+
+void FixGearQuat::unpack_restart(int nlocal, int nth)
+{
+  const double *data = atom->extra[nlocal];
+  for (int i = 0; i < nth; ++i) data += (int) ubuf(data[0]).i;
+  bodies->unpack_exchange(nlocal, data + 1);
+}
+
+int FixGearQuat::size_restart(int i)
+{
+  return 1 + bodies->packed_size(i);
+}
+
+int FixGearQuat::maxsize_restart()
+{
+  return 1 + bodies->max_exchange();
+}

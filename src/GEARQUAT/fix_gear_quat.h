@@ -1,0 +1,88 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+
+   See the README file in the package's directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(gear/quat,FixGearQuat);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_GEAR_QUAT_H
+#define LMP_FIX_GEAR_QUAT_H
+
+#include "fix.h"
+
+namespace LAMMPS_NS {
+
+class FixGearQuat : public Fix {
+ public:
+  FixGearQuat(class LAMMPS *, int, char **);
+  ~FixGearQuat() override;
+
+  int setmask() override;
+  void init() override;
+  void setup_pre_neighbor() override;
+  void setup(int) override;
+  void pre_neighbor() override;
+  void initial_integrate(int) override;
+  void final_integrate() override;
+  void initial_integrate_respa(int, int, int) override;
+  void final_integrate_respa(int, int) override;
+  void reset_dt() override;
+
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  bigint dof(int) override;
+  double memory_usage() override;
+
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+  /// True if the fix moves this atom.
+  bool moves(int atom) const;
+
+ private:
+  class GearQuatArguments *args;
+  class GearQuatBodies *bodies;
+
+  bool started;            // histories are those of the step h
+  double h;                // step of the histories
+  double energy_here;      // -(F.dx + tau.dtheta) of this rank's bodies, last step
+  double **f_sum;          // r-RESPA: forces of all levels
+  int nmax_sum;
+
+  void follow_time_step();
+  void start();
+  void begin_step();
+  void finish_step(double **);
+  void tally_virial(double **);
+  void refuse_respa_with_steps();
+  void refuse_other_integrators();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,233 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_arguments.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "group.h"
+#include "input.h"
+#include "lammps.h"
+#include "utils.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace LAMMPS_NS;
+using GearQuat::Formulation;
+
+static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
+
+GearQuatArguments::GearQuatArguments(LAMMPS *lmp, int narg, char **arg)
+{
+  const int used = parse_bodystyle(lmp, narg, arg);
+  parse_keywords(lmp, narg - used, arg + used);
+}
+
+/// Returns the number of words used so far.
+int GearQuatArguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
+{
+  Error *error = lmp->error;
+  if (narg <= FIRST_WORD) utils::missing_cmd_args(FLERR, "fix gear/quat", error);
+  const std::string style = arg[FIRST_WORD];
+  const int next = FIRST_WORD + 1;
+
+  if (style == "single") {
+    bodystyle = BodyStyle::SINGLE;
+    return next;
+  }
+  if (style == "molecule") {
+    bodystyle = BodyStyle::MOLECULE;
+    return next;
+  }
+  if (style == "custom") {
+    bodystyle = BodyStyle::CUSTOM;
+    if (narg <= next) utils::missing_cmd_args(FLERR, "fix gear/quat custom", error);
+    custom = arg[next];
+    return next + 1;
+  }
+  if (style == "group") {
+    bodystyle = BodyStyle::GROUP;
+    if (narg <= next) utils::missing_cmd_args(FLERR, "fix gear/quat group", error);
+    const int n = utils::inumeric(FLERR, arg[next], false, lmp);
+    if (n <= 0)
+      error->all(FLERR, "Fix gear/quat group: number of groups is {} and must be positive", n);
+    if (narg - next - 1 < n)
+      error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", n,
+                 narg - next - 1);
+    for (int i = 0; i < n; ++i) {
+      groups.emplace_back(arg[next + 1 + i]);
+      if (lmp->group->find(groups.back()) < 0)
+        error->all(FLERR, "Fix gear/quat group: group ID {} does not exist", groups.back());
+    }
+    return next + 1 + n;
+  }
+  error->all(FLERR, "Unknown fix gear/quat bodystyle: {} (single, molecule, group or custom)",
+             style);
+  return 0;
+}
+
+void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
+{
+  Error *error = lmp->error;
+  std::set<std::string> seen;
+
+  // one of two words, the first meaning false
+
+  auto choice = [&](const std::string &key, const std::string &value, const char *no,
+                    const char *yes) {
+    if (value != no && value != yes)
+      error->all(FLERR, "Fix gear/quat {}: unknown value {} ({} or {})", key, value, no, yes);
+    return value == yes;
+  };
+
+  for (int iarg = 0; iarg < narg; iarg += 2) {
+    const std::string key = arg[iarg];
+    const std::set<std::string> known = {"formulation", "start",   "c0",     "omega",
+                                         "momentum",    "project", "infile", "reinit"};
+    if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
+    if (!seen.insert(key).second)
+      error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
+    const std::string value = arg[iarg + 1];
+
+    if (key == "formulation")
+      scheme.formulation =
+          choice(key, value, "first", "second") ? Formulation::SECOND : Formulation::FIRST;
+    else if (key == "start")
+      start = choice(key, value, "bootstrap", "zero") ? Start::ZERO : Start::BOOTSTRAP;
+    else if (key == "c0")
+      scheme.velocity_c0 = choice(key, value, "position", "velocity");
+    else if (key == "omega")
+      scheme.predicted_omega = choice(key, value, "corrected", "predicted");
+    else if (key == "momentum")
+      scheme.predicted_momentum = choice(key, value, "corrected", "predicted");
+    else if (key == "project")
+      scheme.project = choice(key, value, "no", "yes");
+    else if (key == "reinit")
+      reinit = choice(key, value, "no", "yes");
+    else
+      infile = value;
+  }
+
+  if (scheme.first() && seen.count("c0"))
+    error->all(FLERR, "Fix gear/quat keyword c0 belongs to formulation second");
+  for (const auto *key : {"omega", "momentum"})
+    if (!scheme.first() && seen.count(key))
+      error->all(FLERR, "Fix gear/quat keyword {} belongs to formulation first", key);
+
+  // what a file states must not be computed again from the atoms
+
+  if (!infile.empty()) {
+    if (reinit && seen.count("reinit"))
+      error->all(FLERR, "Fix gear/quat reinit yes cannot be used with infile, which states the "
+                 "bodies once and for all");
+    reinit = false;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   atoms to bodies
+------------------------------------------------------------------------- */
+
+std::vector<tagint> GearQuatArguments::body_ids(LAMMPS *lmp, int groupbit) const
+{
+  switch (bodystyle) {
+    case BodyStyle::MOLECULE:
+      return molecule_ids(lmp, groupbit);
+    case BodyStyle::GROUP:
+      return group_ids(lmp, groupbit);
+    case BodyStyle::CUSTOM:
+      return custom_ids(lmp, groupbit);
+    default:
+      break;
+  }
+  std::vector<tagint> ids(lmp->atom->nlocal);
+  for (size_t i = 0; i < ids.size(); ++i) ids[i] = (lmp->atom->mask[i] & groupbit) ? 1 : 0;
+  return ids;
+}
+
+/// The largest of a fault's atom IDs on all ranks, 0 for none.
+static tagint anywhere(LAMMPS *lmp, tagint tag)
+{
+  tagint all;
+  MPI_Allreduce(&tag, &all, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
+  return all;
+}
+
+std::vector<tagint> GearQuatArguments::molecule_ids(LAMMPS *lmp, int groupbit) const
+{
+  Atom *atom = lmp->atom;
+  if (!atom->molecule_flag)
+    lmp->error->all(FLERR, "Fix gear/quat molecule requires an atom style with molecule IDs");
+  std::vector<tagint> ids(atom->nlocal, 0);
+  tagint without = 0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    ids[i] = atom->molecule[i];
+    if (ids[i] <= 0) without = atom->tag[i];
+  }
+  if ((without = anywhere(lmp, without)))
+    lmp->error->all(FLERR, "Fix gear/quat molecule: atom {} of the fix group has molecule ID 0; "
+                    "take it out of the group or give it the ID of its body", without);
+  return ids;
+}
+
+std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) const
+{
+  Atom *atom = lmp->atom;
+  std::vector<tagint> ids(atom->nlocal, 0);
+  tagint twice = 0;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const int bit = lmp->group->bitmask[lmp->group->find(groups[g])] ;
+    for (int i = 0; i < atom->nlocal; ++i) {
+      if (!(atom->mask[i] & bit) || !(atom->mask[i] & groupbit)) continue;
+      if (ids[i] != 0) twice = atom->tag[i];
+      ids[i] = (tagint) g + 1;
+    }
+  }
+  if ((twice = anywhere(lmp, twice)))
+    lmp->error->all(FLERR, "Fix gear/quat group: atom {} is in more than one of the groups; an "
+                    "atom belongs to one body at most", twice);
+  return ids;
+}
+
+/// Bodies are numbered from the smallest value in the group, as fix rigid numbers them.
+std::vector<tagint> GearQuatArguments::custom_ids(LAMMPS *lmp, int groupbit) const
+{
+  Atom *atom = lmp->atom;
+  Error *error = lmp->error;
+  std::vector<tagint> ids(atom->nlocal, 0);
+
+  if (utils::strmatch(custom, "^i_")) {
+    int is_double, columns;
+    const int index = atom->find_custom(custom.c_str() + 2, is_double, columns);
+    if (index < 0 || is_double || columns)
+      error->all(FLERR, "Fix gear/quat custom {} requires an integer vector of that name, made by "
+                 "fix property/atom", custom);
+    std::copy_n(atom->ivector[index], atom->nlocal, ids.begin());
+  } else if (utils::strmatch(custom, "^v_")) {
+    Variable *variable = lmp->input->variable;
+    const int index = variable->find(custom.c_str() + 2);
+    if (index < 0 || !variable->atomstyle(index))
+      error->all(FLERR, "Fix gear/quat custom {} requires an atom-style or atomfile-style variable "
+                 "of that name", custom);
+    std::vector<double> value(atom->nlocal + 1);
+    variable->compute_atom(index, 0, value.data(), 1, 0);
+    for (int i = 0; i < atom->nlocal; ++i) ids[i] = (tagint) std::llround(value[i]);
+  } else
+    error->all(FLERR, "Fix gear/quat custom: {} is neither i_name nor v_name", custom);
+
+  tagint smallest = MAXTAGINT, all;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) smallest = std::min(smallest, ids[i]);
+  MPI_Allreduce(&smallest, &all, 1, MPI_LMP_TAGINT, MPI_MIN, lmp->world);
+  for (int i = 0; i < atom->nlocal; ++i)
+    ids[i] = (atom->mask[i] & groupbit) ? ids[i] - all + 1 : 0;
+  return ids;
+}

@@ -1,0 +1,51 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The words of the fix command: which atoms make bodies, and how they are integrated. */
+
+#ifndef LMP_GEAR_QUAT_ARGUMENTS_H
+#define LMP_GEAR_QUAT_ARGUMENTS_H
+
+#include "gear_quat_integrator.h"
+#include "lmptype.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class LAMMPS;
+
+struct GearQuatArguments {
+  enum class BodyStyle { SINGLE, MOLECULE, GROUP, CUSTOM };
+  enum class Start { BOOTSTRAP, ZERO };
+
+  BodyStyle bodystyle = BodyStyle::SINGLE;
+  std::vector<std::string> groups;    ///< group: one per body
+  std::string custom;                 ///< custom: i_name or v_name
+
+  GearQuat::Scheme scheme;
+  Start start = Start::BOOTSTRAP;
+  bool reinit = true;
+  std::string infile;
+
+  /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
+  /// names the word and what is required.
+  GearQuatArguments(LAMMPS *lmp, int narg, char **arg);
+
+  /// Body of every owned atom, 0 for atoms in none; faults name the atom.  Collective.
+  std::vector<tagint> body_ids(LAMMPS *lmp, int groupbit) const;
+
+ private:
+  int parse_bodystyle(LAMMPS *lmp, int narg, char **arg);
+  void parse_keywords(LAMMPS *lmp, int narg, char **arg);
+  std::vector<tagint> molecule_ids(LAMMPS *lmp, int groupbit) const;
+  std::vector<tagint> group_ids(LAMMPS *lmp, int groupbit) const;
+  std::vector<tagint> custom_ids(LAMMPS *lmp, int groupbit) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

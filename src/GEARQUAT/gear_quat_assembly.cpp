@@ -1,0 +1,235 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_assembly.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "memory.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+static constexpr int IRREGULAR = 0;
+
+std::vector<GearQuatAssembly::PlacedSite> GearQuatAssembly::place_sites(std::vector<Site> &sites)
+{
+  auto placed = meet<PlacedSite>(sites);
+  report_faults();
+  return placed;
+}
+
+std::vector<GearQuatAssembly::OwnedBody> GearQuatAssembly::make_bodies(std::vector<Site> &sites)
+{
+  return meet<OwnedBody>(sites);
+}
+
+/* ----------------------------------------------------------------------
+   rendezvous: every site to the rank that its body's ID names, replies back
+------------------------------------------------------------------------- */
+
+template <typename Reply> std::vector<Reply> GearQuatAssembly::meet(std::vector<Site> &sites)
+{
+  std::vector<int> ranks;
+  ranks.reserve(sites.size() + 1);
+  for (const auto &site : sites) ranks.push_back((int) (site.id % comm->nprocs));
+  ranks.push_back(0);    // no null pointer on a rank without sites
+
+  char *buffer = nullptr;
+  const int n = comm->rendezvous(IRREGULAR, (int) sites.size(), (char *) sites.data(), sizeof(Site),
+                                 0, ranks.data(), callback<Reply>, 0, buffer, sizeof(Reply), this);
+  const auto *replies = (const Reply *) buffer;
+  std::vector<Reply> result(replies, replies + n);
+  memory->sfree(buffer);
+  return result;
+}
+
+template <typename Reply>
+int GearQuatAssembly::callback(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
+{
+  auto *assembly = (GearQuatAssembly *) self;
+  auto *sites = (Site *) in;
+  std::sort(sites, sites + n, [](const Site &a, const Site &b) {
+    return a.id != b.id ? a.id < b.id : a.tag < b.tag;
+  });
+
+  assembly->memory->create(ranks, n + 1, "gear/quat:ranks");
+  auto *replies = (Reply *) assembly->memory->smalloc((n + 1) * sizeof(Reply), "gear/quat:replies");
+  int count = 0;
+  for (int first = 0, last; first < n; first = last) {
+    for (last = first; last < n && sites[last].id == sites[first].id;) ++last;
+    assembly->reply(sites + first, last - first, replies, ranks, count);
+  }
+  out = (char *) replies;
+  flag = 2;    // a second communication, with a new buffer
+  return count;
+}
+
+void GearQuatAssembly::reply(const Site *sites, int n, PlacedSite *replies, int *ranks, int &count)
+{
+  double axes[9];
+  int owner;
+  const OwnedBody owned = make_body(sites, n, axes, owner);
+  for (int i = 0; i < n; ++i) {
+    PlacedSite &placed = replies[count];
+    double arm[3];
+    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - owned.state.center[k];
+    to_body(axes, arm, placed.site_body);
+    placed.local = sites[i].local;
+    placed.owner = sites[owner].tag;
+    ranks[count++] = sites[i].rank;
+  }
+}
+
+void GearQuatAssembly::reply(const Site *sites, int n, OwnedBody *replies, int *ranks, int &count)
+{
+  double axes[9];
+  int owner;
+  replies[count] = make_body(sites, n, axes, owner);
+  ranks[count++] = sites[owner].rank;
+}
+
+/* ----------------------------------------------------------------------
+   one body from its sites, sorted by atom ID
+------------------------------------------------------------------------- */
+
+GearQuatAssembly::OwnedBody GearQuatAssembly::make_body(const Site *sites, int n, double axes[9],
+                                                        int &owner)
+{
+  // owner: the site nearest to the middle of the body's bounding box needs the fewest ghosts
+
+  double lo[3], hi[3];
+  for (int k = 0; k < 3; ++k) lo[k] = hi[k] = sites[0].x[k];
+  for (int i = 1; i < n; ++i)
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], sites[i].x[k]);
+      hi[k] = std::max(hi[k], sites[i].x[k]);
+    }
+  double nearest = -1.0;
+  owner = 0;
+  for (int i = 0; i < n; ++i) {
+    double d2 = 0.0;
+    for (int k = 0; k < 3; ++k) d2 += std::pow(sites[i].x[k] - 0.5 * (lo[k] + hi[k]), 2);
+    if (nearest < 0.0 || d2 < nearest) {
+      nearest = d2;
+      owner = i;
+    }
+  }
+
+  OwnedBody owned = OwnedBody();
+  std::fill(axes, axes + 9, 0.0);
+  owned.local = sites[owner].local;
+  owned.body.id = sites[0].id;
+  owned.body.natoms = n;
+  for (int i = 0; i < n; ++i) {
+    double d2 = 0.0;
+    for (int k = 0; k < 3; ++k) d2 += std::pow(sites[i].x[k] - sites[owner].x[k], 2);
+    owned.body.extent = std::max(owned.body.extent, std::sqrt(d2));
+  }
+
+  const auto stated = given.find(owned.body.id);
+  if (stated != given.end()) {
+    found.push_back(owned.body.id);
+    owned.body.from_file = 1;
+    take_given(stated->second, axes, owned);
+  } else {
+    average(sites, n, axes, owned);
+    if (!(owned.body.rigid.mass > 0.0)) massless = owned.body.id;
+  }
+  return owned;
+}
+
+/// Mass, centre, inertia and momenta as sums over the sites.
+void GearQuatAssembly::average(const Site *sites, int n, double axes[9], OwnedBody &owned) const
+{
+  double mass = 0.0, center[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
+  for (int i = 0; i < n; ++i) {
+    mass += sites[i].mass;
+    for (int k = 0; k < 3; ++k) {
+      center[k] += sites[i].mass * sites[i].x[k];
+      velocity[k] += sites[i].mass * sites[i].v[k];
+    }
+  }
+  owned.body.rigid.mass = mass;
+  if (!(mass > 0.0)) return;    // make_body() keeps the ID, place_sites() reports it
+
+  for (int k = 0; k < 3; ++k) {
+    owned.state.center[k] = center[k] / mass;
+    owned.state.velocity[k] = velocity[k] / mass;
+  }
+
+  double tensor[9] = {0}, angular_momentum[3] = {0, 0, 0};
+  for (int i = 0; i < n; ++i) {
+    double arm[3], spin[3];
+    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - owned.state.center[k];
+    cross3(arm, sites[i].v, spin);
+    const double r2 = dot3(arm, arm);
+    for (int k = 0; k < 3; ++k) {
+      angular_momentum[k] += sites[i].mass * spin[k];
+      for (int l = 0; l < 3; ++l)
+        tensor[3 * k + l] += sites[i].mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
+    }
+  }
+  if (n == 1)
+    for (double &element : tensor) element = 0.0;    // a lone site has no rotation, rounding or not
+  finish_state(tensor, angular_momentum, axes, owned);
+}
+
+void GearQuatAssembly::take_given(const GivenBody &given_body, double axes[9],
+                                  OwnedBody &owned) const
+{
+  const double *i = given_body.inertia;
+  const double tensor[9] = {i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]};
+  owned.body.rigid.mass = given_body.mass;
+  for (int k = 0; k < 3; ++k) {
+    owned.state.center[k] = given_body.center[k];
+    owned.state.velocity[k] = given_body.velocity[k];
+  }
+  const imageint image = ((imageint) (given_body.image[0] + IMGMAX) & IMGMASK) |
+      (((imageint) (given_body.image[1] + IMGMAX) & IMGMASK) << IMGBITS) |
+      (((imageint) (given_body.image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
+  domain->unmap(owned.state.center, image);
+  finish_state(tensor, given_body.angular_momentum_space, axes, owned);
+}
+
+/// Principal frame, orientation and angular velocity.
+void GearQuatAssembly::finish_state(const double tensor[9], const double *angular_momentum_space,
+                                    double axes[9], OwnedBody &owned) const
+{
+  double *moments = owned.body.rigid.inertia;
+  principal_axes(tensor, moments, axes);
+  drop_vanishing_moments(moments);
+  quaternion_from_matrix(axes, owned.state.q);
+  double momentum_body[3];
+  to_body(axes, angular_momentum_space, momentum_body);
+  for (int k = 0; k < 3; ++k)
+    owned.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void GearQuatAssembly::report_faults()
+{
+  tagint any = 0;
+  MPI_Allreduce(&massless, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (any > 0)
+    error->all(FLERR, "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to "
+               "more than zero", any);
+
+  int matched = (int) found.size(), all_matched = 0;
+  MPI_Allreduce(&matched, &all_matched, 1, MPI_INT, MPI_SUM, world);
+  if (all_matched == (int) given.size()) return;
+  for (const auto &stated : given) {
+    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
+    int anywhere = 0;
+    MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
+    if (!anywhere)
+      error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
+  }
+}

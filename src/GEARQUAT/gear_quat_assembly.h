@@ -1,0 +1,79 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Assembly: from sites with positions and velocities to rigid bodies.
+
+   All sites of a body meet on one rank (a rendezvous keyed by the body's ID), which sorts them by
+   atom ID and computes owner, mass properties, pose and velocities.  Sums therefore run in the same
+   order on any number of ranks, and nothing is communicated between all bodies. */
+
+#ifndef LMP_GEAR_QUAT_ASSEMBLY_H
+#define LMP_GEAR_QUAT_ASSEMBLY_H
+
+#include "gear_quat_infile.h"
+#include "gear_quat_rigid_body.h"
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/// What a body is; travels with its owner atom.
+struct GearQuatBody {
+  GearQuat::RigidBody rigid;
+  tagint id;          ///< the user's: molecule ID, group number or custom value
+  tagint natoms;      ///< sites
+  double extent;      ///< largest distance of a site from the owner atom
+  int from_file;      ///< mass and inertia were given, not summed
+};
+
+class GearQuatAssembly : protected Pointers {
+ public:
+  struct Site {
+    int rank, local;     ///< where the site came from
+    tagint id, tag;      ///< body and atom
+    double mass;
+    double x[3], v[3];   ///< unwrapped
+  };
+  struct PlacedSite {
+    int local;
+    tagint owner;            ///< atom ID of the body's owner
+    double site_body[3];     ///< from the centre of mass, principal frame
+  };
+  struct OwnedBody {
+    int local;    ///< index of the owner atom
+    GearQuatBody body;
+    GearQuat::BodyState state;
+  };
+
+  GearQuatAssembly(LAMMPS *lmp, const GivenBodies &given) : Pointers(lmp), given(given) {}
+
+  /// Both are collective and return what belongs to this rank's atoms.  Massless bodies, and
+  /// bodies in the infile that no atom belongs to, end the run on all ranks.
+  std::vector<PlacedSite> place_sites(std::vector<Site> &sites);
+  std::vector<OwnedBody> make_bodies(std::vector<Site> &sites);
+
+ private:
+  const GivenBodies &given;
+  tagint massless = 0;             ///< a body without mass met on this rank
+  std::vector<tagint> found;       ///< given bodies met on this rank
+
+  OwnedBody make_body(const Site *sites, int n, double axes[9], int &owner);
+  void average(const Site *sites, int n, double axes[9], OwnedBody &owned) const;
+  void take_given(const GivenBody &given_body, double axes[9], OwnedBody &owned) const;
+  void finish_state(const double tensor[9], const double *angular_momentum_space, double axes[9],
+                    OwnedBody &owned) const;
+  void report_faults();
+
+  template <typename Reply> std::vector<Reply> meet(std::vector<Site> &sites);
+  template <typename Reply>
+  static int callback(int n, char *in, int &flag, int *&ranks, char *&out, void *self);
+  void reply(const Site *sites, int n, PlacedSite *replies, int *ranks, int &count);
+  void reply(const Site *sites, int n, OwnedBody *replies, int *ranks, int &count);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

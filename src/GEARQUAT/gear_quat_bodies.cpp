@@ -1,0 +1,627 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_bodies.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "memory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+static constexpr int STATE_SIZE = sizeof(BodyState) / sizeof(double);
+static constexpr int LOAD_SIZE = sizeof(Load) / sizeof(double);
+static constexpr int SITE_SIZE = 6;
+static constexpr int BODY_SIZE = 8 + STATE_SIZE;
+static constexpr int IRREGULAR = 0;
+
+// atoms count as moved by the user when they are off by more than rounding of coordinates and
+// velocities, relative to box and body
+
+static constexpr double SAME = 1.0e-11;
+
+/* ---------------------------------------------------------------------- */
+
+GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
+    Pointers(lmp), fix(fix), scheme(scheme), nown(0), nmax(0), body_id(nullptr),
+    owner_tag(nullptr), owned(nullptr), site_body(nullptr), atom2body(nullptr),
+    forward(Forward::STATES)
+{
+  grow_arrays(atom->nmax);
+  clear();
+}
+
+GearQuatBodies::~GearQuatBodies()
+{
+  memory->destroy(body_id);
+  memory->destroy(owner_tag);
+  memory->destroy(owned);
+  memory->destroy(site_body);
+  memory->destroy(atom2body);
+}
+
+/* ----------------------------------------------------------------------
+   life cycle
+------------------------------------------------------------------------- */
+
+void GearQuatBodies::clear()
+{
+  nown = 0;
+  body.clear();
+  state.clear();
+  load.clear();
+  frame.clear();
+  rows.clear();
+  owner_atom.clear();
+  for (int i = 0; i < nmax; ++i) set_arrays(i);
+}
+
+void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &given)
+{
+  std::vector<GearQuatAssembly::Site> sites;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (ids[i] == 0) continue;
+    GearQuatAssembly::Site site;
+    site.rank = comm->me;
+    site.local = i;
+    site.id = ids[i];
+    site.tag = atom->tag[i];
+    site.mass = atom_mass(i);
+    domain->unmap(atom->x[i], atom->image[i], site.x);
+    for (int k = 0; k < 3; ++k) site.v[k] = atom->v[i][k];
+    sites.push_back(site);
+  }
+
+  GearQuatAssembly assembly(lmp, given);
+  const auto placed = assembly.place_sites(sites);
+  const auto made = assembly.make_bodies(sites);
+
+  clear();
+  for (const auto &site : placed) {
+    body_id[site.local] = ids[site.local];
+    owner_tag[site.local] = site.owner;
+    for (int k = 0; k < 3; ++k) site_body[site.local][k] = site.site_body[k];
+  }
+  for (const auto &one : made) {
+    const int ibody = add_owned(one.local);
+    body[ibody] = one.body;
+    state[ibody] = one.state;
+  }
+}
+
+void GearQuatBodies::recreate()
+{
+  create(std::vector<tagint>(body_id, body_id + atom->nlocal), GivenBodies());
+}
+
+void GearQuatBodies::count(bigint &nbodies, bigint &natoms) const
+{
+  bigint here[2] = {nown, 0}, all[2];
+  for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
+  MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  nbodies = all[0];
+  natoms = all[1];
+}
+
+bool GearQuatBodies::atoms_match()
+{
+  double **x = atom->x, **v = atom->v;
+  const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
+  int moved = 0;
+  update_axes();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int ibody = atom2body[i];
+    if (ibody < 0) continue;
+    double arm[3], wrap[3], spin[3];
+    site_offset(i, arm, wrap);
+    cross3(frame[ibody].omega_space, arm, spin);
+    const BodyState &s = state[ibody];
+    const double length = box + std::sqrt(dot3(s.center, s.center) + dot3(wrap, wrap));
+    const double speed = std::sqrt(dot3(s.velocity, s.velocity)) + std::sqrt(dot3(spin, spin));
+    for (int k = 0; k < 3; ++k) {
+      if (std::fabs(s.center[k] + arm[k] - wrap[k] - x[i][k]) > SAME * length) moved = 1;
+      if (std::fabs(s.velocity[k] + spin[k] - v[i][k]) > SAME * speed) moved = 1;
+    }
+  }
+  int any = 0;
+  MPI_Allreduce(&moved, &any, 1, MPI_INT, MPI_MAX, world);
+  return !any && !census(0).mass_changed;
+}
+
+void GearQuatBodies::check_whole()
+{
+  const Census found = census(0);
+  if (found.broken)
+    error->all(FLERR, "Fix gear/quat: body {} has {} of its {} atoms left; a body must be removed "
+               "as a whole", found.broken, found.left, found.had);
+}
+
+bigint GearQuatBodies::removed_freedoms(int groupbit)
+{
+  return census(groupbit).removed_freedoms;
+}
+
+/* ----------------------------------------------------------------------
+   ownership
+------------------------------------------------------------------------- */
+
+void GearQuatBodies::drop_ghosts()
+{
+  body.resize(nown);
+  state.resize(nown);
+  load.resize(nown);
+  frame.resize(nown);
+}
+
+int GearQuatBodies::add_owned(int atom)
+{
+  drop_ghosts();
+  const int ibody = nown++;
+  drop_ghosts();
+  rows.resize((size_t) nown * scheme.size(), 0.0);
+  owner_atom.push_back(atom);
+  owned[atom] = ibody;
+  return ibody;
+}
+
+void GearQuatBodies::remove_owned(int ibody)
+{
+  drop_ghosts();
+  owned[owner_atom[ibody]] = -1;
+  const int last = --nown;
+  if (ibody != last) {
+    body[ibody] = body[last];
+    state[ibody] = state[last];
+    load[ibody] = load[last];
+    owner_atom[ibody] = owner_atom[last];
+    owned[owner_atom[ibody]] = ibody;
+    std::copy_n(history(last), scheme.size(), history(ibody));
+  }
+  drop_ghosts();
+  owner_atom.resize(nown);
+  rows.resize((size_t) nown * scheme.size());
+}
+
+void GearQuatBodies::update_ghosts(bool setup)
+{
+  drop_ghosts();
+  if (comm->nprocs > 1) {
+    for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; ++i) owned[i] = -1;
+    forward = Forward::GHOSTS;
+    comm->forward_comm(fix);
+    load.resize(body.size());
+    frame.resize(body.size());
+  }
+
+  tagint lost = 0;
+  double extent = 0.0;
+  for (const auto &one : body) extent = std::max(extent, one.extent);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    atom2body[i] = -1;
+    if (body_id[i] == 0) continue;
+    const int owner = atom->map(owner_tag[i]);
+    if (owner < 0 || owned[owner] < 0)
+      lost = body_id[i];
+    else
+      atom2body[i] = owned[owner];
+  }
+
+  const char *message = "Fix gear/quat: body {} spans more than the ghost cutoff: an atom has lost "
+                        "sight of its body's owner atom; use comm_modify cutoff with more than the "
+                        "largest distance of an atom from its owner, {}";
+  if (setup) {
+    tagint any;
+    double largest;
+    MPI_Allreduce(&lost, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    MPI_Allreduce(&extent, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+    if (any) error->all(FLERR, message, any, largest);
+  } else if (lost)
+    error->one(FLERR, message, lost, extent);
+}
+
+/* ----------------------------------------------------------------------
+   census: the sites of every body meet on one rank and are counted
+------------------------------------------------------------------------- */
+
+struct GearQuatBodies::SiteCount {
+  tagint owner, id;
+  tagint natoms;    // the body's, 0 unless this site is its owner
+  int freedoms;     // of the body, translation and rotation
+  int in_group;
+  double mass;
+  double body_mass;    // 0 if it does not have to agree with the sites' masses
+};
+
+GearQuatBodies::Census GearQuatBodies::census(int groupbit)
+{
+  std::vector<SiteCount> sites;
+  std::vector<int> ranks;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (body_id[i] == 0) continue;
+    SiteCount site = SiteCount();
+    site.owner = owner_tag[i];
+    site.id = body_id[i];
+    site.in_group = (atom->mask[i] & groupbit) ? 1 : 0;
+    site.mass = atom_mass(i);
+    if (owned[i] >= 0) {
+      const GearQuatBody &mine = body[owned[i]];
+      site.natoms = mine.natoms;
+      site.body_mass = mine.from_file ? 0.0 : mine.rigid.mass;
+      site.freedoms = domain->dimension == 2 ? 2 + (mine.rigid.inertia[2] > 0.0)
+                                             : 3 + mine.rigid.rotational_freedoms();
+    }
+    sites.push_back(site);
+    ranks.push_back((int) (site.owner % comm->nprocs));
+  }
+  const int n = (int) sites.size();
+  sites.emplace_back();
+  ranks.push_back(0);
+
+  Census here;
+  here.dimension = domain->dimension;
+  char *unused = nullptr;
+  comm->rendezvous(IRREGULAR, n, (char *) sites.data(), sizeof(SiteCount), 0, ranks.data(),
+                   count_sites, 0, unused, sizeof(SiteCount), &here);
+
+  Census all;
+  MPI_Allreduce(&here.removed_freedoms, &all.removed_freedoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&here.mass_changed, &all.mass_changed, 1, MPI_INT, MPI_MAX, world);
+  struct {
+    int value, rank;
+  } first = {here.broken ? 1 : 0, comm->me}, worst;
+  MPI_Allreduce(&first, &worst, 1, MPI_2INT, MPI_MAXLOC, world);
+  tagint broken[3] = {here.broken, here.left, here.had};
+  MPI_Bcast(broken, 3, MPI_LMP_TAGINT, worst.rank, world);
+  all.broken = broken[0];
+  all.left = broken[1];
+  all.had = broken[2];
+  return all;
+}
+
+int GearQuatBodies::count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *result)
+{
+  auto *sites = (SiteCount *) in;
+  auto &census = *(Census *) result;
+  std::sort(sites, sites + n, [](const SiteCount &a, const SiteCount &b) {
+    return a.owner < b.owner;
+  });
+  for (int first = 0, last; first < n; first = last) {
+    tagint had = 0, left = 0, in_group = 0;
+    int freedoms = 0;
+    double mass = 0.0, body_mass = 0.0;
+    for (last = first; last < n && sites[last].owner == sites[first].owner; ++last) {
+      const SiteCount &site = sites[last];
+      ++left;
+      in_group += site.in_group;
+      mass += site.mass;
+      had += site.natoms;
+      freedoms += site.freedoms;
+      body_mass += site.body_mass;
+    }
+    if (left != had) {
+      census.broken = sites[first].id;
+      census.left = left;
+      census.had = had;
+    }
+    if (body_mass > 0.0 && std::fabs(mass - body_mass) > SAME * body_mass) census.mass_changed = 1;
+    if (in_group == left) census.removed_freedoms += census.dimension * left - freedoms;
+  }
+  flag = 0;    // no reply
+  ranks = nullptr;
+  out = nullptr;
+  return 0;
+}
+
+/* ----------------------------------------------------------------------
+   one step
+------------------------------------------------------------------------- */
+
+void GearQuatBodies::spread_states()
+{
+  if (comm->nprocs > 1) {
+    forward = Forward::STATES;
+    comm->forward_comm(fix, STATE_SIZE);
+  }
+  update_axes();
+}
+
+void GearQuatBodies::spread_loads()
+{
+  if (comm->nprocs == 1) return;
+  forward = Forward::LOADS;
+  comm->forward_comm(fix, LOAD_SIZE);
+}
+
+void GearQuatBodies::update_axes()
+{
+  for (size_t ibody = 0; ibody < state.size(); ++ibody) {
+    const BodyState &s = state[ibody];
+    rotation_matrix(s.q, scheme.norm2(s.q), frame[ibody].axes);
+    to_space(frame[ibody].axes, s.omega_body, frame[ibody].omega_space);
+  }
+}
+
+/// Arm of a site in the space frame, and what wraps its position back into the box.
+inline void GearQuatBodies::site_offset(int i, double *arm_space, double *wrap) const
+{
+  to_space(frame[atom2body[i]].axes, site_body[i], arm_space);
+  wrap[0] = wrap[1] = wrap[2] = 0.0;
+  domain->unmap(wrap, atom->image[i]);
+}
+
+void GearQuatBodies::place_sites()
+{
+  double **x = atom->x, **v = atom->v;
+  const int nlocal = atom->nlocal;
+  for (int i = 0; i < nlocal; ++i) {
+    const int ibody = atom2body[i];
+    if (ibody < 0) continue;
+    double arm[3], wrap[3], spin[3];
+    site_offset(i, arm, wrap);
+    cross3(frame[ibody].omega_space, arm, spin);
+    for (int k = 0; k < 3; ++k) {
+      x[i][k] = state[ibody].center[k] + arm[k] - wrap[k];
+      v[i][k] = state[ibody].velocity[k] + spin[k];
+    }
+  }
+}
+
+/// Before a run: positions were made by the last step, or by the user, and are left alone.
+void GearQuatBodies::place_velocities()
+{
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int ibody = atom2body[i];
+    if (ibody < 0) continue;
+    double arm[3], spin[3];
+    to_space(frame[ibody].axes, site_body[i], arm);
+    cross3(frame[ibody].omega_space, arm, spin);
+    for (int k = 0; k < 3; ++k) atom->v[i][k] = state[ibody].velocity[k] + spin[k];
+  }
+}
+
+void GearQuatBodies::gather_loads(double **f)
+{
+  const int nlocal = atom->nlocal;
+  for (auto &one : load) one = Load();
+  for (int i = 0; i < nlocal; ++i) {
+    const int ibody = atom2body[i];
+    if (ibody < 0) continue;
+    double arm[3], moment[3];
+    to_space(frame[ibody].axes, site_body[i], arm);
+    cross3(arm, f[i], moment);
+    for (int k = 0; k < 3; ++k) {
+      load[ibody].force[k] += f[i][k];
+      load[ibody].torque_space[k] += moment[k];
+    }
+  }
+  if (comm->nprocs > 1) comm->reverse_comm(fix, LOAD_SIZE);
+
+  const double ftm2v = force->ftm2v;
+  for (int ibody = 0; ibody < nown; ++ibody)
+    for (int k = 0; k < 3; ++k) {
+      load[ibody].force[k] *= ftm2v;
+      load[ibody].torque_space[k] *= ftm2v;
+    }
+}
+
+void GearQuatBodies::constraint_force(int i, double **f, double *arm_space,
+                                      double *constraint) const
+{
+  const int ibody = atom2body[i];
+  const Frame &fr = frame[ibody];
+  const Load &l = load[ibody];
+  double torque_body[3], alpha_body[3], alpha_space[3], tangential[3], spin[3], radial[3];
+  to_body(fr.axes, l.torque_space, torque_body);
+  angular_acceleration(body[ibody].rigid, torque_body, state[ibody].omega_body, alpha_body);
+  to_space(fr.axes, alpha_body, alpha_space);
+
+  to_space(fr.axes, site_body[i], arm_space);
+  cross3(alpha_space, arm_space, tangential);
+  cross3(fr.omega_space, arm_space, spin);
+  cross3(fr.omega_space, spin, radial);
+  const double mass = atom_mass(i) / force->ftm2v;
+  for (int k = 0; k < 3; ++k)
+    constraint[k] =
+        mass * (l.force[k] / body[ibody].rigid.mass + tangential[k] + radial[k]) - f[i][k];
+}
+
+double GearQuatBodies::atom_mass(int i) const
+{
+  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+/* ----------------------------------------------------------------------
+   per-atom arrays
+------------------------------------------------------------------------- */
+
+void GearQuatBodies::grow_arrays(int n)
+{
+  const int old = nmax;
+  nmax = n;
+  memory->grow(body_id, nmax, "gear/quat:body_id");
+  memory->grow(owner_tag, nmax, "gear/quat:owner_tag");
+  memory->grow(owned, nmax, "gear/quat:owned");
+  memory->grow(site_body, nmax, 3, "gear/quat:site_body");
+  memory->grow(atom2body, nmax, "gear/quat:atom2body");
+  for (int i = old; i < nmax; ++i) set_arrays(i);
+}
+
+void GearQuatBodies::set_arrays(int i)
+{
+  body_id[i] = owner_tag[i] = 0;
+  owned[i] = atom2body[i] = -1;
+  site_body[i][0] = site_body[i][1] = site_body[i][2] = 0.0;
+}
+
+void GearQuatBodies::copy_arrays(int from, int to, int delflag)
+{
+  if (delflag && owned[to] >= 0) remove_owned(owned[to]);
+  body_id[to] = body_id[from];
+  owner_tag[to] = owner_tag[from];
+  owned[to] = owned[from];
+  atom2body[to] = atom2body[from];
+  for (int k = 0; k < 3; ++k) site_body[to][k] = site_body[from][k];
+  if (owned[to] >= 0) owner_atom[owned[to]] = to;
+}
+
+/* ----------------------------------------------------------------------
+   one atom, with its body if it owns one, as doubles: exchange between ranks and restart files
+------------------------------------------------------------------------- */
+
+int GearQuatBodies::pack_exchange(int i, double *buf)
+{
+  int m = 0;
+  buf[m++] = ubuf(body_id[i]).d;
+  if (body_id[i] == 0) return m;
+  buf[m++] = ubuf(owner_tag[i]).d;
+  for (int k = 0; k < 3; ++k) buf[m++] = site_body[i][k];
+  const int ibody = owned[i];
+  buf[m++] = ubuf(ibody < 0 ? 0 : scheme.size()).d;
+  if (ibody < 0) return m;
+  m += pack_body(body[ibody], state[ibody], buf + m);
+  std::copy_n(history(ibody), scheme.size(), buf + m);
+  return m + scheme.size();
+}
+
+/// A history of another scheme, met in a restart file, is passed over.
+int GearQuatBodies::unpack_exchange(int i, const double *buf)
+{
+  int m = 0;
+  set_arrays(i);
+  body_id[i] = (tagint) ubuf(buf[m++]).i;
+  if (body_id[i] == 0) return m;
+  owner_tag[i] = (tagint) ubuf(buf[m++]).i;
+  for (int k = 0; k < 3; ++k) site_body[i][k] = buf[m++];
+  const int size = (int) ubuf(buf[m++]).i;
+  if (size == 0) return m;
+  const int ibody = add_owned(i);
+  m += unpack_body(buf + m, body[ibody], state[ibody]);
+  if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
+  return m + size;
+}
+
+int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, double *buf)
+{
+  int m = 0;
+  buf[m++] = ubuf(body.id).d;
+  buf[m++] = ubuf(body.natoms).d;
+  buf[m++] = ubuf(body.from_file).d;
+  buf[m++] = body.extent;
+  buf[m++] = body.rigid.mass;
+  for (double moment : body.rigid.inertia) buf[m++] = moment;
+  std::memcpy(buf + m, &state, sizeof(BodyState));
+  return BODY_SIZE;
+}
+
+int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState &state)
+{
+  int m = 0;
+  body.id = (tagint) ubuf(buf[m++]).i;
+  body.natoms = (tagint) ubuf(buf[m++]).i;
+  body.from_file = (int) ubuf(buf[m++]).i;
+  body.extent = buf[m++];
+  body.rigid.mass = buf[m++];
+  for (double &moment : body.rigid.inertia) moment = buf[m++];
+  std::memcpy(&state, buf + m, sizeof(BodyState));
+  return BODY_SIZE;
+}
+
+int GearQuatBodies::packed_size(int i) const
+{
+  if (body_id[i] == 0) return 1;
+  return owned[i] < 0 ? SITE_SIZE : max_exchange();
+}
+
+int GearQuatBodies::max_exchange() const
+{
+  return SITE_SIZE + BODY_SIZE + scheme.size();
+}
+
+int GearQuatBodies::max_forward() const
+{
+  return 1 + BODY_SIZE;
+}
+
+/* ----------------------------------------------------------------------
+   ghost bodies: from owner atoms to their ghosts and back
+------------------------------------------------------------------------- */
+
+int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
+{
+  int m = 0;
+  for (int i = 0; i < n; ++i) {
+    const int ibody = owned[list[i]];
+    if (forward == Forward::GHOSTS) {
+      buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
+      if (ibody >= 0) m += pack_body(body[ibody], state[ibody], buf + m);
+    } else if (ibody >= 0 && forward == Forward::STATES) {
+      std::memcpy(buf + m, &state[ibody], sizeof(BodyState));
+      m += STATE_SIZE;
+    } else if (ibody >= 0) {
+      std::memcpy(buf + m, &load[ibody], sizeof(Load));
+      m += LOAD_SIZE;
+    }
+  }
+  return m;
+}
+
+void GearQuatBodies::unpack_forward(int n, int first, const double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; ++i) {
+    if (forward == Forward::GHOSTS) {
+      if (ubuf(buf[m++]).i == 0) continue;
+      owned[i] = (int) body.size();
+      body.emplace_back();
+      state.emplace_back();
+      m += unpack_body(buf + m, body.back(), state.back());
+    } else if (owned[i] >= 0 && forward == Forward::STATES) {
+      std::memcpy(&state[owned[i]], buf + m, sizeof(BodyState));
+      m += STATE_SIZE;
+    } else if (owned[i] >= 0) {
+      std::memcpy(&load[owned[i]], buf + m, sizeof(Load));
+      m += LOAD_SIZE;
+    }
+  }
+}
+
+int GearQuatBodies::pack_reverse(int n, int first, double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; ++i) {
+    if (owned[i] < 0) continue;
+    std::memcpy(buf + m, &load[owned[i]], sizeof(Load));
+    m += LOAD_SIZE;
+  }
+  return m;
+}
+
+void GearQuatBodies::unpack_reverse(int n, const int *list, const double *buf)
+{
+  int m = 0;
+  for (int i = 0; i < n; ++i) {
+    const int ibody = owned[list[i]];
+    if (ibody < 0) continue;
+    for (int k = 0; k < 3; ++k) load[ibody].force[k] += buf[m++];
+    for (int k = 0; k < 3; ++k) load[ibody].torque_space[k] += buf[m++];
+  }
+}
+
+double GearQuatBodies::memory_usage() const
+{
+  const double per_atom = 2 * sizeof(tagint) + 2 * sizeof(int) + 3 * sizeof(double);
+  return nmax * per_atom + rows.capacity() * sizeof(double) +
+      body.capacity() * sizeof(GearQuatBody) + state.capacity() * sizeof(BodyState) +
+      load.capacity() * sizeof(Load) + frame.capacity() * sizeof(Frame);
+}

@@ -1,0 +1,137 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Body store: which atoms make a body, who owns it, and what the owner knows.
+
+   A body belongs to the rank that owns its owner atom and migrates with it.  Owned bodies come
+   first, then ghost bodies: copies of pose and velocities for atoms whose owner atom is a ghost
+   here.  Only owned bodies have a history.  Centres of mass are unwrapped; atoms are placed with
+   their own image flags, so that bodies need none.
+
+   The fix calls, every step:
+     [predict owned states] -> spread_states() -> place_sites() -> [forces] -> gather_loads()
+     -> [correct owned states] -> spread_states() -> place_sites()
+   and after every exchange of atoms update_ghosts(). */
+
+#ifndef LMP_GEAR_QUAT_BODIES_H
+#define LMP_GEAR_QUAT_BODIES_H
+
+#include "gear_quat_assembly.h"
+#include "gear_quat_integrator.h"
+
+namespace LAMMPS_NS {
+
+class Fix;
+
+class GearQuatBodies : protected Pointers {
+ public:
+  GearQuatBodies(LAMMPS *lmp, Fix *fix, const GearQuat::Scheme &scheme);
+  ~GearQuatBodies() override;
+
+  // one entry per owned body; state and load have ghosts behind
+
+  std::vector<GearQuatBody> body;
+  std::vector<GearQuat::BodyState> state;
+  std::vector<GearQuat::Load> load;
+
+  int nowned() const { return nown; }
+  double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
+  bool in_body(int atom) const { return body_id[atom] != 0; }
+  tagint id_of(int atom) const { return body_id[atom]; }
+
+  // life cycle, all collective
+
+  /// Build all bodies anew from the atoms; ids: body of every owned atom, 0 for none.
+  void create(const std::vector<tagint> &ids, const GivenBodies &given);
+  /// Build the same bodies anew from the atoms' present masses, positions and velocities.
+  void recreate();
+  /// Forget all bodies: a restart file is about to state them.
+  void clear();
+  /// Find the body of every atom after atoms were exchanged.  setup: ranks report together.
+  void update_ghosts(bool setup);
+  /// True if masses, positions and velocities of all atoms are those of their bodies.
+  bool atoms_match();
+  /// Ends the run if a body has lost some of its atoms.
+  void check_whole();
+  /// Degrees of freedom that rigidity takes from the atoms of a group.
+  bigint removed_freedoms(int groupbit);
+  /// Bodies, and atoms in them, on all ranks.
+  void count(bigint &nbodies, bigint &natoms) const;
+
+  // one step
+
+  void spread_states();
+  void place_sites();
+  void place_velocities();
+  void gather_loads(double **f);
+  void spread_loads();
+  /// Arm from the centre of mass and constraint force m a - f of an atom under the present loads.
+  void constraint_force(int atom, double **f, double *arm_space, double *force) const;
+
+  // what the fix forwards
+
+  void grow_arrays(int nmax);
+  void copy_arrays(int from, int to, int delflag);
+  void set_arrays(int atom);
+  int packed_size(int atom) const;
+  int pack_exchange(int atom, double *buf);
+  int unpack_exchange(int atom, const double *buf);
+  int pack_forward(int n, const int *list, double *buf);
+  void unpack_forward(int n, int first, const double *buf);
+  int pack_reverse(int n, int first, double *buf);
+  void unpack_reverse(int n, const int *list, const double *buf);
+  int max_exchange() const;
+  int max_forward() const;
+  double memory_usage() const;
+
+ private:
+  Fix *fix;
+  GearQuat::Scheme scheme;
+
+  int nown;                            ///< owned bodies
+  std::vector<double> rows;            ///< histories of owned bodies
+  std::vector<int> owner_atom;         ///< local index of the owner atom of an owned body
+
+  struct Frame {                       ///< what placing a site needs, derived from the state
+    double axes[9];                    ///< rotation matrix space -> body
+    double omega_space[3];
+  };
+  std::vector<Frame> frame;            ///< owned and ghost bodies
+
+  int nmax;
+  tagint *body_id;        ///< per atom: the user's ID of its body, 0 for none
+  tagint *owner_tag;      ///< per atom: atom ID of the owner of its body
+  int *owned;             ///< per atom, ghosts too: the body it owns, or -1
+  double **site_body;     ///< per atom: from the centre of mass, principal frame
+  int *atom2body;         ///< per atom: its body among owned and ghost bodies, or -1
+
+  enum class Forward { GHOSTS, STATES, LOADS };
+  Forward forward;        ///< what forward communication carries
+
+  void drop_ghosts();
+  int add_owned(int atom);
+  void remove_owned(int ibody);
+  void update_axes();
+  void site_offset(int atom, double *arm_space, double *wrap) const;
+  double atom_mass(int atom) const;
+
+  struct SiteCount;       ///< a site on its way to the rank that counts its body
+  struct Census {
+    bigint removed_freedoms = 0;
+    tagint broken = 0;          ///< a body that has lost atoms, 0 for none
+    tagint left = 0, had = 0;   ///< its atoms now and before
+    int mass_changed = 0;
+    int dimension = 3;
+  };
+  Census census(int groupbit);
+  static int count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *result);
+
+  static int pack_body(const GearQuatBody &body, const GearQuat::BodyState &state, double *buf);
+  static int unpack_body(const double *buf, GearQuatBody &body, GearQuat::BodyState &state);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,53 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Start-up of all bodies inside LAMMPS: the loop over nodes and bodies around the kernel's
+   collocation (gear_quat_startup.h), with LAMMPS' own forces at every node. */
+
+#ifndef LMP_GEAR_QUAT_BOOTSTRAP_H
+#define LMP_GEAR_QUAT_BOOTSTRAP_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_forces.h"
+#include "gear_quat_startup.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class GearQuatBootstrap : protected Pointers {
+ public:
+  /// bodies: states and loads of owned bodies are those of the start.  h: the step of the histories.
+  GearQuatBootstrap(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
+                    const GearQuat::Scheme &scheme, double h);
+
+  /// The paper's start: every second and higher derivative is zero.
+  void zero();
+  /// Derivatives consistent with the trajectory; where forces cannot be followed, those that the
+  /// present loads determine, and a message on rank 0.  After the call atoms are as before.
+  void run();
+
+  /// Loads at the present positions into the bodies, where atom->f does not hold them all.
+  static void gather_present_loads(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies);
+
+ private:
+  const Fix *fix;
+  GearQuatBodies &bodies;
+  GearQuat::Scheme scheme;
+  double h;
+
+  GearQuat::Collocation collocation;
+  std::vector<GearQuat::Collocation::Workspace> work;
+
+  void seed_local(int terms);
+  double first_spacing() const;
+  bool collocate(GearQuatForces &forces, double spacing, std::string &why);
+  bool sweep(GearQuatForces &forces, double spacing, double &change);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

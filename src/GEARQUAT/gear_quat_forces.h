@@ -1,0 +1,55 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Forces at positions that are not steps: what the start-up needs of LAMMPS.
+
+   Followed: pair, bonded and kspace forces of styles that depend on positions and velocities only,
+   and the post_force() of the fixes in a list (external fields, walls, springs).  Not followed, so
+   that reason() says why: anything that moves or draws by itself. */
+
+#ifndef LMP_GEAR_QUAT_FORCES_H
+#define LMP_GEAR_QUAT_FORCES_H
+
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class Fix;
+
+class GearQuatForces : protected Pointers {
+ public:
+  /// Looks at the scene.  owner: the fix that asks, itself not evaluated.  Collective.
+  GearQuatForces(LAMMPS *lmp, const Fix *owner);
+
+  /// Empty if forces can be followed, else what stands in the way.
+  const std::string &reason() const { return why; }
+
+  /// Keep positions, velocities, forces and torques of all atoms, ghosts too.
+  void save();
+  /// Put back what save() kept.
+  void restore();
+  /// Largest distance of an owned atom from where save() found it, on all ranks.
+  double largest_displacement() const;
+  /// Forces of owned atoms at their present positions into atom->f.
+  void evaluate();
+
+ private:
+  std::string why;
+  std::vector<Fix *> pre_force, post_force;
+  std::vector<double> x, v, f, torque;
+
+  void look_at_styles();
+  void look_at_fixes(const Fix *owner);
+  void look_at_time();
+  void clear_forces();
+  void compute_forces();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,124 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Mass properties and Euler's equations of one rigid body.  Frames: see gear_quat_quaternion.h. */
+
+#ifndef GEAR_QUAT_RIGID_BODY_H
+#define GEAR_QUAT_RIGID_BODY_H
+
+#include "gear_quat_quaternion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace GearQuat {
+
+/// A moment of inertia below this fraction of the largest counts as zero, as fix rigid counts it.
+constexpr double LINEAR_FRACTION = 1.0e-7;
+
+/// Mass and principal moments.  A zero moment has no rotational degree of freedom.
+struct RigidBody {
+  double mass;
+  double inertia[3];
+
+  int rotational_freedoms() const
+  {
+    return (inertia[0] > 0.0) + (inertia[1] > 0.0) + (inertia[2] > 0.0);
+  }
+};
+
+/// Where a body is and how it moves: the 13 numbers that place and move its sites.
+struct BodyState {
+  double center[3];         ///< centre of mass, unwrapped
+  double q[4];              ///< orientation, scalar part last
+  double velocity[3];       ///< of the centre of mass
+  double omega_body[3];     ///< angular velocity along the principal axes
+};
+
+/// Total force and torque about the centre of mass, in mass * length / time^2 (* length).
+struct Load {
+  double force[3];
+  double torque_space[3];
+};
+
+/// omegadot_body, Eq. 7.  An axis without inertia has no angular acceleration.
+inline void angular_acceleration(const RigidBody &body, const double *torque_body,
+                                 const double *omega_body, double *omegadot_body)
+{
+  const double *inertia = body.inertia;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double gyroscopic = (inertia[j] - inertia[k]) * omega_body[j] * omega_body[k];
+    omegadot_body[i] = inertia[i] > 0.0 ? (torque_body[i] + gyroscopic) / inertia[i] : 0.0;
+  }
+}
+
+inline double translational_energy(const RigidBody &body, const double *velocity)
+{
+  return 0.5 * body.mass * dot3(velocity, velocity);
+}
+
+inline double rotational_energy(const RigidBody &body, const double *omega_body)
+{
+  double twice = 0.0;
+  for (int i = 0; i < 3; ++i) twice += body.inertia[i] * omega_body[i] * omega_body[i];
+  return 0.5 * twice;
+}
+
+/// Principal moments and axes of a symmetric tensor (row-major) by cyclic Jacobi rotations.
+/// After the call the rows of `a` are the axes, a right-handed rotation matrix space -> body.
+/// Axes are not sorted: an axis that is principal already stays exactly as it is (2d systems).
+inline void principal_axes(const double tensor[9], double moments[3], double a[9])
+{
+  double m[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int i = 0; i < 9; ++i) m[i / 3][i % 3] = tensor[i];
+
+  for (int sweep = 0; sweep < 50; ++sweep) {
+    const double off = std::fabs(m[0][1]) + std::fabs(m[0][2]) + std::fabs(m[1][2]);
+    if (off == 0.0) break;
+    for (int p = 0; p < 2; ++p)
+      for (int r = p + 1; r < 3; ++r) {
+        if (m[p][r] == 0.0) continue;
+        const double ratio = (m[r][r] - m[p][p]) / (2.0 * m[p][r]);
+        const double t = std::copysign(1.0, ratio) / (std::fabs(ratio) + std::hypot(ratio, 1.0));
+        const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
+        const double shift = t * m[p][r];
+        const int o = 3 - p - r;
+        m[p][p] -= shift;
+        m[r][r] += shift;
+        m[p][r] = m[r][p] = 0.0;
+        const double mop = m[o][p], mor = m[o][r];
+        m[o][p] = m[p][o] = c * mop - s * mor;
+        m[o][r] = m[r][o] = s * mop + c * mor;
+        for (int i = 0; i < 3; ++i) {
+          const double vp = v[i][p], vr = v[i][r];
+          v[i][p] = c * vp - s * vr;
+          v[i][r] = s * vp + c * vr;
+        }
+      }
+  }
+
+  for (int k = 0; k < 3; ++k) {
+    moments[k] = m[k][k];
+    for (int i = 0; i < 3; ++i) a[3 * k + i] = v[i][k];
+  }
+  double third[3];
+  cross3(a, a + 3, third);
+  if (dot3(third, a + 6) < 0.0)
+    for (int i = 6; i < 9; ++i) a[i] = -a[i];
+}
+
+/// Moments that are zero but for rounding become exactly zero: a linear body has two rotational
+/// degrees of freedom, a point none.
+inline void drop_vanishing_moments(double moments[3])
+{
+  const double largest = std::max({moments[0], moments[1], moments[2]});
+  for (int i = 0; i < 3; ++i)
+    if (moments[i] < LINEAR_FRACTION * largest || moments[i] <= 0.0) moments[i] = 0.0;
+}
+
+}    // namespace GearQuat
+
+#endif

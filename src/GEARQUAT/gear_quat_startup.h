@@ -1,0 +1,223 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Start-up: the higher rows of a history.
+
+   A history starts from the Taylor series of the trajectory in x and q,
+     x(t) = sum_j X_j (t/H)^j,   q(t) = sum_j Q_j (t/H)^j,
+   of which `terms` are known: 2 (position and velocity: the paper's zero start), 3 (forces too), or
+   as many as collocation finds.
+
+   Collocation: the second derivatives at the nodes t = k H, k = -HALF..HALF, are interpolated by one
+   polynomial; integrating it twice from the exact start gives the state at every node, the forces
+   there give new second derivatives, and so on until nothing changes (Picard iteration).  Rows 0 and
+   1 stay exact: no difference of positions enters a velocity.  Nodes on both sides of the start make
+   it symmetric under time reversal.
+
+   The host calls, for every body: begin(); then, until converged, for every node but 0:
+   state_at(), [forces at that state], set_load(); at the end seed(). */
+
+#ifndef GEAR_QUAT_STARTUP_H
+#define GEAR_QUAT_STARTUP_H
+
+#include "gear_quat_integrator.h"
+
+namespace GearQuat {
+
+/// Taylor series of one body's x (columns 0-2) and q (columns 3-6) in units of a step.
+struct TaylorSeries {
+  static constexpr int MAX_TERMS = 11;
+  int terms = 0;
+  double c[MAX_TERMS][7];
+};
+
+/// The three terms that a state and the load on it determine, in units of the step h.
+inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, const Load &load,
+                                 double h)
+{
+  TaylorSeries series;
+  series.terms = 3;
+  double a[9], torque_body[3], omegadot_body[3], qdot[4], qddot[4];
+  rotation_matrix(state.q, dot4(state.q, state.q), a);
+  to_body(a, load.torque_space, torque_body);
+  angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
+  quaternion_rate(state.q, state.omega_body, qdot);
+  quaternion_acceleration(state.q, qdot, omegadot_body, qddot);
+  for (int i = 0; i < 3; ++i) {
+    series.c[0][i] = state.center[i];
+    series.c[1][i] = h * state.velocity[i];
+    series.c[2][i] = 0.5 * h * h * load.force[i] / body.mass;
+  }
+  for (int i = 0; i < 4; ++i) {
+    series.c[0][3 + i] = state.q[i];
+    series.c[1][3 + i] = h * qdot[i];
+    series.c[2][3 + i] = 0.5 * h * h * qddot[i];
+  }
+  return series;
+}
+
+/// Fill all rows of a history from a series in units of the step `series_step`.
+/// After the call rows with no known term are zero; momenta and angular velocities of the
+/// first-order form are derivatives of the same series.
+inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries &series,
+                 double series_step, double h, double *rows)
+{
+  const int n = scheme.values(), width = scheme.width(), quat = scheme.quaternion();
+  const double ratio = h / series_step;
+  for (int i = 0; i < scheme.size(); ++i) rows[i] = 0.0;
+
+  double power = 1.0;
+  for (int j = 0; j < n && j < series.terms; ++j, power *= ratio) {
+    double *row = rows + j * width;
+    for (int i = 0; i < 3; ++i) row[Scheme::POSITION + i] = power * series.c[j][i];
+    for (int i = 0; i < 4; ++i) row[quat + i] = power * series.c[j][3 + i];
+  }
+  if (!scheme.first()) return;
+
+  // p = m x' and omega = 2 W(q)^T q', term by term
+
+  power = 1.0 / series_step;
+  for (int j = 0; j < n && j + 1 < series.terms; ++j, power *= ratio) {
+    double *row = rows + j * width;
+    for (int i = 0; i < 3; ++i)
+      row[Scheme::MOMENTUM + i] = power * body.mass * (j + 1) * series.c[j + 1][i];
+    for (int k = 0; k <= j; ++k) {
+      double product[3];
+      w_transposed_times(series.c[k] + 3, series.c[j + 1 - k] + 3, product);
+      for (int i = 0; i < 3; ++i)
+        row[Scheme::OMEGA + i] += power * 2.0 * (j + 1 - k) * product[i];
+    }
+  }
+}
+
+/// Collocation of one body; the object's tables are the same for all bodies.
+class Collocation {
+ public:
+  static constexpr int HALF = 4;                ///< nodes on each side of the start
+  static constexpr int NODES = 2 * HALF + 1;    ///< the start is node HALF
+
+  /// Second derivatives at the nodes, in units of the node spacing, and the exact start.
+  struct Workspace {
+    double start[2][7];
+    double second[NODES][7];
+  };
+
+  Collocation()
+  {
+    invert_vandermonde();
+    for (int k = 0; k < NODES; ++k) {
+      const double s = k - HALF;
+      for (int l = 0; l < NODES; ++l) {
+        long double value = 0.0, rate = 0.0, power = s;
+        for (int j = 0; j < NODES; ++j) {
+          rate += monomial[j][l] * power / (j + 1);
+          power *= s;
+          value += monomial[j][l] * power / ((j + 1) * (j + 2));
+        }
+        value_weight[k][l] = double(value);
+        rate_weight[k][l] = double(rate);
+      }
+    }
+  }
+
+  /// First guess: constant second derivatives, those of `series` (at least three terms, in units of
+  /// the node spacing).
+  void begin(const TaylorSeries &series, Workspace &w) const
+  {
+    for (int i = 0; i < 7; ++i) {
+      w.start[0][i] = series.c[0][i];
+      w.start[1][i] = series.c[1][i];
+      for (auto &second : w.second) second[i] = 2.0 * series.c[2][i];
+    }
+  }
+
+  /// State of the body at a node by the present polynomial; spacing: time between nodes.
+  BodyState state_at(int node, const Workspace &w, double spacing) const
+  {
+    double value[7], rate[7];
+    const double s = node - HALF;
+    for (int i = 0; i < 7; ++i) {
+      value[i] = w.start[0][i] + s * w.start[1][i];
+      rate[i] = w.start[1][i];
+      for (int l = 0; l < NODES; ++l) {
+        value[i] += value_weight[node][l] * w.second[l][i];
+        rate[i] += rate_weight[node][l] * w.second[l][i];
+      }
+    }
+    BodyState state;
+    for (int i = 0; i < 3; ++i) {
+      state.center[i] = value[i];
+      state.velocity[i] = rate[i] / spacing;
+    }
+    for (int i = 0; i < 4; ++i) state.q[i] = value[3 + i];
+    angular_velocity(state.q, dot4(state.q, state.q), rate + 3, state.omega_body);
+    for (int i = 0; i < 3; ++i) state.omega_body[i] /= spacing;
+    return state;
+  }
+
+  /// Take the load met at a node; returns the largest change of position (relative to
+  /// `length`) and of orientation that it would make over the span of the nodes.
+  double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
+                  double spacing, double length, Workspace &w) const
+  {
+    BodyState unit = state;
+    project_norm(unit.q);
+    const TaylorSeries series = local_series(body, unit, load, spacing);
+    double change = 0.0;
+    for (int i = 0; i < 7; ++i) {
+      const double second = 2.0 * series.c[2][i];
+      const double difference = std::fabs(second - w.second[node][i]);
+      change = std::max(change, i < 3 ? difference / length : difference);
+      w.second[node][i] = second;
+    }
+    return change * HALF * HALF;
+  }
+
+  /// The converged polynomial as a series in units of the node spacing.
+  TaylorSeries series(const Workspace &w) const
+  {
+    TaylorSeries series;
+    series.terms = NODES + 2;
+    static_assert(NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
+    for (int i = 0; i < 7; ++i) {
+      series.c[0][i] = w.start[0][i];
+      series.c[1][i] = w.start[1][i];
+      for (int j = 0; j < NODES; ++j) {
+        double sum = 0.0;
+        for (int l = 0; l < NODES; ++l) sum += double(monomial[j][l]) * w.second[l][i];
+        series.c[j + 2][i] = sum / ((j + 1) * (j + 2));
+      }
+    }
+    return series;
+  }
+
+ private:
+  long double monomial[NODES][NODES];    ///< coefficient of s^j of the interpolation at node l
+  double value_weight[NODES][NODES];     ///< twice integrated, at node k
+  double rate_weight[NODES][NODES];      ///< once integrated, at node k
+
+  /// Lagrange's basis polynomials, multiplied out factor by factor.
+  void invert_vandermonde()
+  {
+    for (int l = 0; l < NODES; ++l) {
+      long double basis[NODES] = {1.0L};
+      long double denominator = 1.0L;
+      int degree = 0;
+      for (int m = 0; m < NODES; ++m) {
+        if (m == l) continue;
+        const long double root = m - HALF;
+        ++degree;
+        for (int j = degree; j >= 0; --j)
+          basis[j] = (j > 0 ? basis[j - 1] : 0.0L) - root * (j < degree ? basis[j] : 0.0L);
+        denominator *= l - m;
+      }
+      for (int j = 0; j < NODES; ++j) monomial[j][l] = basis[j] / denominator;
+    }
+  }
+};
+
+}    // namespace GearQuat
+
+#endif
