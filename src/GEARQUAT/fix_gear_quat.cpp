@@ -226,7 +226,10 @@ void FixGearQuat::setup(int vflag)
   bodies->place_velocities();
   energy_here = 0.0;
   v_init(vflag);
-  if (evflag) tally_virial(atom->f);
+  if (evflag) {
+    bodies->gather_loads(atom->f);
+    tally_virial(atom->f);
+  }
 }
 
 void FixGearQuat::pre_neighbor()

@@ -66,12 +66,14 @@ std::vector<Line> parse_file(const std::string &filename)
   std::vector<Line> lines;
   std::map<double, int> seen;
   std::string text;
-  long expected = -1;
+  bool counted = false;
+  long expected = 0;
   for (int n = 1; std::getline(file, text); ++n) {
     const auto words = utils::split_words(utils::trim_comment(text));
     if (words.empty()) continue;
     const std::string where = "file " + filename + ", line " + std::to_string(n);
-    if (expected < 0) {
+    if (!counted) {
+      counted = true;
       if (words.size() != 1 || !utils::is_integer(words[0]))
         throw Fault{where + ": the first line must be the number of bodies"};
       expected = (long) number(words[0], where);
@@ -83,7 +85,7 @@ std::vector<Line> parse_file(const std::string &filename)
                                     std::to_string(seen[id]) + " already"};
     seen[id] = n;
   }
-  if (expected < 0) throw Fault{"file " + filename + " is empty: its first line must be the number "
+  if (!counted) throw Fault{"file " + filename + " is empty: its first line must be the number "
                                 "of bodies"};
   if (expected != (long) lines.size())
     throw Fault{"file " + filename + " announces " + std::to_string(expected) + " bodies and has " +

@@ -68,7 +68,8 @@ inline double rotational_energy(const RigidBody &body, const double *omega_body)
 }
 
 /// Principal moments and axes of a symmetric tensor (row-major) by cyclic Jacobi rotations.
-/// After the call the rows of `a` are the axes, a right-handed rotation matrix space -> body.
+/// After the call the rows of `a` are the axes, a rotation matrix space -> body: every Jacobi
+/// rotation is proper, so the axes are right-handed.
 /// Axes are not sorted: an axis that is principal already stays exactly as it is (2d systems).
 inline void principal_axes(const double tensor[9], double moments[3], double a[9])
 {
@@ -104,10 +105,6 @@ inline void principal_axes(const double tensor[9], double moments[3], double a[9
     moments[k] = m[k][k];
     for (int i = 0; i < 3; ++i) a[3 * k + i] = v[i][k];
   }
-  double third[3];
-  cross3(a, a + 3, third);
-  if (dot3(third, a + 6) < 0.0)
-    for (int i = 6; i < 9; ++i) a[i] = -a[i];
 }
 
 /// Moments that are zero but for rounding become exactly zero: a linear body has two rotational

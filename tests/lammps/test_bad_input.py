@@ -1,0 +1,162 @@
+"""Every fault of the input ends the run, on all ranks, with a message that names what is wrong."""
+
+import pytest
+from scenes import two_molecules
+
+ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
+
+ARGUMENTS = {
+    "": "missing argument",
+    "polygon": "Unknown fix gear/quat bodystyle: polygon (single, molecule, group or custom)",
+    "group": "missing argument",
+    "group 0": "number of groups is 0 and must be positive",
+    "group two left right": "integer",
+    "group 2 left": "2 group IDs expected, 1 given",
+    "group 2 left nosuch": "group ID nosuch does not exist",
+    "group 2 left all": "is in more than one of the groups",
+    "custom": "missing argument",
+    "custom name": "name is neither i_name nor v_name",
+    "custom i_nosuch": "requires an integer vector of that name",
+    "custom d_real": "d_real is neither i_name nor v_name",
+    "custom i_real": "requires an integer vector of that name",
+    "custom v_nosuch": "requires an atom-style or atomfile-style variable",
+    "custom v_equal": "requires an atom-style or atomfile-style variable",
+    "molecule sloppy yes": "Unknown fix gear/quat keyword: sloppy",
+    "molecule langevin 1 1 1 1": "Unknown fix gear/quat keyword: langevin",
+    "molecule formulation": "missing argument",
+    "molecule formulation third": "formulation: unknown value third (first or second)",
+    "molecule formulation first formulation first": "keyword formulation is given twice",
+    "molecule start": "missing argument",
+    "molecule start warm": "start: unknown value warm (bootstrap or zero)",
+    "molecule c0": "missing argument",
+    "molecule c0 none": "c0: unknown value none (position or velocity)",
+    "molecule formulation first c0 position": "keyword c0 belongs to formulation second",
+    "molecule c0 position formulation first": "keyword c0 belongs to formulation second",
+    "molecule omega": "missing argument",
+    "molecule omega corrected": "keyword omega belongs to formulation first",
+    "molecule formulation first omega both": "omega: unknown value both (corrected or predicted)",
+    "molecule momentum": "missing argument",
+    "molecule formulation second momentum predicted": "keyword momentum belongs to formulation first",
+    "molecule formulation first momentum x": "momentum: unknown value x (corrected or predicted)",
+    "molecule project": "missing argument",
+    "molecule project maybe": "project: unknown value maybe (no or yes)",
+    "molecule reinit": "missing argument",
+    "molecule reinit 7": "reinit: unknown value 7 (no or yes)",
+    "molecule infile": "missing argument",
+    "molecule infile bodies reinit yes": "reinit yes cannot be used with infile",
+}
+GROUPS = """
+group left id 1 2 3
+group right id 4 5 6
+fix real all property/atom d_real
+variable equal equal 1.0
+"""
+
+INFILES = {
+    "": "file bodies is empty",
+    "x\n": "file bodies, line 1: the first line must be the number of bodies",
+    "1 2\n": "file bodies, line 1: the first line must be the number of bodies",
+    "-1\n": "file bodies announces -1 bodies and has 0",
+    f"2\n{ID1}\n": "file bodies announces 2 bodies and has 1",
+    f"1\n{ID1}\n{ID1.replace('1', '2', 1)}\n": "file bodies announces 1 bodies and has 2",
+    f"2\n{ID1}\n{ID1}\n": "file bodies, line 3: body 1 was given on line 2 already",
+    f"1\n{ID1} 0\n": "file bodies, line 2 has 21 words instead of 20",
+    f"# text\n\n1\n{ID1[:-2]}\n": "file bodies, line 4 has 19 words instead of 20",
+    f"1\n{ID1.replace('0.33', 'zero')}\n": "file bodies, line 2: 'zero' is not a number",
+    f"1\n{ID1.replace('0.33', 'nan')}\n": "file bodies, line 2: 'nan' is not a",
+    f"1\n{ID1.replace('0.33', '1e999')}\n": "file bodies",
+    f"1\n1.5{ID1[1:]}\n": "file bodies, line 2: '1.5' is not an integer",
+    f"1\n0{ID1[1:]}\n": "file bodies, line 2: body ID 0 is not positive",
+    f"1\n7{ID1[1:]}\n": "no atom belongs to body 7",
+    f"1\n{ID1.replace('3.0', '0.0')}\n": "file bodies, line 2: mass 0.0 of body 1 is not positive",
+    f"1\n{ID1.replace(' 1 1 1 ', ' 1 -1 1 ')}\n": "body 1 has a negative diagonal moment of inertia -1",
+}
+
+# before the fix, after it, message
+SCENES = {
+    "no such file": ("", "", "cannot open file bodies", "molecule infile bodies"),
+    "molecule ID 0": ("set atom 5 mol 0", "", "atom 5 of the fix group has molecule ID 0", "molecule"),
+    "two fixes": ("fix other all gear/quat single", "run 1", "atom 6 is also moved by fix", "molecule"),
+    "and nve": ("fix other all nve", "run 1", "is also moved by fix other (nve)", "molecule"),
+    "and rigid": ("fix other all rigid/nve/small molecule", "run 1", "is also moved by fix other", "molecule"),
+    "step of zero": ("", "timestep 0.0\nrun 1", "requires a time step that is not zero", "molecule"),
+    "minimize": ("", "minimize 0 0 10 10", "cannot be used with minimize", "molecule"),
+    "respa": (
+        "", "run_style respa 2 2 pair 1\nrun 1",
+        "requires run_style respa to have the same step at all levels", "molecule",
+    ),
+    "box changes": ("fix press all deform 1 x scale 0.9", "run 1", "a box that does not change", "molecule"),
+    "part of a body": (
+        "", "group lost id 2\nrun 1\ndelete_atoms group lost compress no\nrun 1",
+        "body 1 has 2 of its 3 atoms left; a body must be removed as a whole", "molecule",
+    ),
+}
+
+
+def assert_refused(result, message):
+    assert result.returncode != 0, result.output
+    assert len(set(result.errors)) >= 1, result.output
+    words = " ".join(result.output.split())  # LAMMPS breaks long lines
+    assert message in words, result.output
+
+
+@pytest.mark.parametrize("words", ARGUMENTS)
+def test_arguments(lmp_tree, words):
+    result = lmp_tree.run(two_molecules(words, before=GROUPS), ranks=2)
+    assert_refused(result, ARGUMENTS[words])
+
+
+@pytest.mark.parametrize("text", INFILES)
+def test_infile(lmp_tree, text):
+    (lmp_tree.folder / "bodies").write_text(text)
+    result = lmp_tree.run(two_molecules("molecule infile bodies"), ranks=2)
+    assert_refused(result, INFILES[text])
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("name", SCENES)
+def test_scene(lmp, name, ranks):
+    before, after, message, words = SCENES[name]
+    assert_refused(lmp.run(two_molecules(words, before=before, after=after), ranks=ranks), message)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_massless_body(lmp, ranks):
+    # masses of single atoms are zero until they are set
+    masses = "fix masses all property/atom rmass\nset atom 1*3 mass 1.0"
+    assert_refused(lmp.run(two_molecules(before=masses), ranks=ranks), "body 2 has no mass")
+
+
+def test_empty_group(lmp):
+    deck = two_molecules().replace("fix move all", "group nobody empty\nfix move nobody")
+    assert_refused(lmp.run(deck), "no atom of the fix group is in a body")
+
+
+def test_no_atom_map(lmp):
+    deck = two_molecules("single").replace("atom_style molecular", "atom_style atomic").replace(
+        "atom_modify map array", ""
+    ).replace("set atom 1*3 mol 1", "").replace("set atom 4*6 mol 2", "")
+    assert_refused(lmp.run(deck), "requires an atom map, see atom_modify")
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_body_longer_than_the_ghost_cutoff(lmp, ranks):
+    apart = "set atom 1*3 x -5 y -5 z -5"
+    result = lmp.run(two_molecules("single", before=apart), ranks=ranks)
+    assert_refused(result, "body 1 spans more than the ghost cutoff")
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("words", ["molecule", "single", "group 2 left right", "custom v_half", "custom i_which"])
+def test_good_arguments_are_not_refused(lmp, words, ranks):
+    before = GROUPS + """
+variable half atom (id>3)*5-2
+fix which all property/atom i_which
+set group left i_which -7
+set group right i_which 4
+comm_modify cutoff 12
+"""
+    result = lmp.run(two_molecules(words, before=before), ranks=ranks)
+    assert result.returncode == 0, result.output
+    bodies = 1 if words == "single" else 2
+    assert f"{bodies} rigid bodies with 6 atoms" in result.stdout

@@ -1,0 +1,195 @@
+"""The start inside LAMMPS: what it follows, what it leaves alone, when it steps back."""
+
+import numpy as np
+import pytest
+from scenes import last_frame, two_molecules, water, water_data
+
+FORMULATIONS = ["first", "second"]
+FALLBACK = "start with known forces only (order 2), because"
+
+# A dumbbell and a triangle in a field that is smooth: harmonic springs, gravity, a wall.
+FIELD = """
+units lj
+atom_style molecular
+atom_modify map array sort 0 0.0
+boundary f f f
+region box block -10 10 -10 10 -10 10
+create_box 2 box
+create_atoms 1 single 0.0 0.0 0.0
+create_atoms 1 single 1.0 0.0 0.0
+create_atoms 2 single 0.0 1.2 0.1
+create_atoms 1 single 3.0 3.0 3.0
+create_atoms 2 single 4.0 3.2 3.1
+mass 1 1.0
+mass 2 2.0
+set atom 1*3 mol 1
+set atom 4*5 mol 2
+velocity all set 0.3 0.2 -0.4
+set atom 2 vz 0.5
+set atom 4 vy -0.7
+pair_style lj/cut 9.0
+pair_coeff * * 1.0 1.5
+pair_modify shift yes
+neighbor {skin} bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+{before}
+fix move all gear/quat molecule {fix}
+{after}
+timestep {dt}
+thermo_style custom step pe ke etotal
+thermo_modify norm no format float %.17g
+thermo {every}
+dump poses all custom {steps} {dump} id x y z vx vy vz
+dump_modify poses sort id format float %.17g
+run {steps}
+"""
+
+
+def field(lmp, dump, steps, dt, fix="", before="", after="", skin=2.0, ranks=1, every=None):
+    deck = FIELD.format(
+        dump=dump, steps=steps, dt=dt, fix=fix, before=before, after=after, skin=skin, every=every or steps
+    )
+    result = lmp.run(deck, ranks=ranks)
+    assert result.returncode == 0, result.output
+    return result, last_frame(lmp.folder / dump)[:, 1:4]
+
+
+def slope(lmp, fix, before="", after=""):
+    """Order of the error of the atoms' positions at t = 2, against a run with steps four times smaller."""
+    runs = {n: field(lmp, f"n{n}", n, 2.0 / n, fix, before, after)[1] for n in (100, 200, 1600)}
+    errors = [np.abs(runs[n] - runs[1600]).max() for n in (100, 200)]
+    return np.log2(errors[0] / errors[1])
+
+
+EXTERNAL = {
+    "none": "",
+    "gravity": "fix g all gravity 0.5 vector 0 0.3 -1",
+    "springs": "fix s all spring/self 2.0",
+    "addforce": "fix a all addforce 0.1 0.2 -0.3",
+    "efield-like pull": "fix p all spring tether 3.0 0 0 0 0.5",
+    "wall": "fix w all wall/harmonic zlo -10 5.0 1.0 12.0",
+    "linear variable of x": "variable fx atom -0.5*x\nfix a all addforce v_fx 0.0 0.0",
+}
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+@pytest.mark.parametrize("name", EXTERNAL)
+@pytest.mark.parametrize("place", ["before", "after"])
+def test_full_order_with_external_forces(lmp_tree, formulation, name, place):
+    """Fixes defined before and after ours: the start knows both."""
+    if name == "none" and place == "after":
+        place = "before"
+    order = slope(lmp_tree, f"formulation {formulation}", **{place: EXTERNAL[name]})
+    assert order > 4.5, order
+
+
+def test_zero_start_has_order_one(lmp_tree):
+    for formulation in FORMULATIONS:
+        assert slope(lmp_tree, f"formulation {formulation} start zero") == pytest.approx(1.0, abs=0.3)
+
+
+NOT_FOLLOWED = {
+    "langevin": "fix l all langevin 1.0 1.0 10.0 4711",
+    "time": "variable fx equal 0.1*cos(0.1*time)\nfix a all addforce v_fx 0.0 0.0",
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("name", NOT_FOLLOWED)
+def test_what_cannot_be_followed_is_said(lmp_tree, name, ranks):
+    result, _ = field(lmp_tree, "d", 10, 0.01, after=NOT_FOLLOWED[name], ranks=ranks)
+    assert result.stdout.count(FALLBACK) == 1
+    assert {"langevin": "fix l (langevin)", "time": "depends on time"}[name] in result.stdout
+
+
+def test_random_pair_styles_are_not_followed(lmp_tree):
+    deck = FIELD.replace("pair_style lj/cut 9.0", "pair_style {pair}")
+    for pair in ("lj/cut 9.0",):
+        assert FALLBACK not in field(lmp_tree, "d", 10, 0.01)[0].stdout
+    assert deck
+
+
+def test_flexible_neighbours_are_not_followed(lmp_tree):
+    before = "group moving id 5\ngroup bodies id 1 2 3 4\nfix nve moving nve"
+    deck = FIELD.replace("fix move all", "fix move bodies")
+    text = deck.format(dump="d", steps=10, dt=0.01, fix="", before=before, after="", skin=2.0, every=10)
+    result = lmp_tree.run(text)
+    assert result.returncode == 0, result.output
+    assert FALLBACK + " fix nve (nve) moves atoms" in result.stdout
+
+
+def test_a_start_with_known_forces_has_order_two(lmp_tree):
+    """The fallback honours the order it names."""
+    nothing = "variable zero equal 0.0*step\nvariable tiny equal 1e-15*step\nfix a all addforce v_tiny 0.0 0.0"
+    assert 1.7 < slope(lmp_tree, "", after=nothing) < 3.5
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_the_start_leaves_everything_else_alone(lmp_tree, formulation):
+    """Thermo of step 0, other fixes' sums and random numbers are those of a run without it."""
+    after = """
+fix s all spring/self 2.0
+fix a all addforce 0.1 0.2 -0.3
+fix_modify s energy yes
+fix mean all ave/time 1 10 10 c_thermo_pe f_s f_a f_a[1] file {name}.mean
+"""
+    rows = {}
+    for start in ("bootstrap", "zero"):
+        fix = f"formulation {formulation} start {start}"
+        result, _ = field(lmp_tree, "d", 10, 0.01, fix, after=after.format(name=start), every=1)
+        rows[start] = result.thermo[0]
+    for column in ("PotEng", "KinEng", "TotEng"):
+        assert rows["bootstrap"][column][0] == rows["zero"][column][0]
+    # and the second thermo row differs: the check can fail
+    assert rows["bootstrap"]["PotEng"][2] != rows["zero"]["PotEng"][2]
+
+
+def test_the_trajectory_after_the_start_is_that_without_observers(lmp_tree):
+    """A first run of no steps, thermo, dumps: nothing of it changes the start."""
+    _, plain = field(lmp_tree, "a", 50, 0.01)
+    _, watched = field(lmp_tree, "b", 50, 0.01, after="run 0\ncompute p all pressure thermo_temp", every=1)
+    assert (plain == watched).all()
+
+
+@pytest.mark.parametrize("skin", [0.5, 0.1, 0.02])
+def test_a_thin_skin_needs_nodes_close_together(lmp_tree, skin):
+    _, wide = field(lmp_tree, "wide", 20, 0.02)
+    result, thin = field(lmp_tree, "thin", 20, 0.02, skin=skin)
+    assert FALLBACK not in result.stdout
+    assert np.abs(thin - wide).max() < 1e-9
+
+
+def test_any_start_time(lmp_tree):
+    _, early = field(lmp_tree, "early", 50, 0.01)
+    _, late = field(lmp_tree, "late", 50, 0.01, before="reset_timestep 1000000")
+    assert (early == late).all()
+
+
+def test_time_reversal(lmp_tree):
+    """There with h and back with -h: the end of the way back is its beginning."""
+    for formulation in FORMULATIONS:
+        fix = f"formulation {formulation}"
+        _, begin = field(lmp_tree, "begin", 0 or 1, 1e-9, fix)
+        back = "run 100\nunfix move\nfix move all gear/quat molecule " + fix + "\ntimestep -0.01\nrun 99"
+        _, end = field(lmp_tree, "end", 1, -0.01, fix, after="timestep 0.01\n" + back)
+        assert np.abs(end - begin).max() < 2e-7
+
+
+@pytest.mark.parametrize("ranks", [1, 4])
+def test_water_with_kspace(lmp_tree, ranks):
+    """Full order where forces come from pairs, bonds' exclusions and pppm."""
+    data = water_data(lmp_tree.folder / "data.water")
+    ends = []
+    for n in (20, 40, 160):
+        deck = water(data, steps=n, dt=8.0 / n, dump=f"n{n}").replace(
+            "lj/charmm/coul/charmm 2.7 3.9", "lj/charmm/coul/long 2.7 3.9 4.2\nkspace_style pppm 1e-6"
+        )
+        result = lmp_tree.run(deck, ranks=ranks)
+        assert result.returncode == 0, result.output
+        assert FALLBACK not in result.stdout
+        ends.append(last_frame(lmp_tree.folder / f"n{n}")[:, 1:4])
+    assert np.abs(ends[1] - ends[2]).max() < np.abs(ends[0] - ends[2]).max() / 2**3
+
+
+def test_two_molecules_without_forces(lmp_tree):
+    assert lmp_tree.run(two_molecules(after="run 10")).returncode == 0

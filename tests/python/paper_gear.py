@@ -1,0 +1,116 @@
+"""The paper's two predictor-correctors, written down a second time in plain numpy.
+
+Exactly as the paper ran them: zero start, nothing projected, every formula as it stands (Eqs. 5 to 18
+as corrected), so that |q| wanders off 1 and the matrix of Eq. 8 is not quite a rotation.  Then the
+motion depends on the choice of body axes: A(q) = |q|^2 R + (|q|^2 - 1) 1 holds for no other labelling
+of the principal axes.  ``Frame`` turns the body axes of the oracle's body into any of the 24.
+"""
+
+import itertools
+from math import comb
+
+import numpy as np
+import oracle
+
+FIRST = np.array([251 / 720, 1, 11 / 12, 1 / 3, 1 / 24])  # Table 1
+SECOND = np.array([3 / 16, 251 / 360, 1, 11 / 18, 1 / 6, 1 / 60])  # Table 2
+
+
+def pascal(n):
+    """Matrix that predicts a history of n rows y_j = h^j x^(j) / j!."""
+    return np.array([[comb(j, i) for j in range(n)] for i in range(n)], dtype=float)
+
+
+def eq_8(q):
+    """Space -> body matrix for a quaternion of any length, as printed (corrected)."""
+    q1, q2, q3, q4 = q
+    return 2 * np.array(
+        [
+            [q1**2 + q4**2 - 0.5, q1 * q2 + q3 * q4, q1 * q3 - q2 * q4],
+            [q1 * q2 - q3 * q4, q2**2 + q4**2 - 0.5, q2 * q3 + q1 * q4],
+            [q1 * q3 + q2 * q4, q2 * q3 - q1 * q4, q3**2 + q4**2 - 0.5],
+        ]
+    )
+
+
+def matrix_w(q):
+    """The matrix W of Eqs. 5 and 6 (corrected)."""
+    q1, q2, q3, q4 = q
+    return np.array([[q4, -q3, q2, q1], [q3, q4, -q1, q2], [-q2, q1, q4, q3], [-q1, -q2, -q3, q4]])
+
+
+def axis_frames():
+    """The 24 rotations that permute and flip axes, each (3, 3): old body axes -> new ones."""
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1.0, -1.0), repeat=3):
+            turn = np.diag(signs) @ np.eye(3)[list(order)]
+            if np.linalg.det(turn) > 0:
+                yield turn
+
+
+def quaternion_of(turn):
+    """Quaternion, vector first, whose Eq. 8 is ``turn`` (one of axis_frames)."""
+    guesses = (np.array(g, dtype=float) for g in itertools.product((-1, 0, 1), repeat=4) if any(g))
+    return next(
+        q
+        for q in (guess / np.linalg.norm(guess) for guess in guesses)
+        if np.allclose(eq_8(q), turn)
+    )
+
+
+class PaperGear:
+    """One body moved as the paper did, its body axes chosen by ``turn``."""
+
+    def __init__(self, kind, case, h, turn, predicted_momentum=True):
+        self.cage, body = oracle.Cage(), oracle.Body(kind)
+        start = oracle.Problem(body, self.cage).start(case)
+        self.h, self.mass, self.predicted_momentum = h, body.mass, predicted_momentum
+        self.moments, self.sites = np.abs(turn) @ body.moments, body.sites_body @ turn.T
+        # space <- old body <- new body
+        self.q = oracle.quaternion_product(start[6:10], quaternion_of(turn))
+        self.centre, self.velocity, self.omega = start[:3], start[3:6], turn @ start[10:13]
+
+    def accelerations(self, centre, q, omega):
+        """Force (3,) and rate of omega (3,), Eqs. 7, 10 and 12."""
+        a = eq_8(q)
+        arms = self.sites @ a  # Eq. 9
+        _, forces = self.cage.energy_and_forces(centre + arms)
+        torque = a @ np.cross(arms, forces).sum(axis=0)
+        gyroscopic = np.cross(omega, self.moments * omega)
+        return forces.sum(axis=0), (torque - gyroscopic) / self.moments
+
+    def first(self, steps):
+        """Centre of mass after ``steps`` of the first-order form."""
+        h, predict = self.h, pascal(5)
+        x, p, q, w = (np.zeros((5, n)) for n in (3, 3, 4, 3))
+        x[0], x[1], p[0] = self.centre, h * self.velocity, self.mass * self.velocity
+        q[0], w[0] = self.q, self.omega
+        q[1] = h * 0.5 * matrix_w(self.q) @ [*self.omega, 0]
+        for _ in range(steps):
+            x, p, q, w = (predict @ rows for rows in (x, p, q, w))
+            force, omega_dot = self.accelerations(x[0], q[0], w[0])
+            momentum = p[0]
+            p = p + np.outer(FIRST, h * force - p[1])  # Eq. 14
+            if not self.predicted_momentum:
+                momentum = p[0]
+            x = x + np.outer(FIRST, h * momentum / self.mass - x[1])  # Eq. 13
+            w = w + np.outer(FIRST, h * omega_dot - w[1])  # Eq. 15
+            q_dot = 0.5 * matrix_w(q[0]) @ [*w[0], 0]  # Eq. 5
+            q = q + np.outer(FIRST, h * q_dot - q[1])  # Eq. 16
+        return x[0]
+
+    def second(self, steps):
+        """Centre of mass after ``steps`` of the second-order form."""
+        h, predict = self.h, pascal(6)
+        x, q = np.zeros((6, 3)), np.zeros((6, 4))
+        x[0], x[1] = self.centre, h * self.velocity
+        q[0], q[1] = self.q, h * 0.5 * matrix_w(self.q) @ [*self.omega, 0]
+        for _ in range(steps):
+            x, q = predict @ x, predict @ q
+            q_dot = q[1] / h
+            omega = 2 * (matrix_w(q[0]).T @ q_dot)[:3]
+            force, omega_dot = self.accelerations(x[0], q[0], omega)
+            q_ddot = 0.5 * matrix_w(q[0]) @ [*omega_dot, -2 * q_dot @ q_dot]  # Eq. 6
+            x = x + np.outer(SECOND, 0.5 * h * h * force / self.mass - x[2])  # Eq. 17
+            q = q + np.outer(SECOND, 0.5 * h * h * q_ddot - q[2])  # Eq. 18
+        return x[0]

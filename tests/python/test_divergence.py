@@ -1,0 +1,102 @@
+"""Analysis of series against made-up ones with known answers."""
+
+import math
+
+import numpy as np
+import pytest
+from synthetic import line, make
+
+from lammps_gearquat import divergence as dv
+from lammps_gearquat import series
+
+
+def test_parting_time_is_the_first_sample_beyond_the_threshold():
+    still, moving = line(), line(rate=(0.03, 0.0, 0.04))  # 0.05 apart per unit of time
+    assert dv.parting_time(still, moving, 0.99) == 20.0
+    assert dv.parting_time(still, moving, 0.99 * 1.1) == 22.0
+    assert math.isinf(dv.parting_time(still, moving, 5.01))
+
+
+def test_parting_is_where_it_first_happens():
+    """Coming back does not undo a parting."""
+    gap = np.zeros((101, 3))
+    gap[30, 1] = 2.0
+    assert dv.parting_time(line(), make(np.arange(101.0), gap), 1.0) == 30.0
+
+
+def test_not_a_number_is_a_parting():
+    broken = line()
+    broken.centre[40] = np.nan
+    assert dv.parting_time(line(), broken, 1.0) == 40.0
+
+
+def test_shorter_series_sets_the_end_and_times_have_to_agree():
+    assert len(dv.separation(line(end=50), line(end=80))) == 51
+    shifted = make(np.arange(101.0) * 1.01, np.zeros((101, 3)))
+    with pytest.raises(ValueError, match="same times"):
+        dv.separation(line(), shifted)
+
+
+def test_drift_onset():
+    time = np.arange(101.0)
+    potential = np.where(time % 2 == 0, -1.0, 0.0)  # swing 1, limit 0.02
+    error = np.where(time < 60, 0.0, 0.03)
+    rising = make(time, np.zeros((101, 3)), potential, error=error)
+    assert dv.drift_onset(rising) == (60.0, 1)
+    falling = make(time, np.zeros((101, 3)), potential, error=-error)
+    assert dv.drift_onset(falling) == (60.0, -1)
+    level = make(time, np.zeros((101, 3)), potential, error=0.5 * error)
+    assert dv.drift_onset(level) == (math.inf, 0)
+    error[10] = 0.03  # an excursion that comes back is no drift
+    assert dv.drift_onset(make(time, np.zeros((101, 3)), potential, error=error)) == (60.0, 1)
+
+
+@pytest.mark.parametrize(
+    "rate, axis", [((0, 0, -3), "-z"), ((0.1, 2.5, -2.4), "+y"), ((-4, 1, 1), "-x")]
+)
+def test_leaving(rate, axis):
+    gone = line(rate=rate)
+    speed = float(np.linalg.norm(rate))
+    assert dv.leaving_axis(gone) == axis
+    assert dv.leaving_time(gone) == math.floor(dv.OUTSIDE / speed) + 1
+    assert dv.farthest(gone) == pytest.approx(100 * speed)
+    inside = line(rate=np.array(rate) / 3)
+    assert dv.leaving_axis(inside) == "" and math.isinf(dv.leaving_time(inside))
+
+
+def test_order_of_a_power_law_and_of_a_wrong_one():
+    steps = np.array([0.1, 0.05, 0.02])
+    assert dv.error_order(steps, 3.0 * steps**5) == pytest.approx(5.0)
+    assert dv.error_order(steps, 3.0 * steps**5.05) != pytest.approx(5.0)
+
+
+def test_csv_keeps_every_digit(tmp_path):
+    rng = np.random.default_rng(1)
+    values = series.from_table(rng.normal(size=(7, 10)))
+    series.write_csv(tmp_path / "series.csv", values)
+    assert (series.to_table(series.read_csv(tmp_path / "series.csv")) == series.to_table(values)).all()
+
+
+LOG = """LAMMPS (22 Jul 2025)
+   Step          Time       c_centre[1]    c_centre[2]    c_centre[3]    c_potential     v_ketrans       v_kerot        v_total        v_qerror
+         0  0 84 0 0 -3.5 1.25 1.5 -0.75 0
+        10  0.5 84.25 0 1e-05 -3.5 1.25 1.5 -0.75 2.2204460492503131e-16
+{end}
+"""
+
+
+def test_log_is_read_by_the_reader_of_lammps(tmp_path):
+    (tmp_path / "log").write_text(LOG.format(end="Loop time of 1.5 on 1 procs for 10 steps"))
+    values = series.read_log(tmp_path / "log")
+    assert values.time.tolist() == [0, 0.5]
+    assert values.centre[1].tolist() == [84.25, 0, 1e-05]
+    assert values.q_error[1] == 2.2204460492503131e-16
+    assert values.until(0.25).time.tolist() == [0]
+    assert values.at(0.4) == 1
+
+
+@pytest.mark.parametrize("end", ["", "ERROR: Lost atoms"])
+def test_unfinished_log_is_refused(tmp_path, end):
+    (tmp_path / "log").write_text(LOG.format(end=end))
+    with pytest.raises(ValueError, match="not a finished run"):
+        series.read_log(tmp_path / "log")

@@ -1,0 +1,81 @@
+"""Trajectories and orders of both formulations inside LAMMPS, against extended precision."""
+
+import numpy as np
+import pytest
+
+from lammps_gearquat.divergence import error_order
+
+# centre of mass, test case 1, found in extended precision (notes on the paper)
+REFERENCE = {
+    ("consistent", 100): (85.43010788464767, -1.784299103660877, 1.14360193088973),
+    ("consistent", 200): (85.56573248988141, -6.06135624295223, 6.86227956266460),
+    ("unrotated", 100): (86.693409428, -1.437897239, 0.844779738),
+    ("unrotated", 200): (84.82167549249749, -5.03225661408319, 7.72730548267065),
+}
+LIMIT = {"first": 1e-7, "second": 1e-9}
+
+
+def errors(run_case, times, dt, **variables):
+    """Errors of the centre of mass at ``times`` (multiples of 100)."""
+    every = round(100 / dt)
+    body = variables.setdefault("body", "consistent")
+    found = run_case(1, dt=dt, steps=every * max(times) // 100, every=every, **variables)
+    return [
+        float(np.linalg.norm(found.centre[time // 100] - REFERENCE[body, time])) for time in times
+    ]
+
+
+@pytest.mark.parametrize("body", ["consistent", "unrotated"])
+@pytest.mark.parametrize("formulation", LIMIT)
+def test_reference_trajectory(run_case, formulation, body):
+    for error in errors(run_case, (100, 200), 0.02, formulation=formulation, body=body):
+        assert error < LIMIT[formulation]
+
+
+@pytest.mark.parametrize("formulation", LIMIT)
+def test_reference_check_can_fail(run_case, formulation):
+    """A step that does not reach t = 200 but 1 % less."""
+    error = errors(run_case, (100, 200), 0.02, formulation=formulation)
+    found = run_case(1, formulation=formulation, dt=0.02 * 0.99, steps=10000, every=10000)
+    assert max(error) < LIMIT[formulation]
+    assert np.linalg.norm(found.centre[-1] - REFERENCE["consistent", 200]) > LIMIT[formulation]
+
+
+@pytest.mark.parametrize(
+    "formulation, steps, order", [("first", (0.1, 0.05, 0.02), 4.7), ("second", (0.1, 0.05), 6.6)]
+)
+def test_order(run_case, formulation, steps, order):
+    found = [errors(run_case, (200,), dt, formulation=formulation)[0] for dt in steps]
+    assert error_order(steps, found) >= order
+
+
+@pytest.mark.parametrize("formulation", LIMIT)
+def test_zero_start_is_of_first_order(run_case, formulation):
+    steps = (0.01, 0.005, 0.0025)
+    found = [
+        errors(run_case, (200,), dt, formulation=formulation, start="zero")[0] for dt in steps
+    ]
+    assert error_order(steps, found) == pytest.approx(1.0, abs=0.2)
+
+
+def test_c0_velocity_costs_two_orders(run_case):
+    """The paper's 3/16 instead of 3/20."""
+    steps = (0.1, 0.05)
+    found = [errors(run_case, (200,), dt, c0="velocity")[0] for dt in steps]
+    assert 4.0 < error_order(steps, found) < 6.0
+
+
+@pytest.mark.parametrize("formulation", LIMIT)
+def test_the_yardstick_is_beaten(run_case, formulation):
+    """At the same step, the same number of force evaluations."""
+    ours = errors(run_case, (200,), 0.02, formulation=formulation)[0]
+    yardstick = errors(run_case, (200,), 0.02, formulation="rigid")[0]
+    assert ours < 1e-2 * yardstick
+
+
+@pytest.mark.parametrize("formulation", LIMIT)
+def test_quaternion_stays_of_length_one(run_case, formulation):
+    projected = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100)
+    assert projected.q_error.max() < 1e-14
+    free = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100, project="no")
+    assert free.q_error.max() > 1e-14

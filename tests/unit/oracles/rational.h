@@ -1,0 +1,77 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Exact fractions of 128-bit integers.  An overflow throws: a result is exact or there is none. */
+
+#ifndef GEAR_QUAT_ORACLE_RATIONAL_H
+#define GEAR_QUAT_ORACLE_RATIONAL_H
+
+#include <ostream>
+#include <stdexcept>
+
+namespace Oracle {
+
+class Rational {
+ public:
+  __extension__ typedef __int128 Integer;
+
+  Rational(Integer n = 0, Integer d = 1)
+  {
+    if (d == 0) throw std::domain_error("denominator of zero");
+    const Integer g = common(n, d), sign = d < 0 ? -1 : 1;
+    num = sign * n / g;
+    den = sign * d / g;
+  }
+
+  // cross factors are taken out first, so that only a result that is truly too large overflows
+
+  Rational operator*(const Rational &o) const
+  {
+    const Integer g = common(num, o.den), k = common(o.num, den);
+    return {times(num / g, o.num / k), times(den / k, o.den / g)};
+  }
+  Rational operator/(const Rational &o) const { return *this * Rational(o.den, o.num); }
+  Rational operator-() const { return {-num, den}; }
+  Rational operator+(const Rational &o) const
+  {
+    const Integer g = common(den, o.den);
+    Integer sum;
+    if (__builtin_add_overflow(times(num, o.den / g), times(o.num, den / g), &sum))
+      throw std::overflow_error("fraction too long");
+    return {sum, times(den, o.den / g)};
+  }
+  Rational operator-(const Rational &o) const { return *this + (-o); }
+  bool operator==(const Rational &o) const { return num == o.num && den == o.den; }
+  bool operator!=(const Rational &o) const { return !(*this == o); }
+  double value() const { return double(num) / double(den); }
+  friend std::ostream &operator<<(std::ostream &out, const Rational &r)
+  {
+    return out << (long long) r.num << '/' << (long long) r.den;
+  }
+
+ private:
+  Integer num, den;
+
+  static Integer common(Integer a, Integer b)
+  {
+    while (b != 0) {
+      const Integer rest = a % b;
+      a = b;
+      b = rest;
+    }
+    return a < 0 ? -a : (a == 0 ? 1 : a);
+  }
+
+  static Integer times(Integer a, Integer b)
+  {
+    Integer product;
+    if (__builtin_mul_overflow(a, b, &product)) throw std::overflow_error("fraction too long");
+    return product;
+  }
+};
+
+}    // namespace Oracle
+
+#endif

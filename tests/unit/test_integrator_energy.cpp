@@ -1,0 +1,147 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* gear_quat_integrator.h: what a step leaves true - the constraints on q, and the energy that turns
+   the potential at the predicted pose into that of the corrected one. */
+
+#include "checks.h"
+#include "drive.h"
+#include "oracles/cage_scene.h"
+
+using namespace Drive;
+using std::vector;
+
+namespace {
+
+Motion cage_motion(const Oracle::CageScene &scene, const Scheme &scheme, double h)
+{
+  auto load = [&scene](const BodyState &s, double norm2) {
+    return scene.load(s, norm2);
+  };
+  return Motion(scene.body, scene.start, load, scheme, h, Start::BOOTSTRAP, 0.05);
+}
+
+/// Energy that is still missing after the correction `factor` * -(F.dx + tau.dtheta), when the
+/// corrector moves the body by about `size` (a kick in row 2 that it takes back).
+double missing_energy(Formulation formulation, double size, double factor, bool turn)
+{
+  const Oracle::CageScene scene(1, true);
+  Scheme scheme = scheme_of(formulation);
+  Motion motion = cage_motion(scene, scheme, 0.05);
+  motion.integrator.predict(motion.rows);
+  double *pose = motion.rows + (turn ? scheme.quaternion() : 0);
+  for (int i = 0; i < 3; ++i) {
+    pose[scheme.width() + i] += size;    // first: rows 1 and 2 are what the residual sees
+    pose[2 * scheme.width() + i] += size;
+  }
+  const BodyState predicted = motion.state();
+  const Load load = scene.load(predicted, dot4(predicted.q, predicted.q));
+  const Shift shift = motion.integrator.correct(scene.body, load, motion.rows);
+  const double correction =
+      -(dot3(load.force, shift.center) + dot3(load.torque_space, shift.angle_space));
+  const BodyState corrected = motion.state();
+  const double kinetic = translational_energy(scene.body, corrected.velocity) +
+      rotational_energy(scene.body, corrected.omega_body);
+  const double reported =
+      scene.potential(predicted, dot4(predicted.q, predicted.q)) + kinetic + factor * correction;
+  return std::fabs(reported - scene.total_energy(corrected));
+}
+
+}    // namespace
+
+TEST(Energy, CorrectionIsRightToSecondOrderInTheShift)
+{
+  for (Formulation formulation : {Formulation::FIRST, Formulation::SECOND})
+    for (bool turn : {false, true}) {
+      auto slope = [&](double factor) {
+        const double size = turn ? 0.02 : 0.5;
+        return std::log2(missing_energy(formulation, size, factor, turn) /
+                         missing_energy(formulation, size / 16, factor, turn)) /
+            4;
+      };
+      EXPECT_NEAR(slope(1.0), 2.0, 0.1);
+      EXPECT_LT(slope(0.0), 1.3);     // without it
+      EXPECT_LT(slope(-1.0), 1.3);    // with the wrong sign
+      // 1 % off: first order appears below shifts of about 1 % of the length of the gradient
+      const double tiny = turn ? 1e-5 : 2e-4;
+      for (double factor : {0.99, 1.01})
+        EXPECT_GT(missing_energy(formulation, tiny, factor, turn),
+                  3 * missing_energy(formulation, tiny, 1.0, turn));
+    }
+}
+
+TEST(Energy, ShiftIsTheMoveFromPredictedToCorrectedPose)
+{
+  const Oracle::CageScene scene(1, true);
+  for (Formulation formulation : {Formulation::FIRST, Formulation::SECOND}) {
+    Motion motion = cage_motion(scene, scheme_of(formulation), 0.5);
+    motion.integrator.predict(motion.rows);
+    const BodyState before = motion.state();
+    const Load load = scene.load(before, dot4(before.q, before.q));
+    const Shift shift = motion.integrator.correct(scene.body, load, motion.rows);
+    const BodyState after = motion.state();
+
+    double old_a[9], new_a[9], moved[3];
+    rotation_matrix(before.q, dot4(before.q, before.q), old_a);
+    rotation_matrix(after.q, dot4(after.q, after.q), new_a);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(shift.center[i], after.center[i] - before.center[i]);
+    const double size = std::sqrt(dot3(shift.angle_space, shift.angle_space));
+    ASSERT_GT(size, 1e-12);
+    auto check = [&](const vector<double> &angle) {    // a site moves by dtheta x r
+      for (int axis = 0; axis < 3; ++axis) {
+        double e[3] = {}, old_r[3], new_r[3];
+        e[axis] = 1.0;
+        to_space(old_a, e, old_r);
+        to_space(new_a, e, new_r);
+        cross3(angle.data(), old_r, moved);
+        for (int i = 0; i < 3; ++i)
+          if (!(std::fabs(new_r[i] - old_r[i] - moved[i]) <= 5e-4 * size)) return false;
+      }
+      return true;
+    };
+    ASSERT_TRUE(check(vector<double>(shift.angle_space, shift.angle_space + 3)));
+    for (int i = 0; i < 3; ++i) {
+      vector<double> bad(shift.angle_space, shift.angle_space + 3);
+      bad[i] += 0.01 * size;
+      EXPECT_FALSE(check(bad));
+    }
+  }
+}
+
+TEST(Projection, KeepsBothConstraintsAndItsAbsenceShows)
+{
+  const Oracle::CageScene scene(1, true);
+  for (Formulation formulation : {Formulation::FIRST, Formulation::SECOND}) {
+    Scheme scheme = scheme_of(formulation);
+    double worst[2] = {0.0, 0.0}, radial[2] = {0.0, 0.0};
+    for (bool project : {false, true}) {
+      scheme.project = project;
+      Motion motion = cage_motion(scene, scheme, 0.1);
+      for (int n = 0; n < 3000; ++n) {
+        motion.step();
+        const double *q = motion.q(), *rate = q + scheme.width();
+        worst[project] = std::max(worst[project], std::fabs(dot4(q, q) - 1.0));
+        radial[project] = std::max(radial[project], std::fabs(dot4(q, rate)));
+      }
+    }
+    EXPECT_LE(worst[1], 1e-15);
+    EXPECT_GT(worst[0], 1e-10);
+    if (formulation == Formulation::SECOND) {
+      EXPECT_LE(radial[1], 1e-17);    // of rows of h qdot, about 2e-3
+      EXPECT_GT(radial[0], 1e-14);
+    }
+  }
+}
+
+TEST(Projection, LeavesALegalStateAsItIsAndUndoesOnePercent)
+{
+  double q[4] = {0.5, -0.5, 0.5, 0.5}, same[4] = {0.5, -0.5, 0.5, 0.5};
+  project_norm(q);
+  EXPECT_EQ(Check::largest_difference(q, same, 4), 0.0);
+  for (double &x : q) x *= 1.01;
+  EXPECT_GT(std::fabs(dot4(q, q) - 1.0), 0.02);
+  project_norm(q);
+  EXPECT_LE(Check::largest_difference(q, same, 4), 1e-16);
+}

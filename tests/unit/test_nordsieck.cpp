@@ -1,0 +1,123 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* gear_quat_nordsieck.h: the history is a polynomial, and prediction moves along it exactly. */
+
+#include "checks.h"
+#include "gear_quat_nordsieck.h"
+
+using namespace GearQuat;
+using Check::largest_difference;
+
+namespace {
+
+constexpr int N = 6, WIDTH = 3;
+
+/// Rows at time t, step h, of polynomials of degree N - 1 with the given coefficients (per column).
+std::vector<double> rows_of(const std::vector<double> &a, double t, double h)
+{
+  std::vector<double> rows(N * WIDTH, 0.0);
+  double hj = 1.0;
+  for (int j = 0; j < N; ++j, hj *= h)
+    for (int c = 0; c < WIDTH; ++c) {
+      double tk = 1.0, binomial = 1.0;    // t^(k-j), k over j
+      for (int k = j; k < N; ++k) {
+        rows[j * WIDTH + c] += hj * binomial * a[k * WIDTH + c] * tk;
+        binomial = binomial * (k + 1) / (k + 1 - j);
+        tk *= t;
+      }
+    }
+  return rows;
+}
+
+}    // namespace
+
+TEST(Nordsieck, PredictIsTaylorsSeriesExactly)
+{
+  // small whole numbers: every sum is exact, so the comparison is of bits
+  const std::vector<double> a = {1, -2, 3, 4, 5, -6, 7, 1, -2, 3, -4, 5, 2, 2, -3, 1, -1, 2};
+  auto check = [&](const std::vector<double> &start) {
+    std::vector<double> rows = start;
+    nordsieck_predict(rows.data(), N, WIDTH);
+    return rows == rows_of(a, 3.0, 1.0);
+  };
+  Check::holds_and_refuses_one_percent(rows_of(a, 2.0, 1.0), check);
+}
+
+TEST(Nordsieck, PredictWorksForEveryNumberOfRows)
+{
+  for (int n = 1; n <= 8; ++n) {
+    std::vector<double> rows(n, 1.0), expected(n, 0.0);
+    nordsieck_predict(rows.data(), n, 1);
+    for (int j = 0; j < n; ++j) {
+      double binomial = 1.0;
+      for (int k = j; k < n; ++k) {
+        expected[j] += binomial;
+        binomial = binomial * (k + 1) / (k + 1 - j);
+      }
+    }
+    EXPECT_EQ(rows, expected) << n;
+  }
+}
+
+TEST(Nordsieck, PredictBackwardsReturns)
+{
+  const std::vector<double> start = Check::Numbers(1).list(N * WIDTH);
+  auto there_and_back = [&](double ratio) {
+    std::vector<double> rows = start;
+    nordsieck_predict(rows.data(), N, WIDTH);
+    nordsieck_rescale(rows.data(), N, WIDTH, ratio);
+    nordsieck_predict(rows.data(), N, WIDTH);
+    nordsieck_rescale(rows.data(), N, WIDTH, 1.0 / ratio);
+    return largest_difference(rows.data(), start.data(), N * WIDTH);
+  };
+  EXPECT_LT(there_and_back(-1.0), 1e-14);
+  EXPECT_GT(there_and_back(-1.01), 1e-3);
+}
+
+TEST(Nordsieck, RescaledHistoryIsTheSamePolynomial)
+{
+  const std::vector<double> a = Check::Numbers(2).list(N * WIDTH);
+  const std::vector<double> expected = rows_of(a, 0.7, 0.3);
+  auto check = [&](const std::vector<double> &start) {
+    std::vector<double> rows = start;
+    nordsieck_rescale(rows.data(), N, WIDTH, 0.3 / 0.8);
+    // row 5 is small after rescaling: compare row by row against its own size
+    for (int i = 0; i < N * WIDTH; ++i)
+      if (!(std::fabs(rows[i] - expected[i]) <= 1e-14 * std::fabs(expected[i]))) return false;
+    return true;
+  };
+  Check::holds_and_refuses_one_percent(rows_of(a, 0.7, 0.8), check);
+}
+
+TEST(Nordsieck, RescalesCompose)
+{
+  std::vector<double> twice = Check::Numbers(3).list(N * WIDTH), once = twice;
+  nordsieck_rescale(twice.data(), N, WIDTH, 0.5);
+  nordsieck_rescale(twice.data(), N, WIDTH, 0.25);
+  nordsieck_rescale(once.data(), N, WIDTH, 0.125);
+  EXPECT_EQ(twice, once);    // powers of two: to the bit
+  nordsieck_rescale(twice.data(), N, WIDTH, 1.0);
+  EXPECT_EQ(twice, once);
+  nordsieck_rescale(once.data(), N, WIDTH, 1.01);
+  EXPECT_NE(twice, once);
+}
+
+TEST(Nordsieck, CorrectTouchesItsColumnsOnly)
+{
+  const std::vector<double> start = Check::Numbers(4).list(N * WIDTH);
+  const std::vector<double> c = {0.5, 1.0, 0.25, 2.0, -1.0, 4.0};
+  auto check = [&](const std::vector<double> &residual) {
+    std::vector<double> rows = start;
+    nordsieck_correct(rows.data(), N, WIDTH, c.data(), 1, 2, residual.data());
+    for (int j = 0; j < N; ++j) {
+      if (rows[3 * j] != start[3 * j]) return false;
+      if (rows[3 * j + 1] != start[3 * j + 1] + c[j] * 3.0) return false;
+      if (rows[3 * j + 2] != start[3 * j + 2] + c[j] * -5.0) return false;
+    }
+    return true;
+  };
+  Check::holds_and_refuses_one_percent({3.0, -5.0}, check);
+}

@@ -1,0 +1,146 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* gear_quat_integrator.h, one step, against the paper's equations written down literally a second
+   time; every choice of the scheme, and every number that enters. */
+
+#include "checks.h"
+#include "gear_quat_integrator.h"
+#include "oracles/paper_step.h"
+
+using namespace GearQuat;
+using std::vector;
+
+namespace {
+
+const double H = 0.3;
+const vector<long double> TABLE_1 = {251.0L / 720, 1, 11.0L / 12, 1.0L / 3, 1.0L / 24};
+const vector<long double> TABLE_2 = {3.0L / 16, 251.0L / 360, 1, 11.0L / 18, 1.0L / 6, 1.0L / 60};
+
+/// A history of no particular motion, its quaternion close to but not on |q| = 1.
+vector<double> some_history(const Scheme &scheme)
+{
+  Check::Numbers numbers(31);
+  vector<double> rows = numbers.list(scheme.size());
+  for (int j = 0; j < scheme.values(); ++j)
+    for (int i = 0; i < scheme.width(); ++i) rows[j * scheme.width() + i] *= std::pow(0.2, j);
+  double *q = rows.data() + scheme.quaternion();
+  project_norm(q);
+  for (int i = 0; i < 4; ++i) q[i] *= 1.003;
+  return rows;
+}
+
+// what both are given: mass, moments, force, torque
+const vector<double> GIVEN = {1.7, 3.0, 2.0, 0.7, 0.4, -0.9, 0.3, 0.25, 0.6, -0.8};
+
+vector<double> kernel_step(const Scheme &scheme, const vector<double> &given)
+{
+  const RigidBody body = {given[0], {given[1], given[2], given[3]}};
+  const Load load = {{given[4], given[5], given[6]}, {given[7], given[8], given[9]}};
+  vector<double> rows = some_history(scheme);
+  const Integrator integrator(scheme, H);
+  integrator.predict(rows.data());
+  integrator.correct(body, load, rows.data());
+  return rows;
+}
+
+vector<double> literal_step(const Scheme &scheme, const vector<long double> &table)
+{
+  Oracle::PaperStep step;
+  step.coefficients = table;
+  step.dt = H;
+  step.mass = GIVEN[0];
+  for (int i = 0; i < 3; ++i) {
+    step.inertia[i] = GIVEN[1 + i];
+    step.force[i] = GIVEN[4 + i];
+    step.torque_space[i] = GIVEN[7 + i];
+  }
+  step.predicted_omega = scheme.predicted_omega;
+  step.predicted_momentum = scheme.predicted_momentum;
+  step.project = scheme.project;
+
+  const vector<double> rows = some_history(scheme);
+  const int n = scheme.values(), width = scheme.width();
+  Oracle::Derivatives y(n, vector<long double>(width));
+  auto factor = [](int j) {
+    return std::pow((long double) H, j) / Oracle::PaperStep::factorial(j);
+  };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < width; ++i) y[j][i] = rows[j * width + i] / factor(j);
+  if (scheme.first())
+    step.first(y);
+  else
+    step.second(y);
+  vector<double> out(n * width);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < width; ++i) out[j * width + i] = double(y[j][i] * factor(j));
+  return out;
+}
+
+double distance(const vector<double> &a, const vector<double> &b)
+{
+  return Check::largest_difference(a.data(), b.data(), int(a.size()));
+}
+
+/// The literal step agrees with the kernel's; 1 % in a coefficient, or in anything given, does not.
+void expect_literal(const Scheme &scheme, const vector<long double> &table)
+{
+  const vector<double> kernel = kernel_step(scheme, GIVEN), paper = literal_step(scheme, table);
+  EXPECT_LT(distance(kernel, paper), 2e-15);
+  for (std::size_t j = 0; j < table.size(); ++j) {
+    vector<long double> bad = table;
+    bad[j] *= 1.01L;
+    EXPECT_GT(distance(kernel, literal_step(scheme, bad)), 1e-5) << "coefficient " << j;
+  }
+  Check::holds_and_refuses_one_percent(GIVEN, [&](const vector<double> &given) {
+    return distance(kernel_step(scheme, given), paper) <= 2e-15;
+  });
+}
+
+}    // namespace
+
+TEST(PaperStep, FirstFormulationWithEveryChoice)
+{
+  vector<vector<double>> results;
+  for (int choice = 0; choice < 8; ++choice) {
+    Scheme scheme;
+    scheme.formulation = Formulation::FIRST;
+    scheme.predicted_omega = choice & 1;
+    scheme.predicted_momentum = choice & 2;
+    scheme.project = choice & 4;
+    expect_literal(scheme, TABLE_1);
+    results.push_back(kernel_step(scheme, GIVEN));
+  }
+  for (int i = 0; i < 8; ++i)    // each choice is another step
+    for (int k = 0; k < i; ++k) EXPECT_GT(distance(results[i], results[k]), 1e-5) << i << k;
+}
+
+TEST(PaperStep, SecondFormulationWithEveryChoice)
+{
+  vector<vector<double>> results;
+  for (int choice = 0; choice < 4; ++choice) {
+    Scheme scheme;
+    scheme.formulation = Formulation::SECOND;
+    scheme.velocity_c0 = choice & 1;
+    scheme.project = choice & 2;
+    vector<long double> table = TABLE_2;
+    if (!scheme.velocity_c0) table[0] = 3.0L / 20;
+    expect_literal(scheme, table);
+    results.push_back(kernel_step(scheme, GIVEN));
+  }
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < i; ++k) EXPECT_GT(distance(results[i], results[k]), 1e-5) << i << k;
+}
+
+TEST(PaperStep, ChoicesOfTheOtherFormulationChangeNothing)
+{
+  Scheme plain, other;
+  other.predicted_omega = other.predicted_momentum = true;
+  EXPECT_EQ(kernel_step(plain, GIVEN), kernel_step(other, GIVEN));
+  plain.formulation = Formulation::FIRST;
+  other = plain;
+  other.velocity_c0 = true;
+  EXPECT_EQ(kernel_step(plain, GIVEN), kernel_step(other, GIVEN));
+}

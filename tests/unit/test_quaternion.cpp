@@ -1,0 +1,269 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* gear_quat_quaternion.h: the paper's Eqs. 2 to 10 with the misprints of W and A corrected. */
+
+#include "checks.h"
+#include "gear_quat_quaternion.h"
+#include "oracles/euler_angles.h"
+
+using namespace GearQuat;
+using Check::largest_difference;
+using Check::quaternion_distance;
+using std::vector;
+
+namespace {
+
+const double PI = std::acos(-1.0);
+
+/// W(q) as the corrected Eqs. 5 and 6 print it, row by row.
+void printed_w(const double *q, double w[4][4])
+{
+  const double rows[4][4] = {{q[3], -q[2], q[1], q[0]},
+                             {q[2], q[3], -q[0], q[1]},
+                             {-q[1], q[0], q[3], q[2]},
+                             {-q[0], -q[1], -q[2], q[3]}};
+  for (int i = 0; i < 16; ++i) w[i / 4][i % 4] = rows[i / 4][i % 4];
+}
+
+/// Eq. 8 as corrected, literally.
+void printed_a(const double *q, double a[9])
+{
+  const double q1 = q[0], q2 = q[1], q3 = q[2], q4 = q[3];
+  const double printed[9] = {
+      q1 * q1 + q4 * q4 - 0.5, q1 * q2 + q3 * q4,       q1 * q3 - q2 * q4,
+      q1 * q2 - q3 * q4,       q2 * q2 + q4 * q4 - 0.5, q2 * q3 + q1 * q4,
+      q1 * q3 + q2 * q4,       q2 * q3 - q1 * q4,       q3 * q3 + q4 * q4 - 0.5};
+  for (int i = 0; i < 9; ++i) a[i] = 2.0 * printed[i];
+}
+
+bool matrix_equals(const double *a, const Oracle::Matrix &m, double tolerance)
+{
+  for (int i = 0; i < 9; ++i)
+    if (!(std::fabs(a[i] - double(m.m[i / 3][i % 3])) <= tolerance)) return false;
+  return true;
+}
+
+double not_orthogonal(const double *a)
+{
+  double worst = 0.0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      worst = std::max(worst, std::fabs(dot3(a + 3 * i, a + 3 * j) - (i == j)));
+  double third[3];
+  cross3(a, a + 3, third);    // right-handed
+  return std::max(worst, largest_difference(third, a + 6, 3));
+}
+
+}    // namespace
+
+TEST(Quaternion, WIsThePrintedMatrixWithItsLastRowCorrected)
+{
+  Check::Numbers numbers(11);
+  const vector<double> q = numbers.list(4), a = numbers.list(4);
+  double w[4][4], expected[4];
+  printed_w(q.data(), w);
+  for (int i = 0; i < 4; ++i) expected[i] = dot4(w[i], a.data());
+  auto check = [&](const vector<double> &q) {
+    double out[4];
+    w_times(q.data(), a.data(), out);
+    return largest_difference(out, expected, 4) <= 1e-15;
+  };
+  Check::holds_and_refuses_one_percent(q, check);
+}
+
+TEST(Quaternion, WTransposedUndoesW)
+{
+  Check::Numbers numbers(12);
+  const vector<double> q = numbers.list(4), a = numbers.list(4);
+  const double norm2 = dot4(q.data(), q.data());
+  double w[4][4], wa[4], back[3];
+  printed_w(q.data(), w);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      EXPECT_NEAR(dot4(w[i], w[j]), i == j ? norm2 : 0.0, 1e-15) << i << j;    // W W^T = |q|^2
+  w_times(q.data(), a.data(), wa);
+  auto check = [&](const vector<double> &wa) {
+    w_transposed_times(q.data(), wa.data(), back);
+    for (int i = 0; i < 3; ++i)
+      if (!(std::fabs(back[i] - norm2 * a[i]) <= 1e-15)) return false;
+    return true;
+  };
+  Check::holds_and_refuses_one_percent({wa[0], wa[1], wa[2], wa[3]}, check);
+}
+
+TEST(Quaternion, RotationMatrixIsThatOfEulerAngles)
+{
+  for (double phi : {0.0, 40 * PI / 180, 2.9, -1.3})
+    for (double psi : {0.0, 100 * PI / 180, -2.2})
+      for (double theta : {0.0, 1e-9, 85 * PI / 180, 3.0, PI}) {
+        double q[4], a[9];
+        Oracle::euler_quaternion(phi, psi, theta, q);
+        EXPECT_NEAR(dot4(q, q), 1.0, 1e-15);
+        rotation_matrix(q, dot4(q, q), a);
+        EXPECT_TRUE(matrix_equals(a, Oracle::euler_matrix(phi, psi, theta), 1e-15));
+        EXPECT_LT(not_orthogonal(a), 1e-15);
+        EXPECT_FALSE(matrix_equals(a, Oracle::euler_matrix(phi, psi, theta + 0.01), 1e-15));
+      }
+}
+
+TEST(Quaternion, MatrixOfAnyLengthIsARotationAndWithNormOneIsEq8)
+{
+  const vector<double> q = Check::Numbers(13).list(4);
+  double a[9], unit[9], literal[9], expected[9], u[4] = {q[0], q[1], q[2], q[3]};
+  project_norm(u);
+  rotation_matrix(q.data(), dot4(q.data(), q.data()), a);
+  rotation_matrix(u, 1.0, unit);
+  EXPECT_LT(not_orthogonal(a), 1e-15);
+  EXPECT_LT(largest_difference(a, unit, 9), 1e-15);
+
+  printed_a(q.data(), expected);
+  auto check = [&](const vector<double> &q) {
+    rotation_matrix(q.data(), 1.0, literal);
+    return largest_difference(literal, expected, 9) <= 1e-15;
+  };
+  Check::holds_and_refuses_one_percent(q, check);
+  EXPECT_GT(not_orthogonal(literal), 1e-2);    // this q is no unit quaternion
+}
+
+TEST(Quaternion, BodyAndSpaceComponents)
+{
+  double q[4], a[9], body[3], space[3];
+  Oracle::euler_quaternion(PI / 2, 0.0, 0.0, q);    // body x axis along space y
+  rotation_matrix(q, 1.0, a);
+  const double y[3] = {0.0, 1.0, 0.0}, x[3] = {1.0, 0.0, 0.0};
+  to_body(a, y, body);
+  EXPECT_LT(largest_difference(body, x, 3), 1e-15);
+  to_space(a, x, space);
+  EXPECT_LT(largest_difference(space, y, 3), 1e-15);
+  EXPECT_GT(largest_difference(body, y, 3), 0.9);    // the other sense would give -x or y
+}
+
+TEST(Quaternion, FromMatrixReturnsInAllFourBranches)
+{
+  int met[4] = {0, 0, 0, 0};
+  Check::Numbers numbers(14);
+  auto back = [](const double *q, double *returned) {
+    double a[9];
+    rotation_matrix(q, dot4(q, q), a);
+    quaternion_from_matrix(a, returned);
+  };
+  for (int i = 0; i < 400; ++i) {
+    const vector<double> q = numbers.unit_quaternion();
+    double returned[4];
+    back(q.data(), returned);
+    EXPECT_LT(quaternion_distance(q.data(), returned), 1e-15);
+    int largest = 0;
+    for (int k = 1; k < 4; ++k)
+      if (std::fabs(q[k]) > std::fabs(q[largest])) largest = k;
+    ++met[largest];
+  }
+  for (int k = 0; k < 4; ++k) EXPECT_GT(met[k], 50);
+
+  // one component alone is a half turn (theta = pi) or no turn; ties must not divide by zero either
+  const double edges[][4] = {{1, 0, 0, 0},
+                             {0, 1, 0, 0},
+                             {0, 0, 1, 0},
+                             {0, 0, 0, 1},
+                             {0.5, 0.5, 0.5, 0.5},
+                             {0.5, -0.5, 0.5, -0.5},
+                             {std::sqrt(0.5), 0, std::sqrt(0.5), 0}};
+  for (const auto &q : edges) {
+    double returned[4];
+    back(q, returned);
+    EXPECT_LT(quaternion_distance(q, returned), 1e-15);
+    const double off[4] = {q[0] * 1.01, q[1] + 0.01, q[2], q[3]};
+    EXPECT_GT(quaternion_distance(off, returned), 4e-3);
+  }
+}
+
+TEST(Quaternion, RateTurnsTheMatrixAsOmegaDoes)
+{
+  // dA/dt = -omega x A, column by column: the definition of omega in the body frame
+  Check::Numbers numbers(15);
+  const vector<double> q = numbers.unit_quaternion(), w = numbers.list(3);
+  double a[9];
+  rotation_matrix(q.data(), 1.0, a);
+  auto check = [&](const vector<double> &omega) {
+    double qdot[4], adot[9];
+    quaternion_rate(q.data(), omega.data(), qdot);
+    auto path = [&](double t, double *out) {
+      double p[4];
+      for (int i = 0; i < 4; ++i) p[i] = q[i] + t * qdot[i];
+      rotation_matrix(p, dot4(p, p), out);
+    };
+    Check::derivative(path, 9, 1e-3, adot);
+    for (int c = 0; c < 3; ++c) {
+      const double column[3] = {a[c], a[3 + c], a[6 + c]};
+      double turned[3];
+      cross3(w.data(), column, turned);
+      for (int r = 0; r < 3; ++r)
+        if (!(std::fabs(adot[3 * r + c] + turned[r]) <= 1e-11)) return false;
+    }
+    return std::fabs(dot4(q.data(), qdot)) <= 1e-15;
+  };
+  Check::holds_and_refuses_one_percent(w, check);
+}
+
+TEST(Quaternion, AngularVelocityInvertsTheRate)
+{
+  Check::Numbers numbers(16);
+  const vector<double> q = numbers.list(4), omega = numbers.list(3);
+  auto check = [&](const vector<double> &w) {
+    double qdot[4], back[3];
+    quaternion_rate(q.data(), w.data(), qdot);
+    angular_velocity(q.data(), dot4(q.data(), q.data()), qdot, back);
+    return largest_difference(back, omega.data(), 3) <= 1e-15;
+  };
+  Check::holds_and_refuses_one_percent(omega, check);
+
+  double radial[4], none[3], zero[3] = {0, 0, 0};    // growth of |q| is no rotation
+  for (int i = 0; i < 4; ++i) radial[i] = 0.3 * q[i];
+  angular_velocity(q.data(), 1.0, radial, none);
+  EXPECT_LT(largest_difference(none, zero, 3), 1e-16);
+}
+
+TEST(Quaternion, AccelerationIsTheDerivativeOfTheRate)
+{
+  Check::Numbers numbers(17);
+  const vector<double> q = numbers.unit_quaternion(), w = numbers.list(3), wdot = numbers.list(3);
+  double qdot[4], expected[4];
+  quaternion_rate(q.data(), w.data(), qdot);
+  auto path = [&](double t, double *out) {    // qdot along q + t qdot, w + t wdot
+    double p[4], omega[3];
+    for (int i = 0; i < 4; ++i) p[i] = q[i] + t * qdot[i];
+    for (int i = 0; i < 3; ++i) omega[i] = w[i] + t * wdot[i];
+    quaternion_rate(p, omega, out);
+  };
+  Check::derivative(path, 4, 1e-2, expected);
+  auto check = [&](const vector<double> &v) {    // omegadot, then qdot
+    double qddot[4];
+    quaternion_acceleration(q.data(), v.data() + 3, v.data(), qddot);
+    return largest_difference(qddot, expected, 4) <= 1e-13;
+  };
+  Check::holds_and_refuses_one_percent(
+      {wdot[0], wdot[1], wdot[2], qdot[0], qdot[1], qdot[2], qdot[3]}, check);
+}
+
+TEST(Quaternion, ProjectionsMeetTheirConstraintAndNothingElse)
+{
+  Check::Numbers numbers(18);
+  vector<double> q = numbers.list(4), rate = numbers.list(4);
+  const vector<double> before = q;
+  project_norm(q.data());
+  EXPECT_NEAR(dot4(q.data(), q.data()), 1.0, 4e-16);
+  for (int i = 0; i < 4; ++i)    // along q
+    EXPECT_NEAR(q[i] * std::sqrt(dot4(before.data(), before.data())), before[i], 1e-15);
+
+  double spin[3], spin_before[3];
+  angular_velocity(q.data(), 1.0, rate.data(), spin_before);
+  project_rate(q.data(), rate.data());
+  angular_velocity(q.data(), 1.0, rate.data(), spin);
+  EXPECT_LT(largest_difference(spin, spin_before, 3), 1e-15);    // the rotation is left alone
+  auto check = [&](const vector<double> &r) {
+    return std::fabs(dot4(q.data(), r.data())) <= 2e-16;
+  };
+  Check::holds_and_refuses_one_percent(rate, check);
+}

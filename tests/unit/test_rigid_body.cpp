@@ -1,0 +1,237 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* gear_quat_rigid_body.h: Euler's equations, energies, and the principal axes of any tensor. */
+
+#include "checks.h"
+#include "gear_quat_rigid_body.h"
+
+using namespace GearQuat;
+using Check::largest_difference;
+using std::vector;
+
+namespace {
+
+/// Worst of: A T A^T against the moments, A against a right-handed rotation; relative.
+double not_principal(const double *tensor, const double *moments, const double *a)
+{
+  double scale = 0.0, worst = 0.0, third[3];
+  for (int i = 0; i < 9; ++i) scale = std::max(scale, std::fabs(tensor[i]));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      double element = 0.0;
+      for (int k = 0; k < 9; ++k) element += a[3 * i + k / 3] * tensor[k] * a[3 * j + k % 3];
+      worst = std::max(worst, std::fabs(element - (i == j ? moments[i] : 0.0)) / scale);
+      worst = std::max(worst, std::fabs(dot3(a + 3 * i, a + 3 * j) - (i == j)));
+    }
+  cross3(a, a + 3, third);
+  return std::max(worst, largest_difference(third, a + 6, 3));
+}
+
+/// The paper's body: the tensor of its four sites about their centre of mass.
+void paper_tensor(double tensor[9])
+{
+  const double site[4][3] = {{3, -4, 0}, {-3, -4, 0}, {0, 0, 0}, {0, 0, 12}};
+  const double mass[4] = {2, 2, 10, 50};
+  double center[3] = {0, 0, 0};
+  for (int k = 0; k < 4; ++k)
+    for (int i = 0; i < 3; ++i) center[i] += mass[k] * site[k][i] / 64.0;
+  for (int i = 0; i < 9; ++i) tensor[i] = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    double d[3];
+    for (int i = 0; i < 3; ++i) d[i] = site[k][i] - center[i];
+    for (int i = 0; i < 9; ++i)
+      tensor[i] += mass[k] * ((i % 4 == 0) * dot3(d, d) - d[i / 3] * d[i % 3]);
+  }
+}
+
+}    // namespace
+
+TEST(EulersEquations, AngularMomentumInSpaceChangesByTheTorque)
+{
+  Check::Numbers numbers(21);
+  const RigidBody body = {1.0, {3.0, 2.0, 0.7}};
+  const vector<double> q = numbers.unit_quaternion(), w = numbers.list(3), torque = numbers.list(3);
+  double a[9], torque_body[3], wdot[3], qdot[4], rate[3];
+  rotation_matrix(q.data(), 1.0, a);
+  to_body(a, torque.data(), torque_body);
+  angular_acceleration(body, torque_body, w.data(), wdot);
+  quaternion_rate(q.data(), w.data(), qdot);
+
+  auto balanced = [&](const vector<double> &wdot) {    // d/dt (A^T I omega) = torque
+    auto momentum = [&](double t, double *out) {
+      double p[4], turn[9], l[3];
+      for (int i = 0; i < 4; ++i) p[i] = q[i] + t * qdot[i];
+      for (int i = 0; i < 3; ++i) l[i] = body.inertia[i] * (w[i] + t * wdot[i]);
+      rotation_matrix(p, dot4(p, p), turn);
+      to_space(turn, l, out);
+    };
+    Check::derivative(momentum, 3, 1e-3, rate);
+    return largest_difference(rate, torque.data(), 3) <= 1e-11;
+  };
+  Check::holds_and_refuses_one_percent({wdot[0], wdot[1], wdot[2]}, balanced);
+}
+
+TEST(EulersEquations, AnAxisWithoutInertiaHasNoAcceleration)
+{
+  const double torque[3] = {0.3, -0.2, 0.1}, w[3] = {0.5, 0.7, 0.0};
+  double wdot[3];
+  const RigidBody rod = {1.0, {2.0, 2.0, 0.0}}, point = {1.0, {0.0, 0.0, 0.0}};
+  angular_acceleration(rod, torque, w, wdot);
+  EXPECT_DOUBLE_EQ(wdot[0], 0.15);
+  EXPECT_DOUBLE_EQ(wdot[1], -0.1);
+  EXPECT_EQ(wdot[2], 0.0);
+  angular_acceleration(point, torque, w, wdot);
+  for (double x : wdot) EXPECT_EQ(x, 0.0);
+  EXPECT_EQ(rod.rotational_freedoms(), 2);
+  EXPECT_EQ(point.rotational_freedoms(), 0);
+  EXPECT_EQ((RigidBody{1.0, {3.0, 2.0, 1.0}}).rotational_freedoms(), 3);
+}
+
+TEST(EulersEquations, TheTorqueDoesTheWork)
+{
+  // d/dt of the rotational energy is torque . omega: the gyroscopic term does no work
+  Check::Numbers numbers(22);
+  const RigidBody body = {2.5, {3.0, 2.0, 0.7}};
+  const vector<double> w = numbers.list(3), torque = numbers.list(3), v = numbers.list(3);
+  double wdot[3], power;
+  angular_acceleration(body, torque.data(), w.data(), wdot);
+  auto check = [&](const vector<double> &wdot) {
+    auto energy = [&](double t, double *out) {
+      double omega[3];
+      for (int i = 0; i < 3; ++i) omega[i] = w[i] + t * wdot[i];
+      *out = rotational_energy(body, omega);
+    };
+    Check::derivative(energy, 1, 1e-2, &power);
+    return std::fabs(power - dot3(torque.data(), w.data())) <= 1e-13;
+  };
+  Check::holds_and_refuses_one_percent({wdot[0], wdot[1], wdot[2]}, check);
+
+  const double along[3] = {0.0, 3.0, 4.0};
+  EXPECT_DOUBLE_EQ(translational_energy(body, along), 31.25);
+}
+
+TEST(PrincipalAxes, OfRandomTensors)
+{
+  Check::Numbers numbers(23);
+  for (int n = 0; n < 200; ++n) {
+    const vector<double> r = numbers.list(6);
+    const double scale = std::pow(10.0, 6 * numbers.next());
+    double t[9] = {r[0], r[1], r[2], r[1], r[3], r[4], r[2], r[4], r[5]}, moments[3], a[9];
+    for (double &x : t) x *= scale;
+    principal_axes(t, moments, a);
+    EXPECT_LT(not_principal(t, moments, a), 4e-15);
+    moments[n % 3] *= 1.01;    // the check sees a wrong moment and a wrong axis
+    EXPECT_GT(not_principal(t, moments, a), 1e-5);
+    principal_axes(t, moments, a);
+    a[n % 9] += 0.01;
+    EXPECT_GT(not_principal(t, moments, a), 1e-5);
+  }
+}
+
+TEST(PrincipalAxes, OfDegenerateTensors)
+{
+  // two equal moments, and three, in axes turned by a random rotation
+  Check::Numbers numbers(24);
+  for (int n = 0; n < 50; ++n) {
+    const double d[3] = {2.0, n % 2 ? 2.0 : 5.0, n % 5 ? 5.0 : 2.0};
+    const vector<double> q = numbers.unit_quaternion();
+    double rotation[9], t[9], moments[3], a[9];
+    rotation_matrix(q.data(), 1.0, rotation);
+    for (int i = 0; i < 9; ++i) {
+      t[i] = 0.0;
+      for (int k = 0; k < 3; ++k) t[i] += rotation[3 * k + i / 3] * d[k] * rotation[3 * k + i % 3];
+    }
+    for (int i = 0; i < 3; ++i) t[3 * i + (i + 1) % 3] = t[3 * ((i + 1) % 3) + i];
+    principal_axes(t, moments, a);
+    EXPECT_LT(not_principal(t, moments, a), 4e-15);
+    double found[3] = {moments[0], moments[1], moments[2]}, known[3] = {d[0], d[1], d[2]};
+    std::sort(found, found + 3);
+    std::sort(known, known + 3);
+    EXPECT_LT(largest_difference(found, known, 3), 1e-14);
+  }
+}
+
+TEST(PrincipalAxes, LeaveAnAxisThatIsPrincipalUntouched)
+{
+  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  double moments[3], a[9];
+  const double diagonal[9] = {2, 0, 0, 0, 7, 0, 0, 0, 3}, sphere[9] = {5, 0, 0, 0, 5, 0, 0, 0, 5};
+  for (const double *t : {diagonal, sphere}) {
+    principal_axes(t, moments, a);
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(a[i], identity[i]);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(moments[i], t[4 * i]);    // not sorted
+  }
+  const double flat[9] = {2, 0.5, 0, 0.5, 3, 0, 0, 0, 5};    // a 2d body: z stays z, to the bit
+  principal_axes(flat, moments, a);
+  EXPECT_EQ(moments[2], 5.0);
+  EXPECT_EQ(a[2], 0.0);
+  EXPECT_EQ(a[5], 0.0);
+  for (int i = 6; i < 9; ++i) EXPECT_EQ(a[i], identity[i]);
+  EXPECT_LT(not_principal(flat, moments, a), 1e-15);
+}
+
+TEST(PrincipalAxes, OfThePapersBody)
+{
+  double tensor[9], moments[3], a[9];
+  paper_tensor(tensor);
+  // printed: 1635, 1611, 96, off-diagonal 150 with the opposite sign convention
+  const double printed[9] = {1635, 0, 0, 0, 1611, -150, 0, -150, 96};
+  auto check = [&](const vector<double> &t) {
+    return largest_difference(t.data(), printed, 9) <= 1e-12;
+  };
+  Check::holds_and_refuses_one_percent(vector<double>(tensor, tensor + 9), check);
+
+  principal_axes(tensor, moments, a);
+  const double root = std::sqrt(757.5 * 757.5 + 150.0 * 150.0);
+  const double known[3] = {1635.0, 853.5 + root, 853.5 - root};
+  EXPECT_NEAR(known[1], 1625.70868293, 5e-9);
+  EXPECT_NEAR(known[2], 81.29131707, 5e-9);
+  Check::holds_and_refuses_one_percent({moments[0], moments[1], moments[2]},
+                                       [&](const vector<double> &m) {
+                                         return largest_difference(m.data(), known, 3) <= 1e-12;
+                                       });
+  EXPECT_LT(not_principal(tensor, moments, a), 1e-15);
+  // tilted by 5.6 degrees about x, and by no other axis
+  EXPECT_NEAR(std::fabs(a[8]), std::cos(0.5 * std::atan(150.0 / 757.5)), 1e-14);
+  EXPECT_NEAR(std::acos(std::fabs(a[8])) * 180.0 / std::acos(-1.0), 5.6, 0.01);
+  EXPECT_EQ(a[0], 1.0);
+}
+
+TEST(VanishingMoments, AreThoseBelowTheFractionOfTheLargest)
+{
+  const struct {
+    double given[3], left[3];
+  } cases[] = {{{4.0, 1e-9, 4.0}, {4.0, 0.0, 4.0}},                // a rod, but for rounding
+               {{4.0, 4.0, -1e-16}, {4.0, 4.0, 0.0}},              // rounding below zero
+               {{1.0, 1.01e-7, 1.0}, {1.0, 1.01e-7, 1.0}},         // 1 % above the limit: a body
+               {{1.0, 0.99e-7, 1.0}, {1.0, 0.0, 1.0}},             // 1 % below: a rod
+               {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}},                 // a point
+               {{3e-20, 2e-20, 1e-20}, {3e-20, 2e-20, 1e-20}}};    // small, but a body
+  for (const auto &c : cases) {
+    double m[3] = {c.given[0], c.given[1], c.given[2]};
+    drop_vanishing_moments(m);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(m[i], c.left[i]);
+  }
+}
+
+TEST(VanishingMoments, OfARodAndOfOneAtom)
+{
+  // two sites on a tilted line: the tensor's smallest moment is rounding, and goes
+  const double along[3] = {0.3, -1.1, 0.7}, none[9] = {};
+  double t[9], moments[3], a[9];
+  for (int i = 0; i < 9; ++i)
+    t[i] = 2.0 * ((i % 4 == 0) * dot3(along, along) - along[i / 3] * along[i % 3]);
+  principal_axes(t, moments, a);
+  drop_vanishing_moments(moments);
+  const RigidBody rod = {4.0, {moments[0], moments[1], moments[2]}};
+  EXPECT_EQ(rod.rotational_freedoms(), 2);
+  EXPECT_LT(not_principal(t, moments, a), 1e-15);
+
+  principal_axes(none, moments, a);
+  drop_vanishing_moments(moments);
+  const RigidBody point = {4.0, {moments[0], moments[1], moments[2]}};
+  EXPECT_EQ(point.rotational_freedoms(), 0);
+}
