@@ -139,8 +139,8 @@ void FixGearQuat::init()
     error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
   if (update->dt == 0.0 || !std::isfinite(update->dt))
     error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}", update->dt);
-  if (domain->box_change)
-    error->all(FLERR, "Fix gear/quat requires a box that does not change");
+  if (domain->box_change_size || domain->box_change_shape)
+    error->all(FLERR, "Fix gear/quat requires a box that does not change size or shape");
   refuse_respa_with_steps();
   refuse_other_integrators();
   follow_time_step();

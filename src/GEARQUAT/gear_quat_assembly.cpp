@@ -17,6 +17,7 @@ using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 static constexpr int IRREGULAR = 0;
+static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
 
 std::vector<GearQuatAssembly::PlacedSite> GearQuatAssembly::place_sites(std::vector<Site> &sites)
 {
@@ -137,17 +138,22 @@ GearQuatAssembly::OwnedBody GearQuatAssembly::make_body(const Site *sites, int n
   if (stated != given.end()) {
     found.push_back(owned.body.id);
     owned.body.from_file = 1;
-    take_given(stated->second, axes, owned);
+    find_frame(take_given(stated->second, owned), sites, n, axes, owned);
   } else {
-    average(sites, n, axes, owned);
-    if (!(owned.body.rigid.mass > 0.0)) massless = owned.body.id;
+    const Momenta momenta = average(sites, n, owned);
+    if (owned.body.rigid.mass > 0.0)
+      find_frame(momenta, sites, n, axes, owned);
+    else
+      massless = owned.body.id;
   }
   return owned;
 }
 
 /// Mass, centre, inertia and momenta as sums over the sites.
-void GearQuatAssembly::average(const Site *sites, int n, double axes[9], OwnedBody &owned) const
+GearQuatAssembly::Momenta GearQuatAssembly::average(const Site *sites, int n,
+                                                    OwnedBody &owned) const
 {
+  Momenta momenta = Momenta();
   double mass = 0.0, center[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
   for (int i = 0; i < n; ++i) {
     mass += sites[i].mass;
@@ -157,35 +163,34 @@ void GearQuatAssembly::average(const Site *sites, int n, double axes[9], OwnedBo
     }
   }
   owned.body.rigid.mass = mass;
-  if (!(mass > 0.0)) return;    // make_body() keeps the ID, place_sites() reports it
+  if (!(mass > 0.0)) return momenta;
 
   for (int k = 0; k < 3; ++k) {
     owned.state.center[k] = center[k] / mass;
     owned.state.velocity[k] = velocity[k] / mass;
   }
+  if (n == 1) return momenta;    // a lone site has no rotation, rounding or not
 
-  double tensor[9] = {0}, angular_momentum[3] = {0, 0, 0};
   for (int i = 0; i < n; ++i) {
     double arm[3], spin[3];
     for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - owned.state.center[k];
     cross3(arm, sites[i].v, spin);
     const double r2 = dot3(arm, arm);
     for (int k = 0; k < 3; ++k) {
-      angular_momentum[k] += sites[i].mass * spin[k];
+      momenta.angular_momentum_space[k] += sites[i].mass * spin[k];
       for (int l = 0; l < 3; ++l)
-        tensor[3 * k + l] += sites[i].mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
+        momenta.inertia_space[3 * k + l] +=
+            sites[i].mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
     }
   }
-  if (n == 1)
-    for (double &element : tensor) element = 0.0;    // a lone site has no rotation, rounding or not
-  finish_state(tensor, angular_momentum, axes, owned);
+  return momenta;
 }
 
-void GearQuatAssembly::take_given(const GivenBody &given_body, double axes[9],
-                                  OwnedBody &owned) const
+GearQuatAssembly::Momenta GearQuatAssembly::take_given(const GivenBody &given_body,
+                                                       OwnedBody &owned) const
 {
   const double *i = given_body.inertia;
-  const double tensor[9] = {i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]};
+  const double *l = given_body.angular_momentum_space;
   owned.body.rigid.mass = given_body.mass;
   for (int k = 0; k < 3; ++k) {
     owned.state.center[k] = given_body.center[k];
@@ -195,21 +200,55 @@ void GearQuatAssembly::take_given(const GivenBody &given_body, double axes[9],
       (((imageint) (given_body.image[1] + IMGMAX) & IMGMASK) << IMGBITS) |
       (((imageint) (given_body.image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
   domain->unmap(owned.state.center, image);
-  finish_state(tensor, given_body.angular_momentum_space, axes, owned);
+  return {{i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]}, {l[0], l[1], l[2]}};
 }
 
 /// Principal frame, orientation and angular velocity.
-void GearQuatAssembly::finish_state(const double tensor[9], const double *angular_momentum_space,
-                                    double axes[9], OwnedBody &owned) const
+void GearQuatAssembly::find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
+                                  OwnedBody &owned) const
 {
   double *moments = owned.body.rigid.inertia;
-  principal_axes(tensor, moments, axes);
+  principal_axes(momenta.inertia_space, moments, axes);
   drop_vanishing_moments(moments);
+  if (domain->dimension == 3) {    // in two dimensions the z axis stays where it is, exactly
+    sort_axes(moments, axes);
+    orient_axes(sites, n, owned.state.center, axes);
+  }
   quaternion_from_matrix(axes, owned.state.q);
   double momentum_body[3];
-  to_body(axes, angular_momentum_space, momentum_body);
+  to_body(axes, momenta.angular_momentum_space, momentum_body);
   for (int k = 0; k < 3; ++k)
     owned.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
+}
+
+/// Senses that belong to the body, not to its orientation at the start: the first and the third
+/// axis point to the side of the heaviest site that is on a side at all, of equals the first.
+void GearQuatAssembly::orient_axes(const Site *sites, int n, const double *center,
+                                   double axes[9]) const
+{
+  std::vector<const Site *> order(n);
+  for (int i = 0; i < n; ++i) order[i] = sites + i;
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Site *a, const Site *b) { return a->mass > b->mass; });
+
+  auto along = [center](const Site *site, const double *axis) {
+    const double arm[3] = {site->x[0] - center[0], site->x[1] - center[1], site->x[2] - center[2]};
+    return dot3(axis, arm);
+  };
+  double largest = 0.0;
+  for (const auto *site : order)
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::fabs(along(site, axes + 3 * k)));
+
+  for (int k = 0; k < 3; k += 2) {
+    for (const auto *site : order) {
+      const double side = along(site, axes + 3 * k);
+      if (std::fabs(side) < ON_AXIS * largest) continue;
+      if (side < 0.0)
+        for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
+      break;
+    }
+  }
+  cross3(axes + 6, axes, axes + 3);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -226,7 +265,7 @@ void GearQuatAssembly::report_faults()
   MPI_Allreduce(&matched, &all_matched, 1, MPI_INT, MPI_SUM, world);
   if (all_matched == (int) given.size()) return;
   for (const auto &stated : given) {
-    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
+    int here = std::count(found.begin(), found.end(), stated.first) > 0;
     int anywhere = 0;
     MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
     if (!anywhere)

@@ -61,10 +61,16 @@ class GearQuatAssembly : protected Pointers {
   std::vector<tagint> found;       ///< given bodies met on this rank
 
   OwnedBody make_body(const Site *sites, int n, double axes[9], int &owner);
-  void average(const Site *sites, int n, double axes[9], OwnedBody &owned) const;
-  void take_given(const GivenBody &given_body, double axes[9], OwnedBody &owned) const;
-  void finish_state(const double tensor[9], const double *angular_momentum_space, double axes[9],
-                    OwnedBody &owned) const;
+
+  struct Momenta {
+    double inertia_space[9];
+    double angular_momentum_space[3];
+  };
+  Momenta average(const Site *sites, int n, OwnedBody &owned) const;
+  Momenta take_given(const GivenBody &given_body, OwnedBody &owned) const;
+  void find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
+                  OwnedBody &owned) const;
+  void orient_axes(const Site *sites, int n, const double *center, double axes[9]) const;
   void report_faults();
 
   template <typename Reply> std::vector<Reply> meet(std::vector<Site> &sites);

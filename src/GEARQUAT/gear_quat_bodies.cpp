@@ -119,7 +119,6 @@ bool GearQuatBodies::atoms_match()
   double **x = atom->x, **v = atom->v;
   const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
   int moved = 0;
-  update_axes();
   for (int i = 0; i < atom->nlocal; ++i) {
     const int ibody = atom2body[i];
     if (ibody < 0) continue;
@@ -161,7 +160,6 @@ void GearQuatBodies::drop_ghosts()
   body.resize(nown);
   state.resize(nown);
   load.resize(nown);
-  frame.resize(nown);
 }
 
 int GearQuatBodies::add_owned(int atom)
@@ -201,8 +199,8 @@ void GearQuatBodies::update_ghosts(bool setup)
     forward = Forward::GHOSTS;
     comm->forward_comm(fix);
     load.resize(body.size());
-    frame.resize(body.size());
   }
+  update_axes();
 
   tagint lost = 0;
   double extent = 0.0;
@@ -277,15 +275,10 @@ GearQuatBodies::Census GearQuatBodies::census(int groupbit)
   Census all;
   MPI_Allreduce(&here.removed_freedoms, &all.removed_freedoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&here.mass_changed, &all.mass_changed, 1, MPI_INT, MPI_MAX, world);
-  struct {
-    int value, rank;
-  } first = {here.broken ? 1 : 0, comm->me}, worst;
-  MPI_Allreduce(&first, &worst, 1, MPI_2INT, MPI_MAXLOC, world);
-  tagint broken[3] = {here.broken, here.left, here.had};
-  MPI_Bcast(broken, 3, MPI_LMP_TAGINT, worst.rank, world);
-  all.broken = broken[0];
-  all.left = broken[1];
-  all.had = broken[2];
+  MPI_Allreduce(&here.broken, &all.broken, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (here.broken != all.broken) here.left = here.had = 0;
+  MPI_Allreduce(&here.left, &all.left, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  MPI_Allreduce(&here.had, &all.had, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   return all;
 }
 
@@ -345,6 +338,7 @@ void GearQuatBodies::spread_loads()
 
 void GearQuatBodies::update_axes()
 {
+  frame.resize(state.size());
   for (size_t ibody = 0; ibody < state.size(); ++ibody) {
     const BodyState &s = state[ibody];
     rotation_matrix(s.q, scheme.norm2(s.q), frame[ibody].axes);

@@ -10,7 +10,6 @@
 #include "bond.h"
 #include "comm.h"
 #include "dihedral.h"
-#include "domain.h"
 #include "fix.h"
 #include "force.h"
 #include "improper.h"
@@ -54,7 +53,6 @@ GearQuatForces::GearQuatForces(LAMMPS *lmp, const Fix *owner) : Pointers(lmp)
 void GearQuatForces::look_at_styles()
 {
   if (lmp->kokkos) why = "the KOKKOS package is on";
-  if (domain->box_change) why = "the box changes";
   if (!force->pair) return;
   for (const auto *style : UNFOLLOWED_PAIRS)
     if (force->pair_match(style, 0, 1))
@@ -97,7 +95,7 @@ void GearQuatForces::look_at_time()
     if (shift == 0)
       now.assign(forces, forces + 3 * (size_t) atom->nlocal);
     else {
-      const int differs = !std::equal(now.begin(), now.end(), forces);
+      int differs = !std::equal(now.begin(), now.end(), forces);
       int any = 0;
       MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, world);
       if (any) why = "an external force depends on time";

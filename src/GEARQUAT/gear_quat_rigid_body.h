@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace GearQuat {
 
@@ -70,7 +71,7 @@ inline double rotational_energy(const RigidBody &body, const double *omega_body)
 /// Principal moments and axes of a symmetric tensor (row-major) by cyclic Jacobi rotations.
 /// After the call the rows of `a` are the axes, a rotation matrix space -> body: every Jacobi
 /// rotation is proper, so the axes are right-handed.
-/// Axes are not sorted: an axis that is principal already stays exactly as it is (2d systems).
+/// Axes are not sorted: an axis that is principal already stays exactly as it is.
 inline void principal_axes(const double tensor[9], double moments[3], double a[9])
 {
   double m[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -105,6 +106,22 @@ inline void principal_axes(const double tensor[9], double moments[3], double a[9
     moments[k] = m[k][k];
     for (int i = 0; i < 3; ++i) a[3 * k + i] = v[i][k];
   }
+}
+
+/// Largest moment first; the rows of `a` go with their moments and stay right-handed.
+inline void sort_axes(double moments[3], double a[9])
+{
+  auto swap = [&](int k, int l) {
+    std::swap(moments[k], moments[l]);
+    for (int i = 0; i < 3; ++i) {
+      const double row = a[3 * k + i];
+      a[3 * k + i] = a[3 * l + i];
+      a[3 * l + i] = -row;
+    }
+  };
+  for (int k = 0; k < 2; ++k)
+    for (int l = 0; l < 2 - k; ++l)
+      if (moments[l] < moments[l + 1]) swap(l, l + 1);
 }
 
 /// Moments that are zero but for rounding become exactly zero: a linear body has two rotational

@@ -60,7 +60,7 @@ fix move all {fix}
 thermo_style custom step temp pe ke etotal press
 thermo_modify norm no format float %.17g
 thermo {thermo}
-dump poses all custom {steps} {dump} id x y z vx vy vz
+dump poses all custom {steps} {dump} id xu yu zu vx vy vz
 dump_modify poses sort id format float %.17g
 {run}
 """

@@ -85,7 +85,7 @@ SCENES = {
         "", "run_style respa 2 2 pair 1\nrun 1",
         "requires run_style respa to have the same step at all levels", "molecule",
     ),
-    "box changes": ("fix press all deform 1 x scale 0.9", "run 1", "a box that does not change", "molecule"),
+    "box changes": ("fix press all deform 1 x scale 0.9", "run 1", "a box that does not change size or shape", "molecule"),
     "part of a body": (
         "", "group lost id 2\nrun 1\ndelete_atoms group lost compress no\nrun 1",
         "body 1 has 2 of its 3 atoms left; a body must be removed as a whole", "molecule",

@@ -21,6 +21,7 @@ TREE_VERSION = "4 Feb 2025"
 DECK = """
 units lj
 boundary f f f
+atom_modify map yes
 region box block -10 10 -10 10 -10 10
 create_box 1 box
 create_atoms 1 single 0.0 0.0 0.0

@@ -1,0 +1,137 @@
+# Sourced by tests/run after setup.sh: a LAMMPS tree for the tests, and its build with GEARQUAT in it.
+#
+#   $GEARQUAT_CACHE/lammps-<version>/   sources, fetched once (or LAMMPS_SOURCE_DIR, used as it is)
+#   $GEARQUAT_CACHE/ccache/             compiled objects, shared by all checkouts
+#   $GEARQUAT_CACHE/tree-<checksum>/    the build of this checkout; build/tree points to it
+
+TREE_VERSION="4 Feb 2025"
+TREE_DEBIAN="20250204+dfsg.1" # in Debian trixie
+TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN"
+
+# --- sources ----------------------------------------------------------------------------------
+
+# apt with its lists and its configuration in a folder of its own: needs no root, changes nothing
+private_apt() {
+  local folder="$1"
+  shift
+  apt-get -o Dir::State::Lists="$folder/lists" -o Dir::Cache="$folder/cache" \
+    -o APT::Sandbox::User="$(id -un)" -o Acquire::Languages=none "$@"
+}
+
+# mirror_of APT...: the address that apt has Debian from; trixie-updates and the like live elsewhere
+mirror_of() {
+  "$@" indextargets --format '$(ORIGIN) $(CODENAME) $(SITE)' 'Created-By: Packages' |
+    awk '$1 == "Debian" && $2 !~ /-/ && !found++ { print $3 }'
+}
+
+# the same, whichever way apt is configured, and whether or not this machine has apt's lists
+debian_mirror() {
+  local folder="$1" mirror
+  mirror="$(mirror_of apt-get)"
+  if [ -z "$mirror" ]; then
+    private_apt "$folder" update >&2 || true # another repository of this machine may not answer
+    mirror="$(mirror_of private_apt "$folder")"
+  fi
+  echo "$mirror"
+}
+
+fetch_tree_from_debian() {
+  local folder="$1" mirror keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+  rm -rf "$folder"
+  mkdir -p "$folder/lists/partial" "$folder/cache/archives/partial" "$folder/none"
+  mirror="$(debian_mirror "$folder")"
+  if [ -z "$mirror" ]; then
+    echo "apt has no Debian mirror here; please name a source tree: LAMMPS_SOURCE_DIR=/path/to/lammps" >&2
+    return 1
+  fi
+  echo "deb-src [signed-by=$keyring] $mirror trixie main" >"$folder/sources.list"
+  cd "$folder"
+  local only=(-o Dir::Etc::SourceList="$folder/sources.list" -o Dir::Etc::SourceParts="$folder/none")
+  private_apt "$folder" "${only[@]}" update
+  # apt compares the tarball with the checksum in the index, and the index with Debian's signature
+  private_apt "$folder" "${only[@]}" source --tar-only lammps
+  if [ ! -e "lammps_$TREE_DEBIAN.orig.tar.xz" ]; then
+    echo "Debian trixie now has another LAMMPS than $TREE_VERSION; name a tree with LAMMPS_SOURCE_DIR:" *.orig.tar.* >&2
+    return 1
+  fi
+  mkdir tree
+  # only what a build needs
+  tar -xf "lammps_$TREE_DEBIAN.orig.tar.xz" -C tree --strip-components=1 \
+    --exclude='*/doc/src/*' --exclude='*/examples/PACKAGES/*' --exclude='*/bench/*' --exclude='*/potentials/*'
+}
+
+# sets TREE_SOURCE, fetching LAMMPS if it is not there
+need_tree_source() {
+  if [ -n "${LAMMPS_SOURCE_DIR:-}" ]; then
+    TREE_SOURCE="$(cd "$LAMMPS_SOURCE_DIR" && pwd)" || die "no folder LAMMPS_SOURCE_DIR=$LAMMPS_SOURCE_DIR"
+    [ -e "$TREE_SOURCE/cmake/CMakeLists.txt" ] || die "LAMMPS_SOURCE_DIR=$LAMMPS_SOURCE_DIR has no cmake/CMakeLists.txt"
+    return
+  fi
+  TREE_SOURCE="$CACHE/lammps-$TREE_DEBIAN"
+  [ -e "$TREE_SOURCE/cmake/CMakeLists.txt" ] && return
+  mkdir -p "$CACHE"
+  exec 7>"$CACHE/.lock"
+  if have flock; then flock 7; fi
+  [ -e "$TREE_SOURCE/cmake/CMakeLists.txt" ] && { exec 7>&-; return; }
+  have apt-get || die "LAMMPS $TREE_VERSION is fetched by apt from Debian. Elsewhere please name a source tree:
+  LAMMPS_SOURCE_DIR=/path/to/lammps tests/run"
+  local folder="$CACHE/fetch"
+  do_quietly "fetching LAMMPS $TREE_VERSION from Debian" fetch_tree_from_debian "$folder"
+  mv "$folder/tree" "$TREE_SOURCE"
+  rm -rf "$folder"
+  exec 7>&-
+}
+
+# --- build ------------------------------------------------------------------------------------
+
+configure_tree() {
+  local build="$1" gtest="$CACHE/googletest.tar.gz" hash package options=()
+  # LAMMPS unpacks googletest from a tarball; its checksum must be the same every time
+  tar -c --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -C /usr/src googletest |
+    gzip -n >"$gtest.$$"
+  mv "$gtest.$$" "$gtest"
+  for package in $TREE_PACKAGES; do options+=(-D "PKG_$package=on"); done
+  for package in JPEG PNG GZIP FFMPEG CURL; do options+=(-D "WITH_$package=off"); done
+  hash=GTEST_MD5 # newer LAMMPS takes SHA256
+  grep -q GTEST_SHA256 "$TREE_SOURCE/unittest/CMakeLists.txt" && hash=GTEST_SHA256
+  case "$hash" in
+    GTEST_MD5) options+=(-D "$hash=$(md5sum <"$gtest" | cut -d' ' -f1)") ;;
+    *) options+=(-D "$hash=$(sha256sum <"$gtest" | cut -d' ' -f1)") ;;
+  esac
+  cmake -S "$TREE_SOURCE/cmake" -B "$build" -G Ninja \
+    -D CMAKE_PROJECT_lammps_INCLUDE="$ROOT/cmake/lammps-gearquat.cmake" \
+    -D GEARQUAT_PRECOMPILE_HEADERS=on \
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS_RELEASE=-O2 \
+    -D CMAKE_CXX_COMPILER_LAUNCHER=ccache -D CMAKE_CUSTOM_LINKER=default \
+    -D BUILD_SHARED_LIBS=on -D BUILD_OMP=off -D FFT=KISS \
+    -D BUILD_MPI=on -D MPI_CXX_COMPILER="$(command -v mpicxx.openmpi)" \
+    -D ENABLE_TESTING=on -D GTEST_URL="file://$gtest" "${options[@]}"
+}
+
+build_tree() {
+  ninja -C "$1" -j "$(nproc)" lmp test_fix_timestep
+}
+
+# LAMMPS with GEARQUAT in it, Open MPI, and LAMMPS' harness, in build/tree
+need_tree() {
+  need_tree_source
+  local build configured
+  build="$CACHE/tree-$(printf '%s\n' "$ROOT" "$TREE_SOURCE" | sha256sum | cut -c1-12)"
+  export CCACHE_DIR="$CACHE/ccache" CCACHE_BASEDIR="$CACHE" CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=1G
+  # what ccache has to overlook in a precompiled header
+  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+  mkdir -p "$build" "$ROOT/build"
+  touch "$build"
+  # builds of checkouts that are gone
+  find "$CACHE" -maxdepth 1 -name 'tree-*' -mtime +30 -exec rm -rf {} +
+  exec 8>"$build/.lock"
+  if have flock; then flock 8; fi
+  ln -sfn "$build" "$ROOT/build/tree"
+  configured="$( { declare -f configure_tree; echo "$TREE_PACKAGES"; cmake --version; } | sha256sum)"
+  if [ "$(cat "$build/.configured" 2>/dev/null)" != "$configured" ] || [ ! -e "$build/build.ninja" ]; then
+    do_quietly "configuring LAMMPS with GEARQUAT" configure_tree "$build"
+    echo "$configured" >"$build/.configured"
+  fi
+  do_quietly "building LAMMPS with GEARQUAT" build_tree "$build"
+  exec 8>&-
+}

@@ -1,0 +1,143 @@
+# Sourced by examples/run and tests/run: system packages, .venv, this repository in it.
+# ROOT is the repository. Nothing here runs by itself.
+
+CACHE="$(realpath -m "${GEARQUAT_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/gearquat}")"
+
+say() { printf '\n== %s\n' "$*"; }
+
+die() {
+  printf '\nerror: %s\n' "$*" >&2
+  exit 1
+}
+
+# do_quietly WHAT COMMAND...: one line that says what is done and how long it took; the output only if it fails
+do_quietly() {
+  local what="$1" begin=$SECONDS log status=0
+  shift
+  mkdir -p "$ROOT/build/log"
+  log="$ROOT/build/log/$(printf '%s' "$what" | tr -c 'A-Za-z0-9.\n' '-').log"
+  printf '   %s ... ' "$what"
+  # not `|| status=$?`: that would let the command go on after an error
+  set +e
+  (set -e; "$@") >"$log" 2>&1 </dev/null
+  status=$?
+  set -e
+  if [ "$status" -ne 0 ]; then
+    printf 'failed after %d s\n' $((SECONDS - begin))
+    tail -n 40 "$log" >&2
+    die "$what failed (exit code $status); all of its output is in ${log#"$ROOT"/}"
+  fi
+  printf '%d s\n' $((SECONDS - begin))
+}
+
+have() { command -v "$1" >/dev/null 2>&1; }
+
+# --- system packages --------------------------------------------------------------------------
+
+python_is_usable() {
+  have python3 &&
+    python3 -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 10))' 2>/dev/null
+}
+
+# the Debian packages without which the Python package cannot be built, if they are missing
+missing_for_package() {
+  have g++ || echo g++
+  python_is_usable || echo python3 python3-venv
+  [ -e /etc/ssl/certs/ca-certificates.crt ] || echo ca-certificates
+}
+
+# and what the tests need beyond that
+missing_for_tests() {
+  missing_for_package
+  have cmake || echo cmake
+  have ninja || echo ninja-build
+  have ccache || echo ccache
+  have xz || echo xz-utils
+  have mpicxx.openmpi || echo libopenmpi-dev
+  have mpirun.openmpi || echo openmpi-bin
+  [ -e /usr/include/yaml.h ] || echo libyaml-dev
+  [ -e /usr/src/googletest/CMakeLists.txt ] || echo googletest
+}
+
+install_packages() {
+  apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
+}
+
+# need_packages FUNCTION: installs what FUNCTION lists, or ends with the one line that does
+need_packages() {
+  local missing
+  missing="$("$1" | xargs)"
+  [ -z "$missing" ] && return
+  if ! have apt-get; then
+    die "this machine lacks what the Debian packages '$missing' contain; please install that"
+  fi
+  if [ "$(id -u)" -ne 0 ]; then
+    die "system packages are missing. Please run this line, then try again:
+  sudo apt-get update && sudo apt-get install -y --no-install-recommends $missing"
+  fi
+  # shellcheck disable=SC2086
+  do_quietly "installing $missing" install_packages $missing
+  missing="$("$1" | xargs)"
+  [ -z "$missing" ] || die "still missing after installation: $missing"
+}
+
+# --- .venv ------------------------------------------------------------------------------------
+
+# a fingerprint of everything the installed package is made of
+fingerprint() {
+  (
+    cd "$ROOT"
+    .venv/bin/python -V
+    find CMakeLists.txt pyproject.toml README.md cmake src examples -type f \
+      -not -path 'examples/results/*' -not -path '*/__pycache__/*' -not -name 'log.lammps' -not -name 'out.*' -print0 |
+      LC_ALL=C sort -z | xargs -0 sha256sum
+  ) | sha256sum | cut -d' ' -f1
+}
+
+make_venv() {
+  # scripts in a venv hold its path: a copied or moved one is made anew
+  if [ "$(cat "$ROOT/.venv/.place" 2>/dev/null)" != "$ROOT" ] ||
+    ! "$ROOT/.venv/bin/python" -c 'import pip' 2>/dev/null; then
+    rm -rf "$ROOT/.venv"
+    do_quietly "making .venv with $(python3 -V)" python3 -m venv "$ROOT/.venv"
+    echo "$ROOT" >"$ROOT/.venv/.place"
+  fi
+}
+
+# The build requirements live in .venv too, so that a rebuild compiles only what has changed.
+pip_install_repository() {
+  local extra="$1" requirements
+  cd "$ROOT"
+  requirements="$(.venv/bin/python - <<'EOF'
+try:
+    import tomllib
+except ImportError:  # Python 3.10
+    from pip._vendor import tomli as tomllib
+with open("pyproject.toml", "rb") as file:
+    print("\n".join(tomllib.load(file)["build-system"]["requires"]))
+EOF
+)"
+  printf '%s\n' "$requirements" cmake ninja >build/requirements.txt
+  .venv/bin/python -m pip install --disable-pip-version-check -r build/requirements.txt
+  PATH="$ROOT/.venv/bin:$PATH" .venv/bin/python -m pip install --disable-pip-version-check \
+    --no-build-isolation --config-settings=build-dir=build/plugin ".$extra"
+}
+
+# install_repository [EXTRA]: this repository, with the optional dependencies of EXTRA, in .venv
+install_repository() {
+  local extra="${1:-}" stamp="$ROOT/.venv/.installed" print
+  mkdir -p "$ROOT/build"
+  exec 9>"$ROOT/build/.lock"
+  if have flock; then flock 9; fi
+  make_venv
+  # what has once been asked for stays
+  [ -z "$extra" ] && extra="$(sed -n 2p "$stamp" 2>/dev/null || true)"
+  print="$(fingerprint)"
+  if [ "$(cat "$stamp" 2>/dev/null)" != "$(printf '%s\n%s' "$print" "$extra")" ]; then
+    rm -f "$stamp"
+    do_quietly "installing lammps-gearquat${extra:+ with its ${extra} tools} into .venv" \
+      pip_install_repository "${extra:+[$extra]}"
+    printf '%s\n%s\n' "$print" "$extra" >"$stamp"
+  fi
+  exec 9>&-
+}
