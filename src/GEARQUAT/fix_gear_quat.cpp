@@ -35,6 +35,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -351,11 +352,19 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 ------------------------------------------------------------------------- */
 
 /// Energy that takes thermo's potential energy from the predicted to the corrected pose.
+/// What rounding of the centres alone can make of the loads is not an energy: zero.
 double FixGearQuat::compute_scalar()
 {
-  double all;
-  MPI_Allreduce(&energy_here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all / force->ftm2v;
+  double here[2] = {energy_here, 0.0}, all[2];
+  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
+    const BodyState &s = bodies->state[ibody];
+    const Load &l = bodies->load[ibody];
+    here[1] += std::sqrt(dot3(l.force, l.force) * dot3(s.center, s.center)) +
+        std::sqrt(dot3(l.torque_space, l.torque_space));
+  }
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  const double rounding = std::numeric_limits<double>::epsilon() * all[1];
+  return std::fabs(all[0]) < rounding ? 0.0 : all[0] / force->ftm2v;
 }
 
 /// Translational and rotational kinetic energy, largest deviation of |q|^2 from 1.

@@ -66,6 +66,11 @@ OTHER_STEP = {1: (0.0005, 1500.0), 3: (0.001, 1500.0)}
 #: which omega feeds Eq. 5: short runs with an accurate start at this step
 OMEGA_STEP, OMEGA_END = 0.05, 200.0
 
+#: error against step (accuracy.py): short runs of case 1, to where its trajectory is known
+ACCURACY_STEPS, ACCURACY_END = (0.1, 0.05, 0.02, 0.01), 200.0
+#: energy against step: long runs of case 1 at steps that are too large for it
+COARSE_STEPS = (0.25, 1.0)
+
 
 @dataclass(frozen=True)
 class Run:
@@ -114,6 +119,11 @@ def planned_runs(full=False):
         Run(1, ACCURATE, "first", OMEGA_STEP, OMEGA_END, omega)
         for omega in ("corrected", "predicted")
     ]
+    measured = [(dt, ACCURACY_END) for dt in ACCURACY_STEPS] + [(dt, END[1]) for dt in COARSE_STEPS]
+    for dt, end in measured:
+        for formulation in FORMULATIONS:
+            runs += [Run(1, row, formulation, dt, end) for row in (AS_PRINTED[0], ACCURATE)]
+        runs.append(Run(1, ACCURATE, "rigid", dt, end))
     if full:
         for row in AS_PRINTED:
             runs += [Run(1, row, formulation, FINE_STEP, FULL_END) for formulation in FORMULATIONS]
@@ -125,19 +135,29 @@ class Results:
 
     def __init__(self):
         self.runs = {}
+        self.seconds = {}
 
-    def add(self, run, values):
-        """Keep the series of a run."""
+    def add(self, run, values, seconds=float("nan")):
+        """Keep the series of a run and how long LAMMPS' loop took."""
         self.runs[run] = values
+        self.seconds[run] = seconds
+
+    def _find(self, case, row, formulation, dt, omega):
+        dt = STEP[case] if dt is None else dt
+        for run in self.runs:
+            found = (run.case, run.row, run.formulation, run.dt, run.omega)
+            if found == (case, row, formulation, dt, omega):
+                return run
+        raise KeyError(f"no run of case {case}, {row}, {formulation}, step {dt:g} {omega}")
 
     def get(self, case, row, formulation, dt=None, omega=""):
         """Series of a run; ``dt`` is the step of Table 7 unless given."""
-        dt = STEP[case] if dt is None else dt
-        for run, values in self.runs.items():
-            found = (run.case, run.row, run.formulation, run.dt, run.omega)
-            if found == (case, row, formulation, dt, omega):
-                return values
-        raise KeyError(f"no run of case {case}, {row}, {formulation}, step {dt:g} {omega}")
+        return self.runs[self._find(case, row, formulation, dt, omega)]
+
+    def seconds_per_step(self, case, row, formulation):
+        """Time of LAMMPS' loop over the steps of a run at the step of Table 7."""
+        run = self._find(case, row, formulation, None, "")
+        return self.seconds[run] / run.steps
 
     def has_full(self):
         """Whether the 50 million steps of 0.0001 were run."""
@@ -155,10 +175,17 @@ def run_cases(folder, full=False, lmp=None, workers=2, progress=None):
     if progress is not None:
         progress.reset(total=sum(job.steps for job in jobs))
     run_many(jobs, lmp, workers, progress.update if progress is not None else None)
+    return read_results(folder, runs)
+
+
+def read_results(folder, runs):
+    """Results of runs whose logs are in ``folder``; leaves their series as CSV."""
+    folder = Path(folder)
     results = Results()
     (folder / "series").mkdir(parents=True, exist_ok=True)
-    for run, job in zip(runs, jobs):
-        values = series.read_log(job.log)
+    for run in runs:
+        log = run.job(folder / "logs").log
+        values = series.read_log(log)
         series.write_csv(folder / "series" / f"{run.name}.csv", values)
-        results.add(run, values)
+        results.add(run, values, series.loop_seconds(log))
     return results

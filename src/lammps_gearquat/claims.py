@@ -39,6 +39,8 @@ _LEVELS = (-1, 0, 1)
 CAGE = CAGE_SPACING * np.array(
     [(x, y, z) for x in _LEVELS for y in _LEVELS for z in _LEVELS if x or y or z], dtype=float
 )
+#: reconstructed: -1 where the first non-zero entry of (z, y, -x) is positive
+CAGE_CHARGES = np.array([1 if (z or y or -x) < 0 else -1 for x, y, z in CAGE])
 
 
 @dataclass(frozen=True)

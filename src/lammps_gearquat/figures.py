@@ -1,6 +1,6 @@
-"""Draw the paper's Figures 2 to 13 from finished runs.  Nothing is computed here.
+"""Draw the paper's Figures 2 to 13, and two of our own, from finished runs.  Nothing is computed here.
 
-Each figure shows the consistent body left and the unrotated body right, both as the paper ran them
+Each figure of the paper shows the consistent body left and the unrotated body right, both as the paper ran them
 (zero start, nothing projected).
 """
 
@@ -9,9 +9,21 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
 
+from . import accuracy  # noqa: E402
 from . import divergence as dv  # noqa: E402
-from .cases import AS_PRINTED, FINE_STEP, FORMULATIONS, ROWS, STEP  # noqa: E402
+from .cases import (  # noqa: E402
+    ACCURACY_END,
+    ACCURACY_STEPS,
+    ACCURATE,
+    AS_PRINTED,
+    FINE_STEP,
+    FORMULATIONS,
+    ROWS,
+    STEP,
+)
+from .claims import CAGE, CAGE_CHARGES, CAGE_SPACING  # noqa: E402
 
 COLOUR = {
     "potential": "#0072b2",
@@ -38,8 +50,16 @@ STYLE = {
     "legend.frameon": False,
 }
 
+RECONSTRUCTED = "charges of the cage: reconstructed"
+AS_PAPER = f"zero start and nothing projected, as the paper ran; {RECONSTRUCTED}"
+
 ENERGIES = {"potential": "potential", "kinetic": "kinetic", "total": "total"}
 KINETIC = {"translation": "translational", "rotation": "rotational", "kinetic": "total kinetic"}
+
+
+def _note(figure, text):
+    """A small line at the lower right: what has to be known about the data."""
+    figure.supxlabel(text, x=0.995, ha="right", fontsize=7, color="#666666")
 
 
 def _finish(figure, axes, title, ylabel, path):
@@ -52,6 +72,7 @@ def _finish(figure, axes, title, ylabel, path):
     legend = figure.legend(handles, labels, loc="outside upper right", ncols=len(labels))
     for line in legend.get_lines():
         line.set_linewidth(2.0)
+    _note(figure, AS_PAPER)
     figure.savefig(path)
     plt.close(figure)
 
@@ -117,12 +138,74 @@ def draw_parting(path, results):
         "How far the two formulations are apart", x=0.01, ha="left", fontsize=11, fontweight="bold"
     )
     figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    _note(figure, RECONSTRUCTED)
+    figure.savefig(path)
+    plt.close(figure)
+
+
+METHOD_LINES = {
+    "fix rigid/nve/small": {"color": "#888888", "marker": "s"},
+    "the paper's choices, second formulation": {"color": "#56b4e9", "marker": "o", "ls": "--"},
+    "the paper's choices, first formulation": {"color": "#e69f00", "marker": "o", "ls": "--"},
+    "fix gear/quat, first formulation": {"color": "#d55e00", "marker": "o"},
+    "fix gear/quat, second formulation": {"color": "#0072b2", "marker": "o"},
+}
+
+
+def _draw_errors(axis, results):
+    """Error of the centre of mass against the step, a line a method."""
+    errors = accuracy.position_errors(results)
+    for label, line in METHOD_LINES.items():
+        axis.loglog(ACCURACY_STEPS, errors[label], label=label, markersize=4, **line)
+    axis.invert_xaxis()
+    axis.set_xticks(ACCURACY_STEPS, [f"{step:g}" for step in ACCURACY_STEPS])
+    axis.minorticks_off()
+    axis.set_xlabel("step (one evaluation of the forces each)")
+    axis.set_title(
+        f"error of the centre of mass at t = {ACCURACY_END:g}, test case 1", fontsize=9, loc="left"
+    )
+    axis.legend(fontsize=7.5, loc="lower left", handlelength=2.5)
+    axis.set_ylim(bottom=1e-15)
+
+
+def _draw_cage(axis, results):
+    """The cage, and the paths of test cases 1 and 3 with the defaults of the fix."""
+    for one in CAGE:
+        for other in CAGE:
+            if np.linalg.norm(one - other) < 1.01 * CAGE_SPACING:
+                axis.plot(*np.transpose([one, other]), color="#dddddd", linewidth=0.6)
+    for sign, colour in ((-1, "#0072b2"), (1, "#d55e00")):
+        spheres = CAGE[CAGE_CHARGES == sign]
+        label = f"charge {sign:+d}"
+        axis.scatter(*spheres.T, s=40, color=colour, linewidths=0, depthshade=False, label=label)
+    for case, colour, width in ((1, "#009e73", 0.4), (3, "#222222", 1.0)):
+        path = results.get(case, ACCURATE, "second").centre
+        near = (abs(path) < 300).all(axis=1).cumprod().astype(bool)
+        axis.plot(*path[near].T, color=colour, linewidth=width, label=f"test case {case}")
+    axis.set(xlim=(-100, 300), ylim=(-200, 200), zlim=(-200, 200))
+    axis.set_box_aspect((1, 1, 1), zoom=1.75)
+    axis.set_axis_off()
+    axis.view_init(elev=20, azim=-70)
+    legend = axis.legend(fontsize=8, loc="lower center", ncols=2, bbox_to_anchor=(0.5, -0.02))
+    for line in legend.get_lines():
+        line.set_linewidth(2.0)
+
+
+def draw_overview(path, results):
+    """The scene, and what accuracy costs in it (not in the paper)."""
+    figure = plt.figure(figsize=(9.6, 4.2), layout="constrained")
+    grid = figure.add_gridspec(1, 2, width_ratios=(1, 1.35))
+    scene = figure.add_subplot(grid[0], projection="3d")
+    errors = figure.add_subplot(grid[1])
+    _draw_cage(scene, results)
+    _draw_errors(errors, results)
+    _note(figure, RECONSTRUCTED)
     figure.savefig(path)
     plt.close(figure)
 
 
 def draw_all(folder, results):
-    """Figures 2 to 13 as ``figure02.png`` … and ``parting.png`` in ``folder``."""
+    """Figures 2 to 13 as ``figure02.png`` …, ``parting.png`` and ``overview.png`` in ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     fine = FINE_STEP if results.has_full() else None
 
@@ -145,3 +228,4 @@ def draw_all(folder, results):
         draw_x(path(4), results, 1, "Fig. 4  x, test case 1", fine)
         draw_x(path(7), results, 2, "Fig. 7  x, test case 2")
         draw_parting(folder / "parting.png", results)
+        draw_overview(folder / "overview.png", results)

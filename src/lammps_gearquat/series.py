@@ -1,6 +1,8 @@
 """Time series of one body, as the decks under ``examples`` print them."""
 
+import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -80,6 +82,15 @@ def read_log(path):
     if log.errors or not log.runs:
         raise ValueError(f"{path}: not a finished run: {' '.join(log.errors) or 'no thermo output'}")
     return from_thermo(log.runs[-1])
+
+
+def loop_seconds(path):
+    """Wall-clock time of the last run in a LAMMPS log, setup not included."""
+    text = Path(path).read_text(encoding="utf-8", errors="replace")
+    found = re.findall(r"^Loop time of (\S+) on", text, re.MULTILINE)
+    if not found:
+        raise ValueError(f"{path}: not a finished run: no loop time")
+    return float(found[-1])
 
 
 def write_csv(path, series):

@@ -1,0 +1,61 @@
+"""What accuracy costs: error of the trajectory against the step, and of the energy over long runs.
+
+Everything is measured in the paper's scene with the consistent body.  One step is one evaluation of
+the forces with every method, so equal steps are equal numbers of evaluations.
+"""
+
+import numpy as np
+
+from . import divergence as dv
+from .cases import ACCURACY_END, ACCURACY_STEPS, ACCURATE, COARSE_STEPS, STEP
+
+#: test case 1, consistent body, t = 200: the centre of mass, found in extended precision and
+#: checked by an independent integrator in tests/python/test_oracle.py
+REFERENCE = np.array([85.56573248988141, -6.06135624295223, 6.86227956266460])
+
+#: steps of the long runs of one and the same motion: test cases 1 and 2, and two larger ones
+ENERGY_STEPS = (STEP[1], STEP[2], *COARSE_STEPS)
+
+PAPER = "consistent-zero-free"
+#: label -> (row, formulation)
+METHODS = {
+    "fix gear/quat, second formulation": (ACCURATE, "second"),
+    "fix gear/quat, first formulation": (ACCURATE, "first"),
+    "the paper's choices, second formulation": (PAPER, "second"),
+    "the paper's choices, first formulation": (PAPER, "first"),
+    "fix rigid/nve/small": (ACCURATE, "rigid"),
+}
+
+
+def position_errors(results):
+    """Distance of the centre of mass from REFERENCE: label -> list, one for each ACCURACY_STEPS."""
+    errors = {}
+    for label, (row, formulation) in METHODS.items():
+        runs = [results.get(1, row, formulation, dt) for dt in ACCURACY_STEPS]
+        ends = [values.centre[values.at(ACCURACY_END)] for values in runs]
+        errors[label] = [float(np.linalg.norm(end - REFERENCE)) for end in ends]
+    return errors
+
+
+def energy_errors(results):
+    """Largest deviation of the total energy from its start to t = 5000: label -> list.
+
+    One number for each of ENERGY_STEPS, from samples once per unit of time.
+    """
+
+    def largest(row, formulation, dt):
+        case = 2 if dt == STEP[2] else 1
+        return float(np.abs(dv.energy_error(results.get(case, row, formulation, dt))).max())
+
+    return {
+        label: [largest(row, formulation, dt) for dt in ENERGY_STEPS]
+        for label, (row, formulation) in METHODS.items()
+    }
+
+
+def step_costs(results):
+    """Microseconds a step of the long run of case 1: label -> number."""
+    return {
+        label: 1e6 * results.seconds_per_step(1, row, formulation)
+        for label, (row, formulation) in METHODS.items()
+    }
