@@ -142,4 +142,4 @@ def water(
 
 def last_frame(path: Path) -> np.ndarray:
     """Columns of the last frame of a dump, shape (atoms, columns), sorted as dumped."""
-    return np.loadtxt(path.read_text().rpartition("ITEM: ATOMS")[2].splitlines()[1:])
+    return np.loadtxt(path.read_text().rpartition("ITEM: ATOMS")[2].splitlines()[1:], ndmin=2)
