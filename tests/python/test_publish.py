@@ -1,0 +1,107 @@
+"""What `gearquat cases --publish` writes into a checkout, and what is committed of it."""
+
+import re
+
+import pytest
+from click.testing import CliRunner
+
+from lammps_gearquat import accuracy, cases, claims, cli, publish
+from lammps_gearquat.claims import REPRODUCED
+from running import ROOT
+
+FRAME = f"# Title\n\n{publish.BEGIN}\nold numbers\n{publish.END}\n\nThe rest.\n"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A checkout as far as publishing looks at it."""
+    (tmp_path / "src" / "GEARQUAT").mkdir(parents=True)
+    (tmp_path / "README.md").write_text(FRAME)
+    return tmp_path
+
+
+@pytest.fixture
+def out(tmp_path):
+    """What a run leaves."""
+    path = tmp_path / "out"
+    for name in ("figures", "logs"):
+        (path / name).mkdir(parents=True)
+    for name in publish.FIGURES:
+        (path / "figures" / name).write_bytes(name.encode())
+    (path / "logs" / "log.one").write_text("LAMMPS (1 Jan 2030)\nrun\n")
+    return path
+
+
+def test_everything_is_written(folder, out, results):
+    found = claims.all_claims(results)
+    publish.publish(folder, out, found, results)
+    text = (folder / "doc" / "results.md").read_text()
+    for words in ("LAMMPS (1 Jan 2030)", "do not edit", "reconstructed", "Table 7", "µs a step"):
+        assert words in text
+    assert all(claim.paper in text and claim.rule in text for claim in found)
+    assert text.count("reproduced |") >= sum(claim.verdict == REPRODUCED for claim in found)
+    for name in publish.FIGURES:
+        assert (folder / "doc" / "figures" / name).read_bytes() == name.encode()
+        assert f"(figures/{name})" in text
+    readme = (folder / "README.md").read_text()
+    assert readme.startswith("# Title\n") and readme.endswith("The rest.\n")
+    assert "old numbers" not in readme and "reconstructed" in readme
+    publish.publish(folder, out, found, results)  # and again: nothing piles up
+    assert (folder / "README.md").read_text() == readme
+
+
+def test_sentences_follow_the_numbers(results, monkeypatch):
+    errors = {label: [1e-3] * 4 for label in accuracy.METHODS}
+    errors[publish.GEAR_FIRST], errors[publish.GEAR_SECOND] = [1e-5] * 4, [1e-6] * 4
+    monkeypatch.setattr(accuracy, "position_errors", lambda _: errors)
+    monkeypatch.setattr(accuracy, "energy_errors", lambda _: errors)
+    sentence = publish.accuracy_sentence(results)
+    assert "100 times closer" in sentence and "the second 1 000 times" in sentence
+    assert "worse" not in publish.energy_sentence(results)
+    errors[publish.GEAR_SECOND][3] = 1.0
+    assert "worse at 1: Gear's method is not symplectic" in publish.energy_sentence(results)
+
+
+def test_errors_are_measured_against_the_reference(results):
+    exact = cases.Results()
+    for run, values in results.runs.items():
+        values.centre[values.at(cases.ACCURACY_END)] = accuracy.REFERENCE
+        exact.add(run, values, seconds=2e-6 * run.steps)
+    assert set(map(tuple, accuracy.position_errors(exact).values())) == {(0.0,) * 4}
+    assert list(accuracy.step_costs(exact).values()) == pytest.approx([2.0] * 5)
+    for run, values in exact.runs.items():
+        values.centre[values.at(cases.ACCURACY_END)] *= 1.01
+    assert min(min(row) for row in accuracy.position_errors(exact).values()) > 0.5
+
+
+@pytest.mark.parametrize(
+    "text", ["", FRAME.replace(publish.END, ""), FRAME + FRAME, publish.END + publish.BEGIN]
+)
+def test_a_readme_without_its_markers_is_refused(folder, text):
+    (folder / "README.md").write_text(text)
+    with pytest.raises(publish.PublishError, match="README.md needs one"):
+        publish.checkout(folder)
+
+
+def test_another_folder_is_refused_before_anything_runs(tmp_path):
+    arguments = ["cases", "--publish", str(tmp_path), "--out", str(tmp_path / "out")]
+    result = CliRunner().invoke(cli.main, arguments)
+    assert result.exit_code != 0 and "is not a checkout of GEARQUAT" in result.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_what_is_committed():
+    """README and results are those of one run, the pictures are small, all is marked."""
+    publish.checkout(ROOT)
+    _, block, after = publish.split_readme((ROOT / "README.md").read_text())
+    text = (ROOT / "doc" / "results.md").read_text()
+    rows = re.findall(r"^\| .* \|$", block, re.M)
+    assert len(rows) == 2 * (1 + len(accuracy.METHODS))
+    assert all(row in text for row in rows)
+    assert not any(row.replace("e-0", "e-1") in text for row in rows[1:4])
+    assert re.search(r"Of \d+ claims of the paper: .*\.", block)[0].partition(" Every")[0] in text
+    assert "reconstructed" in block and "reconstructed" in text
+    assert not re.search(r"\d(\.\d+)?e[-+]\d", after)  # measured numbers stand in the block only
+    sizes = {path.name: path.stat().st_size for path in (ROOT / "doc" / "figures").iterdir()}
+    assert set(sizes) == set(publish.FIGURES)
+    assert sizes["overview.png"] < 200_000 and sum(sizes.values()) < 1_000_000
