@@ -68,8 +68,8 @@ static constexpr double NORM_ROUNDING = 1.0e-15;
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), started(false), h(0.0), energy_here(0.0),
-    f_sum(nullptr), nmax_sum(0)
+    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), started(false), met_atoms(false), h(0.0),
+    energy_here(0.0), f_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -155,19 +155,21 @@ void FixGearQuat::refuse_respa_with_steps()
   const auto *steps = (double *) lammps_extract_global(lmp, "respa_dt");
   for (int level = 1; level < *levels; ++level)
     if (steps[level] != steps[0])
-      error->all(FLERR, "Fix gear/quat requires run_style respa to have the same step at all levels "
-                 "(loop factors of 1); levels 1 and {} have {} and {}", level + 1, steps[0],
-                 steps[level]);
+      error->all(FLERR,
+                 "Fix gear/quat requires run_style respa to have the same step at all levels "
+                 "(loop factors of 1); levels 1 and {} have {} and {}",
+                 level + 1, steps[0], steps[level]);
 }
 
 void FixGearQuat::refuse_other_integrators()
 {
   for (auto *other : modify->get_fix_list()) {
     if (other == this || !other->time_integrate) continue;
-    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other : nullptr;
+    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other
+                                                                   : nullptr;
     int dim;
-    const int *its_body = utils::strmatch(other->style, "^rigid") &&
-            !utils::strmatch(other->style, "/small")
+    const int *its_body =
+        utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
         ? (int *) other->extract("body", dim)
         : nullptr;
     tagint shared = 0, any;
@@ -179,8 +181,10 @@ void FixGearQuat::refuse_other_integrators()
     }
     MPI_Allreduce(&shared, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
     if (any)
-      error->all(FLERR, "Fix gear/quat: atom {} is also moved by fix {} ({}); take it out of the "
-                 "group of one of the two", any, other->id, other->style);
+      error->all(FLERR,
+                 "Fix gear/quat: atom {} is also moved by fix {} ({}); take it out of the "
+                 "group of one of the two",
+                 any, other->id, other->style);
   }
 }
 
@@ -211,14 +215,17 @@ void FixGearQuat::setup_pre_neighbor()
 {
   bodies->check_whole();
   bodies->update_ghosts(true);
-  if (args->reinit && !bodies->atoms_match()) {
+  const bool follow_atoms = args->infile.empty() && (args->reinit || !met_atoms);
+  if (follow_atoms && !bodies->atoms_match()) {
     bodies->recreate();
     bodies->update_ghosts(true);
     if (started && comm->me == 0)
-      utils::logmesg(lmp, "Fix gear/quat: atoms were changed since the last run, bodies start "
-                          "anew from them\n");
+      utils::logmesg(lmp,
+                     "Fix gear/quat: atoms were changed since the last run, bodies start "
+                     "anew from them\n");
     started = false;
   }
+  met_atoms = true;
 }
 
 void FixGearQuat::setup(int vflag)
@@ -472,9 +479,11 @@ void FixGearQuat::restart(char *buf)
   const bool same = data.formulation == (double) args->scheme.first() &&
       data.size == (double) args->scheme.size();
   started = data.started != 0.0 && same;
+  met_atoms = true;
   h = data.h;
   if (data.started != 0.0 && !same && comm->me == 0)
-    error->warning(FLERR, "Fix gear/quat: the restart file has histories of another formulation; "
+    error->warning(FLERR,
+                   "Fix gear/quat: the restart file has histories of another formulation; "
                    "poses and velocities are kept, the higher derivatives start anew");
 }
 

@@ -67,10 +67,11 @@ class FixGearQuat : public Fix {
   class GearQuatArguments *args;
   class GearQuatBodies *bodies;
 
-  bool started;            // histories are those of the step h
-  double h;                // step of the histories
-  double energy_here;      // -(F.dx + tau.dtheta) of this rank's bodies, last step
-  double **f_sum;          // r-RESPA: forces of all levels
+  bool started;          // histories are those of the step h
+  bool met_atoms;        // bodies were compared with the atoms in a run before
+  double h;              // step of the histories
+  double energy_here;    // -(F.dx + tau.dtheta) of this rank's bodies, last step
+  double **f_sum;        // r-RESPA: forces of all levels
   int nmax_sum;
 
   void follow_time_step();

@@ -58,8 +58,7 @@ int GearQuatArguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
     if (n <= 0)
       error->all(FLERR, "Fix gear/quat group: number of groups is {} and must be positive", n);
     if (narg - next - 1 < n)
-      error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", n,
-                 narg - next - 1);
+      error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", n, narg - next - 1);
     for (int i = 0; i < n; ++i) {
       groups.emplace_back(arg[next + 1 + i]);
       if (lmp->group->find(groups.back()) < 0)
@@ -91,14 +90,13 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     const std::set<std::string> known = {"formulation", "start",   "c0",     "omega",
                                          "momentum",    "project", "infile", "reinit"};
     if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
-    if (!seen.insert(key).second)
-      error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
+    if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
     const std::string value = arg[iarg + 1];
 
     if (key == "formulation")
-      scheme.formulation =
-          choice(key, value, "first", "second") ? Formulation::SECOND : Formulation::FIRST;
+      scheme.formulation = choice(key, value, "first", "second") ? Formulation::SECOND
+                                                                 : Formulation::FIRST;
     else if (key == "start")
       start = choice(key, value, "bootstrap", "zero") ? Start::ZERO : Start::BOOTSTRAP;
     else if (key == "c0")
@@ -125,7 +123,8 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 
   if (!infile.empty()) {
     if (reinit && seen.count("reinit"))
-      error->all(FLERR, "Fix gear/quat reinit yes cannot be used with infile, which states the "
+      error->all(FLERR,
+                 "Fix gear/quat reinit yes cannot be used with infile, which states the "
                  "bodies once and for all");
     reinit = false;
   }
@@ -173,8 +172,10 @@ std::vector<tagint> GearQuatArguments::molecule_ids(LAMMPS *lmp, int groupbit) c
     if (ids[i] <= 0) without = atom->tag[i];
   }
   if ((without = anywhere(lmp, without)))
-    lmp->error->all(FLERR, "Fix gear/quat molecule: atom {} of the fix group has molecule ID 0; "
-                    "take it out of the group or give it the ID of its body", without);
+    lmp->error->all(FLERR,
+                    "Fix gear/quat molecule: atom {} of the fix group has molecule ID 0; "
+                    "take it out of the group or give it the ID of its body",
+                    without);
   return ids;
 }
 
@@ -184,7 +185,7 @@ std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) cons
   std::vector<tagint> ids(atom->nlocal, 0);
   tagint twice = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
-    const int bit = lmp->group->bitmask[lmp->group->find(groups[g])] ;
+    const int bit = lmp->group->bitmask[lmp->group->find(groups[g])];
     for (int i = 0; i < atom->nlocal; ++i) {
       if (!(atom->mask[i] & bit) || !(atom->mask[i] & groupbit)) continue;
       if (ids[i] != 0) twice = atom->tag[i];
@@ -192,8 +193,10 @@ std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) cons
     }
   }
   if ((twice = anywhere(lmp, twice)))
-    lmp->error->all(FLERR, "Fix gear/quat group: atom {} is in more than one of the groups; an "
-                    "atom belongs to one body at most", twice);
+    lmp->error->all(FLERR,
+                    "Fix gear/quat group: atom {} is in more than one of the groups; an "
+                    "atom belongs to one body at most",
+                    twice);
   return ids;
 }
 
@@ -208,15 +211,19 @@ std::vector<tagint> GearQuatArguments::custom_ids(LAMMPS *lmp, int groupbit) con
     int is_double, columns;
     const int index = atom->find_custom(custom.c_str() + 2, is_double, columns);
     if (index < 0 || is_double || columns)
-      error->all(FLERR, "Fix gear/quat custom {} requires an integer vector of that name, made by "
-                 "fix property/atom", custom);
+      error->all(FLERR,
+                 "Fix gear/quat custom {} requires an integer vector of that name, made by "
+                 "fix property/atom",
+                 custom);
     std::copy_n(atom->ivector[index], atom->nlocal, ids.begin());
   } else if (utils::strmatch(custom, "^v_")) {
     Variable *variable = lmp->input->variable;
     const int index = variable->find(custom.c_str() + 2);
     if (index < 0 || !variable->atomstyle(index))
-      error->all(FLERR, "Fix gear/quat custom {} requires an atom-style or atomfile-style variable "
-                 "of that name", custom);
+      error->all(FLERR,
+                 "Fix gear/quat custom {} requires an atom-style or atomfile-style variable "
+                 "of that name",
+                 custom);
     std::vector<double> value(atom->nlocal + 1);
     variable->compute_atom(index, 0, value.data(), 1, 0);
     for (int i = 0; i < atom->nlocal; ++i) ids[i] = (tagint) std::llround(value[i]);
@@ -227,7 +234,6 @@ std::vector<tagint> GearQuatArguments::custom_ids(LAMMPS *lmp, int groupbit) con
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit) smallest = std::min(smallest, ids[i]);
   MPI_Allreduce(&smallest, &all, 1, MPI_LMP_TAGINT, MPI_MIN, lmp->world);
-  for (int i = 0; i < atom->nlocal; ++i)
-    ids[i] = (atom->mask[i] & groupbit) ? ids[i] - all + 1 : 0;
+  for (int i = 0; i < atom->nlocal; ++i) ids[i] = (atom->mask[i] & groupbit) ? ids[i] - all + 1 : 0;
   return ids;
 }

@@ -179,8 +179,7 @@ GearQuatAssembly::Momenta GearQuatAssembly::average(const Site *sites, int n,
     for (int k = 0; k < 3; ++k) {
       momenta.angular_momentum_space[k] += sites[i].mass * spin[k];
       for (int l = 0; l < 3; ++l)
-        momenta.inertia_space[3 * k + l] +=
-            sites[i].mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
+        momenta.inertia_space[3 * k + l] += sites[i].mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
     }
   }
   return momenta;
@@ -205,10 +204,13 @@ GearQuatAssembly::Momenta GearQuatAssembly::take_given(const GivenBody &given_bo
 
 /// Principal frame, orientation and angular velocity.
 void GearQuatAssembly::find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
-                                  OwnedBody &owned) const
+                                  OwnedBody &owned)
 {
   double *moments = owned.body.rigid.inertia;
   principal_axes(momenta.inertia_space, moments, axes);
+  const double largest = *std::max_element(moments, moments + 3);
+  if (*std::min_element(moments, moments + 3) < -LINEAR_FRACTION * largest)
+    impossible = owned.body.id;
   drop_vanishing_moments(moments);
   if (domain->dimension == 3) {    // in two dimensions the z axis stays where it is, exactly
     sort_axes(moments, axes);
@@ -228,8 +230,9 @@ void GearQuatAssembly::orient_axes(const Site *sites, int n, const double *cente
 {
   std::vector<const Site *> order(n);
   for (int i = 0; i < n; ++i) order[i] = sites + i;
-  std::stable_sort(order.begin(), order.end(),
-                   [](const Site *a, const Site *b) { return a->mass > b->mass; });
+  std::stable_sort(order.begin(), order.end(), [](const Site *a, const Site *b) {
+    return a->mass > b->mass;
+  });
 
   auto along = [center](const Site *site, const double *axis) {
     const double arm[3] = {site->x[0] - center[0], site->x[1] - center[1], site->x[2] - center[2]};
@@ -258,8 +261,17 @@ void GearQuatAssembly::report_faults()
   tagint any = 0;
   MPI_Allreduce(&massless, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (any > 0)
-    error->all(FLERR, "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to "
-               "more than zero", any);
+    error->all(FLERR,
+               "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to "
+               "more than zero",
+               any);
+
+  MPI_Allreduce(&impossible, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (any > 0)
+    error->all(FLERR,
+               "Fix gear/quat infile: the inertia tensor of body {} has a negative principal "
+               "moment; no body has",
+               any);
 
   int matched = (int) found.size(), all_matched = 0;
   MPI_Allreduce(&matched, &all_matched, 1, MPI_INT, MPI_SUM, world);

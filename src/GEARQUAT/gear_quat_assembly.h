@@ -23,24 +23,24 @@ namespace LAMMPS_NS {
 /// What a body is; travels with its owner atom.
 struct GearQuatBody {
   GearQuat::RigidBody rigid;
-  tagint id;          ///< the user's: molecule ID, group number or custom value
-  tagint natoms;      ///< sites
-  double extent;      ///< largest distance of a site from the owner atom
-  int from_file;      ///< mass and inertia were given, not summed
+  tagint id;        ///< the user's: molecule ID, group number or custom value
+  tagint natoms;    ///< sites
+  double extent;    ///< largest distance of a site from the owner atom
+  int from_file;    ///< mass and inertia were given, not summed
 };
 
 class GearQuatAssembly : protected Pointers {
  public:
   struct Site {
-    int rank, local;     ///< where the site came from
-    tagint id, tag;      ///< body and atom
+    int rank, local;    ///< where the site came from
+    tagint id, tag;     ///< body and atom
     double mass;
-    double x[3], v[3];   ///< unwrapped
+    double x[3], v[3];    ///< unwrapped
   };
   struct PlacedSite {
     int local;
-    tagint owner;            ///< atom ID of the body's owner
-    double site_body[3];     ///< from the centre of mass, principal frame
+    tagint owner;           ///< atom ID of the body's owner
+    double site_body[3];    ///< from the centre of mass, principal frame
   };
   struct OwnedBody {
     int local;    ///< index of the owner atom
@@ -57,8 +57,9 @@ class GearQuatAssembly : protected Pointers {
 
  private:
   const GivenBodies &given;
-  tagint massless = 0;             ///< a body without mass met on this rank
-  std::vector<tagint> found;       ///< given bodies met on this rank
+  tagint massless = 0;          ///< a body without mass met on this rank
+  tagint impossible = 0;        ///< a given body with a negative principal moment, likewise
+  std::vector<tagint> found;    ///< given bodies met on this rank
 
   OwnedBody make_body(const Site *sites, int n, double axes[9], int &owner);
 
@@ -69,7 +70,7 @@ class GearQuatAssembly : protected Pointers {
   Momenta average(const Site *sites, int n, OwnedBody &owned) const;
   Momenta take_given(const GivenBody &given_body, OwnedBody &owned) const;
   void find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
-                  OwnedBody &owned) const;
+                  OwnedBody &owned);
   void orient_axes(const Site *sites, int n, const double *center, double axes[9]) const;
   void report_faults();
 

@@ -15,16 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
-
-static constexpr int STATE_SIZE = sizeof(BodyState) / sizeof(double);
-static constexpr int LOAD_SIZE = sizeof(Load) / sizeof(double);
-static constexpr int SITE_SIZE = 6;
-static constexpr int BODY_SIZE = 8 + STATE_SIZE;
-static constexpr int IRREGULAR = 0;
 
 // atoms count as moved by the user when they are off by more than rounding of coordinates and
 // velocities, relative to box and body
@@ -34,9 +27,8 @@ static constexpr double SAME = 1.0e-11;
 /* ---------------------------------------------------------------------- */
 
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), scheme(scheme), nown(0), nmax(0), body_id(nullptr),
-    owner_tag(nullptr), owned(nullptr), site_body(nullptr), atom2body(nullptr),
-    forward(Forward::STATES)
+    Pointers(lmp), fix(fix), scheme(scheme), nown(0), nmax(0), body_id(nullptr), owner_tag(nullptr),
+    owned(nullptr), site_body(nullptr), atom2body(nullptr), forward(Forward::STATES)
 {
   grow_arrays(atom->nmax);
   clear();
@@ -140,10 +132,20 @@ bool GearQuatBodies::atoms_match()
 
 void GearQuatBodies::check_whole()
 {
-  const Census found = census(0);
+  int renumbered = 0, any;
+  for (int ibody = 0; ibody < nown; ++ibody)
+    if (owner_tag[owner_atom[ibody]] != atom->tag[owner_atom[ibody]]) renumbered = 1;
+  MPI_Allreduce(&renumbered, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any)
+    error->all(FLERR,
+               "Fix gear/quat: atom IDs were changed since the fix was defined; define it "
+               "after reset_atoms id or delete_atoms compress yes");
+  const GearQuatCensus found = census(0);
   if (found.broken)
-    error->all(FLERR, "Fix gear/quat: body {} has {} of its {} atoms left; a body must be removed "
-               "as a whole", found.broken, found.left, found.had);
+    error->all(FLERR,
+               "Fix gear/quat: body {} has {} of its {} atoms left; a body must be removed "
+               "as a whole",
+               found.broken, found.left, found.had);
 }
 
 bigint GearQuatBodies::removed_freedoms(int groupbit)
@@ -228,26 +230,12 @@ void GearQuatBodies::update_ghosts(bool setup)
     error->one(FLERR, message, lost, extent);
 }
 
-/* ----------------------------------------------------------------------
-   census: the sites of every body meet on one rank and are counted
-------------------------------------------------------------------------- */
-
-struct GearQuatBodies::SiteCount {
-  tagint owner, id;
-  tagint natoms;    // the body's, 0 unless this site is its owner
-  int freedoms;     // of the body, translation and rotation
-  int in_group;
-  double mass;
-  double body_mass;    // 0 if it does not have to agree with the sites' masses
-};
-
-GearQuatBodies::Census GearQuatBodies::census(int groupbit)
+GearQuatCensus GearQuatBodies::census(int groupbit) const
 {
-  std::vector<SiteCount> sites;
-  std::vector<int> ranks;
+  std::vector<GearQuatSiteCount> sites;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (body_id[i] == 0) continue;
-    SiteCount site = SiteCount();
+    GearQuatSiteCount site = GearQuatSiteCount();
     site.owner = owner_tag[i];
     site.id = body_id[i];
     site.in_group = (atom->mask[i] & groupbit) ? 1 : 0;
@@ -260,60 +248,8 @@ GearQuatBodies::Census GearQuatBodies::census(int groupbit)
                                              : 3 + mine.rigid.rotational_freedoms();
     }
     sites.push_back(site);
-    ranks.push_back((int) (site.owner % comm->nprocs));
   }
-  const int n = (int) sites.size();
-  sites.emplace_back();
-  ranks.push_back(0);
-
-  Census here;
-  here.dimension = domain->dimension;
-  char *unused = nullptr;
-  comm->rendezvous(IRREGULAR, n, (char *) sites.data(), sizeof(SiteCount), 0, ranks.data(),
-                   count_sites, 0, unused, sizeof(SiteCount), &here);
-
-  Census all;
-  MPI_Allreduce(&here.removed_freedoms, &all.removed_freedoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  MPI_Allreduce(&here.mass_changed, &all.mass_changed, 1, MPI_INT, MPI_MAX, world);
-  MPI_Allreduce(&here.broken, &all.broken, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (here.broken != all.broken) here.left = here.had = 0;
-  MPI_Allreduce(&here.left, &all.left, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  MPI_Allreduce(&here.had, &all.had, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return all;
-}
-
-int GearQuatBodies::count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *result)
-{
-  auto *sites = (SiteCount *) in;
-  auto &census = *(Census *) result;
-  std::sort(sites, sites + n, [](const SiteCount &a, const SiteCount &b) {
-    return a.owner < b.owner;
-  });
-  for (int first = 0, last; first < n; first = last) {
-    tagint had = 0, left = 0, in_group = 0;
-    int freedoms = 0;
-    double mass = 0.0, body_mass = 0.0;
-    for (last = first; last < n && sites[last].owner == sites[first].owner; ++last) {
-      const SiteCount &site = sites[last];
-      ++left;
-      in_group += site.in_group;
-      mass += site.mass;
-      had += site.natoms;
-      freedoms += site.freedoms;
-      body_mass += site.body_mass;
-    }
-    if (left != had) {
-      census.broken = sites[first].id;
-      census.left = left;
-      census.had = had;
-    }
-    if (body_mass > 0.0 && std::fabs(mass - body_mass) > SAME * body_mass) census.mass_changed = 1;
-    if (in_group == left) census.removed_freedoms += census.dimension * left - freedoms;
-  }
-  flag = 0;    // no reply
-  ranks = nullptr;
-  out = nullptr;
-  return 0;
+  return GearQuatCensus(lmp, sites);
 }
 
 /* ----------------------------------------------------------------------
@@ -467,149 +403,6 @@ void GearQuatBodies::copy_arrays(int from, int to, int delflag)
   atom2body[to] = atom2body[from];
   for (int k = 0; k < 3; ++k) site_body[to][k] = site_body[from][k];
   if (owned[to] >= 0) owner_atom[owned[to]] = to;
-}
-
-/* ----------------------------------------------------------------------
-   one atom, with its body if it owns one, as doubles: exchange between ranks and restart files
-------------------------------------------------------------------------- */
-
-int GearQuatBodies::pack_exchange(int i, double *buf)
-{
-  int m = 0;
-  buf[m++] = ubuf(body_id[i]).d;
-  if (body_id[i] == 0) return m;
-  buf[m++] = ubuf(owner_tag[i]).d;
-  for (int k = 0; k < 3; ++k) buf[m++] = site_body[i][k];
-  const int ibody = owned[i];
-  buf[m++] = ubuf(ibody < 0 ? 0 : scheme.size()).d;
-  if (ibody < 0) return m;
-  m += pack_body(body[ibody], state[ibody], buf + m);
-  std::copy_n(history(ibody), scheme.size(), buf + m);
-  return m + scheme.size();
-}
-
-/// A history of another scheme, met in a restart file, is passed over.
-int GearQuatBodies::unpack_exchange(int i, const double *buf)
-{
-  int m = 0;
-  set_arrays(i);
-  body_id[i] = (tagint) ubuf(buf[m++]).i;
-  if (body_id[i] == 0) return m;
-  owner_tag[i] = (tagint) ubuf(buf[m++]).i;
-  for (int k = 0; k < 3; ++k) site_body[i][k] = buf[m++];
-  const int size = (int) ubuf(buf[m++]).i;
-  if (size == 0) return m;
-  const int ibody = add_owned(i);
-  m += unpack_body(buf + m, body[ibody], state[ibody]);
-  if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
-  return m + size;
-}
-
-int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, double *buf)
-{
-  int m = 0;
-  buf[m++] = ubuf(body.id).d;
-  buf[m++] = ubuf(body.natoms).d;
-  buf[m++] = ubuf(body.from_file).d;
-  buf[m++] = body.extent;
-  buf[m++] = body.rigid.mass;
-  for (double moment : body.rigid.inertia) buf[m++] = moment;
-  std::memcpy(buf + m, &state, sizeof(BodyState));
-  return BODY_SIZE;
-}
-
-int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState &state)
-{
-  int m = 0;
-  body.id = (tagint) ubuf(buf[m++]).i;
-  body.natoms = (tagint) ubuf(buf[m++]).i;
-  body.from_file = (int) ubuf(buf[m++]).i;
-  body.extent = buf[m++];
-  body.rigid.mass = buf[m++];
-  for (double &moment : body.rigid.inertia) moment = buf[m++];
-  std::memcpy(&state, buf + m, sizeof(BodyState));
-  return BODY_SIZE;
-}
-
-int GearQuatBodies::packed_size(int i) const
-{
-  if (body_id[i] == 0) return 1;
-  return owned[i] < 0 ? SITE_SIZE : max_exchange();
-}
-
-int GearQuatBodies::max_exchange() const
-{
-  return SITE_SIZE + BODY_SIZE + scheme.size();
-}
-
-int GearQuatBodies::max_forward() const
-{
-  return 1 + BODY_SIZE;
-}
-
-/* ----------------------------------------------------------------------
-   ghost bodies: from owner atoms to their ghosts and back
-------------------------------------------------------------------------- */
-
-int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
-{
-  int m = 0;
-  for (int i = 0; i < n; ++i) {
-    const int ibody = owned[list[i]];
-    if (forward == Forward::GHOSTS) {
-      buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
-      if (ibody >= 0) m += pack_body(body[ibody], state[ibody], buf + m);
-    } else if (ibody >= 0 && forward == Forward::STATES) {
-      std::memcpy(buf + m, &state[ibody], sizeof(BodyState));
-      m += STATE_SIZE;
-    } else if (ibody >= 0) {
-      std::memcpy(buf + m, &load[ibody], sizeof(Load));
-      m += LOAD_SIZE;
-    }
-  }
-  return m;
-}
-
-void GearQuatBodies::unpack_forward(int n, int first, const double *buf)
-{
-  int m = 0;
-  for (int i = first; i < first + n; ++i) {
-    if (forward == Forward::GHOSTS) {
-      if (ubuf(buf[m++]).i == 0) continue;
-      owned[i] = (int) body.size();
-      body.emplace_back();
-      state.emplace_back();
-      m += unpack_body(buf + m, body.back(), state.back());
-    } else if (owned[i] >= 0 && forward == Forward::STATES) {
-      std::memcpy(&state[owned[i]], buf + m, sizeof(BodyState));
-      m += STATE_SIZE;
-    } else if (owned[i] >= 0) {
-      std::memcpy(&load[owned[i]], buf + m, sizeof(Load));
-      m += LOAD_SIZE;
-    }
-  }
-}
-
-int GearQuatBodies::pack_reverse(int n, int first, double *buf)
-{
-  int m = 0;
-  for (int i = first; i < first + n; ++i) {
-    if (owned[i] < 0) continue;
-    std::memcpy(buf + m, &load[owned[i]], sizeof(Load));
-    m += LOAD_SIZE;
-  }
-  return m;
-}
-
-void GearQuatBodies::unpack_reverse(int n, const int *list, const double *buf)
-{
-  int m = 0;
-  for (int i = 0; i < n; ++i) {
-    const int ibody = owned[list[i]];
-    if (ibody < 0) continue;
-    for (int k = 0; k < 3; ++k) load[ibody].force[k] += buf[m++];
-    for (int k = 0; k < 3; ++k) load[ibody].torque_space[k] += buf[m++];
-  }
 }
 
 double GearQuatBodies::memory_usage() const

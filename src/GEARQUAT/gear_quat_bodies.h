@@ -19,6 +19,7 @@
 #define LMP_GEAR_QUAT_BODIES_H
 
 #include "gear_quat_assembly.h"
+#include "gear_quat_census.h"
 #include "gear_quat_integrator.h"
 
 namespace LAMMPS_NS {
@@ -90,25 +91,30 @@ class GearQuatBodies : protected Pointers {
   Fix *fix;
   GearQuat::Scheme scheme;
 
-  int nown;                            ///< owned bodies
-  std::vector<double> rows;            ///< histories of owned bodies
-  std::vector<int> owner_atom;         ///< local index of the owner atom of an owned body
+  int nown;                       ///< owned bodies
+  std::vector<double> rows;       ///< histories of owned bodies
+  std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
 
-  struct Frame {                       ///< what placing a site needs, derived from the state
-    double axes[9];                    ///< rotation matrix space -> body
+  struct Frame {       ///< what placing a site needs, derived from the state
+    double axes[9];    ///< rotation matrix space -> body
     double omega_space[3];
   };
-  std::vector<Frame> frame;            ///< owned and ghost bodies
+  std::vector<Frame> frame;    ///< owned and ghost bodies
 
   int nmax;
-  tagint *body_id;        ///< per atom: the user's ID of its body, 0 for none
-  tagint *owner_tag;      ///< per atom: atom ID of the owner of its body
-  int *owned;             ///< per atom, ghosts too: the body it owns, or -1
-  double **site_body;     ///< per atom: from the centre of mass, principal frame
-  int *atom2body;         ///< per atom: its body among owned and ghost bodies, or -1
+  tagint *body_id;       ///< per atom: the user's ID of its body, 0 for none
+  tagint *owner_tag;     ///< per atom: atom ID of the owner of its body
+  int *owned;            ///< per atom, ghosts too: the body it owns, or -1
+  double **site_body;    ///< per atom: from the centre of mass, principal frame
+  int *atom2body;        ///< per atom: its body among owned and ghost bodies, or -1
+
+  static constexpr int SITE_SIZE = 6;    ///< packed: IDs of body and owner, arm, size of history
+  static constexpr int STATE_SIZE = sizeof(GearQuat::BodyState) / sizeof(double);
+  static constexpr int LOAD_SIZE = sizeof(GearQuat::Load) / sizeof(double);
+  static constexpr int BODY_SIZE = 8 + STATE_SIZE;
 
   enum class Forward { GHOSTS, STATES, LOADS };
-  Forward forward;        ///< what forward communication carries
+  Forward forward;    ///< what forward communication carries
 
   void drop_ghosts();
   int add_owned(int atom);
@@ -117,16 +123,7 @@ class GearQuatBodies : protected Pointers {
   void site_offset(int atom, double *arm_space, double *wrap) const;
   double atom_mass(int atom) const;
 
-  struct SiteCount;       ///< a site on its way to the rank that counts its body
-  struct Census {
-    bigint removed_freedoms = 0;
-    tagint broken = 0;          ///< a body that has lost atoms, 0 for none
-    tagint left = 0, had = 0;   ///< its atoms now and before
-    int mass_changed = 0;
-    int dimension = 3;
-  };
-  Census census(int groupbit);
-  static int count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *result);
+  GearQuatCensus census(int groupbit) const;
 
   static int pack_body(const GearQuatBody &body, const GearQuat::BodyState &state, double *buf);
   static int unpack_body(const double *buf, GearQuatBody &body, GearQuat::BodyState &state);

@@ -29,7 +29,8 @@ static constexpr double CONVERGED = 1.0e-14;
 
 GearQuatBootstrap::GearQuatBootstrap(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
                                      const Scheme &scheme, double h) :
-    Pointers(lmp), fix(fix), bodies(bodies), scheme(scheme), h(h)
+    Pointers(lmp),
+    fix(fix), bodies(bodies), scheme(scheme), h(h)
 {
 }
 
@@ -109,9 +110,9 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing, std::s
 {
   work.resize(bodies.nowned());
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    collocation.begin(local_series(bodies.body[ibody].rigid, bodies.state[ibody],
-                                   bodies.load[ibody], spacing),
-                      work[ibody]);
+    collocation.begin(
+        local_series(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody], spacing),
+        work[ibody]);
 
   double change = 0.0;
   for (int n = 0; n < MAX_SWEEPS; ++n) {
@@ -149,9 +150,9 @@ bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, double &ch
     for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
       const GearQuatBody &body = bodies.body[ibody];
       const double length = body.extent > 0.0 ? body.extent : neighbor->skin;
-      here = std::max(here, collocation.set_load(node, body.rigid, bodies.state[ibody],
-                                                 bodies.load[ibody], spacing, length,
-                                                 work[ibody]));
+      here = std::max(here,
+                      collocation.set_load(node, body.rigid, bodies.state[ibody],
+                                           bodies.load[ibody], spacing, length, work[ibody]));
     }
   }
   MPI_Allreduce(&here, &change, 1, MPI_DOUBLE, MPI_MAX, world);

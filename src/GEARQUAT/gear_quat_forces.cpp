@@ -31,14 +31,17 @@ static const char *const UNFOLLOWED_PAIRS[] = {"dpd", "sdpd", "gran", "brownian"
 // fixes whose post_force() is a function of positions, velocities and perhaps time
 
 static const char *const FOLLOWED_FIXES[] = {
-    "^addforce", "^efield",   "^enforce2d", "^freeze$",       "^gravity",  "^indent$",
-    "^lineforce", "^planeforce", "^setforce", "^spring$", "^spring/self", "^viscous$",
-    "^wall/harmonic", "^wall/lj", "^wall/morse", "^wall/colloid", "^wall/region$", "^wall/table"};
+    "^addforce",     "^efield",       "^enforce2d",     "^freeze$",  "^gravity",
+    "^indent$",      "^lineforce",    "^planeforce",    "^setforce", "^spring$",
+    "^spring/self",  "^viscous$",     "^wall/harmonic", "^wall/lj",  "^wall/morse",
+    "^wall/colloid", "^wall/region$", "^wall/table"};
 
 static bool followed(const Fix *fix)
 {
   return std::any_of(std::begin(FOLLOWED_FIXES), std::end(FOLLOWED_FIXES),
-                     [fix](const char *style) { return utils::strmatch(fix->style, style); });
+                     [fix](const char *style) {
+                       return utils::strmatch(fix->style, style);
+                     });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -56,14 +59,15 @@ void GearQuatForces::look_at_styles()
   if (!force->pair) return;
   for (const auto *style : UNFOLLOWED_PAIRS)
     if (force->pair_match(style, 0, 1))
-      why = std::string("pair style ") + force->pair_style + " draws random numbers or keeps a "
-                                                             "history of contacts";
+      why = std::string("pair style ") + force->pair_style +
+          " draws random numbers or keeps a "
+          "history of contacts";
 }
 
 void GearQuatForces::look_at_fixes(const Fix *owner)
 {
-  const int during_force = FixConst::PRE_FORCE | FixConst::PRE_REVERSE | FixConst::POST_FORCE |
-      FixConst::POST_INTEGRATE;
+  const int during_force =
+      FixConst::PRE_FORCE | FixConst::PRE_REVERSE | FixConst::POST_FORCE | FixConst::POST_INTEGRATE;
   for (auto *fix : modify->get_fix_list()) {
     if (fix == owner) continue;
     const int mask = modify->get_fix_mask(fix);

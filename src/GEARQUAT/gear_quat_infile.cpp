@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <vector>
 
@@ -31,7 +32,7 @@ struct Fault {
 double number(const std::string &word, const std::string &where)
 {
   if (!utils::is_double(word)) throw Fault{where + ": '" + word + "' is not a number"};
-  const double value = std::stod(word);
+  const double value = std::strtod(word.c_str(), nullptr);
   if (!std::isfinite(value)) throw Fault{where + ": '" + word + "' is not a finite number"};
   return value;
 }
@@ -49,12 +50,17 @@ Line parse_line(const std::vector<std::string> &words, const std::string &where)
       throw Fault{where + ": '" + words[i] + "' is not an integer (body ID and image flags are)"};
     line[i] = number(words[i], where);
   }
-  if (line[0] < 1.0) throw Fault{where + ": body ID " + words[0] + " is not positive"};
-  if (line[1] <= 0.0) throw Fault{where + ": mass " + words[1] + " of body " + words[0] +
-                                  " is not positive"};
+  if (line[0] < 1.0 || line[0] > MAXTAGINT)
+    throw Fault{where + ": body ID " + words[0] + " is not positive or too large"};
+  for (int i = COLUMNS - 3; i < COLUMNS; ++i)
+    if (std::fabs(line[i]) >= IMGMAX)
+      throw Fault{where + ": image flag " + words[i] + " is too large"};
+  if (line[1] <= 0.0)
+    throw Fault{where + ": mass " + words[1] + " of body " + words[0] + " is not positive"};
   for (int i = 5; i < 8; ++i)
-    if (line[i] < 0.0) throw Fault{where + ": body " + words[0] +
-                                   " has a negative diagonal moment of inertia " + words[i]};
+    if (line[i] < 0.0)
+      throw Fault{where + ": body " + words[0] + " has a negative diagonal moment of inertia " +
+                  words[i]};
   return line;
 }
 
@@ -81,12 +87,15 @@ std::vector<Line> parse_file(const std::string &filename)
     }
     lines.push_back(parse_line(words, where));
     const double id = lines.back()[0];
-    if (seen.count(id)) throw Fault{where + ": body " + words[0] + " was given on line " +
-                                    std::to_string(seen[id]) + " already"};
+    if (seen.count(id))
+      throw Fault{where + ": body " + words[0] + " was given on line " + std::to_string(seen[id]) +
+                  " already"};
     seen[id] = n;
   }
-  if (!counted) throw Fault{"file " + filename + " is empty: its first line must be the number "
-                                "of bodies"};
+  if (!counted)
+    throw Fault{"file " + filename +
+                " is empty: its first line must be the number "
+                "of bodies"};
   if (expected != (long) lines.size())
     throw Fault{"file " + filename + " announces " + std::to_string(expected) + " bodies and has " +
                 std::to_string(lines.size())};

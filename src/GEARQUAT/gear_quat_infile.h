@@ -23,8 +23,8 @@ class LAMMPS;
 
 struct GivenBody {
   double mass;
-  double center[3];                   ///< wrapped, as in the file
-  double inertia[6];                  ///< ixx iyy izz ixy ixz iyz, space frame
+  double center[3];     ///< wrapped, as in the file
+  double inertia[6];    ///< ixx iyy izz ixy ixz iyz, space frame
   double velocity[3];
   double angular_momentum_space[3];
   int image[3];

@@ -46,7 +46,7 @@ struct Scheme {
   static constexpr int POSITION = 0;
   static constexpr int MOMENTUM = 3;    ///< first only
   int quaternion() const { return first() ? 6 : 3; }
-  static constexpr int OMEGA = 10;      ///< first only
+  static constexpr int OMEGA = 10;    ///< first only
 
   /// What q is divided by where a unit quaternion is meant: unprojected, the paper's formulas are
   /// taken as they stand, and a body is only as rigid as |q| = 1 holds.
@@ -77,10 +77,7 @@ class Integrator {
     corrector_coefficients(scheme, c);
   }
 
-  void predict(double *rows) const
-  {
-    nordsieck_predict(rows, scheme.values(), scheme.width());
-  }
+  void predict(double *rows) const { nordsieck_predict(rows, scheme.values(), scheme.width()); }
 
   /// Pose and velocities a history stands for, before or after the correction.
   BodyState body_state(const RigidBody &body, const double *rows) const

@@ -70,8 +70,7 @@ inline void quaternion_acceleration(const double *q, const double *qdot,
 
 /// omega_body = 2 W(q)^T qdot / norm2, the inverse of Eq. 5.
 /// norm2: |q|^2, or 1 where the paper's formulas are wanted as they stand.
-inline void angular_velocity(const double *q, double norm2, const double *qdot,
-                             double *omega_body)
+inline void angular_velocity(const double *q, double norm2, const double *qdot, double *omega_body)
 {
   w_transposed_times(q, qdot, omega_body);
   const double factor = 2.0 / norm2;

@@ -32,10 +32,10 @@ struct RigidBody {
 
 /// Where a body is and how it moves: the 13 numbers that place and move its sites.
 struct BodyState {
-  double center[3];         ///< centre of mass, unwrapped
-  double q[4];              ///< orientation, scalar part last
-  double velocity[3];       ///< of the centre of mass
-  double omega_body[3];     ///< angular velocity along the principal axes
+  double center[3];        ///< centre of mass, unwrapped
+  double q[4];             ///< orientation, scalar part last
+  double velocity[3];      ///< of the centre of mass
+  double omega_body[3];    ///< angular velocity along the principal axes
 };
 
 /// Total force and torque about the centre of mass, in mass * length / time^2 (* length).

@@ -86,8 +86,7 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
     for (int k = 0; k <= j; ++k) {
       double product[3];
       w_transposed_times(series.c[k] + 3, series.c[j + 1 - k] + 3, product);
-      for (int i = 0; i < 3; ++i)
-        row[Scheme::OMEGA + i] += power * 2.0 * (j + 1 - k) * product[i];
+      for (int i = 0; i < 3; ++i) row[Scheme::OMEGA + i] += power * 2.0 * (j + 1 - k) * product[i];
     }
   }
 }

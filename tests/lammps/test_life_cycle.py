@@ -174,10 +174,28 @@ run 5
     assert result.thermo[1]["KinEng"] == pytest.approx(result.thermo[0]["KinEng"], rel=1e-9)
 
 
-def test_velocities_given_after_the_fix_count(lmp_tree):
+@pytest.mark.parametrize("reinit", ["yes", "no"])
+def test_velocities_given_after_the_fix_count(lmp_tree, reinit):
+    """Before the first run reinit does not matter, as with fix rigid."""
     thermo = "thermo_style custom step ke f_move[1]\nthermo_modify norm no"
-    result = lmp_tree.run(two_molecules(after=f"{thermo}\nvelocity all set 0.5 0 0\nrun 1"))
+    after = f"{thermo}\nvelocity all set 0.5 0 0\nrun 1"
+    result = lmp_tree.run(two_molecules(f"molecule reinit {reinit}", after=after))
     assert result.thermo[0]["f_move[1]"] == pytest.approx([0.75, 0.75])
+
+
+def test_a_body_may_be_removed_as_a_whole(lmp_tree):
+    after = """
+thermo_style custom step f_move[1] f_move[2]
+thermo_modify norm no format float %.17g
+run 5
+group first molecule 1
+delete_atoms group first compress no
+run 5
+"""
+    for ranks in (1, 2):
+        result = lmp_tree.run(two_molecules(after=after), ranks=ranks)
+        assert result.returncode == 0, result.output
+        assert 0.0 < result.thermo[1]["f_move[2]"][0] < result.thermo[0]["f_move[2]"][-1]
 
 
 def test_unfix_and_back(case1):

@@ -1,0 +1,157 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The body store as streams of doubles: between ranks, to ghosts and back, and in restart files. */
+
+#include "gear_quat_bodies.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ----------------------------------------------------------------------
+   one atom, with its body if it owns one, as doubles: exchange between ranks and restart files
+------------------------------------------------------------------------- */
+
+int GearQuatBodies::pack_exchange(int i, double *buf)
+{
+  int m = 0;
+  buf[m++] = ubuf(body_id[i]).d;
+  if (body_id[i] == 0) return m;
+  buf[m++] = ubuf(owner_tag[i]).d;
+  for (int k = 0; k < 3; ++k) buf[m++] = site_body[i][k];
+  const int ibody = owned[i];
+  buf[m++] = ubuf(ibody < 0 ? 0 : scheme.size()).d;
+  if (ibody < 0) return m;
+  m += pack_body(body[ibody], state[ibody], buf + m);
+  std::copy_n(history(ibody), scheme.size(), buf + m);
+  return m + scheme.size();
+}
+
+/// A history of another scheme, met in a restart file, is passed over.
+int GearQuatBodies::unpack_exchange(int i, const double *buf)
+{
+  int m = 0;
+  set_arrays(i);
+  body_id[i] = (tagint) ubuf(buf[m++]).i;
+  if (body_id[i] == 0) return m;
+  owner_tag[i] = (tagint) ubuf(buf[m++]).i;
+  for (int k = 0; k < 3; ++k) site_body[i][k] = buf[m++];
+  const int size = (int) ubuf(buf[m++]).i;
+  if (size == 0) return m;
+  const int ibody = add_owned(i);
+  m += unpack_body(buf + m, body[ibody], state[ibody]);
+  if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
+  return m + size;
+}
+
+int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, double *buf)
+{
+  int m = 0;
+  buf[m++] = ubuf(body.id).d;
+  buf[m++] = ubuf(body.natoms).d;
+  buf[m++] = ubuf(body.from_file).d;
+  buf[m++] = body.extent;
+  buf[m++] = body.rigid.mass;
+  for (double moment : body.rigid.inertia) buf[m++] = moment;
+  std::memcpy(buf + m, &state, sizeof(BodyState));
+  return BODY_SIZE;
+}
+
+int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState &state)
+{
+  int m = 0;
+  body.id = (tagint) ubuf(buf[m++]).i;
+  body.natoms = (tagint) ubuf(buf[m++]).i;
+  body.from_file = (int) ubuf(buf[m++]).i;
+  body.extent = buf[m++];
+  body.rigid.mass = buf[m++];
+  for (double &moment : body.rigid.inertia) moment = buf[m++];
+  std::memcpy(&state, buf + m, sizeof(BodyState));
+  return BODY_SIZE;
+}
+
+int GearQuatBodies::packed_size(int i) const
+{
+  if (body_id[i] == 0) return 1;
+  return owned[i] < 0 ? SITE_SIZE : max_exchange();
+}
+
+int GearQuatBodies::max_exchange() const
+{
+  return SITE_SIZE + BODY_SIZE + scheme.size();
+}
+
+int GearQuatBodies::max_forward() const
+{
+  return 1 + BODY_SIZE;
+}
+
+/* ----------------------------------------------------------------------
+   ghost bodies: from owner atoms to their ghosts and back
+------------------------------------------------------------------------- */
+
+int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
+{
+  int m = 0;
+  for (int i = 0; i < n; ++i) {
+    const int ibody = owned[list[i]];
+    if (forward == Forward::GHOSTS) {
+      buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
+      if (ibody >= 0) m += pack_body(body[ibody], state[ibody], buf + m);
+    } else if (ibody >= 0 && forward == Forward::STATES) {
+      std::memcpy(buf + m, &state[ibody], sizeof(BodyState));
+      m += STATE_SIZE;
+    } else if (ibody >= 0) {
+      std::memcpy(buf + m, &load[ibody], sizeof(Load));
+      m += LOAD_SIZE;
+    }
+  }
+  return m;
+}
+
+void GearQuatBodies::unpack_forward(int n, int first, const double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; ++i) {
+    if (forward == Forward::GHOSTS) {
+      if (ubuf(buf[m++]).i == 0) continue;
+      owned[i] = (int) body.size();
+      body.emplace_back();
+      state.emplace_back();
+      m += unpack_body(buf + m, body.back(), state.back());
+    } else if (owned[i] >= 0 && forward == Forward::STATES) {
+      std::memcpy(&state[owned[i]], buf + m, sizeof(BodyState));
+      m += STATE_SIZE;
+    } else if (owned[i] >= 0) {
+      std::memcpy(&load[owned[i]], buf + m, sizeof(Load));
+      m += LOAD_SIZE;
+    }
+  }
+}
+
+int GearQuatBodies::pack_reverse(int n, int first, double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; ++i) {
+    if (owned[i] < 0) continue;
+    std::memcpy(buf + m, &load[owned[i]], sizeof(Load));
+    m += LOAD_SIZE;
+  }
+  return m;
+}
+
+void GearQuatBodies::unpack_reverse(int n, const int *list, const double *buf)
+{
+  int m = 0;
+  for (int i = 0; i < n; ++i) {
+    const int ibody = owned[list[i]];
+    if (ibody < 0) continue;
+    for (int k = 0; k < 3; ++k) load[ibody].force[k] += buf[m++];
+    for (int k = 0; k < 3; ++k) load[ibody].torque_space[k] += buf[m++];
+  }
+}

@@ -1,0 +1,49 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Census: the sites of every body meet on one rank (a rendezvous keyed by the owner's atom ID) and
+   are counted.  Needs no ghost atoms, so it can be taken at any time; once per run, not per step. */
+
+#ifndef LMP_GEAR_QUAT_CENSUS_H
+#define LMP_GEAR_QUAT_CENSUS_H
+
+#include "lmptype.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class LAMMPS;
+
+/// One atom of a body.
+struct GearQuatSiteCount {
+  tagint owner, id;    ///< atom ID of the body's owner, the user's ID of the body
+  tagint natoms;       ///< of the body, 0 unless this atom is its owner
+  int freedoms;        ///< of the body, translation and rotation; 0 unless this atom is its owner
+  int in_group;        ///< 1 if the atom is in the group that is asked about
+  double mass;
+  double body_mass;    ///< 0 unless this atom is the owner and masses have to add up to it
+};
+
+/// The same on all ranks.
+struct GearQuatCensus {
+  bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
+  tagint broken = 0;              ///< a body that has lost atoms, 0 for none
+  tagint left = 0, had = 0;       ///< its atoms now and before
+  int mass_changed = 0;           ///< 1 if a body's mass is not the sum of its atoms' any more
+
+  /// Collective; sites: those of this rank's atoms.
+  GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &sites);
+
+ private:
+  int dimension;
+
+  static int count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *census);
+  void count_body(const GearQuatSiteCount *sites, int n);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
