@@ -2,13 +2,13 @@
 
 A verdict is never typed: each claim has a rule, printed with it, and the numbers decide.
 
-reproduced        the paper's statement holds in a run made as the paper made it (zero start, nothing
-                  projected), with at least one of the two bodies
+reproduced        the paper's statement holds in a run made as the paper made it (zero start,
+                  nothing projected), with at least one of the two bodies
 explained         it does not, but what was measured shows where it comes from
 not reproducible  neither
 
-The charges of the cage are reconstructed, and the paper does not say which of the two bodies it ran;
-so every claim is judged for both.
+The charges of the cage are reconstructed, and the paper does not say which of the two bodies it
+ran; so every claim is judged for both.
 """
 
 import math
@@ -146,7 +146,8 @@ def late_drift(results):
         near.append(sign > 0 and abs(onset - 4000) <= TIME_TOLERANCE * 4000)
         direction = {1: "up", -1: "down", 0: "no drift"}[sign]
         final = dv.energy_error(results.get(2, row, "first"))[-1]
-        found.append(f"{body_of(row)} {direction}, from t = {show_time(onset)}, {final:+.2g} at end")
+        when = f"from t = {show_time(onset)}, {final:+.2g} at end"
+        found.append(f"{body_of(row)} {direction}, {when}")
     verdict = REPRODUCED if any(near) else EXPLAINED if any(upwards) else NOT
     why = {
         REPRODUCED: "",
@@ -280,7 +281,7 @@ def similar_curve(results):
     )
 
 
-# --- where the body goes ----------------------------------------------------------------------------
+# --- where the body goes ------------------------------------------------------------------------
 def bounded(results):
     """Energy below zero: the body orbits one of the fixed spheres."""
     found, holds = [], []
@@ -418,7 +419,11 @@ def all_claims(results):
         no_late_drift(results),
         parting(results, 2, "Fig. 7, Table 7", "they coincide until t = 250 to 300", 250, 300),
         step_independent(
-            results, 1, lambda row, f: results.get(2, row, f), 250, "test case 2, against step 0.125"
+            results,
+            1,
+            lambda row, f: results.get(2, row, f),
+            250,
+            "test case 2, against step 0.125",
         ),
         similar_curve(results),
         translation_begins(results),

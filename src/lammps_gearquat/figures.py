@@ -1,7 +1,7 @@
-"""Draw the paper's Figures 2 to 13, and two of our own, from finished runs.  Nothing is computed here.
+"""Draw the paper's Figures 2 to 13, and two of our own, from finished runs.
 
-Each figure of the paper shows the consistent body left and the unrotated body right, both as the paper ran them
-(zero start, nothing projected).
+Nothing is computed here.  Each figure of the paper shows the consistent body left and the unrotated
+body right, both as the paper ran them (zero start, nothing projected).
 """
 
 import matplotlib
@@ -118,7 +118,7 @@ def draw_trajectory(path, results, case, formulation, title):
 
 
 def draw_parting(path, results):
-    """Distance between the two formulations for every start, one panel a case (not in the paper)."""
+    """Distance between the formulations for every start, one panel a case (not in the paper)."""
     figure, axes = plt.subplots(1, 3, figsize=(12, 4.2), sharey=True, layout="constrained")
     colours = ("#d55e00", "#e69f00", "#009e73", "#0072b2")
     for axis, (case, dt) in zip(axes, STEP.items()):
@@ -176,17 +176,17 @@ def _draw_cage(axis, results):
                 axis.plot(*np.transpose([one, other]), color="#dddddd", linewidth=0.6)
     for sign, colour in ((-1, "#0072b2"), (1, "#d55e00")):
         spheres = CAGE[CAGE_CHARGES == sign]
-        label = f"charge {sign:+d}"
+        label = "charge +1" if sign > 0 else "charge −1"
         axis.scatter(*spheres.T, s=40, color=colour, linewidths=0, depthshade=False, label=label)
     for case, colour, width in ((1, "#009e73", 0.4), (3, "#222222", 1.0)):
         path = results.get(case, ACCURATE, "second").centre
-        near = (abs(path) < 300).all(axis=1).cumprod().astype(bool)
+        near = (abs(path) < 230).all(axis=1).cumprod().astype(bool)
         axis.plot(*path[near].T, color=colour, linewidth=width, label=f"test case {case}")
-    axis.set(xlim=(-100, 300), ylim=(-200, 200), zlim=(-200, 200))
-    axis.set_box_aspect((1, 1, 1), zoom=1.75)
+    axis.set(xlim=(-110, 230), ylim=(-110, 110), zlim=(-110, 110))
+    axis.set_box_aspect((3.4, 2.2, 2.2), zoom=1.1)
     axis.set_axis_off()
     axis.view_init(elev=20, azim=-70)
-    legend = axis.legend(fontsize=8, loc="lower center", ncols=2, bbox_to_anchor=(0.5, -0.02))
+    legend = axis.legend(fontsize=8, loc="lower center", ncols=2, bbox_to_anchor=(0.5, -0.08))
     for line in legend.get_lines():
         line.set_linewidth(2.0)
 

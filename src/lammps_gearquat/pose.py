@@ -1,12 +1,12 @@
 """Poses of rigid bodies, recovered from a LAMMPS dump that MDAnalysis reads.
 
-The dump needs the columns ``id mol mass x y z`` (and ``vx vy vz`` for kinetic energies), written with
-``dump_modify ... format float %.17g``.  MDAnalysis keeps positions in single precision; the same
-columns are therefore read a second time as additional columns, which it keeps in double precision.
+The dump needs the columns ``id mol mass x y z`` (and ``vx vy vz`` for kinetic energies), written
+with ``dump_modify ... format float %.17g``.  MDAnalysis keeps positions in single precision; the
+same columns are therefore read a second time as additional columns, kept in double precision.
 
 A pose is the rigid motion that carries a reference shape onto the dumped sites with the least
-mass-weighted squares (Kabsch's superposition by singular value decomposition: W. Kabsch, Acta Cryst.
-A32, 922 (1976)).  Frames: ``body`` is the frame of the reference shape, ``space`` that of the dump.
+mass-weighted squares (Kabsch's superposition by singular value decomposition: W. Kabsch, Acta
+Cryst. A32, 922 (1976)).  Frames: ``body`` is that of the reference shape, ``space`` the dump's.
 """
 
 from dataclasses import dataclass
@@ -34,8 +34,8 @@ class Sites:
 class Pose:
     """Where a body is and how far it is from rigid, in one frame.
 
-    ``centre`` (3,), centre of mass; ``rotation`` (3, 3), body -> space, determinant +1; ``residual``,
-    largest distance of a site from where the rigid reference would have it.
+    ``centre`` (3,), centre of mass; ``rotation`` (3, 3), body -> space, determinant +1;
+    ``residual``, largest distance of a site from where the rigid reference would have it.
     """
 
     centre: np.ndarray
@@ -100,8 +100,8 @@ def inertia_tensor(masses, arms):
 class Motion:
     """Velocity of a body as far as its sites move rigidly, and how far they do not.
 
-    ``velocity`` (3,); ``omega_space`` (3,); ``residual``, largest deviation of a site's velocity from
-    v + omega x r; ``translation`` and ``rotation``, kinetic energies.
+    ``velocity`` (3,); ``omega_space`` (3,); ``residual``, largest deviation of a site's velocity
+    from v + omega x r; ``translation`` and ``rotation``, kinetic energies.
     """
 
     velocity: np.ndarray

@@ -1,10 +1,11 @@
-"""Write and print the tables: claims with their verdicts, and Table 7 by threshold."""
+"""Write and print the tables: claims with their verdicts, Table 7 by threshold, accuracy."""
 
 import csv
 import textwrap
 
+from . import accuracy
 from . import divergence as dv
-from .cases import ACCURATE, ROWS, STEP
+from .cases import ACCURACY_END, ACCURACY_STEPS, ACCURATE, ROWS, STEP
 from .claims import THRESHOLDS, all_claims, parting_times, show_time
 
 PAPER_TIMES = {1: "1300", 2: "250-300", 3: "800"}
@@ -36,7 +37,7 @@ def _markdown_row(cells):
     return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
 
 
-def _markdown_table(header, rows):
+def markdown_table(header, rows):
     lines = [_markdown_row(header), "|" + "---|" * len(header)]
     return lines + [_markdown_row(row) for row in rows]
 
@@ -49,24 +50,69 @@ def table7_markdown(lines):
     header += [f"case {case}, step {dt:g}" for case, dt in STEP.items()]
     rows = [["paper (no threshold given)", *(PAPER_TIMES[case] for case in STEP)]]
     rows += [[label, *(by[label, case] for case in STEP)] for label in labels]
-    return _markdown_table(header, rows)
+    return markdown_table(header, rows)
+
+
+def accuracy_rows(results):
+    """Header and rows of errors and costs, one row a method."""
+    header = ["method"]
+    header += [f"position, t = {ACCURACY_END:g}, step {step:g}" for step in ACCURACY_STEPS]
+    header += [f"energy, t = 5000, step {step:g}" for step in accuracy.ENERGY_STEPS]
+    header += ["microseconds a step"]
+    position, energy = accuracy.position_errors(results), accuracy.energy_errors(results)
+    cost = accuracy.step_costs(results)
+    return header, [
+        (label, *position[label], *energy[label], cost[label]) for label in accuracy.METHODS
+    ]
+
+
+def accuracy_markdown(results):
+    """The same as Markdown lines: one table for positions, one for energies and cost."""
+    _, rows = accuracy_rows(results)
+    n = len(ACCURACY_STEPS)
+    shown = [(row[0], *(f"{value:.1e}" for value in row[1:-1]), f"{row[-1]:.2f}") for row in rows]
+    header = [f"error of the centre of mass at t = {ACCURACY_END:g}"]
+    header += [f"step {step:g}" for step in ACCURACY_STEPS]
+    lines = markdown_table(header, [row[: n + 1] for row in shown])
+    header = ["largest error of the total energy to t = 5000"]
+    header += [f"step {step:g}" for step in accuracy.ENERGY_STEPS] + ["µs a step"]
+    return lines + [""] + markdown_table(header, [(row[0], *row[n + 1 :]) for row in shown])
+
+
+CLAIM_HEADER = ("where", "the paper", "measured", "rule", "verdict", "why")
+
+
+def claim_rows(claims):
+    """The claims as rows below CLAIM_HEADER."""
+    return [(c.source, c.paper, c.measured, c.rule, c.verdict, c.why) for c in claims]
+
+
+def _write_csv(path, header, rows):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([header, *rows])
+
+
+def tables_markdown(claims, results):
+    """Claims, Table 7 and accuracy as Markdown lines, headings of the second level."""
+    text = [NOTE, "", *markdown_table(CLAIM_HEADER, claim_rows(claims))]
+    text += ["", "## Table 7: time at which the two formulations part", ""]
+    text += table7_markdown(table7(results))
+    text += ["", "## What accuracy costs", "", accuracy.__doc__.partition("\n\n")[2].strip(), ""]
+    return text + accuracy_markdown(results)
 
 
 def write_tables(folder, results):
-    """Leave ``table.md``, ``table.csv`` and ``table7.csv`` in ``folder``; return the claims."""
-    claims, times = all_claims(results), table7(results)
-    header = ("where", "the paper", "measured", "rule", "verdict", "why")
-    rows = [(c.source, c.paper, c.measured, c.rule, c.verdict, c.why) for c in claims]
-    with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([header, *rows])
-    with open(folder / "table7.csv", "w", newline="", encoding="utf-8") as file:
-        names = [f"apart by {threshold:g}" for threshold in THRESHOLDS]
-        table = [(label, case, dt, *found) for label, case, dt, found in times]
-        csv.writer(file).writerows([("row", "case", "step", *names), *table])
-    text = ["# The paper's claims and what was measured", "", NOTE, ""]
-    text += _markdown_table(header, rows)
-    text += ["", "## Table 7: time at which the two formulations part", ""]
-    text += table7_markdown(times)
+    """Leave ``table.md`` and the same as CSV in ``folder``; return the claims.
+
+    The CSV files are ``table.csv`` (claims), ``table7.csv`` and ``accuracy.csv``.
+    """
+    claims = all_claims(results)
+    _write_csv(folder / "table.csv", CLAIM_HEADER, claim_rows(claims))
+    names = [f"apart by {threshold:g}" for threshold in THRESHOLDS]
+    times = [(label, case, dt, *found) for label, case, dt, found in table7(results)]
+    _write_csv(folder / "table7.csv", ("row", "case", "step", *names), times)
+    _write_csv(folder / "accuracy.csv", *accuracy_rows(results))
+    text = ["# The paper's claims and what was measured", "", *tables_markdown(claims, results)]
     (folder / "table.md").write_text("\n".join(text) + "\n", encoding="utf-8")
     return claims
 

@@ -80,7 +80,8 @@ def read_log(path):
 
     log = LogFile(str(path))
     if log.errors or not log.runs:
-        raise ValueError(f"{path}: not a finished run: {' '.join(log.errors) or 'no thermo output'}")
+        fault = " ".join(log.errors) or "no thermo output"
+        raise ValueError(f"{path}: not a finished run: {fault}")
     return from_thermo(log.runs[-1])
 
 

@@ -1,4 +1,4 @@
-"""The manual says what the fix accepts, its examples run, its numbers are right; README's script."""
+"""The manual says what the fix accepts, its examples run, its numbers are right; README too."""
 
 import re
 from math import comb
