@@ -88,7 +88,7 @@ fingerprint() {
   (
     cd "$ROOT"
     .venv/bin/python -V
-    find CMakeLists.txt pyproject.toml README.md cmake src examples -type f \
+    find CMakeLists.txt pyproject.toml cmake src examples -type f \
       -not -path 'examples/results/*' -not -path '*/__pycache__/*' -not -name 'log.lammps' -not -name 'out.*' -print0 |
       LC_ALL=C sort -z | xargs -0 sha256sum
   ) | sha256sum | cut -d' ' -f1

@@ -19,6 +19,7 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
 #include "gear_quat_bootstrap.h"
+#include "gear_quat_checks.h"
 
 #include "atom.h"
 #include "citeme.h"
@@ -136,56 +137,8 @@ int FixGearQuat::setmask()
 
 void FixGearQuat::init()
 {
-  if (update->whichflag == 2)
-    error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
-  if (update->dt == 0.0 || !std::isfinite(update->dt))
-    error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}", update->dt);
-  if (domain->box_change_size || domain->box_change_shape)
-    error->all(FLERR, "Fix gear/quat requires a box that does not change size or shape");
-  refuse_respa_with_steps();
-  refuse_other_integrators();
+  refuse_scene(lmp, this, *bodies);
   follow_time_step();
-}
-
-/// One force evaluation a step: all levels of r-RESPA have to have the same step.
-void FixGearQuat::refuse_respa_with_steps()
-{
-  if (!utils::strmatch(update->integrate_style, "^respa")) return;
-  const auto *levels = (int *) lammps_extract_global(lmp, "respa_levels");
-  const auto *steps = (double *) lammps_extract_global(lmp, "respa_dt");
-  for (int level = 1; level < *levels; ++level)
-    if (steps[level] != steps[0])
-      error->all(FLERR,
-                 "Fix gear/quat requires run_style respa to have the same step at all levels "
-                 "(loop factors of 1); levels 1 and {} have {} and {}",
-                 level + 1, steps[0], steps[level]);
-}
-
-void FixGearQuat::refuse_other_integrators()
-{
-  for (auto *other : modify->get_fix_list()) {
-    if (other == this || !other->time_integrate) continue;
-    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other
-                                                                   : nullptr;
-    int dim;
-    const int *its_body =
-        utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
-        ? (int *) other->extract("body", dim)
-        : nullptr;
-    tagint shared = 0, any;
-    for (int i = 0; i < atom->nlocal; ++i) {
-      if (!bodies->in_body(i) || !(atom->mask[i] & other->groupbit)) continue;
-      if (same && !same->moves(i)) continue;
-      if (its_body && its_body[i] < 0) continue;
-      shared = atom->tag[i];
-    }
-    MPI_Allreduce(&shared, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-    if (any)
-      error->all(FLERR,
-                 "Fix gear/quat: atom {} is also moved by fix {} ({}); take it out of the "
-                 "group of one of the two",
-                 any, other->id, other->style);
-  }
 }
 
 bool FixGearQuat::moves(int i) const

@@ -79,8 +79,6 @@ class FixGearQuat : public Fix {
   void begin_step();
   void finish_step(double **);
   void tally_virial(double **);
-  void refuse_respa_with_steps();
-  void refuse_other_integrators();
 };
 
 }    // namespace LAMMPS_NS

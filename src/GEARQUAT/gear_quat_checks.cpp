@@ -1,0 +1,99 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_checks.h"
+
+#include "fix_gear_quat.h"
+#include "gear_quat_bodies.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "library.h"
+#include "modify.h"
+#include "update.h"
+#include "utils.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+/// Orientations, inertia and torques of the atoms themselves would silently be left out.
+static void refuse_finite_size(LAMMPS *lmp, const GearQuatBodies &bodies)
+{
+  const Atom *atom = lmp->atom;
+  tagint sized = 0, any;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!bodies.in_body(i)) continue;
+    const bool point = !(atom->radius && atom->radius[i] > 0.0) &&
+        !(atom->ellipsoid && atom->ellipsoid[i] >= 0) && !(atom->line && atom->line[i] >= 0) &&
+        !(atom->tri && atom->tri[i] >= 0) && !(atom->body && atom->body[i] >= 0) &&
+        !(atom->mu && atom->mu[i][3] > 0.0);
+    if (!point) sized = atom->tag[i];
+  }
+  MPI_Allreduce(&sized, &any, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
+  if (any)
+    lmp->error->all(FLERR,
+                    "Fix gear/quat: atom {} has a size, an orientation or a dipole of its own; the "
+                    "atoms of a body have to be points",
+                    any);
+}
+
+/// One force evaluation a step: all levels of r-RESPA have to have the same step.
+static void refuse_respa_with_steps(LAMMPS *lmp)
+{
+  if (!utils::strmatch(lmp->update->integrate_style, "^respa")) return;
+  const auto *levels = (int *) lammps_extract_global(lmp, "respa_levels");
+  const auto *steps = (double *) lammps_extract_global(lmp, "respa_dt");
+  for (int level = 1; level < *levels; ++level)
+    if (steps[level] != steps[0])
+      lmp->error->all(FLERR,
+                      "Fix gear/quat requires run_style respa to have the same step at all levels "
+                      "(loop factors of 1); levels 1 and {} have {} and {}",
+                      level + 1, steps[0], steps[level]);
+}
+
+static void refuse_other_integrators(LAMMPS *lmp, const FixGearQuat *fix,
+                                     const GearQuatBodies &bodies)
+{
+  for (auto *other : lmp->modify->get_fix_list()) {
+    if (other == fix || !other->time_integrate) continue;
+    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other
+                                                                   : nullptr;
+    int dim;
+    const int *its_body =
+        utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
+        ? (int *) other->extract("body", dim)
+        : nullptr;
+    const Atom *atom = lmp->atom;
+    tagint shared = 0, any;
+    for (int i = 0; i < atom->nlocal; ++i) {
+      if (!bodies.in_body(i) || !(atom->mask[i] & other->groupbit)) continue;
+      if (same && !same->moves(i)) continue;
+      if (its_body && its_body[i] < 0) continue;
+      shared = atom->tag[i];
+    }
+    MPI_Allreduce(&shared, &any, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
+    if (any)
+      lmp->error->all(FLERR,
+                      "Fix gear/quat: atom {} is also moved by fix {} ({}); take it out of the "
+                      "group of one of the two",
+                      any, other->id, other->style);
+  }
+}
+
+void LAMMPS_NS::refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatBodies &bodies)
+{
+  if (lmp->update->whichflag == 2)
+    lmp->error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
+  if (lmp->update->dt == 0.0 || !std::isfinite(lmp->update->dt))
+    lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}",
+                    lmp->update->dt);
+  if (lmp->domain->box_change_size || lmp->domain->box_change_shape)
+    lmp->error->all(FLERR, "Fix gear/quat requires a box that does not change size or shape");
+  refuse_finite_size(lmp, bodies);
+  refuse_respa_with_steps(lmp);
+  refuse_other_integrators(lmp, fix, bodies);
+}
