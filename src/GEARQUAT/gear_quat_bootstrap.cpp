@@ -121,6 +121,7 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing, std::s
       why = "sites would leave the neighbor skin, " + std::to_string(neighbor->skin);
       return false;
     }
+    if (!std::isfinite(change)) break;
     // rounding of the forces may keep a small change alive
     const bool settled = n > 1 && change < 1.0e-11 && change > 0.5 * before;
     if (change < CONVERGED || settled) {

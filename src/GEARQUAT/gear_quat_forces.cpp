@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 
@@ -146,7 +147,7 @@ double GearQuatForces::largest_displacement() const
   for (int i = 0; i < atom->nlocal; ++i) {
     double d2 = 0.0;
     for (int k = 0; k < 3; ++k) d2 += std::pow(atom->x[i][k] - x[3 * (size_t) i + k], 2);
-    largest = std::max(largest, d2);
+    largest = std::isfinite(d2) ? std::max(largest, d2) : std::numeric_limits<double>::infinity();
   }
   MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return std::sqrt(all);

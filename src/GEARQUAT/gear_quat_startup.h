@@ -24,6 +24,8 @@
 
 #include "gear_quat_integrator.h"
 
+#include <limits>
+
 namespace GearQuat {
 
 /// Taylor series of one body's x (columns 0-2) and q (columns 3-6) in units of a step.
@@ -156,8 +158,8 @@ class Collocation {
     return state;
   }
 
-  /// Take the load met at a node; returns the largest change of position (relative to
-  /// `length`) and of orientation that it would make over the span of the nodes.
+  /// Take the load met at a node; returns the largest change of position (relative to `length`) and
+  /// of orientation that it would make over the span of the nodes, infinite if it is no number.
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
                   double spacing, double length, Workspace &w) const
   {
@@ -168,6 +170,7 @@ class Collocation {
     for (int i = 0; i < 7; ++i) {
       const double second = 2.0 * series.c[2][i];
       const double difference = std::fabs(second - w.second[node][i]);
+      if (!std::isfinite(difference)) return std::numeric_limits<double>::infinity();
       change = std::max(change, i < 3 ? difference / length : difference);
       w.second[node][i] = second;
     }

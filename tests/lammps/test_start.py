@@ -184,5 +184,16 @@ def test_water_with_kspace(lmp_tree, ranks):
     assert np.abs(ends[1] - ends[2]).max() < np.abs(ends[0] - ends[2]).max() / 2**3
 
 
-def test_two_molecules_without_forces(lmp_tree):
-    assert lmp_tree.run(two_molecules(after="run 10")).returncode == 0
+@pytest.mark.parametrize("start", ["bootstrap", "zero"])
+def test_forces_that_are_no_numbers_do_not_pass_for_converged(lmp_tree, start):
+    """Two atoms in one place: the start steps back and says so, the run shows what it is."""
+    after = f"""
+set atom 4 x 1.0 y 0.0 z 0.0
+thermo_modify lost ignore
+run 1
+"""
+    deck = two_molecules(f"molecule start {start}", after=after).replace(
+        "pair_style zero 2.0\npair_coeff * *", "pair_style lj/cut 2.0\npair_coeff * * 1.0 1.0"
+    )
+    result = lmp_tree.run(deck)
+    assert (FALLBACK in result.stdout) == (start == "bootstrap"), result.output
