@@ -138,7 +138,9 @@ class Lammps:
             values = value if isinstance(value, (list, tuple)) else [value]
             command += ["-var", key, *map(str, values)]
 
-        surroundings = {key: value for key, value in os.environ.items() if key != "LAMMPS_PLUGIN_PATH"}
+        surroundings = {
+            key: value for key, value in os.environ.items() if key != "LAMMPS_PLUGIN_PATH"
+        }
         surroundings |= {"OMP_NUM_THREADS": "1", **self.environment, **(environment or {})}
         out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
         with out.open("w") as stdout, err.open("w") as stderr:
@@ -158,7 +160,9 @@ class Lammps:
                 _end_session(process.pid)
                 process.wait()
                 text = out.read_text(errors="replace") + err.read_text(errors="replace")
-                raise TimeoutError(f"{' '.join(command)}: still running after {timeout} s\n{text}") from None
+                raise TimeoutError(
+                    f"{' '.join(command)}: still running after {timeout} s\n{text}"
+                ) from None
             except BaseException:
                 _end_session(process.pid)
                 raise

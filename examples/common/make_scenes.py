@@ -170,9 +170,7 @@ def motion(start, body):
         tuple(v + w for v, w in zip(start.velocity, cross(omega_space, arm))) for arm in arms
     ]
     inertia = matmul(matmul(space_from_body, diagonal(moments)), transpose(space_from_body))
-    momentum = matvec(
-        space_from_body, tuple(i * w for i, w in zip(moments, start.omega_body))
-    )
+    momentum = matvec(space_from_body, tuple(i * w for i, w in zip(moments, start.omega_body)))
     return positions, velocities, inertia, momentum
 
 

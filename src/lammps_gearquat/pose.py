@@ -48,9 +48,7 @@ def read_bodies(path):
     from MDAnalysis.coordinates.LAMMPS import DumpReader
 
     with DumpReader(str(path), dt=1.0, additional_columns=[*COLUMNS, *VELOCITIES]) as reader:
-        frames = [
-            {name: np.array(value) for name, value in frame.data.items()} for frame in reader
-        ]
+        frames = [{name: np.array(value) for name, value in frame.data.items()} for frame in reader]
     missing = [name for name in COLUMNS if name not in frames[0]]
     if missing:
         raise ValueError(f"{path}: the dump lacks the column(s) {' '.join(missing)}")

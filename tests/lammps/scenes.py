@@ -69,15 +69,23 @@ dump_modify poses sort id format float %.17g
 UNITS = {
     "real": dict(length=1.0, mass=1.0, charge=1.0, energy=1.0, time=1.0),
     "metal": dict(length=1.0, mass=1.0, charge=1.0, energy=0.0433641, time=1.0e-3),
-    "si": dict(length=1.0e-10, mass=1.66053907e-27, charge=1.602176634e-19, energy=6.9477e-21, time=1e-15),
-    "cgs": dict(length=1.0e-8, mass=1.66053907e-24, charge=4.803204e-10, energy=6.9477e-14, time=1e-15),
+    "si": dict(
+        length=1.0e-10, mass=1.66053907e-27, charge=1.602176634e-19, energy=6.9477e-21, time=1e-15
+    ),
+    "cgs": dict(
+        length=1.0e-8, mass=1.66053907e-24, charge=4.803204e-10, energy=6.9477e-14, time=1e-15
+    ),
     "electron": dict(length=1.8897261, mass=1.0, charge=1.0, energy=1.5936e-3, time=1.0),
-    "micro": dict(length=1.0e-4, mass=1.66053907e-12, charge=1.602176634e-7, energy=6.9477e-12, time=1e-9),
+    "micro": dict(
+        length=1.0e-4, mass=1.66053907e-12, charge=1.602176634e-7, energy=6.9477e-12, time=1e-9
+    ),
     "nano": dict(length=0.1, mass=1.66053907e-6, charge=1.0, energy=6.9477, time=1e-6),
 }
 
 
-def water_data(path: Path, n: int = 3, units: str = "real", spacing: float = 3.3, tilt: float = 0.0) -> Path:
+def water_data(
+    path: Path, n: int = 3, units: str = "real", spacing: float = 3.3, tilt: float = 0.0
+) -> Path:
     """n^3 rigid SPC/E molecules near a lattice, turned and thrown at random, over all boundaries."""
     rng = np.random.default_rng(20251121)
     scale = UNITS[units]
@@ -109,7 +117,9 @@ def water_data(path: Path, n: int = 3, units: str = "real", spacing: float = 3.3
             x = x * scale["length"]
             atoms.append(
                 f"{tag} {tag // 3 + (tag % 3 > 0)} {1 + (k > 0)} {charge[k] * scale['charge']:.17g} "
-                + " ".join(f"{c:.17g}" for c in x) + " " + " ".join(map(str, image))
+                + " ".join(f"{c:.17g}" for c in x)
+                + " "
+                + " ".join(map(str, image))
             )
             velocities.append(f"{tag} " + " ".join(f"{c:.17g}" for c in v))
     lengths = box * scale["length"]
@@ -117,26 +127,56 @@ def water_data(path: Path, n: int = 3, units: str = "real", spacing: float = 3.3
     lines += [f"0 {length:.17g} {axis}lo {axis}hi" for axis, length in zip("xyz", lengths)]
     if tilt:
         lines.append(f"{tilt * scale['length']:.17g} 0 0 xy xz yz")
-    lines += ["", "Masses", "", f"1 {mass[0] * scale['mass']:.17g}", f"2 {mass[1] * scale['mass']:.17g}"]
+    lines += [
+        "",
+        "Masses",
+        "",
+        f"1 {mass[0] * scale['mass']:.17g}",
+        f"2 {mass[1] * scale['mass']:.17g}",
+    ]
     lines += ["", "Atoms # full", "", *atoms, "", "Velocities", "", *velocities, ""]
     path.write_text("\n".join(lines))
     return path
 
 
 def water(
-    data: Path, fix="gear/quat molecule", dt=0.1, steps=100, units="real", before="", after="",
-    thermo=None, run="run {steps}", dump="poses.dump", newton="on", processors="* * *", comm="brick",
+    data: Path,
+    fix="gear/quat molecule",
+    dt=0.1,
+    steps=100,
+    units="real",
+    before="",
+    after="",
+    thermo=None,
+    run="run {steps}",
+    dump="poses.dump",
+    newton="on",
+    processors="* * *",
+    comm="brick",
 ) -> str:
     """A deck; dt in fs whatever the units."""
     scale = UNITS[units]
     if fix.startswith("gear/quat"):
         after = "fix_modify move energy yes\n" + after
     return WATER.format(
-        units=units, data=data, fix=fix, before=before, after=after, steps=steps, dump=dump,
-        newton=newton, processors=processors, comm=comm,
-        thermo=thermo or steps, dt=f"{dt * scale['time']:.17g}",
-        inner=2.7 * scale["length"], outer=3.9 * scale["length"], skin=0.9 * scale["length"],
-        epsilon=0.1553 * scale["energy"], sigma=3.166 * scale["length"], run=run.format(steps=steps),
+        units=units,
+        data=data,
+        fix=fix,
+        before=before,
+        after=after,
+        steps=steps,
+        dump=dump,
+        newton=newton,
+        processors=processors,
+        comm=comm,
+        thermo=thermo or steps,
+        dt=f"{dt * scale['time']:.17g}",
+        inner=2.7 * scale["length"],
+        outer=3.9 * scale["length"],
+        skin=0.9 * scale["length"],
+        epsilon=0.1553 * scale["energy"],
+        sigma=3.166 * scale["length"],
+        run=run.format(steps=steps),
     )
 
 

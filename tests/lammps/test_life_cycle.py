@@ -58,6 +58,15 @@ def test_two_runs_are_one_run(case1):
     assert (end(whole) == end(without)).all()
 
 
+def test_the_comparisons_can_fail(case1):
+    """A step or a time that is 1 % off is seen by both comparisons used here."""
+    whole = end(case1.run("run 1000"))
+    for other in (case1.run("run 1000", dt=0.0202), case1.run("run 990")):
+        assert (end(other) != whole).all()
+        assert end(other) != pytest.approx(whole, rel=1e-12, abs=1e-12)
+        assert end(other) != pytest.approx(whole, abs=1e-7)
+
+
 def test_a_restart_is_the_same_run(case1):
     restart = case1.lmp.folder / "half.restart"
     whole = case1.run("run 2000")
@@ -88,7 +97,9 @@ def test_a_restart_written_before_the_first_step(case1):
     restart = case1.lmp.folder / "new.restart"
     whole = case1.run("run 1000")
     case1.run(f"run 0\nwrite_restart {restart}")
-    assert (end(case1.run("run 1000", scene=case1.restarted(), restart=restart)) == end(whole)).all()
+    assert (
+        end(case1.run("run 1000", scene=case1.restarted(), restart=restart)) == end(whole)
+    ).all()
 
 
 def test_a_restart_with_the_other_formulation_says_so(case1):
@@ -106,7 +117,13 @@ def test_restarts_of_water(lmp_tree):
     data = water_data(lmp_tree.folder / "data.water")
     for formulation in FORMULATIONS:
         fix = f"gear/quat molecule formulation {formulation}"
-        deck = water(data, fix, steps=400, dump="whole.dump", run="run 200\nwrite_restart half.restart\nrun 200")
+        deck = water(
+            data,
+            fix,
+            steps=400,
+            dump="whole.dump",
+            run="run 200\nwrite_restart half.restart\nrun 200",
+        )
         assert lmp_tree.run(deck, ranks=4).returncode == 0
         again = water("half.restart", fix, steps=400, dump="again.dump", run="run 200")
         again = again.replace("read_data", "read_restart").replace("atom_style", "#")
@@ -114,7 +131,9 @@ def test_restarts_of_water(lmp_tree):
         for ranks in (1, 2, 4):
             result = lmp_tree.run(again, ranks=ranks)
             assert result.returncode == 0, result.output
-            difference = last_frame(lmp_tree.folder / "whole.dump") - last_frame(lmp_tree.folder / "again.dump")
+            difference = last_frame(lmp_tree.folder / "whole.dump") - last_frame(
+                lmp_tree.folder / "again.dump"
+            )
             assert np.abs(difference).max() < 1e-12
 
 
@@ -127,7 +146,9 @@ def test_a_change_of_the_time_step(case1, factor):
     def error(result):
         return np.abs(end(result) - exact)[:3].max()
 
-    allowed = 2.0 * max(error(case1.run("run 2000")), error(case1.run(f"run {2 * steps}", dt=0.02 * factor)))
+    allowed = 2.0 * max(
+        error(case1.run("run 2000")), error(case1.run(f"run {2 * steps}", dt=0.02 * factor))
+    )
     assert error(case1.run(f"run 1000\ntimestep {0.02 * factor}\nrun {steps}")) < allowed + 1e-11
     assert error(case1.run(f"run 1000\ntimestep {0.0202 * factor}\nrun {steps}")) > allowed + 1e-11
 
@@ -154,7 +175,9 @@ run 5
     assert result.returncode == 0, result.output
     assert result.stdout.count("atoms were changed since the last run") == 3
     assert result.thermo[1]["f_move[1]"] == pytest.approx([0.75] * len(result.thermo[1]["Step"]))
-    assert result.thermo[1]["f_move[2]"] == pytest.approx([0.0] * len(result.thermo[1]["Step"]), abs=1e-20)
+    assert result.thermo[1]["f_move[2]"] == pytest.approx(
+        [0.0] * len(result.thermo[1]["Step"]), abs=1e-20
+    )
     assert result.thermo[3]["f_move[1]"][-1] == pytest.approx(4 * 0.75)
     for table in result.thermo:
         assert np.add(table["f_move[1]"], table["f_move[2]"]) == pytest.approx(table["KinEng"])

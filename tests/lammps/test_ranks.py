@@ -74,7 +74,9 @@ def test_triclinic_box(lmp_tree, ranks):
     first, _ = run(lmp_tree, "first", 1, data=tilted, fix=fix, steps=50)
     many, _ = run(lmp_tree, "many", ranks, data=tilted, fix=fix, steps=50)
     assert_same(first, many, 1e-12)
-    assert np.abs(one[:, 4:] - first[:, 4:]).max() > 1e-6  # another lattice: it is the tilt that is used
+    assert (
+        np.abs(one[:, 4:] - first[:, 4:]).max() > 1e-6
+    )  # another lattice: it is the tilt that is used
 
 
 def test_wheel_with_mpich(lmp_wheel):

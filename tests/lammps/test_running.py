@@ -47,9 +47,13 @@ def test_a_run_gives_its_thermo(lmp, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_an_error_is_found_with_its_text(lmp, ranks):
-    result = lmp.run(DECK.replace("pair_style zero", "pair_style nonsense"), {"steps": 1}, ranks=ranks)
+    result = lmp.run(
+        DECK.replace("pair_style zero", "pair_style nonsense"), {"steps": 1}, ranks=ranks
+    )
     assert result.returncode != 0, result.output
-    assert any("Unrecognized pair style 'nonsense'" in error for error in result.errors), result.output
+    assert any(
+        "Unrecognized pair style 'nonsense'" in error for error in result.errors
+    ), result.output
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -74,7 +74,9 @@ def test_csv_keeps_every_digit(tmp_path):
     rng = np.random.default_rng(1)
     values = series.from_table(rng.normal(size=(7, 10)))
     series.write_csv(tmp_path / "series.csv", values)
-    assert (series.to_table(series.read_csv(tmp_path / "series.csv")) == series.to_table(values)).all()
+    assert (
+        series.to_table(series.read_csv(tmp_path / "series.csv")) == series.to_table(values)
+    ).all()
 
 
 LOG = """LAMMPS (22 Jul 2025)

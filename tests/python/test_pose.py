@@ -57,9 +57,7 @@ def test_rigid_motion_finds_a_known_motion():
 @pytest.fixture(params=["first", "second", "rigid"])
 def dumped(request, run_case, tmp_path):
     """Thermo series and dumped body of the same steps of test case 1."""
-    found = run_case(
-        1, formulation=request.param, dt=0.01, steps=5000, every=1000, dump=1000
-    )
+    found = run_case(1, formulation=request.param, dt=0.01, steps=5000, every=1000, dump=1000)
     bodies = pose.read_bodies(tmp_path / "poses.dump")
     assert list(bodies) == [1]
     return found, bodies[1]

@@ -57,7 +57,9 @@ def test_initial_energy_refuses_another_cage(lmp_wheel, examples, tmp_path, char
         (tmp_path / name).symlink_to(examples / name)
     scene = (examples / "common" / "in.scene").read_text()
     text = (examples / "case1" / "in.case1").read_text()
-    scene = scene.replace("group body molecule 1", f"set atom 26 charge {charge}\ngroup body molecule 1")
+    scene = scene.replace(
+        "group body molecule 1", f"set atom 26 charge {charge}\ngroup body molecule 1"
+    )
     text = text.replace("include ../common/in.scene", scene)
     result = lmp_wheel.run(text, {"steps": 0, "formulation": "rigid"}, folder=examples / "case1")
     assert result.returncode == 0, result.output

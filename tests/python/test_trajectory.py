@@ -52,9 +52,7 @@ def test_order(run_case, formulation, steps, order):
 @pytest.mark.parametrize("formulation", LIMIT)
 def test_zero_start_is_of_first_order(run_case, formulation):
     steps = (0.01, 0.005, 0.0025)
-    found = [
-        errors(run_case, (200,), dt, formulation=formulation, start="zero")[0] for dt in steps
-    ]
+    found = [errors(run_case, (200,), dt, formulation=formulation, start="zero")[0] for dt in steps]
     assert error_order(steps, found) == pytest.approx(1.0, abs=0.2)
 
 
