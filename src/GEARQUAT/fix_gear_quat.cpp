@@ -291,17 +291,19 @@ void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
     start();
   }
   begin_step();
-  if (atom->nmax > nmax_sum) {
-    nmax_sum = atom->nmax;
-    memory->destroy(f_sum);
-    memory->create(f_sum, nmax_sum, 3, "gear/quat:f_sum");
-  }
-  std::fill_n(f_sum[0], 3 * (size_t) nmax_sum, 0.0);
 }
 
 void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 {
   const auto *levels = (int *) lammps_extract_global(lmp, "respa_levels");
+  if (ilevel == 0) {    // the first of a step; atoms were exchanged since it began
+    if (atom->nmax > nmax_sum) {
+      nmax_sum = atom->nmax;
+      memory->destroy(f_sum);
+      memory->create(f_sum, nmax_sum, 3, "gear/quat:f_sum");
+    }
+    std::fill_n(f_sum[0], 3 * (size_t) nmax_sum, 0.0);
+  }
   for (int i = 0; i < atom->nlocal; ++i)
     for (int k = 0; k < 3; ++k) f_sum[i][k] += atom->f[i][k];
   if (ilevel == *levels - 1) finish_step(f_sum);

@@ -50,7 +50,8 @@ class GearQuatAssembly : protected Pointers {
 
   GearQuatAssembly(LAMMPS *lmp, const GivenBodies &given) : Pointers(lmp), given(given) {}
 
-  /// Both are collective and return what belongs to this rank's atoms.  Massless bodies, and
+  /// Both are collective and return what belongs to this rank's atoms; two meetings, each of which
+  /// makes the bodies, so that not every site has to carry its whole body back.  Massless bodies, and
   /// bodies in the infile that no atom belongs to, end the run on all ranks.
   std::vector<PlacedSite> place_sites(std::vector<Site> &sites);
   std::vector<OwnedBody> make_bodies(std::vector<Site> &sites);

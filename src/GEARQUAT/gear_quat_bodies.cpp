@@ -202,7 +202,7 @@ void GearQuatBodies::update_ghosts(bool setup)
     comm->forward_comm(fix);
     load.resize(body.size());
   }
-  update_axes();
+  update_frames();
 
   tagint lost = 0;
   double extent = 0.0;
@@ -262,7 +262,7 @@ void GearQuatBodies::spread_states()
     forward = Forward::STATES;
     comm->forward_comm(fix, STATE_SIZE);
   }
-  update_axes();
+  update_frames();
 }
 
 void GearQuatBodies::spread_loads()
@@ -272,7 +272,7 @@ void GearQuatBodies::spread_loads()
   comm->forward_comm(fix, LOAD_SIZE);
 }
 
-void GearQuatBodies::update_axes()
+void GearQuatBodies::update_frames()
 {
   frame.resize(state.size());
   for (size_t ibody = 0; ibody < state.size(); ++ibody) {

@@ -40,7 +40,6 @@ class GearQuatBodies : protected Pointers {
   int nowned() const { return nown; }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
   bool in_body(int atom) const { return body_id[atom] != 0; }
-  tagint id_of(int atom) const { return body_id[atom]; }
 
   // life cycle, all collective
 
@@ -119,7 +118,7 @@ class GearQuatBodies : protected Pointers {
   void drop_ghosts();
   int add_owned(int atom);
   void remove_owned(int ibody);
-  void update_axes();
+  void update_frames();
   void site_offset(int atom, double *arm_space, double *wrap) const;
   double atom_mass(int atom) const;
 

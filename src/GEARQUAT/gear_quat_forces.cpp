@@ -27,7 +27,7 @@ using namespace LAMMPS_NS;
 
 // pair styles that draw random numbers or keep a history of contacts
 
-static const char *const UNFOLLOWED_PAIRS[] = {"dpd", "sdpd", "gran", "brownian", "^reax", "^bpm"};
+static const char *const UNFOLLOWED_PAIRS[] = {"dpd", "gran", "brownian", "^reax", "^bpm"};
 
 // fixes whose post_force() is a function of positions, velocities and perhaps time
 
