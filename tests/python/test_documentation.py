@@ -85,7 +85,7 @@ def test_what_the_start_follows_is_documented(name):
     table = section("Description").partition("in *start bootstrap*")[2]
     table = table.partition("Where something")[0]
     styles = strings(rf"{name}\[\]", FORCES)
-    assert len(styles) > 5
+    assert len(styles) >= 5  # the list was found
     for style in styles:
         assert re.search(rf"\*{style.strip('^$')}\b", table), style
     assert not re.search(r"\*nonsense\b", table)
