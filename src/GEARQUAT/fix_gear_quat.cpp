@@ -62,6 +62,26 @@ static const char cite_gear_quat[] =
     " pages = {306--314}\n"
     "}\n\n";
 
+// elements of the global vector, as the manual lists them
+
+enum {
+  KE_TRANSLATION,
+  KE_ROTATION,
+  NORM,
+  RADIAL,
+  MAX_POSITION,
+  RMS_POSITION,
+  MAX_ANGLE,
+  RMS_ANGLE
+};
+static constexpr int VECTOR_SIZE = RMS_ANGLE + 1;
+
+// where other fixes may read the velocities of predicted sites
+
+static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR |
+    PRE_FORCE | PRE_REVERSE | POST_FORCE | POST_INTEGRATE_RESPA | PRE_FORCE_RESPA |
+    POST_FORCE_RESPA;
+
 // |q|^2 of four squares carries this rounding itself; less is reported as zero
 
 static constexpr double NORM_ROUNDING = 1.0e-15;
@@ -70,17 +90,17 @@ static constexpr double NORM_ROUNDING = 1.0e-15;
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), started(false), met_atoms(false), h(0.0),
-    energy_here(0.0), f_sum(nullptr), nmax_sum(0)
+    integrator(nullptr), velocities_read(true), f_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
   time_integrate = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 3;
+  size_vector = VECTOR_SIZE;
   global_freq = 1;
   extscalar = 1;
   extvector = -1;
-  extlist = new int[size_vector]{1, 1, 0};
+  extlist = new int[VECTOR_SIZE]{1, 1, 0, 0, 0, 0, 0, 0};
   energy_global_flag = 1;
   virial_global_flag = virial_peratom_flag = 1;
   thermo_virial = 1;
@@ -117,6 +137,7 @@ FixGearQuat::~FixGearQuat()
   if (copymode) return;
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
+  delete integrator;
   delete args;
   delete bodies;
   delete[] extlist;
@@ -139,6 +160,9 @@ void FixGearQuat::init()
 {
   refuse_scene(lmp, this, *bodies);
   follow_time_step();
+  velocities_read = comm->ghost_velocity;
+  for (auto *other : modify->get_fix_list())
+    if (other != this && (modify->get_fix_mask(other) & WITHIN_STEP)) velocities_read = true;
 }
 
 bool FixGearQuat::moves(int i) const
@@ -150,11 +174,14 @@ bool FixGearQuat::moves(int i) const
 void FixGearQuat::follow_time_step()
 {
   const double step = update->dt;
-  if (step == h || step == 0.0 || !std::isfinite(step)) return;
+  if (step == 0.0 || !std::isfinite(step)) return;
+  if (integrator && step == h) return;
+  const double ratio = step / h;
+  delete integrator;
+  integrator = new Integrator(args->scheme, step);
   if (started)
     for (int ibody = 0; ibody < bodies->nowned(); ++ibody)
-      nordsieck_rescale(bodies->history(ibody), args->scheme.values(), args->scheme.width(),
-                        step / h);
+      if (ratio != 1.0) integrator->rescale(bodies->history(ibody), ratio);
   h = step;
 }
 
@@ -185,7 +212,7 @@ void FixGearQuat::setup(int vflag)
 {
   bodies->spread_states();
   bodies->place_velocities();
-  energy_here = 0.0;
+  for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
   v_init(vflag);
   if (evflag) {
     bodies->gather_loads(atom->f);
@@ -232,14 +259,13 @@ void FixGearQuat::start()
 
 void FixGearQuat::begin_step()
 {
-  const Integrator integrator(args->scheme, h);
   for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
     double *rows = bodies->history(ibody);
-    integrator.predict(rows);
-    bodies->state[ibody] = integrator.body_state(bodies->body[ibody].rigid, rows);
+    integrator->predict(rows);
+    bodies->state[ibody] = integrator->body_state(bodies->body[ibody].rigid, rows);
   }
   bodies->spread_states();
-  bodies->place_sites();
+  bodies->place_sites(velocities_read);
 }
 
 void FixGearQuat::finish_step(double **f)
@@ -247,32 +273,28 @@ void FixGearQuat::finish_step(double **f)
   bodies->gather_loads(f);
   if (evflag) tally_virial(f);
 
-  const Integrator integrator(args->scheme, h);
-  energy_here = 0.0;
   for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
     double *rows = bodies->history(ibody);
     const RigidBody &rigid = bodies->body[ibody].rigid;
-    const Load &load = bodies->load[ibody];
-    const Shift shift = integrator.correct(rigid, load, rows);
-    energy_here -= dot3(load.force, shift.center) + dot3(load.torque_space, shift.angle_space);
-    bodies->state[ibody] = integrator.body_state(rigid, rows);
+    bodies->last[ibody] = integrator->correct(rigid, bodies->load[ibody], rows);
+    bodies->state[ibody] = integrator->body_state(rigid, rows);
   }
   bodies->spread_states();
-  bodies->place_sites();
+  bodies->place_sites(true);
 }
 
 /// Virial of the constraint forces m a - f, at the pose where the forces were taken.
 void FixGearQuat::tally_virial(double **f)
 {
   bodies->spread_loads();
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!bodies->in_body(i)) continue;
+  for (const auto &site : bodies->sites) {
     double arm[3], constraint[3], virial_i[6];
-    bodies->constraint_force(i, f, arm, constraint);
+    bodies->constraint_force(site, f, arm, constraint);
     for (int k = 0; k < 3; ++k) virial_i[k] = arm[k] * constraint[k];
     virial_i[3] = arm[0] * constraint[1];
     virial_i[4] = arm[0] * constraint[2];
     virial_i[5] = arm[1] * constraint[2];
+    int i = site.atom;
     v_tally(1, &i, 1.0, virial_i);
   }
 }
@@ -317,10 +339,11 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 /// What rounding of the centres alone can make of the loads is not an energy: zero.
 double FixGearQuat::compute_scalar()
 {
-  double here[2] = {energy_here, 0.0}, all[2];
+  double here[2] = {0.0, 0.0}, all[2];
   for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
     const BodyState &s = bodies->state[ibody];
     const Load &l = bodies->load[ibody];
+    here[0] -= bodies->last[ibody].work;
     here[1] += std::sqrt(dot3(l.force, l.force) * dot3(s.center, s.center)) +
         std::sqrt(dot3(l.torque_space, l.torque_space));
   }
@@ -329,23 +352,47 @@ double FixGearQuat::compute_scalar()
   return std::fabs(all[0]) < rounding ? 0.0 : all[0] / force->ftm2v;
 }
 
-/// Translational and rotational kinetic energy, largest deviation of |q|^2 from 1.
+/// What a body adds to an element of the global vector, or offers for the largest.
+double FixGearQuat::of_body(int element, int ibody) const
+{
+  const RigidBody &rigid = bodies->body[ibody].rigid;
+  const BodyState &s = bodies->state[ibody];
+  const Correction &last = bodies->last[ibody];
+  switch (element) {
+    case KE_TRANSLATION:
+      return translational_energy(rigid, s.velocity);
+    case KE_ROTATION:
+      return rotational_energy(rigid, s.omega_body);
+    case NORM:
+      return std::fabs(dot4(s.q, s.q) - 1.0);
+    case RADIAL:
+      return started ? std::fabs(integrator->radial_rate(bodies->history(ibody))) : 0.0;
+    case MAX_POSITION:
+      return last.position_error;
+    case RMS_POSITION:
+      return last.position_error * last.position_error;
+    case MAX_ANGLE:
+      return last.angle_error;
+    default:
+      return last.angle_error * last.angle_error;
+  }
+}
+
 double FixGearQuat::compute_vector(int n)
 {
+  const bool largest = n == NORM || n == RADIAL || n == MAX_POSITION || n == MAX_ANGLE;
   double here = 0.0, all;
   for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
-    const RigidBody &rigid = bodies->body[ibody].rigid;
-    const BodyState &s = bodies->state[ibody];
-    if (n == 0)
-      here += translational_energy(rigid, s.velocity);
-    else if (n == 1)
-      here += rotational_energy(rigid, s.omega_body);
-    else
-      here = std::max(here, std::fabs(dot4(s.q, s.q) - 1.0));
+    const double one = of_body(n, ibody);
+    here = largest ? std::max(here, one) : here + one;
   }
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, n == 2 ? MPI_MAX : MPI_SUM, world);
-  if (n == 2) return all < NORM_ROUNDING ? 0.0 : all;
-  return all * force->mvv2e;
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, largest ? MPI_MAX : MPI_SUM, world);
+  if (n == KE_TRANSLATION || n == KE_ROTATION) return all * force->mvv2e;
+  if (n == NORM || n == RADIAL) return all < NORM_ROUNDING ? 0.0 : all;
+  if (largest) return all;
+  bigint nbodies, natoms;
+  bodies->count(nbodies, natoms);
+  return nbodies ? std::sqrt(all / nbodies) : 0.0;
 }
 
 bigint FixGearQuat::dof(int tgroup)
@@ -412,14 +459,15 @@ void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 ------------------------------------------------------------------------- */
 
 struct GlobalRestart {
-  double formulation, size, started, h;
+  double formulation, values, compensate, started, h;
 };
 
 void FixGearQuat::write_restart(FILE *fp)
 {
   if (comm->me != 0) return;
-  const GlobalRestart data = {(double) args->scheme.first(), (double) args->scheme.size(),
-                              (double) started, h};
+  const Scheme &scheme = args->scheme;
+  const GlobalRestart data = {(double) scheme.first(), (double) scheme.values(),
+                              (double) scheme.compensate, (double) started, h};
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
@@ -431,14 +479,16 @@ void FixGearQuat::restart(char *buf)
   GlobalRestart data;
   std::memcpy(&data, buf, sizeof(data));
   bodies->clear();
-  const bool same = data.formulation == (double) args->scheme.first() &&
-      data.size == (double) args->scheme.size();
+  const Scheme &scheme = args->scheme;
+  const bool same = data.formulation == (double) scheme.first() &&
+      data.values == (double) scheme.values() && data.compensate == (double) scheme.compensate;
   started = data.started != 0.0 && same;
   met_atoms = true;
   h = data.h;
   if (data.started != 0.0 && !same && comm->me == 0)
     error->warning(FLERR,
-                   "Fix gear/quat: the restart file has histories of another formulation; "
+                   "Fix gear/quat: the restart file has histories of another formulation or "
+                   "another number of values; "
                    "poses and velocities are kept, the higher derivatives start anew");
 }
 

@@ -20,6 +20,10 @@ FixStyle(gear/quat,FixGearQuat);
 
 #include "fix.h"
 
+namespace GearQuat {
+class Integrator;
+}
+
 namespace LAMMPS_NS {
 
 class FixGearQuat : public Fix {
@@ -67,11 +71,12 @@ class FixGearQuat : public Fix {
   class GearQuatArguments *args;
   class GearQuatBodies *bodies;
 
-  bool started;          // histories are those of the step h
-  bool met_atoms;        // bodies were compared with the atoms in a run before
-  double h;              // step of the histories
-  double energy_here;    // -(F.dx + tau.dtheta) of this rank's bodies, last step
-  double **f_sum;        // r-RESPA: forces of all levels
+  bool started;      // histories are those of the step h
+  bool met_atoms;    // bodies were compared with the atoms in a run before
+  double h;          // step of the histories
+  GearQuat::Integrator *integrator;
+  bool velocities_read;    // between prediction and correction, by others
+  double **f_sum;          // r-RESPA: forces of all levels
   int nmax_sum;
 
   void follow_time_step();
@@ -79,6 +84,7 @@ class FixGearQuat : public Fix {
   void begin_step();
   void finish_step(double **);
   void tally_virial(double **);
+  double of_body(int, int) const;
 };
 
 }    // namespace LAMMPS_NS

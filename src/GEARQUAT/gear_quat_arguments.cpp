@@ -87,8 +87,9 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 
   for (int iarg = 0; iarg < narg; iarg += 2) {
     const std::string key = arg[iarg];
-    const std::set<std::string> known = {"formulation", "start",   "c0",     "omega",
-                                         "momentum",    "project", "infile", "reinit"};
+    const std::set<std::string> known = {"formulation", "values", "passes",   "start",
+                                         "c0",          "omega",  "momentum", "project",
+                                         "compensate",  "infile", "reinit"};
     if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
@@ -97,6 +98,12 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     if (key == "formulation")
       scheme.formulation = choice(key, value, "first", "second") ? Formulation::SECOND
                                                                  : Formulation::FIRST;
+    else if (key == "values")
+      scheme.rows = utils::inumeric(FLERR, value, false, lmp);
+    else if (key == "passes")
+      scheme.passes = utils::inumeric(FLERR, value, false, lmp);
+    else if (key == "compensate")
+      scheme.compensate = choice(key, value, "no", "yes");
     else if (key == "start")
       start = choice(key, value, "bootstrap", "zero") ? Start::ZERO : Start::BOOTSTRAP;
     else if (key == "c0")
@@ -112,6 +119,14 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     else
       infile = value;
   }
+
+  const int fewest = scheme.first() ? GearQuat::FIRST_FEWEST : GearQuat::SECOND_FEWEST;
+  const int most = scheme.first() ? GearQuat::FIRST_MOST : GearQuat::SECOND_MOST;
+  if (seen.count("values") && (scheme.rows < fewest || scheme.rows > most))
+    error->all(FLERR, "Fix gear/quat values: {} is not from {} to {}, as formulation {} requires",
+               scheme.rows, fewest, most, scheme.first() ? "first" : "second");
+  if (scheme.passes < 1)
+    error->all(FLERR, "Fix gear/quat passes: {} is not positive", scheme.passes);
 
   if (scheme.first() && seen.count("c0"))
     error->all(FLERR, "Fix gear/quat keyword c0 belongs to formulation second");

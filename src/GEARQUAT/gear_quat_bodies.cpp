@@ -28,7 +28,7 @@ static constexpr double SAME = 1.0e-11;
 
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
     Pointers(lmp), fix(fix), scheme(scheme), nown(0), nmax(0), body_id(nullptr), owner_tag(nullptr),
-    owned(nullptr), site_body(nullptr), atom2body(nullptr), forward(Forward::STATES)
+    owned(nullptr), site_body(nullptr), forward(Forward::STATES)
 {
   grow_arrays(atom->nmax);
   clear();
@@ -40,7 +40,6 @@ GearQuatBodies::~GearQuatBodies()
   memory->destroy(owner_tag);
   memory->destroy(owned);
   memory->destroy(site_body);
-  memory->destroy(atom2body);
 }
 
 /* ----------------------------------------------------------------------
@@ -53,6 +52,8 @@ void GearQuatBodies::clear()
   body.clear();
   state.clear();
   load.clear();
+  last.clear();
+  sites.clear();
   frame.clear();
   rows.clear();
   owner_atom.clear();
@@ -108,21 +109,19 @@ void GearQuatBodies::count(bigint &nbodies, bigint &natoms) const
 
 bool GearQuatBodies::atoms_match()
 {
-  double **x = atom->x, **v = atom->v;
   const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
   int moved = 0;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const int ibody = atom2body[i];
-    if (ibody < 0) continue;
-    double arm[3], wrap[3], spin[3];
-    site_offset(i, arm, wrap);
-    cross3(frame[ibody].omega_space, arm, spin);
-    const BodyState &s = state[ibody];
-    const double length = box + std::sqrt(dot3(s.center, s.center) + dot3(wrap, wrap));
+  for (const Site &site : sites) {
+    const double *x = atom->x[site.atom], *v = atom->v[site.atom];
+    double arm[3], spin[3];
+    to_space(frame[site.body].axes, site.arm_body, arm);
+    cross3(frame[site.body].omega_space, arm, spin);
+    const BodyState &s = state[site.body];
+    const double length = box + std::sqrt(dot3(s.center, s.center) + dot3(site.wrap, site.wrap));
     const double speed = std::sqrt(dot3(s.velocity, s.velocity)) + std::sqrt(dot3(spin, spin));
     for (int k = 0; k < 3; ++k) {
-      if (std::fabs(s.center[k] + arm[k] - wrap[k] - x[i][k]) > SAME * length) moved = 1;
-      if (std::fabs(s.velocity[k] + spin[k] - v[i][k]) > SAME * speed) moved = 1;
+      if (std::fabs(s.center[k] + arm[k] - site.wrap[k] - x[k]) > SAME * length) moved = 1;
+      if (std::fabs(s.velocity[k] + spin[k] - v[k]) > SAME * speed) moved = 1;
     }
   }
   int any = 0;
@@ -162,6 +161,7 @@ void GearQuatBodies::drop_ghosts()
   body.resize(nown);
   state.resize(nown);
   load.resize(nown);
+  last.resize(nown);
 }
 
 int GearQuatBodies::add_owned(int atom)
@@ -179,14 +179,15 @@ void GearQuatBodies::remove_owned(int ibody)
 {
   drop_ghosts();
   owned[owner_atom[ibody]] = -1;
-  const int last = --nown;
-  if (ibody != last) {
-    body[ibody] = body[last];
-    state[ibody] = state[last];
-    load[ibody] = load[last];
-    owner_atom[ibody] = owner_atom[last];
+  const int end = --nown;
+  if (ibody != end) {
+    body[ibody] = body[end];
+    state[ibody] = state[end];
+    load[ibody] = load[end];
+    last[ibody] = last[end];
+    owner_atom[ibody] = owner_atom[end];
     owned[owner_atom[ibody]] = ibody;
-    std::copy_n(history(last), scheme.size(), history(ibody));
+    std::copy_n(history(end), scheme.size(), history(ibody));
   }
   drop_ghosts();
   owner_atom.resize(nown);
@@ -203,18 +204,26 @@ void GearQuatBodies::update_ghosts(bool setup)
     load.resize(body.size());
   }
   update_frames();
+  list_sites(setup);
+}
 
+void GearQuatBodies::list_sites(bool setup)
+{
   tagint lost = 0;
   double extent = 0.0;
   for (const auto &one : body) extent = std::max(extent, one.extent);
+  sites.clear();
   for (int i = 0; i < atom->nlocal; ++i) {
-    atom2body[i] = -1;
     if (body_id[i] == 0) continue;
     const int owner = atom->map(owner_tag[i]);
-    if (owner < 0 || owned[owner] < 0)
+    if (owner < 0 || owned[owner] < 0) {
       lost = body_id[i];
-    else
-      atom2body[i] = owned[owner];
+      continue;
+    }
+    Site site = {i, owned[owner], {}, {}};
+    for (int k = 0; k < 3; ++k) site.arm_body[k] = site_body[i][k];
+    domain->unmap(site.wrap, atom->image[i]);
+    sites.push_back(site);
   }
 
   const char *message = "Fix gear/quat: body {} spans more than the ghost cutoff: an atom has lost "
@@ -282,57 +291,40 @@ void GearQuatBodies::update_frames()
   }
 }
 
-/// Arm of a site in the space frame, and what wraps its position back into the box.
-inline void GearQuatBodies::site_offset(int i, double *arm_space, double *wrap) const
+void GearQuatBodies::place_sites(bool velocities)
 {
-  to_space(frame[atom2body[i]].axes, site_body[i], arm_space);
-  wrap[0] = wrap[1] = wrap[2] = 0.0;
-  domain->unmap(wrap, atom->image[i]);
-}
-
-void GearQuatBodies::place_sites()
-{
-  double **x = atom->x, **v = atom->v;
-  const int nlocal = atom->nlocal;
-  for (int i = 0; i < nlocal; ++i) {
-    const int ibody = atom2body[i];
-    if (ibody < 0) continue;
-    double arm[3], wrap[3], spin[3];
-    site_offset(i, arm, wrap);
-    cross3(frame[ibody].omega_space, arm, spin);
-    for (int k = 0; k < 3; ++k) {
-      x[i][k] = state[ibody].center[k] + arm[k] - wrap[k];
-      v[i][k] = state[ibody].velocity[k] + spin[k];
-    }
+  for (const Site &site : sites) {
+    double *x = atom->x[site.atom], arm[3];
+    const double *center = state[site.body].center;
+    to_space(frame[site.body].axes, site.arm_body, arm);
+    for (int k = 0; k < 3; ++k) x[k] = center[k] + arm[k] - site.wrap[k];
   }
+  if (velocities) place_velocities();
 }
 
-/// Before a run: positions were made by the last step, or by the user, and are left alone.
 void GearQuatBodies::place_velocities()
 {
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const int ibody = atom2body[i];
-    if (ibody < 0) continue;
-    double arm[3], spin[3];
-    to_space(frame[ibody].axes, site_body[i], arm);
-    cross3(frame[ibody].omega_space, arm, spin);
-    for (int k = 0; k < 3; ++k) atom->v[i][k] = state[ibody].velocity[k] + spin[k];
+  for (const Site &site : sites) {
+    double *v = atom->v[site.atom], arm[3], spin[3];
+    const double *velocity = state[site.body].velocity;
+    to_space(frame[site.body].axes, site.arm_body, arm);
+    cross3(frame[site.body].omega_space, arm, spin);
+    for (int k = 0; k < 3; ++k) v[k] = velocity[k] + spin[k];
   }
 }
 
 void GearQuatBodies::gather_loads(double **f)
 {
-  const int nlocal = atom->nlocal;
   for (auto &one : load) one = Load();
-  for (int i = 0; i < nlocal; ++i) {
-    const int ibody = atom2body[i];
-    if (ibody < 0) continue;
+  for (const Site &site : sites) {
+    const double *force = f[site.atom];
+    Load &sum = load[site.body];
     double arm[3], moment[3];
-    to_space(frame[ibody].axes, site_body[i], arm);
-    cross3(arm, f[i], moment);
+    to_space(frame[site.body].axes, site.arm_body, arm);
+    cross3(arm, force, moment);
     for (int k = 0; k < 3; ++k) {
-      load[ibody].force[k] += f[i][k];
-      load[ibody].torque_space[k] += moment[k];
+      sum.force[k] += force[k];
+      sum.torque_space[k] += moment[k];
     }
   }
   if (comm->nprocs > 1) comm->reverse_comm(fix, LOAD_SIZE);
@@ -345,25 +337,24 @@ void GearQuatBodies::gather_loads(double **f)
     }
 }
 
-void GearQuatBodies::constraint_force(int i, double **f, double *arm_space,
+void GearQuatBodies::constraint_force(const Site &site, double **f, double *arm_space,
                                       double *constraint) const
 {
-  const int ibody = atom2body[i];
-  const Frame &fr = frame[ibody];
-  const Load &l = load[ibody];
+  const Frame &fr = frame[site.body];
+  const Load &l = load[site.body];
+  const RigidBody &rigid = body[site.body].rigid;
   double torque_body[3], alpha_body[3], alpha_space[3], tangential[3], spin[3], radial[3];
   to_body(fr.axes, l.torque_space, torque_body);
-  angular_acceleration(body[ibody].rigid, torque_body, state[ibody].omega_body, alpha_body);
+  angular_acceleration(rigid, torque_body, state[site.body].omega_body, alpha_body);
   to_space(fr.axes, alpha_body, alpha_space);
 
-  to_space(fr.axes, site_body[i], arm_space);
+  to_space(fr.axes, site.arm_body, arm_space);
   cross3(alpha_space, arm_space, tangential);
   cross3(fr.omega_space, arm_space, spin);
   cross3(fr.omega_space, spin, radial);
-  const double mass = atom_mass(i) / force->ftm2v;
+  const double mass = atom_mass(site.atom) / force->ftm2v;
   for (int k = 0; k < 3; ++k)
-    constraint[k] =
-        mass * (l.force[k] / body[ibody].rigid.mass + tangential[k] + radial[k]) - f[i][k];
+    constraint[k] = mass * (l.force[k] / rigid.mass + tangential[k] + radial[k]) - f[site.atom][k];
 }
 
 double GearQuatBodies::atom_mass(int i) const
@@ -383,14 +374,13 @@ void GearQuatBodies::grow_arrays(int n)
   memory->grow(owner_tag, nmax, "gear/quat:owner_tag");
   memory->grow(owned, nmax, "gear/quat:owned");
   memory->grow(site_body, nmax, 3, "gear/quat:site_body");
-  memory->grow(atom2body, nmax, "gear/quat:atom2body");
   for (int i = old; i < nmax; ++i) set_arrays(i);
 }
 
 void GearQuatBodies::set_arrays(int i)
 {
   body_id[i] = owner_tag[i] = 0;
-  owned[i] = atom2body[i] = -1;
+  owned[i] = -1;
   site_body[i][0] = site_body[i][1] = site_body[i][2] = 0.0;
 }
 
@@ -400,15 +390,16 @@ void GearQuatBodies::copy_arrays(int from, int to, int delflag)
   body_id[to] = body_id[from];
   owner_tag[to] = owner_tag[from];
   owned[to] = owned[from];
-  atom2body[to] = atom2body[from];
   for (int k = 0; k < 3; ++k) site_body[to][k] = site_body[from][k];
   if (owned[to] >= 0) owner_atom[owned[to]] = to;
 }
 
 double GearQuatBodies::memory_usage() const
 {
-  const double per_atom = 2 * sizeof(tagint) + 2 * sizeof(int) + 3 * sizeof(double);
+  const double per_atom = 2 * sizeof(tagint) + sizeof(int) + 3 * sizeof(double);
   return nmax * per_atom + rows.capacity() * sizeof(double) +
       body.capacity() * sizeof(GearQuatBody) + state.capacity() * sizeof(BodyState) +
-      load.capacity() * sizeof(Load) + frame.capacity() * sizeof(Frame);
+      load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
+      frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
+      owner_atom.capacity() * sizeof(int);
 }

@@ -36,6 +36,14 @@ class GearQuatBodies : protected Pointers {
   std::vector<GearQuatBody> body;
   std::vector<GearQuat::BodyState> state;
   std::vector<GearQuat::Load> load;
+  std::vector<GearQuat::Correction> last;    ///< owned bodies: what the last corrector told
+
+  struct Site {    ///< an owned atom of a body; stays valid until atoms are exchanged
+    int atom, body;
+    double arm_body[3];
+    double wrap[3];    ///< what its image flags take from its unwrapped position
+  };
+  std::vector<Site> sites;
 
   int nowned() const { return nown; }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
@@ -63,12 +71,14 @@ class GearQuatBodies : protected Pointers {
   // one step
 
   void spread_states();
-  void place_sites();
+  /// Positions of all sites, and velocities if anything reads them before the next call.
+  void place_sites(bool velocities);
+  /// Velocities alone: before a run positions were made by the last step, or by the user.
   void place_velocities();
   void gather_loads(double **f);
   void spread_loads();
-  /// Arm from the centre of mass and constraint force m a - f of an atom under the present loads.
-  void constraint_force(int atom, double **f, double *arm_space, double *force) const;
+  /// Arm from the centre of mass and constraint force m a - f of a site under the present loads.
+  void constraint_force(const Site &site, double **f, double *arm_space, double *force) const;
 
   // what the fix forwards
 
@@ -105,12 +115,12 @@ class GearQuatBodies : protected Pointers {
   tagint *owner_tag;     ///< per atom: atom ID of the owner of its body
   int *owned;            ///< per atom, ghosts too: the body it owns, or -1
   double **site_body;    ///< per atom: from the centre of mass, principal frame
-  int *atom2body;        ///< per atom: its body among owned and ghost bodies, or -1
 
   static constexpr int SITE_SIZE = 6;    ///< packed: IDs of body and owner, arm, size of history
   static constexpr int STATE_SIZE = sizeof(GearQuat::BodyState) / sizeof(double);
   static constexpr int LOAD_SIZE = sizeof(GearQuat::Load) / sizeof(double);
   static constexpr int BODY_SIZE = 8 + STATE_SIZE;
+  static constexpr int LAST_SIZE = sizeof(GearQuat::Correction) / sizeof(double);
 
   enum class Forward { GHOSTS, STATES, LOADS };
   Forward forward;    ///< what forward communication carries
@@ -119,7 +129,7 @@ class GearQuatBodies : protected Pointers {
   int add_owned(int atom);
   void remove_owned(int ibody);
   void update_frames();
-  void site_offset(int atom, double *arm_space, double *wrap) const;
+  void list_sites(bool setup);
   double atom_mass(int atom) const;
 
   GearQuatCensus census(int groupbit) const;

@@ -28,6 +28,8 @@ int GearQuatBodies::pack_exchange(int i, double *buf)
   buf[m++] = ubuf(ibody < 0 ? 0 : scheme.size()).d;
   if (ibody < 0) return m;
   m += pack_body(body[ibody], state[ibody], buf + m);
+  std::memcpy(buf + m, &last[ibody], sizeof(Correction));
+  m += LAST_SIZE;
   std::copy_n(history(ibody), scheme.size(), buf + m);
   return m + scheme.size();
 }
@@ -45,6 +47,8 @@ int GearQuatBodies::unpack_exchange(int i, const double *buf)
   if (size == 0) return m;
   const int ibody = add_owned(i);
   m += unpack_body(buf + m, body[ibody], state[ibody]);
+  std::memcpy(&last[ibody], buf + m, sizeof(Correction));
+  m += LAST_SIZE;
   if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
   return m + size;
 }
@@ -83,7 +87,7 @@ int GearQuatBodies::packed_size(int i) const
 
 int GearQuatBodies::max_exchange() const
 {
-  return SITE_SIZE + BODY_SIZE + scheme.size();
+  return SITE_SIZE + BODY_SIZE + LAST_SIZE + scheme.size();
 }
 
 int GearQuatBodies::max_forward() const

@@ -7,7 +7,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -21,16 +20,24 @@ using namespace GearQuat;
 static constexpr int MAX_SWEEPS = 12;
 static constexpr int MAX_HALVINGS = 8;
 
-// sweeps end when no node would move by more than this, in units of the body's size and in radians
+// sweeps end when the next one would change accelerations by less than this, relative to how the
+// bodies move: less than rounding takes from their velocities in a step, or than the polynomial of
+// the motion leaves out.  A change that no longer falls is taken for rounding of the forces below
+// ROUNDING; above, the nodes are too far apart, or forces jump, as at a cut-off.  Which of the two,
+// shorter spacings tell; after the last of JUMPING of them a change below JUMP counts as jumps.
 
-static constexpr double CONVERGED = 1.0e-14;
+static constexpr double CONVERGED = 1.0e-15;
+static constexpr double ROUNDING = 1.0e-9;
+static constexpr double JUMP = 0.1;
+static constexpr int JUMPING = 3;
 
 /* ---------------------------------------------------------------------- */
 
 GearQuatBootstrap::GearQuatBootstrap(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
                                      const Scheme &scheme, double h) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), scheme(scheme), h(h)
+    fix(fix), bodies(bodies), scheme(scheme), h(h), collocation(scheme.values()), evaluations(0),
+    jumps(0)
 {
 }
 
@@ -75,14 +82,20 @@ void GearQuatBootstrap::run()
     for (int n = 0; n < MAX_HALVINGS && !done; ++n, spacing *= 0.5) {
       std::copy(states.begin(), states.end(), bodies.state.begin());
       std::copy(loads.begin(), loads.end(), bodies.load.begin());
-      done = collocate(forces, spacing, why);
+      done = collocate(forces, spacing);
     }
+    why = reason;
     forces.restore();
     std::copy(states.begin(), states.end(), bodies.state.begin());
     std::copy(loads.begin(), loads.end(), bodies.load.begin());
     bodies.spread_states();
   }
-  if (done) return;
+  if (done) {
+    if (comm->me == 0)
+      utils::logmesg(lmp, "Fix gear/quat: start of order {} from {} force evaluations{}\n",
+                     scheme.order(), evaluations, reason);
+    return;
+  }
   seed_local(3);
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat: start with known forces only (order 2), because {}\n", why);
@@ -91,7 +104,7 @@ void GearQuatBootstrap::run()
 /// Node spacing: the step, or as much of it as keeps every site within half the skin.
 double GearQuatBootstrap::first_spacing() const
 {
-  const double span = Collocation::HALF * std::fabs(h);
+  const double span = collocation.pairs() * std::fabs(h);
   double fastest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!bodies.in_body(i)) continue;
@@ -105,8 +118,14 @@ double GearQuatBootstrap::first_spacing() const
   return way > reach ? h * reach / way : h;
 }
 
-/// False if the nodes are too far apart, by displacement or by convergence.
-bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing, std::string &why)
+/// Size of a body, in units of which its motion is judged.
+double GearQuatBootstrap::length(const GearQuatBody &body) const
+{
+  return body.extent > 0.0 ? body.extent : neighbor->skin;
+}
+
+/// False, with a reason, if the nodes are too far apart.
+bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
 {
   work.resize(bodies.nowned());
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
@@ -115,46 +134,68 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing, std::s
         work[ibody]);
 
   double change = 0.0;
-  for (int n = 0; n < MAX_SWEEPS; ++n) {
+  bool found = false, stuck = false;
+  for (int n = 0; n < MAX_SWEEPS && !found && !stuck; ++n) {
     const double before = change;
-    if (!sweep(forces, spacing, change)) {
-      why = "sites would leave the neighbor skin, " + std::to_string(neighbor->skin);
+    if (!sweep(forces, spacing, n == 0, change)) {
+      reason = fmt::format("sites would leave the neighbor skin, {}", neighbor->skin);
       return false;
     }
-    if (!std::isfinite(change)) break;
-    // rounding of the forces may keep a small change alive
-    const bool settled = n > 1 && change < 1.0e-11 && change > 0.5 * before;
-    if (change < CONVERGED || settled) {
-      for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-        seed(scheme, bodies.body[ibody].rigid, collocation.series(work[ibody]), spacing, h,
-             bodies.history(ibody));
-      return true;
-    }
+    const double next = n > 0 && change < before ? change * (change / before) : change;
+    found = next < CONVERGED || (n > 0 && next < truncation());
+    stuck = !std::isfinite(change) || (n > 1 && change > 0.5 * before);
   }
-  why = "forces vary too much within a few steps";
-  return false;
+  reason.clear();
+  if (!found && change < ROUNDING) found = true;
+  if (!found && change < JUMP && ++jumps == JUMPING) {
+    reason = fmt::format(" (forces jump: by {:.1g} of the motion in a step)", change);
+    found = true;
+  }
+  if (!found) {
+    reason = "forces vary too much within a few steps";
+    return false;
+  }
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    seed(scheme, bodies.body[ibody].rigid, collocation.series(work[ibody]), spacing, h,
+         bodies.history(ibody));
+  return true;
 }
 
-/// Forces at all nodes once.  False, with nothing evaluated there, if a site would leave the skin.
-bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, double &change)
+/// Largest of all bodies.
+double GearQuatBootstrap::truncation() const
+{
+  double here = 0.0, all;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here = std::max(here, collocation.truncation(length(bodies.body[ibody]), work[ibody]));
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+/// Forces at all nodes once, outwards.  False, with nothing evaluated there, if a site would leave
+/// the skin.
+bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, bool first, double &change)
 {
   double here = 0.0;
-  for (int node = 0; node < Collocation::NODES; ++node) {
-    if (node == Collocation::HALF) continue;
-    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-      bodies.state[ibody] = collocation.state_at(node, work[ibody], spacing);
-    bodies.spread_states();
-    bodies.place_sites();
-    if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
-    forces.evaluate();
-    bodies.gather_loads(atom->f);
-    for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-      const GearQuatBody &body = bodies.body[ibody];
-      const double length = body.extent > 0.0 ? body.extent : neighbor->skin;
-      here = std::max(here,
-                      collocation.set_load(node, body.rigid, bodies.state[ibody],
-                                           bodies.load[ibody], spacing, length, work[ibody]));
+  for (int pair = 1; pair <= collocation.pairs(); ++pair) {
+    for (const int node : {-pair, pair}) {
+      for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+        bodies.state[ibody] = collocation.state_at(node, work[ibody], spacing);
+      bodies.spread_states();
+      bodies.place_sites(true);
+      if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
+      forces.evaluate();
+      ++evaluations;
+      bodies.gather_loads(atom->f);
+      for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+        const GearQuatBody &body = bodies.body[ibody];
+        here =
+            std::max(here,
+                     collocation.set_load(node, body.rigid, bodies.state[ibody], bodies.load[ibody],
+                                          spacing, length(body), work[ibody]));
+      }
     }
+    if (first && pair < collocation.pairs())
+      for (auto &one : work) collocation.foretell(pair, one);
   }
   MPI_Allreduce(&here, &change, 1, MPI_DOUBLE, MPI_MAX, world);
   return true;

@@ -41,11 +41,16 @@ class GearQuatBootstrap : protected Pointers {
 
   GearQuat::Collocation collocation;
   std::vector<GearQuat::Collocation::Workspace> work;
+  int evaluations;       ///< of the forces, so far
+  int jumps;             ///< spacings at which forces seemed to jump
+  std::string reason;    ///< why the last spacing failed, or what is to be said about it
 
   void seed_local(int terms);
   double first_spacing() const;
-  bool collocate(GearQuatForces &forces, double spacing, std::string &why);
-  bool sweep(GearQuatForces &forces, double spacing, double &change);
+  double length(const GearQuatBody &body) const;
+  double truncation() const;
+  bool collocate(GearQuatForces &forces, double spacing);
+  bool sweep(GearQuatForces &forces, double spacing, bool first, double &change);
 };
 
 }    // namespace LAMMPS_NS

@@ -8,9 +8,9 @@
      predict            evaluate (host)                   correct
      rows -> t + h  ->  sites at body_state(), forces  ->  rows at t + h
 
-   First-order formulation (Evans), 13 components, FIRST_VALUES rows:
+   First-order formulation (Evans), 13 components:
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
-   Second-order formulation (Rapaport), 7 components, SECOND_VALUES rows:
+   Second-order formulation (Rapaport), 7 components:
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
    Equation numbers: Pratt & Bin Mohamad Zaini.  The host calls, in this order and once a step:
    predict(), body_state(), [forces at that state], correct(). */
@@ -26,23 +26,28 @@ namespace GearQuat {
 
 enum class Formulation { FIRST, SECOND };
 
-constexpr int MAX_VALUES = SECOND_VALUES;    ///< rows of the longest history
-
 /// What is the same for all bodies of a run.
 struct Scheme {
   Formulation formulation = Formulation::SECOND;
-  bool velocity_c0 = false;           ///< second: 3/16 (the paper's) instead of 3/20
-  bool predicted_omega = false;       ///< first: omega that feeds Eq. 5
+  int rows = 0;                    ///< values kept; 0: as many as the paper
+  int passes = 1;                  ///< corrections with the same forces
+  bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
+  bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
   bool project = true;                ///< keep |q| = 1 and q.qdot = 0
+  bool compensate = false;            ///< compensated sums of the rows that are integrated
 
   bool first() const { return formulation == Formulation::FIRST; }
-  int values() const { return first() ? FIRST_VALUES : SECOND_VALUES; }
-  int width() const { return first() ? 13 : 7; }
-  int size() const { return values() * width(); }
+  int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
+  int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
+  int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
+  int size() const { return (values() + carries()) * width(); }
+  /// Of the error in time, while forces vary with positions and slowly with orientations.
+  int order() const { return (velocity_c0 ? values() - 1 : values()) | 1; }
 
   // columns of a row
 
+  static constexpr int FIRST_WIDTH = 13, SECOND_WIDTH = 7;
   static constexpr int POSITION = 0;
   static constexpr int MOMENTUM = 3;    ///< first only
   int quaternion() const { return first() ? 6 : 3; }
@@ -53,31 +58,46 @@ struct Scheme {
   double norm2(const double *q) const { return project ? dot4(q, q) : 1.0; }
 };
 
-/// c_j of the scheme as doubles.
-inline void corrector_coefficients(const Scheme &scheme, double c[MAX_VALUES])
-{
-  const Fraction *exact = scheme.first() ? FIRST_ORDER.data()
-      : scheme.velocity_c0               ? SECOND_ORDER_VELOCITY.data()
-                                         : SECOND_ORDER_POSITION.data();
-  for (int j = 0; j < scheme.values(); ++j) c[j] = exact[j].value();
-}
+/// Doubles of the longest history, compensated.
+constexpr int MAX_SIZE = (FIRST_MOST + 1) * Scheme::FIRST_WIDTH >
+        (SECOND_MOST + 2) * Scheme::SECOND_WIDTH
+    ? (FIRST_MOST + 1) * Scheme::FIRST_WIDTH
+    : (SECOND_MOST + 2) * Scheme::SECOND_WIDTH;
 
-/// How far the corrector moved a body: what turns forces at the predicted pose into the energy of
-/// the corrected one, -(F.dx + tau.dtheta).
-struct Shift {
-  double center[3];
-  double angle_space[3];
+/// What the corrector tells of a step.
+struct Correction {
+  double work;              ///< of the load along the way from the predicted to the corrected pose
+  double position_error;    ///< estimated local error of the centre of mass, length
+  double angle_error;       ///< estimated local error of the orientation, radians
 };
 
 class Integrator {
  public:
   /// h: the time step, not zero; negative runs backwards.
-  Integrator(const Scheme &scheme, double h) : scheme(scheme), h(h)
+  Integrator(const Scheme &scheme, double h) : scheme(scheme), h(h), n(scheme.values())
   {
-    corrector_coefficients(scheme, c);
+    const Fractions exact = scheme.first() ? first_order_coefficients(n)
+                                           : second_order_coefficients(n, scheme.velocity_c0);
+    for (int j = 0; j < n; ++j) c[j] = exact[j].value();
+    error_weight =
+        (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
   }
 
-  void predict(double *rows) const { nordsieck_predict(rows, scheme.values(), scheme.width()); }
+  void predict(double *rows) const
+  {
+    if (scheme.first())
+      scheme.compensate ? First<1>::predict(rows, n) : First<0>::predict(rows, n);
+    else
+      scheme.compensate ? Second<2>::predict(rows, n) : Second<0>::predict(rows, n);
+  }
+
+  void rescale(double *rows, double ratio) const
+  {
+    if (scheme.first())
+      scheme.compensate ? First<1>::rescale(rows, n, ratio) : First<0>::rescale(rows, n, ratio);
+    else
+      scheme.compensate ? Second<2>::rescale(rows, n, ratio) : Second<0>::rescale(rows, n, ratio);
+  }
 
   /// Pose and velocities a history stands for, before or after the correction.
   BodyState body_state(const RigidBody &body, const double *rows) const
@@ -99,117 +119,148 @@ class Integrator {
     return state;
   }
 
-  /// Correct a predicted history with the load met at the predicted pose, then project.
-  Shift correct(const RigidBody &body, const Load &load, double *rows) const
+  /// d(|q|^2/2)/dt as the history has it; it should vanish.
+  double radial_rate(const double *rows) const
   {
-    const int quat = scheme.quaternion();
+    const double *q = rows + scheme.quaternion();
+    return dot4(q, q + scheme.width()) / h;
+  }
+
+  /// Correct a predicted history with the load met at the predicted pose, then project.
+  Correction correct(const RigidBody &body, const Load &load, double *rows) const
+  {
+    const double *quat = rows + scheme.quaternion();
+    Residual total = {};
     double x[3], q[4], a[9], torque_body[3];
     copy(rows + Scheme::POSITION, 3, x);
-    copy(rows + quat, 4, q);
+    copy(quat, 4, q);
     rotation_matrix(q, scheme.norm2(q), a);
     to_body(a, load.torque_space, torque_body);
 
     if (scheme.first())
-      correct_first(body, load, torque_body, rows);
+      scheme.compensate ? correct_first<First<1>>(body, load, torque_body, rows, total)
+                        : correct_first<First<0>>(body, load, torque_body, rows, total);
     else
-      correct_second(body, load, torque_body, rows);
-    if (scheme.project) project(rows);
-    return shift_from(x, q, rows);
+      scheme.compensate ? correct_second<Second<2>>(body, load, torque_body, rows, total)
+                        : correct_second<Second<0>>(body, load, torque_body, rows, total);
+
+    Correction result;
+    double dx[3], dq[4], angle_body[3];
+    for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
+    for (int i = 0; i < 4; ++i) dq[i] = quat[i] - q[i];
+    angular_velocity(q, dot4(q, q), dq, angle_body);
+    result.work = dot3(load.force, dx) + dot3(torque_body, angle_body);
+    result.position_error = error_weight * std::sqrt(dot3(total.x, total.x));
+    result.angle_error = 2.0 * error_weight * std::sqrt(dot4(total.q, total.q));
+    return result;
   }
 
  private:
+  template <int CARRIES> using First = Nordsieck<Scheme::FIRST_WIDTH, CARRIES>;
+  template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
+
   Scheme scheme;
   double h;
+  int n;
   double c[MAX_VALUES];
+  double error_weight;
+
+  struct Residual {    ///< summed over the passes
+    double x[3], q[4];
+  };
 
   static void copy(const double *from, int n, double *to)
   {
     for (int i = 0; i < n; ++i) to[i] = from[i];
   }
 
-  void feed_back(double *rows, int component, int count, const double *residual) const
+  /// Residual of a column is target - row, row that of the order of the equation.
+  template <class History>
+  void feed_back(double *rows, const double *row, int component, int count, double *target,
+                 double *total = nullptr) const
   {
-    nordsieck_correct(rows, scheme.values(), scheme.width(), c, component, count, residual);
+    for (int i = 0; i < count; ++i) target[i] -= row[component + i];
+    History::correct(rows, n, c, component, count, target);
+    if (total)
+      for (int i = 0; i < count; ++i) total[i] += target[i];
   }
 
+  template <class History>
   void correct_first(const RigidBody &body, const Load &load, const double *torque_body,
-                     double *rows) const
+                     double *rows, Residual &total) const
   {
     const int quat = scheme.quaternion();
     const double *rates = rows + scheme.width();
-    double *momentum = rows + Scheme::MOMENTUM, *omega_body = rows + Scheme::OMEGA;
-    double omegadot_body[3], predicted_p[3], predicted_omega[3], qdot[4], r[4];
-    copy(momentum, 3, predicted_p);
-    copy(omega_body, 3, predicted_omega);
+    const double *momentum = rows + Scheme::MOMENTUM, *omega_body = rows + Scheme::OMEGA;
+    double before[3], target[4];
 
-    // momenta (Eq. 14) and angular velocities (Eqs. 7, 15)
+    // momenta (Eq. 14) and positions (Eq. 13): forces stay, so one pass is all
 
-    for (int i = 0; i < 3; ++i) r[i] = h * load.force[i] - rates[Scheme::MOMENTUM + i];
-    feed_back(rows, Scheme::MOMENTUM, 3, r);
+    copy(momentum, 3, before);
+    for (int i = 0; i < 3; ++i) target[i] = h * load.force[i];
+    feed_back<History>(rows, rates, Scheme::MOMENTUM, 3, target);
+    const double *p = scheme.predicted_momentum ? before : momentum;
+    for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
+    feed_back<History>(rows, rates, Scheme::POSITION, 3, target, total.x);
 
-    angular_acceleration(body, torque_body, predicted_omega, omegadot_body);
-    for (int i = 0; i < 3; ++i) r[i] = h * omegadot_body[i] - rates[Scheme::OMEGA + i];
-    feed_back(rows, Scheme::OMEGA, 3, r);
+    // angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16)
 
-    // positions (Eq. 13) and quaternions (Eqs. 5, 16)
-
-    const double *p = scheme.predicted_momentum ? predicted_p : momentum;
-    for (int i = 0; i < 3; ++i) r[i] = h * p[i] / body.mass - rates[Scheme::POSITION + i];
-    feed_back(rows, Scheme::POSITION, 3, r);
-
-    quaternion_rate(rows + quat, scheme.predicted_omega ? predicted_omega : omega_body, qdot);
-    for (int i = 0; i < 4; ++i) r[i] = h * qdot[i] - rates[quat + i];
-    feed_back(rows, quat, 4, r);
+    for (int pass = 0; pass < scheme.passes; ++pass) {
+      copy(omega_body, 3, before);
+      angular_acceleration(body, torque_body, before, target);
+      for (int i = 0; i < 3; ++i) target[i] *= h;
+      feed_back<History>(rows, rates, Scheme::OMEGA, 3, target);
+      quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
+      for (int i = 0; i < 4; ++i) target[i] *= h;
+      feed_back<History>(rows, rates, quat, 4, target, total.q);
+    }
+    if (scheme.project) project_row<History>(rows);
   }
 
+  template <class History>
   void correct_second(const RigidBody &body, const Load &load, const double *torque_body,
-                      double *rows) const
+                      double *rows, Residual &total) const
   {
     const int quat = scheme.quaternion(), width = scheme.width();
-    const double *rates = rows + width, *seconds = rows + 2 * width;
-    double *q = rows + quat;
-    double omega_body[3], omegadot_body[3], qdot[4], qddot[4], r[4];
+    const double *rates = rows + width, *seconds = rows + 2 * width, *q = rows + quat;
     const double half_h2 = 0.5 * h * h;
+    double target[4];
 
-    // positions (Eq. 17)
+    // positions (Eq. 17): forces stay, so one pass is all
 
-    for (int i = 0; i < 3; ++i) r[i] = half_h2 * load.force[i] / body.mass - seconds[i];
-    feed_back(rows, Scheme::POSITION, 3, r);
+    for (int i = 0; i < 3; ++i) target[i] = half_h2 * load.force[i] / body.mass;
+    feed_back<History>(rows, seconds, Scheme::POSITION, 3, target, total.x);
 
     // quaternions (Eqs. 6, 7, 18)
 
-    for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] / h;
-    angular_velocity(q, scheme.norm2(q), qdot, omega_body);
-    angular_acceleration(body, torque_body, omega_body, omegadot_body);
-    quaternion_acceleration(q, qdot, omegadot_body, qddot);
-    for (int i = 0; i < 4; ++i) r[i] = half_h2 * qddot[i] - seconds[quat + i];
-    feed_back(rows, quat, 4, r);
+    for (int pass = 0; pass < scheme.passes; ++pass) {
+      double omega_body[3], omegadot_body[3], qdot[4];
+      for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] / h;
+      angular_velocity(q, scheme.norm2(q), qdot, omega_body);
+      angular_acceleration(body, torque_body, omega_body, omegadot_body);
+      quaternion_acceleration(q, qdot, omegadot_body, target);
+      for (int i = 0; i < 4; ++i) target[i] *= half_h2;
+      feed_back<History>(rows, seconds, quat, 4, target, total.q);
+    }
+    if (!scheme.project) return;
+
+    // a rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4)
+
+    project_row<History>(rows);
+    const double radial = -dot4(q, rates + quat);
+    for (int i = 0; i < 4; ++i) target[i] = radial * q[i];
+    History::add(rows, n, 1, quat, 4, target);
   }
 
-  /// Eqs. 3 and 4.  A rescaled q with a radial rate left in would damp the spin, so the
-  /// second-order form needs both; the first-order form has no independent rate of q.
-  void project(double *rows) const
+  /// |q| = 1 (Eq. 3), by what is missing: a compensated row keeps its digits.
+  template <class History> void project_row(double *rows) const
   {
-    double *q = rows + scheme.quaternion();
-    project_norm(q);
-    if (!scheme.first()) project_rate(q, q + scheme.width());
-  }
-
-  Shift shift_from(const double *x, const double *q, const double *rows) const
-  {
-    const double *new_q = rows + scheme.quaternion();
-    Shift shift;
-    for (int i = 0; i < 3; ++i) shift.center[i] = rows[i] - x[i];
-
-    // small rotation: 2 (dq conj(q)) in the body frame, turned into space
-
-    double dq[4], angle_body[3], a[9];
-    const double norm2 = dot4(q, q);
-    for (int i = 0; i < 4; ++i) dq[i] = new_q[i] - q[i];
-    angular_velocity(q, norm2, dq, angle_body);
-    rotation_matrix(q, norm2, a);
-    to_space(a, angle_body, shift.angle_space);
-    return shift;
+    const double *q = rows + scheme.quaternion();
+    const double norm2 = dot4(q, q), norm = std::sqrt(norm2);
+    const double missing = (1.0 - norm2) / (norm * (1.0 + norm));
+    double change[4];
+    for (int i = 0; i < 4; ++i) change[i] = missing * q[i];
+    History::add(rows, n, 0, scheme.quaternion(), 4, change);
   }
 };
 

@@ -10,27 +10,30 @@
    of which `terms` are known: 2 (position and velocity: the paper's zero start), 3 (forces too), or
    as many as collocation finds.
 
-   Collocation: the second derivatives at the nodes t = k H, k = -HALF..HALF, are interpolated by one
+   Collocation: the second derivatives at the nodes t = k H, k = -half..half, are interpolated by one
    polynomial; integrating it twice from the exact start gives the state at every node, the forces
    there give new second derivatives, and so on until nothing changes (Picard iteration).  Rows 0 and
    1 stay exact: no difference of positions enters a velocity.  Nodes on both sides of the start make
-   it symmetric under time reversal.
+   it symmetric under time reversal.  The first sweep marches outwards: each pair of nodes is foretold
+   by the polynomial through the nodes inside it.
 
-   The host calls, for every body: begin(); then, until converged, for every node but 0:
-   state_at(), [forces at that state], set_load(); at the end seed(). */
+   The host calls, for every body: begin(); then, until converged, sweep after sweep, for every pair
+   -k and k, k = 1..half: state_at(), [forces at that state], set_load(), and in the first sweep
+   foretell(k) after the pair; at the end seed(). */
 
 #ifndef GEAR_QUAT_STARTUP_H
 #define GEAR_QUAT_STARTUP_H
 
 #include "gear_quat_integrator.h"
 
+#include <cstdlib>
 #include <limits>
 
 namespace GearQuat {
 
 /// Taylor series of one body's x (columns 0-2) and q (columns 3-6) in units of a step.
 struct TaylorSeries {
-  static constexpr int MAX_TERMS = 11;
+  static constexpr int MAX_TERMS = MAX_VALUES + 3;
   int terms = 0;
   double c[MAX_TERMS][7];
 };
@@ -96,23 +99,24 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
 /// Collocation of one body; the object's tables are the same for all bodies.
 class Collocation {
  public:
-  static constexpr int HALF = 4;                ///< nodes on each side of the start
-  static constexpr int NODES = 2 * HALF + 1;    ///< the start is node HALF
+  static constexpr int MAX_HALF = (MAX_VALUES + 1) / 2;
+  static constexpr int MAX_NODES = 2 * MAX_HALF + 1;
 
   /// Second derivatives at the nodes, in units of the node spacing, and the exact start.
   struct Workspace {
     double start[2][7];
-    double second[NODES][7];
+    double second[MAX_NODES][7];
   };
 
-  Collocation()
+  /// As many nodes as the order of a history of `values` rows needs.
+  explicit Collocation(int values) : half((values + 1) / 2), nodes(2 * half + 1)
   {
-    invert_vandermonde();
-    for (int k = 0; k < NODES; ++k) {
-      const double s = k - HALF;
-      for (int l = 0; l < NODES; ++l) {
+    interpolate(half, monomial);
+    for (int k = 0; k < nodes; ++k) {
+      const double s = k - half;
+      for (int l = 0; l < nodes; ++l) {
         long double value = 0.0, rate = 0.0, power = s;
-        for (int j = 0; j < NODES; ++j) {
+        for (int j = 0; j < nodes; ++j) {
           rate += monomial[j][l] * power / (j + 1);
           power *= s;
           value += monomial[j][l] * power / ((j + 1) * (j + 2));
@@ -121,7 +125,11 @@ class Collocation {
         rate_weight[k][l] = double(rate);
       }
     }
+    for (int inner = 1; inner < half; ++inner) extrapolate(inner);
   }
+
+  /// Nodes on each side of the start, which needs no forces: its own are known.
+  int pairs() const { return half; }
 
   /// First guess: constant second derivatives, those of `series` (at least three terms, in units of
   /// the node spacing).
@@ -130,21 +138,34 @@ class Collocation {
     for (int i = 0; i < 7; ++i) {
       w.start[0][i] = series.c[0][i];
       w.start[1][i] = series.c[1][i];
-      for (auto &second : w.second) second[i] = 2.0 * series.c[2][i];
+      for (int k = 0; k < nodes; ++k) w.second[k][i] = 2.0 * series.c[2][i];
     }
   }
 
-  /// State of the body at a node by the present polynomial; spacing: time between nodes.
+  /// Second derivatives beyond the nodes -inner..inner from those inside.
+  void foretell(int inner, Workspace &w) const
+  {
+    for (int k = 0; k < nodes; ++k) {
+      if (std::abs(k - half) <= inner) continue;
+      for (int i = 0; i < 7; ++i) {
+        double sum = 0.0;
+        for (int l = -inner; l <= inner; ++l)
+          sum += outer_weight[inner][k][half + l] * w.second[half + l][i];
+        w.second[k][i] = sum;
+      }
+    }
+  }
+
+  /// State of the body at node -half..half by the present polynomial; spacing: time between nodes.
   BodyState state_at(int node, const Workspace &w, double spacing) const
   {
     double value[7], rate[7];
-    const double s = node - HALF;
     for (int i = 0; i < 7; ++i) {
-      value[i] = w.start[0][i] + s * w.start[1][i];
+      value[i] = w.start[0][i] + node * w.start[1][i];
       rate[i] = w.start[1][i];
-      for (int l = 0; l < NODES; ++l) {
-        value[i] += value_weight[node][l] * w.second[l][i];
-        rate[i] += rate_weight[node][l] * w.second[l][i];
+      for (int l = 0; l < nodes; ++l) {
+        value[i] += value_weight[half + node][l] * w.second[l][i];
+        rate[i] += rate_weight[half + node][l] * w.second[l][i];
       }
     }
     BodyState state;
@@ -158,64 +179,107 @@ class Collocation {
     return state;
   }
 
-  /// Take the load met at a node; returns the largest change of position (relative to `length`) and
-  /// of orientation that it would make over the span of the nodes, infinite if it is no number.
+  /// Take the load met at a node.  length: the size of the body.  Returns by how much the second
+  /// derivatives there change, relative to the first or second derivatives of that body, whichever
+  /// are larger; infinite if the load is no number.
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
                   double spacing, double length, Workspace &w) const
   {
     BodyState unit = state;
     project_norm(unit.q);
     const TaylorSeries series = local_series(body, unit, load, spacing);
-    double change = 0.0;
+    double *second = w.second[half + node], change[7];
     for (int i = 0; i < 7; ++i) {
-      const double second = 2.0 * series.c[2][i];
-      const double difference = std::fabs(second - w.second[node][i]);
-      if (!std::isfinite(difference)) return std::numeric_limits<double>::infinity();
-      change = std::max(change, i < 3 ? difference / length : difference);
-      w.second[node][i] = second;
+      const double found = 2.0 * series.c[2][i];
+      if (!std::isfinite(found)) return std::numeric_limits<double>::infinity();
+      change[i] = found - second[i];
+      second[i] = found;
     }
-    return change * HALF * HALF;
+    return relative(change, second, length, w);
+  }
+
+  /// What the polynomial leaves out, relative as in set_load: the size of its last term.
+  double truncation(double length, const Workspace &w) const
+  {
+    double term[7];
+    for (int i = 0; i < 7; ++i) {
+      term[i] = 0.0;
+      for (int l = 0; l < nodes; ++l) term[i] += double(monomial[nodes - 1][l]) * w.second[l][i];
+    }
+    return relative(term, w.second[half], length, w);
   }
 
   /// The converged polynomial as a series in units of the node spacing.
   TaylorSeries series(const Workspace &w) const
   {
     TaylorSeries series;
-    series.terms = NODES + 2;
-    static_assert(NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
+    series.terms = nodes + 2;
+    static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
     for (int i = 0; i < 7; ++i) {
       series.c[0][i] = w.start[0][i];
       series.c[1][i] = w.start[1][i];
-      for (int j = 0; j < NODES; ++j) {
-        double sum = 0.0;
-        for (int l = 0; l < NODES; ++l) sum += double(monomial[j][l]) * w.second[l][i];
-        series.c[j + 2][i] = sum / ((j + 1) * (j + 2));
+      for (int j = 0; j < nodes; ++j) {
+        long double sum = 0.0;
+        for (int l = 0; l < nodes; ++l) sum += monomial[j][l] * w.second[l][i];
+        series.c[j + 2][i] = double(sum / ((j + 1) * (j + 2)));
       }
     }
     return series;
   }
 
  private:
-  long double monomial[NODES][NODES];    ///< coefficient of s^j of the interpolation at node l
-  double value_weight[NODES][NODES];     ///< twice integrated, at node k
-  double rate_weight[NODES][NODES];      ///< once integrated, at node k
+  /// Motion slower than this part of the body's size (of a radian) in a step is none.
+  static constexpr double SMALLEST = 1.0e-4;
 
-  /// Lagrange's basis polynomials, multiplied out factor by factor.
-  void invert_vandermonde()
+  using Table = long double[MAX_NODES][MAX_NODES];
+
+  int half, nodes;
+  Table monomial;    ///< coefficient of s^j of the interpolation at node l
+  double value_weight[MAX_NODES][MAX_NODES];              ///< twice integrated, at node k
+  double rate_weight[MAX_NODES][MAX_NODES];               ///< once integrated, at node k
+  double outer_weight[MAX_HALF][MAX_NODES][MAX_NODES];    ///< from the inner nodes to node k
+
+  void extrapolate(int inner)
   {
-    for (int l = 0; l < NODES; ++l) {
-      long double basis[NODES] = {1.0L};
+    Table inside;
+    interpolate(inner, inside);
+    for (int k = 0; k < nodes; ++k)
+      for (int l = 0; l <= 2 * inner; ++l) {
+        long double sum = 0.0, power = 1.0;
+        for (int j = 0; j <= 2 * inner; ++j, power *= k - half) sum += inside[j][l] * power;
+        outer_weight[inner][k][half + l - inner] = double(sum);
+      }
+  }
+
+  static double relative(const double *change, const double *second, double length,
+                         const Workspace &w)
+  {
+    double part[2] = {0.0, 0.0}, scale[2] = {SMALLEST * length, SMALLEST};
+    for (int i = 0; i < 7; ++i) {
+      const int p = i < 3 ? 0 : 1;
+      part[p] = std::max(part[p], std::fabs(change[i]));
+      scale[p] = std::max({scale[p], std::fabs(w.start[1][i]), std::fabs(second[i])});
+    }
+    return std::max(part[0] / scale[0], part[1] / scale[1]);
+  }
+
+  /// Lagrange's basis polynomials on the nodes -half..half, multiplied out factor by factor.
+  static void interpolate(int half, Table &monomial)
+  {
+    const int nodes = 2 * half + 1;
+    for (int l = 0; l < nodes; ++l) {
+      long double basis[MAX_NODES] = {1.0L};
       long double denominator = 1.0L;
       int degree = 0;
-      for (int m = 0; m < NODES; ++m) {
+      for (int m = 0; m < nodes; ++m) {
         if (m == l) continue;
-        const long double root = m - HALF;
+        const long double root = m - half;
         ++degree;
         for (int j = degree; j >= 0; --j)
           basis[j] = (j > 0 ? basis[j - 1] : 0.0L) - root * (j < degree ? basis[j] : 0.0L);
         denominator *= l - m;
       }
-      for (int j = 0; j < NODES; ++j) monomial[j][l] = basis[j] / denominator;
+      for (int j = 0; j < nodes; ++j) monomial[j][l] = basis[j] / denominator;
     }
   }
 };

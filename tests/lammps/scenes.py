@@ -183,3 +183,17 @@ def water(
 def last_frame(path: Path) -> np.ndarray:
     """Columns of the last frame of a dump, shape (atoms, columns), sorted as dumped."""
     return np.loadtxt(path.read_text().rpartition("ITEM: ATOMS")[2].splitlines()[1:], ndmin=2)
+
+
+def whole_deck(path: Path, files=("data", "infile")) -> str:
+    """An example's deck with its includes written out and its files named from anywhere."""
+    lines = []
+    for line in path.read_text().splitlines():
+        if line.startswith("include "):
+            lines.append(whole_deck(path.parent / line.split()[1], ()))
+        else:
+            lines.append(line)
+    text = "\n".join(lines)
+    for name in files:
+        text = text.replace(f"index {name}", f"index {path.parent / name}")
+    return text

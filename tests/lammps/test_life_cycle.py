@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import last_frame, two_molecules, water, water_data
+from scenes import last_frame, two_molecules, water, water_data, whole_deck
 
 FORMULATIONS = ["first", "second"]
 COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot"]
@@ -13,14 +13,11 @@ class Case1:
 
     def __init__(self, lmp, examples, formulation, ranks=1):
         self.lmp, self.ranks = lmp, ranks
-        self.folder = examples / "case1"
-        common = (examples / "common" / "in.scene").read_text()
-        self.scene = common.replace("${data}", str(self.folder / "data"))
+        self.scene = whole_deck(examples / "case1" / "in.case1")
         self.variables = dict(formulation=formulation, dt=0.02, every=100, out="none")
 
     def run(self, ending, scene=None, ranks=None, **variables):
         text = (scene or self.scene).replace("run ${steps}", ending)
-        text = text.replace("${infile}", str(self.folder / "infile.unrotated"))
         result = self.lmp.run(text, {**self.variables, **variables}, ranks=ranks or self.ranks)
         assert result.returncode == 0, result.output
         return result

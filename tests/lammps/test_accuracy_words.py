@@ -1,0 +1,147 @@
+"""The words that set the accuracy (values, passes, compensate) and the errors the fix reports."""
+
+import re
+
+import numpy as np
+import pytest
+from scenes import last_frame, water, water_data, whole_deck
+
+LADDER = [("first", n) for n in range(3, 9)] + [("second", n) for n in range(4, 13)]
+ERRORS = "f_move[5] f_move[6] f_move[7] f_move[8]"
+
+
+@pytest.fixture
+def liquid(lmp):
+    """Run 27 water molecules: liquid(fix words, ...) -> result and last frame of the dump."""
+    data = water_data(lmp.folder / "data.water")
+
+    def run(words, steps=20, dt=0.5, ranks=1, **more):
+        fix = f"gear/quat molecule {words}"
+        deck = water(data, fix, steps=steps, dt=dt, dump="poses.dump", **more)
+        deck = deck.replace("ke etotal press", f"ke etotal press {ERRORS} f_move[4]")
+        result = lmp.run(deck, ranks=ranks)
+        assert result.returncode == 0, result.output
+        return result, last_frame(lmp.folder / "poses.dump")[:, 1:4]
+
+    return run
+
+
+def errors(result, row=-1):
+    """Largest and rms estimated error of positions, then of orientations, of one thermo row."""
+    return np.array([result.thermo[-1][word][row] for word in ERRORS.split()])
+
+
+@pytest.mark.parametrize("formulation, values", LADDER)
+def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, formulation, values):
+    result, x = liquid(f"formulation {formulation} values {values}")
+    found = re.search(r"start of order (\d+) from (\d+) force evaluations", result.output)
+    assert int(found[1]) == values + (values % 2 == 0)
+    pairs = 2 * ((values + 1) // 2)
+    assert int(found[2]) % pairs == 0 and 2 <= int(found[2]) // pairs <= 8
+    arms = np.linalg.norm(x[1::3] - x[0::3], axis=1)
+    assert arms == pytest.approx(np.ones(len(arms)), abs=1e-13)
+    assert np.abs(arms * 1.01 - 1).max() > 1e-3
+    assert result.thermo[-1]["f_move[4]"][-1] < 1e-6  # q stays orthogonal to its rate
+
+
+@pytest.fixture
+def cage(lmp, examples):
+    """Estimated errors of one body in the paper's cage at t = 20: cage(step, fix words)."""
+
+    def run(dt, **words):
+        deck = whole_deck(examples / "case1" / "in.case1")
+        steps = round(20 / dt)
+        variables = dict(words, dt=dt, steps=steps, every=steps, more=ERRORS)
+        result = lmp.run(deck, variables)
+        assert result.returncode == 0, result.output
+        return errors(result)
+
+    return run
+
+
+@pytest.mark.parametrize(
+    "formulation, values", [("first", 3), ("first", 6), ("second", 4), ("second", 8)]
+)
+def test_estimates_fall_with_the_power_of_the_step(cage, formulation, values):
+    coarse, fine = (cage(dt, formulation=formulation, values=values) for dt in (0.1, 0.05))
+    assert np.log2(coarse / fine) == pytest.approx([values] * 4, abs=0.3)
+    other = cage(0.0505, formulation=formulation, values=values)
+    assert (np.abs(other / fine - 1.01**values) < 0.005 * values).all()  # 1 % shows
+    assert coarse[0] == coarse[1] and coarse[2] == coarse[3]  # one body: largest is rms
+
+
+def test_estimates_fall_with_the_number_of_values(cage):
+    found = [cage(0.1, values=n) for n in range(4, 13)]
+    assert all((b < 0.3 * a).all() for a, b in zip(found, found[1:]))
+
+
+def test_largest_and_rms(liquid):
+    found = errors(liquid("values 6")[0])
+    assert (found[[0, 2]] > found[[1, 3]]).all()
+    assert (found[[0, 2]] < found[[1, 3]] * np.sqrt(27)).all()
+
+
+def test_estimates_do_not_depend_on_the_ranks(liquid):
+    one, four = errors(liquid("values 6")[0]), errors(liquid("values 6", ranks=4)[0])
+    assert one == pytest.approx(four, rel=1e-7)
+    assert 1.01 * one != pytest.approx(four, rel=1e-7)
+
+
+def test_estimates_outlive_a_run(liquid):
+    """The first line of a run repeats what the last step of the run before has told."""
+    result, _ = liquid("values 6", run="run 10\nrun 10")
+    before, after = result.thermo[-2], result.thermo[-1]
+    for word in ERRORS.split():
+        assert after[word][0] == before[word][-1] > 0
+
+
+def test_passes_change_orientations_only_through_the_same_forces(liquid):
+    """The price of a pass is no force evaluation, and passes converge."""
+    runs = {n: liquid(f"values 6 passes {n} start zero", steps=1, dt=2.0) for n in (1, 2, 3, 9)}
+    frames = {n: frame for n, (_, frame) in runs.items()}
+    assert "force evaluations" not in runs[2][0].output
+    change = [np.abs(frames[n] - frames[9]).max() for n in (1, 2, 3)]
+    assert change[0] > 20 * change[1] > 400 * change[2]
+    masses = np.tile([15.9994, 1.008, 1.008], 27)
+    centre = {n: (masses[:, None] * x).reshape(27, 3, 3).sum(axis=1) for n, x in frames.items()}
+    assert np.abs(centre[1] - centre[9]).max() < 1e-10 < change[0]  # bodies move as before
+
+
+@pytest.mark.parametrize("words", ["values 8", "values 5 formulation first", "values 6 passes 2"])
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_same_trajectory_on_any_ranks(liquid, words, ranks):
+    words += " compensate yes"
+    _, one = liquid(words, steps=50)
+    _, many = liquid(words, steps=50, ranks=ranks)
+    assert np.abs(one - many).max() < 1e-10
+    _, other = liquid(words, steps=50, dt=0.505)
+    assert np.abs(one - other).max() > 1e-4
+
+
+@pytest.mark.parametrize("after", ["values 8", "values 6 compensate yes"])
+def test_a_restart_with_another_history_says_so(liquid, lmp, after):
+    """Eight rows: values 8, or values 6 and two carries; one must not be taken for the other."""
+    before = {"values 8": "values 6 compensate yes", "values 6 compensate yes": "values 8"}[after]
+    liquid(before, run="run 10\nwrite_restart half.restart")
+    deck = water("half.restart", f"gear/quat molecule {after}", dt=0.5, steps=10, run="run 10")
+    for word in ("read_data", "atom_style", "pair_style", "pair_coeff"):
+        deck = deck.replace(word, "read_restart" if word == "read_data" else "#")
+    result = lmp.run(deck)
+    assert result.returncode == 0, result.output
+    assert "another number of values" in result.output
+    assert "start of order" in result.output  # it starts anew
+
+
+def test_jumping_forces_are_told(lmp_wheel, examples):
+    """A plain cut-off: no polynomial passes through a jump, and the start says by how much."""
+    deck = whole_deck(examples / "water" / "in.water")
+    for name in ("data.water", "forces."):
+        deck = deck.replace(name, str(examples / "water" / name))
+    found = {}
+    for forces in ("smooth", "plain"):
+        result = lmp_wheel.run(deck, dict(forces=forces, steps=1, every=1, values=12, dt=1.0))
+        assert result.returncode == 0, result.output
+        assert "start of order 13" in result.output
+        found[forces] = re.search(r"forces jump: by (\S+) of the motion", result.output)
+    assert found["smooth"] is None
+    assert 1e-5 < float(found["plain"][1]) < 0.1
