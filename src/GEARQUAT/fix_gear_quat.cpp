@@ -20,6 +20,7 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_bootstrap.h"
 #include "gear_quat_checks.h"
+#include "gear_quat_table.h"
 
 #include "atom.h"
 #include "citeme.h"
@@ -31,6 +32,7 @@
 #include "library.h"
 #include "memory.h"
 #include "modify.h"
+#include "output.h"
 #include "update.h"
 
 #include <algorithm>
@@ -89,8 +91,9 @@ static constexpr double NORM_ROUNDING = 1.0e-15;
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), started(false), met_atoms(false), h(0.0),
-    integrator(nullptr), velocities_read(true), f_sum(nullptr), nmax_sum(0)
+    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), started(false),
+    met_atoms(false), h(0.0), integrator(nullptr), velocities_read(true), f_sum(nullptr),
+    nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -101,6 +104,10 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   extscalar = 1;
   extvector = -1;
   extlist = new int[VECTOR_SIZE]{1, 1, 0, 0, 0, 0, 0, 0};
+  array_flag = local_flag = 1;
+  extarray = 0;
+  local_freq = 1;
+  size_array_cols = size_local_cols = GearQuatTable::COLUMNS;
   energy_global_flag = 1;
   virial_global_flag = virial_peratom_flag = 1;
   thermo_virial = 1;
@@ -114,6 +121,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
   args = new GearQuatArguments(lmp, narg, arg);
   bodies = new GearQuatBodies(lmp, this, args->scheme);
+  table = new GearQuatTable(lmp, *bodies);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   maxexchange = bodies->max_exchange();
@@ -127,6 +135,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   bigint nbodies, natoms;
   bodies->count(nbodies, natoms);
   if (nbodies == 0) error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
+  size_array_rows = nbodies;
   if (comm->me == 0) utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", nbodies, natoms);
 }
 
@@ -139,6 +148,7 @@ FixGearQuat::~FixGearQuat()
   atom->delete_callback(id, Atom::RESTART);
   delete integrator;
   delete args;
+  delete table;
   delete bodies;
   delete[] extlist;
   memory->destroy(f_sum);
@@ -214,10 +224,17 @@ void FixGearQuat::setup(int vflag)
   bodies->place_velocities();
   for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
   v_init(vflag);
-  if (evflag) {
-    bodies->gather_loads(atom->f);
-    tally_virial(atom->f);
-  }
+  bodies->gather_loads(atom->f);
+  if (evflag) tally_virial(atom->f);
+  table->forget();
+  show_bodies();
+}
+
+/// Local data have to be there whenever something may read them.
+void FixGearQuat::show_bodies()
+{
+  array_local = table->local();
+  size_local_rows = bodies->nowned();
 }
 
 void FixGearQuat::pre_neighbor()
@@ -281,6 +298,7 @@ void FixGearQuat::finish_step(double **f)
   }
   bodies->spread_states();
   bodies->place_sites(true);
+  if (output->next == update->ntimestep || modify->n_end_of_step) show_bodies();
 }
 
 /// Virial of the constraint forces m a - f, at the pose where the forces were taken.
@@ -395,6 +413,11 @@ double FixGearQuat::compute_vector(int n)
   return nbodies ? std::sqrt(all / nbodies) : 0.0;
 }
 
+double FixGearQuat::compute_array(int i, int j)
+{
+  return table->global(i, j);
+}
+
 bigint FixGearQuat::dof(int tgroup)
 {
   return bodies->removed_freedoms(group->bitmask[tgroup]);
@@ -402,7 +425,7 @@ bigint FixGearQuat::dof(int tgroup)
 
 double FixGearQuat::memory_usage()
 {
-  return bodies->memory_usage() + 3.0 * nmax_sum * sizeof(double);
+  return bodies->memory_usage() + table->memory_usage() + 3.0 * nmax_sum * sizeof(double);
 }
 
 /* ----------------------------------------------------------------------

@@ -44,6 +44,7 @@ class FixGearQuat : public Fix {
 
   double compute_scalar() override;
   double compute_vector(int) override;
+  double compute_array(int, int) override;
   bigint dof(int) override;
   double memory_usage() override;
 
@@ -70,6 +71,7 @@ class FixGearQuat : public Fix {
  private:
   class GearQuatArguments *args;
   class GearQuatBodies *bodies;
+  class GearQuatTable *table;
 
   bool started;      // histories are those of the step h
   bool met_atoms;    // bodies were compared with the atoms in a run before
@@ -85,6 +87,7 @@ class FixGearQuat : public Fix {
   void finish_step(double **);
   void tally_virial(double **);
   double of_body(int, int) const;
+  void show_bodies();
 };
 
 }    // namespace LAMMPS_NS

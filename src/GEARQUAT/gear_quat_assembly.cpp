@@ -242,16 +242,22 @@ void GearQuatAssembly::orient_axes(const Site *sites, int n, const double *cente
   for (const auto *site : order)
     for (int k = 0; k < 3; ++k) largest = std::max(largest, std::fabs(along(site, axes + 3 * k)));
 
-  for (int k = 0; k < 3; k += 2) {
+  // false if all sites are in the plane across the axis
+
+  auto orient = [&](int k) {
     for (const auto *site : order) {
       const double side = along(site, axes + 3 * k);
       if (std::fabs(side) < ON_AXIS * largest) continue;
       if (side < 0.0)
         for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
-      break;
+      return true;
     }
-  }
-  cross3(axes + 6, axes, axes + 3);
+    return false;
+  };
+  const bool first = orient(0), third = orient(2);
+  const int last = first == third ? 1 : first ? 2 : 0;
+  if (last != 1) orient(1);
+  cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
 }
 
 /* ---------------------------------------------------------------------- */

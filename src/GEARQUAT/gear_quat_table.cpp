@@ -1,0 +1,94 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_table.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+#include <numeric>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+double **GearQuatTable::local()
+{
+  fill();
+  rows.resize(bodies.nowned());
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = mine.data() + i * COLUMNS;
+  return rows.data();
+}
+
+double GearQuatTable::global(int row, int column)
+{
+  if (gathered != update->ntimestep) gather();
+  const size_t at = (size_t) row * COLUMNS + column;
+  return at < all.size() ? all[at] : 0.0;
+}
+
+void GearQuatTable::fill()
+{
+  mine.resize((size_t) bodies.nowned() * COLUMNS);
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    fill_row(ibody, mine.data() + (size_t) ibody * COLUMNS);
+}
+
+/// Centres are wrapped into the box with their image flags, as those of fix rigid; quaternions have
+/// the scalar first, as everywhere in LAMMPS.
+void GearQuatTable::fill_row(int ibody, double *row) const
+{
+  const GearQuatBody &body = bodies.body[ibody];
+  const BodyState &s = bodies.state[ibody];
+  const Load &l = bodies.load[ibody];
+
+  double a[9], momentum_body[3], center[3];
+  std::copy_n(s.center, 3, center);
+  imageint image = ((imageint) IMGMAX << IMG2BITS) | ((imageint) IMGMAX << IMGBITS) | IMGMAX;
+  domain->remap(center, image);
+  rotation_matrix(s.q, dot4(s.q, s.q), a);
+  for (int i = 0; i < 3; ++i) momentum_body[i] = body.rigid.inertia[i] * s.omega_body[i];
+
+  std::copy_n(center, 3, row + CENTER);
+  std::copy_n(s.velocity, 3, row + VELOCITY);
+  for (int i = 0; i < 3; ++i) {
+    row[FORCE + i] = l.force[i] / force->ftm2v;
+    row[TORQUE + i] = l.torque_space[i] / force->ftm2v;
+  }
+  row[IMAGE] = double((image & IMGMASK) - IMGMAX);
+  row[IMAGE + 1] = double((image >> IMGBITS & IMGMASK) - IMGMAX);
+  row[IMAGE + 2] = double((image >> IMG2BITS) - IMGMAX);
+  row[QUATERNION] = s.q[3];
+  std::copy_n(s.q, 3, row + QUATERNION + 1);
+  std::copy_n(s.omega_body, 3, row + OMEGA_BODY);
+  to_space(a, momentum_body, row + ANGULAR_MOMENTUM);
+  row[POSITION_ERROR] = bodies.last[ibody].position_error;
+  row[ANGLE_ERROR] = bodies.last[ibody].angle_error;
+  row[ID] = double(body.id);
+}
+
+void GearQuatTable::gather()
+{
+  fill();
+  const int here = mine.size();
+  std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
+  MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
+  std::vector<double> met(starts.back() + counts.back());
+  MPI_Allgatherv(mine.data(), here, MPI_DOUBLE, met.data(), counts.data(), starts.data(),
+                 MPI_DOUBLE, world);
+
+  std::vector<size_t> order(met.size() / COLUMNS);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](size_t i, size_t j) {
+    return met[i * COLUMNS + ID] < met[j * COLUMNS + ID];
+  });
+  all.resize(met.size());
+  for (size_t i = 0; i < order.size(); ++i)
+    std::copy_n(met.data() + order[i] * COLUMNS, (int) COLUMNS, all.data() + i * COLUMNS);
+  gathered = update->ntimestep;
+}

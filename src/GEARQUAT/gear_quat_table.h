@@ -1,0 +1,60 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* What users see of every body: a row of numbers, for the fix's global array (all bodies on all
+   ranks, sorted by ID) and for its local data (owned bodies). */
+
+#ifndef LMP_GEAR_QUAT_TABLE_H
+#define LMP_GEAR_QUAT_TABLE_H
+
+#include "gear_quat_bodies.h"
+
+namespace LAMMPS_NS {
+
+class GearQuatTable : protected Pointers {
+ public:
+  /// Columns, counted from 0; the first fifteen are those of fix rigid.
+  enum {
+    CENTER = 0,
+    VELOCITY = 3,
+    FORCE = 6,
+    TORQUE = 9,
+    IMAGE = 12,
+    QUATERNION = 15,
+    OMEGA_BODY = 19,
+    ANGULAR_MOMENTUM = 22,
+    POSITION_ERROR = 25,
+    ANGLE_ERROR = 26,
+    ID = 27,
+    COLUMNS = 28
+  };
+
+  GearQuatTable(LAMMPS *lmp, const GearQuatBodies &bodies) : Pointers(lmp), bodies(bodies) {}
+
+  /// Rows of owned bodies, anew at every call; the pointers stay valid until the next one.
+  double **local();
+  /// A number of the global array.  Rows are gathered once a step: collective.
+  double global(int row, int column);
+  /// Bodies have changed since: gather again.
+  void forget() { gathered = -1; }
+  double memory_usage() const
+  {
+    return (mine.capacity() + all.capacity()) * sizeof(double) + rows.capacity() * sizeof(double *);
+  }
+
+ private:
+  const GearQuatBodies &bodies;
+  std::vector<double> mine, all;
+  std::vector<double *> rows;
+  bigint gathered = -1;    ///< step of `all`
+
+  void fill();
+  void fill_row(int ibody, double *row) const;
+  void gather();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
