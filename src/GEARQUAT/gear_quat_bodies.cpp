@@ -291,26 +291,33 @@ void GearQuatBodies::update_frames()
   }
 }
 
-void GearQuatBodies::place_sites(bool velocities)
+template <bool POSITIONS, bool VELOCITIES> void GearQuatBodies::place()
 {
   for (const Site &site : sites) {
-    double *x = atom->x[site.atom], arm[3];
-    const double *center = state[site.body].center;
-    to_space(frame[site.body].axes, site.arm_body, arm);
-    for (int k = 0; k < 3; ++k) x[k] = center[k] + arm[k] - site.wrap[k];
+    const BodyState &s = state[site.body];
+    const Frame &fr = frame[site.body];
+    double arm[3], spin[3];
+    to_space(fr.axes, site.arm_body, arm);
+    if (POSITIONS) {
+      double *x = atom->x[site.atom];
+      for (int k = 0; k < 3; ++k) x[k] = s.center[k] + arm[k] - site.wrap[k];
+    }
+    if (VELOCITIES) {
+      double *v = atom->v[site.atom];
+      cross3(fr.omega_space, arm, spin);
+      for (int k = 0; k < 3; ++k) v[k] = s.velocity[k] + spin[k];
+    }
   }
-  if (velocities) place_velocities();
+}
+
+void GearQuatBodies::place_sites(bool velocities)
+{
+  velocities ? place<true, true>() : place<true, false>();
 }
 
 void GearQuatBodies::place_velocities()
 {
-  for (const Site &site : sites) {
-    double *v = atom->v[site.atom], arm[3], spin[3];
-    const double *velocity = state[site.body].velocity;
-    to_space(frame[site.body].axes, site.arm_body, arm);
-    cross3(frame[site.body].omega_space, arm, spin);
-    for (int k = 0; k < 3; ++k) v[k] = velocity[k] + spin[k];
-  }
+  place<false, true>();
 }
 
 void GearQuatBodies::gather_loads(double **f)

@@ -130,6 +130,7 @@ class GearQuatBodies : protected Pointers {
   void remove_owned(int ibody);
   void update_frames();
   void list_sites(bool setup);
+  template <bool POSITIONS, bool VELOCITIES> void place();
   double atom_mass(int atom) const;
 
   GearQuatCensus census(int groupbit) const;

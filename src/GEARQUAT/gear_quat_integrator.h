@@ -74,7 +74,7 @@ struct Correction {
 class Integrator {
  public:
   /// h: the time step, not zero; negative runs backwards.
-  Integrator(const Scheme &scheme, double h) : scheme(scheme), h(h), n(scheme.values())
+  Integrator(const Scheme &scheme, double h) : scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values())
   {
     const Fractions exact = scheme.first() ? first_order_coefficients(n)
                                            : second_order_coefficients(n, scheme.velocity_c0);
@@ -112,8 +112,8 @@ class Integrator {
       copy(rows + Scheme::OMEGA, 3, state.omega_body);
     } else {
       double qdot[4];
-      for (int i = 0; i < 3; ++i) state.velocity[i] = rates[Scheme::POSITION + i] / h;
-      for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] / h;
+      for (int i = 0; i < 3; ++i) state.velocity[i] = rates[Scheme::POSITION + i] * per_h;
+      for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] * per_h;
       angular_velocity(state.q, scheme.norm2(state.q), qdot, state.omega_body);
     }
     return state;
@@ -160,7 +160,7 @@ class Integrator {
   template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
 
   Scheme scheme;
-  double h;
+  double h, per_h;
   int n;
   double c[MAX_VALUES];
   double error_weight;
@@ -175,14 +175,14 @@ class Integrator {
   }
 
   /// Residual of a column is target - row, row that of the order of the equation.
-  template <class History>
-  void feed_back(double *rows, const double *row, int component, int count, double *target,
+  template <class History, int COUNT>
+  void feed_back(double *rows, const double *row, int component, double *target,
                  double *total = nullptr) const
   {
-    for (int i = 0; i < count; ++i) target[i] -= row[component + i];
-    History::correct(rows, n, c, component, count, target);
+    for (int i = 0; i < COUNT; ++i) target[i] -= row[component + i];
+    History::template correct<COUNT>(rows, n, c, component, target);
     if (total)
-      for (int i = 0; i < count; ++i) total[i] += target[i];
+      for (int i = 0; i < COUNT; ++i) total[i] += target[i];
   }
 
   template <class History>
@@ -198,10 +198,10 @@ class Integrator {
 
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i) target[i] = h * load.force[i];
-    feed_back<History>(rows, rates, Scheme::MOMENTUM, 3, target);
+    feed_back<History, 3>(rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
-    feed_back<History>(rows, rates, Scheme::POSITION, 3, target, total.x);
+    feed_back<History, 3>(rows, rates, Scheme::POSITION, target, total.x);
 
     // angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16)
 
@@ -209,10 +209,10 @@ class Integrator {
       copy(omega_body, 3, before);
       angular_acceleration(body, torque_body, before, target);
       for (int i = 0; i < 3; ++i) target[i] *= h;
-      feed_back<History>(rows, rates, Scheme::OMEGA, 3, target);
+      feed_back<History, 3>(rows, rates, Scheme::OMEGA, target);
       quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
       for (int i = 0; i < 4; ++i) target[i] *= h;
-      feed_back<History>(rows, rates, quat, 4, target, total.q);
+      feed_back<History, 4>(rows, rates, quat, target, total.q);
     }
     if (scheme.project) project_row<History>(rows);
   }
@@ -229,18 +229,18 @@ class Integrator {
     // positions (Eq. 17): forces stay, so one pass is all
 
     for (int i = 0; i < 3; ++i) target[i] = half_h2 * load.force[i] / body.mass;
-    feed_back<History>(rows, seconds, Scheme::POSITION, 3, target, total.x);
+    feed_back<History, 3>(rows, seconds, Scheme::POSITION, target, total.x);
 
     // quaternions (Eqs. 6, 7, 18)
 
     for (int pass = 0; pass < scheme.passes; ++pass) {
       double omega_body[3], omegadot_body[3], qdot[4];
-      for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] / h;
+      for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] * per_h;
       angular_velocity(q, scheme.norm2(q), qdot, omega_body);
       angular_acceleration(body, torque_body, omega_body, omegadot_body);
       quaternion_acceleration(q, qdot, omegadot_body, target);
       for (int i = 0; i < 4; ++i) target[i] *= half_h2;
-      feed_back<History>(rows, seconds, quat, 4, target, total.q);
+      feed_back<History, 4>(rows, seconds, quat, target, total.q);
     }
     if (!scheme.project) return;
 
@@ -249,7 +249,7 @@ class Integrator {
     project_row<History>(rows);
     const double radial = -dot4(q, rates + quat);
     for (int i = 0; i < 4; ++i) target[i] = radial * q[i];
-    History::add(rows, n, 1, quat, 4, target);
+    History::template add<4>(rows, n, 1, quat, target);
   }
 
   /// |q| = 1 (Eq. 3), by what is missing: a compensated row keeps its digits.
@@ -260,7 +260,7 @@ class Integrator {
     const double missing = (1.0 - norm2) / (norm * (1.0 + norm));
     double change[4];
     for (int i = 0; i < 4; ++i) change[i] = missing * q[i];
-    History::add(rows, n, 0, scheme.quaternion(), 4, change);
+    History::template add<4>(rows, n, 0, scheme.quaternion(), change);
   }
 };
 

@@ -21,16 +21,17 @@ namespace GearQuat {
 template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   static double *carry_of(double *rows, int n, int row) { return rows + (n + row) * WIDTH; }
 
-  /// rows[row] += value for `count` components from `component` on, compensated where it counts.
-  static void add(double *rows, int n, int row, int component, int count, const double *value)
+  /// rows[row] += value for COUNT components from `component` on, compensated where it counts.
+  template <int COUNT>
+  static void add(double *rows, int n, int row, int component, const double *value)
   {
     double *sum = rows + row * WIDTH + component;
     if (row >= CARRIES) {
-      for (int c = 0; c < count; ++c) sum[c] += value[c];
+      for (int c = 0; c < COUNT; ++c) sum[c] += value[c];
       return;
     }
     double *carry = carry_of(rows, n, row) + component;
-    for (int c = 0; c < count; ++c) {
+    for (int c = 0; c < COUNT; ++c) {
       const double b = value[c] + carry[c], a = sum[c];
       sum[c] = a + b;
       const double rounded = sum[c] - a;    // exact error of a + b (Knuth's two-sum)
@@ -42,34 +43,31 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
   static void predict(double *rows, int n)
   {
-    for (int pass = 0; pass < n - 1; ++pass)
-      for (int j = n - 2; j >= pass; --j) {
-        const double *upper = rows + (j + 1) * WIDTH;
-        if (j >= CARRIES) {
-          double *lower = rows + j * WIDTH;
-          for (int c = 0; c < WIDTH; ++c) lower[c] += upper[c];
-        } else {
-          double value[WIDTH];
-          for (int c = 0; c < WIDTH; ++c) value[c] = upper[c];
-          if (j + 1 < CARRIES)
-            for (int c = 0; c < WIDTH; ++c) value[c] += carry_of(rows, n, j + 1)[c];
-          add(rows, n, j, 0, WIDTH, value);
-        }
-      }
+    switch (n) {    // a number of rows that the compiler knows is worth a third of the time
+      case 5:
+        return pascal<5>(rows, n);
+      case 6:
+        return pascal<6>(rows, n);
+      case 8:
+        return pascal<8>(rows, n);
+      default:
+        return pascal<0>(rows, n);
+    }
   }
 
-  /// Feed the residual of `count` components, the first at `component`, back into every row.
-  static void correct(double *rows, int n, const double *coefficients, int component, int count,
+  /// Feed the residual of COUNT components, the first at `component`, back into every row.
+  template <int COUNT>
+  static void correct(double *rows, int n, const double *coefficients, int component,
                       const double *residual)
   {
     for (int j = 0; j < CARRIES; ++j) {
-      double value[WIDTH];
-      for (int c = 0; c < count; ++c) value[c] = coefficients[j] * residual[c];
-      add(rows, n, j, component, count, value);
+      double value[COUNT];
+      for (int c = 0; c < COUNT; ++c) value[c] = coefficients[j] * residual[c];
+      add<COUNT>(rows, n, j, component, value);
     }
     for (int j = CARRIES; j < n; ++j) {
       double *row = rows + j * WIDTH + component;
-      for (int c = 0; c < count; ++c) row[c] += coefficients[j] * residual[c];
+      for (int c = 0; c < COUNT; ++c) row[c] += coefficients[j] * residual[c];
     }
   }
 
@@ -89,6 +87,27 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
         }
       }
     }
+  }
+
+ private:
+  /// N: rows if known when compiling, or 0.
+  template <int N> static void pascal(double *rows, int rows_kept)
+  {
+    const int n = N ? N : rows_kept;
+    for (int pass = 0; pass < n - 1; ++pass)
+      for (int j = n - 2; j >= pass; --j) {
+        double *lower = rows + j * WIDTH;
+        const double *upper = lower + WIDTH;
+        if (j >= CARRIES) {
+          for (int c = 0; c < WIDTH; ++c) lower[c] += upper[c];
+        } else {
+          double value[WIDTH];
+          for (int c = 0; c < WIDTH; ++c) value[c] = upper[c];
+          if (j + 1 < CARRIES)
+            for (int c = 0; c < WIDTH; ++c) value[c] += carry_of(rows, n, j + 1)[c];
+          add<WIDTH>(rows, n, j, 0, value);
+        }
+      }
   }
 };
 

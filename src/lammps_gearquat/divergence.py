@@ -13,12 +13,14 @@ OUTSIDE = 200.0
 def separation(first, second):
     """Distance between the centres of mass of two series, shape (n,) of their common times.
 
-    Both have to be sampled at the same times from the start on; the longer one is cut.
+    Both have to be sampled at the same times from the start on; the longer one is cut.  Of several
+    bodies (``centre`` of shape (n, B, 3)) it is the largest distance.
     """
     n = min(len(first.time), len(second.time))
     if not np.allclose(first.time[:n], second.time[:n], rtol=1e-9, atol=1e-9):
         raise ValueError("the two series are not sampled at the same times")
-    return np.linalg.norm(first.centre[:n] - second.centre[:n], axis=1)
+    distance = np.linalg.norm(first.centre[:n] - second.centre[:n], axis=-1)
+    return distance.reshape(n, -1).max(axis=1)
 
 
 def parting_time(first, second, threshold):

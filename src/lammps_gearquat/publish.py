@@ -3,22 +3,17 @@
 Every number that README shows comes from here, so that none of them can go stale unnoticed.
 """
 
-import datetime
-import os
-import platform
-import re
 import shutil
 from collections import Counter
-from importlib import metadata
 from pathlib import Path
 
 from . import accuracy, report
 from .cases import ACCURACY_END, ACCURACY_STEPS
+from .checkout import END, PublishError, begin, find, provenance, split_block, write_block
 from .claims import EXPLAINED, NOT, REPRODUCED
 
 COMMAND = "gearquat cases --publish"
-BEGIN = f"<!-- begin: written by `{COMMAND}` -->"
-END = "<!-- end -->"
+BEGIN = begin(COMMAND)
 
 #: committed figures and what they show; all of them are among the figures of the run
 FIGURES = {
@@ -31,63 +26,14 @@ FIGURES = {
 GEAR_SECOND, GEAR_FIRST, PAPER_SECOND, _, RIGID = accuracy.METHODS
 
 
-class PublishError(RuntimeError):
-    """The folder is not a checkout of GEARQUAT."""
-
-
 def checkout(folder):
     """``folder`` as a Path, if it is a checkout."""
-    folder = Path(folder).resolve()
-    readme = folder / "README.md"
-    if not (folder / "src" / "GEARQUAT").is_dir() or not readme.is_file():
-        raise PublishError(f"{folder} is not a checkout of GEARQUAT")
-    split_readme(readme.read_text(encoding="utf-8"))
-    return folder
+    return find(folder, COMMAND)
 
 
 def split_readme(text):
-    """README before, inside and after the markers."""
-    if text.count(BEGIN) != 1 or text.count(END) != 1 or text.index(BEGIN) > text.index(END):
-        raise PublishError(f"README.md needs one {BEGIN} and after it one {END}")
-    before, rest = text.split(BEGIN)
-    inside, after = rest.split(END)
-    return before, inside, after
-
-
-# --- where it was measured ----------------------------------------------------------------------
-def processor():
-    """Name of the processor, as Linux tells it."""
-    try:
-        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
-    except OSError:
-        text = ""
-    found = re.search(r"^model name\s*:\s*(.*)$", text, re.MULTILINE)
-    return found[1].strip() if found else platform.machine()
-
-
-def system():
-    """Name of the operating system."""
-    try:
-        return platform.freedesktop_os_release()["PRETTY_NAME"]
-    except (OSError, KeyError):
-        return platform.system()
-
-
-def lammps_of(logs):
-    """The LAMMPS that wrote the logs in a folder, from their first lines."""
-    first = {log.open(encoding="utf-8").readline().strip() for log in Path(logs).glob("log.*")}
-    return ", ".join(sorted(first)) or "LAMMPS of unknown version"
-
-
-def provenance(out):
-    """One sentence: what measured, where and when.  ``out``: folder of the run."""
-    cores = len(os.sched_getaffinity(0))
-    versions = [f"{name} {metadata.version(name)}" for name in ("lammps-gearquat", "numpy")]
-    return (
-        f"Measured with {lammps_of(Path(out) / 'logs')}, {', '.join(versions)}, Python "
-        f"{platform.python_version()}, on {system()}, {processor()} ({cores} cores), "
-        f"{datetime.date.today():%d %b %Y}."
-    )
+    """README before, inside and after the block."""
+    return split_block(text, COMMAND)
 
 
 # --- texts --------------------------------------------------------------------------------------
@@ -186,7 +132,4 @@ def publish(folder, out, claims, results):
         shutil.copyfile(out / "figures" / name, figures / name)
     text = results_text(claims, results, out)
     (folder / "doc" / "results.md").write_text(text, encoding="utf-8")
-    readme = folder / "README.md"
-    before, _, after = split_readme(readme.read_text(encoding="utf-8"))
-    block = readme_block(claims, results, out)
-    readme.write_text(f"{before}{BEGIN}\n{block}\n{END}{after}", encoding="utf-8")
+    write_block(folder / "README.md", COMMAND, readme_block(claims, results, out))

@@ -110,15 +110,19 @@ def test_rows_follow_at_any_time(lmp_wheel):
     after = """
 compute sum all reduce sumsq f_move[4] inputs local
 variable one equal f_move[3][1]
-fix mean all ave/time 1 5 5 v_one c_sum
+fix mean all ave/time 1 5 5 v_one c_sum file mean.txt format ' %.17g'
 """
     table, _, result = bodies_of(lmp_wheel, after=after, steps=5)
-    more = "thermo_style custom step f_mean[1] f_mean[2] c_sum\nthermo 1\nthermo_modify norm no format float %.17g\n"
+    more = (
+        "thermo_style custom step c_sum v_one\nthermo 1\nthermo_modify norm no format float %.17g\n"
+    )
     data = water_data(lmp_wheel.folder / "data.water")
     result = lmp_wheel.run(water(data, steps=5, dt=1.0, after=after, run=more + "run 5"))
     assert result.returncode == 0, result.output
     thermo = result.thermo[-1]
     each = np.array(thermo["c_sum"])
-    assert thermo["f_mean[2]"][-1] == pytest.approx(each[1:].mean(), rel=1e-12)
+    means = np.loadtxt(lmp_wheel.folder / "mean.txt")[1:]
+    assert means == pytest.approx([np.mean(thermo["v_one"][1:]), each[1:].mean()], rel=1e-12)
+    assert means != pytest.approx([np.mean(thermo["v_one"][:-1]), each[:-1].mean()], rel=1e-12)
     assert each[-1] == pytest.approx((table[:, 3] ** 2).sum(), rel=1e-12)
     assert abs(each[-1] - each[1]) > 0.001 * abs(each[1])

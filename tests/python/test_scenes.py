@@ -2,11 +2,13 @@
 
 import runpy
 
+import numpy as np
 import pytest
 
 from lammps_gearquat import decks
 
 MOTIONS = ("first", "second", "rigid")
+METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")
 ENERGY = {1: -0.72360304, 2: -0.72360304, 3: 3.99270832}
 
 
@@ -86,3 +88,114 @@ def test_ranks_agree(lmp_wheel, examples, ranks):
         assert result.returncode == 0, result.output
         centre.append([result.thermo[-1][f"c_centre[{k}]"][-1] for k in (1, 2, 3)])
     assert centre[0] == pytest.approx(centre[1], rel=1e-10, abs=1e-10)
+
+
+# --- the free top -------------------------------------------------------------------------------
+MOMENTS, OMEGA_BODY = np.array([19.5, 15.0, 7.5]), np.array([0.02, 1.0, 0.01])
+
+
+@pytest.fixture(scope="module")
+def top(examples):
+    """Masses (6,), positions and velocities (6, 3) of data.top."""
+    text = (examples / "top" / "data.top").read_text()
+    atoms, velocities = text.partition("Atoms # full")[2].split("Velocities")
+    atoms = np.loadtxt(atoms.split("\n"))
+    return atoms[:, 2], atoms[:, 4:7], np.loadtxt(velocities.split("\n"))[:, 1:4]
+
+
+def test_top_is_as_generated(examples):
+    files = runpy.run_path(str(examples / "top" / "make_top.py"))["scene_files"]()
+    assert list(files) == ["top/data.top"]
+    for name, text in files.items():
+        assert (examples / name).read_text() == text
+        assert (examples / name).read_text() != text.replace("2.77", "2.80")
+
+
+def test_top_is_a_rigid_body_at_rest(top):
+    """Moments from the sites; momentum zero; every velocity that of one angular velocity."""
+    mass, x, v = top
+    assert mass @ x == pytest.approx(0.0, abs=1e-14)
+    assert mass @ v == pytest.approx(0.0, abs=1e-14)
+    tensor = np.einsum("a,ai,ai->", mass, x, x) * np.eye(3) - np.einsum("a,ai,aj->ij", mass, x, x)
+    moments, axes = np.linalg.eigh(tensor)
+    assert moments[::-1] == pytest.approx(MOMENTS, rel=1e-13)
+    omega_space = np.linalg.solve(tensor, (mass[:, None] * np.cross(x, v)).sum(axis=0))
+    assert np.cross(omega_space, x) == pytest.approx(v, abs=1e-13)
+    assert abs(axes.T @ omega_space)[::-1] == pytest.approx(OMEGA_BODY, rel=1e-12)
+    assert abs(axes.T @ omega_space)[::-1] != pytest.approx(1.01 * OMEGA_BODY, rel=1e-3)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_energy_of_the_top(lmp_wheel, examples, method):
+    expected = (MOMENTS * OMEGA_BODY**2).sum() / 2
+    deck = examples / "top" / "in.top"
+    result = lmp_wheel.run(deck, {"method": method, "steps": 100, "every": 100})
+    assert result.returncode == 0, result.output
+    total = result.thermo[-1]["v_total"]
+    assert total[0] == pytest.approx(expected, rel=1e-13)
+    assert total[1] == pytest.approx(expected, rel=1e-4)
+    assert total[0] != pytest.approx(expected * 1.01, rel=1e-4)
+
+
+# --- the coated body ----------------------------------------------------------------------------
+EPSILON = {"cage": 10.0, 4: 10.0, "coat": 0.1}  # all with sigma 10: so has every mixed pair
+
+
+def coated_energy(generator, coat):
+    """Total energy of the start of case 1 with epsilon ``coat`` on spheres 1 to 3."""
+    start = generator["STARTS"]["case1"]
+    sites, *_ = generator["motion"](start, "consistent")
+    total = 0.0
+    for site, charge, x in zip((1, 2, 3, 4), generator["SITE_CHARGE"], sites):
+        epsilon = np.sqrt(EPSILON["cage"] * (EPSILON[4] if site == 4 else coat))
+        for cage_charge, y in generator["cage"]():
+            r = np.linalg.norm(np.subtract(x, y))
+            sixth = (10.0 / r) ** 6
+            total += charge * cage_charge / r + 4 * epsilon * (sixth**2 - sixth)
+    moments, _ = generator["principal_moments_and_axes"]()
+    mass = sum(generator["SITE_MASS"])
+    kinetic = mass * np.dot(start.velocity, start.velocity) + np.dot(
+        moments, np.square(start.omega_body)
+    )
+    return total + kinetic / 2
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_energy_of_the_coated_body(lmp_wheel, examples, generator, method):
+    """Below zero, so that the body stays; an independent sum."""
+    expected = coated_energy(generator, EPSILON["coat"])
+    assert expected == pytest.approx(-0.82575686, abs=5e-9)
+    deck = examples / "coated" / "in.coated"
+    result = lmp_wheel.run(deck, {"method": method, "steps": 0})
+    assert result.returncode == 0, result.output
+    total = result.thermo[-1]["v_total"][0]
+    assert total == pytest.approx(expected, rel=1e-12)
+    assert total != pytest.approx(coated_energy(generator, 1.01 * EPSILON["coat"]), rel=1e-4)
+
+
+def test_coated_body_is_repelled_by_every_sphere(examples):
+    """On the way to any charge of the cage, at most 1, the repulsion wins long before r = 5."""
+    scene = (examples / "common" / "in.scene").read_text()
+    assert "pair_coeff 1*2 1*2 ${coat} ${thickness}" in scene
+    deck = (examples / "coated" / "in.coated").read_text()
+    assert f"variable coat index {EPSILON['coat']:g}\n" in deck
+    epsilon, r = np.sqrt(EPSILON["coat"] * EPSILON["cage"]), np.linspace(2.0, 8.0, 100)
+    force = 24 * epsilon / r * (2 * (10 / r) ** 12 - (10 / r) ** 6) - 1.0 / r**2
+    assert (force > 0).all() and (np.diff(force) < 0).all()
+
+
+# --- variables that all decks share -------------------------------------------------------------
+def test_what_is_set_reaches_the_fix(lmp_wheel, examples):
+    """values, passes and compensate are given to the fix only if set; more adds columns."""
+    deck = examples / "case1" / "in.case1"
+    named = {"steps": 0, "values": 8, "passes": 2, "compensate": "yes", "more": "f_move[1] pe"}
+    log = lmp_wheel.run(deck, named).log
+    assert "fix move body gear/quat molecule formulation second start bootstrap" in log
+    assert "c0 position values 8 passes 2 compensate yes" in log
+    log = lmp_wheel.run(deck, {"steps": 0}).log
+    assert not any(
+        f" {word} " in line
+        for line in log.splitlines()
+        if line.startswith("fix move body gear/quat")
+        for word in named
+    )

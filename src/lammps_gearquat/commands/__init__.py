@@ -1,0 +1,1 @@
+"""The commands of ``gearquat``: options and messages; the work is done elsewhere."""

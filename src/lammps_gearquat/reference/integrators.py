@@ -1,0 +1,178 @@
+"""Gragg-Bulirsch-Stoer extrapolation in any NumPy float type, meant for 80-bit long double.
+
+One step of size H from y:
+
+    midpoint     for n = 2, 4, ..., 2K:  h = H / n,  z_0 = 0,  z_1 = h f(y),
+                 z_{m+1} = z_{m-1} + 2 h f(y + z_m);  T_n = z_n, the change of y, has an
+                 error in even powers of h
+    extrapolate  T = sum_n w_n T_n: h -> 0 by exact rational weights; order 2K
+    judge        |T - T'| with T' from all but n = 2, against tolerance x size of the state
+
+Changes, not values, are extrapolated, and they are added up with a carry (Kahan): rounding is that
+of a small number, and the sum of a long run keeps the digits of the float type.
+W. B. Gragg, SIAM J. Numer. Anal. 2, 384 (1965); R. Bulirsch and J. Stoer, Numer. Math. 8, 1 (1966).
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import prod
+
+import numpy as np
+
+#: columns K of the extrapolation, order 2K; its weights enlarge rounding of the rates 56 times ...
+COLUMNS = 7
+#: ... and 12 times: for forces that are double in a state that is extended
+COLUMNS_DOUBLE_FORCES = 5
+#: smallest step tolerances that gain something
+TOLERANCE, TOLERANCE_DOUBLE_FORCES = 1e-17, 1e-14
+#: a step shrinks to at least, grows to at most, this multiple; the rest is a margin
+SHRINK, GROW, MARGIN = 0.2, 4.0, 0.9
+#: a step below this fraction of the first one asks for more than rounding or a jump allows
+SMALLEST = 1e-6
+
+
+class NotReached(RuntimeError):
+    """The tolerance is below what the float type or the forces can give."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Packed states (T, B, 13) at ``times``; what they cost."""
+
+    times: tuple
+    states: np.ndarray
+    evaluations: int
+    steps: int
+    rejected: int
+
+
+def extrapolation_weights(counts):
+    """Weights w_n, as Fractions, that take T_n(h = H/n), even in h, to h = 0."""
+    return [
+        prod(Fraction(n * n, n * n - m * m) for m in counts if m != n) if len(counts) > 1 else 1
+        for n in counts
+    ]
+
+
+def _as_float(fraction, dtype):
+    """A Fraction in a float type, rounded once or twice."""
+    return dtype(str(fraction.numerator)) / dtype(str(fraction.denominator))
+
+
+class GraggBulirschStoer:
+    """Extrapolation for y' = rates(t, y); ``rates`` was called ``evaluations`` times so far.
+
+    ``scales(y)`` is the size of y by column, to which the tolerance is relative.  With a
+    ``fixed_step`` the tolerance is of no effect.
+    """
+
+    def __init__(self, rates, scales, tolerance, dtype, columns=COLUMNS, fixed_step=None):
+        if columns < 3:
+            raise ValueError(f"at least 3 columns are required, not {columns}")
+        counts = [2 * (k + 1) for k in range(columns)]
+        self.fixed_step = fixed_step
+        self.rates, self.scales, self.tolerance = rates, scales, tolerance
+        self.counts, self.order = counts, 2 * columns
+        self.weights = np.array([_as_float(w, dtype) for w in extrapolation_weights(counts)])
+        lower = [_as_float(w, dtype) for w in extrapolation_weights(counts[1:])]
+        self.judging = self.weights - np.array([dtype(0), *lower])
+        self.evaluations = self.steps = self.rejected = 0
+
+    def _rates(self, t, y):
+        self.evaluations += 1
+        return self.rates(t, y)
+
+    def _midpoint(self, t, y, slope, step, n):
+        """Change of y over ``step`` in n midpoint steps; ``slope`` = f(t, y)."""
+        h = step / n
+        before, change = 0, h * slope
+        for m in range(1, n):
+            before, change = change, before + 2 * h * self._rates(t + m * h, y + change)
+        return change
+
+    def _change(self, t, y, slope, step):
+        """Change of y over ``step`` and its error in units of the tolerance."""
+        table = np.array([self._midpoint(t, y, slope, step, n) for n in self.counts])
+        change = np.tensordot(self.weights, table, axes=1)
+        error = np.abs(np.tensordot(self.judging, table, axes=1))
+        scale = np.maximum(self.scales(y), self.scales(change))
+        # a part that is and stays zero (no spin, no force) has no error either
+        relative = error / np.where(scale > 0, scale, 1)
+        return change, float(relative.max() / self.tolerance)
+
+    def first_step(self, y, slope, span):
+        """A step over which no part of the state changes by more than a tenth of itself."""
+        scale, speed = self.scales(y), self.scales(slope)
+        moving = (speed > 0) & (scale > 0)
+        times = scale[moving] / speed[moving]
+        return min(times.min() / 10, abs(span)) if len(times) else abs(span)
+
+    def _next_step(self, h, error):
+        """The step to follow one of size h whose error, in units of the tolerance, is this."""
+        if self.fixed_step:
+            return self.fixed_step
+        if not np.isfinite(error):
+            return abs(h) * SHRINK
+        best = MARGIN * max(error, 1e-30) ** (-1 / (self.order - 1))
+        return abs(h) * min(GROW, max(SHRINK, best))
+
+    def advance(self, y, times):
+        """States at ``times`` (monotonic, the first is that of y), shape (len(times), *y.shape)."""
+        carry, t, states = np.zeros_like(y), times[0], [y]
+        slope = self._rates(t, y)
+        step = first = self.fixed_step or self.first_step(y, slope, times[-1] - times[0])
+        for stop in times[1:]:
+            while t != stop:
+                # equal parts of what is left, so that the last one is no splinter
+                parts = max(np.ceil(abs(stop - t) / step * (1 - 1e-12)), 1)
+                h = (stop - t) / parts
+                change, error = self._change(t, y, slope, h)
+                following = self._next_step(h, error)
+                if error <= 1 or self.fixed_step:
+                    # Kahan's sum: what y cannot hold of the change is added to the next one
+                    change = change + carry
+                    after = y + change
+                    carry = change - (after - y)
+                    y, t = after, stop if parts == 1 else t + h
+                    slope = self._rates(t, y)
+                    self.steps += 1
+                    # a step cut short to meet a time says little of how long one may be
+                    step = max(following, step) if error <= 1e-3 else following
+                else:
+                    self.rejected += 1
+                    step = following
+                if step < SMALLEST * first:
+                    raise NotReached(
+                        f"no step is small enough at t = {float(t):g}: a tolerance above"
+                        f" {self.tolerance:.0e} is required, or forces without jumps"
+                    )
+            states.append(y)
+        return np.array(states)
+
+
+def integrate(problem, times, tolerance=None, columns=None, fixed_step=None):
+    """Solution of a Problem at ``times``, which rise from 0 or fall from it; 0 need not be listed.
+
+    Everything is done in the float type of the problem.  ``tolerance`` bounds the error estimate of
+    every step, relative to the largest position, velocity, ... of any body; it and ``columns``
+    follow from the float type of the field's forces unless given.  Across forces that jump no error
+    estimate helps: there a ``fixed_step`` takes its place (an upper bound: the time between two of
+    ``times`` is cut into equal parts), and two of them tell the error.
+    """
+    dtype = problem.dtype.type
+    times = [dtype(t) for t in times]
+    steps = np.diff(np.array([dtype(0), *times]))
+    if not times or not ((steps >= 0).all() or (steps <= 0).all()):
+        raise ValueError("times are required that rise (or fall) from 0 on")
+    if fixed_step is not None and not fixed_step > 0:
+        raise ValueError(f"a fixed step above zero is required, not {fixed_step}")
+    extended = problem.field.dtype is None
+    if tolerance is None:
+        tolerance = TOLERANCE if extended else TOLERANCE_DOUBLE_FORCES
+    if columns is None:
+        columns = COLUMNS if extended else COLUMNS_DOUBLE_FORCES
+    solver = GraggBulirschStoer(
+        problem.rates, problem.scales, tolerance, dtype, columns, fixed_step
+    )
+    states = solver.advance(problem.start.packed(), [dtype(0), *times])[1:]
+    return Solution(tuple(times), states, solver.evaluations, solver.steps, solver.rejected)

@@ -1,0 +1,102 @@
+"""What accuracy costs with SciPy's solvers, DOP853 and LSODA, counted in evaluations of the forces.
+
+Every call of the right-hand side counts, whoever makes it and whatever for; LSODA chooses between
+Adams and BDF itself and gets no Jacobian, so the calls for one of differences are among them.  It
+keeps room for a full Jacobian: 340 MB for 500 bodies.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from . import quaternion as qt
+from .equations import State
+
+METHODS = ("DOP853", "LSODA")
+#: SciPy raises a smaller relative tolerance to this one, and says so in a warning
+SMALLEST_TOLERANCE = 100 * np.finfo(float).eps
+
+
+@dataclass(frozen=True)
+class Errors:
+    """``centre`` (B,), distance of the centres of mass; ``angle`` (B,), radians, of the rotation
+    between the orientations; ``energy``, total energy at the end less that at the start."""
+
+    centre: np.ndarray
+    angle: np.ndarray
+    energy: float
+
+    @property
+    def rms_centre(self):
+        """Root mean square of ``centre`` over the bodies."""
+        return float(np.sqrt((self.centre**2).mean()))
+
+    @property
+    def rms_angle(self):
+        """Root mean square of ``angle`` over the bodies."""
+        return float(np.sqrt((self.angle**2).mean()))
+
+
+@dataclass(frozen=True)
+class WorkPoint:
+    """One run of a solver: ``tolerance`` asked, ``evaluations`` made, ``errors`` found."""
+
+    method: str
+    tolerance: float
+    evaluations: int
+    errors: Errors
+
+
+def state_errors(problem, reference, state):
+    """Errors of a State of any float type, judged in the float type of the problem."""
+    state, reference = state.astype(problem.dtype), reference.astype(problem.dtype)
+    away = state.centre - reference.centre
+    energy = sum(problem.energies(state)) - sum(problem.energies(problem.start))
+    return Errors(
+        np.sqrt((away * away).sum(axis=1)).astype(np.float64),
+        qt.angle_between(state.q, reference.q).astype(np.float64),
+        float(energy),
+    )
+
+
+def solve(problem, time, method, tolerance):
+    """State of a Problem at ``time`` by a SciPy method in double precision, and the evaluations.
+
+    ``tolerance`` is relative to each component and to the largest of its kind (position, velocity,
+    quaternion, angular velocity), whichever is larger.
+    """
+    if method not in METHODS:
+        raise ValueError(f"the method is one of {', '.join(METHODS)}, not {method}")
+    if not tolerance >= SMALLEST_TOLERANCE:
+        raise ValueError(f"a tolerance of at least {SMALLEST_TOLERANCE:.2g} is required")
+    double = problem.astype(np.float64)
+    start = double.start.packed()
+    evaluations = 0
+
+    def rates(t, y):
+        nonlocal evaluations
+        evaluations += 1
+        return double.rates(t, y.reshape(start.shape)).ravel()
+
+    scale = double.scales(start)
+    absolute = np.broadcast_to(tolerance * np.where(scale > 0, scale, 1), start.shape).ravel()
+    # no times in between are asked for: dense output would call the right-hand side for itself
+    found = solve_ivp(
+        rates, (0.0, float(time)), start.ravel(), method, rtol=tolerance, atol=absolute
+    )
+    if not found.success:
+        raise RuntimeError(f"{method} at tolerance {tolerance:g}: {found.message}")
+    return State.of(found.y[:, -1].reshape(start.shape)), evaluations
+
+
+def work_precision(problem, time, reference, method, tolerances, progress=None):
+    """A WorkPoint for each of ``tolerances``; ``progress(1)`` is called after each."""
+    points = []
+    for tolerance in tolerances:
+        state, evaluations = solve(problem, time, method, tolerance)
+        errors = state_errors(problem, reference, state)
+        points.append(WorkPoint(method, tolerance, evaluations, errors))
+        if progress:
+            progress(1)
+    return points

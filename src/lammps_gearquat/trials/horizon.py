@@ -1,0 +1,122 @@
+"""Until what time a trajectory can be trusted: one scene at two accuracies, side by side."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .. import divergence as dv
+from . import evaluate
+from .cost import Budget, Study, warnings_of
+from .script import DeckError
+
+#: what the deck itself is compared with, at half its step
+ACCURATE = "formulation second values 8 compensate yes"
+#: default thresholds, in powers of ten of the size of the bodies
+THRESHOLDS = (0.1, 1.0, 3.0)
+SAMPLES = 500
+#: a difference of this part of the size of the bodies no longer grows freely
+SATURATION = 0.1
+BUDGET = 120.0  # seconds that set the default time
+
+
+@dataclass
+class Horizon:
+    """Two trials of one scene, B bodies, S samples; units of the deck.
+
+    ``largest`` and ``rms``, distances of the centres of mass of bodies, and ``angle``, the largest
+    angle between orientations (radians), all (S,); ``parting``, list of (threshold, time), infinite
+    if not reached; ``growth``, an evaluate.Growth or None, and then ``no_growth`` says why.
+    """
+
+    trials: tuple
+    largest: np.ndarray
+    rms: np.ndarray
+    angle: np.ndarray
+    parting: list
+    growth: object
+    no_growth: str
+    notes: list = field(default_factory=list)
+
+    @property
+    def time(self):
+        """Times of the samples, (S,)."""
+        return self.trials[0].time
+
+
+def measure(
+    deck, a=None, b=None, steps=(None, None), time=None, every=None, thresholds=(), progress=None
+):
+    """Horizon of a Deck.
+
+    ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
+    the deck as it is, and ACCURATE.  ``steps`` are their time steps; None: the deck's own, and half
+    of that where nothing else differs.  ``every`` is the time between samples.
+    """
+    keywords = [None if a is None else deck.lines[0].numerics(a)]
+    keywords += [ACCURATE if b is None else deck.lines[0].numerics(b)]
+    dt_a = steps[0] or deck.dt
+    dt_b = steps[1] or (dt_a / 2 if b is None else dt_a)
+    notes = list(deck.notes)
+    if time is None:
+        time = affordable(deck, dt_a, dt_b)
+        if time < deck.end:
+            notes.append(
+                f"run to t = {time:g} of {deck.end:g} to stay within {BUDGET:g} s (--time)"
+            )
+    segments, interval = sampling(time, every, dt_a)
+    inner = max(round(interval / dt_b), 1)
+    if abs(inner * dt_b / interval - 1) > 1e-9:
+        inner = int(np.ceil(interval / dt_b))
+        dt_b = interval / inner
+        notes.append(f"the second step is {dt_b:g}, a fraction of the time between samples")
+    if progress is not None:
+        progress.reset(total=segments * (round(interval / dt_a) + inner))
+        deck.worker.on_steps = progress.update
+    trials = (
+        deck.run(keywords[0], [round(interval / dt_a)] * segments, dt_a),
+        deck.run(keywords[1], [inner] * segments, dt_b),
+    )
+    return compare(deck, trials, thresholds, notes)
+
+
+def affordable(deck, dt_a, dt_b):
+    """The time of the deck's run, or what two runs within BUDGET reach."""
+    pace = Study(deck, Budget(BUDGET)).probe()
+    return min(deck.end, BUDGET / (pace / dt_a + pace / dt_b))
+
+
+def sampling(time, every, dt):
+    """(number of samples, time between them), the latter a multiple of ``dt``."""
+    stride = max(round((every or time / SAMPLES) / dt), 1)
+    segments = int(time / (stride * dt) * (1 + 1e-9))
+    if segments < 1:
+        raise DeckError(f"the time {time:g} is shorter than one sample, {stride * dt:g}")
+    if every and abs(stride * dt / every - 1) > 1e-9:
+        raise DeckError(f"--every {every:g} is no multiple of the time step {dt:g}")
+    return segments, stride * dt
+
+
+def compare(deck, trials, thresholds, notes=()):
+    """Horizon of two trials sampled at the same times."""
+    first, second = trials
+    scene = deck.scene
+    distance = np.linalg.norm(first.centre - second.centre, axis=-1)
+    angle = evaluate.angles(scene.bodies, scene.masses, second.positions, first.positions)
+    unit = evaluate.decade(deck.size)
+    thresholds = sorted(thresholds or [unit * factor for factor in THRESHOLDS])
+    largest = dv.separation(first, second)
+    parting = [(level, dv.parting_time(first, second, level)) for level in thresholds]
+    floor = evaluate.ROUNDING * np.abs(second.centre).max()
+    growth, no_growth = evaluate.growth(
+        first.time, largest, SATURATION * (deck.size or unit), floor
+    )
+    return Horizon(
+        trials,
+        largest,
+        np.sqrt(np.mean(distance**2, axis=1)),
+        angle.max(axis=1),
+        parting,
+        growth,
+        no_growth,
+        [*notes, *warnings_of(trials)],
+    )

@@ -1,0 +1,292 @@
+"""The flow of commands of an input script, followed up to the run that moves its rigid bodies.
+
+Only what decides which command comes next is done here: include, jump, label, next, if, run.
+Everything else, variables among it, is LAMMPS' own: every command is passed on to ``lammps`` as it
+stands.  What only writes or prints is left out.  The commands passed on are kept, so that they can
+be replayed without any control flow.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from . import script
+from .script import DeckError
+
+#: commands that only write, print or time
+SILENT = set("""dump dump_modify undump restart write_data write_restart write_dump write_coeff
+    thermo thermo_style thermo_modify log echo info print timer bond_write angle_write dihedral_write
+    pair_write processors balance""".split())
+SILENT_FIXES = ("ave/", "print", "vector", "halt", "balance")
+SILENT_COMPUTES = ("ke/rigid", "erotate/rigid", "rigid/local")
+#: commands that move atoms and are no run
+OTHER_MOTION = set("""rerun temper temper/grem temper/npt neb neb/spin tad prd hyper mdi
+    dynamical_matrix third_order partition""".split())
+MARK = "gearquat_branch"
+
+
+@dataclass
+class Command:
+    """A command passed on to LAMMPS.
+
+    ``mover`` is the FixLine if it defines a fix that moves bodies, and ``in_use`` whether later
+    commands needed that very fix; ``modifies`` is the ID of such a fix in a fix_modify command.
+    """
+
+    text: str
+    mover: script.FixLine = None
+    in_use: bool = False
+    modifies: str = ""
+
+
+@dataclass
+class Start:
+    """The state of a deck at the run that moves its bodies.
+
+    ``commands`` lead there; those with a ``mover`` define the fixes that move bodies now;
+    ``steps`` is the length of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the
+    command that makes the box.
+    """
+
+    commands: list = field(default_factory=list)
+    steps: int = 0
+    fixes: dict = field(default_factory=dict)
+    pair_style: list = field(default_factory=list)
+    box: int = 0
+    notes: list = field(default_factory=list)
+
+
+class _Reached(Exception):
+    """The run has been reached."""
+
+
+class Interpreter:
+    """Follows one deck.  ``lammps`` needs the methods command, expand and has_id.
+
+    ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies.
+    """
+
+    def __init__(self, lammps, without=(), which=1):
+        self.lammps = lammps
+        self.without = set(without)
+        self.which, self.runs = which, 0
+        self.start = Start()
+        self.movers = {}  # ID -> Command
+        self.silenced = set()  # IDs of fixes and computes that were left out
+        self.seen = set()
+        self.files = []
+        self.label = None
+        self.skip_jump = False
+
+    def follow(self, path):
+        """Start of the deck ``path``, relative to the present folder.  Raises DeckError."""
+        try:
+            self._file(path)
+        except _Reached:
+            unknown = self.without - self.seen
+            if unknown:
+                raise DeckError(f"--without: no fix {', '.join(sorted(unknown))} in the deck")
+            return self.start
+        if self.runs:
+            raise DeckError(f"the deck moves rigid bodies in {self.runs} run(s) only")
+        raise DeckError(
+            "no fix that moves rigid bodies is in use at any run of this deck:"
+            f" it needs fix gear/quat or one of fix {', '.join(script.RIGID)}, and a run"
+        )
+
+    # --- which command comes next -----------------------------------------------------------------
+    def _file(self, path):
+        self.files.append(self._open(path))
+        while True:
+            line = next(self.files[-1][1], None)
+            if line is None:
+                break
+            self.execute(line)
+        if self.label:
+            raise DeckError(f"label {self.label} was not found in {self.files[-1][0]}")
+        self.files.pop()
+
+    def _open(self, path):
+        try:
+            text = Path(path).read_text(encoding="utf-8", errors="replace")
+        except OSError as error:
+            raise DeckError(f"cannot read {path}: {error.strerror}") from error
+        return str(path), iter(script.logical_lines(text))
+
+    def execute(self, line):
+        """Follow or pass on one command."""
+        line = script.strip_comment(line)
+        if self.label:
+            words = script.split(line)
+            if words[:1] == ["label"] and words[1:2] == [self.label]:
+                self.label = None
+            return
+        if not line.strip():
+            return
+        words = script.split(self._lammps("expand", line))
+        name = words[0]
+        handler = getattr(self, "_do_" + name, None)
+        if handler:
+            handler(words, line)
+        elif name in OTHER_MOTION:
+            raise DeckError(f"the deck uses the command {name}; only run can be measured")
+        elif name not in SILENT:
+            self._pass(line)
+
+    def _lammps(self, method, line):
+        try:
+            return getattr(self.lammps, method)(line)
+        except Exception as error:  # the only class LAMMPS' module raises
+            text = " ".join(line.split())
+            raise DeckError(f"LAMMPS refuses the command\n  {text}\n  {error}") from error
+
+    def _pass(self, line, **facts):
+        self._lammps("command", line)
+        self.start.commands.append(Command(line, **facts))
+
+    def _do_include(self, words, line):
+        self._file(self._lammps("expand", words[1]))
+
+    def _do_label(self, words, line):
+        pass
+
+    def _do_jump(self, words, line):
+        if self.skip_jump:
+            self.skip_jump = False
+            return
+        self.files[-1] = self._open(self.files[-1][0] if words[1] == "SELF" else words[1])
+        self.label = words[2] if len(words) > 2 else None
+
+    def _do_next(self, words, line):
+        self._pass(line)
+        self.skip_jump = not self.lammps.has_id("variable", words[1])
+
+    def _do_if(self, words, line):
+        for condition, commands in script.branches(words):
+            if condition is None or self._holds(condition):
+                for command in commands:
+                    self.execute(command)
+                return
+
+    def _holds(self, condition):
+        self.lammps.command(f"variable {MARK} string 0")
+        test = f'if {script.quote(condition)} then "variable {MARK} string 1"'
+        self._lammps("command", test)
+        return self.lammps.expand(f"${{{MARK}}}") == "1"
+
+    def _do_quit(self, words, line):
+        raise DeckError("the deck quits before a run that moves rigid bodies")
+
+    def _do_shell(self, words, line):
+        """Run programs once; only what changes this process is kept for the replay."""
+        if words[1:2] and words[1] in ("cd", "putenv"):
+            self._pass(line)
+        else:
+            self._lammps("command", line)
+
+    # --- what is in the scene -----------------------------------------------------------------------
+    def _do_clear(self, words, line):
+        for id_ in list(self.movers):
+            self._retire(id_)
+        self.silenced.clear()
+        self.start.fixes.clear()
+        self._pass(line)
+
+    def _do_read_data(self, words, line):
+        self.start.box = len(self.start.commands)
+        self._pass(line)
+
+    _do_create_box = _do_read_restart = _do_read_data
+
+    def _do_pair_style(self, words, line):
+        self.start.pair_style = words[1:]
+        self._pass(line)
+
+    def _do_fix(self, words, line):
+        id_, style = words[1], words[3] if len(words) > 3 else ""
+        if id_ in self.without or style.startswith(SILENT_FIXES):
+            self.seen.add(id_)
+            self.silenced.add(id_)
+            return
+        self._retire(id_)
+        if script.moves_bodies(style):
+            self._pass(line, mover=script.parse_fix(words))
+            self.movers[id_] = self.start.commands[-1]
+        else:
+            self._pass(line)
+        self.start.fixes[id_] = style
+
+    def _retire(self, id_):
+        """A fix that moved bodies is no more: what defined it is a command as any other."""
+        mover = self.movers.pop(id_, None)
+        if mover:
+            mover.mover = None
+
+    def _do_compute(self, words, line):
+        if words[3:4] and words[3] in SILENT_COMPUTES:
+            self.silenced.add(words[1])
+        else:
+            self._pass(line)
+
+    def _do_fix_modify(self, words, line):
+        if words[1] in self.silenced:
+            return
+        self._pass(line, modifies=words[1] if words[1] in self.movers else "")
+        if words[1] in self.movers and "bodyforces" in words:
+            self.start.notes.append(
+                f"fix_modify {words[1]} bodyforces is left out: fix gear/quat takes all forces"
+            )
+
+    def _do_unfix(self, words, line):
+        if words[1] in self.silenced:
+            self.silenced.discard(words[1])
+            return
+        self._retire(words[1])
+        self.start.fixes.pop(words[1], None)
+        self._pass(line)
+
+    def _do_compute_modify(self, words, line):
+        if words[1] not in self.silenced:
+            self._pass(line)
+
+    def _do_uncompute(self, words, line):
+        if words[1] in self.silenced:
+            self.silenced.discard(words[1])
+        else:
+            self._pass(line)
+
+    def _do_velocity(self, words, line):
+        if "rigid" in words[2:]:
+            self._use_movers()
+        self._pass(line)
+
+    def _use_movers(self):
+        for mover in self.movers.values():
+            mover.in_use = True
+
+    # --- runs -----------------------------------------------------------------------------------------
+    def _do_run_style(self, words, line):
+        if words[1:] != ["verlet"]:
+            raise DeckError(f"run_style {' '.join(words[1:])}: only verlet can be measured")
+        self._pass(line)
+
+    def _do_minimize(self, words, line):
+        if self.movers:
+            raise DeckError(
+                "the deck minimizes the energy while a rigid fix is in use, which fix gear/quat"
+                " refuses: define that fix after minimize"
+            )
+        self._pass(line)
+
+    def _do_run(self, words, line):
+        if not self.movers:
+            self._pass(line)
+            return
+        steps = script.run_steps(words, self.lammps.extract_global("ntimestep"))
+        if steps <= 0:  # run 0 changes nothing
+            return
+        self.runs += 1
+        if self.runs == self.which:
+            self.start.steps = steps
+            raise _Reached
+        self._use_movers()
+        self._pass(line)

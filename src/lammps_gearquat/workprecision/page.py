@@ -1,0 +1,241 @@
+"""doc/accuracy_cost.md and README's block: every number on them comes from Results."""
+
+import shutil
+from pathlib import Path
+
+from ..checkout import find, provenance, write_block
+from ..report import markdown_table
+from . import plan, tables
+from .evaluate import RULE, fitted_order
+from .results import facts
+
+COMMAND = "gearquat workprecision --publish"
+PAGE, FOLDER = "accuracy_cost.md", "accuracy_cost"
+PACKAGES = ("lammps-gearquat", "numpy", "scipy")
+#: pictures on the page and what they show
+PICTURES = {
+    "main.png": "Error of the centre of mass against force evaluations and against wall time, test "
+    "case 1. The charges of the cage are reconstructed: the paper does not print them.",
+    "top.png": "The free top: all panels.",
+    "orders.png": "The order of every N, and the largest usable steps.",
+    "cutoff.png": "500 water molecules with forces that are smooth at the cut-off, and with a plain "
+    "cut-off.",
+}
+#: errors the sentences speak of
+SAMPLE, FINE = 1e-6, 1e-8
+
+
+def checkout(folder):
+    """``folder`` as a Path, if it is a checkout with a place for the results."""
+    return find(folder, COMMAND)
+
+
+def _milliseconds(cost):
+    return f"{tables.significant(1e3 * cost.value)} ms"
+
+
+# --- sentences ------------------------------------------------------------------------------------
+def price_sentence(results, scene="case1"):
+    """What one error costs with the cheapest setting, the default and fix rigid/nve/small."""
+    theirs = tables.rigid_price(results, scene, SAMPLE)
+    best = tables.cheapest_setting(results, scene, SAMPLE, "seconds")
+    default = tables.price(results, scene, plan.DEFAULT.key, SAMPLE, "seconds")
+    if not (theirs and best and default):
+        return ""
+    return (
+        f"An error of {tables.power(SAMPLE)} at t = {facts(scene).end:g} costs "
+        f"{_milliseconds(best[1])} with the cheapest setting ({best[0].label}), "
+        f"{_milliseconds(default)} with the defaults and {_milliseconds(theirs)} with "
+        "`fix rigid/nve/small`, set-up and start included."
+    )
+
+
+def reach_sentence(results, scene="case1"):
+    """How close each comes at any price."""
+
+    def closest(rows):
+        row = min(rows, key=lambda row: row.position)
+        return f"{row.position:.1e} off, after {tables.grouped(row.steps)} steps"
+
+    rigid = closest(results.curve(scene, plan.RIGID_NVE.key))
+    ours = closest(r for r in results.runs if r.scene == scene and r.family != plan.RIGID)
+    text = f"The closest run of `fix rigid/nve/small` ends {rigid}; that of `fix gear/quat` {ours}"
+    compensated = [row.position for row in results.rounding if row.compensate == "yes"]
+    return text + (f", and {min(compensated):.1e} with `compensate yes`." if compensated else ".")
+
+
+def passes_sentence(results, scene="top"):
+    """What a second pass is worth where rotation is fast."""
+    prices = []
+    for count in plan.PASSES:
+        found = tables.cheapest_setting(results, scene, FINE, "evaluations", count)
+        if found is None:
+            return ""
+        prices.append(found[1].value)
+    words = "saves" if prices[1] < prices[0] else "costs"
+    change = abs(1 - prices[1] / prices[0])
+    return (
+        f"A second pass (forces frozen) {words} {change:.0%} of the evaluations that an error of "
+        f"{tables.power(FINE)} of the free top's orientation takes."
+    )
+
+
+def _slope(results, scene, method):
+    """Fitted order of a method in a scene; None without."""
+    fit = fitted_order(*results.errors(scene, method), results.largest_step(scene, method))
+    return fit and fit.order
+
+
+def cutoff_sentence(results):
+    """What is left of the order behind a plain cut-off."""
+    smooth, plain = (_slope(results, s, plan.DEFAULT.key) for s in ("water", "water-plain"))
+    if smooth is None or plain is None:
+        return ""
+    rows = {scene: results.curve(scene, plan.DEFAULT.key) for scene in ("water", "water-plain")}
+    finest = [min(row.position for row in found) for found in rows.values()]
+    lost = len({r.method for r in results.runs if r.scene == "water-plain" and _is_lost(r)})
+    return (
+        f"Where a pair style is cut off without being smooth there, forces jump and no method keeps "
+        f"its order: in water the error of the default setting falls with the power {smooth:.1f} of "
+        f"the step if forces are smooth at the cut-off, and with the power {plain:.1f} behind a plain "
+        f"one, where it stays at {finest[1]:.0e} Å (smooth: {finest[0]:.0e} Å) and high orders are no "
+        f"use: {lost} of the settings tried lose the trajectory altogether at some step there."
+    )
+
+
+def _is_lost(row):
+    """Whether a run went astray, or off by more than the size of a molecule."""
+    return not row.position < 1.0
+
+
+def sentences(results):
+    """The few sentences of the page, as far as the results allow."""
+    scenes = set(results.scenes)
+    parts = []
+    if "case1" in scenes:
+        parts += [price_sentence(results), reach_sentence(results)]
+    if "top" in scenes:
+        parts.append(passes_sentence(results))
+    if {"water", "water-plain"} <= scenes:
+        parts.append(cutoff_sentence(results))
+    norm, tangency = tables.constraints(results)
+    parts.append(f"At usable steps | |q|² − 1 | stays below {max(norm, 1e-15):.0e}.")
+    return " ".join(part for part in parts if part)
+
+
+# --- the page -------------------------------------------------------------------------------------
+def _section(title, table, note=""):
+    return [f"## {title}", "", *([note, ""] if note else []), *markdown_table(*table), ""]
+
+
+def _picture(name, folder):
+    return [f"![{PICTURES[name]}]({folder}/{name})", "", f"*{PICTURES[name]}*", ""]
+
+
+def _tables(results, picture):
+    """Sections below the main picture."""
+    lines = []
+    if "case1" in results.scenes:
+        note = (
+            "Wall time of whole runs, `fix rigid/nve/small` over ours, error of the centre of mass "
+            "at t = 200."
+        )
+        lines += _section("Test case 1: speed-up", tables.speedup(results), note)
+        note = "The start of the method counted in."
+        lines += _section("Force evaluations", tables.evaluations(results), note)
+    if len(results.scenes) > ("case1" in results.scenes):
+        note = "Speed-up over `fix rigid/nve/small`; errors are root mean squares over the bodies."
+        lines += _section("Other scenes", tables.other_speedups(results), note)
+        lines += picture("cutoff.png")
+    if results.orders:
+        note = (
+            "Slopes with compensated sums. ω Δt: limit of the linear test equation. Largest usable "
+            "step: in test case 1, by bisection: the energy stays within a tenth of the kinetic."
+        )
+        lines += _section("Order and stability", tables.orders(results), note)
+        lines += picture("orders.png")
+    if results.rounding:
+        lines += _section("Rounding, t = 200", tables.rounding(results))
+    if results.modify:
+        note = 'LAMMPS\' "Modify" (`timer normal`), test case 1.'
+        lines += _section("Time inside the fix", tables.modify(results), note)
+    return lines
+
+
+def _drift(drift, folder):
+    """The fragment that `gearquat drift` left, its picture found beside ours."""
+    text = (Path(drift) / "drift.md").read_text(encoding="utf-8")
+    return [text.replace("(drift.png)", f"({folder}/drift.png)").strip(), ""]
+
+
+def page_text(out, results, drift=None, folder="figures"):
+    """The page; ``out``: folder of the run, ``folder``: where its pictures are, from the page."""
+    here = {path.name for path in (Path(out) / "figures").glob("*.png")}
+
+    def picture(name):
+        return _picture(name, folder) if name in here else []
+
+    lines = [
+        "# What accuracy costs",
+        "",
+        f"Written by `{COMMAND}`; do not edit. {provenance(out, PACKAGES)}",
+        "",
+        *picture("main.png"),
+        sentences(results),
+        "",
+        *_tables(results, picture),
+        *(_drift(drift, folder) if drift else []),
+        "## How it was measured",
+        "",
+        *_method(results),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _method(results):
+    """Rules behind the numbers."""
+    counts = [row.timings for row in results.runs if row.timings]
+    return [
+        "- One process, one core; for every timing LAMMPS is made anew, the scene is read, and the `run`",
+        "  command alone is timed: set-up, start and steps. Output at start and end only.",
+        f"- Medians of at least {min(counts)} timings, competitors in turn; short runs in more rounds until",
+        "  the median is steady. Every timed run repeats the run that was judged to the bit.",
+        "- Errors against extended precision (cage), elliptic functions (top), extrapolation with",
+        "  LAMMPS' forces (water), a run with a far smaller step (plain cut-off).",
+        "- Costs are interpolated log-log between the dearest run that misses an error and the next;",
+        "  extrapolated costs are labelled.",
+        f"- {RULE[0].upper() + RULE[1:]}.",
+        "- Decks: `examples/case1`, `top`, `water`. Every run is `lmp -in DECK -var ...`.",
+    ]
+
+
+def write(out, results, drift=None):
+    """The page in the folder of the run, and the tables as CSV beside it."""
+    (Path(out) / PAGE).write_text(page_text(out, results, drift), encoding="utf-8")
+
+
+def readme_block(out, results):
+    """What README shows between its markers."""
+    return "\n".join(
+        [
+            *_picture("main.png", f"doc/{FOLDER}"),
+            f"{price_sentence(results)} {reach_sentence(results)} Other scenes, every N, where it "
+            f"does not pay, and how it was measured: [doc/{PAGE}](doc/{PAGE}).",
+            "",
+            provenance(out, PACKAGES),
+        ]
+    )
+
+
+def publish(folder, out, results, drift=None):
+    """Write page, pictures and README's block into a checkout."""
+    folder, out = checkout(folder), Path(out)
+    pictures = folder / "doc" / FOLDER
+    pictures.mkdir(parents=True, exist_ok=True)
+    for name in PICTURES:
+        shutil.copyfile(out / "figures" / name, pictures / name)
+    if drift:
+        shutil.copyfile(Path(drift) / "drift.png", pictures / "drift.png")
+    text = page_text(out, results, drift, FOLDER)
+    (folder / "doc" / PAGE).write_text(text, encoding="utf-8")
+    write_block(folder / "README.md", COMMAND, readme_block(out, results))

@@ -1,0 +1,120 @@
+"""Largest stable steps: of the linear test equation, and by bisection of anything that can be tried.
+
+Test equation: x'' = -omega^2 x, one force evaluation a step, at the predicted position.  One step is
+a linear map of the history y_j = h^j x^(j) / j!, and counts as stable while no eigenvalue is larger
+than 1.01 in magnitude.  (Exactly 1 will not do: below the limit, too, the oscillation itself grows
+slowly, which is error, not instability.)  Source of the analysis: C. W. Gear, "Numerical Initial
+Value Problems in Ordinary Differential Equations" (1971).
+
+Coefficients, for N values (rows j = 0 ... N-1), from the polynomial P_n(s) = (1+s)(1+s/2)...(1+s/n):
+  first-order equation    sum_j j c_j s^(j-1) = P_(N-2)(s),  c_0 = integral of P_(N-1) over (-1, 0)
+  second-order equation   c_(j+1) = 2 a_j / (j+1), a_j those of a first-order equation with N-1 values;
+                          c_0 = 2 times the integral of -s P_(N-2)(s) over (-1, 0) ("velocity"),
+                          that times (N-2)/(N-1) ("position")
+"""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+
+LARGEST_GROWTH = 1.01  # in a step
+
+
+def _rising(n):
+    """Coefficients of P_n(s), ascending, as fractions."""
+    product = [Fraction(1)]
+    for i in range(1, n + 1):
+        shifted = [Fraction(0)] + [c / i for c in product]
+        product = [a + b for a, b in zip(product + [Fraction(0)], shifted)]
+    return product
+
+
+def _integral(polynomial):
+    """Integral over (-1, 0) of a polynomial with ascending coefficients."""
+    return sum(c * Fraction((-1) ** k, k + 1) for k, c in enumerate(polynomial))
+
+
+def first_order_coefficients(values):
+    """c_0 ... c_(N-1) for a first-order equation, as fractions."""
+    tail = [c / (k + 1) for k, c in enumerate(_rising(values - 2))]
+    return [_integral(_rising(values - 1)), *tail]
+
+
+def second_order_coefficients(values, c0="position"):
+    """c_0 ... c_(N-1) for a second-order equation, as fractions."""
+    tail = [2 * a / (j + 1) for j, a in enumerate(first_order_coefficients(values - 1))]
+    moment = [Fraction(0)] + [-c for c in _rising(values - 2)]
+    head = 2 * _integral(moment)
+    return [head * Fraction(values - 2, values - 1) if c0 == "position" else head, *tail]
+
+
+def _pascal(n):
+    """Matrix that predicts a history of n rows."""
+    return np.array([[math.comb(j, i) for j in range(n)] for i in range(n)], dtype=float)
+
+
+def second_order_step(values, omega_h, c0="position"):
+    """Matrix (N, N) of one step of the second formulation at omega h."""
+    predict = _pascal(values)
+    c = np.array([float(x) for x in second_order_coefficients(values, c0)])
+    residual = -0.5 * omega_h**2 * predict[0] - predict[2]
+    return predict + np.outer(c, residual)
+
+
+def first_order_step(values, omega_h):
+    """Matrix (2N, 2N) of one step of the first formulation at omega h.
+
+    Histories of position and of velocity; the position is corrected with the corrected velocity.
+    """
+    n = values
+    predict = np.kron(np.eye(2), _pascal(n))
+    c = np.array([float(x) for x in first_order_coefficients(n)])
+    step = predict.copy()
+    # units: velocity history in omega times length, so that only omega h appears
+    step[n:] += np.outer(c, -omega_h * predict[0] - predict[n + 1])
+    step[:n] += np.outer(c, omega_h * step[n] - predict[1])
+    return step
+
+
+def linear_limit(step_matrix, highest=4.0, scan=800, digits=5):
+    """Largest omega h up to which ``step_matrix(omega_h)`` is stable, found by scan and bisection.
+
+    The scan goes up from zero, so that stable islands beyond the first limit do not count.
+    """
+
+    def stable(omega_h):
+        return np.abs(np.linalg.eigvals(step_matrix(omega_h))).max() <= LARGEST_GROWTH
+
+    grid = np.linspace(0.0, highest, scan + 1)[1:]
+    first_bad = next((i for i, x in enumerate(grid) if not stable(x)), None)
+    if first_bad is None:
+        return math.inf
+    low, high = (grid[first_bad - 1] if first_bad else 0.0), grid[first_bad]
+    while high - low > 10.0**-digits:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return low
+
+
+def fewest_steps(usable, start, most, ratio=1.02):
+    """Fewest steps n for which ``usable(n)``; None if not even ``most`` are enough.
+
+    Doubles from ``start`` until usable, then halves the gap in log n until it is below ``ratio``.
+    Assumes that more steps are usable if fewer are.
+    """
+    low, high = None, start
+    while not usable(high):
+        low, high = high, 2 * high
+        if high > most:
+            return None
+    while low is None and high > 1:
+        if usable(high // 2):
+            high //= 2
+        else:
+            low = high // 2
+    while low is not None and high > low + 1 and high / low > ratio:
+        middle = round(math.sqrt(low * high))
+        middle = min(max(middle, low + 1), high - 1)
+        low, high = (low, middle) if usable(middle) else (middle, high)
+    return high

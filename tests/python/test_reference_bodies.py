@@ -1,0 +1,183 @@
+"""Bodies, equations and cage of the reference solution against simpler truths, in long double."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from mp_scene import Scene
+
+from lammps_gearquat.reference import FreeField, Problem, State, bodies_from_sites, paper_problem
+from lammps_gearquat.reference import quaternion as qt
+from lammps_gearquat.reference.equations import principal_axes
+
+LONG = np.longdouble
+MARGIN = 4e-18  # of the size of a result: some 40 roundings of a long double
+
+
+def long(values):
+    """Long doubles of mpmath's numbers."""
+    return np.array([LONG(mp.nstr(v, 25)) for v in values])
+
+
+def random(*shape):
+    return np.random.default_rng(7).normal(size=shape).astype(LONG)
+
+
+def random_rotations(count):
+    return qt.rotation_space_body(qt.normalised(random(count, 4)))
+
+
+@pytest.mark.parametrize("wrong", [1, 1.01])
+def test_rotation_matrix_is_eq_8_as_corrected(wrong):
+    q = qt.normalised(random(4))
+    q1, q2, q3, q4 = q
+    eq_8 = 2 * np.array(
+        [
+            [q1**2 + q4**2 - 0.5, q1 * q2 + q3 * q4, q1 * q3 - q2 * q4],
+            [q1 * q2 - q3 * q4, q2**2 + q4**2 - 0.5, q2 * q3 + q1 * q4],
+            [q1 * q3 + q2 * q4, q2 * q3 - q1 * q4, q3**2 + q4**2 - 0.5],
+        ]
+    )
+    agrees = np.abs(qt.rotation_space_body(q).T - wrong * eq_8).max() < MARGIN
+    assert agrees == (wrong == 1)
+    assert np.abs(qt.rotation_space_body(3 * q) - qt.rotation_space_body(q)).max() < MARGIN
+
+
+def test_quaternions_compose_and_come_back():
+    a, b = qt.normalised(random(2, 20, 4))
+    both = qt.rotation_space_body(a) @ qt.rotation_space_body(b)
+    assert np.abs(qt.rotation_space_body(qt.product(a, b)) - both).max() < MARGIN
+    half_turns = [np.eye(3, 4, k=0)[k].astype(LONG) for k in range(3)]  # each pivot in turn
+    for q in [*a, *half_turns]:
+        again = qt.of_rotation(qt.rotation_space_body(q))
+        assert min(np.abs(again - q).max(), np.abs(again + q).max()) < MARGIN
+
+
+@pytest.mark.parametrize("angle", [1e-12, 0.3, 3.0])
+def test_angle_between_orientations(angle):
+    half, q = LONG(angle) / 2, qt.normalised(random(4))
+    turned = qt.product(q, np.array([0, np.sin(half), 0, np.cos(half)]))
+    for sign in (1, -1):
+        assert abs(qt.angle_between(sign * turned, q) / LONG(angle) - 1) < 1e-6
+    assert abs(qt.angle_between(turned, q) / (1.01 * angle) - 1) > 1e-3
+
+
+@pytest.mark.parametrize("wrong", [1, 1.01])
+def test_principal_axes_to_the_last_digits(wrong):
+    """Tensors of known moments, also equal and widely different ones."""
+    moments = [[3, 2, 1], [2, 2, 1], [2, 1, 1], [1, 1, 1], [1e6, 1, 1e-2]]
+    moments, turns = np.array(moments, dtype=LONG), random_rotations(5)
+    tensors = np.einsum("bij,bj,bkj->bik", turns, moments, turns)
+    found, axes = principal_axes((tensors + np.swapaxes(tensors, 1, 2)) / 2)
+    error = np.abs(found - wrong * moments).max(axis=1) / moments.max(axis=1)
+    assert (error < MARGIN).all() == (wrong == 1)
+    again = np.einsum("bij,bj,bkj->bik", axes, found, axes)
+    assert (np.abs(again - tensors).max(axis=(1, 2)) < MARGIN * moments.max(axis=1)).all()
+    assert np.abs(np.linalg.det(axes.astype(float)) - 1).max() < 1e-14
+
+
+def test_bodies_from_sites_give_the_sites_back():
+    masses, body = np.array([16, 1, 1, 5, 4, 3, 2.0]), np.array([0, 0, 0, 1, 1, 1, 1])
+    positions, omega, drift = random(7, 3), random(2, 3), random(2, 3)
+    velocities = drift[body] + qt.cross(omega[body], positions)
+    bodies, start = bodies_from_sites(masses, positions, velocities, body)
+    problem = Problem("two bodies", bodies, FreeField(), start)
+    assert np.abs(problem.site_positions(start) - positions).max() < 4 * MARGIN
+    rotation = qt.rotation_space_body(start.q)
+    omega_space = (rotation * start.omega_body[:, None, :]).sum(axis=2)
+    assert np.abs(omega_space - omega).max() < 20 * MARGIN
+    assert np.abs(omega_space - 1.01 * omega).max() > 1e-4
+    energy = sum(problem.energies(start))
+    assert energy == pytest.approx(0.5 * (masses[:, None] * velocities**2).sum(), rel=1e-17)
+
+
+@pytest.mark.parametrize(
+    "sites", [[[0, 0, 0]], [[0, 0, 0], [1, 2, 3]], [[0, 0, 0], [1, 1, 1], [2, 2, 2]]]
+)
+def test_points_and_lines_are_refused(sites):
+    n = len(sites)
+    with pytest.raises(ValueError, match="body 0 is a point or a line: every body needs three"):
+        bodies_from_sites(np.ones(n), sites, np.zeros((n, 3)), np.zeros(n, dtype=int))
+
+
+def test_sites_out_of_order_are_refused():
+    problem = paper_problem(1)
+    with pytest.raises(ValueError, match="sorted by body"):
+        type(problem.bodies)(np.array([0, 1, 0, 1]), *([problem.bodies.masses] * 3))
+
+
+@pytest.mark.parametrize("wrong", [1, 1.01])
+def test_paper_body_is_that_of_mpmath(wrong):
+    scene, problem = Scene(), paper_problem(1)
+    moments = long(scene.moments)
+    assert (np.abs(problem.bodies.moments[0] - wrong * moments).max() < 1635 * MARGIN) == (
+        wrong == 1
+    )
+    sites = np.array([long(site) for site in scene.sites])
+    assert np.abs(problem.bodies.sites_body - sites).max() < 10 * MARGIN
+    assert np.abs(problem.start.packed()[0] - long(scene.start)).max() < MARGIN
+
+
+def test_unrotated_body_has_other_sites_and_the_same_energy():
+    consistent, unrotated = (paper_problem(1, body) for body in ("consistent", "unrotated"))
+    energies = [sum(p.energies(p.start)) for p in (consistent, unrotated)]
+    assert abs(energies[0] - energies[1]) < MARGIN
+    assert np.abs(consistent.bodies.sites_body - unrotated.bodies.sites_body).max() > 0.1
+    sites = [p.site_positions(p.start) for p in (consistent, unrotated)]
+    assert np.abs(sites[0] - sites[1]).max() < 100 * MARGIN
+
+
+@pytest.mark.parametrize("case, energy", [(1, -0.72360304), (2, -0.72360304), (3, 3.99270832)])
+def test_initial_energy(case, energy):
+    problem = paper_problem(case)
+    found = float(sum(problem.energies(problem.start)))
+    assert found == pytest.approx(energy, abs=5e-9)
+    assert found != pytest.approx(1.01 * energy, abs=5e-9)
+
+
+def test_unknown_case_is_refused():
+    with pytest.raises(ValueError, match="the case is 1, 2 or 3"):
+        paper_problem(4)
+
+
+@pytest.mark.parametrize("wrong", [1, 1.01])
+def test_forces_are_the_gradient_of_the_energy(wrong):
+    problem = paper_problem(1)
+    positions, h = problem.site_positions(problem.start), LONG(1e-4)
+    _, forces = problem.field.energy_and_forces(positions)
+    slope = np.zeros_like(forces)
+    for index in np.ndindex(forces.shape):
+        for steps, weight in (
+            (1, -LONG(2) / 3),
+            (-1, LONG(2) / 3),
+            (2, LONG(1) / 12),
+            (-2, -LONG(1) / 12),
+        ):
+            moved = positions.copy()
+            moved[index] += steps * h
+            slope[index] += weight * problem.field.energy_and_forces(moved)[0] / h
+    assert (np.abs(slope - wrong * forces).max() < 1e-13) == (wrong == 1)
+
+
+@pytest.mark.parametrize("wrong", [1, 1.01])
+def test_rates_are_those_of_mpmath(wrong):
+    scene, problem = Scene(), paper_problem(1)
+    with mp.workdps(30):
+        expected = long(scene.rates(0, scene.start))
+    found = problem.rates(0, problem.start.packed())[0]
+    assert (np.abs(found - wrong * expected).max() < MARGIN) == (wrong == 1)
+
+
+def test_double_precision_is_kept():
+    problem = paper_problem(1).astype(np.float64)
+    rates = problem.rates(0, problem.start.packed())
+    assert rates.dtype == np.float64
+    wide = paper_problem(1)
+    error = np.abs(rates - wide.rates(0, wide.start.packed())).max()
+    assert 1e-19 < error < 1e-15
+
+
+def test_state_packs_and_unpacks():
+    start = paper_problem(1).start
+    again = State.of(start.packed())
+    assert all((getattr(again, n) == getattr(start, n)).all() for n in ("centre", "velocity", "q"))
+    assert start.double.q.dtype == np.float64

@@ -1,0 +1,159 @@
+"""The extended-precision integrator: exactness, order, symmetry, the known trajectories, mpmath."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from mp_scene import DIGITS, Scene
+
+from lammps_gearquat.reference import State, integrators, paper_problem
+from lammps_gearquat.reference.integrators import GraggBulirschStoer, NotReached, integrate
+
+LONG = np.longdouble
+
+
+def plain(rates, columns=7, tolerance=1e-17, fixed_step=None):
+    """Integrator of a system of any shape."""
+    return GraggBulirschStoer(rates, np.abs, tolerance, LONG, columns, fixed_step)
+
+
+def oscillator(_t, y):
+    return np.array([y[1], -y[0]])
+
+
+@pytest.mark.parametrize("columns", [3, 5, 7])
+def test_weights_are_exact(columns):
+    counts = [2 * (k + 1) for k in range(columns)]
+    weights = integrators.extrapolation_weights(counts)
+    assert sum(weights) == 1
+    for power in range(1, columns):
+        assert sum(w / n ** (2 * power) for w, n in zip(weights, counts)) == 0
+    assert sum(w / n ** (2 * columns) for w, n in zip(weights, counts)) != 0
+
+
+@pytest.mark.parametrize("columns", [3, 4])
+def test_polynomials_are_exact_up_to_the_order(columns):
+    """y' = p t^(p-1) in a single step; the order is 2 K."""
+    errors = []
+    for power in (2 * columns, 2 * columns + 1):
+        solver = plain(lambda t, y, p=power: np.array([p * t ** (p - 1)]), columns, fixed_step=1)
+        end = solver.advance(np.array([LONG(0)]), [LONG(0), LONG(1)])[-1]
+        errors.append(abs(end[0] - 1))
+    assert errors[0] < 1e-17 < 1e-9 < errors[1]
+
+
+@pytest.mark.parametrize("columns, steps", [(3, (4, 8, 16, 32, 64)), (5, (3, 6, 12))])
+def test_order_is_the_slope(columns, steps):
+    errors = []
+    for count in steps:
+        solver = plain(oscillator, columns, fixed_step=LONG(6) / count)
+        end = solver.advance(np.array([LONG(1), LONG(0)]), [LONG(0), LONG(6)])[-1]
+        errors.append(float(np.hypot(end[0] - np.cos(LONG(6)), end[1] + np.sin(LONG(6)))))
+        assert solver.evaluations == count * (columns**2 + 1) + 1
+    slopes = -np.diff(np.log(errors)) / np.diff(np.log(steps))
+    assert slopes[-1] == pytest.approx(2 * columns, abs=0.4)
+
+
+def test_error_follows_the_tolerance():
+    errors = {}
+    for tolerance in (1e-10, 1e-14, 1e-17):
+        solver = plain(oscillator, tolerance=tolerance)
+        end = solver.advance(np.array([LONG(1), LONG(0)]), [LONG(0), LONG(100)])[-1]
+        errors[tolerance] = abs(end[0] - np.cos(LONG(100)))
+    assert errors[1e-10] < 1e-8 and errors[1e-14] < 1e-12 and errors[1e-17] < 2e-16
+    assert errors[1e-10] > 100 * errors[1e-17]
+
+
+def test_a_jump_is_not_integrated_in_silence():
+    def jumping(_t, y):
+        return np.array([y[1], -np.sign(y[0]) - y[0]])
+
+    with pytest.raises(NotReached, match="a tolerance above 1e-17 is required, or forces without"):
+        plain(jumping).advance(np.array([LONG(1), LONG(0)]), [LONG(0), LONG(10)])
+    fixed = plain(jumping, columns=3, fixed_step=LONG("0.01"))
+    end = fixed.advance(np.array([LONG(1), LONG(0)]), [LONG(0), LONG(10)])[-1]
+    energy = end[1] ** 2 / 2 + end[0] ** 2 / 2 + abs(end[0])
+    assert energy == pytest.approx(1.5, abs=1e-2)
+
+
+TABLE = [  # notes on the paper: extended precision, good to the last digit but one
+    (1, "consistent", 100, ("85.43010788464767", "-1.784299103660877", "1.14360193088973")),
+    (1, "consistent", 200, ("85.56573248988141", "-6.06135624295223", "6.86227956266460")),
+    (1, "consistent", 500, ("108.10226076975", "0.45545437335", "9.35574500753")),
+    (1, "unrotated", 100, ("86.693409428", "-1.437897239", "0.844779738")),
+    (1, "unrotated", 200, ("84.82167549249749", "-5.03225661408319", "7.72730548267065")),
+    (3, "consistent", 200, ("74.503045115", "0.054749072", "0.083234521")),
+    (3, "consistent", 500, ("104.5646400316667", "10.1693278629597", "-0.98795392679928")),
+]
+
+
+@pytest.fixture(scope="module")
+def runs():
+    """Problem and Solution of a case and body at t = 100, 200, 500 or other times; once each."""
+    found = {}
+
+    def run(case, body, times=(100, 200, 500), **accuracy):
+        key = (case, body, times, *accuracy.values())
+        if key not in found:
+            problem = paper_problem(case, body)
+            found[key] = problem, integrate(problem, times, **accuracy)
+        return found[key]
+
+    return run
+
+
+@pytest.mark.parametrize("case, body, time, centre", TABLE)
+def test_reference_table(runs, case, body, time, centre):
+    _, solution = runs(case, body)
+    found = solution.states[solution.times.index(time)][0, :3]
+    for value, printed in zip(found, centre):
+        last_but_one = LONG(10) ** (1 - len(printed.split(".")[1]))
+        assert abs(value - LONG(printed)) < last_but_one, f"{value} is not {printed}"
+        assert abs(value - LONG(printed) * LONG("1.01")) > last_but_one
+
+
+@pytest.mark.parametrize("case, body", [(1, "consistent"), (1, "unrotated"), (3, "consistent")])
+def test_another_order_and_tolerance_agree(runs, case, body):
+    problem, one = runs(case, body)
+    _, other = runs(case, body, (100, 200), columns=6, tolerance=1e-18)
+    for k, limit in enumerate((1e-14, 2e-14)):
+        assert np.abs(one.states[k] - other.states[k]).max() < limit
+        start, end = (sum(problem.energies(s)) for s in (problem.start, State.of(one.states[k])))
+        assert abs(end - start) < 2e-15
+        assert abs((one.states[k][:, 6:10] ** 2).sum() - 1) < 1e-16
+
+
+def test_the_run_can_be_run_back(runs):
+    problem, solution = runs(1, "consistent")
+    there = type(problem)("back", problem.bodies, problem.field, State.of(solution.states[0]))
+    back = integrate(there, (-100,)).states[-1]
+    assert np.abs(back - problem.start.packed()).max() < 1e-13
+    assert np.abs(integrate(there, (-99,)).states[-1] - problem.start.packed()).max() > 1e-3
+
+
+def test_stops_do_not_matter(runs):
+    problem, solution = runs(1, "consistent")
+    stops = integrate(problem, (33, 33, "77.7", 100))
+    assert np.abs(stops.states[-1] - solution.states[0]).max() < 2e-14
+    assert (stops.states[0] == stops.states[1]).all()
+
+
+def test_short_piece_agrees_with_mpmath():
+    """mpmath's Taylor integrator at 30 digits, with a body, a cage and equations of its own."""
+    with mp.workdps(DIGITS):
+        expected = [LONG(mp.nstr(v, 25)) for v in Scene().at(mp.mpf(1))]
+    for wrong in (1, 1.01):
+        found = integrate(paper_problem(1), (LONG(wrong),)).states[-1][0]
+        assert (np.abs(found - expected).max() < 4e-17) == (wrong == 1)
+
+
+@pytest.mark.parametrize("times", [(), (2, 1), (1, -1)])
+def test_times_out_of_order_are_refused(times):
+    with pytest.raises(ValueError, match="times are required that rise"):
+        integrate(paper_problem(1), times)
+
+
+def test_steps_and_columns_out_of_range_are_refused():
+    with pytest.raises(ValueError, match="at least 3 columns are required, not 2"):
+        plain(oscillator, columns=2)
+    with pytest.raises(ValueError, match="a fixed step above zero is required, not -1"):
+        integrate(paper_problem(1), (1,), fixed_step=-1)

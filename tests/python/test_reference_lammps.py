@@ -1,0 +1,246 @@
+"""LAMMPS as a field: forces at exactly the given positions, in any box, wherever atoms go."""
+
+import numpy as np
+import pytest
+
+from lammps_gearquat.reference import FreeField, paper_problem, reference_state
+from lammps_gearquat.reference.integrators import integrate
+from lammps_gearquat.reference.lammps_forces import DeckError, LammpsForces, deck_problem
+
+BOX, CUT = np.array([9.0, 10.0, 11.0]), 4.0
+CHARGE, EPSILON, SIGMA = (-0.8, 0.4), 0.5, 1.2
+
+DECK = """
+units {units}
+atom_style full
+atom_modify sort 1 0.5
+boundary {boundary}
+region box block 0 9 0 10 0 11
+create_box 2 box
+{atoms}
+mass 1 16.0
+mass 2 1.0
+set type 1 charge -0.8
+set type 2 charge 0.4
+pair_style lj/cut/coul/cut {cut}
+pair_coeff * * 0.5 1.2
+neighbor 0.5 bin
+neigh_modify every 10 delay 20 exclude molecule/intra all
+velocity all create 1.0 4711
+{fixes}
+dump d all custom 1 never.dump id
+thermo_style custom step temp
+thermo_modify norm yes
+timestep 0.001
+run 100
+"""
+
+
+def molecules():
+    """Positions (24, 3) of 8 bent molecules on a grid, each turned another way."""
+    shape = np.array([[0, 0, 0], [0.9, 0.3, 0], [-0.2, 0.9, 0.3]])
+    random = np.random.default_rng(5)
+    grid = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    turns = [np.linalg.qr(random.normal(size=(3, 3)))[0] for _ in grid]
+    return np.concatenate([(g + 0.3) * BOX / 2 + shape @ t.T for g, t in zip(grid, turns)])
+
+
+@pytest.fixture
+def write_deck(tmp_path):
+    """Writes the deck; values may replace its own."""
+
+    def write(fixes="fix move all rigid/nve/small molecule", name="in.small", **values):
+        types = [1, 2, 2] * 8
+        atoms = [
+            f"create_atoms {kind} single {x:.17g} {y:.17g} {z:.17g}\n"
+            f"set atom {k + 1} mol {k // 3 + 1}"
+            for k, (kind, (x, y, z)) in enumerate(zip(types, molecules()))
+        ]
+        values = {"units": "lj", "boundary": "p p p", "cut": CUT, **values}
+        path = tmp_path / name
+        text = DECK.format(fixes=fixes, atoms="\n".join(values.pop("lines", atoms)), **values)
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def brute_force(positions, box=BOX):
+    """Energy and forces of every pair of molecules by the nearest image, within the cut-off."""
+    charge = np.array([CHARGE[0], CHARGE[1], CHARGE[1]] * 8)
+    body = np.arange(24) // 3
+    gap = positions[:, None] - positions
+    gap = gap - np.rint(gap / box) * box
+    r = np.sqrt((gap**2).sum(axis=2)) + np.eye(24)
+    counted = (body[:, None] != body) & (r < CUT)
+    sixth = (SIGMA / r) ** 6
+    coulomb = charge[:, None] * charge / r
+    energy = np.where(counted, coulomb + 4 * EPSILON * (sixth**2 - sixth), 0).sum() / 2
+    radial = (coulomb + 4 * EPSILON * (12 * sixth**2 - 6 * sixth)) / r**2
+    return energy, (np.where(counted, radial, 0)[:, :, None] * gap).sum(axis=1)
+
+
+@pytest.fixture
+def small(write_deck):
+    with LammpsForces(write_deck()) as field:
+        yield field
+
+
+def agrees(field, positions, wrong=1.0):
+    """Whether LAMMPS and the loop over all pairs find the same."""
+    energy, forces = field.energy_and_forces(positions)
+    expected_energy, expected = brute_force(positions)
+    near = np.abs(forces - wrong * expected).max() < 1e-11 * np.abs(expected).max()
+    return near and abs(energy - wrong * expected_energy) < 1e-11 * abs(expected_energy)
+
+
+def test_forces_are_those_of_every_pair(small):
+    assert agrees(small, molecules())
+    assert not agrees(small, molecules(), 1.01)
+    assert (small.ids == np.arange(1, 25)).all()
+
+
+def test_forces_follow_the_atoms_anywhere(small):
+    """Bodies drift through the box, faster and faster: new neighbour lists, wraps, sorted atoms."""
+    start, random = molecules(), np.random.default_rng(3)
+    drift = np.repeat(random.normal(size=(8, 3)), 3, axis=0)
+    for distance in (1e-6, 0.01, 0.2, 1.0, 2.0, 4.0, 7.0, 11.0, 7.5, 0.0):
+        assert agrees(small, start + distance * drift)
+    assert small.evaluations == 12
+
+
+def test_whole_periods_make_no_difference(small):
+    start = molecules()
+    _, forces = small.energy_and_forces(start)
+    periods = np.random.default_rng(1).integers(-50, 50, size=start.shape) * BOX
+    _, shifted = small.energy_and_forces(start + periods)
+    assert np.abs(shifted - forces).max() < 1e-11 * np.abs(forces).max()
+
+
+def test_extended_positions_are_rounded_in_the_box(small):
+    """A position far away keeps the digits that double precision would have lost there."""
+    start = molecules().astype(np.longdouble)
+    _, forces = small.energy_and_forces(start)
+    far = np.longdouble(2) ** 40 * BOX
+    _, shifted = small.energy_and_forces(start + far)
+    assert np.abs(shifted - forces).max() < 1e-6 * np.abs(forces).max()
+    assert np.abs(((start + far).astype(float) - far) - start).max() > 1e-5
+
+
+def test_tilted_boxes(write_deck):
+    """A box tilted by whole periods is the same lattice."""
+    tilt = "change_box all triclinic\nchange_box all xy final 4.5\n"
+    with LammpsForces(write_deck(tilt + "fix move all rigid/nve/small molecule")) as field:
+        tilted = field.energy_and_forces(molecules())
+        shift = np.zeros((24, 3))
+        shift[::2] = [4.5 - 18, 10, 0]  # one period of the tilted edge, two back along x
+        again = field.energy_and_forces(molecules() + shift)
+        assert again[0] == pytest.approx(tilted[0], rel=1e-11)
+        assert np.abs(again[1] - tilted[1]).max() < 1e-10
+        assert not agrees(field, molecules())
+
+
+def test_units_are_those_of_the_script(write_deck):
+    with LammpsForces(write_deck(units="real")) as field:
+        assert field.force_to_acceleration * field.kinetic_to_energy == pytest.approx(1)
+        assert field.force_to_acceleration == pytest.approx(4.184e-4)
+
+
+def test_positions_that_are_no_numbers_do_no_harm(small):
+    broken = molecules()
+    broken[3, 1] = np.nan
+    assert np.isnan(small.energy_and_forces(broken)[1]).all()
+    assert agrees(small, molecules())
+    with pytest.raises(ValueError, match=r"positions of shape \(24, 3\) are required"):
+        small.energy_and_forces(broken[:3])
+
+
+@pytest.mark.parametrize("method", ["rigid/small molecule", "gear/quat molecule", "rigid molecule"])
+def test_any_method_of_the_script_gives_the_same_problem(write_deck, method):
+    problems = [
+        deck_problem(write_deck(f"fix move all {style}", f"in.{k}"))
+        for k, style in enumerate(("rigid/nve/small molecule", method))
+    ]
+    starts = [problem.start.packed() for problem in problems]
+    assert (starts[0] == starts[1]).all() and starts[0].shape == (8, 13)
+    assert problems[0].field.fingerprint() == problems[1].field.fingerprint()
+    assert np.abs(problems[0].site_positions(problems[0].start) - molecules()).max() < 1e-15
+    for problem in problems:
+        problem.field.close()
+        assert not (problem.field.deck.parent / "never.dump").exists()
+
+
+def test_another_force_is_another_fingerprint(write_deck):
+    deck = write_deck()
+    other = deck.with_name("in.other")
+    other.write_text(deck.read_text().replace("charge 0.4", "charge 0.404"))
+    with LammpsForces(deck) as one, LammpsForces(other) as two:
+        assert one.fingerprint() != two.fingerprint()
+
+
+def test_sites_may_be_some_of_the_atoms(small):
+    everything = small.energy_and_forces(molecules())[1]
+    small.choose([9, 7, 8])
+    _, forces = small.energy_and_forces(molecules()[[8, 6, 7]])
+    assert np.abs(forces - everything[[8, 6, 7]]).max() < 1e-12
+    with pytest.raises(DeckError, match="there is no atom 25"):
+        small.choose([1, 25])
+
+
+def test_case_1_in_lammps_is_case_1_in_the_cage(examples):
+    """The scene generator, LAMMPS' pair style and the notes on the paper say the same."""
+    cage, scene = paper_problem(1), deck_problem(examples / "case1" / "in.case1")
+    try:
+        positions = cage.site_positions(cage.start)
+        assert np.abs(scene.site_positions(scene.start) - positions).max() < 2e-14
+        energy, forces = scene.field.energy_and_forces(positions)
+        expected_energy, expected = cage.field.energy_and_forces(positions)
+        assert abs(energy - expected_energy) < 2e-14 and np.abs(forces - expected).max() < 1e-14
+        assert np.abs(forces - 1.01 * expected).max() > 1e-3
+        ends = [reference_state(problem, 50.0) for problem in (cage, scene)]
+        assert np.abs(ends[0].centre - ends[1].centre).max() < 1e-12
+    finally:
+        scene.field.close()
+
+
+def test_energy_is_kept_where_lammps_gives_the_forces(write_deck):
+    problem = deck_problem(write_deck(boundary="f f f", cut=100.0))  # nothing jumps
+    step = integrate(problem, (0.1,), tolerance=1e-12)
+    end = type(problem.start).of(step.states[-1])
+    energies = [sum(problem.energies(state)) for state in (problem.start, end)]
+    assert abs(energies[1] - energies[0]) < 1e-10
+    assert np.abs(end.centre - problem.start.centre).max() > 1e-3
+    free = problem.with_field(FreeField())
+    assert np.abs(reference_state(free, 0.1).centre - end.centre).max() > 1e-6
+    problem.field.close()
+
+
+REFUSED = {
+    "fix move all nvt temp 1 1 1": r"with fix move \(nvt\) there is no reference trajectory",
+    "fix move all nve\nfix hot all langevin 1 1 1 4711": r"with fix hot \(langevin\) there is",
+    "fix move all nve\nfix back all recenter 1 1 1": r"one of these does: back \(recenter\)",
+    "fix move all nonsense": "Unrecognized fix style 'nonsense'",
+}
+
+
+@pytest.mark.parametrize("fixes", REFUSED)
+def test_fixes_that_leave_no_reference_are_refused(write_deck, fixes):
+    with pytest.raises(DeckError, match=REFUSED[fixes]):
+        LammpsForces(write_deck(fixes))
+
+
+def test_other_decks_that_cannot_serve_are_refused(write_deck, tmp_path):
+    with pytest.raises(DeckError, match="in.nowhere: an input script of LAMMPS is required"):
+        LammpsForces(tmp_path / "in.nowhere")
+    (tmp_path / "in.empty").write_text("units lj\n")
+    with pytest.raises(
+        DeckError, match="in.empty: a script that makes a box and atoms is required"
+    ):
+        LammpsForces(tmp_path / "in.empty")
+    with pytest.raises(DeckError, match="atoms with a molecule ID above 0 are required"):
+        deck_problem(write_deck("fix move all nve", lines=["create_atoms 1 random 9 1 box"]))
+    atomic = "units lj\natom_style atomic\nregion b block 0 9 0 9 0 9\ncreate_box 1 b\nmass 1 1\n"
+    atomic += "create_atoms 1 single 1 1 1\npair_style lj/cut 2.5\npair_coeff 1 1 1 1\n"
+    (tmp_path / "in.atomic").write_text(atomic)
+    with pytest.raises(DeckError, match="an atom style with the property molecule is required"):
+        deck_problem(tmp_path / "in.atomic")

@@ -1,0 +1,82 @@
+"""Work and precision of SciPy's solvers: every call counted, errors judged by the reference."""
+
+import numpy as np
+import pytest
+
+from lammps_gearquat.reference import Problem, State, paper_problem, reference_state
+from lammps_gearquat.reference import quaternion as qt
+from lammps_gearquat.reference.solvers import solve, state_errors, work_precision
+
+LONG = np.longdouble
+
+
+class Counting:
+    """A field that counts its calls."""
+
+    force_to_acceleration = kinetic_to_energy = 1.0
+    dtype = None
+
+    def __init__(self, field):
+        self.field, self.calls = field, 0
+
+    def energy_and_forces(self, positions):
+        self.calls += 1
+        return self.field.energy_and_forces(positions)
+
+    def astype(self, dtype):
+        self.field = self.field.astype(dtype)
+        return self
+
+
+@pytest.mark.parametrize("method", ["DOP853", "LSODA"])
+def test_every_call_is_counted(method):
+    plain = paper_problem(1)
+    field = Counting(plain.field)
+    problem = Problem("counted", plain.bodies, field, plain.start)
+    state, evaluations = solve(problem, 20.0, method, 1e-8)
+    assert field.calls == evaluations > 50
+    assert state.centre.dtype == np.float64
+
+
+@pytest.mark.parametrize("method, floor", [("DOP853", 1e-9), ("LSODA", 1e-8)])
+def test_errors_fall_with_the_tolerance(method, floor):
+    problem, done = paper_problem(1), []
+    end = reference_state(problem, 100.0)
+    points = work_precision(problem, 100.0, end, method, (1e-5, 1e-8, 1e-11), done.append)
+    assert done == [1, 1, 1]
+    for get in (lambda e: e.rms_centre, lambda e: e.rms_angle, lambda e: abs(e.energy)):
+        errors = [get(point.errors) for point in points]
+        assert errors[0] > 20 * errors[1] > 400 * errors[2] and errors[2] < floor
+    work = [point.evaluations for point in points]
+    assert work[0] < work[1] < work[2]
+
+
+def test_a_wrong_reference_is_noticed():
+    problem = paper_problem(1)
+    end = reference_state(problem, 10.0)
+    wrong = State(end.centre * LONG("1.01"), end.velocity, end.q, end.omega_body)
+    (point,) = work_precision(problem, 10.0, wrong, "DOP853", [1e-12])
+    assert point.errors.rms_centre > 0.1
+
+
+def test_errors_are_distances_angles_and_energies():
+    problem = paper_problem(1)
+    start = problem.start
+    half = LONG("5e-13")
+    turned = qt.product(start.q, np.array([[np.sin(half), 0, 0, np.cos(half)]]))
+    moved = start.centre + np.array([3e-12, 0, 4e-12], dtype=LONG)
+    faster = start.velocity + np.array([1e-12, 0, 0], dtype=LONG)
+    errors = state_errors(problem, start, State(moved, start.velocity, turned, start.omega_body))
+    assert errors.rms_centre == pytest.approx(5e-12, rel=1e-5, abs=0)
+    assert errors.rms_angle == pytest.approx(1e-12, rel=1e-5, abs=0)
+    assert errors.rms_angle != pytest.approx(1.01e-12, rel=1e-5, abs=0)
+    errors = state_errors(problem, start, State(start.centre, faster, -start.q, start.omega_body))
+    assert errors.energy == pytest.approx(64 * 0.2 * 1e-12, rel=1e-3, abs=0)
+    assert errors.rms_centre == errors.rms_angle == 0
+
+
+def test_bad_input_is_refused():
+    with pytest.raises(ValueError, match="the method is one of DOP853, LSODA, not RK45"):
+        solve(paper_problem(1), 1.0, "RK45", 1e-6)
+    with pytest.raises(ValueError, match="a tolerance of at least 2.2e-14 is required"):
+        solve(paper_problem(1), 1.0, "DOP853", 1e-15)

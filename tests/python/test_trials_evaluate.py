@@ -1,0 +1,167 @@
+"""Errors, prices and growth of made-up trials with known answers."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from lammps_gearquat import divergence as dv
+from lammps_gearquat import pose
+from lammps_gearquat.trials import evaluate
+from lammps_gearquat.trials.evaluate import Point, front, growth, price
+
+RNG = np.random.default_rng(3)
+BODIES = np.array([0, 1, 0, 2, 1, 0, 2, 1, 1, 3])  # 3, 4, 2 and 1 sites, mixed
+MASSES = RNG.uniform(1, 3, 10)
+SITES = RNG.normal(size=(10, 3))
+
+
+def test_centres_are_those_of_each_body():
+    both = np.stack([SITES, SITES + [1, 0, 0]])
+    found = evaluate.centres(BODIES, MASSES, both)
+    for body in range(4):
+        own = BODIES == body
+        assert found[0, body] == pytest.approx(pose.centre_of_mass(MASSES[own], SITES[own]))
+    assert found[1] == pytest.approx(found[0] + [1, 0, 0])
+
+
+def turned(vectors):
+    """Sites with each body turned by a rotation vector, and shifted."""
+    centre = evaluate.centres(BODIES, MASSES, SITES)
+    moved = [
+        Rotation.from_rotvec(vectors[b]).apply(x - centre[b]) + centre[b] + 7.0
+        for b, x in zip(BODIES, SITES)
+    ]
+    return np.array(moved)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-10, 1e-3, 1.0, 3.0, np.pi])
+def test_angle_of_a_known_turn(angle):
+    """A body of two sites has only an axis: it is turned about one at a right angle to it."""
+    line = SITES[3] - SITES[6]
+    across = np.cross(line, [1.0, 0.0, 0.0])
+    axes = np.array([[1.0, 0, 0], [0, 0.6, 0.8], across / np.linalg.norm(across), [0, 1.0, 0]])
+    found = evaluate.angles(BODIES, MASSES, SITES, turned(angle * axes))
+    assert found[:3] == pytest.approx(angle, abs=1e-7 if angle == np.pi else 2e-15 + 1e-12 * angle)
+    assert found[3] == 0.0
+    if angle:  # and 1 % is noticed
+        assert found[:3] != pytest.approx(1.01 * angle, rel=1e-3)
+
+
+def test_a_turn_about_its_own_line_is_none():
+    line = SITES[3] - SITES[6]
+    vectors = np.array([[0.2, 0, 0], [0, 0, 0.2], 0.5 * line / np.linalg.norm(line), [1, 0, 0]])
+    found = evaluate.angles(BODIES, MASSES, np.stack([SITES] * 2), np.stack([turned(vectors)] * 2))
+    assert found == pytest.approx(np.array([[0.2, 0.2, 0.0, 0.0]] * 2), abs=1e-12)
+
+
+def test_size_of_bodies():
+    arms = SITES - evaluate.centres(BODIES, MASSES, SITES)[BODIES]
+    largest = [np.linalg.norm(arms[BODIES == body], axis=1).max() for body in range(3)]
+    assert evaluate.body_size(BODIES, MASSES, SITES) == pytest.approx(np.median(largest))
+    assert evaluate.body_size(np.arange(3), np.ones(3), SITES[:3]) == 0.0
+    assert [evaluate.decade(x) for x in (0.0, 0.5, 1.0, 10.5)] == [1.0, 0.1, 1.0, 10.0]
+
+
+def test_separation_of_several_bodies_is_the_largest():
+    class Trial:
+        time = np.arange(3.0)
+
+        def __init__(self, centre):
+            self.centre = centre
+
+    still, moving = np.zeros((3, 2, 3)), np.zeros((3, 2, 3))
+    moving[:, 0, 0], moving[:, 1, 2] = [0, 1, 1], [0, 0.5, -3]
+    assert dv.separation(Trial(still), Trial(moving)).tolist() == [0, 1, 3]
+    assert dv.parting_time(Trial(still), Trial(moving), 2.9) == 2.0
+
+
+# --- prices -----------------------------------------------------------------------------------------
+def curve(order, steps=(0.1, 0.05, 0.025), scale=1.0, floor=0.0, method="m"):
+    return [Point(method, dt, 10 / dt, 1e-3 / dt, max(scale * dt**order, floor)) for dt in steps]
+
+
+@pytest.mark.parametrize("order", [2, 5, 9])
+def test_price_on_a_power_law(order):
+    error = 0.06**order
+    found = price(curve(order), error)
+    assert found.kind == "between"
+    assert found.dt == pytest.approx(0.06)
+    assert found.evaluations == pytest.approx(10 / 0.06)
+    assert found.seconds == pytest.approx(1e-3 / 0.06)
+    assert price(curve(order), 1.01**order * error).dt == pytest.approx(0.0606)
+
+
+def test_price_where_every_trial_is_better():
+    found = price(curve(2), 0.5)
+    assert (found.kind, found.dt) == ("at most", 0.1)
+
+
+def test_price_that_is_not_reached_or_extrapolated():
+    assert price(curve(2), 1e-8) is None
+    found = price(curve(2), 1e-8, extrapolate=True)
+    assert found.kind == "extrapolated" and found.dt == pytest.approx(1e-4)
+    level = curve(2, floor=1e-2)  # nothing gained by finer steps
+    assert price(level, 1e-8, extrapolate=True) is None
+
+
+def test_a_limit_of_stability_is_not_interpolated():
+    points = [Point("m", 0.1, 100, 1, 1e3), Point("m", 0.08, 125, 1, 1e-9)]
+    assert price(points, 1e-3).dt == 0.08
+
+
+def test_the_largest_step_below_which_all_are_good():
+    """A coarse trial that is good by luck does not count; rounding at fine steps does no harm."""
+    lucky = [*curve(2), Point("m", 0.2, 50, 5e-3, 1e-6)]
+    assert price(lucky, 0.05**2 * 1.001).dt == pytest.approx(0.05, rel=1e-3)
+    rounded = [Point("m", 0.001, 1e4, 1, 2e-3), *curve(2)]
+    assert price(rounded, 1e-3).dt == pytest.approx(math.sqrt(1e-3))
+
+
+def test_front():
+    points = curve(2, method="a") + curve(5, method="b") + [Point("c", 1, 150, 1, 1.0)]
+    kept = front(points, lambda point: point.evaluations)
+    assert [p.method for p in kept] == ["b", "b", "b"]
+    assert [p.evaluations for p in kept] == [100, 200, 400]
+
+
+# --- growth -----------------------------------------------------------------------------------------
+TIME = np.linspace(0.2, 100, 500)
+
+
+def noisy(values):
+    return values * np.exp(0.3 * np.random.default_rng(1).normal(size=len(values)))
+
+
+@pytest.mark.parametrize("power", [0, 2, 5])
+def test_lyapunov_time_of_an_exponential(power):
+    found, _ = growth(TIME, noisy(1e-13 * TIME**power * np.exp(TIME / 7)), 1.0, 1e-15)
+    assert found.lyapunov_time == pytest.approx(7.0, rel=0.1)
+    assert abs(found.rate - 1 / 7) < 4 * found.error
+    assert found.error < 0.1 * found.rate
+    exact, _ = growth(TIME, 1e-13 * TIME**power * np.exp(TIME / 7), 1.0, 1e-15)
+    assert exact.lyapunov_time == pytest.approx(7.0, rel=1e-3)
+    assert exact.lyapunov_time != pytest.approx(7.07, rel=1e-3)
+    assert exact.at(TIME[250]) == pytest.approx(1e-13 * TIME[250] ** power * np.exp(TIME[250] / 7))
+
+
+@pytest.mark.parametrize("power", [1, 3, 7])
+def test_a_power_of_time_is_no_chaos(power):
+    found, why = growth(TIME, noisy(1e-9 * (TIME / 50) ** power), 1.0, 1e-15)
+    assert found is None and "power" in why
+
+
+def test_too_little_growth_jumps_and_too_few_samples_are_told():
+    assert "too little" in growth(TIME, noisy(1e-9 * np.exp(TIME / 50)), 1.0, 1e-15)[1]
+    jump = np.where(TIME < 50, 1e-9, 1e-4) * np.exp(TIME / 50)
+    assert "jumps" in growth(TIME, jump, 1.0, 1e-15)[1]
+    assert "fewer" in growth(TIME, np.full(500, 2.0), 1.0, 1e-15)[1]
+    assert "fewer" in growth(TIME, np.full(500, np.nan), 1.0, 1e-15)[1]
+
+
+def test_saturation_is_left_out():
+    values = np.minimum(1e-9 * np.exp(TIME / 3), 5.0)
+    found, _ = growth(TIME, values, 1.0, 1e-15)
+    assert found.lyapunov_time == pytest.approx(3.0, rel=1e-3)
+    assert found.end < 3 * math.log(1e9) + 0.5

@@ -1,0 +1,149 @@
+"""What commands of a deck say, as text."""
+
+import pytest
+
+from lammps_gearquat.trials import script
+from lammps_gearquat.trials.script import DeckError
+
+
+def test_lines_are_joined_as_lammps_joins_them():
+    text = 'fix 1 all rigid group 2 &   \n a b\nprint """one\n two"""\n\nrun 5 # and &\n more'
+    assert script.logical_lines(text) == [
+        "fix 1 all rigid group 2  a b",
+        'print """one\n two"""',
+        "",
+        "run 5 # and  more",
+    ]
+
+
+@pytest.mark.parametrize(
+    "line, words",
+    [
+        ('print "a # b" # c', ["print", "a # b"]),
+        ("if \"$x == 'y'\" then 'run 5'", ["if", "$x == 'y'", "then", "run 5"]),
+        ('python f here """a "b" c"""', ["python", "f", "here", 'a "b" c']),
+        ("it's one", ["it's", "one"]),
+    ],
+)
+def test_words(line, words):
+    assert script.split(script.strip_comment(line)) == words
+
+
+def test_quote_finds_quotes_that_fit():
+    for text in ("a b", 'a "b"', 'it\'s "b"'):
+        assert [word.rstrip() for word in script.split(script.quote(text))] == [text]
+
+
+def test_branches_of_an_if():
+    words = script.split("if 1 then a 'b c' elif 2 d else e f")
+    assert script.branches(words) == [("1", ["a", "b c"]), ("2", ["d"]), (None, ["e", "f"])]
+    with pytest.raises(DeckError, match="not an if"):
+        script.branches(script.split("if 1 do a"))
+
+
+@pytest.mark.parametrize(
+    "line, now, steps",
+    [("run 100", 7, 100), ("run 1e3", 0, 1000), ("run 100 upto", 30, 70), ("run 100 upto", 100, 0)],
+)
+def test_run(line, now, steps):
+    assert script.run_steps(line.split(), now) == steps
+    assert script.run_steps([*line.split(), "every", "10", "NULL"], now) == steps
+
+
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ('run 10 every 5 "velocity all scale 1"', "velocity all scale 1"),
+        ("run 10 start 0 stop 50", "start or stop"),
+        ("run many", "not a run command"),
+    ],
+)
+def test_runs_that_are_refused(line, said):
+    with pytest.raises(DeckError, match=said):
+        script.run_steps(script.split(line))
+
+
+def parse(line):
+    return script.parse_fix(line.split())
+
+
+@pytest.mark.parametrize(
+    "line, translated",
+    [
+        ("fix 1 all rigid single", "fix 1 all gear/quat single"),
+        ("fix 1 a rigid/nve/omp molecule", "fix 1 a gear/quat molecule"),
+        ("fix m a rigid/small molecule mol w", "fix m a gear/quat molecule"),
+        ("fix 1 a rigid/nve/small custom i_b", "fix 1 a gear/quat custom i_b"),
+        ("fix 1 a rigid group 2 x y infile f", "fix 1 a gear/quat group 2 x y infile f"),
+        ("fix 1 a rigid single reinit no", "fix 1 a gear/quat single reinit no"),
+        ("fix 1 a rigid single torque 1 on on on", "fix 1 a gear/quat single"),
+        (
+            "fix 1 a gear/quat single start zero c0 velocity infile f",
+            "fix 1 a gear/quat single infile f",
+        ),
+    ],
+)
+def test_translation(line, translated):
+    assert parse(line).text() == line
+    assert script.translate(parse(line))[0].text() == translated
+
+
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ("fix 1 a rigid/nvt molecule temp 1 1 1", "rigid/nvt.*no thermostat"),
+        ("fix 1 a rigid/npt/small molecule temp 1 1 1 iso 0 0 1", "rigid/npt/small"),
+        ("fix 1 a rigid molecule langevin 1 1 1 48", "langevin.*random"),
+        ("fix 1 a rigid single force 1 off on on force 2 on on on", "force.*switch off"),
+        ("fix 1 a rigid/small molecule gravity g", "disable of fix gravity"),
+    ],
+)
+def test_what_cannot_be_translated_is_named(line, said):
+    with pytest.raises(DeckError, match=said):
+        script.translate(parse(line))
+
+
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ("fix 1 a rigid everything", "which bodies: everything"),
+        ("fix 1 a rigid group 3 x y", "which bodies"),
+        ("fix 1 a rigid single sped 3", "unknown keyword sped"),
+        ("fix 1 a rigid single infile", "infile lacks"),
+    ],
+)
+def test_what_is_no_fix_line(line, said):
+    with pytest.raises(DeckError, match=said):
+        parse(line)
+
+
+def test_keywords_of_the_method_are_replaced_and_those_of_the_body_kept():
+    line = parse("fix 1 a gear/quat single formulation second start zero c0 velocity infile f")
+    values = "formulation second values 8"
+    assert line.with_numerics(values).text() == f"fix 1 a gear/quat single {values} infile f"
+    assert line.numerics("") == "formulation second start zero c0 velocity"
+    assert line.numerics("values 7") == "formulation second start zero c0 velocity values 7"
+    first = "formulation first momentum predicted"
+    assert line.numerics(first) == "formulation first start zero momentum predicted"
+    for wrong in ("values", "valus 8", "infile g"):
+        with pytest.raises(DeckError, match="pairs of a keyword"):
+            line.numerics(wrong)
+
+
+@pytest.mark.parametrize(
+    "style",
+    """langevin rigid/meso srd temp/csvr deposit gcmc atom/swap temp/rescale dt/reset deform npt
+    nph/omp press/berendsen bond/react npt/asphere pimd/langevin""".split(),
+)
+def test_scenes_without_a_trajectory_are_refused(style):
+    with pytest.raises(DeckError, match=f"fix th {style}: .*--without th leaves it out"):
+        script.check_scene({"1": "rigid", "th": style}, ["lj/cut", "2.5"])
+
+
+def test_scenes_with_a_trajectory_are_not():
+    fixes = "rigid nve nvt gravity spring/self wall/reflect enforce2d setforce property/atom adapt"
+    script.check_scene(
+        dict(enumerate(fixes.split())), ["hybrid", "lj/cut", "2.5", "coul/long", "8"]
+    )
+    with pytest.raises(DeckError, match="pair_style dpd"):
+        script.check_scene({}, ["hybrid", "dpd", "1", "1", "48"])
