@@ -21,6 +21,10 @@
 using namespace LAMMPS_NS;
 using GearQuat::Formulation;
 
+// what is used unless the user says otherwise; measured, see doc/decisions.md
+
+static constexpr int FIRST_VALUES = 6, SECOND_VALUES = 8, PASSES = 2;
+
 static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
 
 GearQuatArguments::GearQuatArguments(LAMMPS *lmp, int narg, char **arg)
@@ -122,7 +126,9 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 
   const int fewest = scheme.first() ? GearQuat::FIRST_FEWEST : GearQuat::SECOND_FEWEST;
   const int most = scheme.first() ? GearQuat::FIRST_MOST : GearQuat::SECOND_MOST;
-  if (seen.count("values") && (scheme.rows < fewest || scheme.rows > most))
+  if (!seen.count("values")) scheme.rows = scheme.first() ? FIRST_VALUES : SECOND_VALUES;
+  if (!seen.count("passes")) scheme.passes = PASSES;
+  if (scheme.rows < fewest || scheme.rows > most)
     error->all(FLERR, "Fix gear/quat values: {} is not from {} to {}, as formulation {} requires",
                scheme.rows, fewest, most, scheme.first() ? "first" : "second");
   if (scheme.passes < 1)

@@ -177,26 +177,31 @@ bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, bool first
 {
   double here = 0.0;
   for (int pair = 1; pair <= collocation.pairs(); ++pair) {
-    for (const int node : {-pair, pair}) {
-      for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-        bodies.state[ibody] = collocation.state_at(node, work[ibody], spacing);
-      bodies.spread_states();
-      bodies.place_sites(true);
-      if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
-      forces.evaluate();
-      ++evaluations;
-      bodies.gather_loads(atom->f);
-      for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-        const GearQuatBody &body = bodies.body[ibody];
-        here =
-            std::max(here,
-                     collocation.set_load(node, body.rigid, bodies.state[ibody], bodies.load[ibody],
-                                          spacing, length(body), work[ibody]));
-      }
-    }
+    for (const int node : {-pair, pair})
+      if (!visit(forces, node, spacing, here)) return false;
     if (first && pair < collocation.pairs())
       for (auto &one : work) collocation.foretell(pair, one);
   }
   MPI_Allreduce(&here, &change, 1, MPI_DOUBLE, MPI_MAX, world);
+  return true;
+}
+
+/// Forces at one node; change: grows to what they change.  False as in sweep().
+bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, double &change)
+{
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    bodies.state[ibody] = collocation.state_at(node, work[ibody], spacing);
+  bodies.spread_states();
+  bodies.place_sites(true);
+  if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
+  forces.evaluate();
+  ++evaluations;
+  bodies.gather_loads(atom->f);
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const GearQuatBody &body = bodies.body[ibody];
+    change = std::max(change,
+                      collocation.set_load(node, body.rigid, bodies.state[ibody],
+                                           bodies.load[ibody], spacing, length(body), work[ibody]));
+  }
   return true;
 }

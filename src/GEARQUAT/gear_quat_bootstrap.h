@@ -50,6 +50,7 @@ class GearQuatBootstrap : protected Pointers {
   double length(const GearQuatBody &body) const;
   double truncation() const;
   bool collocate(GearQuatForces &forces, double spacing);
+  bool visit(GearQuatForces &forces, int node, double spacing, double &change);
   bool sweep(GearQuatForces &forces, double spacing, bool first, double &change);
 };
 

@@ -78,7 +78,7 @@ inline Fraction adams_moulton(int k)
   return Fraction(0) - signed_weight[k];
 }
 
-/// First-order equation, N values; of order N for odd N, N + 1 for even N on smooth motion.
+/// First-order equation, N values; of order N, and of N + 1 for even N where motion swings slowly.
 inline Fractions first_order_coefficients(int values)
 {
   Fractions p = {1};    // P_(N-2)
@@ -92,8 +92,8 @@ inline Fractions first_order_coefficients(int values)
   return c;
 }
 
-/// Second-order equation, N values.  velocity_c0: for right sides that depend on velocities
-/// (order N or N - 1, the odd one); otherwise N or N + 1, the odd one, but for positions alone.
+/// Second-order equation, N values.  velocity_c0: for right sides that depend on velocities, of order
+/// N - 1; otherwise for positions alone, of order N, and of N + 1 for even N where motion swings slowly.
 inline Fractions second_order_coefficients(int values, bool velocity_c0)
 {
   const Fractions a = first_order_coefficients(values - 1);
@@ -102,17 +102,17 @@ inline Fractions second_order_coefficients(int values, bool velocity_c0)
   return c;
 }
 
-/// What a residual tells of the local error of row 0: by how much the corrector with N values
-/// differs from the one of the next lower order, c_0(N - 1) - c_0(N).
+/// What a residual tells of the local error of row 0.  First-order equation: the difference from the
+/// corrector of the next lower order, c_0(N - 1) - c_0(N); the error itself is of one order more.
 inline Fraction first_order_error_weight(int values)
 {
   return adams_moulton(values - 1);
 }
 
+/// Second-order equation: the constant of the leading term itself.
 inline Fraction second_order_error_weight(int values)
 {
-  return adams_moulton(values - 2) * Fraction(2 * (values - 2)) -
-      adams_moulton(values - 1) * Fraction(2 * (values - 1));
+  return adams_moulton(values - 1) * Fraction(2);
 }
 
 }    // namespace GearQuat

@@ -42,7 +42,8 @@ struct Scheme {
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
   int size() const { return (values() + carries()) * width(); }
-  /// Of the error in time, while forces vary with positions and slowly with orientations.
+  /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N keep
+  /// N, and N - 1 with velocity_c0).
   int order() const { return (velocity_c0 ? values() - 1 : values()) | 1; }
 
   // columns of a row
@@ -74,7 +75,8 @@ struct Correction {
 class Integrator {
  public:
   /// h: the time step, not zero; negative runs backwards.
-  Integrator(const Scheme &scheme, double h) : scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values())
+  Integrator(const Scheme &scheme, double h) :
+      scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values())
   {
     const Fractions exact = scheme.first() ? first_order_coefficients(n)
                                            : second_order_coefficients(n, scheme.velocity_c0);

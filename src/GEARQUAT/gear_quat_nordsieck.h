@@ -95,19 +95,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   {
     const int n = N ? N : rows_kept;
     for (int pass = 0; pass < n - 1; ++pass)
-      for (int j = n - 2; j >= pass; --j) {
-        double *lower = rows + j * WIDTH;
-        const double *upper = lower + WIDTH;
-        if (j >= CARRIES) {
-          for (int c = 0; c < WIDTH; ++c) lower[c] += upper[c];
-        } else {
-          double value[WIDTH];
-          for (int c = 0; c < WIDTH; ++c) value[c] = upper[c];
-          if (j + 1 < CARRIES)
-            for (int c = 0; c < WIDTH; ++c) value[c] += carry_of(rows, n, j + 1)[c];
-          add<WIDTH>(rows, n, j, 0, value);
-        }
-      }
+      for (int j = n - 2; j >= pass; --j) { add<WIDTH>(rows, n, j, 0, rows + (j + 1) * WIDTH); }
   }
 };
 

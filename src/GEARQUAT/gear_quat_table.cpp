@@ -11,6 +11,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 using namespace LAMMPS_NS;
@@ -38,30 +39,38 @@ void GearQuatTable::fill()
     fill_row(ibody, mine.data() + (size_t) ibody * COLUMNS);
 }
 
-/// Centres are wrapped into the box with their image flags, as those of fix rigid; quaternions have
-/// the scalar first, as everywhere in LAMMPS.
+/// A centre in the box and its image flags; also where it has flown so far that flags are no integers.
+void GearQuatTable::wrap(const double *center, double *wrapped, double *image) const
+{
+  const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};
+  const bool tilted = domain->triclinic;
+  std::copy_n(center, 3, wrapped);
+  if (tilted) domain->x2lamda(wrapped, wrapped);
+  for (int k = 0; k < 3; ++k) {
+    const double low = tilted ? 0.0 : domain->boxlo[k], period = tilted ? 1.0 : domain->prd[k];
+    image[k] = periodic[k] ? std::floor((wrapped[k] - low) / period) : 0.0;
+    wrapped[k] -= image[k] * period;
+  }
+  if (tilted) domain->lamda2x(wrapped, wrapped);
+}
+
+/// Quaternions have the scalar first, as everywhere in LAMMPS.
 void GearQuatTable::fill_row(int ibody, double *row) const
 {
   const GearQuatBody &body = bodies.body[ibody];
   const BodyState &s = bodies.state[ibody];
   const Load &l = bodies.load[ibody];
 
-  double a[9], momentum_body[3], center[3];
-  std::copy_n(s.center, 3, center);
-  imageint image = ((imageint) IMGMAX << IMG2BITS) | ((imageint) IMGMAX << IMGBITS) | IMGMAX;
-  domain->remap(center, image);
+  double a[9], momentum_body[3];
+  wrap(s.center, row + CENTER, row + IMAGE);
   rotation_matrix(s.q, dot4(s.q, s.q), a);
   for (int i = 0; i < 3; ++i) momentum_body[i] = body.rigid.inertia[i] * s.omega_body[i];
 
-  std::copy_n(center, 3, row + CENTER);
   std::copy_n(s.velocity, 3, row + VELOCITY);
   for (int i = 0; i < 3; ++i) {
     row[FORCE + i] = l.force[i] / force->ftm2v;
     row[TORQUE + i] = l.torque_space[i] / force->ftm2v;
   }
-  row[IMAGE] = double((image & IMGMASK) - IMGMAX);
-  row[IMAGE + 1] = double((image >> IMGBITS & IMGMASK) - IMGMAX);
-  row[IMAGE + 2] = double((image >> IMG2BITS) - IMGMAX);
   row[QUATERNION] = s.q[3];
   std::copy_n(s.q, 3, row + QUATERNION + 1);
   std::copy_n(s.omega_body, 3, row + OMEGA_BODY);
@@ -74,7 +83,7 @@ void GearQuatTable::fill_row(int ibody, double *row) const
 void GearQuatTable::gather()
 {
   fill();
-  const int here = mine.size();
+  int here = mine.size();    // not const: MPI without MPI wants it so
   std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
   MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);

@@ -51,6 +51,7 @@ class GearQuatTable : protected Pointers {
   bigint gathered = -1;    ///< step of `all`
 
   void fill();
+  void wrap(const double *center, double *wrapped, double *image) const;
   void fill_row(int ibody, double *row) const;
   void gather();
 };

@@ -1,4 +1,4 @@
-"""Scenes that several tests of the fix run: two small molecules, and a box of rigid water."""
+"""Scenes that several tests of the fix run: two small molecules, and boxes of rigid water."""
 
 from __future__ import annotations
 
@@ -84,9 +84,17 @@ UNITS = {
 
 
 def water_data(
-    path: Path, n: int = 3, units: str = "real", spacing: float = 3.3, tilt: float = 0.0
+    path: Path,
+    n: int = 3,
+    units: str = "real",
+    spacing: float = 3.3,
+    tilt: float = 0.0,
+    shift: float = 0.0,
 ) -> Path:
-    """n^3 rigid SPC/E molecules near a lattice, turned and thrown at random, over all boundaries."""
+    """n^3 rigid SPC/E molecules near a lattice, turned and thrown at random, over all boundaries.
+
+    Shifted by half a spacing (Angstrom) all of them lie inside of the box.
+    """
     rng = np.random.default_rng(20251121)
     scale = UNITS[units]
     half = np.deg2rad(109.47 / 2)
@@ -96,7 +104,7 @@ def water_data(
     box = np.array([n * spacing] * 3)
     atoms, velocities = [], []
     for cell in np.ndindex(n, n, n):
-        centre = np.array(cell) * spacing + rng.uniform(-0.1, 0.1, 3)
+        centre = np.array(cell) * spacing + shift + rng.uniform(-0.1, 0.1, 3)
         turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
         arms = site @ (turn * np.linalg.det(turn)).T
         velocity, spin = rng.normal(size=3) * 0.003, rng.normal(size=3) * 0.01
@@ -134,6 +142,36 @@ def water_data(
         f"1 {mass[0] * scale['mass']:.17g}",
         f"2 {mass[1] * scale['mass']:.17g}",
     ]
+    lines += ["", "Atoms # full", "", *atoms, "", "Velocities", "", *velocities, ""]
+    path.write_text("\n".join(lines))
+    return path
+
+
+def flat_water_data(path: Path, n: int = 4, spacing: float = 3.3) -> Path:
+    """n^2 rigid SPC/E molecules that lie in the plane z = 0, over all boundaries, for `dimension 2`."""
+    rng = np.random.default_rng(20251122)
+    half = np.deg2rad(109.47 / 2)
+    mass, charge = np.array([15.9994, 1.008, 1.008]), [-0.8476, 0.4238, 0.4238]
+    site = np.array([[0, 0], [np.sin(half), np.cos(half)], [-np.sin(half), np.cos(half)]])
+    site -= mass @ site / mass.sum()
+    length = n * spacing
+    atoms, velocities = [], []
+    for molecule, cell in enumerate(np.ndindex(n, n), 1):
+        centre = np.array(cell) * spacing + rng.uniform(-0.1, 0.1, 2)
+        c, s = np.cos(angle := rng.uniform(0, 2 * np.pi)), np.sin(angle)
+        velocity, spin = rng.normal(size=2) * 0.003, rng.normal() * 0.01
+        for k, arm in enumerate(site @ np.array([[c, s], [-s, c]])):
+            tag = len(atoms) + 1
+            image = np.floor((centre + arm) / length).astype(int)
+            x, v = centre + arm - image * length, velocity + spin * np.array([-arm[1], arm[0]])
+            atoms.append(
+                f"{tag} {molecule} {1 + (k > 0)} {charge[k]} {x[0]:.17g} {x[1]:.17g} 0 "
+                f"{image[0]} {image[1]} 0"
+            )
+            velocities.append(f"{tag} {v[0]:.17g} {v[1]:.17g} 0")
+    lines = ["flat rigid water", "", f"{len(atoms)} atoms", "2 atom types", ""]
+    lines += [f"0 {length:.17g} {axis}lo {axis}hi" for axis in "xy"] + ["-0.5 0.5 zlo zhi"]
+    lines += ["", "Masses", "", *(f"{k} {mass[k - 1]}" for k in (1, 2))]
     lines += ["", "Atoms # full", "", *atoms, "", "Velocities", "", *velocities, ""]
     path.write_text("\n".join(lines))
     return path
@@ -178,6 +216,24 @@ def water(
         sigma=3.166 * scale["length"],
         run=run.format(steps=steps),
     )
+
+
+def restarted(deck: str, restart: Path | str) -> str:
+    """The same deck that reads a restart file instead of its data and pair coefficients."""
+    lines = []
+    for line in deck.splitlines():
+        if line.startswith("read_data"):
+            line = f"read_restart {restart}"
+        if not line.startswith(
+            ("pair_style", "pair_coeff", "pair_modify", "atom_style", "boundary")
+        ):
+            lines.append(line)
+    return "\n".join(lines)
+
+
+def one_after_the_other(decks) -> str:
+    """Independent decks in one start of MPI, which costs more than a small run does."""
+    return "\nclear\n".join(decks)
 
 
 def last_frame(path: Path) -> np.ndarray:

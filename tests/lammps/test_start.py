@@ -66,8 +66,8 @@ def field(
 
 def slope(lmp, fix, before="", after=""):
     """Order of the error of positions at t = 2, against a run with steps eight times smaller."""
-    runs = {n: field(lmp, f"n{n}", n, 2.0 / n, fix, before, after)[1] for n in (100, 200, 1600)}
-    errors = [np.abs(runs[n] - runs[1600]).max() for n in (100, 200)]
+    runs = {n: field(lmp, f"n{n}", n, 2.0 / n, fix, before, after)[1] for n in (25, 50, 400)}
+    errors = [np.abs(runs[n] - runs[400]).max() for n in (25, 50)]
     return np.log2(errors[0] / errors[1])
 
 

@@ -12,6 +12,9 @@
 #include "gear_quat_startup.h"
 
 #include <functional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace Drive {
 
@@ -27,37 +30,113 @@ inline Load free_of_load(const BodyState &, double)
   return Load{};
 }
 
-inline Scheme scheme_of(Formulation formulation)
+inline Scheme scheme_of(Formulation formulation, int values = 0)
 {
   Scheme scheme;
   scheme.formulation = formulation;
+  scheme.rows = values;
   return scheme;
 }
 
-/// Taylor series at a state, in units of `spacing`.
-inline TaylorSeries series_at(const RigidBody &body, const BodyState &state, const LoadOf &load,
-                              Start start, double spacing)
+/// Every number of values of one formulation.
+inline std::vector<Scheme> schemes_of(Formulation formulation)
 {
-  TaylorSeries series = local_series(body, state, load(state, dot4(state.q, state.q)), spacing);
-  if (start == Start::ZERO) series.terms = 2;
-  if (start != Start::BOOTSTRAP) return series;
+  const bool first = formulation == Formulation::FIRST;
+  std::vector<Scheme> list;
+  for (int n = first ? FIRST_FEWEST : SECOND_FEWEST; n <= (first ? FIRST_MOST : SECOND_MOST); ++n)
+    list.push_back(scheme_of(formulation, n));
+  return list;
+}
 
-  const Collocation collocation;
-  Collocation::Workspace work;
-  collocation.begin(series, work);
-  double change = 1.0;
-  for (int sweep = 0; sweep < 40 && change > 0.0; ++sweep) {
-    const double before = change;
-    change = 0.0;
-    for (int k = 0; k < Collocation::NODES; ++k) {
-      if (k == Collocation::HALF) continue;
-      const BodyState s = collocation.state_at(k, work, spacing);
+inline std::vector<Scheme> every_scheme()
+{
+  std::vector<Scheme> list = schemes_of(Formulation::FIRST);
+  for (const Scheme &s : schemes_of(Formulation::SECOND)) list.push_back(s);
+  return list;
+}
+
+inline const char *name(const Scheme &scheme)
+{
+  return scheme.first() ? "first" : scheme.velocity_c0 ? "second, velocity c0" : "second";
+}
+
+// The start as the host finds it (gear_quat_bootstrap.cpp): order of the nodes, the rule that ends
+// the sweeps, and half the spacing where they do not end.
+
+constexpr int MAX_SWEEPS = 12, MAX_HALVINGS = 8;
+constexpr double CONVERGED = 1.0e-15, SETTLED = 1.0e-9;
+
+/// One sweep over all nodes, outwards.  Returns the largest change.
+inline double sweep(const Collocation &collocation, const RigidBody &body, const LoadOf &load,
+                    double spacing, double length, bool first, Collocation::Workspace &work)
+{
+  double change = 0.0;
+  for (int pair = 1; pair <= collocation.pairs(); ++pair) {
+    for (const int node : {-pair, pair}) {
+      const BodyState s = collocation.state_at(node, work, spacing);
       change = std::max(
-          change, collocation.set_load(k, body, s, load(s, dot4(s.q, s.q)), spacing, 1.0, work));
+          change,
+          collocation.set_load(node, body, s, load(s, dot4(s.q, s.q)), spacing, length, work));
     }
-    if (change < 1e-12 && change > 0.5 * before) break;    // rounding alone is left
+    if (first && pair < collocation.pairs()) collocation.foretell(pair, work);
   }
-  return collocation.series(work);
+  return change;
+}
+
+/// A series found by collocation, and what it took.
+struct Found {
+  TaylorSeries series;
+  double spacing;
+  int sweeps = 0;    ///< of the spacing that was kept
+  int evaluations = 0;
+};
+
+/// length: the size of the body.  Throws if the host would start with known forces only.
+inline Found bootstrap(int values, const RigidBody &body, const BodyState &state,
+                       const LoadOf &load, double spacing, double length = 1.0)
+{
+  const Collocation collocation(values);
+  Collocation::Workspace work;
+  Found found;
+  for (int n = 0; n < MAX_HALVINGS; ++n, spacing *= 0.5) {
+    collocation.begin(local_series(body, state, load(state, dot4(state.q, state.q)), spacing),
+                      work);
+    double change = 0.0;
+    for (int k = 0; k < MAX_SWEEPS; ++k) {
+      const double before = change;
+      change = sweep(collocation, body, load, spacing, length, k == 0, work);
+      found.evaluations += 2 * collocation.pairs();
+      if (!std::isfinite(change)) break;
+      const double next = k > 0 && change < before ? change * (change / before) : change;
+      const bool converged = next < CONVERGED ||
+          (k > 0 && next < collocation.truncation(length, work));
+      if (converged || (k > 1 && change < SETTLED && change > 0.5 * before)) {
+        found.series = collocation.series(work);
+        found.spacing = spacing;
+        found.sweeps = k + 1;
+        return found;
+      }
+    }
+  }
+  throw std::runtime_error("forces vary too much within a few steps");
+}
+
+/// A history of `scheme` at `state`.  The series is found at a step of `spacing`, whatever h is.
+inline std::vector<double> started(const Scheme &scheme, const RigidBody &body,
+                                   const BodyState &state, const LoadOf &load, double h,
+                                   Start start, double spacing)
+{
+  Found found;
+  if (start == Start::BOOTSTRAP) {
+    found = bootstrap(scheme.values(), body, state, load, spacing);
+  } else {
+    found.series = local_series(body, state, load(state, dot4(state.q, state.q)), spacing);
+    found.spacing = spacing;
+    if (start == Start::ZERO) found.series.terms = 2;
+  }
+  std::vector<double> rows(scheme.size());
+  seed(scheme, body, found.series, found.spacing, h, rows.data());
+  return rows;
 }
 
 /// One body under way.
@@ -65,21 +144,29 @@ struct Motion {
   RigidBody body;
   Scheme scheme;
   LoadOf load;
+  double h;
   Integrator integrator;
-  double rows[MAX_VALUES * 13];
+  std::vector<double> history;
+  double *rows;
 
+  Motion(const RigidBody &body, const LoadOf &load, const Scheme &scheme, double h,
+         std::vector<double> history) :
+      body(body),
+      scheme(scheme), load(load), h(h), integrator(scheme, h), history(std::move(history)),
+      rows(this->history.data())
+  {
+  }
   Motion(const RigidBody &body, const BodyState &state, const LoadOf &load, const Scheme &scheme,
          double h, Start start, double spacing) :
-      body(body),
-      scheme(scheme), load(load), integrator(scheme, h)
+      Motion(body, load, scheme, h, started(scheme, body, state, load, h, start, spacing))
   {
-    seed(scheme, body, series_at(body, state, load, start, spacing), spacing, h, rows);
   }
+  Motion(const Motion &) = delete;
 
   BodyState state() const { return integrator.body_state(body, rows); }
   const double *q() const { return rows + scheme.quaternion(); }
 
-  Shift step()
+  Correction step()
   {
     integrator.predict(rows);
     return integrator.correct(body, load(state(), scheme.norm2(q())), rows);

@@ -214,7 +214,7 @@ TEST(Integrator, RunsBackToWhereItStarted)
       there.steps(n);
       Motion back(body, start, free_of_load, scheme, -step, Start::BOOTSTRAP, 0.05);
       std::copy(there.rows, there.rows + scheme.size(), back.rows);
-      nordsieck_rescale(back.rows, scheme.values(), scheme.width(), -1.0);
+      back.integrator.rescale(back.rows, -1.0);
       back.steps(n);
       error.push_back(Check::quaternion_distance(back.q(), start.q));
     }

@@ -14,6 +14,7 @@ using Check::largest_difference;
 namespace {
 
 constexpr int N = 6, WIDTH = 3;
+using Rows = Nordsieck<WIDTH>;
 
 /// Rows at time t, step h, of polynomials of degree N - 1 with the given coefficients (per column).
 std::vector<double> rows_of(const std::vector<double> &a, double t, double h)
@@ -40,7 +41,7 @@ TEST(Nordsieck, PredictIsTaylorsSeriesExactly)
   const std::vector<double> a = {1, -2, 3, 4, 5, -6, 7, 1, -2, 3, -4, 5, 2, 2, -3, 1, -1, 2};
   auto check = [&](const std::vector<double> &start) {
     std::vector<double> rows = start;
-    nordsieck_predict(rows.data(), N, WIDTH);
+    Rows::predict(rows.data(), N);
     return rows == rows_of(a, 3.0, 1.0);
   };
   Check::holds_and_refuses_one_percent(rows_of(a, 2.0, 1.0), check);
@@ -48,9 +49,9 @@ TEST(Nordsieck, PredictIsTaylorsSeriesExactly)
 
 TEST(Nordsieck, PredictWorksForEveryNumberOfRows)
 {
-  for (int n = 1; n <= 8; ++n) {
+  for (int n = 1; n <= 12; ++n) {
     std::vector<double> rows(n, 1.0), expected(n, 0.0);
-    nordsieck_predict(rows.data(), n, 1);
+    Nordsieck<1>::predict(rows.data(), n);
     for (int j = 0; j < n; ++j) {
       double binomial = 1.0;
       for (int k = j; k < n; ++k) {
@@ -67,10 +68,10 @@ TEST(Nordsieck, PredictBackwardsReturns)
   const std::vector<double> start = Check::Numbers(1).list(N * WIDTH);
   auto there_and_back = [&](double ratio) {
     std::vector<double> rows = start;
-    nordsieck_predict(rows.data(), N, WIDTH);
-    nordsieck_rescale(rows.data(), N, WIDTH, ratio);
-    nordsieck_predict(rows.data(), N, WIDTH);
-    nordsieck_rescale(rows.data(), N, WIDTH, 1.0 / ratio);
+    Rows::predict(rows.data(), N);
+    Rows::rescale(rows.data(), N, ratio);
+    Rows::predict(rows.data(), N);
+    Rows::rescale(rows.data(), N, 1.0 / ratio);
     return largest_difference(rows.data(), start.data(), N * WIDTH);
   };
   EXPECT_LT(there_and_back(-1.0), 1e-14);
@@ -83,7 +84,7 @@ TEST(Nordsieck, RescaledHistoryIsTheSamePolynomial)
   const std::vector<double> expected = rows_of(a, 0.7, 0.3);
   auto check = [&](const std::vector<double> &start) {
     std::vector<double> rows = start;
-    nordsieck_rescale(rows.data(), N, WIDTH, 0.3 / 0.8);
+    Rows::rescale(rows.data(), N, 0.3 / 0.8);
     // row 5 is small after rescaling: compare row by row against its own size
     for (int i = 0; i < N * WIDTH; ++i)
       if (!(std::fabs(rows[i] - expected[i]) <= 1e-14 * std::fabs(expected[i]))) return false;
@@ -95,13 +96,13 @@ TEST(Nordsieck, RescaledHistoryIsTheSamePolynomial)
 TEST(Nordsieck, RescalesCompose)
 {
   std::vector<double> twice = Check::Numbers(3).list(N * WIDTH), once = twice;
-  nordsieck_rescale(twice.data(), N, WIDTH, 0.5);
-  nordsieck_rescale(twice.data(), N, WIDTH, 0.25);
-  nordsieck_rescale(once.data(), N, WIDTH, 0.125);
+  Rows::rescale(twice.data(), N, 0.5);
+  Rows::rescale(twice.data(), N, 0.25);
+  Rows::rescale(once.data(), N, 0.125);
   EXPECT_EQ(twice, once);    // powers of two: to the bit
-  nordsieck_rescale(twice.data(), N, WIDTH, 1.0);
+  Rows::rescale(twice.data(), N, 1.0);
   EXPECT_EQ(twice, once);
-  nordsieck_rescale(once.data(), N, WIDTH, 1.01);
+  Rows::rescale(once.data(), N, 1.01);
   EXPECT_NE(twice, once);
 }
 
@@ -111,7 +112,7 @@ TEST(Nordsieck, CorrectTouchesItsColumnsOnly)
   const std::vector<double> c = {0.5, 1.0, 0.25, 2.0, -1.0, 4.0};
   auto check = [&](const std::vector<double> &residual) {
     std::vector<double> rows = start;
-    nordsieck_correct(rows.data(), N, WIDTH, c.data(), 1, 2, residual.data());
+    Rows::correct<2>(rows.data(), N, c.data(), 1, residual.data());
     for (int j = 0; j < N; ++j) {
       if (rows[3 * j] != start[3 * j]) return false;
       if (rows[3 * j + 1] != start[3 * j + 1] + c[j] * 3.0) return false;

@@ -13,7 +13,8 @@ from .results import LimitRow, ModifyRow, OrderRow, Results, RoundingRow, Row, S
 from .stability import fewest_steps
 from .worker import DeckError, Outcome, RunError
 
-#: a step is usable while the total energy stays within this part of the kinetic energy at the start
+#: a step is usable while the total energy stays within this part of the kinetic energy at the start,
+#: and every |q|^2 within it of 1
 USABLE = 0.1
 ASTRAY = Errors(np.inf, np.inf, np.inf, np.inf, np.nan, np.nan)
 #: LAMMPS started anew and a scene read, in seconds, roughly; the search for a largest step, in runs
@@ -39,13 +40,14 @@ def judge(session, run, reference):
 
 
 def is_usable(session, run):
-    """Whether a run ends, and holds its energy within USABLE of its kinetic energy at the start."""
+    """Whether a run ends, and holds energy and quaternions within USABLE."""
     try:
         thermo = session.run(run, sampled=True).thermo
     except RunError:
         return False
     kinetic = thermo["v_ketrans"][0] + thermo["v_kerot"][0]
-    return energy_errors(thermo["Time"], thermo[plan.TOTAL])[0] <= USABLE * kinetic
+    energy, _ = energy_errors(thermo["Time"], thermo[plan.TOTAL])
+    return energy <= USABLE * kinetic and np.abs(thermo[plan.NORM]).max() <= USABLE
 
 
 def largest_step(session, scene, method):

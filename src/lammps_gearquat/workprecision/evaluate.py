@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 #: the part of a curve that its order is fitted on (see ``asymptotic``)
-FINEST, ABOVE_FLOOR, DECADES, FINER = 4, 5.0, 3, 1.25
+FINEST, ABOVE_FLOOR, DECADES, FINER = 5, 5.0, 3, 1.25
 FEWEST_POINTS = 3
 RULE = (
     f"lines of fitted order: least squares over the {DECADES} decades above rounding, "
@@ -31,7 +31,7 @@ class Fit:
 def rounding_floor(steps, errors):
     """Error that rounding makes: the worst of the FINEST finest runs; 0 if their errors still fall."""
     finest = np.asarray(errors, dtype=float)[np.argsort(steps)][:FINEST]
-    return 0.0 if (np.diff(finest) > 0).all() else float(finest.max())
+    return 0.0 if (finest[1:] > finest[:-1]).all() else float(finest.max())
 
 
 def asymptotic(steps, errors, limit=np.inf):

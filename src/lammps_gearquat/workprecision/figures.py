@@ -8,6 +8,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib import ticker  # noqa: E402
 
 from ..figures import RECONSTRUCTED, STYLE  # noqa: E402
 from . import plan, tables  # noqa: E402
@@ -29,7 +30,7 @@ def colour_of(row):
     base = np.array(matplotlib.colors.to_rgb(FAMILY[row.family]))
     values = plan.VALUES.get(row.family)
     if values is None:
-        return "#999999" if row.method == plan.RIGID_SMALL.key else RIGID
+        return "#aaaaaa" if row.method == plan.RIGID_SMALL.key else RIGID
     share = (values[-1] - row.values) / (values[-1] - values[0])
     return tuple(base + (1 - base) * 0.65 * share)
 
@@ -47,7 +48,9 @@ def _draw(axis, results, scene, method, unit, quantity, **line):
     row = results.curve(scene, method)[0]
     x, y = _curve(results, scene, method, unit, quantity)
     look = {"color": colour_of(row), "marker": "o", "markersize": 3, **line}
-    if row.passes > 1:
+    if row.method == plan.RIGID_SMALL.key:
+        look = {"ls": ":", "zorder": 4, **look}
+    elif row.values and row.passes != plan.DEFAULT_PASSES:
         look.setdefault("ls", "--")
     if unit == "seconds" and len(x):
         good = [r for r in results.curve(scene, method) if np.isfinite(r.seconds)]
@@ -59,8 +62,14 @@ def _draw(axis, results, scene, method, unit, quantity, **line):
 
 
 def _log(axis, xlabel, ylabel):
+    """Logarithmic axes; a short one has its ticks at 1, 2, 5."""
     axis.set(xscale="log", yscale="log", xlabel=xlabel)
     axis.set_title(ylabel, loc="left")
+    low, high = axis.get_xlim()
+    axis.xaxis.set_minor_formatter(ticker.NullFormatter())
+    if high / low < 200:
+        axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.xaxis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
 
 
 def _name(axis, x, y, level, text, colour, offset=(5, 3), **how):
@@ -134,7 +143,7 @@ def draw_main(path, results, scene="case1"):
             row = results.curve(scene, method)[0]
             look = {"linewidth": 1.8, "zorder": 3, "label": label, "color": FAMILY[row.family]}
             if method == plan.RIGID_SMALL.key:
-                look |= {"color": "#999999", "ls": ":"}
+                look |= {"color": "#aaaaaa"}
             elif method not in {m.key for m in plan.DEFAULTS.values()} and row.values:
                 look |= {"color": BEST, "marker": "D", "ls": "-", "linewidth": 1.2}
             _draw(axis, results, scene, method, unit, measure, **look)
@@ -196,7 +205,7 @@ def _draw_constraints(axis, results, scene, methods):
         _draw(axis, results, scene, method, "evaluations", "norm", ls="none")
         hollow = {"markerfacecolor": "none", "ls": "none", "marker": "s"}
         _draw(axis, results, scene, method, "evaluations", "tangency", **hollow)
-    axis.set_ylim(TINY / 3, 1)
+    axis.set_ylim(TINY / 3, 1e3)
     words = "filled: |q|² − 1, open: q·q̇; zero is at the lower edge"
     axis.text(0.03, 0.93, words, transform=axis.transAxes, fontsize=8)
 
@@ -251,7 +260,8 @@ def draw_panels(path, results, scene):
         x, y = results.solver(scene, solver)
         look = {"color": colour, "marker": "^", "markersize": 3, "ls": "-."}
         places[known.measure].plot(x, y, **look)
-        _name(places[known.measure], x, y, y.min(initial=1.0), solver, colour)
+        down = 4 if solver == "LSODA" else -9
+        _name(places[known.measure], x, y, y.min(initial=1.0), solver, colour, (4, down))
     if known.measure == "position":
         places["position"].set_ylim(top=1e1)
     elif not any(row.position for row in results.runs if row.scene == scene):
@@ -265,7 +275,7 @@ def draw_panels(path, results, scene):
     _log(axes[1, 2], AXIS["evaluations"], "constraints of the quaternion, largest violation")
     handles, labels = places["energy"].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside right center")
-    rule = f"broad {RULE}; ▼ largest usable step; " + _note(scene)
+    rule = "; ".join([f"broad {RULE}", "▼ largest usable step", *filter(None, [_note(scene)])])
     _save(figure, path, known.title, rule)
 
 

@@ -6,20 +6,20 @@ the machine hits all of them alike.  Runs whose median is not yet steady are tim
 
 import multiprocessing
 import os
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from .. import decks
-from .worker import DeckError, Task, perform
+from .worker import RunError, Task, serve
 
 #: the median is steady when half its quartile range over the root of the count is below this
 STEADY = 0.01
 #: no more rounds than these; runs longer than SHORT seconds are steady by themselves
 MOST_ROUNDS, SHORT = 20, 0.05
+#: a run may take so many times a second, and its expected time, longer: lost atoms can catch LAMMPS
+PATIENCE = 20.0
 
 
 class Session:
@@ -30,23 +30,44 @@ class Session:
 
         os.environ["OMP_NUM_THREADS"] = "1"
         self.logs = Path(logs)
-        self.pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"))
+        self.process = self.pipe = None
 
     def __enter__(self):
+        self._start()
         return self
 
     def __exit__(self, *_):
-        self.pool.shutdown(cancel_futures=True)
+        self._end()
+
+    def _start(self):
+        context = multiprocessing.get_context("spawn")
+        self.pipe, other = context.Pipe()
+        self.process = context.Process(target=serve, args=(other,), daemon=True)
+        self.process.start()
+        other.close()
+
+    def _end(self):
+        self.process.kill()
+        self.process.join()
+        self.pipe.close()
 
     def run(self, run, sampled=False, timers=False):
-        """Outcome of a Run; see Run.variables."""
+        """Outcome of a Run; see Run.variables.  Raises DeckError, or RunError for a run gone astray."""
         deck = decks.examples_folder() / run.scene.deck
         log = self.logs / f"log.{run.name}"
-        task = Task(deck, run.variables(sampled, timers), log)
+        patience = PATIENCE * (1.0 + run.scene.cost * run.steps)
         try:
-            return self.pool.submit(perform, task).result()
-        except BrokenProcessPool as error:
-            raise DeckError(f"{log.name}: LAMMPS ended its whole process") from error
+            self.pipe.send(Task(deck, run.variables(sampled, timers), log))
+            if not self.pipe.poll(patience):
+                raise RunError(f"{log.name}: not finished after {patience:.0f} s")
+            found = self.pipe.recv()
+        except (RunError, EOFError, BrokenPipeError) as error:
+            self._end()
+            self._start()
+            raise RunError(str(error) or f"{log.name}: LAMMPS ended its process") from error
+        if isinstance(found, Exception):
+            raise found
+        return found
 
 
 @dataclass(frozen=True)

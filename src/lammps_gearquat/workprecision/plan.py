@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 FIRST, SECOND, RIGID = "first", "second", "rigid"
 #: what the fix takes unless told: formulation, values of each formulation, passes
-DEFAULT_FORMULATION, DEFAULT_VALUES, DEFAULT_PASSES = SECOND, {FIRST: 5, SECOND: 6}, 1
+DEFAULT_FORMULATION, DEFAULT_VALUES, DEFAULT_PASSES = SECOND, {FIRST: 6, SECOND: 8}, 2
 PASSES = (1, 2)
 #: columns of the log of every scene (examples/common/in.motion), and the further one asked for
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
@@ -52,23 +52,25 @@ VALUES = {SECOND: range(4, 13), FIRST: range(3, 9)}
 EVERY_N = tuple(gear(name, n, passes) for passes in PASSES for name in VALUES for n in VALUES[name])
 ALL_METHODS = (
     *EVERY_N,
+    gear(SECOND, 6, c0="velocity"),
     gear(SECOND, DEFAULT_VALUES[SECOND], c0="velocity"),
     RIGID_NVE,
     RIGID_SMALL,
 )
 #: N of the scenes where a step costs milliseconds, and of a first look
-FEW_VALUES = {SECOND: (6, 8, 10), FIRST: (5, 7)}
-FEW_METHODS = tuple(
-    dict.fromkeys(
-        (
-            *(gear(name, n) for name in FEW_VALUES for n in FEW_VALUES[name]),
-            gear(SECOND, 10, 2),
-            *DEFAULTS.values(),
-            RIGID_NVE,
-            RIGID_SMALL,
-        )
-    )
+FEW_VALUES = {SECOND: (6, 8, 10), FIRST: (6, 8)}
+
+
+def _few(*settings):
+    """Settings, the defaults and fix rigid's, each once."""
+    return tuple(dict.fromkeys((*settings, *DEFAULTS.values(), RIGID_NVE, RIGID_SMALL)))
+
+
+FEW_METHODS = _few(
+    *(gear(name, n) for name in FEW_VALUES for n in FEW_VALUES[name]), gear(SECOND, 8, 1)
 )
+#: where forces jump
+ROUGH_METHODS = _few(gear(SECOND, 6), gear(SECOND, 8), gear(FIRST, 5))
 
 
 def geometric(first, last, ratio):
@@ -213,7 +215,6 @@ def _water(quick, **facts):
         end=8.0 if quick else 48.0,
         samples=2 if quick else 12,
         blocks=blocks,
-        methods=FEW_METHODS,
         length="Å",
         time="fs",
         energy="kcal/mol",
@@ -231,6 +232,7 @@ def water(quick):
         key="water",
         title="500 SPC/E molecules, smooth at the cut-off, 48 fs",
         reference="deck",
+        methods=FEW_METHODS,
         tolerances=() if quick else (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
         variables=(("forces", "smooth"),),
     )
@@ -243,6 +245,7 @@ def water_plain(quick):
         key="water-plain",
         title="500 SPC/E molecules, plain cut-off, 48 fs",
         reference="finest",
+        methods=ROUGH_METHODS,
         smooth=False,
         variables=(("forces", "plain"),),
     )

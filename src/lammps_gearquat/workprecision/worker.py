@@ -156,3 +156,17 @@ def perform(task):
     thermo = {name: np.array(values) for name, values in runs[-1].items()} if runs else {}
     found = start_evaluations(text), modify_seconds(text)
     return Outcome(seconds, *found, *atoms, before, after, thermo)
+
+
+def serve(pipe):
+    """Perform tasks from a pipe until it closes: answers are an Outcome or the exception."""
+    while True:
+        try:
+            task = pipe.recv()
+        except EOFError:
+            return
+        try:
+            answer = perform(task)
+        except DeckError as error:
+            answer = error
+        pipe.send(answer)

@@ -96,6 +96,29 @@ inline Rational velocity_c0(int values)
   return Rational(2) * weighted(backward_difference(values - 2), 1);
 }
 
+/// What a residual says of the error of row 0, first-order equation: by how much c_0 differs from that
+/// of one value less, as one integral: Adams-Bashforth's weight of order N - 2 less that of N - 1.
+inline Rational first_order_error(int values)
+{
+  return integral_to_zero(multiply(rising(values - 2), {0, Rational(-1, values - 1)}), -1);
+}
+
+// What a step with N values adds to row 0 beyond the exact motion from where it began, as long as the
+// highest derivatives are steady.
+
+/// First-order equation: this times h^(N + 1) y^(N + 1), Moulton's weight of order N.
+inline Rational first_order_local_error(int values)
+{
+  return first_order(values)[0] - first_order(values + 1)[0];
+}
+
+/// Second-order equation: this times h^N y^(N)/2, by way of the velocity row; twice Moulton's weight
+/// of order N - 1.  The residual is h^N y^(N)/2 itself, so this is its weight too.
+inline Rational second_order_local_error(int values)
+{
+  return Rational(2) * first_order_local_error(values - 1);
+}
+
 }    // namespace Oracle
 
 #endif

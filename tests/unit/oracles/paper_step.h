@@ -5,7 +5,8 @@
 
 /* One step of the paper, literally: derivatives instead of a Nordsieck history, Taylor's series
    with factorials (Eq. 11), corrections as printed (Eqs. 13 to 18 and the lines below them), W and
-   A as matrices.  Extended precision, no kernel header. */
+   A as matrices.  Further passes begin from what is corrected so far, with the force and the torque
+   along the body axes of the first.  Extended precision, no kernel header. */
 
 #ifndef GEAR_QUAT_ORACLE_PAPER_STEP_H
 #define GEAR_QUAT_ORACLE_PAPER_STEP_H
@@ -22,6 +23,7 @@ using Derivatives = std::vector<std::vector<Real>>;
 struct PaperStep {
   std::vector<Real> coefficients;    ///< Table 1 or 2
   Real dt, mass, inertia[3], force[3], torque_space[3];
+  int passes = 1;
   bool predicted_omega = false, predicted_momentum = false, project = false;
 
   static Real factorial(int n) { return n < 2 ? 1.0L : n * factorial(n - 1); }
@@ -55,7 +57,7 @@ struct PaperStep {
       out[i] = 0.5L * (w[i][0] * v[0] + w[i][1] * v[1] + w[i][2] * v[2] + w[i][3] * v[3]);
   }
 
-  /// Eqs. 8, 10 and 7.
+  /// Eqs. 8, 10 and 7; q: the pose at which the torque was met.
   void angular_acceleration(const Real *q, const Real *w, Real *wdot) const
   {
     const Real x = q[0], y = q[1], z = q[2], s = q[3], n = norm2(q);
@@ -74,19 +76,22 @@ struct PaperStep {
   void first(Derivatives &y) const
   {
     predict(y);
-    const Derivatives p = y;
-    Real wdot[3], qdot[4];
-    angular_acceleration(&p[0][6], &p[0][10], wdot);
+    const Derivatives met = y;
     for (int i = 0; i < 3; ++i) {
-      correct(y, 3 + i, (force[i] - p[1][3 + i]) * dt);     // Eq. 14
-      correct(y, 10 + i, (wdot[i] - p[1][10 + i]) * dt);    // Eq. 15
-      const Real momentum = predicted_momentum ? p[0][3 + i] : y[0][3 + i];
-      correct(y, i, (momentum / mass - p[1][i]) * dt);    // Eq. 13
+      correct(y, 3 + i, (force[i] - met[1][3 + i]) * dt);    // Eq. 14
+      const Real momentum = predicted_momentum ? met[0][3 + i] : y[0][3 + i];
+      correct(y, i, (momentum / mass - met[1][i]) * dt);    // Eq. 13
     }
-    const Derivatives &source = predicted_omega ? p : y;
-    const Real w[4] = {source[0][10], source[0][11], source[0][12], 0.0L};
-    half_w_times(&p[0][6], w, qdot);                                                // Eq. 5
-    for (int i = 0; i < 4; ++i) correct(y, 6 + i, (qdot[i] - p[1][6 + i]) * dt);    // Eq. 16
+    for (int pass = 0; pass < passes; ++pass) {
+      const Derivatives p = y;
+      Real wdot[3], qdot[4];
+      angular_acceleration(&met[0][6], &p[0][10], wdot);
+      for (int i = 0; i < 3; ++i) correct(y, 10 + i, (wdot[i] - p[1][10 + i]) * dt);    // Eq. 15
+      const Derivatives &source = predicted_omega ? p : y;
+      const Real w[4] = {source[0][10], source[0][11], source[0][12], 0.0L};
+      half_w_times(&p[0][6], w, qdot);                                                // Eq. 5
+      for (int i = 0; i < 4; ++i) correct(y, 6 + i, (qdot[i] - p[1][6 + i]) * dt);    // Eq. 16
+    }
     if (project) unit(&y[0][6]);
   }
 
@@ -94,19 +99,24 @@ struct PaperStep {
   void second(Derivatives &y) const
   {
     predict(y);
-    const Derivatives p = y;
-    const Real *q = &p[0][3], *qdot = &p[1][3];
-    // omega: Eq. 5 solved for it, 2 W^T qdot / |q|^2
-    const Real f = 2.0L / norm2(q);
-    const Real w[3] = {f * (q[3] * qdot[0] + q[2] * qdot[1] - q[1] * qdot[2] - q[0] * qdot[3]),
-                       f * (-q[2] * qdot[0] + q[3] * qdot[1] + q[0] * qdot[2] - q[1] * qdot[3]),
-                       f * (q[1] * qdot[0] - q[0] * qdot[1] + q[3] * qdot[2] - q[2] * qdot[3])};
-    Real v[4] = {}, qddot[4];
-    angular_acceleration(q, w, v);
-    for (int i = 0; i < 4; ++i) v[3] -= 2.0L * qdot[i] * qdot[i];
-    half_w_times(q, v, qddot);    // Eq. 6
-    for (int i = 0; i < 3; ++i) correct(y, i, (force[i] / mass - p[2][i]) * dt * dt / 2);     // 17
-    for (int i = 0; i < 4; ++i) correct(y, 3 + i, (qddot[i] - p[2][3 + i]) * dt * dt / 2);    // 18
+    const Derivatives met = y;
+    for (int i = 0; i < 3; ++i)
+      correct(y, i, (force[i] / mass - met[2][i]) * dt * dt / 2);    // Eq. 17
+    for (int pass = 0; pass < passes; ++pass) {
+      const Derivatives p = y;
+      const Real *q = &p[0][3], *qdot = &p[1][3];
+      // omega: Eq. 5 solved for it, 2 W^T qdot / |q|^2
+      const Real f = 2.0L / norm2(q);
+      const Real w[3] = {f * (q[3] * qdot[0] + q[2] * qdot[1] - q[1] * qdot[2] - q[0] * qdot[3]),
+                         f * (-q[2] * qdot[0] + q[3] * qdot[1] + q[0] * qdot[2] - q[1] * qdot[3]),
+                         f * (q[1] * qdot[0] - q[0] * qdot[1] + q[3] * qdot[2] - q[2] * qdot[3])};
+      Real v[4] = {}, qddot[4];
+      angular_acceleration(&met[0][3], w, v);
+      for (int i = 0; i < 4; ++i) v[3] -= 2.0L * qdot[i] * qdot[i];
+      half_w_times(q, v, qddot);    // Eq. 6
+      for (int i = 0; i < 4; ++i)
+        correct(y, 3 + i, (qddot[i] - p[2][3 + i]) * dt * dt / 2);    // Eq. 18
+    }
     if (!project) return;
     unit(&y[0][3]);
     Real radial = 0.0L;    // Eq. 4

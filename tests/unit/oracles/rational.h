@@ -45,6 +45,8 @@ class Rational {
   Rational operator-(const Rational &o) const { return *this + (-o); }
   bool operator==(const Rational &o) const { return num == o.num && den == o.den; }
   bool operator!=(const Rational &o) const { return !(*this == o); }
+  Integer numerator() const { return num; }
+  Integer denominator() const { return den; }
   double value() const { return double(num) / double(den); }
   friend std::ostream &operator<<(std::ostream &out, const Rational &r)
   {

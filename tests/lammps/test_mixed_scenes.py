@@ -1,0 +1,326 @@
+"""Bodies among others: forces of every kind count, other fixes move the rest, in one box of water.
+
+Against fix rigid/nve/small at a step so small that nothing is left of its error, and by balances of
+momentum and energy that know of no integrator.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from scenes import last_frame, one_after_the_other, water, water_data
+
+FORMULATIONS = ["first", "second"]
+RIGID = "rigid/nve/small molecule"
+BODIES = "group bodies molecule 1:14\ngroup others subtract all bodies\n"
+SPACING, N = 3.3, 3
+SMOOTH = "pair_style lj/charmm/coul/charmm 2.7 3.9"
+NO_DISPERSION = "pair_coeff 2 2 0.0 1.0\npair_coeff 1 2 0.0 1.0\n"
+
+
+@dataclass
+class Box:
+    """The box of water with decks that all begin alike; a deck leaves a dump of its name."""
+
+    lmp: object
+    data: object
+
+    def run(self, *decks, ranks=1):
+        result = self.lmp.run(one_after_the_other(decks), ranks=ranks)
+        assert result.returncode == 0, result.output
+        return result
+
+    def deck(self, name, fix, group="all", dt=0.01, steps=1000, replace=(), **settings):
+        text = water(self.data, fix, dt=dt, steps=steps, dump=name, **settings)
+        text = text.replace("fix move all", f"fix move {group}")
+        for old, new in replace:
+            assert old in text
+            text = text.replace(old, new)
+        return text
+
+    def end(self, name):
+        return last_frame(self.lmp.folder / name)
+
+    def start(self):
+        lines = self.data.read_text().partition("Velocities\n\n")[2].partition("\n\n")[0]
+        return np.loadtxt(lines.splitlines())[:, 1:]
+
+    def difference(self, one, other, atoms=slice(None)):
+        """Of positions and velocities, relative to what forces have changed in the velocities."""
+        one, other = (self.end(name)[atoms] for name in (one, other))
+        changed = np.abs(one[:, 4:7] - self.start()[one[:, 0].astype(int) - 1]).max()
+        travelled = np.abs(one[:, 4:7]).max()
+        moved = np.abs(one - other)
+        return max(moved[:, 1:4].max() / (10 * travelled), moved[:, 4:7].max() / changed)
+
+
+@pytest.fixture
+def box(lmp_tree):
+    return Box(lmp_tree, water_data(lmp_tree.folder / "data.water", N, shift=SPACING / 2))
+
+
+# --- forces -----------------------------------------------------------------------------------
+
+WALLS = "zlo -1.5 {e} 2.5 7.0 zhi 11.4 {e} 2.5 7.0"
+# what a strength s of 1 makes of the deck: commands, and replacements in it
+FORCES = {
+    "pair": lambda s: ("", [("0.1553", f"{0.1553 * s}")]),
+    "gravity": lambda s: (f"fix g all gravity {0.05 * s} vector 0.3 0.2 -1", []),
+    "efield": lambda s: (f"fix e all efield {0.5 * s} {-0.8 * s} 0.3", []),
+    "addforce": lambda s: (f"fix a all addforce {s} {0.5 * s} -0.3", []),
+    "wall/lj93": lambda s: ("fix w all wall/lj93 " + WALLS.format(e=2 * s), []),
+    "wall/lj126": lambda s: ("fix w all wall/lj126 " + WALLS.format(e=2 * s), []),
+    "wall/harmonic": lambda s: ("fix w all wall/harmonic " + WALLS.format(e=2 * s), []),
+    "wall/morse": lambda s: (
+        f"fix w all wall/morse zlo -1.5 {2 * s} 1.2 2.5 7.0 zhi 11.4 {2 * s} 1.2 2.5 7.0",
+        [],
+    ),
+    "wall/region": lambda s: (
+        "region inside sphere 5 5 5 11.0\n"
+        f"fix w all wall/region inside harmonic {2 * s} 0.0 8.0",
+        [],
+    ),
+    "pppm": lambda s: (
+        f"dielectric {1 / s}\nkspace_style pppm 1e-3",
+        [(SMOOTH, "pair_style lj/charmm/coul/long 2.7 3.9 4.2")],
+    ),
+    "hybrid": lambda s: (
+        "",
+        [
+            (SMOOTH, "pair_style hybrid/overlay lj/cut 3.9 coul/cut 4.4"),
+            (NO_DISPERSION, ""),
+            ("1 1 0.1553 3.166", f"1 1 lj/cut {0.1553 * s} 3.166\npair_coeff * * coul/cut"),
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("kind", FORCES)
+def test_every_force_counts(box, kind, ranks):
+    """As with fix rigid/nve/small at a tiny step; one of these forces 1 % stronger is seen."""
+
+    def deck(name, fix, strength=1.0):
+        # before: a fix rigid that comes first does not know the forces of others in its first half step
+        before, replace = FORCES[kind](strength)
+        if "wall" in kind:
+            replace = [*replace, ("read_data", "boundary p p f\nread_data")]
+        return box.deck(name, fix, before=before, replace=replace)
+
+    second = "gear/quat molecule formulation second"
+    box.run(
+        deck("rigid", RIGID),
+        deck("first", "gear/quat molecule formulation first"),
+        deck("second", second),
+        deck("stronger", second, 1.01),
+        ranks=ranks,
+    )
+    for formulation in FORMULATIONS:
+        assert box.difference("rigid", formulation) < 1e-6
+    assert box.difference("rigid", "stronger") > 1e-5
+
+
+FTM2V = 1 / 48.88821291**2  # kcal/mol/Angstrom/(g/mol) in Angstrom/fs^2
+MASS = np.tile([15.9994, 1.008, 1.008], N**3)
+DRAG = {  # rates in 1/fs
+    "langevin": (1 / 30, "fix d all langevin 0 0 30 4711"),
+    "viscous": (0.5 * FTM2V, f"fix d all viscous 15.9994 scale 2 {1.008 / 15.9994}"),
+}
+DRAG["viscous"] = (FTM2V * 40, f"fix d all viscous {40 * MASS[0]} scale 2 {MASS[1] / MASS[0]}")
+
+
+@pytest.mark.parametrize("kind", DRAG)
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_a_drag_on_every_site_stops_the_whole(box, formulation, kind):
+    """In proportion to masses: forces among the sites drop out, momentum falls as an exponential."""
+    rate, drag = DRAG[kind]
+    fix = f"gear/quat molecule formulation {formulation}"
+    box.run(box.deck("end", fix, dt=0.1, steps=300, before=drag))
+    before, after = MASS @ box.start(), MASS @ box.end("end")[:, 4:7]
+    exact = before * np.exp(-rate * 30.0)
+    print("DRAG", after / exact - 1)
+    assert after == pytest.approx(exact, rel=1e-6)
+    assert after != pytest.approx(1.01 * exact, rel=1e-6)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_what_pulls_the_whole_is_its_momentum(box, formulation, ranks):
+    """Gravity and a constant force on the sites of some bodies: no step is too long for that sum."""
+    pull = "fix g all gravity 0.0005 vector 0 0 -1\nfix a bodies addforce 0.1 -0.2 0.3"
+    fix = f"gear/quat molecule formulation {formulation}"
+    box.run(box.deck("end", fix, dt=1.0, steps=100, before=BODIES + pull), ranks=ranks)
+    gained = MASS @ box.end("end")[:, 4:7] - MASS @ box.start()
+    force = 14 * 3 * FTM2V * np.array([0.1, -0.2, 0.3])
+    exact = 100.0 * (force + [0, 0, -0.0005 * MASS.sum()])
+    print("PULL", gained / exact - 1)
+    assert gained == pytest.approx(exact, rel=1e-8)
+    assert gained != pytest.approx(1.01 * exact, rel=1e-8)
+
+
+# --- bodies among atoms that another fix moves ------------------------------------------------
+
+
+def with_bonds(data):
+    """The same molecules with bonds and angles, for those that are not rigid."""
+    text = data.read_text()
+    text = text.replace(
+        "\nMasses", f"{2 * N**3} bonds\n1 bond types\n{N**3} angles\n1 angle types\n\nMasses"
+    )
+    first = range(1, 3 * N**3, 3)
+    bonds = [f"{2 * k + j + 1} 1 {o} {o + j + 1}" for k, o in enumerate(first) for j in (0, 1)]
+    angles = [f"{k + 1} 1 {o + 1} {o} {o + 2}" for k, o in enumerate(first)]
+    text += "\n".join(["", "Bonds", "", *bonds, "", "Angles", "", *angles, ""])
+    path = data.with_name("data.bonds")
+    path.write_text(text)
+    return path
+
+
+SOLVENT = {
+    "flexible": """
+bond_style harmonic
+bond_coeff 1 450.0 1.0
+angle_style harmonic
+angle_coeff 1 55.0 109.47
+"""
+    + BODIES
+    + "delete_bonds bodies multi any",
+    "atomic": BODIES
+    + """
+group light type 2
+group spare intersect light others
+delete_atoms group spare compress no
+set group others charge 0.0
+""",
+}
+
+
+@pytest.fixture(params=SOLVENT)
+def solution(request, box):
+    """Half of the molecules rigid, the others flexible or single atoms that fix nve moves."""
+    if request.param == "flexible":
+        box.data = with_bonds(box.data)
+    box.before = SOLVENT[request.param] + "\nfix others others nve\n"
+    box.solvent = request.param
+    return box
+
+
+@pytest.mark.parametrize("ranks", [1, 4])
+def test_bodies_and_solvent_move_each_other(solution, ranks):
+    """At a tiny step as with fix rigid/nve/small; without the forces between them otherwise."""
+    apart = "neigh_modify exclude group bodies others\n"
+    second = "gear/quat molecule formulation second"
+    common = dict(group="bodies", before=solution.before)
+    solution.run(
+        solution.deck("rigid", RIGID, **common),
+        solution.deck("first", "gear/quat molecule formulation first", **common),
+        solution.deck("second", second, **common),
+        solution.deck("apart", second, group="bodies", before=solution.before + apart),
+        solution.deck("stronger", second, replace=[("0.1553", "0.156853")], **common),
+        ranks=ranks,
+    )
+    bodies = solution.end("rigid")[:, 0] <= 3 * 14
+    for atoms in (bodies, ~bodies):
+        for formulation in FORMULATIONS:
+            print("SOL", solution.solvent, solution.difference("rigid", formulation, atoms))
+            assert solution.difference("rigid", formulation, atoms) < 1e-6
+        print(
+            "SOL apart",
+            solution.difference("rigid", "stronger", atoms),
+            solution.difference("rigid", "apart", atoms),
+        )
+        for other in ("stronger", "apart"):
+            assert solution.difference("rigid", other, atoms) > 1e-5
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_momentum_and_energy_of_a_solution(solution, formulation):
+    """What bodies lose the solvent gains: by the energy of all, and by the momentum of all."""
+    fix = f"gear/quat molecule formulation {formulation}"
+    smooth = [(SMOOTH, "pair_style lj/charmm/coul/charmm 1.0 3.9")]
+    decks = {
+        dt: solution.deck(
+            f"dt{dt}",
+            fix,
+            "bodies",
+            dt,
+            round(50 / dt),
+            smooth,
+            before=solution.before,
+            thermo=round(5 / dt),
+        )
+        for dt in (0.2, 0.1)
+    }
+    result = solution.run(*decks.values())
+    frame = solution.end("dt0.1")
+    atoms = frame[:, 0].astype(int) - 1
+    mass, v, start = MASS[atoms], frame[:, 4:7], solution.start()[atoms]
+    some = atoms < 3 * 14
+    exchanged = np.abs(mass[some] @ (v - start)[some]).max()
+    print("MOM", exchanged, np.abs(mass @ (v - start)).max())
+    assert np.abs(mass @ (v - start)).max() < 1e-10 * exchanged
+    drift = []
+    for table in result.thermo:
+        total, potential = np.array(table["TotEng"]), np.array(table["PotEng"])
+        drift.append(np.abs(total - total[0]).max() / np.ptp(potential))
+    print("DRIFT", drift)
+    assert drift[1] < 0.35 * drift[0] and drift[1] < 1e-2  # the order of fix nve
+
+
+# --- several fixes ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_two_fixes_are_one(box, formulation, ranks):
+    """The same motion, temperature and pressure, but for the order of some sums."""
+    fix = f"gear/quat molecule formulation {formulation} start zero"
+    columns = [("temp pe ke", "temp pe ke f_move[1] f_move[2] ")]
+    two = f"fix rest others {fix}\nfix_modify rest energy yes\n"
+    half = [("ke f_move[1]", "ke f_rest[1] f_rest[2] f_move[1]")]
+    settings = dict(dt=0.2, steps=200, thermo=50)
+    result = box.run(
+        box.deck("one", fix, replace=columns, **settings),
+        box.deck("two", fix, "bodies", before=BODIES + two, replace=columns + half, **settings),
+        box.deck("slower", fix, dt=0.198, steps=200, replace=columns),
+        ranks=ranks,
+    )
+    one, two = result.thermo[:2]
+    for column in ("Temp", "PotEng", "TotEng", "Press"):
+        assert two[column] == pytest.approx(one[column], rel=1e-11)
+        assert two[column] != pytest.approx(1.01 * np.array(one[column]), rel=1e-11)
+    for k in (1, 2):
+        both = np.add(two[f"f_move[{k}]"], two[f"f_rest[{k}]"])
+        assert both == pytest.approx(one[f"f_move[{k}]"], rel=1e-11)
+        assert min(two[f"f_rest[{k}]"]) > 0
+    print("TWO", box.difference("one", "two"), box.difference("one", "slower"))
+    assert box.difference("one", "two") < 1e-11
+    assert box.difference("one", "slower") > 1e-4
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("beside", ["gear/quat molecule formulation first", RIGID])
+def test_another_rigid_fix_beside(box, beside, ranks):
+    """Of the other formulation, or fix rigid/nve/small: all as if rigid/nve/small moved all."""
+    fix = "gear/quat molecule formulation second"
+    one, two = (f"{BODIES}fix rest others {style}\n" for style in (RIGID, beside))
+    result = box.run(
+        box.deck("all", RIGID),
+        box.deck("halves", RIGID, "bodies", before=one),
+        box.deck("mixed", fix, "bodies", before=two),
+        box.deck("stronger", fix, "bodies", before=two, replace=[("0.1553", "0.156853")]),
+        ranks=ranks,
+    )
+    print(
+        "BESIDE",
+        box.difference("all", "mixed"),
+        box.difference("all", "stronger"),
+        [t["Temp"] for t in result.thermo],
+        [t["Press"] for t in result.thermo],
+    )
+    assert box.difference("all", "mixed") < 1e-6
+    assert box.difference("all", "stronger") > 1e-5
+    temperature, pressure = ([t[key] for t in result.thermo] for key in ("Temp", "Press"))
+    assert temperature[2] == pytest.approx(temperature[0], rel=1e-6)
+    assert pressure[2][1] == pytest.approx(pressure[0][1], rel=1e-4)
+    assert temperature[2] != pytest.approx(1.01 * np.array(temperature[0]), rel=1e-6)

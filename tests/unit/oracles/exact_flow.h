@@ -1,0 +1,124 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Where a body is after a time h, from any state and under any load, to the digits of the load:
+   modified midpoint steps extrapolated to none (Gragg, Bulirsch & Stoer), extended precision.  The
+   equations of motion are written down here once more; nothing of the kernel integrates. */
+
+#ifndef GEAR_QUAT_ORACLE_EXACT_FLOW_H
+#define GEAR_QUAT_ORACLE_EXACT_FLOW_H
+
+#include "gear_quat_rigid_body.h"
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace Oracle {
+
+using GearQuat::BodyState;
+using GearQuat::Load;
+using GearQuat::RigidBody;
+
+class ExactFlow {
+ public:
+  using LoadOf = std::function<Load(const BodyState &state, double norm2)>;
+
+  ExactFlow(const RigidBody &body, const LoadOf &load) : body(body), load(load) {}
+
+  /// Good while h is a fraction of a radian of the fastest motion.
+  BodyState operator()(const BodyState &start, double h) const
+  {
+    const Vector y0 = packed(start);
+    std::vector<Vector> row;    // of Neville's table in (h/n)^2
+    for (int k = 0; k < COLUMNS; ++k) {
+      Vector next = midpoint(y0, h, 2 * (k + 1));
+      for (int m = 1; m <= k; ++m) {
+        const long double ratio = (long double) (k + 1) / (k + 1 - m), f = 1 / (ratio * ratio - 1);
+        Vector better;
+        for (int i = 0; i < SIZE; ++i) better[i] = next[i] + (next[i] - row[m - 1][i]) * f;
+        row[m - 1] = next;
+        next = better;
+      }
+      row.push_back(next);
+    }
+    return unpacked(row.back());
+  }
+
+ private:
+  static constexpr int SIZE = 13, COLUMNS = 9;
+  using Vector = std::array<long double, SIZE>;    // x, v, q, omega_body
+
+  RigidBody body;
+  LoadOf load;
+
+  static Vector packed(const BodyState &s)
+  {
+    Vector y;
+    for (int i = 0; i < 3; ++i) {
+      y[i] = s.center[i];
+      y[3 + i] = s.velocity[i];
+      y[10 + i] = s.omega_body[i];
+    }
+    for (int i = 0; i < 4; ++i) y[6 + i] = s.q[i];
+    return y;
+  }
+
+  static BodyState unpacked(const Vector &y)
+  {
+    BodyState s;
+    for (int i = 0; i < 3; ++i) {
+      s.center[i] = double(y[i]);
+      s.velocity[i] = double(y[3 + i]);
+      s.omega_body[i] = double(y[10 + i]);
+    }
+    for (int i = 0; i < 4; ++i) s.q[i] = double(y[6 + i]);
+    return s;
+  }
+
+  Vector rates(const Vector &y) const
+  {
+    const BodyState s = unpacked(y);
+    const double norm2 = GearQuat::dot4(s.q, s.q);
+    const Load l = load(s, norm2);
+    double a[9], torque[3];
+    GearQuat::rotation_matrix(s.q, norm2, a);
+    GearQuat::to_body(a, l.torque_space, torque);
+    const long double *q = &y[6], *w = &y[10];
+    Vector d;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      d[i] = y[3 + i];
+      d[3 + i] = l.force[i] / (long double) body.mass;
+      d[6 + i] = 0.5L * (q[3] * w[i] + q[j] * w[k] - q[k] * w[j]);
+      const long double gyroscopic =
+          ((long double) body.inertia[j] - body.inertia[k]) * w[j] * w[k];
+      d[10 + i] = (torque[i] + gyroscopic) / body.inertia[i];
+    }
+    d[9] = -0.5L * (q[0] * w[0] + q[1] * w[1] + q[2] * w[2]);
+    return d;
+  }
+
+  /// n steps of h/n, without the final smoothing: errors in even powers of h/n.
+  Vector midpoint(const Vector &y0, long double h, int n) const
+  {
+    const long double step = h / n;
+    Vector before = y0, now, d = rates(y0);
+    for (int i = 0; i < SIZE; ++i) now[i] = y0[i] + step * d[i];
+    for (int k = 1; k < n; ++k) {
+      d = rates(now);
+      for (int i = 0; i < SIZE; ++i) {
+        const long double next = before[i] + 2 * step * d[i];
+        before[i] = now[i];
+        now[i] = next;
+      }
+    }
+    return now;
+  }
+};
+
+}    // namespace Oracle
+
+#endif

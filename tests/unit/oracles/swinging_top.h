@@ -1,0 +1,88 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* A free asymmetric top whose centre of mass swings, x'' = -x: everything about it is known, and so
+   are the exact rows of a history. */
+
+#ifndef GEAR_QUAT_ORACLE_SWINGING_TOP_H
+#define GEAR_QUAT_ORACLE_SWINGING_TOP_H
+
+#include "free_top.h"
+#include "gear_quat_integrator.h"
+#include "taylor_top.h"
+
+#include <vector>
+
+namespace Oracle {
+
+using GearQuat::BodyState;
+using GearQuat::Load;
+using GearQuat::RigidBody;
+using GearQuat::Scheme;
+
+constexpr long double MOMENTS[3] = {3.0L, 2.0L, 1.2L};
+inline const RigidBody TOP = {2.0, {3.0, 2.0, 1.2}};
+
+/// A top that swings as a whole: x'' = -x, free rotation.  Everything about it is known.
+inline BodyState top_state(double t)
+{
+  const double q0[4] = {0.1, -0.3, 0.5, 0.8}, w0[3] = {1.0, 0.4, 0.5};
+  double unit[4] = {q0[0], q0[1], q0[2], q0[3]}, a[9];
+  GearQuat::project_norm(unit);
+  GearQuat::rotation_matrix(unit, 1.0, a);
+  Matrix start;
+  for (int i = 0; i < 9; ++i) start.m[i / 3][i % 3] = a[i];
+  const long double w[3] = {w0[0], w0[1], w0[2]};
+  const FreeTop exact(MOMENTS, w, start);
+
+  BodyState s = {};
+  long double omega[3];
+  exact.omega(t, omega);
+  const Matrix m = exact.attitude(t);
+  for (int i = 0; i < 9; ++i) a[i] = double(m.m[i / 3][i % 3]);
+  GearQuat::quaternion_from_matrix(a, s.q);
+  if (GearQuat::dot4(s.q, unit) < 0.0 && std::fabs(t) < 1.0)
+    for (double &x : s.q) x = -x;
+  for (int i = 0; i < 3; ++i) {
+    s.omega_body[i] = double(omega[i]);
+    s.center[i] = std::cos(t + i + 0.3);
+    s.velocity[i] = -std::sin(t + i + 0.3);
+  }
+  return s;
+}
+
+inline Load swing(const BodyState &s, double)
+{
+  Load l = {};
+  for (int i = 0; i < 3; ++i) l.force[i] = -TOP.mass * s.center[i];
+  return l;
+}
+
+/// Exact rows of that motion at t = 0 for a step h: x q (and p, omega) in the columns of the scheme.
+inline std::vector<double> exact_rows(const Scheme &scheme, double h)
+{
+  const BodyState s = top_state(0.0);
+  const TaylorTop top(MOMENTS, s.q, s.omega_body);
+  std::vector<double> rows(scheme.size());
+  double factor = 1.0, quarter = std::acos(0.0);
+  for (int j = 0; j < scheme.values(); ++j) {
+    double *row = rows.data() + j * scheme.width();
+    for (int i = 0; i < 3; ++i) {
+      row[i] = factor * std::cos(i + 0.3 + j * quarter);
+      if (scheme.first()) {
+        row[3 + i] = factor * TOP.mass * std::cos(i + 0.3 + (j + 1) * quarter);
+        row[10 + i] = std::pow(h, j) * double(top.w[j][i]);
+      }
+    }
+    double *q = row + scheme.quaternion();
+    for (int i = 0; i < 4; ++i) q[i] = std::pow(h, j) * double(top.q[j][i]);
+    factor *= h / (j + 1);
+  }
+  return rows;
+}
+
+}    // namespace Oracle
+
+#endif

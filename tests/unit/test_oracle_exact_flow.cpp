@@ -1,0 +1,49 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The extrapolated flow, checked against the exact free top and an oscillator. */
+
+#include "checks.h"
+#include "oracles/exact_flow.h"
+#include "oracles/swinging_top.h"
+
+using namespace Oracle;
+
+TEST(OracleExactFlow, FollowsTheSwingingTop)
+{
+  auto distance = [](const RigidBody &body, double from, double h) {
+    const BodyState s = ExactFlow(body, swing)(top_state(from), h), e = top_state(from + h);
+    double worst = Check::quaternion_distance(s.q, e.q);
+    worst = std::max(worst, Check::largest_difference(s.center, e.center, 3));
+    worst = std::max(worst, Check::largest_difference(s.velocity, e.velocity, 3));
+    return std::max(worst, Check::largest_difference(s.omega_body, e.omega_body, 3));
+  };
+  for (double from : {0.0, 0.3, 0.6})
+    for (double h : {-0.3, 0.05, 0.3}) EXPECT_LT(distance(TOP, from, h), 3e-15) << from << ' ' << h;
+  EXPECT_LT(distance(TOP, 0.0, 0.9), 1e-13);
+  RigidBody off = TOP;
+  for (double *number : {&off.mass, &off.inertia[0], &off.inertia[1], &off.inertia[2]}) {
+    *number *= 1.01;
+    EXPECT_GT(distance(off, 0.0, 0.3), 1e-5);
+    *number /= 1.01;
+  }
+}
+
+TEST(OracleExactFlow, TwoStepsAreOneUnderTorque)
+{
+  // a restoring torque along the space axes
+  auto load = [](const BodyState &s, double norm2) {
+    Load l = swing(s, norm2);
+    for (int i = 0; i < 3; ++i) l.torque_space[i] = -s.q[3] * s.q[i] + 0.3 * s.center[i];
+    return l;
+  };
+  const ExactFlow flow(TOP, load);
+  const BodyState s = top_state(0.2), once = flow(s, 0.4), twice = flow(flow(s, 0.1), 0.3);
+  EXPECT_LT(Check::largest_difference(once.q, twice.q, 4), 1e-15);
+  EXPECT_LT(Check::largest_difference(once.omega_body, twice.omega_body, 3), 1e-15);
+  EXPECT_LT(Check::largest_difference(once.center, twice.center, 3), 1e-15);
+  const BodyState off = flow(flow(s, 0.101), 0.3);
+  EXPECT_GT(Check::largest_difference(once.omega_body, off.omega_body, 3), 1e-4);
+}
