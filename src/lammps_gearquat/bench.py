@@ -189,9 +189,8 @@ class Results:
         """Seconds a whole step, one a round."""
         return [t.loop / t.run.steps for t in self.of(method, cells, ranks)]
 
-    def bytes_per_body(self, method, kind):
+    def bytes_per_body(self, method, cells, kind):
         """Memory a body takes on one rank, more than without a fix; ``kind``: a field of Timing."""
-        cells = self.plan.headline
         own, bare = (
             np.median([getattr(t, kind) for t in self.of(m, cells)]) for m in (method, FROZEN)
         )

@@ -49,14 +49,18 @@ def _time(axis, results):
 
 
 def _memory(axis, results):
-    kinds = {"reported": "as LAMMPS adds it up", "allocated": "on the heap"}
-    width = 0.8 / len(RACE)
-    for k, method in enumerate(RACE):
-        values = [results.bytes_per_body(method, kind) for kind in kinds]
-        at = np.arange(len(kinds)) + (k - 1) * width
-        axis.bar(at, values, width, color=LOOK[method.key][0])
-    axis.set_xticks(range(len(kinds)), kinds.values())
-    axis.set(ylabel="bytes a body", title="Memory")
+    scenes = list(results.plan.growth)
+    sizes = [bodies_of(cells) for cells in scenes]
+    for method in RACE:
+        found = judge.memory(results, method)
+        for kind, line in (("reported", "--"), ("allocated", "-")):
+            values = [found[cells, kind] for cells in scenes]
+            axis.plot(sizes, values, line, **_look(method))
+    axis.set(xscale="log", xlabel="bodies", ylabel="bytes a body")
+    axis.set_title("Memory on the heap; dashed: LAMMPS' sum")
+    axis.set_xticks(sizes, map(str, sizes))
+    axis.minorticks_off()
+    axis.set_ylim(bottom=0)
 
 
 def _growth(axis, results):

@@ -106,13 +106,13 @@ def start_table(results):
 
 
 def memory_table(results):
-    """Bytes a body."""
-    rows = [
-        [method.label]
-        + [f"{results.bytes_per_body(method, kind):.0f}" for kind in ("reported", "allocated")]
-        for method in (*GEAR, NVE_SMALL)
+    """Bytes a body, by number of bodies and way of counting."""
+    found = {method: judge.memory(results, method) for method in (*GEAR, NVE_SMALL)}
+    header = [
+        f"{bodies_of(cells)} bodies, {judge.MEMORY_KINDS[kind]}" for cells, kind in found[NVE_SMALL]
     ]
-    return markdown_table(["bytes a body", "as LAMMPS adds it up", "on the heap"], rows)
+    rows = [[m.label, *(f"{value:.0f}" for value in found[m].values())] for m in found]
+    return markdown_table(["bytes a body", *header], rows)
 
 
 def growth_table(results):
@@ -217,8 +217,8 @@ def _method(plan):
         "to LAMMPS' messages. Slowest rank, `timer normal sync`, so that no rank's waiting for the "
         "other counts. The first step, with the start, is not among the timed ones.",
         "- Memory: that of the run less that of the same run without a fix, after the first step, on "
-        "one rank: LAMMPS' own sum, and what is in use of the heap (`info memory`). The larger of "
-        "the two ratios counts.",
+        "one rank: LAMMPS' own sum, and what is in use of the heap (`info memory`). Arrays grow in "
+        "leaps, so bytes a body depend on the number of bodies: the largest of all ratios counts.",
         "- Growth: (largest − least) / (largest + least) of the times a body and step, the deviation "
         "from the best proportional law.",
         f"- Standard errors: {judge.BLOCKS} blocks. A deviation counts if Student's t makes it sure "

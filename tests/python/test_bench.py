@@ -265,11 +265,17 @@ def test_memory_verdict_flips():
     for size, met in ((1499.0, True), (1515.0, False)):
         rows = judge.memory_rows(made_up(timings=timings(memory=BYTES | {SECOND: size})))
         assert [row.met for row in rows] == [met, True]
-    lopsided = [
-        replace(t, allocated=t.allocated + 1.0) if t.run.method == FIRST else t for t in timings()
+    leap = [
+        (
+            replace(t, allocated=t.allocated + 1.0)
+            if (t.run.method, t.run.bodies) == (FIRST, 500)
+            else t
+        )
+        for t in timings()
     ]
-    rows = judge.memory_rows(made_up(timings=lopsided))
-    assert [row.met for row in rows] == [True, False], "the larger of the two ratios counts"
+    rows = judge.memory_rows(made_up(timings=leap))
+    assert [row.met for row in rows] == [True, False], "the largest ratio counts"
+    assert rows[1].measured.startswith("1.00 to 3.")
 
 
 def test_growth_verdict_flips():
@@ -354,7 +360,8 @@ def test_page_holds_demands_beside_numbers(out):
     assert text.count("| met |") == 18 and "do not edit" in text
     assert "| fix gear/quat, second formulation | 0.80 (0.80 to 0.80) | 50.00" in text
     assert "| fix gear/quat, first formulation | 2 | 12 | 0.40 (0.40 to 0.40) | 8 |" in text
-    assert "| fix rigid/nve/small | 1000 | 1000 |" in text
+    assert "| fix rigid/nve/small | 1000 | 1000 | 1000 | 1000 |" in text
+    assert "500 bodies, LAMMPS' sum | 500 bodies, heap | 1000 bodies, LAMMPS' sum" in text
     slow = made_up(timings=timings(FIX | {SECOND: 1.01}))
     text = bench_page.page_text(out, slow)
     assert "Of 18 demands 16 are met, 2 not." in text and text.count("| not met |") == 2

@@ -6,12 +6,12 @@ from math import comb
 import numpy as np
 import pytest
 
+from lammps_gearquat.workprecision import stability
 from running import ROOT
 
 SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
 FORCES = (SOURCES / "gear_quat_forces.cpp").read_text()
-COEFFICIENTS = (SOURCES / "gear_quat_coefficients.h").read_text()
 MANUAL = (ROOT / "doc" / "fix_gear_quat.rst").read_text()
 README = (ROOT / "README.md").read_text()
 
@@ -50,6 +50,9 @@ VALUES = {
 }
 
 
+NUMBERS = set(re.findall(r'key == "(\w+)"\)\s*\S+ = utils::inumeric', ARGUMENTS))
+
+
 def test_every_keyword_is_documented():
     assert len(ACCEPTED) >= 8
     assert documented_keywords(MANUAL) == ACCEPTED
@@ -60,7 +63,7 @@ def test_every_keyword_is_documented():
 
 
 def test_every_value_is_documented():
-    assert set(VALUES) == ACCEPTED - {"infile"}
+    assert set(VALUES) == ACCEPTED - {"infile"} - NUMBERS
     for key, values in VALUES.items():
         assert documented_values(key, MANUAL) == values
         assert documented_values(key, MANUAL.replace(f"*{min(values)}*", "")) != values
@@ -71,6 +74,14 @@ def test_every_default_is_a_value():
     defaults = dict(re.findall(r"(\w+) = (\w+)", text.partition(", or ")[0]))
     assert set(defaults) == ACCEPTED - {"infile"}
     assert all(defaults[key] in values for key, values in VALUES.items())
+
+
+def test_default_numbers_are_those_of_the_source():
+    text = " ".join(section("Default").split())
+    found = re.search(r"FIRST_VALUES = (\d+), SECOND_VALUES = (\d+), PASSES = (\d+)", ARGUMENTS)
+    first, second, passes = found.groups()
+    assert f"values = {second} for *second* and {first} for *first*, passes = {passes}" in text
+    assert NUMBERS == {"values", "passes"}
 
 
 def test_every_bodystyle_is_documented():
@@ -169,10 +180,12 @@ def test_every_link_leads_somewhere(page):
 
 
 # --- numbers -------------------------------------------------------------------------------------
-def fractions(name):
-    """A row of corrector coefficients, as the kernel has them."""
-    text = re.search(rf"\b{name} = {{(.*?)}};", COEFFICIENTS, re.S)[1]
-    return np.array([int(a) / int(b) for a, b in re.findall(r"{(\d+), (\d+)}", text)])
+def first_c(values):
+    return np.array([float(c) for c in stability.first_order_coefficients(values)])
+
+
+def second_c(values, c0="position"):
+    return np.array([float(c) for c in stability.second_order_coefficients(values, c0)])
 
 
 def pascal(n):
@@ -197,11 +210,12 @@ def first(z, coefficients, predicted):
     return np.vstack([x + np.outer(coefficients, momentum - x[1]), corrected])
 
 
-STEPS = {
-    "second, c0 position": lambda z: second(z, fractions("SECOND_ORDER_POSITION")),
-    "second, c0 velocity": lambda z: second(z, fractions("SECOND_ORDER_VELOCITY")),
-    "first": lambda z: first(z, fractions("FIRST_ORDER"), False),
-    "first, momentum predicted": lambda z: first(z, fractions("FIRST_ORDER"), True),
+#: column of the manual's table -> numbers of values, one step of the test equation
+COLUMNS = {
+    "second, c0 position": (range(4, 13), lambda n: lambda z: second(z, second_c(n))),
+    "second, c0 velocity": (range(4, 13), lambda n: lambda z: second(z, second_c(n, "velocity"))),
+    "first": (range(3, 9), lambda n: lambda z: first(z, first_c(n), False)),
+    "first, momentum predicted": (range(3, 9), lambda n: lambda z: first(z, first_c(n), True)),
 }
 
 
@@ -223,27 +237,44 @@ def growth(step, z):
 
 
 def documented_limits():
+    """Column -> {N: limit} of the manual's table."""
     text = section("Choosing the time step").replace("*", "")
-    rows = re.findall(r"- (second.*|first.*)\n +- (\d\.\d\d)$", text, re.M)
-    return {name: float(z) for name, z in rows}
+    table = text.partition("velocity Verlet is 2.")[2].partition("So many values")[0]
+    cells = [cell.strip() for cell in re.findall(r"^ +(?:\* )?-(.*)$", table, re.M)][1:]
+    names, cells = cells[:4], cells[4:]
+    assert names == list(COLUMNS) and len(cells) % 5 == 0
+    rows = [cells[i : i + 5] for i in range(0, len(cells), 5)]
+    return {
+        name: {int(row[0]): float(row[k]) for row in rows if row[k]}
+        for k, name in enumerate(names, start=1)
+    }
 
 
-@pytest.mark.parametrize("name", STEPS)
+@pytest.mark.parametrize("name", COLUMNS)
 def test_stability_limits_of_the_manual(name):
-    assert documented_limits()[name] == pytest.approx(stability_limit(STEPS[name]), abs=0.01)
+    values, step = COLUMNS[name]
+    limits = documented_limits()[name]
+    assert list(limits) == list(values)
+    for n in values:
+        assert limits[n] == pytest.approx(stability_limit(step(n)), abs=0.01)
 
 
 def test_growth_of_the_manual():
     text = " ".join(section("Choosing the time step").split())
-    found = [float(x) for x in re.findall(r"\d\.\de-\d", text)]
-    names = ("second, c0 position", "first")
-    expected = [growth(STEPS[name], z) for z in (0.2, 0.1) for name in names]
+    found = [float(x) for x in re.findall(r"\d\.\de-\d+", text)]
+    methods = ((second, second_c(8)), (lambda z, c: first(z, c, False), first_c(6)))
+    expected = [abs(growth(lambda z: step(z, c), z)) for z in (0.2, 0.1) for step, c in methods]
     assert found == pytest.approx(expected, rel=0.02)
+    assert (
+        growth(lambda z: second(z, second_c(8)), 0.2)
+        < 0
+        < growth(lambda z: first(z, first_c(6), False), 0.2)
+    )
 
 
 def test_a_coefficient_wrong_by_one_percent_shows():
-    right = fractions("SECOND_ORDER_POSITION")
-    for row in range(1, 6):
-        wrong = right * np.where(np.arange(6) == row, 1.01, 1.0)
+    right = second_c(8)
+    for row in range(1, 8):
+        wrong = right * np.where(np.arange(8) == row, 1.01, 1.0)
         found = growth(lambda z, wrong=wrong: second(z, wrong), 0.2)
-        assert found != pytest.approx(growth(STEPS["second, c0 position"], 0.2), rel=2e-3)
+        assert found != pytest.approx(growth(lambda z: second(z, right), 0.2), rel=2e-3)

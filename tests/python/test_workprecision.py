@@ -30,12 +30,23 @@ def test_rounding_and_coarse_steps_do_not_count():
     errors[:3] = (1e-4, np.inf, 1.0)
     fit = fitted_order(STEPS, errors, limit=STEPS[2])
     assert fit.order == pytest.approx(5.0, rel=1e-9)
-    assert errors[fit.used].min() > 5 * noise.max() and STEPS[fit.used].max() < STEPS[2] / 1.25
+    assert (
+        errors[fit.used].min() > evaluate.ABOVE_FLOOR * noise.max()
+        and STEPS[fit.used].max() < STEPS[2] / 1.25
+    )
     assert np.polyfit(np.log(STEPS[3:]), np.log(errors[3:]), 1)[0] < 4.9  # the rule matters
 
 
 def test_an_order_off_by_one_percent_shows():
     assert fitted_order(STEPS, STEPS**7.07).order != pytest.approx(7.0, rel=5e-3)
+
+
+def test_one_lucky_error_does_not_bend_the_order():
+    errors = STEPS**5
+    errors[-8] *= 1e-2
+    assert fitted_order(STEPS, errors).order == pytest.approx(5.0, rel=0.01)
+    assert evaluate.sign_change(STEPS, errors) == STEPS[-8]
+    assert evaluate.sign_change(STEPS, STEPS**5) is None
 
 
 def test_too_few_points_have_no_order():

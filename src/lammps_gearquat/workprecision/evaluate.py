@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import theilslopes
 
 #: the part of a curve that its order is fitted on (see ``asymptotic``)
-FINEST, ABOVE_FLOOR, DECADES, FINER = 5, 5.0, 3, 1.25
+FINEST, ABOVE_FLOOR, DECADES, FINER = 5, 3.0, 3, 1.25
 FEWEST_POINTS = 3
 RULE = (
-    f"lines of fitted order: least squares over the {DECADES} decades above rounding, "
+    f"lines of fitted order: median slope (Theil and Sen) over the {DECADES} decades above rounding, "
     f"steps below 1/{FINER:g} of the largest usable one; rounding: {ABOVE_FLOOR:g} times the worst of "
     f"the {FINEST} finest runs, where their errors do not fall any more"
 )
@@ -51,13 +52,28 @@ def asymptotic(steps, errors, limit=np.inf):
 
 
 def fitted_order(steps, errors, limit=np.inf):
-    """Fit by least squares in log-log over the asymptotic part; None with too few points."""
+    """Fit in log-log over the asymptotic part, by Theil and Sen; None with too few points.
+
+    Theil and Sen: the median of the slopes between all pairs, which one lucky error cannot bend.
+    """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)
     used = asymptotic(steps, errors, limit)
     if used.sum() < FEWEST_POINTS:
         return None
-    order, constant = np.polyfit(np.log(steps[used]), np.log(errors[used]), 1)
+    order, constant, *_ = theilslopes(np.log(errors[used]), np.log(steps[used]))
     return Fit(float(order), float(np.exp(constant)), used)
+
+
+def sign_change(steps, errors):
+    """The smallest step, before rounding, at which the error is smaller than at the next finer one.
+
+    There the leading terms of the error cancel, and close to it slopes mean little; None without.
+    """
+    order = np.argsort(steps)
+    steps, errors = np.asarray(steps, float)[order], np.asarray(errors, float)[order]
+    lowest = ABOVE_FLOOR * rounding_floor(steps, errors)
+    cancels = np.flatnonzero((errors[1:] < errors[:-1]) & (errors[1:] > lowest)) + 1
+    return float(steps[cancels[0]]) if len(cancels) else None
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ What is asked stands here, nowhere else; every other number is measured.
 
 from . import plan
 from .evaluate import (
+    MET,
     at_least,
     at_most,
     cheapest,
@@ -12,6 +13,7 @@ from .evaluate import (
     extrapolated_cost,
     fitted_order,
     order_asked,
+    sign_change,
 )
 from .results import facts
 from .stability import first_order_step, linear_limit, second_order_step
@@ -183,7 +185,7 @@ def orders(results, scene="case1"):
     header = ["formulation", "N", "order", "asked", "slope", "", "ω Δt, linear"]
     header += [f"largest usable step, {count} pass{'es' * (count > 1)}" for count in plan.PASSES]
     rows = []
-    for (formulation, n), (_, _, fit) in order_fits(results).items():
+    for (formulation, n), (steps, errors, fit) in order_fits(results).items():
         order, slope = order_asked(formulation, n), fit.order if fit else None
         asked = order - ORDER_MARGIN if n >= LEAST_N else None
         largest = [
@@ -197,12 +199,20 @@ def orders(results, scene="case1"):
                 order,
                 f"≥ {asked:g}" if asked else NONE,
                 f"{slope:.2f}" if slope is not None else NONE,
-                at_least(slope, asked) if asked else NONE,
+                _order_verdict(slope, asked, steps, errors) if asked else NONE,
                 f"{limit_of(formulation, n):.2f}",
                 *(f"{step:.2f}" for step in largest),
             ]
         )
     return header, rows
+
+
+def _order_verdict(slope, asked, steps, errors):
+    """Verdict on a slope, and where the error changes sign if it misses."""
+    verdict, cancels = at_least(slope, asked), sign_change(steps, errors)
+    if verdict == MET or cancels is None:
+        return verdict
+    return f"{verdict}: the error changes sign at step {cancels:.2g}"
 
 
 def rounding(results):
