@@ -4,14 +4,20 @@ Everything is measured in the paper's scene with the consistent body.  One step 
 the forces with every method, so equal steps are equal numbers of evaluations.
 """
 
+import functools
+
 import numpy as np
 
 from . import divergence as dv
 from .cases import ACCURACY_END, ACCURACY_STEPS, ACCURATE, COARSE_STEPS, STEP
+from .reference import paper_problem, reference_state
 
-#: test case 1, consistent body, t = 200: the centre of mass, found in extended precision and
-#: checked by an independent integrator in tests/python/test_oracle.py
-REFERENCE = np.array([85.56573248988141, -6.06135624295223, 6.86227956266460])
+
+@functools.cache
+def reference():
+    """Centre of mass (3,) of test case 1, consistent body, at ACCURACY_END; in extended precision."""
+    return reference_state(paper_problem(1, "consistent"), ACCURACY_END).double.centre[0]
+
 
 #: steps of the long runs of one and the same motion: test cases 1 and 2, and two larger ones
 ENERGY_STEPS = (STEP[1], STEP[2], *COARSE_STEPS)
@@ -28,12 +34,12 @@ METHODS = {
 
 
 def position_errors(results):
-    """Distance of the centre of mass from REFERENCE: label -> list, one for each ACCURACY_STEPS."""
+    """Distance of the centre of mass from reference(): label -> list, one for each ACCURACY_STEPS."""
     errors = {}
     for label, (row, formulation) in METHODS.items():
         runs = [results.get(1, row, formulation, dt) for dt in ACCURACY_STEPS]
         ends = [values.centre[values.at(ACCURACY_END)] for values in runs]
-        errors[label] = [float(np.linalg.norm(end - REFERENCE)) for end in ends]
+        errors[label] = [float(np.linalg.norm(end - reference())) for end in ends]
     return errors
 
 

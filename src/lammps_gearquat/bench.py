@@ -62,9 +62,9 @@ class Plan:
     growth: dict = field(default_factory=lambda: {(2, 1, 1): 200, (4, 2, 2): 40, (4, 4, 8): 10})
     timing_dt: float = 0.5
     pressure_dts: tuple = (0.25, 0.5, 1.0, 2.0)
-    pressure_time: float = 1000.0
+    pressure_time: float = 800.0
     temperature_dt: float = 1.0
-    temperature_time: float = 5000.0
+    temperature_time: float = 4000.0
     temperature_interval: float = 10.0
 
     @property

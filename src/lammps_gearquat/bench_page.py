@@ -151,7 +151,7 @@ def pressure_tables(results):
 
 
 def _fine(mean):
-    return f"{mean.value:.2g} ± {mean.error:.1g}"
+    return f"{mean.value:.2g} ± {mean.error:.2g}"
 
 
 def temperature_table(results):

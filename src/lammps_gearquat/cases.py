@@ -100,7 +100,8 @@ class Run:
         variables |= {"formulation": self.formulation, "dt": f"{self.dt:.17g}"}
         variables |= {"steps": self.steps, "every": round(1.0 / self.dt)}
         if self.omega:
-            variables["omega"] = self.omega
+            # as the paper corrects: a second pass would use the corrected one in any case
+            variables |= {"omega": self.omega, "values": 5, "passes": 1}
         log = Path(folder) / f"log.{self.name}"
         return Job(decks.deck_of_case(self.case), log, variables, self.steps)
 

@@ -401,9 +401,9 @@ def test_publishing(tmp_path, out):
 # --- running ------------------------------------------------------------------------------------
 def test_decks_sample_at_common_times():
     for dt in bench.FULL.pressure_dts:
-        text = bench_decks.pressure(SECOND.style, dt, 1000.0, 2.0)
+        text = bench_decks.pressure(SECOND.style, dt, 800.0, 2.0)
         steps, every = (int(re.search(rf"^{w} (\d+)$", text, re.M)[1]) for w in ("run", "thermo"))
-        assert steps * dt == 1000.0 and every * dt == 2.0
+        assert steps * dt == 800.0 and every * dt == 2.0
         assert "fix_modify move energy yes" in text
     assert "fix_modify" not in bench_decks.pressure(SMALL.style, 1.0, 1000.0, 2.0)
     assert "fix move" not in bench_decks.timing("", (1, 1, 1), 0.5, 10)

@@ -65,7 +65,7 @@ def test_sentences_follow_the_numbers(results, monkeypatch):
 def test_errors_are_measured_against_the_reference(results):
     exact = cases.Results()
     for run, values in results.runs.items():
-        values.centre[values.at(cases.ACCURACY_END)] = accuracy.REFERENCE
+        values.centre[values.at(cases.ACCURACY_END)] = accuracy.reference()
         exact.add(run, values, seconds=2e-6 * run.steps)
     assert set(map(tuple, accuracy.position_errors(exact).values())) == {(0.0,) * 4}
     assert list(accuracy.step_costs(exact).values()) == pytest.approx([2.0] * 5)

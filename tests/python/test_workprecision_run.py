@@ -53,7 +53,7 @@ def test_a_run_is_judged_and_repeats(session, tmp_path):
     judged = conduct.judge(session, run, reference)
     body, masses = judged.outcome.molecules == 1, judged.outcome.masses
     centre = masses[body] @ judged.outcome.after[body] / masses[body].sum()
-    known = np.linalg.norm(centre - accuracy.REFERENCE)
+    known = np.linalg.norm(centre - accuracy.reference())
     assert judged.errors.position == pytest.approx(known, abs=2e-13) and known < 1e-10
     assert judged.errors.orientation < 1e-10 and judged.errors.energy < 1e-8
     assert judged.errors.norm < 1e-14 and judged.errors.tangency < 1e-14

@@ -14,7 +14,7 @@ from .stability import fewest_steps
 from .worker import DeckError, Outcome, RunError
 
 #: a step is usable while the total energy stays within this part of the kinetic energy at the start,
-#: and every |q|^2 within it of 1
+#: every |q|^2 within it of 1, and the change of |q|^2 / 2 over a step below it
 USABLE = 0.1
 ASTRAY = Errors(np.inf, np.inf, np.inf, np.inf, np.nan, np.nan)
 #: LAMMPS started anew and a scene read, in seconds, roughly; the search for a largest step, in runs
@@ -47,7 +47,9 @@ def is_usable(session, run):
         return False
     kinetic = thermo["v_ketrans"][0] + thermo["v_kerot"][0]
     energy, _ = energy_errors(thermo["Time"], thermo[plan.TOTAL])
-    return energy <= USABLE * kinetic and np.abs(thermo[plan.NORM]).max() <= USABLE
+    norm = np.abs(thermo[plan.NORM]).max()
+    radial = np.abs(thermo.get(plan.TANGENCY, 0.0)).max() * run.dt
+    return energy <= USABLE * kinetic and max(norm, radial) <= USABLE
 
 
 def largest_step(session, scene, method):

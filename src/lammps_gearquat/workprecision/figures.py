@@ -162,7 +162,7 @@ def draw_main(path, results, scene="case1"):
     axes[1].set_title(
         "faint: all other N and passes; whiskers: quartiles", loc="right", fontsize=7.5
     )
-    _save(figure, path, f"What accuracy costs: {facts(scene).title}", _note(scene))
+    _save(figure, path, f"What accuracy costs: {results.title(scene)}", _note(scene))
 
 
 def _name_settings(axis, results, scene, shown, measure):
@@ -218,7 +218,7 @@ def _draw_fit(axis, results, scene, method):
         return
     line = np.array([steps[fit.used].max() * 1.15, steps[fit.used].min() / 1.15])
     start = results.curve(scene, method)[0].start
-    x, colour = facts(scene).end / line + 1 + start, colour_of(results.curve(scene, method)[0])
+    x, colour = results.end(scene) / line + 1 + start, colour_of(results.curve(scene, method)[0])
     axis.plot(x, fit.error(line), color=colour, linewidth=5, alpha=0.25, solid_capstyle="butt")
 
 
@@ -254,7 +254,7 @@ def draw_panels(path, results, scene):
     for method in methods:
         _draw_fit(places[known.measure], results, scene, method)
     marks = _limits(results, scene, methods)
-    marks = [(known.end / step + 1 + row.start, colour_of(row)) for row, step in marks]
+    marks = [(results.end(scene) / step + 1 + row.start, colour_of(row)) for row, step in marks]
     _mark_limits(places[known.measure], marks)
     for solver, colour in SOLVER.items():
         x, y = results.solver(scene, solver)
@@ -264,7 +264,7 @@ def draw_panels(path, results, scene):
         _name(places[known.measure], x, y, y.min(initial=1.0), solver, colour, (4, down))
     if known.measure == "position":
         places["position"].set_ylim(top=1e1)
-    elif not any(row.position for row in results.runs if row.scene == scene):
+    elif not any(0 < row.position < np.inf for row in results.runs if row.scene == scene):
         axes[0, 0].clear()
         axes[0, 0].set_axis_off()
         axes[0, 0].text(0.5, 0.5, "the centre of mass rests", ha="center")
@@ -276,7 +276,7 @@ def draw_panels(path, results, scene):
     handles, labels = places["energy"].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside right center")
     rule = "; ".join([f"broad {RULE}", "▼ largest usable step", *filter(None, [_note(scene)])])
-    _save(figure, path, known.title, rule)
+    _save(figure, path, results.title(scene), rule)
 
 
 # --- order of each N, rounding, cut-off -------------------------------------------------------------
@@ -334,7 +334,7 @@ def draw_cutoff(path, results):
     for axis, scene in zip(axes, ("water", "water-plain")):
         for method, label in results.methods(scene).items():
             _draw(axis, results, scene, method, "evaluations", "position", label=label)
-        _log(axis, AXIS["evaluations"], facts(scene).title)
+        _log(axis, AXIS["evaluations"], results.title(scene))
     axes[0].set_ylabel("error of the centres of mass (rms), Å")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4)

@@ -184,7 +184,7 @@ def case1(quick):
     return _one_body(
         quick,
         key="case1",
-        title="One body in the cage (test case 1, consistent body), t = 200",
+        title="One body in the cage (test case 1, consistent body)",
         deck="case1/in.case1",
         methods=FEW_METHODS if quick else ALL_METHODS,
         reference="cage",
@@ -196,7 +196,7 @@ def top(quick):
     return _one_body(
         quick,
         key="top",
-        title="Free asymmetric top, t = 200",
+        title="Free asymmetric top",
         deck="top/in.top",
         methods=FEW_METHODS if quick else ALL_METHODS,
         reference="free",
@@ -230,7 +230,7 @@ def water(quick):
     return _water(
         quick,
         key="water",
-        title="500 SPC/E molecules, smooth at the cut-off, 48 fs",
+        title="500 SPC/E molecules, smooth at the cut-off",
         reference="deck",
         methods=FEW_METHODS,
         tolerances=() if quick else (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
@@ -243,7 +243,7 @@ def water_plain(quick):
     return _water(
         quick,
         key="water-plain",
-        title="500 SPC/E molecules, plain cut-off, 48 fs",
+        title="500 SPC/E molecules, plain cut-off",
         reference="finest",
         methods=ROUGH_METHODS,
         smooth=False,

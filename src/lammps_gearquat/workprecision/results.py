@@ -129,6 +129,17 @@ class Results:
         found = [row for row in self.runs if (row.scene, row.method) == (scene, method)]
         return sorted(found, key=lambda row: row.steps)
 
+    def end(self, scene):
+        """Time at which the runs of a scene end."""
+        row = next(row for row in self.runs if row.scene == scene)
+        return round(row.steps * row.dt, 9)
+
+    def title(self, scene):
+        """What a scene is and how long its runs are."""
+        known = facts(scene)
+        time = f"{self.end(scene):g} {known.time}" if known.time else f"t = {self.end(scene):g}"
+        return f"{known.title}, {time}"
+
     def column(self, scene, method, name):
         """One column of ``curve`` as an array."""
         return np.array([getattr(row, name) for row in self.curve(scene, method)], dtype=float)
