@@ -4,6 +4,7 @@ import click
 
 import lammps_gearquat
 
+from .commands.bench import bench
 from .commands.cases import cases
 from .commands.cost import cost
 from .commands.drift import drift
@@ -22,5 +23,5 @@ def version():
     click.echo(lammps_gearquat.__version__)
 
 
-for command in (cases, cost, drift, horizon, workprecision):
+for command in (bench, cases, cost, drift, horizon, workprecision):
     main.add_command(command)

@@ -6,6 +6,7 @@ compute.
 """
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -58,8 +59,8 @@ def command_line(job, lmp, launcher=()):
 
 def _step_of(line):
     """Time step of a line of thermo output, None for any other line."""
-    words = line.split()
-    return int(words[0]) if len(words) > 2 and words[0].isdigit() else None
+    found = re.match(r"\s*(\d+)(?:\s+[-+.\dinfa]\S*){2,}\s*$", line)
+    return int(found[1]) if found else None
 
 
 def _end_group(process):
