@@ -20,7 +20,10 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_bootstrap.h"
 #include "gear_quat_checks.h"
+#include "gear_quat_extract.h"
+#include "gear_quat_infile_out.h"
 #include "gear_quat_table.h"
+#include "gear_quat_template.h"
 
 #include "atom.h"
 #include "citeme.h"
@@ -91,9 +94,9 @@ static constexpr double NORM_ROUNDING = 1.0e-15;
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), started(false),
-    met_atoms(false), h(0.0), integrator(nullptr), velocities_read(true), f_sum(nullptr),
-    nmax_sum(0)
+    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), extracts(nullptr),
+    started(false), met_atoms(false), h(0.0), integrator(nullptr), velocities_read(true),
+    f_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -113,7 +116,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   thermo_virial = 1;
   dof_flag = 1;
   create_attribute = 1;
-  restart_global = restart_peratom = 1;
+  restart_global = restart_peratom = restart_file = 1;
 
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
@@ -122,6 +125,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   args = new GearQuatArguments(lmp, narg, arg);
   bodies = new GearQuatBodies(lmp, this, args->scheme);
   table = new GearQuatTable(lmp, *bodies);
+  find_template(lmp, args->mol);    // it has to exist
+  extracts = new GearQuatExtract(lmp, *bodies, args->mol);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   maxexchange = bodies->max_exchange();
@@ -132,11 +137,12 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   if (!args->infile.empty()) given = read_given_bodies(lmp, args->infile);
   bodies->create(args->body_ids(lmp, groupbit), given);
 
-  bigint nbodies, natoms;
-  bodies->count(nbodies, natoms);
-  if (nbodies == 0) error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
-  size_array_rows = nbodies;
-  if (comm->me == 0) utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", nbodies, natoms);
+  if (bodies->number() == 0 && args->mol.empty())
+    error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
+  size_array_rows = bodies->number();
+  if (comm->me == 0)
+    utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", bodies->number(),
+                   bodies->number_of_sites());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -148,6 +154,7 @@ FixGearQuat::~FixGearQuat()
   atom->delete_callback(id, Atom::RESTART);
   delete integrator;
   delete args;
+  delete extracts;
   delete table;
   delete bodies;
   delete[] extlist;
@@ -204,11 +211,11 @@ void FixGearQuat::reset_dt()
 void FixGearQuat::setup_pre_neighbor()
 {
   bodies->check_whole();
-  bodies->update_ghosts(true);
-  const bool follow_atoms = args->infile.empty() && (args->reinit || !met_atoms);
-  if (follow_atoms && !bodies->atoms_match()) {
+  bodies->update_ghosts();
+  const bool take_over = args->infile.empty() && (args->reinit || !met_atoms);
+  if (take_over && !bodies->atoms_match()) {
     bodies->recreate();
-    bodies->update_ghosts(true);
+    bodies->update_ghosts();
     if (started && comm->me == 0)
       utils::logmesg(lmp,
                      "Fix gear/quat: atoms were changed since the last run, bodies start "
@@ -216,6 +223,7 @@ void FixGearQuat::setup_pre_neighbor()
     started = false;
   }
   met_atoms = true;
+  size_array_rows = bodies->number();
 }
 
 void FixGearQuat::setup(int vflag)
@@ -237,9 +245,11 @@ void FixGearQuat::show_bodies()
   size_local_rows = bodies->nowned();
 }
 
+/// Atoms were exchanged; other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
-  bodies->update_ghosts(false);
+  bodies->update_ghosts();
+  size_array_rows = bodies->number();
 }
 
 /* ----------------------------------------------------------------------
@@ -290,9 +300,16 @@ void FixGearQuat::finish_step(double **f)
   bodies->gather_loads(f);
   if (evflag) tally_virial(f);
 
+  const int known = args->start == GearQuatArguments::Start::ZERO ? 2
+                                                                  : 3;    // terms of a fresh body
   for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
     double *rows = bodies->history(ibody);
     const RigidBody &rigid = bodies->body[ibody].rigid;
+    if (bodies->body[ibody].fresh) {
+      GearQuatBootstrap::seed_body(*bodies, ibody, args->scheme, h, known);
+      bodies->body[ibody].fresh = 0;
+      continue;
+    }
     bodies->last[ibody] = integrator->correct(rigid, bodies->load[ibody], rows);
     bodies->state[ibody] = integrator->body_state(rigid, rows);
   }
@@ -408,9 +425,7 @@ double FixGearQuat::compute_vector(int n)
   if (n == KE_TRANSLATION || n == KE_ROTATION) return all * force->mvv2e;
   if (n == NORM || n == RADIAL) return all < NORM_ROUNDING ? 0.0 : all;
   if (largest) return all;
-  bigint nbodies, natoms;
-  bodies->count(nbodies, natoms);
-  return nbodies ? std::sqrt(all / nbodies) : 0.0;
+  return bodies->number() ? std::sqrt(all / bodies->number()) : 0.0;
 }
 
 double FixGearQuat::compute_array(int i, int j)
@@ -442,9 +457,25 @@ void FixGearQuat::copy_arrays(int i, int j, int delflag)
   bodies->copy_arrays(i, j, delflag);
 }
 
+/// A new atom: in no body, unless set_molecule() follows.
 void FixGearQuat::set_arrays(int i)
 {
   bodies->set_arrays(i);
+  if (atom->mask[i] & groupbit) bodies->note_stranger(1);
+}
+
+/// Another fix has inserted a molecule of the template, on all ranks together.
+void FixGearQuat::set_molecule(int first, tagint /*before*/, int /*which*/, double * /*center*/,
+                               double * /*velocity*/, double * /*quat*/)
+{
+  for (int i = first; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) bodies->note_stranger(-1);
+  add_molecule(lmp, *bodies, first);
+}
+
+void *FixGearQuat::extract(const char *name, int &dim)
+{
+  return extracts->extract(name, dim);
 }
 
 int FixGearQuat::pack_exchange(int i, double *buf)
@@ -494,6 +525,14 @@ void FixGearQuat::write_restart(FILE *fp)
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
+}
+
+/// All bodies in the format of keyword infile, beside the binary restart file.
+void FixGearQuat::write_restart_file(const char *file)
+{
+  if (!met_atoms) return;    // the atoms may still be changed by the user
+  show_bodies();
+  write_given_bodies(lmp, fmt::format("{}.{}.gear_quat", file, id), id, *bodies, array_local);
 }
 
 /// Called before the per-atom data arrive: what the constructor made of the atoms is dropped.

@@ -68,10 +68,15 @@ class FixGearQuat : public Fix {
   /// True if the fix moves this atom.
   bool moves(int atom) const;
 
+  void write_restart_file(const char *) override;
+  void set_molecule(int, tagint, int, double *, double *, double *) override;
+  void *extract(const char *, int &) override;
+
  private:
   class GearQuatArguments *args;
   class GearQuatBodies *bodies;
   class GearQuatTable *table;
+  class GearQuatExtract *extracts;
 
   bool started;      // histories are those of the step h
   bool met_atoms;    // bodies were compared with the atoms in a run before

@@ -93,7 +93,7 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     const std::string key = arg[iarg];
     const std::set<std::string> known = {"formulation", "values", "passes",   "start",
                                          "c0",          "omega",  "momentum", "project",
-                                         "compensate",  "infile", "reinit"};
+                                         "compensate",  "infile", "reinit",   "mol"};
     if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
@@ -120,6 +120,8 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
       scheme.project = choice(key, value, "no", "yes");
     else if (key == "reinit")
       reinit = choice(key, value, "no", "yes");
+    else if (key == "mol")
+      mol = value;
     else
       infile = value;
   }
@@ -139,6 +141,9 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
   for (const auto *key : {"omega", "momentum"})
     if (!scheme.first() && seen.count(key))
       error->all(FLERR, "Fix gear/quat keyword {} belongs to formulation first", key);
+
+  if (!mol.empty() && bodystyle != BodyStyle::MOLECULE)
+    error->all(FLERR, "Fix gear/quat keyword mol requires bodystyle molecule");
 
   // what a file states must not be computed again from the atoms
 

@@ -30,6 +30,7 @@ struct GearQuatArguments {
   Start start = Start::BOOTSTRAP;
   bool reinit = true;
   std::string infile;
+  std::string mol;    ///< template of bodies to come
 
   /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
   /// names the word and what is required.

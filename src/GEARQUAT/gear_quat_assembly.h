@@ -27,6 +27,7 @@ struct GearQuatBody {
   tagint natoms;    ///< sites
   double extent;    ///< largest distance of a site from the owner atom
   int from_file;    ///< mass and inertia were given, not summed
+  int fresh;        ///< has come in this step: no history yet
 };
 
 class GearQuatAssembly : protected Pointers {

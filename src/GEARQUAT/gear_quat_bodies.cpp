@@ -27,8 +27,9 @@ static constexpr double SAME = 1.0e-11;
 /* ---------------------------------------------------------------------- */
 
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), scheme(scheme), nown(0), nmax(0), body_id(nullptr), owner_tag(nullptr),
-    owned(nullptr), site_body(nullptr), forward(Forward::STATES)
+    Pointers(lmp), fix(fix), scheme(scheme), nown(0), nbodies(0), natoms(0), strangers(0),
+    told(false), nmax(0), body_id(nullptr), owner_tag(nullptr), owned(nullptr), site_body(nullptr),
+    forward(Forward::STATES)
 {
   grow_arrays(atom->nmax);
   clear();
@@ -62,6 +63,17 @@ void GearQuatBodies::clear()
 
 void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &given)
 {
+  clear();
+  add(ids, given);
+  bigint here[2] = {nown, 0}, all[2];
+  for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
+  MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  nbodies = all[0];
+  natoms = all[1];
+}
+
+void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
+{
   std::vector<GearQuatAssembly::Site> sites;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (ids[i] == 0) continue;
@@ -80,7 +92,6 @@ void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &g
   const auto placed = assembly.place_sites(sites);
   const auto made = assembly.make_bodies(sites);
 
-  clear();
   for (const auto &site : placed) {
     body_id[site.local] = ids[site.local];
     owner_tag[site.local] = site.owner;
@@ -96,15 +107,6 @@ void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &g
 void GearQuatBodies::recreate()
 {
   create(std::vector<tagint>(body_id, body_id + atom->nlocal), GivenBodies());
-}
-
-void GearQuatBodies::count(bigint &nbodies, bigint &natoms) const
-{
-  bigint here[2] = {nown, 0}, all[2];
-  for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
-  MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  nbodies = all[0];
-  natoms = all[1];
 }
 
 bool GearQuatBodies::atoms_match()
@@ -140,11 +142,12 @@ void GearQuatBodies::check_whole()
                "Fix gear/quat: atom IDs were changed since the fix was defined; define it "
                "after reset_atoms id or delete_atoms compress yes");
   const GearQuatCensus found = census(0);
-  if (found.broken)
-    error->all(FLERR,
-               "Fix gear/quat: body {} has {} of its {} atoms left; a body must be removed "
-               "as a whole",
-               found.broken, found.left, found.had);
+  if (!found.broken) return;
+  const std::string had = found.had
+      ? fmt::format("{} of its {} atoms", found.left, found.had)
+      : fmt::format("{} of its atoms, not the one that owned it,", found.left);
+  error->all(FLERR, "Fix gear/quat: body {} has {} left; a body must be removed as a whole",
+             found.broken, had);
 }
 
 bigint GearQuatBodies::removed_freedoms(int groupbit)
@@ -194,7 +197,7 @@ void GearQuatBodies::remove_owned(int ibody)
   rows.resize((size_t) nown * scheme.size());
 }
 
-void GearQuatBodies::update_ghosts(bool setup)
+void GearQuatBodies::update_ghosts()
 {
   drop_ghosts();
   if (comm->nprocs > 1) {
@@ -204,20 +207,20 @@ void GearQuatBodies::update_ghosts(bool setup)
     load.resize(body.size());
   }
   update_frames();
-  list_sites(setup);
+  list_sites();
 }
 
-void GearQuatBodies::list_sites(bool setup)
+void GearQuatBodies::list_sites()
 {
-  tagint lost = 0;
-  double extent = 0.0;
-  for (const auto &one : body) extent = std::max(extent, one.extent);
+  int lost = 0;
+  tagint example = 0;
   sites.clear();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (body_id[i] == 0) continue;
     const int owner = atom->map(owner_tag[i]);
     if (owner < 0 || owned[owner] < 0) {
-      lost = body_id[i];
+      ++lost;
+      example = body_id[i];
       continue;
     }
     Site site = {i, owned[owner], {}, {}};
@@ -225,18 +228,38 @@ void GearQuatBodies::list_sites(bool setup)
     domain->unmap(site.wrap, atom->image[i]);
     sites.push_back(site);
   }
+  take_stock(lost, example);
+}
 
-  const char *message = "Fix gear/quat: body {} spans more than the ghost cutoff: an atom has lost "
-                        "sight of its body's owner atom; use comm_modify cutoff with more than the "
-                        "largest distance of an atom from its owner, {}";
-  if (setup) {
+/// Count what all ranks have.  lost: atoms here that do not find their body, one of them `example`.
+void GearQuatBodies::take_stock(int lost, tagint example)
+{
+  bigint here[5] = {nown, 0, (bigint) sites.size() + lost, lost, strangers}, all[5];
+  for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
+  MPI_Allreduce(here, all, 5, MPI_LMP_BIGINT, MPI_SUM, world);
+  nbodies = all[0];
+  natoms = all[1];
+  if (all[1] != all[2] || all[3] > 0) check_whole();
+  if (all[3] > 0) {
+    double extent = 0.0, largest;
     tagint any;
-    double largest;
-    MPI_Allreduce(&lost, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    for (const auto &one : body) extent = std::max(extent, one.extent);
+    MPI_Allreduce(&example, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
     MPI_Allreduce(&extent, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
-    if (any) error->all(FLERR, message, any, largest);
-  } else if (lost)
-    error->one(FLERR, message, lost, extent);
+    error->all(FLERR,
+               "Fix gear/quat: body {} spans more than the ghost cutoff: an atom has lost sight of "
+               "its body's owner atom; use comm_modify cutoff with more than the largest distance "
+               "of an atom from its owner, {}",
+               any, largest);
+  }
+  if (all[4] > 0 && !told) {
+    told = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat: {} atoms of the fix group were created after the fix was "
+                     "defined; they belong to no body and this fix does not move them",
+                     all[4]);
+  }
 }
 
 GearQuatCensus GearQuatBodies::census(int groupbit) const

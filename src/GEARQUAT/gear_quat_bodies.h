@@ -53,20 +53,26 @@ class GearQuatBodies : protected Pointers {
 
   /// Build all bodies anew from the atoms; ids: body of every owned atom, 0 for none.
   void create(const std::vector<tagint> &ids, const GivenBodies &given);
+  /// Build more bodies, of atoms that are in none.
+  void add(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Build the same bodies anew from the atoms' present masses, positions and velocities.
   void recreate();
   /// Forget all bodies: a restart file is about to state them.
   void clear();
-  /// Find the body of every atom after atoms were exchanged.  setup: ranks report together.
-  void update_ghosts(bool setup);
+  /// Find the body of every atom after atoms were exchanged, created or removed.  Ends the run if a
+  /// body has lost some of its atoms, or sight of them.
+  void update_ghosts();
   /// True if masses, positions and velocities of all atoms are those of their bodies.
   bool atoms_match();
-  /// Ends the run if a body has lost some of its atoms.
+  /// Ends the run if a body has lost some of its atoms; needs no ghosts.
   void check_whole();
   /// Degrees of freedom that rigidity takes from the atoms of a group.
   bigint removed_freedoms(int groupbit);
-  /// Bodies, and atoms in them, on all ranks.
-  void count(bigint &nbodies, bigint &natoms) const;
+  /// Bodies on all ranks and atoms in them, as of create() or update_ghosts().
+  bigint number() const { return nbodies; }
+  bigint number_of_sites() const { return natoms; }
+  /// An atom of the fix group was created that is in no body yet; it may be added to one.
+  void note_stranger(int change) { strangers += change; }
 
   // one step
 
@@ -101,6 +107,9 @@ class GearQuatBodies : protected Pointers {
   GearQuat::Scheme scheme;
 
   int nown;                       ///< owned bodies
+  bigint nbodies, natoms;         ///< on all ranks: bodies, and atoms in them
+  int strangers;                  ///< atoms created since the fix was defined, in no body
+  bool told;                      ///< of them, once
   std::vector<double> rows;       ///< histories of owned bodies
   std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
 
@@ -119,7 +128,7 @@ class GearQuatBodies : protected Pointers {
   static constexpr int SITE_SIZE = 6;    ///< packed: IDs of body and owner, arm, size of history
   static constexpr int STATE_SIZE = sizeof(GearQuat::BodyState) / sizeof(double);
   static constexpr int LOAD_SIZE = sizeof(GearQuat::Load) / sizeof(double);
-  static constexpr int BODY_SIZE = 8 + STATE_SIZE;
+  static constexpr int BODY_SIZE = 9 + STATE_SIZE;
   static constexpr int LAST_SIZE = sizeof(GearQuat::Correction) / sizeof(double);
 
   enum class Forward { GHOSTS, STATES, LOADS };
@@ -129,7 +138,8 @@ class GearQuatBodies : protected Pointers {
   int add_owned(int atom);
   void remove_owned(int ibody);
   void update_frames();
-  void list_sites(bool setup);
+  void list_sites();
+  void take_stock(int lost, tagint example);
   template <bool POSITIONS, bool VELOCITIES> void place();
   double atom_mass(int atom) const;
 

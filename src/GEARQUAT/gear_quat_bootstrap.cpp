@@ -48,12 +48,16 @@ void GearQuatBootstrap::zero()
 
 void GearQuatBootstrap::seed_local(int terms)
 {
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const RigidBody &rigid = bodies.body[ibody].rigid;
-    auto series = local_series(rigid, bodies.state[ibody], bodies.load[ibody], h);
-    series.terms = terms;
-    seed(scheme, rigid, series, h, h, bodies.history(ibody));
-  }
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) seed_body(bodies, ibody, scheme, h, terms);
+}
+
+void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Scheme &scheme, double h,
+                                  int terms)
+{
+  const RigidBody &rigid = bodies.body[ibody].rigid;
+  auto series = local_series(rigid, bodies.state[ibody], bodies.load[ibody], h);
+  series.terms = terms;
+  seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
 
 void GearQuatBootstrap::gather_present_loads(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies)

@@ -26,6 +26,9 @@ class GearQuatBootstrap : protected Pointers {
 
   /// The paper's start: every second and higher derivative is zero.
   void zero();
+  /// History of one body from what its state and its load determine.  terms: 2, or 3 for the load too.
+  static void seed_body(GearQuatBodies &bodies, int ibody, const GearQuat::Scheme &scheme, double h,
+                        int terms);
   /// Derivatives consistent with the trajectory; where forces cannot be followed, those that the
   /// present loads determine, and a message on rank 0.  After the call atoms are as before.
   void run();

@@ -42,6 +42,7 @@ def documented_values(key, text):
 
 
 ACCEPTED = set(strings("known", ARGUMENTS))
+NAMES = {"infile", "mol"}  # keywords whose value is a name
 VALUES = {
     key: {no, yes}
     for key, no, yes in re.findall(
@@ -63,7 +64,7 @@ def test_every_keyword_is_documented():
 
 
 def test_every_value_is_documented():
-    assert set(VALUES) == ACCEPTED - {"infile"} - NUMBERS
+    assert set(VALUES) == ACCEPTED - NAMES - NUMBERS
     for key, values in VALUES.items():
         assert documented_values(key, MANUAL) == values
         assert documented_values(key, MANUAL.replace(f"*{min(values)}*", "")) != values
@@ -72,7 +73,7 @@ def test_every_value_is_documented():
 def test_every_default_is_a_value():
     text = " ".join(section("Default").split())
     defaults = dict(re.findall(r"(\w+) = (\w+)", text.partition(", or ")[0]))
-    assert set(defaults) == ACCEPTED - {"infile"}
+    assert set(defaults) == ACCEPTED - NAMES
     assert all(defaults[key] in values for key, values in VALUES.items())
 
 
@@ -114,6 +115,7 @@ create_atoms 1 single 1.0 0.0 0.0
 create_atoms 1 single 5.0 5.0 5.0
 create_atoms 1 single 5.0 6.2 5.1
 mass 1 1.0
+molecule water dumbbell.txt
 set atom 1*2 mol 1
 set atom 3*4 mol 2
 group clump id 1 2
@@ -127,6 +129,7 @@ pair_style zero 2.0
 pair_coeff * *
 thermo_modify norm no
 """
+DUMBBELL = "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
 BODIES = "1\n1 2.0 0.5 0 0 0 1 1 0 0 0 0.1 0 0 0 0.1 0 0 0 0\n"
 
 
@@ -137,6 +140,7 @@ def examples(text):
 
 def run_example(lmp, line):
     (lmp.folder / "bodies.txt").write_text(BODIES)
+    (lmp.folder / "dumbbell.txt").write_text(DUMBBELL)
     before = "fix 1 all gear/quat molecule\n" if line.startswith("fix_modify") else ""
     return lmp.run(SCENE + before + line + "\nrun 2\n")
 

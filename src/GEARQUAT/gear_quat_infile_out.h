@@ -1,0 +1,26 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The file that keyword infile reads (gear_quat_infile.h), written from the present bodies. */
+
+#ifndef LMP_GEAR_QUAT_INFILE_OUT_H
+#define LMP_GEAR_QUAT_INFILE_OUT_H
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+class GearQuatBodies;
+class LAMMPS;
+
+/// Write all bodies, sorted by ID, with all digits; a file that cannot be written ends the run.
+/// rows: those of GearQuatTable for this rank's owned bodies.  fix_id: for the comment on line 1.
+/// Collective.
+void write_given_bodies(LAMMPS *lmp, const std::string &filename, const std::string &fix_id,
+                        const GearQuatBodies &bodies, double **rows);
+
+}    // namespace LAMMPS_NS
+
+#endif
