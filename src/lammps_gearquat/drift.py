@@ -82,8 +82,8 @@ METHODS = (
     VERLET,
 )
 SCENES = (
-    Scene("coated", "Body without bare charges in the cage", (0.005, 0.02, 0.05, 0.125, 0.25)),
-    Scene("top", "Free asymmetric top", (0.005, 0.02, 0.05, 0.1, 0.2)),
+    Scene("coated", "Body without bare charges in the cage", (0.02, 0.05, 0.125)),
+    Scene("top", "Free asymmetric top", (0.02, 0.05, 0.1)),
 )
 
 

@@ -6,11 +6,12 @@ import numpy as np
 from scipy.stats import theilslopes
 
 #: the part of a curve that its order is fitted on (see ``asymptotic``)
-FINEST, ABOVE_FLOOR, DECADES, FINER = 5, 3.0, 3, 1.25
+FINEST, ABOVE_FLOOR, DECADES, FINER, PAST = 5, 3.0, 3, 1.25, 2.0
 FEWEST_POINTS = 3
 RULE = (
     f"lines of fitted order: median slope (Theil and Sen) over the {DECADES} decades above rounding, "
-    f"steps below 1/{FINER:g} of the largest usable one; rounding: {ABOVE_FLOOR:g} times the worst of "
+    f"steps below 1/{FINER:g} of the largest usable one and at most 1/{PAST:g} of one at which the "
+    f"error changes sign; rounding: {ABOVE_FLOOR:g} times the worst of "
     f"the {FINEST} finest runs, where their errors do not fall any more"
 )
 MET, MISSED = "met", "missed"
@@ -39,13 +40,17 @@ def asymptotic(steps, errors, limit=np.inf):
     """Mask of the points that show the order of a method.
 
     Not rounding: error at least ABOVE_FLOOR times ``rounding_floor``, at this and at every larger
-    step.  Not too coarse: of those, the ones within DECADES decades of the smallest, and a step at
-    least FINER times smaller than ``limit``, the largest usable one.
+    step.  Not too coarse: of those, the ones within DECADES decades of the smallest, a step at least
+    FINER times smaller than ``limit``, the largest usable one, and PAST times smaller than one at
+    which leading terms cancel (``sign_change``).
     """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)
     rounding = ~(errors > ABOVE_FLOOR * rounding_floor(steps, errors))
     used = np.isfinite(errors) & (steps > steps[rounding].max(initial=0.0))
     used &= steps * FINER <= limit
+    cancels = sign_change(steps, errors)
+    if cancels is not None:
+        used &= steps * PAST <= cancels
     if used.any():
         used &= errors <= errors[used].min() * 10.0**DECADES
     return used
