@@ -5,9 +5,11 @@ momentum and energy that know of no integrator.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
+from running import Lammps
 from scenes import last_frame, one_after_the_other, water, water_data
 
 FORMULATIONS = ["first", "second"]
@@ -22,8 +24,8 @@ NO_DISPERSION = "pair_coeff 2 2 0.0 1.0\npair_coeff 1 2 0.0 1.0\n"
 class Box:
     """The box of water with decks that all begin alike; a deck leaves a dump of its name."""
 
-    lmp: object
-    data: object
+    lmp: Lammps
+    data: Path
 
     def run(self, *decks, ranks=1):
         result = self.lmp.run(one_after_the_other(decks), ranks=ranks)
@@ -159,14 +161,14 @@ def test_what_pulls_the_whole_is_its_momentum(box, formulation, ranks):
 
 
 def with_bonds(data):
-    """The same molecules with bonds and angles, for those that are not rigid."""
+    """The same molecules with bonds and angles; one more ties the last body to its neighbor."""
     text = data.read_text()
-    text = text.replace(
-        "\nMasses", f"{2 * N**3} bonds\n1 bond types\n{N**3} angles\n1 angle types\n\nMasses"
-    )
-    first = range(1, 3 * N**3, 3)
-    bonds = [f"{2 * k + j + 1} 1 {o} {o + j + 1}" for k, o in enumerate(first) for j in (0, 1)]
-    angles = [f"{k + 1} 1 {o + 1} {o} {o + 2}" for k, o in enumerate(first)]
+    counts = f"{2 * N**3 + 1} bonds\n2 bond types\n{N**3} angles\n1 angle types\n"
+    text = text.replace("\nMasses", f"{counts}\nMasses")
+    oxygens = range(1, 3 * N**3, 3)
+    bonds = [f"{2 * k + j + 1} 1 {o} {o + j + 1}" for k, o in enumerate(oxygens) for j in (0, 1)]
+    bonds.append(f"{len(bonds) + 1} 2 40 43")
+    angles = [f"{k + 1} 1 {o + 1} {o} {o + 2}" for k, o in enumerate(oxygens)]
     text += "\n".join(["", "Bonds", "", *bonds, "", "Angles", "", *angles, ""])
     path = data.with_name("data.bonds")
     path.write_text(text)
@@ -177,11 +179,12 @@ SOLVENT = {
     "flexible": """
 bond_style harmonic
 bond_coeff 1 450.0 1.0
+bond_coeff 2 20.0 3.0
 angle_style harmonic
 angle_coeff 1 55.0 109.47
 """
     + BODIES
-    + "delete_bonds bodies multi any",
+    + "delete_bonds bodies multi",
     "atomic": BODIES
     + """
 group light type 2
@@ -225,12 +228,34 @@ def test_bodies_and_solvent_move_each_other(solution, ranks):
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_respa_with_forces_of_both_levels(box, formulation):
+    """A bond pulls a body on one level, all pairs on the other: their sum moves it."""
+    box.data = with_bonds(box.data)
+    fix = f"gear/quat molecule formulation {formulation}"
+    before = SOLVENT["flexible"] + "\nfix others others nve\n"
+    common = dict(group="bodies", dt=0.2, steps=200)
+    softer = [("bond_coeff 2 20.0", "bond_coeff 2 19.8")]
+    levels = "run_style respa 2 1 bond 1 angle 1 pair 2\n"
+    box.run(
+        box.deck("verlet", fix, before=before, **common),
+        box.deck("respa", fix, before=levels + before, **common),
+        box.deck("softer", fix, before=levels + before, replace=softer, **common),
+    )
+    body = box.end("verlet")[:, 0] <= 3 * 14
+    assert box.difference("verlet", "respa") < 1e-11
+    assert box.difference("verlet", "softer", body) > 1e-5
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_momentum_and_energy_of_a_solution(solution, formulation):
     """What bodies lose the solvent gains: by the energy of all, and by the momentum of all."""
     fix = f"gear/quat molecule formulation {formulation}"
     # nothing is cut off: forces are the derivatives of the energy everywhere
     room = "change_box all x delta -9 9 y delta -9 9 z delta -9 9 units box\n"
-    whole = [("read_data", "boundary f f f\nread_data"), (SMOOTH, "pair_style lj/cut/coul/cut 90.0")]
+    whole = [
+        ("read_data", "boundary f f f\nread_data"),
+        (SMOOTH, "pair_style lj/cut/coul/cut 90.0"),
+    ]
     decks = {
         dt: solution.deck(
             f"dt{dt}",
@@ -299,6 +324,7 @@ def test_another_rigid_fix_beside(box, beside, ranks):
     """Of the other formulation, or fix rigid/nve/small: all as if rigid/nve/small moved all."""
     fix = "gear/quat molecule formulation second"
     one, two = (f"{BODIES}fix rest others {style}\n" for style in (RIGID, beside))
+    fallback = "start with known forces only (order 2), because fix rest"
     result = box.run(
         box.deck("all", RIGID),
         box.deck("halves", RIGID, "bodies", before=one),
@@ -306,6 +332,7 @@ def test_another_rigid_fix_beside(box, beside, ranks):
         box.deck("stronger", fix, "bodies", before=two, replace=[("0.1553", "0.156853")]),
         ranks=ranks,
     )
+    assert result.stdout.count(fallback) == 2  # neither follows what another fix moves
     assert box.difference("all", "mixed") < 1e-6
     assert box.difference("all", "stronger") > 1e-5
     temperature, pressure = ([t[key] for t in result.thermo] for key in ("Temp", "Press"))
@@ -359,7 +386,8 @@ def test_langevin_keeps_bodies_at_its_temperature(lmp_tree):
     for table in (first, second):
         for energy in ours.split():
             assert temperature(table, energy) == pytest.approx(300.0, abs=3 * bar)
-    same = [temperature(t, "f_move[1]") / temperature(rigid, "c_1") for t in (first, second, hotter)]
-    print("LANG", bar, same, [temperature(t,e) for t in (first,second,hotter) for e in ours.split()])
+    same = [
+        temperature(t, "f_move[1]") / temperature(rigid, "c_1") for t in (first, second, hotter)
+    ]
     assert same[:2] == pytest.approx([1.0, 1.0], abs=5e-3)
     assert same[2] > 1.0075
