@@ -6,7 +6,7 @@
 
 TREE_VERSION="4 Feb 2025"
 TREE_DEBIAN="20250204+dfsg.1" # in Debian trixie
-TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN"
+TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
 
 # --- sources ----------------------------------------------------------------------------------
 

@@ -96,7 +96,7 @@ static constexpr double NORM_ROUNDING = 1.0e-15;
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), extracts(nullptr),
     started(false), met_atoms(false), h(0.0), integrator(nullptr), velocities_read(true),
-    f_sum(nullptr), nmax_sum(0)
+    f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -159,6 +159,7 @@ FixGearQuat::~FixGearQuat()
   delete bodies;
   delete[] extlist;
   memory->destroy(f_sum);
+  memory->destroy(torque_sum);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -232,7 +233,7 @@ void FixGearQuat::setup(int vflag)
   bodies->place_velocities();
   for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
   v_init(vflag);
-  bodies->gather_loads(atom->f);
+  bodies->gather_loads(atom->f, atom->torque);
   if (evflag) tally_virial(atom->f);
   table->forget();
   show_bodies();
@@ -262,7 +263,7 @@ void FixGearQuat::initial_integrate(int vflag)
   if (!started) {
     // forces of the step before are still there, those of all other fixes among them
     bodies->spread_states();
-    bodies->gather_loads(atom->f);
+    bodies->gather_loads(atom->f, atom->torque);
     start();
   }
   begin_step();
@@ -270,7 +271,7 @@ void FixGearQuat::initial_integrate(int vflag)
 
 void FixGearQuat::final_integrate()
 {
-  finish_step(atom->f);
+  finish_step(atom->f, atom->torque);
 }
 
 /// Higher rows of the histories: `h`, poses, velocities and present loads are known.
@@ -295,9 +296,9 @@ void FixGearQuat::begin_step()
   bodies->place_sites(velocities_read);
 }
 
-void FixGearQuat::finish_step(double **f)
+void FixGearQuat::finish_step(double **f, double **torque)
 {
-  bodies->gather_loads(f);
+  bodies->gather_loads(f, torque);
   if (evflag) tally_virial(f);
 
   const int known = args->start == GearQuatArguments::Start::ZERO ? 2
@@ -357,13 +358,19 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
     if (atom->nmax > nmax_sum) {
       nmax_sum = atom->nmax;
       memory->destroy(f_sum);
+      memory->destroy(torque_sum);
       memory->create(f_sum, nmax_sum, 3, "gear/quat:f_sum");
+      if (atom->torque_flag) memory->create(torque_sum, nmax_sum, 3, "gear/quat:torque_sum");
     }
     std::fill_n(f_sum[0], 3 * (size_t) nmax_sum, 0.0);
+    if (torque_sum) std::fill_n(torque_sum[0], 3 * (size_t) nmax_sum, 0.0);
   }
   for (int i = 0; i < atom->nlocal; ++i)
     for (int k = 0; k < 3; ++k) f_sum[i][k] += atom->f[i][k];
-  if (ilevel == *levels - 1) finish_step(f_sum);
+  if (torque_sum)
+    for (int i = 0; i < atom->nlocal; ++i)
+      for (int k = 0; k < 3; ++k) torque_sum[i][k] += atom->torque[i][k];
+  if (ilevel == *levels - 1) finish_step(f_sum, torque_sum);
 }
 
 /* ----------------------------------------------------------------------
@@ -513,15 +520,19 @@ void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 ------------------------------------------------------------------------- */
 
 struct GlobalRestart {
-  double formulation, values, compensate, started, h;
+  double formulation, values, compensate, started, h, extended;
 };
 
 void FixGearQuat::write_restart(FILE *fp)
 {
   if (comm->me != 0) return;
   const Scheme &scheme = args->scheme;
-  const GlobalRestart data = {(double) scheme.first(), (double) scheme.values(),
-                              (double) scheme.compensate, (double) started, h};
+  const GlobalRestart data = {(double) scheme.first(),
+                              (double) scheme.values(),
+                              (double) scheme.compensate,
+                              (double) started,
+                              h,
+                              (double) bodies->has_extended()};
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
@@ -540,7 +551,7 @@ void FixGearQuat::restart(char *buf)
 {
   GlobalRestart data;
   std::memcpy(&data, buf, sizeof(data));
-  bodies->clear();
+  bodies->clear(data.extended != 0.0);
   const Scheme &scheme = args->scheme;
   const bool same = data.formulation == (double) scheme.first() &&
       data.values == (double) scheme.values() && data.compensate == (double) scheme.compensate;

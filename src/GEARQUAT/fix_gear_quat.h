@@ -82,14 +82,14 @@ class FixGearQuat : public Fix {
   bool met_atoms;    // bodies were compared with the atoms in a run before
   double h;          // step of the histories
   GearQuat::Integrator *integrator;
-  bool velocities_read;    // between prediction and correction, by others
-  double **f_sum;          // r-RESPA: forces of all levels
+  bool velocities_read;            // between prediction and correction, by others
+  double **f_sum, **torque_sum;    // r-RESPA: of all levels; torques where atoms have some
   int nmax_sum;
 
   void follow_time_step();
   void start();
   void begin_step();
-  void finish_step(double **);
+  void finish_step(double **, double **);
   void tally_virial(double **);
   double of_body(int, int) const;
   void show_bodies();

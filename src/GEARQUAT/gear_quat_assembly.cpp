@@ -82,6 +82,7 @@ void GearQuatAssembly::reply(const Site *sites, int n, PlacedSite *replies, int 
     double arm[3];
     for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - owned.state.center[k];
     to_body(axes, arm, placed.site_body);
+    std::copy_n(owned.state.q, 4, placed.q_body);
     placed.local = sites[i].local;
     placed.owner = sites[owner].tag;
     ranks[count++] = sites[i].rank;
@@ -169,7 +170,12 @@ GearQuatAssembly::Momenta GearQuatAssembly::average(const Site *sites, int n,
     owned.state.center[k] = center[k] / mass;
     owned.state.velocity[k] = velocity[k] / mass;
   }
-  if (n == 1) return momenta;    // a lone site has no rotation, rounding or not
+
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < 3; ++k) momenta.angular_momentum_space[k] += sites[i].own_momentum_space[k];
+    for (int k = 0; k < 9; ++k) momenta.inertia_space[k] += sites[i].own_inertia_space[k];
+  }
+  if (n == 1) return momenta;    // a lone point has no rotation, rounding or not
 
   for (int i = 0; i < n; ++i) {
     double arm[3], spin[3];

@@ -36,12 +36,14 @@ class GearQuatAssembly : protected Pointers {
     int rank, local;    ///< where the site came from
     tagint id, tag;     ///< body and atom
     double mass;
-    double x[3], v[3];    ///< unwrapped
+    double x[3], v[3];                                     ///< unwrapped
+    double own_inertia_space[9], own_momentum_space[3];    ///< of the site about its own centre
   };
   struct PlacedSite {
     int local;
     tagint owner;           ///< atom ID of the body's owner
     double site_body[3];    ///< from the centre of mass, principal frame
+    double q_body[4];       ///< orientation of the body
   };
   struct OwnedBody {
     int local;    ///< index of the owner atom

@@ -27,9 +27,9 @@ static constexpr double SAME = 1.0e-11;
 /* ---------------------------------------------------------------------- */
 
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), scheme(scheme), nown(0), nbodies(0), natoms(0), strangers(0),
-    told(false), nmax(0), body_id(nullptr), owner_tag(nullptr), owned(nullptr), site_body(nullptr),
-    forward(Forward::STATES)
+    Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nbodies(0), natoms(0),
+    strangers(0), told(false), nmax(0), body_id(nullptr), owner_tag(nullptr), owned(nullptr),
+    site_body(nullptr), forward(Forward::STATES)
 {
   grow_arrays(atom->nmax);
   clear();
@@ -47,7 +47,7 @@ GearQuatBodies::~GearQuatBodies()
    life cycle
 ------------------------------------------------------------------------- */
 
-void GearQuatBodies::clear()
+void GearQuatBodies::clear(bool with_extended)
 {
   nown = 0;
   body.clear();
@@ -58,6 +58,7 @@ void GearQuatBodies::clear()
   frame.clear();
   rows.clear();
   owner_atom.clear();
+  extended.reset(with_extended, nmax);
   for (int i = 0; i < nmax; ++i) set_arrays(i);
 }
 
@@ -74,10 +75,16 @@ void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &g
 
 void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
 {
+  std::vector<int> atoms;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (ids[i] != 0) atoms.push_back(i);
+  extended.refuse(atoms);
+  const bool any_extended = extended.any(atoms);
+  if (any_extended && !extended.has_records()) extended.reset(true, nmax);
+
   std::vector<GearQuatAssembly::Site> sites;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (ids[i] == 0) continue;
-    GearQuatAssembly::Site site;
+  for (const int i : atoms) {
+    GearQuatAssembly::Site site = GearQuatAssembly::Site();
     site.rank = comm->me;
     site.local = i;
     site.id = ids[i];
@@ -85,6 +92,8 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
     site.mass = atom_mass(i);
     domain->unmap(atom->x[i], atom->image[i], site.x);
     for (int k = 0; k < 3; ++k) site.v[k] = atom->v[i][k];
+    if (any_extended)
+      extended.own_momenta(i, site.mass, site.own_inertia_space, site.own_momentum_space);
     sites.push_back(site);
   }
 
@@ -96,6 +105,7 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
     body_id[site.local] = ids[site.local];
     owner_tag[site.local] = site.owner;
     for (int k = 0; k < 3; ++k) site_body[site.local][k] = site.site_body[k];
+    if (any_extended) extended.attach(site.local, atom_mass(site.local), site.q_body);
   }
   for (const auto &one : made) {
     const int ibody = add_owned(one.local);
@@ -107,6 +117,14 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
 void GearQuatBodies::recreate()
 {
   create(std::vector<tagint>(body_id, body_id + atom->nlocal), GivenBodies());
+}
+
+void GearQuatBodies::refuse_atoms() const
+{
+  std::vector<int> atoms;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (in_body(i)) atoms.push_back(i);
+  extended.refuse(atoms);
 }
 
 bool GearQuatBodies::atoms_match()
@@ -125,6 +143,7 @@ bool GearQuatBodies::atoms_match()
       if (std::fabs(s.center[k] + arm[k] - site.wrap[k] - x[k]) > SAME * length) moved = 1;
       if (std::fabs(s.velocity[k] + spin[k] - v[k]) > SAME * speed) moved = 1;
     }
+    if (!extended.match(site.atom, atom_mass(site.atom), s)) moved = 1;
   }
   int any = 0;
   MPI_Allreduce(&moved, &any, 1, MPI_INT, MPI_MAX, world);
@@ -215,6 +234,7 @@ void GearQuatBodies::list_sites()
   int lost = 0;
   tagint example = 0;
   sites.clear();
+  extended.sites.clear();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (body_id[i] == 0) continue;
     const int owner = atom->map(owner_tag[i]);
@@ -228,6 +248,8 @@ void GearQuatBodies::list_sites()
     domain->unmap(site.wrap, atom->image[i]);
     sites.push_back(site);
   }
+  if (extended.has_records())
+    for (const Site &site : sites) extended.list(site.atom, site.body);
   take_stock(lost, example);
 }
 
@@ -272,6 +294,7 @@ GearQuatCensus GearQuatBodies::census(int groupbit) const
     site.id = body_id[i];
     site.in_group = (atom->mask[i] & groupbit) ? 1 : 0;
     site.mass = atom_mass(i);
+    site.own_freedoms = extended.freedoms(i);
     if (owned[i] >= 0) {
       const GearQuatBody &mine = body[owned[i]];
       site.natoms = mine.natoms;
@@ -336,14 +359,21 @@ template <bool POSITIONS, bool VELOCITIES> void GearQuatBodies::place()
 void GearQuatBodies::place_sites(bool velocities)
 {
   velocities ? place<true, true>() : place<true, false>();
+  if (!extended.sites.empty()) extended.place(state, true, velocities);
 }
 
 void GearQuatBodies::place_velocities()
 {
   place<false, true>();
+  if (!extended.sites.empty()) extended.place(state, false, true);
 }
 
-void GearQuatBodies::gather_loads(double **f)
+void GearQuatBodies::place_extended()
+{
+  if (!extended.sites.empty()) extended.place(state, true, true);
+}
+
+void GearQuatBodies::gather_loads(double **f, double **torque)
 {
   for (auto &one : load) one = Load();
   for (const Site &site : sites) {
@@ -357,6 +387,7 @@ void GearQuatBodies::gather_loads(double **f)
       sum.torque_space[k] += moment[k];
     }
   }
+  if (!extended.sites.empty()) extended.add_torques(torque, load);
   if (comm->nprocs > 1) comm->reverse_comm(fix, LOAD_SIZE);
 
   const double ftm2v = force->ftm2v;
@@ -404,6 +435,7 @@ void GearQuatBodies::grow_arrays(int n)
   memory->grow(owner_tag, nmax, "gear/quat:owner_tag");
   memory->grow(owned, nmax, "gear/quat:owned");
   memory->grow(site_body, nmax, 3, "gear/quat:site_body");
+  extended.grow(nmax);
   for (int i = old; i < nmax; ++i) set_arrays(i);
 }
 
@@ -412,6 +444,7 @@ void GearQuatBodies::set_arrays(int i)
   body_id[i] = owner_tag[i] = 0;
   owned[i] = -1;
   site_body[i][0] = site_body[i][1] = site_body[i][2] = 0.0;
+  extended.set(i);
 }
 
 void GearQuatBodies::copy_arrays(int from, int to, int delflag)
@@ -421,6 +454,7 @@ void GearQuatBodies::copy_arrays(int from, int to, int delflag)
   owner_tag[to] = owner_tag[from];
   owned[to] = owned[from];
   for (int k = 0; k < 3; ++k) site_body[to][k] = site_body[from][k];
+  extended.copy(from, to);
   if (owned[to] >= 0) owner_atom[owned[to]] = to;
 }
 
@@ -431,5 +465,5 @@ double GearQuatBodies::memory_usage() const
       body.capacity() * sizeof(GearQuatBody) + state.capacity() * sizeof(BodyState) +
       load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
       frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
-      owner_atom.capacity() * sizeof(int);
+      owner_atom.capacity() * sizeof(int) + extended.memory_usage();
 }

@@ -20,6 +20,7 @@
 
 #include "gear_quat_assembly.h"
 #include "gear_quat_census.h"
+#include "gear_quat_extended.h"
 #include "gear_quat_integrator.h"
 
 namespace LAMMPS_NS {
@@ -48,6 +49,8 @@ class GearQuatBodies : protected Pointers {
   int nowned() const { return nown; }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
   bool in_body(int atom) const { return body_id[atom] != 0; }
+  /// True if some atoms of bodies, on any rank, are more than points.
+  bool has_extended() const { return extended.has_records(); }
 
   // life cycle, all collective
 
@@ -57,8 +60,10 @@ class GearQuatBodies : protected Pointers {
   void add(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Build the same bodies anew from the atoms' present masses, positions and velocities.
   void recreate();
-  /// Forget all bodies: a restart file is about to state them.
-  void clear();
+  /// Forget all bodies.  extended: a restart file is about to state bodies with such atoms.
+  void clear(bool extended = false);
+  /// Ends the run if an atom of a body is of a kind that cannot be followed.
+  void refuse_atoms() const;
   /// Find the body of every atom after atoms were exchanged, created or removed.  Ends the run if a
   /// body has lost some of its atoms, or sight of them.
   void update_ghosts();
@@ -81,7 +86,10 @@ class GearQuatBodies : protected Pointers {
   void place_sites(bool velocities);
   /// Velocities alone: before a run positions were made by the last step, or by the user.
   void place_velocities();
-  void gather_loads(double **f);
+  /// Orientations and rates of atoms that are more than points, where these were moved alone.
+  void place_extended();
+  /// torque: of the atoms themselves, used where they are more than points.
+  void gather_loads(double **f, double **torque);
   void spread_loads();
   /// Arm from the centre of mass and constraint force m a - f of a site under the present loads.
   void constraint_force(const Site &site, double **f, double *arm_space, double *force) const;
@@ -105,6 +113,7 @@ class GearQuatBodies : protected Pointers {
  private:
   Fix *fix;
   GearQuat::Scheme scheme;
+  GearQuatExtended extended;
 
   int nown;                       ///< owned bodies
   bigint nbodies, natoms;         ///< on all ranks: bodies, and atoms in them
@@ -125,7 +134,8 @@ class GearQuatBodies : protected Pointers {
   int *owned;            ///< per atom, ghosts too: the body it owns, or -1
   double **site_body;    ///< per atom: from the centre of mass, principal frame
 
-  static constexpr int SITE_SIZE = 6;    ///< packed: IDs of body and owner, arm, size of history
+  /// packed: IDs of body and owner, arm, size of history; behind the arm what `extended` has
+  static constexpr int SITE_SIZE = 6;
   static constexpr int STATE_SIZE = sizeof(GearQuat::BodyState) / sizeof(double);
   static constexpr int LOAD_SIZE = sizeof(GearQuat::Load) / sizeof(double);
   static constexpr int BODY_SIZE = 9 + STATE_SIZE;

@@ -24,6 +24,7 @@ int GearQuatBodies::pack_exchange(int i, double *buf)
   if (body_id[i] == 0) return m;
   buf[m++] = ubuf(owner_tag[i]).d;
   for (int k = 0; k < 3; ++k) buf[m++] = site_body[i][k];
+  m += extended.pack(i, buf + m);
   const int ibody = owned[i];
   buf[m++] = ubuf(ibody < 0 ? 0 : scheme.size()).d;
   if (ibody < 0) return m;
@@ -43,6 +44,7 @@ int GearQuatBodies::unpack_exchange(int i, const double *buf)
   if (body_id[i] == 0) return m;
   owner_tag[i] = (tagint) ubuf(buf[m++]).i;
   for (int k = 0; k < 3; ++k) site_body[i][k] = buf[m++];
+  m += extended.unpack(i, buf + m);
   const int size = (int) ubuf(buf[m++]).i;
   if (size == 0) return m;
   const int ibody = add_owned(i);
@@ -84,12 +86,13 @@ int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState
 int GearQuatBodies::packed_size(int i) const
 {
   if (body_id[i] == 0) return 1;
-  return owned[i] < 0 ? SITE_SIZE : max_exchange();
+  const int site = SITE_SIZE + extended.packed_size(i);
+  return owned[i] < 0 ? site : site + BODY_SIZE + LAST_SIZE + scheme.size();
 }
 
 int GearQuatBodies::max_exchange() const
 {
-  return SITE_SIZE + BODY_SIZE + LAST_SIZE + scheme.size();
+  return SITE_SIZE + GearQuatExtended::RECORD_SIZE + BODY_SIZE + LAST_SIZE + scheme.size();
 }
 
 int GearQuatBodies::max_forward() const

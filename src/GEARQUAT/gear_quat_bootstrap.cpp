@@ -66,7 +66,7 @@ void GearQuatBootstrap::gather_present_loads(LAMMPS *lmp, const Fix *fix, GearQu
   bodies.spread_states();
   forces.save();
   forces.evaluate();
-  bodies.gather_loads(lmp->atom->f);
+  bodies.gather_loads(lmp->atom->f, lmp->atom->torque);
   forces.restore();
 }
 
@@ -93,6 +93,7 @@ void GearQuatBootstrap::run()
     std::copy(states.begin(), states.end(), bodies.state.begin());
     std::copy(loads.begin(), loads.end(), bodies.load.begin());
     bodies.spread_states();
+    bodies.place_extended();
   }
   if (done) {
     if (comm->me == 0)
@@ -200,7 +201,7 @@ bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, 
   if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
   forces.evaluate();
   ++evaluations;
-  bodies.gather_loads(atom->f);
+  bodies.gather_loads(atom->f, atom->torque);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const GearQuatBody &body = bodies.body[ibody];
     change = std::max(change,

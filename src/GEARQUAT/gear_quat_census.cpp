@@ -58,11 +58,12 @@ int GearQuatCensus::count_sites(int n, char *in, int &flag, int *&ranks, char *&
 void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
 {
   tagint natoms = 0;
-  int freedoms = 0, in_group = 0;
+  int freedoms = 0, own_freedoms = 0, in_group = 0;
   double mass = 0.0, body_mass = 0.0;
   for (int i = 0; i < n; ++i) {
     natoms += sites[i].natoms;
     freedoms += sites[i].freedoms;
+    own_freedoms += sites[i].own_freedoms;
     in_group += sites[i].in_group;
     mass += sites[i].mass;
     body_mass += sites[i].body_mass;
@@ -73,5 +74,5 @@ void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
     had = natoms;
   }
   if (body_mass > 0.0 && std::fabs(mass - body_mass) > SAME_MASS * body_mass) mass_changed = 1;
-  if (in_group == n) removed_freedoms += (bigint) dimension * n - freedoms;
+  if (in_group == n) removed_freedoms += (bigint) dimension * n + own_freedoms - freedoms;
 }

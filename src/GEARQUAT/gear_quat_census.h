@@ -22,6 +22,7 @@ struct GearQuatSiteCount {
   tagint owner, id;    ///< atom ID of the body's owner, the user's ID of the body
   tagint natoms;       ///< of the body, 0 unless this atom is its owner
   int freedoms;        ///< of the body, translation and rotation; 0 unless this atom is its owner
+  int own_freedoms;    ///< rotational ones of the atom itself
   int in_group;        ///< 1 if the atom is in the group that is asked about
   double mass;
   double body_mass;    ///< 0 unless this atom is the owner and masses have to add up to it

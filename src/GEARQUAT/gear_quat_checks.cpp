@@ -20,27 +20,6 @@
 
 using namespace LAMMPS_NS;
 
-/// Orientations, inertia and torques of the atoms themselves would silently be left out.
-static void refuse_finite_size(LAMMPS *lmp, const GearQuatBodies &bodies)
-{
-  const Atom *atom = lmp->atom;
-  tagint sized = 0, any;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!bodies.in_body(i)) continue;
-    const bool point = !(atom->radius && atom->radius[i] > 0.0) &&
-        !(atom->ellipsoid && atom->ellipsoid[i] >= 0) && !(atom->line && atom->line[i] >= 0) &&
-        !(atom->tri && atom->tri[i] >= 0) && !(atom->body && atom->body[i] >= 0) &&
-        !(atom->mu && atom->mu[i][3] > 0.0);
-    if (!point) sized = atom->tag[i];
-  }
-  MPI_Allreduce(&sized, &any, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
-  if (any)
-    lmp->error->all(FLERR,
-                    "Fix gear/quat: atom {} has a size, an orientation or a dipole of its own; the "
-                    "atoms of a body have to be points",
-                    any);
-}
-
 /// One force evaluation a step: all levels of r-RESPA have to have the same step.
 static void refuse_respa_with_steps(LAMMPS *lmp)
 {
@@ -93,7 +72,7 @@ void LAMMPS_NS::refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuat
                     lmp->update->dt);
   if (lmp->domain->box_change_size || lmp->domain->box_change_shape)
     lmp->error->all(FLERR, "Fix gear/quat requires a box that does not change size or shape");
-  refuse_finite_size(lmp, bodies);
+  bodies.refuse_atoms();
   refuse_respa_with_steps(lmp);
   refuse_other_integrators(lmp, fix, bodies);
 }

@@ -15,8 +15,8 @@ class GearQuatBodies;
 class LAMMPS;
 
 /// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, a box
-/// that changes, r-RESPA with different steps, atoms that are not points, atoms that another fix
-/// moves too.
+/// that changes, r-RESPA with different steps, atoms of a kind that cannot be followed, atoms
+/// that another fix moves too.
 void refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatBodies &bodies);
 
 }    // namespace LAMMPS_NS

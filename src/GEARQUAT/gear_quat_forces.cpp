@@ -96,11 +96,14 @@ void GearQuatForces::look_at_time()
     update->ntimestep += shift;
     for (auto *fix : post_force) fix->post_force(0);
     update->ntimestep -= shift;
-    const double *forces = atom->nlocal ? atom->f[0] : nullptr;
+    const size_t n = 3 * (size_t) atom->nlocal;
+    std::vector<double> then;
+    if (n) then.assign(atom->f[0], atom->f[0] + n);
+    if (n && atom->torque_flag) then.insert(then.end(), atom->torque[0], atom->torque[0] + n);
     if (shift == 0)
-      now.assign(forces, forces + 3 * (size_t) atom->nlocal);
+      now = then;
     else {
-      int differs = !std::equal(now.begin(), now.end(), forces);
+      int differs = now != then;
       int any = 0;
       MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, world);
       if (any) why = "an external force depends on time";

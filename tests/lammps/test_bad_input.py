@@ -215,24 +215,3 @@ comm_modify cutoff 12
     assert result.returncode == 0, result.output
     bodies = 1 if words == "single" else 2
     assert f"{bodies} rigid bodies with 6 atoms" in result.stdout
-
-
-FINITE_SIZE = "atom 5 has a size, an orientation or a dipole of its own"
-NO_MOLECULES = "set atom 1*3 mol 1\nset atom 4*6 mol 2"
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_spheres(lmp, ranks):
-    deck = two_molecules("group 2 left right", before=GROUPS + "set atom 5 diameter 0.5")
-    deck = deck.replace("atom_style molecular", "atom_style sphere").replace(
-        NO_MOLECULES, "set group all diameter 0.0"
-    )
-    assert_refused(
-        lmp.run(deck.replace("mass 1 1.0", "set group all mass 1.0"), ranks=ranks), FINITE_SIZE
-    )
-
-
-def test_dipoles(lmp_wheel):
-    deck = two_molecules("group 2 left right", before=GROUPS + "set atom 5 dipole 1.0 0.0 0.0")
-    deck = deck.replace("atom_style molecular", "atom_style dipole").replace(NO_MOLECULES, "")
-    assert_refused(lmp_wheel.run(deck), FINITE_SIZE)

@@ -1,0 +1,382 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_extended.h"
+
+#include "gear_quat_shapes.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#if __has_include("atom_vec_ellipsoid.h") && \
+                  __has_include("atom_vec_line.h") && __has_include("atom_vec_tri.h")
+#define GEAR_QUAT_HAS_ATOM_STYLES 1
+#include "atom_vec_ellipsoid.h"
+#include "atom_vec_line.h"
+#include "atom_vec_tri.h"
+#else
+#define GEAR_QUAT_HAS_ATOM_STYLES 0
+#endif
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+static const char *const SHAPES[] = {"point", "sphere", "ellipsoid", "line", "triangle", "body"};
+
+// an atom counts as changed by the user when it is off by more than rounding, relative
+
+static constexpr double SAME = 1.0e-11;
+
+GearQuatExtended::GearQuatExtended(LAMMPS *lmp, const Scheme &scheme) :
+    Pointers(lmp), scheme(scheme)
+{
+  find_atom_styles();
+}
+
+/* ----------------------------------------------------------------------
+   what an atom is: lines and triangles have a radius too, so spheres are asked for last
+------------------------------------------------------------------------- */
+
+int GearQuatExtended::shape_of(int i) const
+{
+  if (atom->ellipsoid && atom->ellipsoid[i] >= 0) return ELLIPSOID;
+  if (atom->line && atom->line[i] >= 0) return LINE;
+  if (atom->tri && atom->tri[i] >= 0) return TRIANGLE;
+  if (atom->body && atom->body[i] >= 0) return BODY;
+  if (atom->radius && atom->radius[i] > 0.0) return SPHERE;
+  return POINT;
+}
+
+int GearQuatExtended::has_dipole(int i) const
+{
+  return atom->mu && atom->mu[i][3] > 0.0;
+}
+
+GearQuatExtended::Own GearQuatExtended::own(int i, double mass) const
+{
+  Own mine = {shape_of(i), has_dipole(i), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  if (mine.shape == SPHERE)
+    sphere_moments(mass, atom->radius[i], mine.moments);
+  else if (mine.shape != POINT)
+    read_bonus(i, mass, mine);
+  return mine;
+}
+
+/// Angular momentum of the atom itself as the atom style has it.
+void GearQuatExtended::rate(int i, const Own &mine, double *momentum_space) const
+{
+  std::fill_n(momentum_space, 3, 0.0);
+  if (mine.shape == ELLIPSOID || mine.shape == TRIANGLE) {
+    if (atom->angmom) std::copy_n(atom->angmom[i], 3, momentum_space);
+  } else if (mine.shape != POINT && atom->omega) {
+    double a[9];
+    rotation_matrix(mine.q, 1.0, a);
+    own_angular_momentum(mine.moments, a, atom->omega[i], momentum_space);
+  }
+  if (domain->dimension == 2) momentum_space[0] = momentum_space[1] = 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   orientations in LAMMPS' atom styles; its quaternions have the scalar first
+------------------------------------------------------------------------- */
+
+#if GEAR_QUAT_HAS_ATOM_STYLES
+
+static void from_lammps(const double *wxyz, double *q)
+{
+  for (int k = 0; k < 4; ++k) q[k] = wxyz[(k + 1) % 4];
+  project_norm(q);
+}
+
+static void to_lammps(const double *q, double *wxyz)
+{
+  for (int k = 0; k < 4; ++k) wxyz[(k + 1) % 4] = q[k];
+}
+
+void GearQuatExtended::find_atom_styles()
+{
+  ellipsoids = dynamic_cast<AtomVecEllipsoid *>(atom->style_match("ellipsoid"));
+  lines = dynamic_cast<AtomVecLine *>(atom->style_match("line"));
+  triangles = dynamic_cast<AtomVecTri *>(atom->style_match("tri"));
+}
+
+void GearQuatExtended::read_bonus(int i, double mass, Own &mine) const
+{
+  if (mine.shape == ELLIPSOID) {
+    const auto &bonus = ellipsoids->bonus[atom->ellipsoid[i]];
+    ellipsoid_moments(mass, bonus.shape, mine.moments);
+    from_lammps(bonus.quat, mine.q);
+  } else if (mine.shape == LINE) {
+    const auto &bonus = lines->bonus[atom->line[i]];
+    line_moments(mass, bonus.length, mine.moments);
+    quaternion_about_z(bonus.theta, mine.q);
+  } else if (mine.shape == TRIANGLE) {
+    const auto &bonus = triangles->bonus[atom->tri[i]];
+    triangle_moments(mass, bonus.c1, bonus.c2, bonus.c3, mine.moments);
+    from_lammps(bonus.quat, mine.q);
+  }
+}
+
+void GearQuatExtended::write_bonus(int i, int shape, const double *q) const
+{
+  if (shape == ELLIPSOID)
+    to_lammps(q, ellipsoids->bonus[atom->ellipsoid[i]].quat);
+  else if (shape == LINE)
+    lines->bonus[atom->line[i]].theta = angle_about_z(q);
+  else if (shape == TRIANGLE)
+    to_lammps(q, triangles->bonus[atom->tri[i]].quat);
+}
+
+#else
+
+void GearQuatExtended::find_atom_styles() {}
+void GearQuatExtended::read_bonus(int, double, Own &) const {}
+void GearQuatExtended::write_bonus(int, int, const double *) const {}
+
+#endif
+
+/// LAMMPS after 2025 has ellipsoids with exponents, whose moments are not those of an ellipsoid.
+template <class A>
+static auto has_superellipsoids(const A *atom, int) -> decltype(atom->superellipsoid_flag)
+{
+  return atom->superellipsoid_flag;
+}
+template <class A> static int has_superellipsoids(const A *, long)
+{
+  return 0;
+}
+
+void GearQuatExtended::refuse(const std::vector<int> &atoms) const
+{
+  const bool superellipsoids = has_superellipsoids(atom, 0) != 0;
+  tagint here[3] = {0, 0, 0}, found[3];    // of style body, superellipsoids, without header
+  int shape = POINT, what;
+  for (const int i : atoms) {
+    const int one = shape_of(i);
+    if (one == BODY)
+      here[0] = atom->tag[i];
+    else if (one == ELLIPSOID && superellipsoids)
+      here[1] = atom->tag[i];
+    else if (one != POINT && one != SPHERE && !GEAR_QUAT_HAS_ATOM_STYLES) {
+      here[2] = atom->tag[i];
+      shape = one;
+    }
+  }
+  MPI_Allreduce(here, found, 3, MPI_LMP_TAGINT, MPI_MAX, world);
+  MPI_Allreduce(&shape, &what, 1, MPI_INT, MPI_MAX, world);
+  if (found[0])
+    error->all(FLERR,
+               "Fix gear/quat: atom {} is a particle of atom style body; the atoms of a rigid body "
+               "may be points, spheres, ellipsoids, lines, triangles and dipoles",
+               found[0]);
+  if (found[1])
+    error->all(FLERR,
+               "Fix gear/quat: atom {} is a superellipsoid; the atoms of a rigid body may be "
+               "points, spheres, ellipsoids, lines, triangles and dipoles",
+               found[1]);
+  if (found[2])
+    error->all(FLERR,
+               "Fix gear/quat: atom {} is a {}, and the LAMMPS that this plugin was compiled for "
+               "lacks the headers to turn it; compile GEARQUAT for the source tree of your LAMMPS: "
+               "cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
+               found[2], SHAPES[what]);
+}
+
+/* ----------------------------------------------------------------------
+   bodies are made
+------------------------------------------------------------------------- */
+
+bool GearQuatExtended::any(const std::vector<int> &atoms) const
+{
+  int here = 0, all;
+  for (const int i : atoms)
+    if (shape_of(i) != POINT || has_dipole(i)) here = 1;
+  MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MAX, world);
+  return all;
+}
+
+void GearQuatExtended::reset(bool keep, int nmax)
+{
+  kept = keep;
+  sites.clear();
+  records.clear();
+  grow(nmax);
+}
+
+void GearQuatExtended::own_momenta(int i, double mass, double *inertia_space,
+                                   double *angular_momentum_space) const
+{
+  const Own mine = own(i, mass);
+  double a[9];
+  rotation_matrix(mine.q, 1.0, a);
+  std::fill_n(inertia_space, 9, 0.0);
+  add_tensor(mine.moments, a, inertia_space);
+  rate(i, mine, angular_momentum_space);
+}
+
+void GearQuatExtended::attach(int i, double mass, const double *q_body)
+{
+  const Own mine = own(i, mass);
+  Record &record = records[i];
+  record = Record();
+  record.shape = mine.shape;
+  record.dipole = mine.dipole;
+  std::copy_n(mine.moments, 3, record.moments);
+  relative_orientation(q_body, mine.q, record.relative);
+  if (mine.dipole) {
+    double a[9];
+    rotation_matrix(q_body, dot4(q_body, q_body), a);
+    to_body(a, atom->mu[i], record.mu_body);
+  }
+}
+
+int GearQuatExtended::freedoms(int i) const
+{
+  if (!kept || records[i].shape == POINT) return 0;
+  return domain->dimension == 2 ? 1 : 3;
+}
+
+/* ----------------------------------------------------------------------
+   bodies move
+------------------------------------------------------------------------- */
+
+void GearQuatExtended::list(int i, int body)
+{
+  if (records[i].shape != POINT || records[i].dipole) sites.push_back({i, body});
+}
+
+GearQuatExtended::Pose GearQuatExtended::pose(const Record &record, int i,
+                                              const BodyState &state) const
+{
+  Pose made;
+  double a[9], own[9];
+  rotation_matrix(state.q, scheme.norm2(state.q), a);
+  to_space(a, state.omega_body, made.omega);
+  site_orientation(state.q, record.relative, made.q);
+  rotation_matrix(made.q, 1.0, own);
+  own_angular_momentum(record.moments, own, made.omega, made.momentum);
+  if (domain->dimension == 2) made.momentum[0] = made.momentum[1] = 0.0;
+  std::fill_n(made.mu, 3, 0.0);
+  if (record.dipole) {    // of the length that the atom style states
+    to_space(a, record.mu_body, made.mu);
+    const double factor = atom->mu[i][3] / std::sqrt(dot3(made.mu, made.mu));
+    for (double &component : made.mu) component *= factor;
+  }
+  return made;
+}
+
+void GearQuatExtended::place(const std::vector<BodyState> &states, bool orientations,
+                             bool rates) const
+{
+  for (const Site &site : sites) {
+    const int i = site.atom;
+    const Record &record = records[i];
+    const Pose made = pose(record, i, states[site.body]);
+    const bool by_momentum = record.shape == ELLIPSOID || record.shape == TRIANGLE;
+    if (orientations) {
+      if (record.shape != POINT && record.shape != SPHERE) write_bonus(i, record.shape, made.q);
+      if (record.dipole) std::copy_n(made.mu, 3, atom->mu[i]);
+    }
+    if (rates && by_momentum && atom->angmom) std::copy_n(made.momentum, 3, atom->angmom[i]);
+    if (rates && !by_momentum && record.shape != POINT && atom->omega)
+      std::copy_n(made.omega, 3, atom->omega[i]);
+  }
+}
+
+void GearQuatExtended::add_torques(double **torque, std::vector<Load> &loads) const
+{
+  if (!torque) return;
+  const int first = domain->dimension == 2 ? 2 : 0;
+  for (const Site &site : sites)
+    for (int k = first; k < 3; ++k) loads[site.body].torque_space[k] += torque[site.atom][k];
+}
+
+/// As far as rounding allows: vectors relative to their length.
+static bool same(const double *a, const double *b, int n)
+{
+  double largest = 0.0, difference = 0.0;
+  for (int k = 0; k < n; ++k) {
+    largest = std::max({largest, std::fabs(a[k]), std::fabs(b[k])});
+    difference = std::max(difference, std::fabs(a[k] - b[k]));
+  }
+  return difference <= SAME * largest;
+}
+
+bool GearQuatExtended::match(int i, double mass, const BodyState &state) const
+{
+  const Own mine = own(i, mass);
+  const Record record = kept ? records[i] : Record();
+  if (mine.shape != record.shape || mine.dipole != record.dipole) return false;
+  if (mine.shape == POINT && !mine.dipole) return true;
+
+  const Pose made = pose(record, i, state);
+  double momentum[3];
+  rate(i, mine, momentum);
+  const double opposite[4] = {-made.q[0], -made.q[1], -made.q[2], -made.q[3]};
+  return same(mine.moments, record.moments, 3) &&
+      (mine.shape == POINT || mine.shape == SPHERE || same(mine.q, made.q, 4) ||
+       same(mine.q, opposite, 4)) &&
+      (!mine.dipole || same(atom->mu[i], made.mu, 3)) && same(momentum, made.momentum, 3);
+}
+
+/* ----------------------------------------------------------------------
+   per-atom records
+------------------------------------------------------------------------- */
+
+void GearQuatExtended::grow(int nmax)
+{
+  if (kept) records.resize(nmax);
+}
+
+void GearQuatExtended::set(int i)
+{
+  if (kept) records[i] = Record();
+}
+
+void GearQuatExtended::copy(int from, int to)
+{
+  if (kept) records[to] = records[from];
+}
+
+int GearQuatExtended::packed_size(int i) const
+{
+  if (!kept) return 0;
+  return records[i].shape == POINT && !records[i].dipole ? 1 : RECORD_SIZE;
+}
+
+int GearQuatExtended::pack(int i, double *buf) const
+{
+  if (!kept) return 0;
+  const Record &record = records[i];
+  buf[0] = 2 * record.shape + record.dipole;
+  if (buf[0] == 0.0) return 1;
+  std::copy_n(record.moments, 3, buf + 1);
+  std::copy_n(record.relative, 4, buf + 4);
+  std::copy_n(record.mu_body, 3, buf + 8);
+  return RECORD_SIZE;
+}
+
+int GearQuatExtended::unpack(int i, const double *buf)
+{
+  if (!kept) return 0;
+  Record &record = records[i];
+  record = Record();
+  if (buf[0] == 0.0) return 1;
+  record.shape = (int) buf[0] / 2;
+  record.dipole = (int) buf[0] % 2;
+  std::copy_n(buf + 1, 3, record.moments);
+  std::copy_n(buf + 4, 4, record.relative);
+  std::copy_n(buf + 8, 3, record.mu_body);
+  return RECORD_SIZE;
+}
+
+double GearQuatExtended::memory_usage() const
+{
+  return records.capacity() * sizeof(Record) + sites.capacity() * sizeof(Site);
+}

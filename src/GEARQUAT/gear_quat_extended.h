@@ -1,0 +1,117 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Atoms of bodies that are more than points: spheres, ellipsoids, lines, triangles, and dipoles.
+
+   When bodies are made, own_momenta() gives what an atom adds to inertia and angular momentum, and
+   attach() keeps how it sits in its body.  The record travels with the atom.  While bodies move,
+   the store lists such atoms after every exchange, and calls place() wherever it places sites and
+   add_torques() wherever it gathers forces.  Without such atoms there are no records, no list, and
+   none of these calls.
+
+   Ellipsoids, lines and triangles keep their orientation in LAMMPS' atom styles, whose headers the
+   LAMMPS of the Python package does not bring: refuse() says so. */
+
+#ifndef LMP_GEAR_QUAT_EXTENDED_H
+#define LMP_GEAR_QUAT_EXTENDED_H
+
+#include "gear_quat_integrator.h"
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class GearQuatExtended : protected Pointers {
+ public:
+  GearQuatExtended(LAMMPS *lmp, const GearQuat::Scheme &scheme);
+
+  /// Ends the run on all ranks, naming an atom, if one of `atoms` (local indices) cannot be moved.
+  void refuse(const std::vector<int> &atoms) const;
+
+  // bodies are made; everything known before is dropped
+
+  /// True if one of the atoms, on any rank, is more than a point.  Collective.
+  bool any(const std::vector<int> &atoms) const;
+  /// Drop all records; keep: from now on there are records, one for each of nmax atoms.
+  void reset(bool keep, int nmax);
+  bool has_records() const { return kept; }
+  /// What the atom itself adds to its body's inertia tensor (row-major) and angular momentum.
+  void own_momenta(int atom, double mass, double *inertia_space,
+                   double *angular_momentum_space) const;
+  /// Keep how the atom sits in its body, whose orientation is q_body.
+  void attach(int atom, double mass, const double *q_body);
+  /// Rotational degrees of freedom that LAMMPS counts for the atom itself.
+  int freedoms(int atom) const;
+
+  // bodies move
+
+  struct Site {
+    int atom, body;
+  };
+  std::vector<Site>
+      sites;    ///< owned atoms that are more than points; stays until the next exchange
+
+  /// Lists the atom if it is more than a point.
+  void list(int atom, int body);
+  /// Orientations and dipoles, and rates (angular velocities or momenta) if they are wanted.
+  void place(const std::vector<GearQuat::BodyState> &states, bool orientations, bool rates) const;
+  void add_torques(double **torque, std::vector<GearQuat::Load> &loads) const;
+  /// True if sizes, orientations, dipoles and rates of these atoms are those of their bodies.
+  bool match(int atom, double mass, const GearQuat::BodyState &state) const;
+
+  // per-atom records
+
+  void grow(int nmax);
+  void set(int atom);
+  void copy(int from, int to);
+  int packed_size(int atom) const;
+  int pack(int atom, double *buf) const;
+  int unpack(int atom, const double *buf);
+  static constexpr int RECORD_SIZE = 11;    ///< packed
+  double memory_usage() const;
+
+ private:
+  enum Shape { POINT, SPHERE, ELLIPSOID, LINE, TRIANGLE, BODY };
+
+  struct Record {    ///< an atom in its body
+    int shape;
+    int dipole;            ///< 1 if it has one
+    double moments[3];     ///< of its own, in its own frame
+    double relative[4];    ///< quaternion of its own frame in the body frame
+    double mu_body[3];
+  };
+
+  struct Own {    ///< an atom as the atom style has it
+    int shape, dipole;
+    double moments[3];
+    double q[4];
+  };
+
+  struct Pose {    ///< an atom as its body has it
+    double q[4], mu[3], omega[3], momentum[3];
+  };
+
+  GearQuat::Scheme scheme;
+  bool kept = false;
+  std::vector<Record> records;
+
+  class AtomVecEllipsoid *ellipsoids = nullptr;    ///< what the atom style is made of
+  class AtomVecLine *lines = nullptr;
+  class AtomVecTri *triangles = nullptr;
+
+  void find_atom_styles();
+  int shape_of(int atom) const;
+  int has_dipole(int atom) const;
+  Own own(int atom, double mass) const;
+  void rate(int atom, const Own &mine, double *momentum_space) const;
+  Pose pose(const Record &record, int atom, const GearQuat::BodyState &state) const;
+  void read_bonus(int atom, double mass, Own &mine) const;
+  void write_bonus(int atom, int shape, const double *q) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

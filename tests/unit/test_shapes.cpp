@@ -1,0 +1,153 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* gear_quat_shapes.h: own inertia of sites with a size, and orientations that follow a body. */
+
+#include "checks.h"
+#include "gear_quat_shapes.h"
+
+using namespace GearQuat;
+using Check::largest_difference;
+using Check::quaternion_distance;
+using std::vector;
+
+namespace {
+
+/// Moments of unit mass, as a sum over a fine grid of points inside the unit ball, scaled.
+void moments_by_sum(const double axes[3], double moments[3])
+{
+  const int n = 40;
+  double second[3] = {0, 0, 0};
+  int count = 0;
+  for (int i = -n; i <= n; ++i)
+    for (int j = -n; j <= n; ++j)
+      for (int k = -n; k <= n; ++k) {
+        const double p[3] = {(double) i / n, (double) j / n, (double) k / n};
+        if (dot3(p, p) > 1.0) continue;
+        ++count;
+        for (int l = 0; l < 3; ++l) second[l] += p[l] * p[l];
+      }
+  for (int l = 0; l < 3; ++l) second[l] *= axes[l] * axes[l] / count;
+  for (int l = 0; l < 3; ++l) moments[l] = second[(l + 1) % 3] + second[(l + 2) % 3];
+}
+
+}    // namespace
+
+TEST(Moments, EllipsoidAndSphereAreThoseOfASum)
+{
+  const double axes[3] = {0.5, 1.0, 2.0}, ball[3] = {0.7, 0.7, 0.7};
+  double sum[3], made[3];
+  moments_by_sum(axes, sum);
+  ellipsoid_moments(1.0, axes, made);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(made[k], sum[k], 2e-3 * sum[k]);
+    EXPECT_GT(std::fabs(1.01 * made[k] - sum[k]), 2e-3 * sum[k]);
+  }
+  double sphere[3];
+  sphere_moments(3.0, 0.7, sphere);
+  ellipsoid_moments(3.0, ball, made);
+  EXPECT_LT(largest_difference(sphere, made, 3), 1e-15);
+}
+
+TEST(Moments, LineIsThatOfASum)
+{
+  const int n = 1000;
+  double sum = 0.0, made[3];
+  for (int i = 0; i < n; ++i) sum += std::pow(1.6 * ((i + 0.5) / n - 0.5), 2) * 2.5 / n;
+  line_moments(2.5, 1.6, made);
+  EXPECT_EQ(made[0], 0.0);
+  EXPECT_NEAR(made[1], sum, 1e-5 * sum);
+  EXPECT_GT(std::fabs(1.01 * made[2] - sum), 1e-5 * sum);
+}
+
+TEST(Moments, TriangleIsThatOfASum)
+{
+  const double c1[3] = {-1.0, -0.5, 0.0}, c2[3] = {1.0, -0.5, 0.0}, c3[3] = {0.0, 1.0, 0.0};
+  const int n = 200;
+  double second[3] = {0, 0, 0}, made[3];
+  int count = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n - i; ++j) {    // centres of equal pieces, the even and the odd ones
+      for (int odd = 0; odd < (j < n - i - 1 ? 2 : 1); ++odd) {
+        const double u = (i + (1 + odd) / 3.0) / n, v = (j + (1 + odd) / 3.0) / n;
+        for (int k = 0; k < 3; ++k)
+          second[k] += std::pow(c1[k] + u * (c2[k] - c1[k]) + v * (c3[k] - c1[k]), 2);
+        ++count;
+      }
+    }
+  triangle_moments(3.0, c1, c2, c3, made);
+  for (int k = 0; k < 3; ++k) {
+    const double sum = 3.0 * (second[(k + 1) % 3] + second[(k + 2) % 3]) / count;
+    EXPECT_NEAR(made[k], sum, 1e-3 * sum);
+    EXPECT_GT(std::fabs(1.01 * made[k] - sum), 1e-3 * sum);
+  }
+}
+
+TEST(Orientations, FollowTheBodyAndComeBack)
+{
+  Check::Numbers numbers(5);
+  const vector<double> body = numbers.unit_quaternion(), own = numbers.unit_quaternion();
+  double relative[4], again[4], a_body[9], a_own[9], a_relative[9];
+  relative_orientation(body.data(), own.data(), relative);
+  site_orientation(body.data(), relative, again);
+  EXPECT_LT(quaternion_distance(own.data(), again), 1e-15);
+
+  // own -> body -> space, by matrices
+  const vector<double> e = numbers.list(3);
+  double in_body[3], in_space[3], expected[3];
+  rotation_matrix(body.data(), 1.0, a_body);
+  rotation_matrix(own.data(), 1.0, a_own);
+  rotation_matrix(relative, 1.0, a_relative);
+  to_space(a_relative, e.data(), in_body);
+  to_space(a_body, in_body, in_space);
+  to_space(a_own, e.data(), expected);
+  EXPECT_LT(largest_difference(in_space, expected, 3), 1e-15);
+
+  // of unit length for a body whose quaternion is not, and not for any relative orientation
+  vector<double> longer = body;
+  for (double &x : longer) x *= 1.01;
+  site_orientation(longer.data(), relative, again);
+  EXPECT_LT(quaternion_distance(own.data(), again), 1e-15);
+  site_orientation(body.data(), own.data(), again);
+  EXPECT_GT(quaternion_distance(own.data(), again), 1e-2);
+}
+
+TEST(Orientations, TensorAndAngularMomentumAgree)
+{
+  Check::Numbers numbers(6);
+  const vector<double> q = numbers.unit_quaternion(), omega = numbers.list(3);
+  const double moments[3] = {3.0, 2.0, 0.5};
+  double a[9], tensor[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, momentum[3], expected[3];
+  rotation_matrix(q.data(), 1.0, a);
+  add_tensor(moments, a, tensor);
+  own_angular_momentum(moments, a, omega.data(), momentum);
+  for (int k = 0; k < 3; ++k) expected[k] = dot3(tensor + 3 * k, omega.data());
+  EXPECT_LT(largest_difference(momentum, expected, 3), 1e-14);
+  EXPECT_NEAR(tensor[0] + tensor[4] + tensor[8], 5.5, 1e-14);
+  tensor[1] *= 1.01;
+  expected[0] = dot3(tensor, omega.data());
+  EXPECT_GT(largest_difference(momentum, expected, 3), 1e-6);
+}
+
+TEST(Orientations, AnglesAboutZ)
+{
+  const double pi = 3.14159265358979323846;
+  for (const double angle : {-3.1, -1.0, 0.0, 0.3, 2.0, 3.1}) {
+    double q[4], minus[4];
+    quaternion_about_z(angle, q);
+    for (int k = 0; k < 4; ++k) minus[k] = -q[k];
+    EXPECT_NEAR(angle_about_z(q), angle, 1e-15 * 4);
+    EXPECT_NEAR(angle_about_z(minus), angle, 1e-15 * 4);
+    quaternion_about_z(angle + 2 * pi, q);
+    EXPECT_NEAR(angle_about_z(q), angle, 1e-14);
+  }
+  double x[3], a[9], q[4];
+  const double e[3] = {1, 0, 0};
+  quaternion_about_z(0.3, q);
+  rotation_matrix(q, 1.0, a);
+  to_space(a, e, x);
+  EXPECT_NEAR(x[0], std::cos(0.3), 1e-15);
+  EXPECT_NEAR(x[1], std::sin(0.3), 1e-15);
+}
