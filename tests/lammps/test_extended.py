@@ -62,11 +62,11 @@ BODIES = {
 }
 
 
-def of(bodies, lmp, name):
-    """The wheel has no headers for anything but spheres and dipoles."""
-    if lmp.name == "wheel" and name not in ("spheres", "dipoles"):
-        pytest.skip("refused in the plugin of the wheel, see test_the_wheel_refuses_by_name")
-    return bodies[name]
+def on_both(word, names):
+    """Mark a test of (lmp, word): the wheel has no headers for anything but spheres and dipoles."""
+    pairs = [("tree", name) for name in names]
+    pairs += [("wheel", name) for name in names if name in ("spheres", "dipoles")]
+    return pytest.mark.parametrize(f"lmp, {word}", pairs, indirect=["lmp"])
 
 
 def run(lmp, text, ranks=1, **arguments):
@@ -88,10 +88,10 @@ TABLE = "fix out all ave/time {every} 1 {every} f_move[*] mode vector file table
 # --- inertia ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", BODIES)
+@on_both("name", BODIES)
 def test_inertia_and_angular_momentum_include_the_atoms_own(lmp, name):
     """A body that moves rigidly has its atoms' angular velocity only with the right tensor."""
-    style, dimension, omega, atoms = of(BODIES, lmp, name)
+    style, dimension, omega, atoms = BODIES[name]
     made, masses = moving(style, atoms, omega)
     text = deck(style, made, masses, dimension=dimension, run="run 0", after=TABLE.format(every=1))
     result = run(lmp, text)
@@ -132,10 +132,10 @@ fix pull handle spring/self 3.0
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
-@pytest.mark.parametrize("name", BODIES)
+@on_both("name", BODIES)
 def test_the_motion_is_that_of_equivalent_points(lmp, name, formulation):
     """A spring pulls at the point of the body, so its motion depends on the whole tensor."""
-    style, dimension, omega, atoms = of(BODIES, lmp, name)
+    style, dimension, omega, atoms = BODIES[name]
 
     def move(sites, dump):
         made, masses = moving(style, sites, omega, (0.3, -0.2, 0.0))
@@ -160,9 +160,9 @@ def points_of(atoms):
     return [point for atom in atoms for point in equivalent_points(atom)]
 
 
-@pytest.mark.parametrize("name", BODIES)
+@on_both("name", BODIES)
 def test_orientations_and_rates_follow_the_body(lmp, name):
-    style, dimension, omega, atoms = of(BODIES, lmp, name)
+    style, dimension, omega, atoms = BODIES[name]
     made, masses = moving(style, atoms, omega)
     flat = "fix flat all enforce2d" if dimension == 2 else ""
     after = SPRING + flat + "\n" + TABLE.format(every=1)
@@ -351,10 +351,9 @@ PERIODIC = dict(boundary="p p p", box="-2.6 2.6 -2.6 2.6 -2.6 2.6")
 DRIFT = "\nvelocity all set 0.6 0.4 0.5 sum yes\ncomm_modify vel yes"
 
 
-@pytest.mark.parametrize("kind", ["dipoles", "ellipsoids"])
+@on_both("kind", ["dipoles", "ellipsoids"])
 def test_ranks(lmp, kind):
     """The same motion on 1, 2 and 4 ranks, bodies migrating, to rounding."""
-    of({kind: 0}, lmp, kind)
     ends = {}
     for ranks in (1, 2, 4) if lmp.name == "tree" else (1, 2):
         text = clustered(
@@ -376,9 +375,8 @@ def test_ranks(lmp, kind):
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("kind", ["dipoles", "ellipsoids"])
+@on_both("kind", ["dipoles", "ellipsoids"])
 def test_restart_is_exact(lmp, kind, ranks, formulation):
-    of({kind: 0}, lmp, kind)
     fix = f"custom v_pair formulation {formulation}"
     whole = clustered(kind, fix=fix, steps=40, run="run 20\nwrite_restart half\nrun 20")
     run(lmp, whole, ranks)

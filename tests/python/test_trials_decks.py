@@ -370,7 +370,7 @@ def test_samples_have_to_fit_the_step(make_deck):
     assert any("second step" in note for note in fitted.notes)
 
 
-# --- LAMMPS' own examples, where a source tree is at hand ----------------------------------------------
+# --- LAMMPS' own examples ----------------------------------------------
 def lammps_examples():
     """The folder examples of a LAMMPS source tree, or None."""
     cache = Path(os.environ.get("GEARQUAT_CACHE", Path.home() / ".cache" / "gearquat"))
@@ -378,23 +378,24 @@ def lammps_examples():
     return next((tree / "examples" for tree in trees if (tree / "examples/rigid").is_dir()), None)
 
 
-EXAMPLES = lammps_examples()
-needs_examples = pytest.mark.skipif(EXAMPLES is None, reason="no source tree of LAMMPS at hand")
+@pytest.fixture
+def rigid_examples():
+    found = lammps_examples()
+    assert found, "no source tree of LAMMPS: run `tests/run build`, or set LAMMPS_SOURCE_DIR"
+    return found
 
 
-@needs_examples
 @pytest.mark.parametrize(
     "name", ["", ".small", ".nve", ".early", ".atomfile", ".property", ".infile", ".small.infile"]
 )
-def test_examples_of_fix_rigid_run(name):
-    with Deck(EXAMPLES / "rigid" / f"in.rigid{name}") as deck:
+def test_examples_of_fix_rigid_run(rigid_examples, name):
+    with Deck(rigid_examples / "rigid" / f"in.rigid{name}") as deck:
         own = deck.run_to(None, 0.01, 1000)
         gear = deck.run_to("formulation second values 8", 0.01, 1000)
         assert deck.scene.bodies.max() == 8
         assert 0 < np.abs(own.centre - gear.centre).max() < 3e-4
 
 
-@needs_examples
 @pytest.mark.parametrize(
     "name, options, said",
     [
@@ -406,15 +407,14 @@ def test_examples_of_fix_rigid_run(name):
         ("deposit/in.deposit.molecule.rigid-nve-small", {"without": ["2", "4"]}, "no atoms"),
     ],
 )
-def test_examples_that_cannot_be_measured_say_why(name, options, said):
-    with pytest.raises(DeckError, match=f"(?s){said}"), Deck(EXAMPLES / name, **options):
+def test_examples_that_cannot_be_measured_say_why(rigid_examples, name, options, said):
+    with pytest.raises(DeckError, match=f"(?s){said}"), Deck(rigid_examples / name, **options):
         pass
 
 
-@needs_examples
-def test_cost_of_an_example_of_lammps():
+def test_cost_of_an_example_of_lammps(rigid_examples):
     """Each answer is less than fix rigid takes, as far as the cut-off of its potential allows."""
-    with Deck(EXAMPLES / "rigid" / "in.rigid") as deck:
+    with Deck(rigid_examples / "rigid" / "in.rigid") as deck:
         costs = cost.measure(deck, errors=[1e-3], time=0.05, budget=20.0, timings=2)
     _, own, best = costs.rows[0]
     assert own.evaluations > 5 * best.evaluations
