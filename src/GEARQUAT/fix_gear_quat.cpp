@@ -22,15 +22,14 @@
 #include "gear_quat_checks.h"
 #include "gear_quat_extract.h"
 #include "gear_quat_infile_out.h"
+#include "gear_quat_sums.h"
 #include "gear_quat_table.h"
 #include "gear_quat_template.h"
 
 #include "atom.h"
 #include "citeme.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "group.h"
 #include "library.h"
 #include "memory.h"
@@ -41,7 +40,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -67,46 +65,28 @@ static const char cite_gear_quat[] =
     " pages = {306--314}\n"
     "}\n\n";
 
-// elements of the global vector, as the manual lists them
-
-enum {
-  KE_TRANSLATION,
-  KE_ROTATION,
-  NORM,
-  RADIAL,
-  MAX_POSITION,
-  RMS_POSITION,
-  MAX_ANGLE,
-  RMS_ANGLE
-};
-static constexpr int VECTOR_SIZE = RMS_ANGLE + 1;
-
 // where other fixes may read the velocities of predicted sites
 
 static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR |
     PRE_FORCE | PRE_REVERSE | POST_FORCE | POST_INTEGRATE_RESPA | PRE_FORCE_RESPA |
     POST_FORCE_RESPA;
 
-// |q|^2 of four squares carries this rounding itself; less is reported as zero
-
-static constexpr double NORM_ROUNDING = 1.0e-15;
-
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), extracts(nullptr),
-    started(false), met_atoms(false), h(0.0), integrator(nullptr), velocities_read(true),
-    f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
+    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), sums(nullptr),
+    extracts(nullptr), started(false), met_atoms(false), h(0.0), integrator(nullptr),
+    velocities_read(true), f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
   time_integrate = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = VECTOR_SIZE;
+  size_vector = GearQuatSums::ELEMENTS;
   global_freq = 1;
   extscalar = 1;
   extvector = -1;
-  extlist = new int[VECTOR_SIZE]{1, 1, 0, 0, 0, 0, 0, 0};
+  extlist = new int[GearQuatSums::ELEMENTS]{1, 1, 0, 0, 0, 0, 0, 0};
   array_flag = local_flag = 1;
   extarray = 0;
   local_freq = 1;
@@ -125,6 +105,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   args = new GearQuatArguments(lmp, narg, arg);
   bodies = new GearQuatBodies(lmp, this, args->scheme);
   table = new GearQuatTable(lmp, *bodies);
+  sums = new GearQuatSums(lmp, *bodies);
   find_template(lmp, args->mol);    // it has to exist
   extracts = new GearQuatExtract(lmp, *bodies, args->mol);
   atom->add_callback(Atom::GROW);
@@ -155,6 +136,7 @@ FixGearQuat::~FixGearQuat()
   delete integrator;
   delete args;
   delete extracts;
+  delete sums;
   delete table;
   delete bodies;
   delete[] extlist;
@@ -377,62 +359,14 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
    outputs
 ------------------------------------------------------------------------- */
 
-/// Energy that takes thermo's potential energy from the predicted to the corrected pose.
-/// What rounding of the centres alone can make of the loads is not an energy: zero.
 double FixGearQuat::compute_scalar()
 {
-  double here[2] = {0.0, 0.0}, all[2];
-  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
-    const BodyState &s = bodies->state[ibody];
-    const Load &l = bodies->load[ibody];
-    here[0] -= bodies->last[ibody].work;
-    here[1] += std::sqrt(dot3(l.force, l.force) * dot3(s.center, s.center)) +
-        std::sqrt(dot3(l.torque_space, l.torque_space));
-  }
-  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  const double rounding = std::numeric_limits<double>::epsilon() * all[1];
-  return std::fabs(all[0]) < rounding ? 0.0 : all[0] / force->ftm2v;
-}
-
-/// What a body adds to an element of the global vector, or offers for the largest.
-double FixGearQuat::of_body(int element, int ibody) const
-{
-  const RigidBody &rigid = bodies->body[ibody].rigid;
-  const BodyState &s = bodies->state[ibody];
-  const Correction &last = bodies->last[ibody];
-  switch (element) {
-    case KE_TRANSLATION:
-      return translational_energy(rigid, s.velocity);
-    case KE_ROTATION:
-      return rotational_energy(rigid, s.omega_body);
-    case NORM:
-      return std::fabs(dot4(s.q, s.q) - 1.0);
-    case RADIAL:
-      return started ? std::fabs(integrator->radial_rate(bodies->history(ibody))) : 0.0;
-    case MAX_POSITION:
-      return last.position_error;
-    case RMS_POSITION:
-      return last.position_error * last.position_error;
-    case MAX_ANGLE:
-      return last.angle_error;
-    default:
-      return last.angle_error * last.angle_error;
-  }
+  return sums->energy_correction();
 }
 
 double FixGearQuat::compute_vector(int n)
 {
-  const bool largest = n == NORM || n == RADIAL || n == MAX_POSITION || n == MAX_ANGLE;
-  double here = 0.0, all;
-  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
-    const double one = of_body(n, ibody);
-    here = largest ? std::max(here, one) : here + one;
-  }
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, largest ? MPI_MAX : MPI_SUM, world);
-  if (n == KE_TRANSLATION || n == KE_ROTATION) return all * force->mvv2e;
-  if (n == NORM || n == RADIAL) return all < NORM_ROUNDING ? 0.0 : all;
-  if (largest) return all;
-  return bodies->number() ? std::sqrt(all / bodies->number()) : 0.0;
+  return sums->element(n, started ? integrator : nullptr);
 }
 
 double FixGearQuat::compute_array(int i, int j)

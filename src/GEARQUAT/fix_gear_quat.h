@@ -76,6 +76,7 @@ class FixGearQuat : public Fix {
   class GearQuatArguments *args;
   class GearQuatBodies *bodies;
   class GearQuatTable *table;
+  class GearQuatSums *sums;
   class GearQuatExtract *extracts;
 
   bool started;      // histories are those of the step h
@@ -91,7 +92,6 @@ class FixGearQuat : public Fix {
   void begin_step();
   void finish_step(double **, double **);
   void tally_virial(double **);
-  double of_body(int, int) const;
   void show_bodies();
 };
 

@@ -48,6 +48,7 @@ class GearQuatBodies : protected Pointers {
 
   int nowned() const { return nown; }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
+  const double *history(int ibody) const { return rows.data() + (size_t) ibody * scheme.size(); }
   bool in_body(int atom) const { return body_id[atom] != 0; }
   /// True if some atoms of bodies, on any rank, are more than points.
   bool has_extended() const { return extended.has_records(); }
