@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat import bench, bench_decks, bench_figures, bench_page
-from lammps_gearquat import bench_judge as judge
+from lammps_gearquat.bench import decks as bench_decks
+from lammps_gearquat.bench import figures as bench_figures
+from lammps_gearquat.bench import judge
+from lammps_gearquat.bench import page as bench_page
+from lammps_gearquat.bench import runs as bench
 from lammps_gearquat import publish as cases
-from lammps_gearquat.bench import FIRST, FROZEN, NVE_SMALL, SECOND, SMALL
+from lammps_gearquat.bench.runs import FIRST, FROZEN, NVE_SMALL, SECOND, SMALL
 from lammps_gearquat.checkout import PublishError
 from lammps_gearquat.commands.bench import bench as command
 from lammps_gearquat.lammps_runner import LammpsError

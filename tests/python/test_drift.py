@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat import drift, drift_figures, series
+from lammps_gearquat import series
 from lammps_gearquat.commands.drift import drift as command
+from lammps_gearquat.drift import figures as drift_figures
+from lammps_gearquat.drift import runs as drift
 from lammps_gearquat.lammps_runner import LammpsError
 
 TIME = np.arange(2001.0)

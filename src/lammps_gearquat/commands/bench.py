@@ -49,14 +49,13 @@ def bench(out, rounds, quick, jobs, lmp, mpiexec, publish_to):
 
     from tqdm import tqdm
 
-    from .. import bench as runs
-    from .. import bench_figures, bench_page
+    from ..bench import figures, page, runs
     from ..checkout import PublishError
     from ..lammps_runner import LammpsError
 
     try:
         if publish_to:
-            bench_page.checkout(publish_to)
+            page.checkout(publish_to)
     except PublishError as error:
         raise click.UsageError(str(error)) from error
     plan = runs.QUICK if quick else runs.FULL
@@ -68,9 +67,9 @@ def bench(out, rounds, quick, jobs, lmp, mpiexec, publish_to):
             results = runs.measure(out, plan, lmp, mpiexec, jobs, progress.update)
     except LammpsError as error:
         raise click.ClickException(str(error)) from error
-    bench_figures.draw(out / bench_page.PICTURE, results)
-    bench_page.write(out, results)
+    figures.draw(out / page.PICTURE, results)
+    page.write(out, results)
     if publish_to:
-        bench_page.publish(publish_to, out, results)
-    click.echo((out / bench_page.PAGE).read_text(encoding="utf-8"))
+        page.publish(publish_to, out, results)
+    click.echo((out / page.PAGE).read_text(encoding="utf-8"))
     click.echo(f"Page, tables, picture, decks and logs are in {out}")

@@ -33,8 +33,8 @@ def drift(out, steps, jobs, lmp):
     """
     from tqdm import tqdm
 
-    from .. import drift as long_runs
-    from .. import drift_figures
+    from ..drift import figures
+    from ..drift import runs as long_runs
     from ..lammps_runner import LammpsError
 
     out = out.resolve()
@@ -44,6 +44,6 @@ def drift(out, steps, jobs, lmp):
             results = long_runs.measure(out, steps, lmp, jobs, progress)
     except LammpsError as error:
         raise click.ClickException(str(error)) from error
-    drift_figures.draw(out / "drift.png", results)
+    figures.draw(out / "drift.png", results)
     click.echo((out / "drift.md").read_text(encoding="utf-8"))
     click.echo(f"Table, picture and logs are in {out}")

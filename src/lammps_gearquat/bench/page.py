@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from . import bench_judge as judge
-from . import publish as cases
-from .bench import COMPARED, GEAR, NVE_SMALL, SAMPLED, TIMED, FROZEN, bodies_of
-from .checkout import find, provenance
-from .report import markdown_table
+from .. import publish as cases
+from . import judge
+from .runs import COMPARED, GEAR, NVE_SMALL, SAMPLED, TIMED, FROZEN, bodies_of
+from ..checkout import find, provenance
+from ..report import markdown_table
 
 COMMAND = "gearquat bench --publish"
 PAGE, PICTURE = "many_bodies.md", "many_bodies.png"

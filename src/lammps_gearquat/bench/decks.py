@@ -6,7 +6,7 @@ They read ``data.water`` and the forces of ``examples/water``, which lie beside 
 import shutil
 from pathlib import Path
 
-from .decks import examples_folder
+from ..decks import examples_folder
 
 FILES = ("data.water", "forces.plain", "forces.smooth")
 #: molecules in data.water, before it is replicated

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import bench_decks
-from .lammps_runner import Job, LammpsError, find_lmp, run, run_many
+from . import decks
+from ..lammps_runner import Job, LammpsError, find_lmp, run, run_many
 
 
 # --- what is run --------------------------------------------------------------------------------
@@ -45,7 +45,7 @@ SAMPLED = (SECOND, FIRST, NVE_SMALL)
 
 def bodies_of(cells):
     """Molecules in so many copies of the box."""
-    return math.prod(cells) * bench_decks.MOLECULES
+    return math.prod(cells) * decks.MOLECULES
 
 
 @dataclass(frozen=True)
@@ -279,8 +279,8 @@ def time_all(plan, folder, lmp, mpiexec, progress):
     """List of Timing, one run after the other; decks and logs are left in ``folder``."""
     timings = []
     for one in timed_runs(plan):
-        text = bench_decks.timing(one.style, one.cells, plan.timing_dt, one.steps)
-        deck = bench_decks.write(folder / "decks", one.name, text)
+        text = decks.timing(one.style, one.cells, plan.timing_dt, one.steps)
+        deck = decks.write(folder / "decks", one.name, text)
         log = folder / "logs" / f"log.{one.name}"
         launcher = [mpiexec, "-n", str(one.ranks)] if one.ranks > 1 else []
         run(Job(deck, log), lmp, launcher)
@@ -294,17 +294,17 @@ def sample_all(plan, folder, lmp, workers, progress):
     jobs = {}
 
     def add(kind, key, name, text, steps):
-        deck = bench_decks.write(folder / "decks", name, text)
+        deck = decks.write(folder / "decks", name, text)
         jobs[kind, key] = Job(deck, folder / "logs" / f"log.{name}", steps=steps)
 
     time, interval = plan.temperature_time, plan.temperature_interval
     for method in SAMPLED:
-        text = bench_decks.temperature(method.style, plan.temperature_dt, time, interval)
+        text = decks.temperature(method.style, plan.temperature_dt, time, interval)
         name = f"temperature_{method.key}"
         add("temperature", method.key, name, text, round(time / plan.temperature_dt))
     for dt in plan.pressure_dts:
         for method in COMPARED:
-            text = bench_decks.pressure(method.style, dt, plan.pressure_time, plan.interval)
+            text = decks.pressure(method.style, dt, plan.pressure_time, plan.interval)
             name = f"pressure_{method.key}_dt{dt:g}"
             add("pressure", (method.key, dt), name, text, round(plan.pressure_time / dt))
     run_many(jobs.values(), lmp, workers, lambda n: progress(n * SAMPLED_WORK))
@@ -315,7 +315,7 @@ def sample_all(plan, folder, lmp, workers, progress):
 
 
 #: work of one step of a sampled run: its forces cost more, but two runs share the time
-SAMPLED_WORK = bench_decks.MOLECULES
+SAMPLED_WORK = decks.MOLECULES
 
 
 def work(plan):

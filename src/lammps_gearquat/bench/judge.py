@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from .bench import GEAR, NVE_SMALL, SECOND, bodies_of
-from .bench_decks import MOLECULES
+from .runs import GEAR, NVE_SMALL, SECOND, bodies_of
+from .decks import MOLECULES
 
 #: time in the fix and memory, over fix rigid/nve/small's
 TIME_ASKED, MEMORY_ASKED = 1.0, 1.5

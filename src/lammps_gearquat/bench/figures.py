@@ -7,9 +7,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from . import bench_judge as judge  # noqa: E402
-from .bench import COMPARED, GEAR, NVE_SMALL, SMALL, bodies_of  # noqa: E402
-from .figures import COLOUR, STYLE  # noqa: E402
+from . import judge  # noqa: E402
+from .runs import COMPARED, GEAR, NVE_SMALL, SMALL, bodies_of  # noqa: E402
+from ..figures import COLOUR, STYLE  # noqa: E402
 
 #: method -> colour and marker
 LOOK = {
