@@ -53,12 +53,12 @@ Line line_of(const GearQuatBody &body, const BodyState &state, const double *row
 }
 
 /// All lines on rank 0, sorted; empty elsewhere.
-std::vector<Line> gather(LAMMPS *lmp, const std::vector<Line> &mine)
+std::vector<Line> gather(LAMMPS *lmp, std::vector<Line> &mine)
 {
   MPI_Datatype type;
   MPI_Type_contiguous(sizeof(Line), MPI_BYTE, &type);
   MPI_Type_commit(&type);
-  const int here = (int) mine.size();
+  int here = (int) mine.size();    // not const: nor are the arguments of LAMMPS' own MPI
   std::vector<int> counts(lmp->comm->nprocs), starts(lmp->comm->nprocs, 0);
   MPI_Gather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, lmp->world);
   std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
