@@ -331,7 +331,7 @@ def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
     out = tmp_path / "out"
     arguments = [str(examples / "case2" / "in.case2"), "--var", "choices", "paper"]
     arguments += ["--time", "500", "--every", "1", "--out", str(out)]
-    arguments += ["--a", "formulation first momentum predicted", "--b", "formulation second"]
+    arguments += ["--a", "formulation first values 5 momentum predicted", "--b", "formulation second"]
     arguments += [word for level in thresholds for word in ("--threshold", str(level))]
     result = CliRunner().invoke(horizon_command, arguments)
     assert result.exit_code == 0, result.output

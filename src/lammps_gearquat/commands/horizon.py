@@ -60,7 +60,7 @@ def horizon(
 
         gearquat horizon in.case1 --var choices paper --every 1 --time 2000
         --threshold 0.1 --threshold 1 --threshold 3
-        --a "formulation first momentum predicted" --b "formulation second"
+        --a "formulation first values 5 momentum predicted" --b "formulation second"
     """
     from tqdm import tqdm
 
