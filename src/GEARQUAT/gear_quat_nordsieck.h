@@ -31,27 +31,34 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
       return;
     }
     double *carry = carry_of(rows, n, row) + component;
-    for (int c = 0; c < COUNT; ++c) {
-      const double b = value[c] + carry[c], a = sum[c];
-      sum[c] = a + b;
-      const double rounded = sum[c] - a;    // exact error of a + b (Knuth's two-sum)
-      carry[c] = (a - (sum[c] - rounded)) + (b - rounded);
-    }
+    for (int c = 0; c < COUNT; ++c) add_exactly(sum[c], carry[c], value[c]);
   }
 
   /// Advance the history by one step: the Taylor series (Eq. 11) as additions of Pascal's triangle.
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
   static void predict(double *rows, int n)
   {
-    switch (n) {    // a number of rows that the compiler knows is worth a third of the time
+    switch (n) {    // a number of rows that the compiler knows, so that a column stays in registers
+      case 3:
+        return pascal<3>(rows);
+      case 4:
+        return pascal<4>(rows);
       case 5:
-        return pascal<5>(rows, n);
+        return pascal<5>(rows);
       case 6:
-        return pascal<6>(rows, n);
+        return pascal<6>(rows);
+      case 7:
+        return pascal<7>(rows);
       case 8:
-        return pascal<8>(rows, n);
-      default:
-        return pascal<0>(rows, n);
+        return pascal<8>(rows);
+      case 9:
+        return pascal<9>(rows);
+      case 10:
+        return pascal<10>(rows);
+      case 11:
+        return pascal<11>(rows);
+      case 12:
+        return pascal<12>(rows);
     }
   }
 
@@ -60,14 +67,17 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   static void correct(double *rows, int n, const double *coefficients, int component,
                       const double *residual)
   {
+    double r[COUNT];    // a copy: residual might be in `rows`, for all the compiler knows
+    for (int c = 0; c < COUNT; ++c) r[c] = residual[c];
     for (int j = 0; j < CARRIES; ++j) {
       double value[COUNT];
-      for (int c = 0; c < COUNT; ++c) value[c] = coefficients[j] * residual[c];
+      for (int c = 0; c < COUNT; ++c) value[c] = coefficients[j] * r[c];
       add<COUNT>(rows, n, j, component, value);
     }
     for (int j = CARRIES; j < n; ++j) {
       double *row = rows + j * WIDTH + component;
-      for (int c = 0; c < COUNT; ++c) row[c] += coefficients[j] * residual[c];
+#pragma GCC unroll 4
+      for (int c = 0; c < COUNT; ++c) row[c] += coefficients[j] * r[c];
     }
   }
 
@@ -90,12 +100,37 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   }
 
  private:
-  /// N: rows if known when compiling, or 0.
-  template <int N> static void pascal(double *rows, int rows_kept)
+  /// sum += value; carry takes what rounding takes away (Knuth's two-sum, exact).
+  static void add_exactly(double &sum, double &carry, double value)
   {
-    const int n = N ? N : rows_kept;
-    for (int pass = 0; pass < n - 1; ++pass)
-      for (int j = n - 2; j >= pass; --j) { add<WIDTH>(rows, n, j, 0, rows + (j + 1) * WIDTH); }
+    const double b = value + carry, a = sum;
+    sum = a + b;
+    const double rounded = sum - a;
+    carry = (a - (sum - rounded)) + (b - rounded);
+  }
+
+  // unrolled by name: LAMMPS is mostly built with -O2, which leaves loops alone
+  template <int N> static void pascal(double *rows)
+  {
+    for (int c = 0; c < WIDTH; ++c) {
+      double y[N], carry[CARRIES + 1];
+#pragma GCC unroll 12
+      for (int j = 0; j < N; ++j) y[j] = rows[j * WIDTH + c];
+#pragma GCC unroll 2
+      for (int j = 0; j < CARRIES; ++j) carry[j] = carry_of(rows, N, j)[c];
+#pragma GCC unroll 12
+      for (int pass = 0; pass < N - 1; ++pass)
+#pragma GCC unroll 12
+        for (int j = N - 2; j >= pass; --j)
+          if (j < CARRIES)
+            add_exactly(y[j], carry[j], y[j + 1]);
+          else
+            y[j] += y[j + 1];
+#pragma GCC unroll 12
+      for (int j = 0; j < N; ++j) rows[j * WIDTH + c] = y[j];
+#pragma GCC unroll 2
+      for (int j = 0; j < CARRIES; ++j) carry_of(rows, N, j)[c] = carry[j];
+    }
   }
 };
 
