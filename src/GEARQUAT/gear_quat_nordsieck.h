@@ -36,6 +36,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 
   /// Advance the history by one step: the Taylor series (Eq. 11) as additions of Pascal's triangle.
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
+  /// n: 3 to 12, those of both formulations.
   static void predict(double *rows, int n)
   {
     switch (n) {    // a number of rows that the compiler knows, so that a column stays in registers
