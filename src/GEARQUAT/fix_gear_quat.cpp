@@ -25,6 +25,7 @@
 #include "gear_quat_sums.h"
 #include "gear_quat_table.h"
 #include "gear_quat_template.h"
+#include "gear_quat_tolerance.h"
 
 #include "atom.h"
 #include "citeme.h"
@@ -75,18 +76,16 @@ static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR 
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), sums(nullptr),
-    extracts(nullptr), started(false), met_atoms(false), h(0.0), integrator(nullptr),
+    extracts(nullptr), tolerance(nullptr), started(false), met_atoms(false), h(0.0), integrator(nullptr),
     velocities_read(true), f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
   time_integrate = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = GearQuatSums::ELEMENTS;
   global_freq = 1;
   extscalar = 1;
   extvector = -1;
-  extlist = new int[GearQuatSums::ELEMENTS]{1, 1, 0, 0, 0, 0, 0, 0};
   array_flag = local_flag = 1;
   extarray = 0;
   local_freq = 1;
@@ -103,7 +102,13 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
 
   args = new GearQuatArguments(lmp, narg, arg);
+  const bool variable = args->control.eps > 0.0;
+  args->scheme.trial = variable;
   bodies = new GearQuatBodies(lmp, this, args->scheme);
+  if (variable)
+    tolerance = new GearQuatTolerance(lmp, this, args->scheme, args->control, *bodies);
+  size_vector = GearQuatSums::ELEMENTS + (variable ? GearQuatTolerance::ELEMENTS : 0);
+  extlist = new int[size_vector]{1, 1};
   table = new GearQuatTable(lmp, *bodies);
   sums = new GearQuatSums(lmp, *bodies);
   find_template(lmp, args->mol);    // it has to exist
@@ -134,6 +139,7 @@ FixGearQuat::~FixGearQuat()
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
   delete integrator;
+  delete tolerance;
   delete args;
   delete extracts;
   delete sums;
@@ -149,7 +155,7 @@ FixGearQuat::~FixGearQuat()
 int FixGearQuat::setmask()
 {
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR | INITIAL_INTEGRATE_RESPA |
-      FINAL_INTEGRATE_RESPA;
+      FINAL_INTEGRATE_RESPA | (tolerance ? END_OF_STEP : 0);
 }
 
 /* ----------------------------------------------------------------------
@@ -159,6 +165,7 @@ int FixGearQuat::setmask()
 void FixGearQuat::init()
 {
   refuse_scene(lmp, this, *bodies);
+  if (tolerance) tolerance->refuse_scene();
   follow_time_step();
   velocities_read = comm->ghost_velocity;
   for (auto *other : modify->get_fix_list())
@@ -170,6 +177,17 @@ bool FixGearQuat::moves(int i) const
   return bodies->in_body(i);
 }
 
+const Scheme &FixGearQuat::present_scheme() const
+{
+  return tolerance ? tolerance->scheme() : args->scheme;
+}
+
+void FixGearQuat::make_integrator(double step)
+{
+  delete integrator;
+  integrator = new Integrator(present_scheme(), step);
+}
+
 /// Called whenever the time step may have changed; histories keep their polynomials.
 void FixGearQuat::follow_time_step()
 {
@@ -177,8 +195,10 @@ void FixGearQuat::follow_time_step()
   if (step == 0.0 || !std::isfinite(step)) return;
   if (integrator && step == h) return;
   const double ratio = step / h;
-  delete integrator;
-  integrator = new Integrator(args->scheme, step);
+  if (integrator)
+    integrator->set_step(step);
+  else
+    make_integrator(step);
   if (started)
     for (int ibody = 0; ibody < bodies->nowned(); ++ibody)
       if (ratio != 1.0) integrator->rescale(bodies->history(ibody), ratio);
@@ -259,12 +279,18 @@ void FixGearQuat::final_integrate()
 /// Higher rows of the histories: `h`, poses, velocities and present loads are known.
 void FixGearQuat::start()
 {
-  GearQuatBootstrap bootstrap(lmp, this, *bodies, args->scheme, h);
+  GearQuatBootstrap bootstrap(lmp, this, *bodies,
+                              tolerance ? tolerance->scheme_of_start() : args->scheme, h);
+  bool full = false;
   if (args->start == GearQuatArguments::Start::ZERO)
     bootstrap.zero();
   else
-    bootstrap.run();
+    full = bootstrap.run();
   started = true;
+  if (!tolerance) return;
+  tolerance->begin(full);
+  make_integrator(h);
+  if (full) tolerance->shorten_first_step();
 }
 
 void FixGearQuat::begin_step()
@@ -289,16 +315,26 @@ void FixGearQuat::finish_step(double **f, double **torque)
     double *rows = bodies->history(ibody);
     const RigidBody &rigid = bodies->body[ibody].rigid;
     if (bodies->body[ibody].fresh) {
-      GearQuatBootstrap::seed_body(*bodies, ibody, args->scheme, h, known);
+      GearQuatBootstrap::seed_body(*bodies, ibody, present_scheme(), h, known);
       bodies->body[ibody].fresh = 0;
+      if (tolerance) tolerance->note_fresh();
       continue;
     }
-    bodies->last[ibody] = integrator->correct(rigid, bodies->load[ibody], rows);
+    bodies->last[ibody] = tolerance ? tolerance->correct(*integrator, ibody)
+                                    : integrator->correct(rigid, bodies->load[ibody], rows);
     bodies->state[ibody] = integrator->body_state(rigid, rows);
   }
   bodies->spread_states();
   bodies->place_sites(true);
-  if (output->next == update->ntimestep || modify->n_end_of_step) show_bodies();
+  if (output->next == update->ntimestep || modify->n_end_of_step > (tolerance ? 1 : 0))
+    show_bodies();
+}
+
+/// With tolerance only: all fixes have finished the step.
+void FixGearQuat::end_of_step()
+{
+  if (tolerance->choose()) make_integrator(h);
+  tolerance->change_step();
 }
 
 /// Virial of the constraint forces m a - f, at the pose where the forces were taken.
@@ -366,6 +402,7 @@ double FixGearQuat::compute_scalar()
 
 double FixGearQuat::compute_vector(int n)
 {
+  if (n >= GearQuatSums::ELEMENTS) return tolerance->element(n - GearQuatSums::ELEMENTS);
   return sums->element(n, started ? integrator : nullptr);
 }
 
@@ -416,6 +453,10 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int /*which*/, doub
 
 void *FixGearQuat::extract(const char *name, int &dim)
 {
+  if (std::strcmp(name, "tolerance") == 0) {
+    dim = 0;
+    return tolerance ? &args->control.eps : nullptr;
+  }
   return extracts->extract(name, dim);
 }
 
@@ -454,7 +495,8 @@ void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 ------------------------------------------------------------------------- */
 
 struct GlobalRestart {
-  double formulation, values, compensate, started, h, extended;
+  double formulation, values, compensate, started, h, extended, variable;
+  GearQuatTolerance::Memory memory;
 };
 
 void FixGearQuat::write_restart(FILE *fp)
@@ -466,7 +508,9 @@ void FixGearQuat::write_restart(FILE *fp)
                               (double) scheme.compensate,
                               (double) started,
                               h,
-                              (double) bodies->has_extended()};
+                              (double) bodies->has_extended(),
+                              (double) scheme.trial,
+                              tolerance ? tolerance->memory() : GearQuatTolerance::Memory()};
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
@@ -488,14 +532,16 @@ void FixGearQuat::restart(char *buf)
   bodies->clear(data.extended != 0.0);
   const Scheme &scheme = args->scheme;
   const bool same = data.formulation == (double) scheme.first() &&
-      data.values == (double) scheme.values() && data.compensate == (double) scheme.compensate;
+      data.values == (double) scheme.values() && data.compensate == (double) scheme.compensate &&
+      data.variable == (double) scheme.trial;
   started = data.started != 0.0 && same;
+  if (tolerance && started) tolerance->recall(data.memory);
   met_atoms = true;
   h = data.h;
   if (data.started != 0.0 && !same && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: the restart file has histories of another formulation or "
-                   "another number of values; "
+                   "another number of values, or only one of the two runs has a tolerance; "
                    "poses and velocities are kept, the higher derivatives start anew");
 }
 

@@ -22,6 +22,7 @@ FixStyle(gear/quat,FixGearQuat);
 
 namespace GearQuat {
 class Integrator;
+struct Scheme;
 }
 
 namespace LAMMPS_NS {
@@ -40,6 +41,7 @@ class FixGearQuat : public Fix {
   void final_integrate() override;
   void initial_integrate_respa(int, int, int) override;
   void final_integrate_respa(int, int) override;
+  void end_of_step() override;
   void reset_dt() override;
 
   double compute_scalar() override;
@@ -78,6 +80,7 @@ class FixGearQuat : public Fix {
   class GearQuatTable *table;
   class GearQuatSums *sums;
   class GearQuatExtract *extracts;
+  class GearQuatTolerance *tolerance;    // null: the step is LAMMPS' own
 
   bool started;      // histories are those of the step h
   bool met_atoms;    // bodies were compared with the atoms in a run before
@@ -87,6 +90,8 @@ class FixGearQuat : public Fix {
   double **f_sum, **torque_sum;    // r-RESPA: of all levels; torques where atoms have some
   int nmax_sum;
 
+  const GearQuat::Scheme &present_scheme() const;
+  void make_integrator(double);
   void follow_time_step();
   void start();
   void begin_step();

@@ -93,7 +93,8 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     const std::string key = arg[iarg];
     const std::set<std::string> known = {"formulation", "values", "passes",   "start",
                                          "c0",          "omega",  "momentum", "project",
-                                         "compensate",  "infile", "reinit",   "mol"};
+                                         "compensate",  "infile", "reinit",   "mol",
+                                         "tolerance",   "dtmin",  "dtmax"};
     if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
@@ -120,7 +121,14 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
       scheme.project = choice(key, value, "no", "yes");
     else if (key == "reinit")
       reinit = choice(key, value, "no", "yes");
-    else if (key == "mol")
+    else if (key == "tolerance" || key == "dtmin" || key == "dtmax") {
+      const double number = utils::numeric(FLERR, value, false, lmp);
+      if (!(number > 0.0) || !std::isfinite(number))
+        error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", key, value);
+      (key == "tolerance" ? control.eps
+           : key == "dtmin" ? control.shortest
+                            : control.longest) = number;
+    } else if (key == "mol")
       mol = value;
     else
       infile = value;
@@ -128,13 +136,21 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 
   const int fewest = scheme.first() ? GearQuat::FIRST_FEWEST : GearQuat::SECOND_FEWEST;
   const int most = scheme.first() ? GearQuat::FIRST_MOST : GearQuat::SECOND_MOST;
-  if (!seen.count("values")) scheme.rows = scheme.first() ? FIRST_VALUES : SECOND_VALUES;
+  const bool tolerance = seen.count("tolerance");
+  if (!seen.count("values"))
+    scheme.rows = tolerance ? std::min(most, GearQuat::VARIABLE_MOST)
+        : scheme.first()    ? FIRST_VALUES
+                            : SECOND_VALUES;
   if (!seen.count("passes")) scheme.passes = PASSES;
   if (scheme.rows < fewest || scheme.rows > most)
     error->all(FLERR, "Fix gear/quat values: {} is not from {} to {}, as formulation {} requires",
                scheme.rows, fewest, most, scheme.first() ? "first" : "second");
   if (scheme.passes < 1)
     error->all(FLERR, "Fix gear/quat passes: {} is not positive", scheme.passes);
+  if (tolerance) check_control(lmp, fewest);
+  for (const auto *key : {"dtmin", "dtmax"})
+    if (!tolerance && seen.count(key))
+      error->all(FLERR, "Fix gear/quat keyword {} requires keyword tolerance", key);
 
   if (scheme.first() && seen.count("c0"))
     error->all(FLERR, "Fix gear/quat keyword c0 belongs to formulation second");
@@ -154,6 +170,20 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
                  "bodies once and for all");
     reinit = false;
   }
+}
+
+void GearQuatArguments::check_control(LAMMPS *lmp, int fewest)
+{
+  control.fewest = fewest;
+  control.most = scheme.rows;
+  if (control.most > GearQuat::VARIABLE_MOST)
+    lmp->error->all(FLERR,
+                    "Fix gear/quat tolerance: {} values are more than {}, the largest number with "
+                    "which a step may shrink",
+                    control.most, GearQuat::VARIABLE_MOST);
+  if (control.longest > 0.0 && control.shortest > control.longest)
+    lmp->error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
+                    control.longest);
 }
 
 /* ----------------------------------------------------------------------

@@ -8,7 +8,7 @@
 #ifndef LMP_GEAR_QUAT_ARGUMENTS_H
 #define LMP_GEAR_QUAT_ARGUMENTS_H
 
-#include "gear_quat_integrator.h"
+#include "gear_quat_step_control.h"
 #include "lmptype.h"
 
 #include <string>
@@ -27,6 +27,7 @@ struct GearQuatArguments {
   std::string custom;                 ///< custom: i_name or v_name
 
   GearQuat::Scheme scheme;
+  GearQuat::StepControl control;    ///< eps 0: the step is LAMMPS' own
   Start start = Start::BOOTSTRAP;
   bool reinit = true;
   std::string infile;
@@ -42,6 +43,7 @@ struct GearQuatArguments {
  private:
   int parse_bodystyle(LAMMPS *lmp, int narg, char **arg);
   void parse_keywords(LAMMPS *lmp, int narg, char **arg);
+  void check_control(LAMMPS *lmp, int fewest);
   std::vector<tagint> molecule_ids(LAMMPS *lmp, int groupbit) const;
   std::vector<tagint> group_ids(LAMMPS *lmp, int groupbit) const;
   std::vector<tagint> custom_ids(LAMMPS *lmp, int groupbit) const;

@@ -72,7 +72,7 @@ void GearQuatBootstrap::gather_present_loads(LAMMPS *lmp, const Fix *fix, GearQu
 
 /* ---------------------------------------------------------------------- */
 
-void GearQuatBootstrap::run()
+bool GearQuatBootstrap::run()
 {
   GearQuatForces forces(lmp, fix);
   std::string why = forces.reason();
@@ -99,11 +99,12 @@ void GearQuatBootstrap::run()
     if (comm->me == 0)
       utils::logmesg(lmp, "Fix gear/quat: start of order {} from {} force evaluations{}\n",
                      scheme.order(), evaluations, reason);
-    return;
+    return true;
   }
   seed_local(3);
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat: start with known forces only (order 2), because {}\n", why);
+  return false;
 }
 
 /// Node spacing: the step, or as much of it as keeps every site within half the skin.

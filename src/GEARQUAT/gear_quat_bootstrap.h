@@ -31,7 +31,8 @@ class GearQuatBootstrap : protected Pointers {
                         int terms);
   /// Derivatives consistent with the trajectory; where forces cannot be followed, those that the
   /// present loads determine, and a message on rank 0.  After the call atoms are as before.
-  void run();
+  /// Returns true if all rows are known.
+  bool run();
 
   /// Loads at the present positions into the bodies, where atom->f does not hold them all.
   static void gather_present_loads(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies);

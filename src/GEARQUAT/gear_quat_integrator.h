@@ -36,12 +36,15 @@ struct Scheme {
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
   bool project = true;                ///< keep |q| = 1 and q.qdot = 0
   bool compensate = false;            ///< compensated sums of the rows that are integrated
+  bool trial = false;                 ///< one more row, see gear_quat_step_control.h
 
   bool first() const { return formulation == Formulation::FIRST; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
-  int size() const { return (values() + carries()) * width(); }
+  /// Doubles of a history: rows, carries, trial row.
+  int size() const { return (values() + carries() + trial) * width(); }
+  int trial_row() const { return (values() + carries()) * width(); }
   /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N keep
   /// N, and N - 1 with velocity_c0).
   int order() const { return (velocity_c0 ? values() - 1 : values()) | 1; }
@@ -59,11 +62,11 @@ struct Scheme {
   double norm2(const double *q) const { return project ? dot4(q, q) : 1.0; }
 };
 
-/// Doubles of the longest history, compensated.
-constexpr int MAX_SIZE = (FIRST_MOST + 1) * Scheme::FIRST_WIDTH >
-        (SECOND_MOST + 2) * Scheme::SECOND_WIDTH
-    ? (FIRST_MOST + 1) * Scheme::FIRST_WIDTH
-    : (SECOND_MOST + 2) * Scheme::SECOND_WIDTH;
+/// Doubles of the longest history, compensated and with a trial row.
+constexpr int MAX_SIZE = (FIRST_MOST + 2) * Scheme::FIRST_WIDTH >
+        (SECOND_MOST + 3) * Scheme::SECOND_WIDTH
+    ? (FIRST_MOST + 2) * Scheme::FIRST_WIDTH
+    : (SECOND_MOST + 3) * Scheme::SECOND_WIDTH;
 
 /// What the corrector tells of a step.
 struct Correction {
@@ -85,6 +88,13 @@ class Integrator {
         (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
   }
 
+  /// Another step; histories have to be rescaled with it.
+  void set_step(double step)
+  {
+    h = step;
+    per_h = 1.0 / step;
+  }
+
   void predict(double *rows) const
   {
     if (scheme.first())
@@ -99,6 +109,9 @@ class Integrator {
       scheme.compensate ? First<1>::rescale(rows, n, ratio) : First<0>::rescale(rows, n, ratio);
     else
       scheme.compensate ? Second<2>::rescale(rows, n, ratio) : Second<0>::rescale(rows, n, ratio);
+    if (!scheme.trial) return;
+    const double factor = std::pow(ratio, n);
+    for (int i = 0; i < scheme.width(); ++i) rows[scheme.trial_row() + i] *= factor;
   }
 
   /// Pose and velocities a history stands for, before or after the correction.

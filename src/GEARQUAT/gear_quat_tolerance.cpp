@@ -1,0 +1,230 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_tolerance.h"
+
+#include "comm.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
+#include "output.h"
+#include "pair.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+static Scheme with_trial_row(Scheme scheme)
+{
+  scheme.trial = true;
+  return scheme;
+}
+
+GearQuatTolerance::GearQuatTolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme,
+                                     const StepControl &control, GearQuatBodies &bodies) :
+    Pointers(lmp),
+    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present),
+    next_step(0.0), fresh(false), told(false), kept()
+{
+  kept.values = present.values();
+}
+
+void GearQuatTolerance::refuse_scene() const
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix gear/quat tolerance cannot be used with run_style respa: its levels have "
+                      "steps of their own");
+  for (auto *other : modify->get_fix_list()) {
+    if (other == fix) continue;
+    int dim;
+    if (utils::strmatch(other->style, "^dt/reset") ||
+        (utils::strmatch(other->style, "^gear/quat") && other->extract("tolerance", dim)))
+      error->all(FLERR,
+                 "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
+                 "do so",
+                 other->id, other->style);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   start
+------------------------------------------------------------------------- */
+
+Scheme GearQuatTolerance::scheme_of_start() const
+{
+  Scheme start = present;
+  start.trial = false;
+  start.rows = control.most + 1;
+  return start;
+}
+
+void GearQuatTolerance::begin(bool full)
+{
+  kept = Memory();
+  set_values(full ? control.most : control.fewest);
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    double *rows = bodies.history(ibody);
+    double *above = rows + present.values() * present.width();
+    if (full && present.carries()) {    // the row above the most is the trial row; carries are zero
+      std::copy_n(above, present.width(), rows + present.trial_row());
+      std::fill_n(above, present.carries() * present.width(), 0.0);
+    }
+  }
+}
+
+void GearQuatTolerance::shorten_first_step()
+{
+  double here = 0.0, largest;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here = std::max(here, order.error(bodies.history(ibody)));
+  MPI_Allreduce(&here, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double ratio = std::min(1.0, control.allowed(largest, present.values()));
+  const double size = std::max(control.shortest, ratio * std::fabs(update->dt));
+  if (size >= std::fabs(update->dt)) return;
+  for (auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
+    if (other == fix) break;
+    if (!other->time_integrate) continue;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat tolerance: the error of the first step is estimated as {:.2g}, "
+                     "more than {:.2g}; define fix {} ({}) after this fix, or use a time step of {:.2g}",
+                     largest, control.eps, other->id, other->style, size);
+    return;
+  }
+
+  // this step has begun: time so far was made of steps before it
+
+  const bigint before = update->ntimestep - 1;
+  update->atime += (before - update->atimestep) * update->dt;
+  update->atimestep = before;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
+                   std::copysign(size, update->dt), update->dt);
+  set_step(std::copysign(size, update->dt));
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody)
+{
+  StepErrors one;
+  const Correction correction = order.correct(integrator, bodies.body[ibody].rigid,
+                                              bodies.load[ibody], bodies.history(ibody), one);
+  if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
+  errors.include(one);
+  return correction;
+}
+
+bool GearQuatTolerance::choose()
+{
+  const double here[4] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0};
+  double all[4];
+  MPI_Allreduce(here, all, 4, MPI_DOUBLE, MPI_MAX, world);
+  errors = StepErrors();
+  fresh = false;
+  if (std::isinf(all[1]))
+    error->all(FLERR,
+               "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
+               "are wrong, or the motion is lost: use a smaller tolerance",
+               update->ntimestep);
+
+  const double step = update->dt, size = std::fabs(step);
+  const int values = present.values();
+  kept.smallest = kept.steps == 0.0 ? size : std::min(kept.smallest, size);
+  kept.steps += 1.0;
+  kept.steady += 1.0;
+  kept.time += size;
+  kept.values_sum += values;
+  kept.largest = std::max(kept.largest, all[1] / control.eps);
+
+  auto next = control.next({all[0], all[1], all[2]}, step, values, (int) kept.steady);
+  if (all[3] != 0.0) next.values = control.fewest;    // rows above are zero in a fresh history
+  if (next.held) {
+    kept.held += 1.0;
+    if (!told && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat tolerance: step {} makes an error of {:.2g}, more than {:.2g}, but "
+                     "dtmin keeps the time step at {:.3g}; further such steps are counted",
+                     update->ntimestep, all[1], control.eps, control.shortest);
+    told = true;
+  }
+  if (next.values != values) change_values(next.values);
+  next_step = next.step;
+  return next.values != values;
+}
+
+/// The step that ends now was made with the present one.
+void GearQuatTolerance::change_step()
+{
+  if (next_step == update->dt) return;
+  update->update_time();
+  set_step(next_step);
+}
+
+void GearQuatTolerance::set_values(int values)
+{
+  present.rows = values;
+  order = VariableOrder(present);
+  kept.values = values;
+  kept.steady = 0.0;
+}
+
+void GearQuatTolerance::change_values(int values)
+{
+  while (present.values() != values) {
+    const bool more = values > present.values();
+    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+      more ? order.add_row(bodies.history(ibody)) : order.drop_row(bodies.history(ibody));
+    set_values(present.values() + (more ? 1 : -1));
+  }
+}
+
+/// As fix dt/reset changes it; this fix is told with all others.
+void GearQuatTolerance::set_step(double step)
+{
+  update->dt = step;
+  update->dt_default = 0;
+  if (force->pair) force->pair->reset_dt();
+  for (auto *other : modify->get_fix_list()) other->reset_dt();
+  output->reset_dt();
+}
+
+/* ----------------------------------------------------------------------
+   outputs and restart
+------------------------------------------------------------------------- */
+
+double GearQuatTolerance::element(int n) const
+{
+  switch (n) {
+    case STEP:
+      return update->dt;
+    case SMALLEST:
+      return kept.smallest;
+    case MEAN:
+      return kept.steps > 0.0 ? kept.time / kept.steps : 0.0;
+    case VALUES:
+      return present.values();
+    case MEAN_VALUES:
+      return kept.steps > 0.0 ? kept.values_sum / kept.steps : 0.0;
+    case LARGEST_ERROR:
+      return kept.largest;
+    default:
+      return kept.held;
+  }
+}
+
+void GearQuatTolerance::recall(const Memory &memory)
+{
+  set_values((int) memory.values);
+  kept = memory;
+}

@@ -1,0 +1,83 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keyword tolerance inside LAMMPS: the largest errors of all bodies on all ranks, the law of
+   gear_quat_step_control.h, and LAMMPS' time step.
+
+   The fix calls when histories begin scheme_of_start(), begin() and shorten_first_step(); in every
+   step correct() for every body; and at the end of the step, when all fixes have finished it,
+   choose() and change_step().  Where the number of values may have changed, after begin() and
+   choose(), the fix makes its integrator anew. */
+
+#ifndef LMP_GEAR_QUAT_TOLERANCE_H
+#define LMP_GEAR_QUAT_TOLERANCE_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_step_control.h"
+
+namespace LAMMPS_NS {
+
+class GearQuatTolerance : protected Pointers {
+ public:
+  /// Elements of the fix's vector, behind those of GearQuatSums.
+  enum { STEP, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST_ERROR, HELD, ELEMENTS };
+
+  /// What a restart file keeps: the next step's values, steps made with them, and the sums behind the
+  /// outputs.
+  struct Memory {
+    double values, steady;
+    double steps, time, smallest, values_sum, largest, held;
+  };
+
+  /// scheme: of the fix; its number of values is the largest.
+  GearQuatTolerance(LAMMPS *lmp, const Fix *fix, const GearQuat::Scheme &scheme,
+                    const GearQuat::StepControl &control, GearQuatBodies &bodies);
+
+  /// Ends the run if something else in it changes the time step, or cannot follow it.
+  void refuse_scene() const;
+
+  /// The scheme with the present number of values.
+  const GearQuat::Scheme &scheme() const { return present; }
+  /// What histories have to be seeded with: one row more than the most, without a trial row.
+  GearQuat::Scheme scheme_of_start() const;
+  /// Histories are seeded.  full: to the last row; otherwise they begin with the fewest values.
+  void begin(bool full);
+  /// Where its error is known to be too large; no other fix must have begun the step.  Collective.
+  void shorten_first_step();
+
+  /// Correct one body.
+  GearQuat::Correction correct(const GearQuat::Integrator &integrator, int ibody);
+  /// A body whose history has just begun with fewer terms than the others.
+  void note_fresh() { fresh = true; }
+  /// Choose values and length of the next step.  After the call histories have the new number of
+  /// values; true if it is another one.  Collective.
+  bool choose();
+  /// update->dt and all that depends on it, this fix too, become those of the next step.
+  void change_step();
+
+  double element(int n) const;
+  Memory memory() const { return kept; }
+  void recall(const Memory &memory);
+
+ private:
+  const Fix *fix;
+  GearQuatBodies &bodies;
+  GearQuat::Scheme present;
+  GearQuat::StepControl control;
+  GearQuat::VariableOrder order;
+  GearQuat::StepErrors errors;    ///< of the bodies corrected so far
+  double next_step;
+  bool fresh;
+  bool told;    ///< of a step held at its lower limit
+  Memory kept;
+
+  void set_values(int values);
+  void change_values(int values);
+  void set_step(double step);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
