@@ -166,6 +166,7 @@ void FixGearQuat::init()
 {
   refuse_scene(lmp, this, *bodies);
   if (tolerance) tolerance->refuse_scene();
+  if (tolerance && started) tolerance->keep_step(h);
   follow_time_step();
   velocities_read = comm->ghost_velocity;
   for (auto *other : modify->get_fix_list())
@@ -207,6 +208,7 @@ void FixGearQuat::follow_time_step()
 
 void FixGearQuat::reset_dt()
 {
+  if (tolerance && started && !tolerance->owns_step()) return;    // it is put back in init()
   follow_time_step();
 }
 

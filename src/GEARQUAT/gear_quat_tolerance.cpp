@@ -69,6 +69,7 @@ Scheme GearQuatTolerance::scheme_of_start() const
 void GearQuatTolerance::begin(bool full)
 {
   kept = Memory();
+  next_step = update->dt;
   set_values(full ? control.most : control.fewest);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     double *rows = bodies.history(ibody);
@@ -108,7 +109,8 @@ void GearQuatTolerance::shorten_first_step()
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
                    std::copysign(size, update->dt), update->dt);
-  set_step(std::copysign(size, update->dt));
+  next_step = std::copysign(size, update->dt);
+  set_step(next_step);
 }
 
 /* ----------------------------------------------------------------------
@@ -187,6 +189,21 @@ void GearQuatTolerance::change_values(int values)
       more ? order.add_row(bodies.history(ibody)) : order.drop_row(bodies.history(ibody));
     set_values(present.values() + (more ? 1 : -1));
   }
+}
+
+void GearQuatTolerance::keep_step(double step)
+{
+  next_step = step;
+  if (update->dt == step) return;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n", step,
+                   update->dt);
+  change_step();
+}
+
+bool GearQuatTolerance::owns_step() const
+{
+  return update->dt == next_step;
 }
 
 /// As fix dt/reset changes it; this fix is told with all others.

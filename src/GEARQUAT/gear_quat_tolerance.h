@@ -56,6 +56,10 @@ class GearQuatTolerance : protected Pointers {
   bool choose();
   /// update->dt and all that depends on it, this fix too, become those of the next step.
   void change_step();
+  /// The timestep command gives the first step only: `step` is put back.
+  void keep_step(double step);
+  /// True while update->dt is what this control has made it.
+  bool owns_step() const;
 
   double element(int n) const;
   Memory memory() const { return kept; }

@@ -1,0 +1,352 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* A step and a number of values that follow the error: the rows, the estimates, the law, and what
+   comes of them in the paper's cage. */
+
+#include "checks.h"
+#include "drive.h"
+#include "gear_quat_step_control.h"
+#include "oracles/cage_scene.h"
+
+using namespace Drive;
+using std::vector;
+
+namespace {
+
+constexpr Formulation FIRST = Formulation::FIRST, SECOND = Formulation::SECOND;
+
+Scheme varying(Formulation formulation, int values, bool compensate = false)
+{
+  Scheme scheme = scheme_of(formulation, values);
+  scheme.trial = true;
+  scheme.compensate = compensate;
+  scheme.passes = 2;
+  return scheme;
+}
+
+/// By what factor the rows that a scheme sets anew grow in a step when nothing but the step changes.
+double growth(const Scheme &scheme, double ratio)
+{
+  const int n = scheme.values(), order = scheme.first() ? 1 : 2;
+  const Fractions exact = scheme.first() ? first_order_coefficients(n)
+                                         : second_order_coefficients(n, false);
+  double c[MAX_VALUES], rows[MAX_VALUES] = {}, before = 1.0;
+  for (int j = 0; j < n; ++j) c[j] = exact[j].value();
+  for (int j = order; j < n; ++j) rows[j] = 1.0 / (1 + j);
+  const int settled = 300, steps = 400;
+  for (int k = 0; k < steps; ++k) {
+    Nordsieck<1>::predict(rows, n);
+    const double residual = -rows[order];
+    Nordsieck<1>::correct<1>(rows, n, c, 0, &residual);
+    Nordsieck<1>::rescale(rows, n, ratio);
+    double size = 0.0;
+    for (int j = order; j < n; ++j) size = std::max(size, std::fabs(rows[j]));
+    if (size == 0.0) return 0.0;
+    if (k == settled) before = 1.0;
+    if (k > settled) before *= size;
+    for (int j = order; j < n; ++j) rows[j] /= size;
+  }
+  return std::pow(before, 1.0 / (steps - 1 - settled));
+}
+
+/// A polynomial of degree `degree` in every column, about t, as rows for the step h.
+vector<double> polynomial(const Scheme &scheme, int degree, double t, double h)
+{
+  vector<double> rows(MAX_SIZE, 0.0);
+  for (int j = 0; j <= degree; ++j)
+    for (int c = 0; c < scheme.width(); ++c) {
+      double taylor = 0.0, choose = 1.0;    // p(t) = sum over k of (1 + c/10) t^k / (1 + k)
+      for (int k = j; k <= degree; ++k) {
+        taylor += choose * (1.0 + 0.1 * c) / (1 + k) * std::pow(t, k - j);
+        choose *= double(k + 1) / (k + 1 - j);
+      }
+      rows[j * scheme.width() + c] = taylor * std::pow(h, j);
+    }
+  return rows;
+}
+
+/// Largest difference of the first `count` rows.
+double difference(const vector<double> &a, const vector<double> &b, const Scheme &scheme, int count)
+{
+  double largest = 0.0;
+  for (int i = 0; i < count * scheme.width(); ++i)
+    largest = std::max(largest, std::fabs(a[i] - b[i]));
+  return largest;
+}
+
+/// The host's part with a tolerance, for one body.
+struct Following {
+  Oracle::CageScene scene;
+  StepControl control;
+  Scheme scheme;
+  double t = 0.0, h, largest = 0.0;
+  int steady = 0, changes = 0;
+  long steps = 0;
+  Integrator integrator;
+  VariableOrder order;
+  vector<double> rows;
+
+  Following(Formulation formulation, double eps, double first_step, int values = 0) :
+      scene(1, true), scheme(varying(formulation, formulation == FIRST ? 8 : 10)), h(first_step),
+      integrator(scheme, h), order(scheme), rows(MAX_SIZE, 0.0)
+  {
+    control.eps = eps;
+    control.fewest = values ? values : formulation == FIRST ? FIRST_FEWEST : SECOND_FEWEST;
+    control.most = values ? values : scheme.values();
+    if (values) use(values);
+    auto load = [&](const BodyState &s, double norm2) {
+      return scene.load(s, norm2);
+    };
+    Scheme above = scheme;
+    above.trial = false;
+    above.rows = scheme.values() + 1;
+    const auto start = started(above, scene.body, scene.start, load, h, Start::BOOTSTRAP, h);
+    std::copy(start.begin(), start.end(), rows.begin());
+  }
+
+  void use(int values)
+  {
+    scheme.rows = values;
+    integrator = Integrator(scheme, h);
+    order = VariableOrder(scheme);
+    steady = 0;
+  }
+
+  BodyState state() const { return integrator.body_state(scene.body, rows.data()); }
+
+  StepErrors step()
+  {
+    StepErrors errors;
+    integrator.predict(rows.data());
+    const double norm2 = scheme.norm2(rows.data() + scheme.quaternion());
+    order.correct(integrator, scene.body, scene.load(state(), norm2), rows.data(), errors);
+    t += h;
+    ++steps;
+    ++steady;
+    largest = std::max(largest, errors.same / control.eps);
+    return errors;
+  }
+
+  void follow(const StepErrors &errors)
+  {
+    const auto next = control.next(errors, h, scheme.values(), steady);
+    if (next.values != scheme.values()) {
+      next.values > scheme.values() ? order.add_row(rows.data()) : order.drop_row(rows.data());
+      use(next.values);
+      ++changes;
+    }
+    integrator.rescale(rows.data(), next.step / h);
+    h = next.step;
+    integrator.set_step(h);
+  }
+
+  /// To the time `end` exactly.  Returns the largest error of the energy.
+  double run(double end)
+  {
+    const double e0 = scene.total_energy(scene.start);
+    double worst = 0.0;
+    while (t < end) {
+      if (t + h > end) {    // a step like any other, only shorter
+        integrator.rescale(rows.data(), (end - t) / h);
+        h = end - t;
+        integrator.set_step(h);
+      }
+      const StepErrors errors = step();
+      worst = std::max(worst, std::fabs(scene.total_energy(state()) - e0));
+      if (t < end) follow(errors);
+    }
+    return worst;
+  }
+};
+
+}    // namespace
+
+TEST(StepControl, AShrinkingStepIsStableToTenValues)
+{
+  for (const Scheme &scheme : every_scheme()) {
+    double worst = growth(scheme, StepControl::GROWTH);
+    for (double ratio = StepControl::SHRINK; ratio < 1.0; ratio += 0.01)
+      worst = std::max(worst, growth(scheme, ratio));
+    std::printf("%s, N = %d: rows change by %.3f a step at most\n", name(scheme), scheme.values(),
+                worst);
+    if (scheme.values() <= VARIABLE_MOST)
+      EXPECT_LT(worst, 0.95);
+    else
+      EXPECT_GT(worst, 1.0);
+  }
+}
+
+TEST(StepControl, RowsComeAndGoWithoutAnError)
+{
+  const double h = 0.1, ratio = 0.7;
+  for (const Scheme &scheme : every_scheme())
+    for (bool compensate : {false, true})
+      for (int change : {-1, 1}) {
+        const int n = scheme.values();
+        const Scheme from = varying(scheme.formulation, n, compensate);
+        const Scheme to = varying(scheme.formulation, n + change, compensate);
+        if (change < 0 ? n - 1 < (from.first() ? FIRST_FEWEST : SECOND_FEWEST)
+                       : n + 1 > (from.first() ? FIRST_MOST : SECOND_MOST))
+          continue;
+        const int degree = change < 0 ? n - 2 : n;
+        vector<double> rows = polynomial(from, degree, 0.3, h);
+        if (change > 0) {    // its last row is the trial row
+          std::copy_n(&rows[n * from.width()], from.width(), &rows[from.trial_row()]);
+          if (compensate) std::fill_n(&rows[n * from.width()], from.width(), 0.0);
+        }
+        const VariableOrder order(from);
+        change < 0 ? order.drop_row(rows.data()) : order.add_row(rows.data());
+        Integrator integrator(to, h);
+        integrator.rescale(rows.data(), ratio);
+        integrator.set_step(ratio * h);
+        integrator.predict(rows.data());
+        const vector<double> exact = polynomial(to, degree, 0.3 + ratio * h, ratio * h);
+        EXPECT_LT(difference(rows, exact, to, degree + 1), 1e-14) << name(from) << " " << n;
+        const vector<double> off = polynomial(to, degree, 0.3 + 1.01 * ratio * h, ratio * h);
+        EXPECT_GT(difference(rows, off, to, degree + 1), 1e-4);
+      }
+}
+
+TEST(StepControl, CarriesStayWithTheirRows)
+{
+  for (Formulation formulation : {FIRST, SECOND}) {
+    const Scheme six = varying(formulation, 6, true), seven = varying(formulation, 7, true);
+    const int width = six.width(), carries = six.carries() * width;
+    vector<double> rows(MAX_SIZE, 0.0), carry(carries), trial(width);
+    for (int i = 0; i < six.size(); ++i) rows[i] = 1.0 + i;
+    const vector<double> before = rows;
+    VariableOrder(six).add_row(rows.data());
+    for (int i = 0; i < carries; ++i) EXPECT_EQ(rows[7 * width + i], before[6 * width + i]);
+    for (int i = 0; i < width; ++i) {
+      EXPECT_EQ(rows[6 * width + i], before[six.trial_row() + i]);
+      EXPECT_EQ(rows[seven.trial_row() + i], 0.0);
+    }
+    VariableOrder(seven).drop_row(rows.data());
+    for (int i = 0; i < six.size(); ++i) EXPECT_EQ(rows[i], before[i]);
+  }
+}
+
+TEST(StepControl, EstimatesAreThoseOfTheOtherNumbersOfValues)
+{
+  auto errors_at = [](Formulation formulation, int values, double h) {
+    Following body(formulation, 1.0, h, values);
+    StepErrors errors;
+    for (int n = 0; n < 3 * values; ++n) errors = body.step();
+    while (body.t < 8.0 - 0.5 * h) errors = body.step();
+    return errors;
+  };
+  for (Formulation formulation : {FIRST, SECOND})
+    for (int n : {6, 7}) {
+      const double h = 0.1;
+      const StepErrors here = errors_at(formulation, n, h), half = errors_at(formulation, n, h / 2);
+      EXPECT_NEAR(std::log2(here.fewer / half.fewer), n - 1, 0.5);
+      EXPECT_NEAR(std::log2(here.same / half.same), n, 0.5);
+      EXPECT_NEAR(std::log2(here.more / half.more), n + 1, 1.0);
+      const StepErrors below = errors_at(formulation, n - 1, h / 2);
+      const StepErrors above = errors_at(formulation, n + 1, h / 2);
+      EXPECT_NEAR(half.fewer / below.same, 1.0, 0.3);
+      EXPECT_NEAR(half.more / above.same, 1.0, 0.3);
+    }
+}
+
+TEST(StepControl, TheEstimateIsTheCorrectorsOwn)
+{
+  for (Scheme scheme : every_scheme()) {
+    if (scheme.values() > VARIABLE_MOST) continue;
+    scheme.trial = true;
+    const Oracle::CageScene scene(1, true);
+    const Integrator integrator(scheme, 0.1);
+    vector<double> rows(MAX_SIZE, 0.0);
+    seed(scheme, scene.body, local_series(scene.body, scene.start, scene.load(scene.start, 1.0), 0.1),
+         0.1, 0.1, rows.data());
+    StepErrors errors;
+    integrator.predict(rows.data());
+    const Correction own =
+        VariableOrder(scheme).correct(integrator, scene.body, scene.load(scene.start, 1.0),
+                                      rows.data(), errors);
+    const double larger = std::max(own.position_error, own.angle_error);
+    EXPECT_GT(larger, 0.0);
+    EXPECT_NEAR(errors.same / larger, 1.0, 1e-9) << name(scheme) << " " << scheme.values();
+  }
+}
+
+TEST(StepControl, TheLaw)
+{
+  StepControl control;
+  control.eps = 1e-6;
+  control.fewest = 4;
+  control.most = 10;
+  const double big = 1e30;
+  auto next = [&](StepErrors errors, double step, int values = 8, int steady = 100) {
+    return control.next(errors, step, values, steady);
+  };
+
+  EXPECT_DOUBLE_EQ(next({big, 1e-6, big}, 0.1).step, 0.1);
+  EXPECT_DOUBLE_EQ(next({big, 1e-6 * std::pow(1.25, 8), big}, 0.1).step, 0.08);
+  EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1).step, 0.1 * StepControl::GROWTH);
+  EXPECT_DOUBLE_EQ(next({big, big, big}, 0.1).step, 0.1 * StepControl::SHRINK);
+  EXPECT_DOUBLE_EQ(next({big, big, big}, -0.1).step, -0.1 * StepControl::SHRINK);
+
+  // another number of values has to promise more than that the error is smaller
+
+  EXPECT_EQ(next({1e-7, 1e-6, big}, 0.1).values, 7);
+  EXPECT_EQ(next({0.5e-6, 1e-6, big}, 0.1).values, 8);
+  EXPECT_EQ(next({big, 1e-6, 0.9e-7}, 0.1).values, 9);
+  EXPECT_EQ(next({big, 1e-6, 1.1e-7}, 0.1).values, 8);
+  EXPECT_EQ(next({big, 1e-6, 0.9e-7}, 0.1, 8, 8).values, 8);    // too early
+  EXPECT_EQ(next({big, 1e-6, 0.0}, 0.1, 10).values, 10);
+  EXPECT_EQ(next({0.0, 1e-6, big}, 0.1, 4).values, 4);
+
+  control.shortest = 0.09;
+  control.longest = 0.101;
+  EXPECT_DOUBLE_EQ(next({big, big, big}, -0.1).step, -0.09);
+  EXPECT_TRUE(next({big, big, big}, -0.1).held);
+  EXPECT_FALSE(next({big, 1e-6, big}, 0.1).held);
+  EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1).step, 0.101);
+}
+
+TEST(StepControl, TheErrorFollowsEps)
+{
+  const double exact[] = {85.56573248988141, -6.06135624295223, 6.86227956266460};    // t = 200
+  for (Formulation formulation : {FIRST, SECOND}) {
+    vector<double> eps = {1e-7, 1e-9, 1e-11, 1e-13}, errors, steps;
+    for (double e : eps) {
+      Following body(formulation, e, 0.1);
+      body.run(200.0);
+      double d[3];
+      for (int i = 0; i < 3; ++i) d[i] = body.state().center[i] - exact[i];
+      errors.push_back(std::sqrt(dot3(d, d)));
+      steps.push_back(double(body.steps));
+      std::printf("%s, eps %.0e: error %.1e with %ld steps, estimate up to %.1f eps, N changed %d "
+                  "times, now %d\n",
+                  formulation == FIRST ? "first" : "second", e, errors.back(), body.steps,
+                  body.largest, body.changes, body.scheme.values());
+      EXPECT_LT(body.largest, 60.0);    // no step that would have had to be redone
+    }
+    const double slope = std::log(errors.front() / errors.back()) / std::log(eps.front() / eps.back());
+    std::printf("error ~ eps^%.2f\n", slope);
+    EXPECT_GT(slope, 0.75);
+    EXPECT_LT(slope, 1.25);
+    EXPECT_GT(steps.back(), steps.front());
+  }
+}
+
+TEST(StepControl, EncountersKeepTheEnergy)
+{
+  // the first 2000 of case 1, with a dozen of encounters; a step as long as the mean one loses ten thousand times as much
+  for (Formulation formulation : {FIRST, SECOND}) {
+    Following body(formulation, 1e-13, 0.1);
+    const double worst = body.run(2000.0), mean = body.t / body.steps;
+    std::printf("%s: energy off by %.1e after %ld steps, estimate up to %.1f eps\n",
+                formulation == FIRST ? "first" : "second", worst, body.steps, body.largest);
+    EXPECT_LT(worst, 1e-8);
+    EXPECT_LT(body.largest, 20.0);
+
+    Following fixed(formulation, 1e-13, mean);
+    fixed.control.shortest = fixed.control.longest = mean;
+    EXPECT_GT(fixed.run(2000.0), 1e-6);
+  }
+}
