@@ -42,7 +42,7 @@ def documented_values(key, text):
 
 
 ACCEPTED = set(strings("known", ARGUMENTS))
-NAMES = {"infile", "mol"}  # keywords whose value is a name
+NAMES = {"infile", "mol", "tolerance", "dtmin", "dtmax"}  # keywords without a default
 VALUES = {
     key: {no, yes}
     for key, no, yes in re.findall(
@@ -81,7 +81,13 @@ def test_default_numbers_are_those_of_the_source():
     text = " ".join(section("Default").split())
     found = re.search(r"FIRST_VALUES = (\d+), SECOND_VALUES = (\d+), PASSES = (\d+)", ARGUMENTS)
     first, second, passes = found.groups()
-    assert f"values = {second} for *second* and {first} for *first*, passes = {passes}" in text
+    control = (SOURCES / "gear_quat_step_control.h").read_text()
+    most = int(re.search(r"VARIABLE_MOST = (\d+)", control)[1])
+    coefficients = (SOURCES / "gear_quat_coefficients.h").read_text()
+    first_most = int(re.search(r"FIRST_MOST = (\d+)", coefficients)[1])
+    with_tolerance = f"({most} and {min(most, first_most)} with tolerance)"
+    values = f"values = {second} for *second* and {first} for *first* {with_tolerance}"
+    assert f"{values}, passes = {passes}" in text
     assert NUMBERS == {"values", "passes"}
 
 
