@@ -17,6 +17,7 @@
 #include "fix_gear_quat.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_blowup.h"
 #include "gear_quat_bodies.h"
 #include "gear_quat_bootstrap.h"
 #include "gear_quat_checks.h"
@@ -76,8 +77,9 @@ static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR 
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), sums(nullptr),
-    extracts(nullptr), tolerance(nullptr), started(false), met_atoms(false), h(0.0), integrator(nullptr),
-    velocities_read(true), f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
+    extracts(nullptr), blowup(nullptr), tolerance(nullptr), started(false), met_atoms(false),
+    h(0.0), integrator(nullptr), velocities_read(true), f_sum(nullptr), torque_sum(nullptr),
+    nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -109,6 +111,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     tolerance = new GearQuatTolerance(lmp, this, args->scheme, args->control, *bodies);
   size_vector = GearQuatSums::ELEMENTS + (variable ? GearQuatTolerance::ELEMENTS : 0);
   extlist = new int[size_vector]{1, 1};
+  blowup = new GearQuatBlowup(lmp, *bodies, args->scheme);
   table = new GearQuatTable(lmp, *bodies);
   sums = new GearQuatSums(lmp, *bodies);
   find_template(lmp, args->mol);    // it has to exist
@@ -141,6 +144,7 @@ FixGearQuat::~FixGearQuat()
   delete integrator;
   delete tolerance;
   delete args;
+  delete blowup;
   delete extracts;
   delete sums;
   delete table;
@@ -268,6 +272,7 @@ void FixGearQuat::initial_integrate(int vflag)
     // forces of the step before are still there, those of all other fixes among them
     bodies->spread_states();
     bodies->gather_loads(atom->f, atom->torque);
+    blowup->check_loads(h, atom->f);
     start();
   }
   begin_step();
@@ -297,10 +302,13 @@ void FixGearQuat::start()
 
 void FixGearQuat::begin_step()
 {
+  const MotionLimits limits = blowup->limits(h);
   for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
     double *rows = bodies->history(ibody);
     integrator->predict(rows);
     bodies->state[ibody] = integrator->body_state(bodies->body[ibody].rigid, rows);
+    if (!limits.keep_velocities(bodies->state[ibody]))
+      blowup->stop(ibody, bodies->state[ibody], h, atom->f);
   }
   bodies->spread_states();
   bodies->place_sites(velocities_read);
@@ -313,10 +321,12 @@ void FixGearQuat::finish_step(double **f, double **torque)
 
   const int known = args->start == GearQuatArguments::Start::ZERO ? 2
                                                                   : 3;    // terms of a fresh body
+  const MotionLimits limits = blowup->limits(h);
   for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
     double *rows = bodies->history(ibody);
     const RigidBody &rigid = bodies->body[ibody].rigid;
     if (bodies->body[ibody].fresh) {
+      blowup->check_load(ibody, h, f);
       GearQuatBootstrap::seed_body(*bodies, ibody, present_scheme(), h, known);
       bodies->body[ibody].fresh = 0;
       if (tolerance) tolerance->note_fresh();
@@ -325,6 +335,7 @@ void FixGearQuat::finish_step(double **f, double **torque)
     bodies->last[ibody] = tolerance ? tolerance->correct(*integrator, ibody)
                                     : integrator->correct(rigid, bodies->load[ibody], rows);
     bodies->state[ibody] = integrator->body_state(rigid, rows);
+    if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
   }
   bodies->spread_states();
   bodies->place_sites(true);
@@ -366,6 +377,7 @@ void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
   v_init(vflag);
   if (!started) {
     GearQuatBootstrap::gather_present_loads(lmp, this, *bodies);
+    blowup->check_loads(h, atom->f);
     start();
   }
   begin_step();

@@ -80,6 +80,7 @@ class FixGearQuat : public Fix {
   class GearQuatTable *table;
   class GearQuatSums *sums;
   class GearQuatExtract *extracts;
+  class GearQuatBlowup *blowup;
   class GearQuatTolerance *tolerance;    // null: the step is LAMMPS' own
 
   bool started;      // histories are those of the step h

@@ -253,6 +253,11 @@ void GearQuatBodies::list_sites()
   take_stock(lost, example);
 }
 
+tagint GearQuatBodies::id_of(int i) const
+{
+  return body_id[atom->map(atom->tag[i])];    // on a single rank ghosts are images of own atoms
+}
+
 /// Count what all ranks have.  lost: atoms here that do not find their body, one of them `example`.
 void GearQuatBodies::take_stock(int lost, tagint example)
 {

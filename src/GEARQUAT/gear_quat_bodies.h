@@ -50,6 +50,8 @@ class GearQuatBodies : protected Pointers {
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * scheme.size(); }
   bool in_body(int atom) const { return body_id[atom] != 0; }
+  /// The user's ID of an atom's body, of ghosts too; 0 for none.
+  tagint id_of(int atom) const;
   /// True if some atoms of bodies, on any rank, are more than points.
   bool has_extended() const { return extended.has_records(); }
 
@@ -130,7 +132,7 @@ class GearQuatBodies : protected Pointers {
   std::vector<Frame> frame;    ///< owned and ghost bodies
 
   int nmax;
-  tagint *body_id;       ///< per atom: the user's ID of its body, 0 for none
+  tagint *body_id;       ///< per atom, ghosts as id_of() says: the user's ID of its body, 0 for none
   tagint *owner_tag;     ///< per atom: atom ID of the owner of its body
   int *owned;            ///< per atom, ghosts too: the body it owns, or -1
   double **site_body;    ///< per atom: from the centre of mass, principal frame

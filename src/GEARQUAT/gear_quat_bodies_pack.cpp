@@ -97,7 +97,7 @@ int GearQuatBodies::max_exchange() const
 
 int GearQuatBodies::max_forward() const
 {
-  return 1 + BODY_SIZE;
+  return 2 + BODY_SIZE;
 }
 
 /* ----------------------------------------------------------------------
@@ -110,6 +110,7 @@ int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
   for (int i = 0; i < n; ++i) {
     const int ibody = owned[list[i]];
     if (forward == Forward::GHOSTS) {
+      buf[m++] = ubuf(body_id[list[i]]).d;
       buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
       if (ibody >= 0) m += pack_body(body[ibody], state[ibody], buf + m);
     } else if (ibody >= 0 && forward == Forward::STATES) {
@@ -128,6 +129,7 @@ void GearQuatBodies::unpack_forward(int n, int first, const double *buf)
   int m = 0;
   for (int i = first; i < first + n; ++i) {
     if (forward == Forward::GHOSTS) {
+      body_id[i] = (tagint) ubuf(buf[m++]).i;
       if (ubuf(buf[m++]).i == 0) continue;
       owned[i] = (int) body.size();
       body.emplace_back();

@@ -207,14 +207,13 @@ def test_water_with_kspace(lmp_tree, ranks):
 
 @pytest.mark.parametrize("start", ["bootstrap", "zero"])
 def test_forces_that_are_no_numbers_do_not_pass_for_converged(lmp_tree, start):
-    """Two atoms in one place: the start steps back and says so, the run shows what it is."""
+    """A force that is infinite off the very start: the start steps back and says so."""
     after = """
-set atom 4 x 1.0 y 0.0 z 0.0
-thermo_modify lost ignore
+group first id 1
+variable wall atom exp(1000*(abs(x)>1e-9))*(abs(x)>1e-9)
+fix wall first addforce 0 0 v_wall
 run 1
 """
-    deck = two_molecules(f"molecule start {start}", after=after).replace(
-        "pair_style zero 2.0\npair_coeff * *", "pair_style lj/cut 2.0\npair_coeff * * 1.0 1.0"
-    )
-    result = lmp_tree.run(deck)
+    result = lmp_tree.run(two_molecules(f"molecule start {start}", after=after))
     assert (FALLBACK in result.stdout) == (start == "bootstrap"), result.output
+    assert "blow-up in step 1, time 0.01: body 1 meets a force that is not" in result.output

@@ -20,8 +20,8 @@ from ..lammps_runner import Job, LammpsError, run_many
 from ..report import markdown_table
 
 SAMPLES = 2000
-#: LAMMPS' word for coordinates and energies that are not finite any more
-NOT_FINITE = "Non-numeric"
+#: LAMMPS' word for coordinates and energies that are not finite any more, and the fix's own
+NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up")
 #: a slope of less than so many standard errors, which are themselves estimates, is no drift
 SIGNIFICANT = 4.0
 #: an error of more than this part of the kinetic energy at the start spoils a run
@@ -121,6 +121,11 @@ def planned_runs(steps, scenes=SCENES, methods=METHODS):
     ]
 
 
+def is_lost(text):
+    """Whether LAMMPS' words say that a run ended because its numbers did."""
+    return any(words in text for words in NOT_FINITE)
+
+
 def run_all(runs, folder, lmp=None, workers=2, progress=None):
     """Run everything, logs in ``folder``.
 
@@ -142,7 +147,7 @@ def run_all(runs, folder, lmp=None, workers=2, progress=None):
         try:
             run_many([run.job(folder)], lmp, 1, advance)
         except LammpsError as error:
-            if NOT_FINITE not in str(error):
+            if not is_lost(str(error)):
                 raise
         advance(left)
 
@@ -230,7 +235,7 @@ def read_drift(run, folder):
     """Drift of a run whose log is in ``folder``."""
     log = run.job(folder).log
     text = log.read_text(encoding="utf-8", errors="replace")
-    if NOT_FINITE in text:
+    if is_lost(text):
         return lost(_finite_until(log) + run.every * run.dt)
     values = series.read_log(log)
     if len(values.step) == 0 or values.step[-1] != run.steps:  # samples that are nan are not read

@@ -1,0 +1,53 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The end of a run in which a body goes astray, at the step where it does: before its atoms are
+   placed, so before a dump or another fix sees them.  The comparison is in gear_quat_limits.h and
+   is made by the fix for every body and step; what is here is for the run that has to end. */
+
+#ifndef LMP_GEAR_QUAT_BLOWUP_H
+#define LMP_GEAR_QUAT_BLOWUP_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_limits.h"
+
+namespace LAMMPS_NS {
+
+class GearQuatBlowup : protected Pointers {
+ public:
+  GearQuatBlowup(LAMMPS *lmp, const GearQuatBodies &bodies, const GearQuat::Scheme &scheme) :
+      Pointers(lmp), bodies(bodies), scheme(scheme)
+  {
+  }
+
+  /// For a step h in the present box, which is none where it follows the atoms.
+  GearQuat::MotionLimits limits(double h) const;
+
+  /// Ends the run if the present loads would make an owned body go astray within a step h.  Atoms are
+  /// where the loads were taken; f: forces on them.
+  void check_loads(double h, double **f) const;
+  /// The same of one body.
+  void check_load(int ibody, double h, double **f) const;
+  /// Ends the run on all ranks, from the one that owns the body: says step, time, body, its site
+  /// nearest to another atom (or one on which the force is no number), and what to change.
+  /// Atoms are where the load was taken; s: what came of it, beyond the limits.
+  [[noreturn]] void stop(int ibody, const GearQuat::BodyState &s, double h, double **f) const;
+
+ private:
+  const GearQuatBodies &bodies;
+  const GearQuat::Scheme &scheme;
+
+  struct Meeting {
+    int site, other;    ///< atoms; -1 for none
+    double distance2;
+  };
+  Meeting nearest(int ibody, int site) const;
+  std::string what_happened(int ibody, const GearQuat::BodyState &s, double h) const;
+  std::string where(int ibody, double **f) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,63 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* What no step can be right about: a body that turns by half a turn in one step (from the poses
+   alone nobody can tell which way round), that crosses the whole scene in one, whose quaternion is so
+   far from unit length that unprojected sites are a hundred times too far out or in, or whose motion
+   is no number.  All are far outside of what is stable, so only runs that are lost end here: the
+   quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h = 1.57,
+   and no method here is stable beyond 1.42. */
+
+#ifndef GEAR_QUAT_LIMITS_H
+#define GEAR_QUAT_LIMITS_H
+
+#include "gear_quat_rigid_body.h"
+
+namespace GearQuat {
+
+struct MotionLimits {
+  static constexpr double TURN = 3.14159265358979323846;    ///< radians in a step
+  static constexpr double NORM2 = 100.0;    ///< |q|^2 is less than this, and more than its inverse
+
+  double speed2, rate2;
+
+  /// h: the time step, not zero.  length: of the scene, infinite for none.
+  MotionLimits(double h, double length) :
+      speed2((length / h) * (length / h)), rate2((TURN / h) * (TURN / h))
+  {
+  }
+
+  /// False for velocities beyond the limits, and for any that are no numbers.
+  bool keep_velocities(const BodyState &s) const
+  {
+    return dot3(s.velocity, s.velocity) < speed2 && dot3(s.omega_body, s.omega_body) < rate2;
+  }
+
+  /// And for |q|.  Of a corrected state: a predicted q is not meant to have unit length.
+  bool keep(const BodyState &s) const
+  {
+    const double norm2 = dot4(s.q, s.q);
+    return keep_velocities(s) && norm2 < NORM2 && norm2 > 1.0 / NORM2;
+  }
+};
+
+/// The state with the velocities that a load gives it in a step h.
+inline BodyState kicked(const RigidBody &body, const BodyState &before, const Load &load, double h)
+{
+  BodyState s = before;
+  double a[9], torque_body[3], omegadot_body[3];
+  rotation_matrix(s.q, dot4(s.q, s.q), a);
+  to_body(a, load.torque_space, torque_body);
+  angular_acceleration(body, torque_body, before.omega_body, omegadot_body);
+  for (int k = 0; k < 3; ++k) {
+    s.velocity[k] += h * load.force[k] / body.mass;
+    s.omega_body[k] += h * omegadot_body[k];
+  }
+  return s;
+}
+
+}    // namespace GearQuat
+
+#endif

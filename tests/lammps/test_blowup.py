@@ -1,0 +1,151 @@
+"""A body that goes astray ends the run where it does so, with all that is needed to find it."""
+
+import re
+
+import numpy as np
+import pytest
+from scenes import two_molecules, water, water_data, whole_deck
+
+# Forces on chosen atoms from step 5 on; before it exp(0) * 0.
+PUSH = """
+variable on equal step>=5
+variable push equal {size}*v_on
+variable pull equal -({size})*v_on
+group pushed id {pushed}
+group pulled id {pulled}
+fix push pushed addforce 0 0 v_push
+fix pull pulled addforce 0 0 v_pull
+thermo 1
+dump poses all custom 1 poses.dump id x y z vx vy vz
+dump_modify poses sort id flush yes
+{style}
+run 20
+"""
+TOO_MUCH = "exp(1000*v_on)"
+
+WHERE = re.compile(
+    r"Fix gear/quat: blow-up in step (\d+), time (\S+): body (\d+) (.*?); its atom (\d+) is (\S+) away "
+    r"from atom (\d+)(.*?)\. Use a smaller time step than (\S+) or fewer values than (\d+)"
+)
+
+
+def message(result):
+    """What the fix says of the blow-up, once and in one piece: groups of WHERE."""
+    assert result.returncode != 0
+    assert result.output.count("blow-up") == 1, result.output
+    assert len(result.errors) == 1, result.output
+    found = WHERE.search(" ".join(result.errors[0].split()))
+    assert found, result.output
+    return found.groups()
+
+
+def frames(path):
+    """Arrays (atoms, 7) of a dump by step."""
+    table = {}
+    for text in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
+        rows = text.partition("ITEM: ATOMS")[2].splitlines()[1:]
+        table[int(text.split()[0])] = np.loadtxt(rows, ndmin=2)
+    return table
+
+
+def pushed(size, pushed=5, pulled="none", style="", fix="molecule", **options):
+    before = "group none empty\n" if pulled == "none" else ""
+    after = PUSH.format(size=size, pushed=pushed, pulled=pulled, style=style)
+    if pulled == "none":
+        after = after.replace("id none", "empty")
+    return two_molecules(fix, before=before, after=after, **options)
+
+
+# size of the force, atoms it acts on, atoms its opposite acts on, what is said
+ABSURD = {
+    "force": (TOO_MUCH, "5", "none", "meets a force that is not a finite number"),
+    "forces": (TOO_MUCH, "5", "6", "meets a force that is not a finite number"),
+    "way": ("1e9", "4 5 6", "none", "moves by"),
+    "turn": ("1e7", "5", "4", "moves by"),
+}
+
+
+@pytest.mark.parametrize("name, ranks", [*zip(ABSURD, [1] * 4), *zip(ABSURD, [2, 4, 2, 4])])
+def test_an_absurd_force(lmp_tree, name, ranks):
+    size, on, against, what = ABSURD[name]
+    result = lmp_tree.run(pushed(size, on, against, fix="molecule values 7"), ranks=ranks)
+    step, time, body, said, atom, away, other, _, h, values = message(result)
+    assert (step, float(time), body, float(h), values) == ("5", 0.05, "2", 0.01, "7")
+    assert what in said
+    assert atom in (("5", "6") if size == TOO_MUCH else ("4", "5", "6"))
+    assert other in ("1", "2", "3") and 5.0 < float(away) < 9.0
+    # nothing of it has reached a dump, nor thermo
+    seen = frames(lmp_tree.folder / "poses.dump")
+    assert max(seen) == 4 and all(np.abs(frame).max() < 20 for frame in seen.values())
+    assert "nan" not in result.stdout and "inf" not in result.stdout.replace("info", "")
+
+
+@pytest.mark.parametrize("style", ["", "run_style respa 2 1 pair 1"])
+def test_in_every_way_to_run(lmp, style):
+    for words in ("formulation first start bootstrap", "start zero", "passes 3"):
+        result = lmp.run(pushed(TOO_MUCH, style=style, fix=f"molecule {words}"))
+        assert message(result)[:3] == ("5", "0.05", "2")
+
+
+@pytest.mark.parametrize("start, ranks", [("zero", 1), ("bootstrap", 2)])
+@pytest.mark.parametrize("distance", [0.0, 1e-30])
+def test_atoms_on_top_of_each_other(lmp_tree, distance, start, ranks):
+    """No number, or an absurd one, before the first step: it is the start that has to end."""
+    overlap = (
+        f"set atom 4 x {1 + distance} y 0 z 0\nset atom 5 x 2 y 0 z 0\nset atom 6 x 1 y 1 z 0\n"
+    )
+    deck = two_molecules(f"molecule start {start}", before=overlap)
+    deck = deck.replace("pair_style zero 2.0", "pair_style lj/cut 2.0")
+    deck = deck.replace("pair_coeff * *", "pair_coeff * * 1.0 1.0")
+    *said, atom, away, other, _, _, _ = message(lmp_tree.run(deck, ranks=ranks))
+    assert said[0] == "1" and said[2] in "12"
+    assert {atom, other} == {"2", "4"} and float(away) == pytest.approx(distance, abs=1e-15)
+
+
+def test_an_inserted_body(lmp_tree):
+    """It begins with the forces of its first step."""
+    (lmp_tree.folder / "molecule.two").write_text(
+        "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
+    )
+    after = """
+molecule two molecule.two
+unfix move
+delete_atoms group all compress no
+fix move all gear/quat molecule mol two
+variable push equal exp(1000*(atoms>0))*(atoms>0)
+fix push all addforce 0 0 v_push
+region put block -8 -6 -8 -6 -8 -6
+fix put all deposit 1 0 3 4711 region put mol two rigid move near 0.5
+run 9
+"""
+    result = lmp_tree.run(two_molecules(after=after))
+    assert len(result.errors) == 1 and "blow-up in step 1, time 0.01: body 1 meets" in result.output
+    assert "; the force on its atom 2 is no number. Use" in result.output  # nobody else is there
+
+
+@pytest.mark.parametrize("values, dt, ranks", [(8, 40, 1), (8, 40, 2), (12, 6, 1), (12, 10, 4)])
+def test_too_large_a_step(lmp_tree, values, dt, ranks):
+    """Before LAMMPS loses atoms: what it says then tells nothing of where."""
+    data = water_data(lmp_tree.folder / "data.water")
+    deck = water(data, f"gear/quat molecule values {values}", dt=dt, thermo=1, steps=100)
+    result = lmp_tree.run(
+        deck.replace("dump poses all custom 100", "dump poses all custom 1"), ranks=ranks
+    )
+    assert result.returncode != 0
+    assert set(re.findall(r"Fix gear/quat: blow-up", result.output)), result.output
+    assert all("blow-up" in error for error in result.errors), result.output
+    for frame in frames(lmp_tree.folder / "poses.dump").values():
+        assert np.isfinite(frame).all()
+
+
+@pytest.mark.parametrize("formulation", ["first", "second"])
+@pytest.mark.parametrize("choices", ["accurate", "paper"])
+def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, choices):
+    """Their energy is lost, their bodies are not: |q|^2 is off by a factor of two in some."""
+    scene = whole_deck(examples / "case1" / "in.case1")
+    for dt in (0.25, 1.0) if choices == "accurate" or formulation == "second" else (0.25,):
+        variables = dict(
+            formulation=formulation, choices=choices, dt=dt, steps=2000, every=1000, out="none"
+        )
+        result = lmp_tree.run(scene, variables)
+        assert result.returncode == 0, result.output
