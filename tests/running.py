@@ -19,7 +19,7 @@ import signal
 import subprocess
 import sysconfig
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -72,7 +72,8 @@ class Result:
         return tables
 
 
-def _processes_of_session(session: int) -> list[int]:
+def processes_of_session(session: int) -> list[int]:
+    """Numbers of the processes that a run has started."""
     members = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -87,13 +88,13 @@ def _processes_of_session(session: int) -> list[int]:
 def _end_session(session: int) -> None:
     """Ends a program and all it started: ``mpirun`` and ``lmp`` leave children in other groups."""
     for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
-        for process in _processes_of_session(session):
+        for process in processes_of_session(session):
             try:
                 os.kill(process, number)
             except ProcessLookupError:
                 pass
         end = time.monotonic() + grace
-        while time.monotonic() < end and _processes_of_session(session):
+        while time.monotonic() < end and processes_of_session(session):
             time.sleep(0.05)
 
 
@@ -116,12 +117,14 @@ class Lammps:
         folder: Path | None = None,
         arguments: Sequence[str] = (),
         environment: Mapping[str, str] | None = None,
+        meanwhile: Callable[[int], None] | None = None,
     ) -> Result:
         """Runs a deck: a Path to a file, or its text.
 
         A file runs in its own folder (it reads its data from there), a text in ``self.folder``,
         the test's own; ``folder`` overrides either. A value of ``variables`` that is a list becomes
-        several words. Raises TimeoutError, with what was printed so far.
+        several words. ``meanwhile`` is called once with the number of the session of all processes,
+        while they run. Raises TimeoutError, with what was printed so far.
         """
         number = len(list(self.folder.glob("log.run*"))) + 1
         log = self.folder / f"log.run{number}"
@@ -155,6 +158,8 @@ class Lammps:
                 start_new_session=True,
             )
             try:
+                if meanwhile:
+                    meanwhile(process.pid)
                 returncode = process.wait(timeout)
             except subprocess.TimeoutExpired:
                 _end_session(process.pid)

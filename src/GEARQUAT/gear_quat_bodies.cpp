@@ -253,9 +253,10 @@ void GearQuatBodies::list_sites()
   take_stock(lost, example);
 }
 
+/// On a single rank ghosts are images of own atoms, on several they are told.
 tagint GearQuatBodies::id_of(int i) const
 {
-  return body_id[atom->map(atom->tag[i])];    // on a single rank ghosts are images of own atoms
+  return body_id[atom->map(atom->tag[i])];
 }
 
 /// Count what all ranks have.  lost: atoms here that do not find their body, one of them `example`.

@@ -132,7 +132,7 @@ class GearQuatBodies : protected Pointers {
   std::vector<Frame> frame;    ///< owned and ghost bodies
 
   int nmax;
-  tagint *body_id;       ///< per atom, ghosts as id_of() says: the user's ID of its body, 0 for none
+  tagint *body_id;       ///< per atom: the user's ID of its body, 0 for none
   tagint *owner_tag;     ///< per atom: atom ID of the owner of its body
   int *owned;            ///< per atom, ghosts too: the body it owns, or -1
   double **site_body;    ///< per atom: from the centre of mass, principal frame

@@ -94,17 +94,18 @@ void LAMMPS_NS::write_given_bodies(LAMMPS *lmp, const std::string &filename,
   const std::vector<Line> all = gather(lmp, mine);
   if (lmp->comm->me != 0) return;
 
-  FILE *file = fopen(filename.c_str(), "w");
-  if (!file)
+  const auto refuse = [&] {
     lmp->error->one(FLERR, "Fix gear/quat: cannot write file {}: {}", filename,
                     utils::getsyserror());
+  };
+  const std::string unfinished = filename + ".tmp";
+  FILE *file = fopen(unfinished.c_str(), "w");
+  if (!file) refuse();
   fprintf(file,
           "# fix %s gear/quat: mass, center of mass, inertia tensor and momenta of %zu bodies on "
           "timestep " BIGINT_FORMAT "\n\n%zu\n",
           fix_id.c_str(), all.size(), lmp->update->ntimestep, all.size());
   for (const Line &line : all) print(file, line);
   const bool failed = ferror(file) != 0;
-  if (fclose(file) != 0 || failed)
-    lmp->error->one(FLERR, "Fix gear/quat: writing file {} failed: {}", filename,
-                    utils::getsyserror());
+  if (fclose(file) != 0 || failed || rename(unfinished.c_str(), filename.c_str()) != 0) refuse();
 }

@@ -1,0 +1,92 @@
+"""A run that loses a process: what it had written is whole, and goes on as if nothing had happened."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from running import processes_of_session
+from test_infile_out import bodies_in
+from test_life_cycle import Case1, end
+
+AGAIN = 500  # steps after the restart
+NAMES = ("even", "odd")
+
+
+def ranks_of(session):
+    """Processes of LAMMPS itself, not of what starts them."""
+    return sorted(
+        process
+        for process in processes_of_session(session)
+        if Path(f"/proc/{process}/comm").read_text().strip() == "lmp"
+    )
+
+
+def expect_whole(folder, name):
+    """The bodies beside a restart file: at any moment those of one step or another."""
+    (line,) = bodies_in(folder / f"{name}.move.gear_quat")
+    assert line[0] == 1 and np.isfinite(line).all()
+
+
+def killer(folder, rank, delay):
+    """Kills a rank a while after the first restart files are there, whatever it does just then."""
+
+    def kill(session):
+        limit = time.monotonic() + 60.0
+        while not all((folder / f"{name}.move.gear_quat").exists() for name in NAMES):
+            assert time.monotonic() < limit
+            time.sleep(0.01)
+        limit = time.monotonic() + delay
+        while time.monotonic() < limit:
+            for name in NAMES:
+                expect_whole(folder, name)
+        os.kill(ranks_of(session)[rank], signal.SIGKILL)
+
+    return kill
+
+
+def newest_first(folder):
+    return sorted(NAMES, key=lambda name: (folder / name).stat().st_mtime_ns, reverse=True)
+
+
+@pytest.mark.parametrize("formulation, rank, delay", [("first", 0, 0.1), ("second", 1, 0.3)])
+def test_a_killed_rank(lmp_tree, examples, formulation, rank, delay):
+    """Restart files every step, two in turn: the kill falls into the writing of one of them."""
+    case1 = Case1(lmp_tree, examples, formulation, ranks=2)
+    case1.variables["dt"] = (
+        1e-4  # no atom goes over to the other rank, which changes the order of sums
+    )
+    folder = lmp_tree.folder
+    result = lmp_tree.run(
+        case1.scene.replace("run ${steps}", "restart 1 even odd\nrun 10000000"),
+        case1.variables,
+        ranks=2,
+        folder=folder,
+        meanwhile=killer(folder, rank, delay),
+    )
+    assert result.returncode != 0
+
+    # LAMMPS refuses a file that is not whole; then it is the one that was being written
+    for name in newest_first(folder):
+        again = lmp_tree.run(
+            case1.restarted().replace("run ${steps}", f"run {AGAIN}"),
+            {**case1.variables, "restart": name},
+            ranks=2,
+            folder=folder,
+        )
+        if again.returncode == 0:
+            break
+        assert name == newest_first(folder)[0], again.output
+        assert "restart file" in again.output
+    assert again.returncode == 0, again.output
+    begin = int(again.thermo[0]["Step"][0])
+    assert begin > 1
+    whole = case1.run(f"run {begin + AGAIN}", every=begin + AGAIN)
+    assert (end(again) == end(whole)).all()  # bit for bit
+    other = case1.run(f"run {begin + AGAIN - 1}", every=begin + AGAIN - 1)
+    assert (end(again) != end(other)).all()
+
+    for name in NAMES:
+        expect_whole(folder, name)
