@@ -23,6 +23,8 @@
 #include "gear_quat_checks.h"
 #include "gear_quat_extract.h"
 #include "gear_quat_infile_out.h"
+#include "gear_quat_report.h"
+#include "gear_quat_scene.h"
 #include "gear_quat_sums.h"
 #include "gear_quat_table.h"
 #include "gear_quat_template.h"
@@ -67,19 +69,13 @@ static const char cite_gear_quat[] =
     " pages = {306--314}\n"
     "}\n\n";
 
-// where other fixes may read the velocities of predicted sites
-
-static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR |
-    PRE_FORCE | PRE_REVERSE | POST_FORCE | POST_INTEGRATE_RESPA | PRE_FORCE_RESPA |
-    POST_FORCE_RESPA;
-
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), sums(nullptr),
     extracts(nullptr), blowup(nullptr), tolerance(nullptr), started(false), met_atoms(false),
-    h(0.0), integrator(nullptr), velocities_read(true), f_sum(nullptr), torque_sum(nullptr),
-    nmax_sum(0)
+    reported(false), h(0.0), integrator(nullptr), velocities_read(true), f_sum(nullptr),
+    torque_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -172,9 +168,7 @@ void FixGearQuat::init()
   if (tolerance) tolerance->refuse_scene();
   if (tolerance && started) tolerance->keep_step(h);
   follow_time_step();
-  velocities_read = comm->ghost_velocity;
-  for (auto *other : modify->get_fix_list())
-    if (other != this && (modify->get_fix_mask(other) & WITHIN_STEP)) velocities_read = true;
+  velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
 }
 
 bool FixGearQuat::moves(int i) const
@@ -245,6 +239,8 @@ void FixGearQuat::setup(int vflag)
   if (evflag) tally_virial(atom->f);
   table->forget();
   show_bodies();
+  if (!reported) report_scene(lmp, this, *args, *bodies);
+  reported = true;
 }
 
 /// Local data have to be there whenever something may read them.

@@ -85,6 +85,7 @@ class FixGearQuat : public Fix {
 
   bool started;      // histories are those of the step h
   bool met_atoms;    // bodies were compared with the atoms in a run before
+  bool reported;     // the scene, once
   double h;          // step of the histories
   GearQuat::Integrator *integrator;
   bool velocities_read;            // between prediction and correction, by others

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 using namespace LAMMPS_NS;
@@ -75,6 +76,17 @@ int GearQuatArguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
   return 0;
 }
 
+static GearQuatArguments::Report report_of(const std::string &value, Error *error)
+{
+  using Report = GearQuatArguments::Report;
+  const std::map<std::string, Report> words = {
+      {"no", Report::NO}, {"short", Report::SHORT}, {"long", Report::LONG}};
+  const auto found = words.find(value);
+  if (found == words.end())
+    error->all(FLERR, "Fix gear/quat report: unwords value {} (no, short or long)", value);
+  return found->second;
+}
+
 void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 {
   Error *error = lmp->error;
@@ -91,10 +103,9 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 
   for (int iarg = 0; iarg < narg; iarg += 2) {
     const std::string key = arg[iarg];
-    const std::set<std::string> known = {"formulation", "values", "passes",   "start",
-                                         "c0",          "omega",  "momentum", "project",
-                                         "compensate",  "infile", "reinit",   "mol",
-                                         "tolerance",   "dtmin",  "dtmax"};
+    const std::set<std::string> known = {
+        "formulation", "values",     "passes",    "start", "c0",    "omega",  "momentum", "project",
+        "compensate",  "tolerance",  "dtmin",     "dtmax", "infile", "reinit", "mol",     "report"};
     if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
@@ -128,7 +139,9 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
       (key == "tolerance" ? control.eps
            : key == "dtmin" ? control.shortest
                             : control.longest) = number;
-    } else if (key == "mol")
+    } else if (key == "report")
+      report = report_of(value, error);
+    else if (key == "mol")
       mol = value;
     else
       infile = value;

@@ -21,6 +21,7 @@ class LAMMPS;
 struct GearQuatArguments {
   enum class BodyStyle { SINGLE, MOLECULE, GROUP, CUSTOM };
   enum class Start { BOOTSTRAP, ZERO };
+  enum class Report { NO, SHORT, LONG };
 
   BodyStyle bodystyle = BodyStyle::SINGLE;
   std::vector<std::string> groups;    ///< group: one per body
@@ -30,6 +31,7 @@ struct GearQuatArguments {
   GearQuat::StepControl control;    ///< eps 0: the step is LAMMPS' own
   Start start = Start::BOOTSTRAP;
   bool reinit = true;
+  Report report = Report::SHORT;
   std::string infile;
   std::string mol;    ///< template of bodies to come
 

@@ -29,7 +29,7 @@ static constexpr double SAME = 1.0e-11;
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
     Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nbodies(0), natoms(0),
     strangers(0), told(false), nmax(0), body_id(nullptr), owner_tag(nullptr), owned(nullptr),
-    site_body(nullptr), forward(Forward::STATES)
+    site_body(nullptr), forward(Forward::STATES), labels(nullptr)
 {
   grow_arrays(atom->nmax);
   clear();
@@ -311,6 +311,14 @@ GearQuatCensus GearQuatBodies::census(int groupbit) const
     sites.push_back(site);
   }
   return GearQuatCensus(lmp, sites);
+}
+
+void GearQuatBodies::spread_labels(std::vector<double> &label)
+{
+  labels = label.data();
+  forward = Forward::LABELS;
+  comm->forward_comm(fix, 1);
+  labels = nullptr;
 }
 
 /* ----------------------------------------------------------------------

@@ -52,6 +52,8 @@ class GearQuatBodies : protected Pointers {
   bool in_body(int atom) const { return body_id[atom] != 0; }
   /// The user's ID of an atom's body, of ghosts too; 0 for none.
   tagint id_of(int atom) const;
+  /// Sites on this rank that are more than points.
+  bigint number_of_extended_here() const { return (bigint) extended.sites.size(); }
   /// True if some atoms of bodies, on any rank, are more than points.
   bool has_extended() const { return extended.has_records(); }
 
@@ -81,6 +83,8 @@ class GearQuatBodies : protected Pointers {
   bigint number_of_sites() const { return natoms; }
   /// An atom of the fix group was created that is in no body yet; it may be added to one.
   void note_stranger(int change) { strangers += change; }
+  /// A number for every owned atom, behind them their ghosts: these get those of the owned.  Collective.
+  void spread_labels(std::vector<double> &label);
 
   // one step
 
@@ -144,8 +148,9 @@ class GearQuatBodies : protected Pointers {
   static constexpr int BODY_SIZE = 9 + STATE_SIZE;
   static constexpr int LAST_SIZE = sizeof(GearQuat::Correction) / sizeof(double);
 
-  enum class Forward { GHOSTS, STATES, LOADS };
+  enum class Forward { GHOSTS, STATES, LOADS, LABELS };
   Forward forward;    ///< what forward communication carries
+  double *labels;     ///< of all atoms, while these are sent
 
   void drop_ghosts();
   int add_owned(int atom);

@@ -107,6 +107,10 @@ int GearQuatBodies::max_forward() const
 int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
 {
   int m = 0;
+  if (forward == Forward::LABELS) {
+    for (int i = 0; i < n; ++i) buf[m++] = labels[list[i]];
+    return m;
+  }
   for (int i = 0; i < n; ++i) {
     const int ibody = owned[list[i]];
     if (forward == Forward::GHOSTS) {
@@ -127,6 +131,10 @@ int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
 void GearQuatBodies::unpack_forward(int n, int first, const double *buf)
 {
   int m = 0;
+  if (forward == Forward::LABELS) {
+    std::copy_n(buf, n, labels + first);
+    return;
+  }
   for (int i = first; i < first + n; ++i) {
     if (forward == Forward::GHOSTS) {
       body_id[i] = (tagint) ubuf(buf[m++]).i;

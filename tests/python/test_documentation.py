@@ -49,6 +49,7 @@ VALUES = {
         r'key == "(\w+)"\)\s*\S+ =\s*choice\(key, value, "(\w+)", "(\w+)"\)', ARGUMENTS
     )
 }
+VALUES["report"] = set(re.findall(r'{"(\w+)", Report::', ARGUMENTS))
 
 
 NUMBERS = set(re.findall(r'key == "(\w+)"\)\s*\S+ = utils::inumeric', ARGUMENTS))

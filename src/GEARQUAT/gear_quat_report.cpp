@@ -1,0 +1,147 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_report.h"
+
+#include "fix_gear_quat.h"
+#include "gear_quat_arguments.h"
+#include "gear_quat_bodies.h"
+#include "gear_quat_scene.h"
+#include "gear_quat_surroundings.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "utils.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace LAMMPS_NS;
+
+/// A row of the report.  omits: what is left out while the effect is off or in part, with a bound.
+struct Effect {
+  const char *name;
+  bool on;
+  std::string reason;
+  std::string omits;
+};
+
+static constexpr char NOTHING[] = "nothing: the trajectory is the same to the last bit";
+
+/* ---------------------------------------------------------------------- */
+
+static std::string listed(const GearQuatScene &scene)
+{
+  static const char *const TOPS[] = {"points",         "linear",          "spherical tops",
+                                     "symmetric tops", "asymmetric tops", "in a plane"};
+  std::vector<std::string> parts;
+  for (int top = 0; top < GearQuatScene::TOPS; ++top)
+    if (scene.tops[top]) parts.push_back(fmt::format("{}: {}", TOPS[top], scene.tops[top]));
+  return utils::join_words(parts, ", ");
+}
+
+static Effect rotation(const GearQuatScene &scene)
+{
+  const bool on = scene.tops[GearQuatScene::POINT] < scene.bodies;
+  std::string omits;
+  if (scene.tops[GearQuatScene::POINT] || scene.tops[GearQuatScene::LINEAR])
+    omits =
+        fmt::format("rotation about axes whose moment of inertia is below {:g} of the largest of "
+                    "the body; of the energy of an equally fast one about that axis, less than "
+                    "this",
+                    GearQuat::LINEAR_FRACTION);
+  return {"rotation", on, listed(scene), omits};
+}
+
+static Effect torques(const GearQuatScene &scene)
+{
+  const bool on = scene.arms > 0;
+  return {"torques of forces", on,
+          on ? fmt::format("{} sites are off the center of mass", scene.arms)
+             : "every site is at its center of mass",
+          NOTHING};
+}
+
+static Effect images(const Domain *domain)
+{
+  std::string axes;
+  if (domain->xperiodic) axes += " x";
+  if (domain->yperiodic) axes += " y";
+  if (domain->zperiodic) axes += " z";
+  return {"images", !axes.empty(),
+          axes.empty() ? "no direction is periodic"
+                       : "periodic in" + axes + "; while sites are in other images",
+          NOTHING};
+}
+
+static Effect ghost_bodies(const GearQuatScene &scene, int ranks)
+{
+  const std::string reason = ranks == 1 ? "one rank"
+      : scene.ghosts ? fmt::format("{} sites have their body on another rank", scene.ghosts)
+                     : "every site is on the rank of its body";
+  return {"ghost bodies", scene.ghosts > 0, reason, NOTHING};
+}
+
+static Effect compensation(const GearQuatArguments &args, const GearQuatScene &scene)
+{
+  const double rounding = 0.5 * std::numeric_limits<double>::epsilon() * scene.farthest;
+  return {"compensated sums", args.scheme.compensate,
+          args.scheme.compensate ? "compensate yes" : "compensate no",
+          fmt::format("rounding of a coordinate, at most {:.1e} of length in a sum", rounding)};
+}
+
+/// Every effect is one row; another one is another line.
+static std::vector<Effect> effects(LAMMPS *lmp, const FixGearQuat *fix,
+                                   const GearQuatArguments &args, const GearQuatScene &scene)
+{
+  const std::string reader = reader_of_predicted_velocities(lmp, fix);
+  const auto because = [](bool on, const std::string &yes, const std::string &no) {
+    return on ? yes : no;
+  };
+  return {
+      rotation(scene),
+      torques(scene),
+      {"finite size", scene.extended > 0,
+       because(scene.extended, fmt::format("{} sites are more than points", scene.extended),
+               "all sites are points"),
+       NOTHING},
+      images(lmp->domain),
+      ghost_bodies(scene, lmp->comm->nprocs),
+      {"virial", fix->thermo_virial != 0,
+       because(fix->thermo_virial, "in steps that ask for pressure or stress",
+               "fix_modify virial no"),
+       "pressure and stress of the forces of constraint; of the trajectory nothing"},
+      {"predicted velocities", !reader.empty(),
+       because(!reader.empty(), reader, "nothing reads them"), NOTHING},
+      compensation(args, scene),
+  };
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::report_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatArguments &args,
+                             GearQuatBodies &bodies)
+{
+  if (args.report == GearQuatArguments::Report::NO) return;
+  const GearQuatScene scene(lmp, bodies);
+  const GearQuatSurroundings surroundings(lmp, fix, args, bodies);
+  const auto rows = effects(lmp, fix, args, scene);
+  if (lmp->comm->me != 0) return;
+
+  const std::string sites = scene.fewest_sites == scene.most_sites
+      ? fmt::format("{}", scene.most_sites)
+      : fmt::format("{} to {}", scene.fewest_sites, scene.most_sites);
+  std::string text = fmt::format("Fix gear/quat {}: {} bodies of {} sites, {} degrees of freedom\n",
+                                 fix->id, scene.bodies, sites, scene.freedoms);
+  for (const auto &row : rows) {
+    text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);
+    if (args.report == GearQuatArguments::Report::LONG && (!row.on || row.name == rows[0].name) &&
+        !row.omits.empty())
+      text += fmt::format("  {:<20}      leaves out {}\n", "", row.omits);
+  }
+  for (const auto &line : surroundings.lines()) text += "  " + line + "\n";
+  utils::logmesg(lmp, text);
+}

@@ -1,0 +1,26 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The scene report: what the fix computes in this scene and what it leaves out, each with its
+   reason, and what the surroundings of the bodies cost that need not be. */
+
+#ifndef LMP_GEAR_QUAT_REPORT_H
+#define LMP_GEAR_QUAT_REPORT_H
+
+namespace LAMMPS_NS {
+
+class FixGearQuat;
+class GearQuatBodies;
+class LAMMPS;
+struct GearQuatArguments;
+
+/// Writes the report to screen and log on rank 0, as long as args.report wants it.  Collective; to be
+/// called in setup(), when neighbor lists are built and bodies have their ghosts.
+void report_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatArguments &args,
+                  GearQuatBodies &bodies);
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,89 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_scene.h"
+
+#include "gear_quat_bodies.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "fix.h"
+#include "modify.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace GearQuat;
+
+// where other fixes may read the velocities of predicted sites
+
+static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR |
+    PRE_FORCE | PRE_REVERSE | POST_FORCE | POST_INTEGRATE_RESPA | PRE_FORCE_RESPA |
+    POST_FORCE_RESPA;
+
+std::string LAMMPS_NS::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner)
+{
+  if (lmp->comm->ghost_velocity) return "velocities are sent to ghost atoms";
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && (lmp->modify->get_fix_mask(other) & WITHIN_STEP))
+      return std::string("fix ") + other->id + " (" + other->style + ") may read them";
+  return "";
+}
+
+/* ---------------------------------------------------------------------- */
+
+static GearQuatScene::Top top_of(const RigidBody &rigid, int dimension)
+{
+  double i[3];
+  std::copy_n(rigid.inertia, 3, i);
+  std::sort(i, i + 3);
+  if (i[2] <= 0.0) return GearQuatScene::POINT;
+  if (dimension == 2) return GearQuatScene::PLANAR;
+  if (i[0] <= 0.0) return GearQuatScene::LINEAR;
+  const bool low = i[1] - i[0] < LINEAR_FRACTION * i[2],
+             high = i[2] - i[1] < LINEAR_FRACTION * i[2];
+  if (low && high) return GearQuatScene::SPHERICAL;
+  return low || high ? GearQuatScene::SYMMETRIC : GearQuatScene::ASYMMETRIC;
+}
+
+GearQuatScene::GearQuatScene(LAMMPS *lmp, const GearQuatBodies &store)
+{
+  enum { SITES, ARMS, EXTENDED, GHOSTS, FREEDOMS, KINDS, COUNTS = KINDS + TOPS };
+  bigint here[COUNTS] = {}, all[COUNTS];
+  double largest_here[3] = {0.0, -(double) MAXTAGINT, 0.0}, largest[3];
+
+  for (int ibody = 0; ibody < store.nowned(); ++ibody) {
+    const GearQuatBody &one = store.body[ibody];
+    ++here[KINDS + top_of(one.rigid, lmp->domain->dimension)];
+    here[FREEDOMS] += lmp->domain->dimension == 2 ? 2 + (one.rigid.inertia[2] > 0.0)
+                                                  : 3 + one.rigid.rotational_freedoms();
+    for (const double x : store.state[ibody].center)
+      largest_here[0] = std::max(largest_here[0], std::fabs(x));
+    largest_here[1] = std::max(largest_here[1], -(double) one.natoms);
+    largest_here[2] = std::max(largest_here[2], (double) one.natoms);
+  }
+  for (const auto &site : store.sites) {
+    ++here[SITES];
+    if (dot3(site.arm_body, site.arm_body) > 0.0) ++here[ARMS];
+    if (site.body >= store.nowned()) ++here[GHOSTS];
+  }
+  here[EXTENDED] = store.number_of_extended_here();
+
+  MPI_Allreduce(here, all, COUNTS, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+  MPI_Allreduce(largest_here, largest, 3, MPI_DOUBLE, MPI_MAX, lmp->world);
+  sites = all[SITES];
+  arms = all[ARMS];
+  extended = all[EXTENDED];
+  ghosts = all[GHOSTS];
+  freedoms = all[FREEDOMS];
+  for (int top = 0; top < TOPS; ++top) bodies += tops[top] = all[KINDS + top];
+  farthest = largest[0];
+  if (bodies) {
+    fewest_sites = (bigint) -largest[1];
+    most_sites = (bigint) largest[2];
+  }
+}

@@ -1,0 +1,46 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The look at the scene: what bodies there are, and what in the scene calls for which effect.
+   Taken once, before a run; nothing of it is done in a step. */
+
+#ifndef LMP_GEAR_QUAT_SCENE_H
+#define LMP_GEAR_QUAT_SCENE_H
+
+#include "lmptype.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+class Fix;
+class FixGearQuat;
+class GearQuatBodies;
+class LAMMPS;
+
+/// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that asks.
+std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
+
+/// The same on all ranks.
+struct GearQuatScene {
+  /// Bodies by their principal moments; two are equal that differ by less than 1e-7 of the largest.
+  enum Top { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
+
+  bigint bodies = 0, sites = 0;
+  bigint freedoms = 0;                        ///< of all bodies, translation and rotation
+  bigint tops[TOPS] = {};                     ///< bodies of each kind
+  bigint fewest_sites = 0, most_sites = 0;    ///< of a body
+  bigint arms = 0;                            ///< sites away from the centre of mass
+  bigint extended = 0;                        ///< sites that are more than points
+  bigint ghosts = 0;                          ///< sites whose body another rank owns
+  double farthest = 0.0;                      ///< largest coordinate of a centre of mass, unwrapped
+
+  /// Collective; bodies: after their ghosts were updated.
+  GearQuatScene(LAMMPS *lmp, const GearQuatBodies &bodies);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,179 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_surroundings.h"
+
+#include "fix_gear_quat.h"
+#include "gear_quat_arguments.h"
+#include "gear_quat_bodies.h"
+
+#include "atom.h"
+#include "group.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "utils.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+// label of an atom: that of its body, or one of these
+
+static constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
+
+static constexpr int MOST_GROUPS = 8 * sizeof(int);    // a bit of the mask each
+
+/* ---------------------------------------------------------------------- */
+
+GearQuatSurroundings::GearQuatSurroundings(LAMMPS *lmp, const FixGearQuat *fix,
+                                           const GearQuatArguments &args, GearQuatBodies &bodies) :
+    Pointers(lmp),
+    fix(fix), args(args), bodies(bodies)
+{
+  const auto label = labels();
+  count_pairs(label);
+  count_atoms(label);
+  propose(label);
+}
+
+/// What moves an atom, for owned and ghost atoms; the ID of the body is positive.
+std::vector<double> GearQuatSurroundings::labels()
+{
+  std::vector<double> label(atom->nlocal + atom->nghost, STILL);
+  for (auto *other : modify->get_fix_list()) {
+    if (!other->time_integrate || other == fix) continue;
+    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other
+                                                                   : nullptr;
+    for (int i = 0; i < atom->nlocal; ++i)
+      if ((atom->mask[i] & other->groupbit) && (!same || same->moves(i)))
+        label[i] = MOVED_BY_OTHERS;
+  }
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (bodies.in_body(i)) label[i] = (double) bodies.id_of(i);
+  bodies.spread_labels(label);
+  return label;
+}
+
+/// In the lists that pair styles run over in every step.
+void GearQuatSurroundings::count_pairs(const std::vector<double> &label)
+{
+  bigint here[3] = {0, 0, 0}, all[3];
+  for (int which = 0; which < neighbor->nlist; ++which) {
+    const NeighList *list = neighbor->lists[which];
+    if (!list || list->requestor_type != NeighList::PAIR || list->occasional || list->kokkos ||
+        !list->ilist)
+      continue;
+    for (int ii = 0; ii < list->inum; ++ii) {
+      const int i = list->ilist[ii];
+      const int *neighbors = list->firstneigh[i];
+      here[0] += list->numneigh[i];
+      for (int jj = 0; jj < list->numneigh[i]; ++jj) {
+        const int j = neighbors[jj] & NEIGHMASK;
+        if (label[i] != label[j] || label[i] == MOVED_BY_OTHERS) continue;
+        ++here[label[i] == STILL ? 1 : 2];
+      }
+    }
+  }
+  MPI_Allreduce(here, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
+  pairs = all[0];
+  still_pairs = all[1];
+  own_pairs = all[2];
+}
+
+void GearQuatSurroundings::count_atoms(const std::vector<double> &label)
+{
+  bigint here[3] = {0, 0, 0}, all[3];
+  for (int i = 0; i < atom->nlocal; ++i) {
+    here[0] += label[i] == STILL;
+    if (!(atom->mask[i] & fix->groupbit) || bodies.in_body(i)) continue;
+    ++here[1];
+    here[2] += label[i] == STILL;
+  }
+  MPI_Allreduce(here, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
+  still = all[0];
+  unused = all[1];
+  unused_still = all[2];
+}
+
+/* ----------------------------------------------------------------------
+   sentences and lines for the input script
+------------------------------------------------------------------------- */
+
+void GearQuatSurroundings::propose(const std::vector<double> &label)
+{
+  const auto share = [this](bigint some) {
+    return fmt::format("{} of {} pairs in the neighbor lists ({:.0f} %)", some, pairs,
+                       100.0 * (double) some / (double) pairs);
+  };
+  if (still_pairs > 0) {
+    text.push_back(
+        share(still_pairs) +
+        fmt::format(" are among {} atoms that no fix moves; without them, and the constant "
+                    "they add to the energy:",
+                    still));
+    text.push_back("  " + exclude_still(label));
+  }
+  if (own_pairs > 0) {
+    text.push_back(
+        share(own_pairs) +
+        " are within bodies and do not move them; without them, and the constant they add "
+        "to the energy:");
+    text.push_back("  " + exclude_own());
+  }
+  if (unused > 0 && args.bodystyle == GearQuatArguments::BodyStyle::GROUP) {
+    text.push_back(fmt::format("{} atoms of group {} are in no body, {} of them moved by no fix; a "
+                               "group of the bodies alone:",
+                               unused, group->names[fix->igroup],
+                               unused == unused_still ? "all" : std::to_string(unused_still)));
+    text.push_back(fmt::format("  group bodies union {}; fix {} bodies gear/quat ...",
+                               utils::join_words(args.groups, " "), fix->id));
+  }
+}
+
+/// An existing group of atoms that nothing moves, the largest, or one to be made.
+std::string GearQuatSurroundings::exclude_still(const std::vector<double> &label) const
+{
+  std::string best;
+  bigint most = 0;
+  for (int g = 0; g < MOST_GROUPS; ++g) {
+    if (!group->names[g] || group->dynamic[g]) continue;
+    bigint here[2] = {0, 0}, all[2];    // atoms of the group: that nothing moves, others
+    for (int i = 0; i < atom->nlocal; ++i)
+      if (atom->mask[i] & group->bitmask[g]) ++here[label[i] == STILL ? 0 : 1];
+    MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all[1] > 0 || all[0] <= most) continue;
+    most = all[0];
+    best = group->names[g];
+  }
+  if (most == still) return fmt::format("neigh_modify exclude group {0} {0}", best);
+
+  std::vector<std::string> moving;
+  for (auto *other : modify->get_fix_list()) {
+    const std::string name = group->names[other->igroup];
+    if (other->time_integrate && std::find(moving.begin(), moving.end(), name) == moving.end())
+      moving.push_back(name);
+  }
+  return fmt::format("group still subtract all {}; neigh_modify exclude group still still",
+                     utils::join_words(moving, " "));
+}
+
+std::string GearQuatSurroundings::exclude_own() const
+{
+  const std::string name = group->names[fix->igroup];
+  switch (args.bodystyle) {
+    case GearQuatArguments::BodyStyle::MOLECULE:
+      return "neigh_modify exclude molecule/intra " + name;
+    case GearQuatArguments::BodyStyle::SINGLE:
+      return fmt::format("neigh_modify exclude group {0} {0}", name);
+    case GearQuatArguments::BodyStyle::GROUP: {
+      std::string line = "neigh_modify";
+      for (const auto &body : args.groups) line += fmt::format(" exclude group {0} {0}", body);
+      return line;
+    }
+    default:
+      return "neigh_modify exclude molecule/intra " + name + ", with a molecule ID for every body";
+  }
+}

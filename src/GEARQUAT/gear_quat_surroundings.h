@@ -1,0 +1,54 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* What a scene computes around its bodies that moves none of them: pairs of atoms that nothing
+   moves, pairs within a body, atoms of the fix group that no body uses.  Found before a run in the
+   neighbor lists of the pair styles; nothing is changed. */
+
+#ifndef LMP_GEAR_QUAT_SURROUNDINGS_H
+#define LMP_GEAR_QUAT_SURROUNDINGS_H
+
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixGearQuat;
+class GearQuatBodies;
+struct GearQuatArguments;
+
+class GearQuatSurroundings : protected Pointers {
+ public:
+  /// Collective; to be made after neighbor lists were built.
+  GearQuatSurroundings(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatArguments &args,
+                       GearQuatBodies &bodies);
+
+  /// What was found, a sentence each, below it the line of the input script that mends it; nothing
+  /// where there is nothing to mend.  The same on all ranks.
+  const std::vector<std::string> &lines() const { return text; }
+
+ private:
+  const FixGearQuat *fix;
+  const GearQuatArguments &args;
+  GearQuatBodies &bodies;
+  std::vector<std::string> text;
+
+  bigint pairs = 0, still_pairs = 0, own_pairs = 0;    ///< entries of neighbor lists
+  bigint still = 0;                                    ///< atoms that nothing moves
+  bigint unused = 0, unused_still = 0;                 ///< atoms of the fix group in no body
+
+  std::vector<double> labels();
+  void count_pairs(const std::vector<double> &label);
+  void count_atoms(const std::vector<double> &label);
+  void propose(const std::vector<double> &label);
+  std::string exclude_still(const std::vector<double> &label) const;
+  std::string exclude_own() const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
