@@ -169,6 +169,7 @@ void FixGearQuat::init()
   if (tolerance && started) tolerance->keep_step(h);
   follow_time_step();
   velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
+  bodies->expect_forces(makes_forces(lmp, this));
 }
 
 bool FixGearQuat::moves(int i) const
@@ -299,12 +300,21 @@ void FixGearQuat::start()
 void FixGearQuat::begin_step()
 {
   const MotionLimits limits = blowup->limits(h);
-  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
+  const auto check = [&](int ibody) {
+    const BodyState &state = bodies->state[ibody];
+    if (!limits.keep_velocities(state)) blowup->stop(ibody, state, h, atom->f);
+  };
+  for (const int ibody : bodies->points) {
+    double *rows = bodies->history(ibody);
+    integrator->predict_center(rows);
+    integrator->center_state(bodies->body[ibody].rigid, rows, bodies->state[ibody]);
+    check(ibody);
+  }
+  for (const int ibody : bodies->tops) {
     double *rows = bodies->history(ibody);
     integrator->predict(rows);
     bodies->state[ibody] = integrator->body_state(bodies->body[ibody].rigid, rows);
-    if (!limits.keep_velocities(bodies->state[ibody]))
-      blowup->stop(ibody, bodies->state[ibody], h, atom->f);
+    check(ibody);
   }
   bodies->spread_states();
   bodies->place_sites(velocities_read);
@@ -318,21 +328,33 @@ void FixGearQuat::finish_step(double **f, double **torque)
   const int known = args->start == GearQuatArguments::Start::ZERO ? 2
                                                                   : 3;    // terms of a fresh body
   const MotionLimits limits = blowup->limits(h);
-  for (int ibody = 0; ibody < bodies->nowned(); ++ibody) {
+  const auto check = [&](int ibody) {
+    const BodyState &state = bodies->state[ibody];
+    if (!limits.keep(state)) blowup->stop(ibody, state, h, f);
+  };
+  for (const int ibody : bodies->points) {
     double *rows = bodies->history(ibody);
     const RigidBody &rigid = bodies->body[ibody].rigid;
-    if (bodies->body[ibody].fresh) {
-      blowup->check_load(ibody, h, f);
-      GearQuatBootstrap::seed_body(*bodies, ibody, present_scheme(), h, known);
-      bodies->body[ibody].fresh = 0;
-      if (tolerance) tolerance->note_fresh();
-      continue;
-    }
+    bodies->last[ibody] = tolerance
+        ? tolerance->correct(*integrator, ibody)
+        : integrator->correct_center(rigid, bodies->load[ibody], rows);
+    integrator->center_state(rigid, rows, bodies->state[ibody]);
+    check(ibody);
+  }
+  for (const int ibody : bodies->tops) {
+    double *rows = bodies->history(ibody);
+    const RigidBody &rigid = bodies->body[ibody].rigid;
     bodies->last[ibody] = tolerance ? tolerance->correct(*integrator, ibody)
                                     : integrator->correct(rigid, bodies->load[ibody], rows);
     bodies->state[ibody] = integrator->body_state(rigid, rows);
-    if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
+    check(ibody);
   }
+  for (const int ibody : bodies->fresh) {
+    blowup->check_load(ibody, h, f);
+    GearQuatBootstrap::seed_body(*bodies, ibody, present_scheme(), h, known);
+    if (tolerance) tolerance->note_fresh();
+  }
+  bodies->take_in_fresh();
   bodies->spread_states();
   bodies->place_sites(true);
   if (output->next == update->ntimestep || modify->n_end_of_step > (tolerance ? 1 : 0))
@@ -350,7 +372,8 @@ void FixGearQuat::end_of_step()
 void FixGearQuat::tally_virial(double **f)
 {
   bodies->spread_loads();
-  for (const auto &site : bodies->sites) {
+  for (size_t n = bodies->first_arm(); n < bodies->sites.size(); ++n) {
+    const auto &site = bodies->sites[n];
     double arm[3], constraint[3], virial_i[6];
     bodies->constraint_force(site, f, arm, constraint);
     for (int k = 0; k < 3; ++k) virial_i[k] = arm[k] * constraint[k];

@@ -83,7 +83,7 @@ static GearQuatArguments::Report report_of(const std::string &value, Error *erro
       {"no", Report::NO}, {"short", Report::SHORT}, {"long", Report::LONG}};
   const auto found = words.find(value);
   if (found == words.end())
-    error->all(FLERR, "Fix gear/quat report: unwords value {} (no, short or long)", value);
+    error->all(FLERR, "Fix gear/quat report: unknown value {} (no, short or long)", value);
   return found->second;
 }
 

@@ -166,9 +166,9 @@ GearQuatAssembly::Momenta GearQuatAssembly::average(const Site *sites, int n,
   owned.body.rigid.mass = mass;
   if (!(mass > 0.0)) return momenta;
 
-  for (int k = 0; k < 3; ++k) {
-    owned.state.center[k] = center[k] / mass;
-    owned.state.velocity[k] = velocity[k] / mass;
+  for (int k = 0; k < 3; ++k) {    // a lone site is at its centre, without rounding
+    owned.state.center[k] = n == 1 ? sites[0].x[k] : center[k] / mass;
+    owned.state.velocity[k] = n == 1 ? sites[0].v[k] : velocity[k] / mass;
   }
 
   for (int i = 0; i < n; ++i) {

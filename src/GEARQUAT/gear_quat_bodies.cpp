@@ -28,8 +28,9 @@ static constexpr double SAME = 1.0e-11;
 
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
     Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nbodies(0), natoms(0),
-    strangers(0), told(false), nmax(0), body_id(nullptr), owner_tag(nullptr), owned(nullptr),
-    site_body(nullptr), forward(Forward::STATES), labels(nullptr)
+    strangers(0), told(false), ncentered(0), wrapped(false), any_ghosts(false), any_forces(true),
+    nmax(0), body_id(nullptr), owner_tag(nullptr), owned(nullptr), site_body(nullptr),
+    forward(Forward::STATES), labels(nullptr)
 {
   grow_arrays(atom->nmax);
   clear();
@@ -225,8 +226,30 @@ void GearQuatBodies::update_ghosts()
     comm->forward_comm(fix);
     load.resize(body.size());
   }
-  update_frames();
+  list_bodies();
+  frame.resize(state.size());
+  for (size_t ibody = 0; ibody < state.size(); ++ibody) update_frame(ibody);
   list_sites();
+}
+
+void GearQuatBodies::list_bodies()
+{
+  for (auto *list : {&tops, &points, &fresh, &ghost_tops}) list->clear();
+  for (int ibody = 0; ibody < (int) body.size(); ++ibody) {
+    const bool rotates = body[ibody].rigid.rotational_freedoms() > 0;
+    if (ibody >= nown) {
+      if (rotates) ghost_tops.push_back(ibody);
+    } else if (body[ibody].fresh)
+      fresh.push_back(ibody);
+    else
+      (rotates ? tops : points).push_back(ibody);
+  }
+}
+
+void GearQuatBodies::take_in_fresh()
+{
+  for (const int ibody : fresh) body[ibody].fresh = 0;
+  if (!fresh.empty()) list_bodies();
 }
 
 void GearQuatBodies::list_sites()
@@ -248,6 +271,13 @@ void GearQuatBodies::list_sites()
     domain->unmap(site.wrap, atom->image[i]);
     sites.push_back(site);
   }
+  const auto centered = [](const Site &site) {
+    return dot3(site.arm_body, site.arm_body) == 0.0;
+  };
+  ncentered = std::stable_partition(sites.begin(), sites.end(), centered) - sites.begin();
+  wrapped = std::any_of(sites.begin(), sites.end(), [](const Site &site) {
+    return dot3(site.wrap, site.wrap) > 0.0;
+  });
   if (extended.has_records())
     for (const Site &site : sites) extended.list(site.atom, site.body);
   take_stock(lost, example);
@@ -262,11 +292,13 @@ tagint GearQuatBodies::id_of(int i) const
 /// Count what all ranks have.  lost: atoms here that do not find their body, one of them `example`.
 void GearQuatBodies::take_stock(int lost, tagint example)
 {
-  bigint here[5] = {nown, 0, (bigint) sites.size() + lost, lost, strangers}, all[5];
+  bigint here[6] = {nown, 0, (bigint) sites.size() + lost, lost, strangers, 0}, all[6];
   for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
-  MPI_Allreduce(here, all, 5, MPI_LMP_BIGINT, MPI_SUM, world);
+  for (const Site &site : sites) here[5] += site.body >= nown;
+  MPI_Allreduce(here, all, 6, MPI_LMP_BIGINT, MPI_SUM, world);
   nbodies = all[0];
   natoms = all[1];
+  any_ghosts = all[5] > 0;
   if (all[1] != all[2] || all[3] > 0) check_whole();
   if (all[3] > 0) {
     double extent = 0.0, largest;
@@ -327,7 +359,7 @@ void GearQuatBodies::spread_labels(std::vector<double> &label)
 
 void GearQuatBodies::spread_states()
 {
-  if (comm->nprocs > 1) {
+  if (any_ghosts) {
     forward = Forward::STATES;
     comm->forward_comm(fix, STATE_SIZE);
   }
@@ -336,38 +368,57 @@ void GearQuatBodies::spread_states()
 
 void GearQuatBodies::spread_loads()
 {
-  if (comm->nprocs == 1) return;
+  if (!any_ghosts) return;
   forward = Forward::LOADS;
   comm->forward_comm(fix, LOAD_SIZE);
 }
 
+void GearQuatBodies::update_frame(int ibody)
+{
+  const BodyState &s = state[ibody];
+  rotation_matrix(s.q, scheme.norm2(s.q), frame[ibody].axes);
+  to_space(frame[ibody].axes, s.omega_body, frame[ibody].omega_space);
+}
+
 void GearQuatBodies::update_frames()
 {
-  frame.resize(state.size());
-  for (size_t ibody = 0; ibody < state.size(); ++ibody) {
-    const BodyState &s = state[ibody];
-    rotation_matrix(s.q, scheme.norm2(s.q), frame[ibody].axes);
-    to_space(frame[ibody].axes, s.omega_body, frame[ibody].omega_space);
+  for (const int ibody : tops) update_frame(ibody);
+  for (const int ibody : ghost_tops) update_frame(ibody);
+}
+
+template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void GearQuatBodies::place()
+{
+  const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
+  for (; site != arms; ++site) {
+    const BodyState &s = state[site->body];
+    for (int k = 0; k < 3; ++k) {
+      if (POSITIONS) atom->x[site->atom][k] = WRAPPED ? s.center[k] - site->wrap[k] : s.center[k];
+      if (VELOCITIES) atom->v[site->atom][k] = s.velocity[k];
+    }
+  }
+  for (; site != end; ++site) {
+    const BodyState &s = state[site->body];
+    const Frame &fr = frame[site->body];
+    double arm[3], spin[3];
+    to_space(fr.axes, site->arm_body, arm);
+    if (POSITIONS) {
+      double *x = atom->x[site->atom];
+      for (int k = 0; k < 3; ++k) {
+        x[k] = s.center[k] + arm[k];
+        if (WRAPPED) x[k] -= site->wrap[k];
+      }
+    }
+    if (VELOCITIES) {
+      double *v = atom->v[site->atom];
+      cross3(fr.omega_space, arm, spin);
+      for (int k = 0; k < 3; ++k) v[k] = s.velocity[k] + spin[k];
+    }
   }
 }
 
 template <bool POSITIONS, bool VELOCITIES> void GearQuatBodies::place()
 {
-  for (const Site &site : sites) {
-    const BodyState &s = state[site.body];
-    const Frame &fr = frame[site.body];
-    double arm[3], spin[3];
-    to_space(fr.axes, site.arm_body, arm);
-    if (POSITIONS) {
-      double *x = atom->x[site.atom];
-      for (int k = 0; k < 3; ++k) x[k] = s.center[k] + arm[k] - site.wrap[k];
-    }
-    if (VELOCITIES) {
-      double *v = atom->v[site.atom];
-      cross3(fr.omega_space, arm, spin);
-      for (int k = 0; k < 3; ++k) v[k] = s.velocity[k] + spin[k];
-    }
-  }
+  wrapped ? place<POSITIONS, VELOCITIES, true>() : place<POSITIONS, VELOCITIES, false>();
 }
 
 void GearQuatBodies::place_sites(bool velocities)
@@ -390,11 +441,15 @@ void GearQuatBodies::place_extended()
 void GearQuatBodies::gather_loads(double **f, double **torque)
 {
   for (auto &one : load) one = Load();
-  for (const Site &site : sites) {
-    const double *force = f[site.atom];
-    Load &sum = load[site.body];
+  if (!any_forces) return;
+  const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
+  for (; site != arms; ++site)
+    for (int k = 0; k < 3; ++k) load[site->body].force[k] += f[site->atom][k];
+  for (; site != end; ++site) {
+    const double *force = f[site->atom];
+    Load &sum = load[site->body];
     double arm[3], moment[3];
-    to_space(frame[site.body].axes, site.arm_body, arm);
+    to_space(frame[site->body].axes, site->arm_body, arm);
     cross3(arm, force, moment);
     for (int k = 0; k < 3; ++k) {
       sum.force[k] += force[k];
@@ -402,7 +457,7 @@ void GearQuatBodies::gather_loads(double **f, double **torque)
     }
   }
   if (!extended.sites.empty()) extended.add_torques(torque, load);
-  if (comm->nprocs > 1) comm->reverse_comm(fix, LOAD_SIZE);
+  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
 
   const double ftm2v = force->ftm2v;
   for (int ibody = 0; ibody < nown; ++ibody)
@@ -479,5 +534,6 @@ double GearQuatBodies::memory_usage() const
       body.capacity() * sizeof(GearQuatBody) + state.capacity() * sizeof(BodyState) +
       load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
       frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
-      owner_atom.capacity() * sizeof(int) + extended.memory_usage();
+      (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
+      extended.memory_usage();
 }

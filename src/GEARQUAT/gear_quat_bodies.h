@@ -39,12 +39,18 @@ class GearQuatBodies : protected Pointers {
   std::vector<GearQuat::Load> load;
   std::vector<GearQuat::Correction> last;    ///< owned bodies: what the last corrector told
 
+  // owned bodies by what they need in a step; valid until atoms are exchanged
+
+  std::vector<int> tops;      ///< rotate
+  std::vector<int> points;    ///< have no moments of inertia: their orientation stays
+  std::vector<int> fresh;     ///< have come in this step and have no history yet
+
   struct Site {    ///< an owned atom of a body; stays valid until atoms are exchanged
     int atom, body;
     double arm_body[3];
     double wrap[3];    ///< what its image flags take from its unwrapped position
   };
-  std::vector<Site> sites;
+  std::vector<Site> sites;    ///< those at their centre of mass, with arms of zero, come first
 
   int nowned() const { return nown; }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
@@ -88,6 +94,11 @@ class GearQuatBodies : protected Pointers {
 
   // one step
 
+  /// Fresh bodies have got their histories.
+  void take_in_fresh();
+  /// Whether anything in the scene may make a force; if not, nothing is gathered.
+  void expect_forces(bool any) { any_forces = any; }
+
   void spread_states();
   /// Positions of all sites, and velocities if anything reads them before the next call.
   void place_sites(bool velocities);
@@ -98,6 +109,8 @@ class GearQuatBodies : protected Pointers {
   /// torque: of the atoms themselves, used where they are more than points.
   void gather_loads(double **f, double **torque);
   void spread_loads();
+  /// Index of the first site that is not at its centre of mass.
+  size_t first_arm() const { return ncentered; }
   /// Arm from the centre of mass and constraint force m a - f of a site under the present loads.
   void constraint_force(const Site &site, double **f, double *arm_space, double *force) const;
 
@@ -135,6 +148,14 @@ class GearQuatBodies : protected Pointers {
   };
   std::vector<Frame> frame;    ///< owned and ghost bodies
 
+  // what the step leaves out, decided when atoms were exchanged
+
+  std::vector<int> ghost_tops;    ///< ghost bodies that rotate
+  size_t ncentered;               ///< sites at their centre of mass
+  bool wrapped;       ///< a site is in another periodic image than its unwrapped position
+  bool any_ghosts;    ///< a site, on any rank, has its body on another one
+  bool any_forces;
+
   int nmax;
   tagint *body_id;       ///< per atom: the user's ID of its body, 0 for none
   tagint *owner_tag;     ///< per atom: atom ID of the owner of its body
@@ -155,10 +176,13 @@ class GearQuatBodies : protected Pointers {
   void drop_ghosts();
   int add_owned(int atom);
   void remove_owned(int ibody);
+  void update_frame(int ibody);
   void update_frames();
+  void list_bodies();
   void list_sites();
   void take_stock(int lost, tagint example);
   template <bool POSITIONS, bool VELOCITIES> void place();
+  template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place();
   double atom_mass(int atom) const;
 
   GearQuatCensus census(int groupbit) const;

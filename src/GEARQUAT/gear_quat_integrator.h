@@ -13,7 +13,8 @@
    Second-order formulation (Rapaport), 7 components:
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
    Equation numbers: Pratt & Bin Mohamad Zaini.  The host calls, in this order and once a step:
-   predict(), body_state(), [forces at that state], correct(). */
+   predict(), body_state(), [forces at that state], correct(); for a body without moments of inertia
+   the three whose names end in center, which leave all that belongs to rotation as it is. */
 
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
@@ -103,6 +104,16 @@ class Integrator {
       scheme.compensate ? Second<2>::predict(rows, n) : Second<0>::predict(rows, n);
   }
 
+  void predict_center(double *rows) const
+  {
+    if (scheme.first())
+      scheme.compensate ? First<1>::predict<FIRST_CENTER>(rows, n)
+                        : First<0>::predict<FIRST_CENTER>(rows, n);
+    else
+      scheme.compensate ? Second<2>::predict<SECOND_CENTER>(rows, n)
+                        : Second<0>::predict<SECOND_CENTER>(rows, n);
+  }
+
   void rescale(double *rows, double ratio) const
   {
     if (scheme.first())
@@ -120,18 +131,26 @@ class Integrator {
     BodyState state;
     const double *rates = rows + scheme.width();
     const int quat = scheme.quaternion();
-    copy(rows + Scheme::POSITION, 3, state.center);
+    center_state(body, rows, state);
     copy(rows + quat, 4, state.q);
-    if (scheme.first()) {
-      for (int i = 0; i < 3; ++i) state.velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
+    if (scheme.first())
       copy(rows + Scheme::OMEGA, 3, state.omega_body);
-    } else {
+    else {
       double qdot[4];
-      for (int i = 0; i < 3; ++i) state.velocity[i] = rates[Scheme::POSITION + i] * per_h;
       for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] * per_h;
       angular_velocity(state.q, scheme.norm2(state.q), qdot, state.omega_body);
     }
     return state;
+  }
+
+  /// Position and velocity alone.
+  void center_state(const RigidBody &body, const double *rows, BodyState &state) const
+  {
+    const double *rates = rows + scheme.width();
+    copy(rows + Scheme::POSITION, 3, state.center);
+    for (int i = 0; i < 3; ++i)
+      state.velocity[i] = scheme.first() ? rows[Scheme::MOMENTUM + i] / body.mass
+                                         : rates[Scheme::POSITION + i] * per_h;
   }
 
   /// d(|q|^2/2)/dt as the history has it; it should vanish.
@@ -170,7 +189,25 @@ class Integrator {
     return result;
   }
 
+  /// Torque and moments of inertia have no part in it.
+  Correction correct_center(const RigidBody &body, const Load &load, double *rows) const
+  {
+    double x[3], residual[3] = {0.0, 0.0, 0.0}, dx[3];
+    copy(rows + Scheme::POSITION, 3, x);
+    if (scheme.first())
+      scheme.compensate ? correct_center_first<First<1>>(body, load, rows, residual)
+                        : correct_center_first<First<0>>(body, load, rows, residual);
+    else
+      scheme.compensate ? correct_center_second<Second<2>>(body, load, rows, residual)
+                        : correct_center_second<Second<0>>(body, load, rows, residual);
+    for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
+    return {dot3(load.force, dx), error_weight * std::sqrt(dot3(residual, residual)), 0.0};
+  }
+
  private:
+  static constexpr int FIRST_CENTER = 6,
+                       SECOND_CENTER = 3;    // columns of the centre, the first ones
+
   template <int CARRIES> using First = Nordsieck<Scheme::FIRST_WIDTH, CARRIES>;
   template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
 
@@ -200,23 +237,29 @@ class Integrator {
       for (int i = 0; i < COUNT; ++i) total[i] += target[i];
   }
 
+  /// Momenta (Eq. 14) and positions (Eq. 13): forces stay, so one pass is all.
   template <class History>
-  void correct_first(const RigidBody &body, const Load &load, const double *torque_body,
-                     double *rows, Residual &total) const
+  void correct_center_first(const RigidBody &body, const Load &load, double *rows,
+                            double *residual) const
   {
-    const int quat = scheme.quaternion();
-    const double *rates = rows + scheme.width();
-    const double *momentum = rows + Scheme::MOMENTUM, *omega_body = rows + Scheme::OMEGA;
-    double before[3], target[4];
-
-    // momenta (Eq. 14) and positions (Eq. 13): forces stay, so one pass is all
-
+    const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
+    double before[3], target[3];
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i) target[i] = h * load.force[i];
     feed_back<History, 3>(rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
-    feed_back<History, 3>(rows, rates, Scheme::POSITION, target, total.x);
+    feed_back<History, 3>(rows, rates, Scheme::POSITION, target, residual);
+  }
+
+  template <class History>
+  void correct_first(const RigidBody &body, const Load &load, const double *torque_body,
+                     double *rows, Residual &total) const
+  {
+    const int quat = scheme.quaternion();
+    const double *rates = rows + scheme.width(), *omega_body = rows + Scheme::OMEGA;
+    double before[3], target[4];
+    correct_center_first<History>(body, load, rows, total.x);
 
     // angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16)
 
@@ -232,6 +275,18 @@ class Integrator {
     if (scheme.project) project_row<History>(rows);
   }
 
+  /// Positions (Eq. 17): forces stay, so one pass is all.
+  template <class History>
+  void correct_center_second(const RigidBody &body, const Load &load, double *rows,
+                             double *residual) const
+  {
+    const double *seconds = rows + 2 * scheme.width();
+    const double half_h2 = 0.5 * h * h;
+    double target[3];
+    for (int i = 0; i < 3; ++i) target[i] = half_h2 * load.force[i] / body.mass;
+    feed_back<History, 3>(rows, seconds, Scheme::POSITION, target, residual);
+  }
+
   template <class History>
   void correct_second(const RigidBody &body, const Load &load, const double *torque_body,
                       double *rows, Residual &total) const
@@ -240,11 +295,7 @@ class Integrator {
     const double *rates = rows + width, *seconds = rows + 2 * width, *q = rows + quat;
     const double half_h2 = 0.5 * h * h;
     double target[4];
-
-    // positions (Eq. 17): forces stay, so one pass is all
-
-    for (int i = 0; i < 3; ++i) target[i] = half_h2 * load.force[i] / body.mass;
-    feed_back<History, 3>(rows, seconds, Scheme::POSITION, target, total.x);
+    correct_center_second<History>(body, load, rows, total.x);
 
     // quaternions (Eqs. 6, 7, 18)
 

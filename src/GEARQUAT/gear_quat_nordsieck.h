@@ -36,30 +36,30 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 
   /// Advance the history by one step: the Taylor series (Eq. 11) as additions of Pascal's triangle.
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
-  /// n: 3 to 12, those of both formulations.
-  static void predict(double *rows, int n)
+  /// n: 3 to 12, those of both formulations.  COUNT: components from the first on; the others stay.
+  template <int COUNT = WIDTH> static void predict(double *rows, int n)
   {
     switch (n) {    // a number of rows that the compiler knows, so that a column stays in registers
       case 3:
-        return pascal<3>(rows);
+        return pascal<3, COUNT>(rows);
       case 4:
-        return pascal<4>(rows);
+        return pascal<4, COUNT>(rows);
       case 5:
-        return pascal<5>(rows);
+        return pascal<5, COUNT>(rows);
       case 6:
-        return pascal<6>(rows);
+        return pascal<6, COUNT>(rows);
       case 7:
-        return pascal<7>(rows);
+        return pascal<7, COUNT>(rows);
       case 8:
-        return pascal<8>(rows);
+        return pascal<8, COUNT>(rows);
       case 9:
-        return pascal<9>(rows);
+        return pascal<9, COUNT>(rows);
       case 10:
-        return pascal<10>(rows);
+        return pascal<10, COUNT>(rows);
       case 11:
-        return pascal<11>(rows);
+        return pascal<11, COUNT>(rows);
       case 12:
-        return pascal<12>(rows);
+        return pascal<12, COUNT>(rows);
     }
   }
 
@@ -111,9 +111,9 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   }
 
   // unrolled by name: LAMMPS is mostly built with -O2, which leaves loops alone
-  template <int N> static void pascal(double *rows)
+  template <int N, int COUNT> static void pascal(double *rows)
   {
-    for (int c = 0; c < WIDTH; ++c) {
+    for (int c = 0; c < COUNT; ++c) {
       double y[N], carry[CARRIES + 1];
 #pragma GCC unroll 12
       for (int j = 0; j < N; ++j) y[j] = rows[j * WIDTH + c];

@@ -56,12 +56,13 @@ static Effect rotation(const GearQuatScene &scene)
   return {"rotation", on, listed(scene), omits};
 }
 
-static Effect torques(const GearQuatScene &scene)
+static Effect torques(const GearQuatScene &scene, bool forces)
 {
-  const bool on = scene.arms > 0;
+  const bool on = scene.arms > 0 && forces;
   return {"torques of forces", on,
-          on ? fmt::format("{} sites are off the center of mass", scene.arms)
-             : "every site is at its center of mass",
+          !forces  ? "nothing in the scene makes forces"
+              : on ? fmt::format("{} sites are off the center of mass", scene.arms)
+                   : "every site is at its center of mass",
           NOTHING};
 }
 
@@ -103,7 +104,7 @@ static std::vector<Effect> effects(LAMMPS *lmp, const FixGearQuat *fix,
   };
   return {
       rotation(scene),
-      torques(scene),
+      torques(scene, makes_forces(lmp, fix)),
       {"finite size", scene.extended > 0,
        because(scene.extended, fmt::format("{} sites are more than points", scene.extended),
                "all sites are points"),

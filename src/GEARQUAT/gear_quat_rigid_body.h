@@ -49,11 +49,13 @@ inline void angular_acceleration(const RigidBody &body, const double *torque_bod
                                  const double *omega_body, double *omegadot_body)
 {
   const double *inertia = body.inertia;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
+  const auto about = [&](int i, int j, int k) {    // indices the compiler knows
     const double gyroscopic = (inertia[j] - inertia[k]) * omega_body[j] * omega_body[k];
-    omegadot_body[i] = inertia[i] > 0.0 ? (torque_body[i] + gyroscopic) / inertia[i] : 0.0;
-  }
+    return inertia[i] > 0.0 ? (torque_body[i] + gyroscopic) / inertia[i] : 0.0;
+  };
+  omegadot_body[0] = about(0, 1, 2);
+  omegadot_body[1] = about(1, 2, 0);
+  omegadot_body[2] = about(2, 0, 1);
 }
 
 inline double translational_energy(const RigidBody &body, const double *velocity)

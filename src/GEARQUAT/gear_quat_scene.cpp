@@ -10,10 +10,12 @@
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
+#include "force.h"
 #include "modify.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -32,6 +34,23 @@ std::string LAMMPS_NS::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *ow
     if (other != owner && (lmp->modify->get_fix_mask(other) & WITHIN_STEP))
       return std::string("fix ") + other->id + " (" + other->style + ") may read them";
   return "";
+}
+
+bool LAMMPS_NS::makes_forces(LAMMPS *lmp, const Fix *owner)
+{
+  constexpr int AROUND_FORCES = PRE_FORCE | PRE_REVERSE | POST_FORCE | FINAL_INTEGRATE |
+      PRE_FORCE_RESPA | POST_FORCE_RESPA | FINAL_INTEGRATE_RESPA;
+  const Force *force = lmp->force;
+  const auto acts = [](const void *style, const char *name) {
+    return style && std::strcmp(name, "zero") != 0;
+  };
+  if (acts(force->pair, force->pair_style) || acts(force->bond, force->bond_style) ||
+      acts(force->angle, force->angle_style) || acts(force->dihedral, force->dihedral_style) ||
+      acts(force->improper, force->improper_style) || force->kspace)
+    return true;
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && (lmp->modify->get_fix_mask(other) & AROUND_FORCES)) return true;
+  return false;
 }
 
 /* ---------------------------------------------------------------------- */

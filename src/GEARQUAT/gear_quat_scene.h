@@ -23,6 +23,9 @@ class LAMMPS;
 /// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that asks.
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
 
+/// Whether anything may make a force: styles other than "zero", fixes that act around the forces.
+bool makes_forces(LAMMPS *lmp, const Fix *owner);
+
 /// The same on all ranks.
 struct GearQuatScene {
   /// Bodies by their principal moments; two are equal that differ by less than 1e-7 of the largest.
