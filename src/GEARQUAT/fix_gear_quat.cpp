@@ -23,6 +23,7 @@
 #include "gear_quat_checks.h"
 #include "gear_quat_extract.h"
 #include "gear_quat_infile_out.h"
+#include "gear_quat_masks.h"
 #include "gear_quat_report.h"
 #include "gear_quat_scene.h"
 #include "gear_quat_sums.h"
@@ -72,10 +73,10 @@ static const char cite_gear_quat[] =
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), table(nullptr), sums(nullptr),
-    extracts(nullptr), blowup(nullptr), tolerance(nullptr), started(false), met_atoms(false),
-    reported(false), h(0.0), integrator(nullptr), velocities_read(true), f_sum(nullptr),
-    torque_sum(nullptr), nmax_sum(0)
+    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), masks(nullptr), table(nullptr),
+    sums(nullptr), extracts(nullptr), blowup(nullptr), tolerance(nullptr), started(false),
+    met_atoms(false), reported(false), h(0.0), integrator(nullptr), velocities_read(true),
+    f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -124,6 +125,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
   if (bodies->number() == 0 && args->mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
+  masks = new GearQuatMasks(lmp, args->masks, *bodies);
   size_array_rows = bodies->number();
   if (comm->me == 0)
     utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", bodies->number(),
@@ -144,6 +146,7 @@ FixGearQuat::~FixGearQuat()
   delete extracts;
   delete sums;
   delete table;
+  delete masks;
   delete bodies;
   delete[] extlist;
   memory->destroy(f_sum);
@@ -225,6 +228,14 @@ void FixGearQuat::setup_pre_neighbor()
                      "Fix gear/quat: atoms were changed since the last run, bodies start "
                      "anew from them\n");
     started = false;
+  }
+  if (masks->impose(*bodies) && started) {    // only those of a restart file can be others
+    started = false;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat: keywords force and torque turn off other components than in "
+                     "the run that wrote the restart file; poses and velocities are kept, the "
+                     "higher derivatives start anew");
   }
   met_atoms = true;
   size_array_rows = bodies->number();
@@ -325,40 +336,55 @@ void FixGearQuat::finish_step(double **f, double **torque)
   bodies->gather_loads(f, torque);
   if (evflag) tally_virial(f);
 
-  const int known = args->start == GearQuatArguments::Start::ZERO ? 2
-                                                                  : 3;    // terms of a fresh body
+  masks->any() ? correct_bodies<true>(f) : correct_bodies<false>(f);
+  bodies->spread_states();
+  bodies->place_sites(true);
+  if (output->next == update->ntimestep || modify->n_end_of_step > (tolerance ? 1 : 0))
+    show_bodies();
+}
+
+/// MASKED: some components of the loads do not act.
+template <bool MASKED> void FixGearQuat::correct_bodies(double **f)
+{
   const MotionLimits limits = blowup->limits(h);
-  const auto check = [&](int ibody) {
-    const BodyState &state = bodies->state[ibody];
-    if (!limits.keep(state)) blowup->stop(ibody, state, h, f);
-  };
   for (const int ibody : bodies->points) {
-    double *rows = bodies->history(ibody);
-    const RigidBody &rigid = bodies->body[ibody].rigid;
-    bodies->last[ibody] = tolerance
-        ? tolerance->correct(*integrator, ibody)
-        : integrator->correct_center(rigid, bodies->load[ibody], rows);
-    integrator->center_state(rigid, rows, bodies->state[ibody]);
-    check(ibody);
+    correct_body<MASKED, true>(ibody);
+    if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
   }
   for (const int ibody : bodies->tops) {
-    double *rows = bodies->history(ibody);
-    const RigidBody &rigid = bodies->body[ibody].rigid;
-    bodies->last[ibody] = tolerance ? tolerance->correct(*integrator, ibody)
-                                    : integrator->correct(rigid, bodies->load[ibody], rows);
-    bodies->state[ibody] = integrator->body_state(rigid, rows);
-    check(ibody);
+    correct_body<MASKED, false>(ibody);
+    if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
   }
+
+  const int known = args->start == GearQuatArguments::Start::ZERO ? 2
+                                                                  : 3;    // terms of a fresh body
   for (const int ibody : bodies->fresh) {
     blowup->check_load(ibody, h, f);
     GearQuatBootstrap::seed_body(*bodies, ibody, present_scheme(), h, known);
     if (tolerance) tolerance->note_fresh();
   }
   bodies->take_in_fresh();
-  bodies->spread_states();
-  bodies->place_sites(true);
-  if (output->next == update->ntimestep || modify->n_end_of_step > (tolerance ? 1 : 0))
-    show_bodies();
+}
+
+/// POINT: without moments of inertia.
+template <bool MASKED, bool POINT> void FixGearQuat::correct_body(int ibody)
+{
+  double *rows = bodies->history(ibody);
+  const RigidBody &rigid = bodies->body[ibody].rigid;
+  const Load load = MASKED ? bodies->acting(ibody) : bodies->load[ibody];
+  BodyState &state = bodies->state[ibody];
+  const BodyState before = state;
+  Correction &last = bodies->last[ibody];
+  if (tolerance)
+    last = tolerance->correct(*integrator, ibody, load);
+  else
+    last = POINT ? integrator->correct_center(rigid, load, rows)
+                 : integrator->correct(rigid, load, rows);
+  if (POINT)
+    integrator->center_state(rigid, rows, state);
+  else
+    state = integrator->body_state(rigid, rows);
+  if (MASKED) last.work = work_between(bodies->load[ibody], before, state);
 }
 
 /// With tolerance only: all fixes have finished the step.

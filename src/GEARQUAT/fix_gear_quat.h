@@ -77,6 +77,7 @@ class FixGearQuat : public Fix {
  private:
   class GearQuatArguments *args;
   class GearQuatBodies *bodies;
+  class GearQuatMasks *masks;
   class GearQuatTable *table;
   class GearQuatSums *sums;
   class GearQuatExtract *extracts;
@@ -98,6 +99,8 @@ class FixGearQuat : public Fix {
   void start();
   void begin_step();
   void finish_step(double **, double **);
+  template <bool MASKED> void correct_bodies(double **);
+  template <bool MASKED, bool POINT> void correct_body(int);
   void tally_virial(double **);
   void show_bodies();
 };

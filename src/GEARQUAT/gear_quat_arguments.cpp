@@ -26,6 +26,8 @@ using GearQuat::Formulation;
 
 static constexpr int FIRST_VALUES = 6, SECOND_VALUES = 8, PASSES = 2;
 
+static constexpr int MASK_WORDS = 5;    // force M xflag yflag zflag
+
 static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
 
 GearQuatArguments::GearQuatArguments(LAMMPS *lmp, int narg, char **arg)
@@ -103,6 +105,11 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 
   for (int iarg = 0; iarg < narg; iarg += 2) {
     const std::string key = arg[iarg];
+    if (key == "force" || key == "torque") {    // may be given many times
+      masks.push_back(parse_mask(lmp, narg - iarg, arg + iarg));
+      iarg += MASK_WORDS - 2;
+      continue;
+    }
     const std::set<std::string> known = {
         "formulation", "values",     "passes",    "start", "c0",    "omega",  "momentum", "project",
         "compensate",  "tolerance",  "dtmin",     "dtmax", "infile", "reinit", "mol",     "report"};
@@ -171,6 +178,10 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     if (!scheme.first() && seen.count(key))
       error->all(FLERR, "Fix gear/quat keyword {} belongs to formulation first", key);
 
+  if (!mol.empty() && !masks.empty())
+    error->all(FLERR,
+               "Fix gear/quat keywords force and torque cannot be used with mol: the numbers of "
+               "bodies change when bodies come");
   if (!mol.empty() && bodystyle != BodyStyle::MOLECULE)
     error->all(FLERR, "Fix gear/quat keyword mol requires bodystyle molecule");
 
@@ -197,6 +208,22 @@ void GearQuatArguments::check_control(LAMMPS *lmp, int fewest)
   if (control.longest > 0.0 && control.shortest > control.longest)
     lmp->error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                     control.longest);
+}
+
+/// arg: the keyword and what follows.
+GearQuatMaskWords GearQuatArguments::parse_mask(LAMMPS *lmp, int narg, char **arg)
+{
+  const std::string key = arg[0];
+  if (narg < MASK_WORDS) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, lmp->error);
+  GearQuatMaskWords words = {key == "torque", arg[1], {}};
+  for (int k = 0; k < 3; ++k) {
+    const std::string flag = arg[2 + k];
+    if (flag != "on" && flag != "off")
+      lmp->error->all(FLERR, "Fix gear/quat {}: unknown {}flag {} (on or off)", key, "xyz"[k],
+                      flag);
+    words.on[k] = flag == "on";
+  }
+  return words;
 }
 
 /* ----------------------------------------------------------------------

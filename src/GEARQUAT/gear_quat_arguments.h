@@ -8,6 +8,7 @@
 #ifndef LMP_GEAR_QUAT_ARGUMENTS_H
 #define LMP_GEAR_QUAT_ARGUMENTS_H
 
+#include "gear_quat_masks.h"
 #include "gear_quat_step_control.h"
 #include "lmptype.h"
 
@@ -34,6 +35,7 @@ struct GearQuatArguments {
   Report report = Report::SHORT;
   std::string infile;
   std::string mol;    ///< template of bodies to come
+  std::vector<GearQuatMaskWords> masks;
 
   /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
   /// names the word and what is required.
@@ -46,6 +48,7 @@ struct GearQuatArguments {
   int parse_bodystyle(LAMMPS *lmp, int narg, char **arg);
   void parse_keywords(LAMMPS *lmp, int narg, char **arg);
   void check_control(LAMMPS *lmp, int fewest);
+  static GearQuatMaskWords parse_mask(LAMMPS *lmp, int narg, char **arg);
   std::vector<tagint> molecule_ids(LAMMPS *lmp, int groupbit) const;
   std::vector<tagint> group_ids(LAMMPS *lmp, int groupbit) const;
   std::vector<tagint> custom_ids(LAMMPS *lmp, int groupbit) const;

@@ -13,6 +13,7 @@
 #define LMP_GEAR_QUAT_ASSEMBLY_H
 
 #include "gear_quat_infile.h"
+#include "gear_quat_mask.h"
 #include "gear_quat_rigid_body.h"
 #include "pointers.h"
 
@@ -23,11 +24,12 @@ namespace LAMMPS_NS {
 /// What a body is; travels with its owner atom.
 struct GearQuatBody {
   GearQuat::RigidBody rigid;
-  tagint id;        ///< the user's: molecule ID, group number or custom value
-  tagint natoms;    ///< sites
-  double extent;    ///< largest distance of a site from the owner atom
-  int from_file;    ///< mass and inertia were given, not summed
-  int fresh;        ///< has come in this step: no history yet
+  tagint id;             ///< the user's: molecule ID, group number or custom value
+  tagint natoms;         ///< sites
+  double extent;         ///< largest distance of a site from the owner atom
+  int from_file;         ///< mass and inertia were given, not summed
+  int fresh;             ///< has come in this step: no history yet
+  GearQuat::Mask off;    ///< components of the load that do not act
 };
 
 class GearQuatAssembly : protected Pointers {

@@ -53,6 +53,11 @@ class GearQuatBodies : protected Pointers {
   std::vector<Site> sites;    ///< those at their centre of mass, with arms of zero, come first
 
   int nowned() const { return nown; }
+  /// What moves an owned body, of the load it met.
+  GearQuat::Load acting(int ibody) const
+  {
+    return GearQuat::acting_load(load[ibody], body[ibody].off);
+  }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * scheme.size(); }
   bool in_body(int atom) const { return body_id[atom] != 0; }
@@ -166,7 +171,7 @@ class GearQuatBodies : protected Pointers {
   static constexpr int SITE_SIZE = 6;
   static constexpr int STATE_SIZE = sizeof(GearQuat::BodyState) / sizeof(double);
   static constexpr int LOAD_SIZE = sizeof(GearQuat::Load) / sizeof(double);
-  static constexpr int BODY_SIZE = 9 + STATE_SIZE;
+  static constexpr int BODY_SIZE = 10 + STATE_SIZE;
   static constexpr int LAST_SIZE = sizeof(GearQuat::Correction) / sizeof(double);
 
   enum class Forward { GHOSTS, STATES, LOADS, LABELS };

@@ -62,6 +62,7 @@ int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, 
   buf[m++] = ubuf(body.natoms).d;
   buf[m++] = ubuf(body.from_file).d;
   buf[m++] = ubuf(body.fresh).d;
+  buf[m++] = ubuf(body.off).d;
   buf[m++] = body.extent;
   buf[m++] = body.rigid.mass;
   for (double moment : body.rigid.inertia) buf[m++] = moment;
@@ -76,6 +77,7 @@ int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState
   body.natoms = (tagint) ubuf(buf[m++]).i;
   body.from_file = (int) ubuf(buf[m++]).i;
   body.fresh = (int) ubuf(buf[m++]).i;
+  body.off = (Mask) ubuf(buf[m++]).i;
   body.extent = buf[m++];
   body.rigid.mass = buf[m++];
   for (double &moment : body.rigid.inertia) moment = buf[m++];

@@ -55,7 +55,7 @@ void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Schem
                                   int terms)
 {
   const RigidBody &rigid = bodies.body[ibody].rigid;
-  auto series = local_series(rigid, bodies.state[ibody], bodies.load[ibody], h);
+  auto series = local_series(rigid, bodies.state[ibody], bodies.acting(ibody), h);
   series.terms = terms;
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
@@ -136,7 +136,7 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
   work.resize(bodies.nowned());
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     collocation.begin(
-        local_series(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody], spacing),
+        local_series(bodies.body[ibody].rigid, bodies.state[ibody], bodies.acting(ibody), spacing),
         work[ibody]);
 
   double change = 0.0;
@@ -205,9 +205,10 @@ bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, 
   bodies.gather_loads(atom->f, atom->torque);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const GearQuatBody &body = bodies.body[ibody];
-    change = std::max(change,
-                      collocation.set_load(node, body.rigid, bodies.state[ibody],
-                                           bodies.load[ibody], spacing, length(body), work[ibody]));
+    change =
+        std::max(change,
+                 collocation.set_load(node, body.rigid, bodies.state[ibody], bodies.acting(ibody),
+                                      spacing, length(body), work[ibody]));
   }
   return true;
 }

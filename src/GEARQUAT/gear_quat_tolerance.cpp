@@ -117,11 +117,12 @@ void GearQuatTolerance::shorten_first_step()
    a step
 ------------------------------------------------------------------------- */
 
-Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody)
+Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody,
+                                      const Load &load)
 {
   StepErrors one;
-  const Correction correction = order.correct(integrator, bodies.body[ibody].rigid,
-                                              bodies.load[ibody], bodies.history(ibody), one);
+  const Correction correction = order.correct(integrator, bodies.body[ibody].rigid, load,
+                                              bodies.history(ibody), one);
   if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
   errors.include(one);
   return correction;

@@ -48,7 +48,8 @@ class GearQuatTolerance : protected Pointers {
   void shorten_first_step();
 
   /// Correct one body.
-  GearQuat::Correction correct(const GearQuat::Integrator &integrator, int ibody);
+  GearQuat::Correction correct(const GearQuat::Integrator &integrator, int ibody,
+                               const GearQuat::Load &load);
   /// A body whose history has just begun with fewer terms than the others.
   void note_fresh() { fresh = true; }
   /// Choose values and length of the next step.  After the call histories have the new number of

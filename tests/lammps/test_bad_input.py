@@ -1,5 +1,7 @@
 """Every fault of the input ends the run, on all ranks, with a message that names what is wrong."""
 
+import re
+
 import pytest
 from scenes import two_molecules
 
@@ -67,6 +69,12 @@ ARGUMENTS = {
     "molecule tolerance 1e-8 values 11": "11 values are more than 10",
     "molecule infile": "missing argument",
     "molecule infile bodies reinit yes": "reinit yes cannot be used with infile",
+    "molecule force 1 on on": "missing argument",
+    "molecule force 1 on on yes": "force: unknown zflag yes (on or off)",
+    "molecule force 3 off off off": "force: bodies 3 are neither a number from 1 to 2 nor a range",
+    "molecule torque 2*1 off off off": "torque: bodies 2*1 are neither a number from 1 to 2",
+    "molecule torque left on on off": "torque: bodies left are neither a number from 1 to 2",
+    "molecule mol some force * on on off": "force and torque cannot be used with mol",
 }
 GROUPS = """
 group left id 1 2 3
@@ -179,6 +187,14 @@ def test_infile(lmp_wheel, text):
 def test_scene(lmp, name, ranks):
     before, after, message, words = SCENES[name]
     assert_refused(lmp.run(two_molecules(words, before=before, after=after), ranks=ranks), message)
+
+
+@pytest.mark.parametrize("words", ["force * on on on", "torque 1 off on on"])
+def test_out_of_the_plane(lmp_tree, words):
+    deck = two_molecules(f"molecule {words}").replace("boundary", "dimension 2\nboundary", 1)
+    deck = deck.replace("-10 10\ncreate_box", "-0.5 0.5\ncreate_box")
+    deck = re.sub(r"(single \S+ \S+) \S+", r"\1 0.0", deck)
+    assert_refused(lmp_tree.run(deck, ranks=2), "has to be off in a 2d simulation")
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

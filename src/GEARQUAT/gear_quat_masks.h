@@ -1,0 +1,49 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keywords force and torque: which components act on which bodies (gear_quat_mask.h).  The masks of
+   bodies travel with them; here are those of the command, by body ID, the same on all ranks. */
+
+#ifndef LMP_GEAR_QUAT_MASKS_H
+#define LMP_GEAR_QUAT_MASKS_H
+
+#include "gear_quat_mask.h"
+#include "pointers.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class GearQuatBodies;
+
+/// One keyword with its words.
+struct GearQuatMaskWords {
+  bool torque;          ///< or force
+  std::string range;    ///< of bodies, counted from 1 in the order of their IDs
+  bool on[3];
+};
+
+class GearQuatMasks : protected Pointers {
+ public:
+  /// Which bodies the words mean; later words replace earlier ones.  A range that is none, or has
+  /// bodies that do not exist, ends the run, and so does motion out of the plane in two dimensions.
+  /// Collective.
+  GearQuatMasks(LAMMPS *lmp, const std::vector<GearQuatMaskWords> &words,
+                const GearQuatBodies &bodies);
+
+  /// True if some body, on any rank, has something that does not act.
+  bool any() const { return !off.empty(); }
+  /// Give all bodies their masks.  True if one had another; collective.
+  bool impose(GearQuatBodies &bodies) const;
+
+ private:
+  std::map<tagint, GearQuat::Mask> off;    ///< bodies with masks only
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
