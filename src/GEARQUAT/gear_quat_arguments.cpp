@@ -105,15 +105,15 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 
   for (int iarg = 0; iarg < narg; iarg += 2) {
     const std::string key = arg[iarg];
+    const std::set<std::string> known = {
+        "formulation", "values", "passes", "start",  "c0",     "omega", "momentum", "project", "compensate",
+        "tolerance",   "dtmin",  "dtmax",  "infile", "reinit", "mol",   "force",    "torque",  "report"};
+    if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (key == "force" || key == "torque") {    // may be given many times
       masks.push_back(parse_mask(lmp, narg - iarg, arg + iarg));
       iarg += MASK_WORDS - 2;
       continue;
     }
-    const std::set<std::string> known = {
-        "formulation", "values",     "passes",    "start", "c0",    "omega",  "momentum", "project",
-        "compensate",  "tolerance",  "dtmin",     "dtmax", "infile", "reinit", "mol",     "report"};
-    if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
     const std::string value = arg[iarg + 1];

@@ -42,7 +42,7 @@ def documented_values(key, text):
 
 
 ACCEPTED = set(strings("known", ARGUMENTS))
-NAMES = {"infile", "mol", "tolerance", "dtmin", "dtmax"}  # keywords without a default
+NAMES = {"infile", "mol", "tolerance", "dtmin", "dtmax", "force", "torque"}  # without a default value
 VALUES = {
     key: {no, yes}
     for key, no, yes in re.findall(
