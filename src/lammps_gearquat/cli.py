@@ -8,6 +8,7 @@ from .commands.bench import bench
 from .commands.cases import cases
 from .commands.cost import cost
 from .commands.drift import drift
+from .commands.hard import hard
 from .commands.horizon import horizon
 from .commands.workprecision import workprecision
 
@@ -23,5 +24,5 @@ def version():
     click.echo(lammps_gearquat.__version__)
 
 
-for command in (bench, cases, cost, drift, horizon, workprecision):
+for command in (bench, cases, cost, drift, hard, horizon, workprecision):
     main.add_command(command)

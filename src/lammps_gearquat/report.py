@@ -2,6 +2,7 @@
 
 import csv
 import textwrap
+from dataclasses import dataclass
 
 from . import accuracy
 from . import divergence as dv
@@ -14,6 +15,21 @@ NOTE = (
     "say which body it ran (consistent: a real rigid body; unrotated: principal moments along the "
     "unrotated axes): both are shown. Every verdict follows from the numbers by the rule beside it."
 )
+
+
+@dataclass(frozen=True)
+class Row:
+    """One demand: what it is about, what is asked, what was measured, and whether that is met."""
+
+    what: str
+    asked: str
+    measured: str
+    met: bool
+
+    @property
+    def verdict(self):
+        """In words."""
+        return "met" if self.met else "not met"
 
 
 def table7(results):

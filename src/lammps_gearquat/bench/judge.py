@@ -11,6 +11,7 @@ from scipy import stats
 
 from .runs import GEAR, NVE_SMALL, SECOND, bodies_of
 from .decks import MOLECULES
+from ..report import Row
 
 #: time in the fix and memory, over fix rigid/nve/small's
 TIME_ASKED, MEMORY_ASKED = 1.0, 1.5
@@ -196,21 +197,6 @@ def partition(thermo):
 
 
 # --- verdicts -----------------------------------------------------------------------------------
-@dataclass(frozen=True)
-class Row:
-    """One demand: what it is about, what is asked, what was measured, and whether that is met."""
-
-    what: str
-    asked: str
-    measured: str
-    met: bool
-
-    @property
-    def verdict(self):
-        """In words."""
-        return "met" if self.met else "not met"
-
-
 def _name(method):
     return "second formulation" if method == SECOND else "first formulation"
 
