@@ -19,7 +19,7 @@ FORMULATIONS = ("second", "first")
 class Curve:
     """One line of a panel: ``x``, ``y`` (n,); ``colour`` is a name of figures.COLOUR.
 
-    ``line`` and ``marker`` are matplotlib's.
+    ``line`` ("" for none) and ``marker`` are matplotlib's.
     """
 
     label: str

@@ -14,7 +14,7 @@ def _panel(axis, panel):
         axis.plot(
             curve.x,
             curve.y,
-            curve.line,
+            linestyle=curve.line,
             marker=curve.marker,
             markersize=3.5,
             color=COLOUR[curve.colour],
