@@ -1,5 +1,5 @@
 """All hard cases, in the order of the page."""
 
-from . import fine, inertia, poles, tumbling
+from . import fast, fine, inertia, poles, tumbling
 
-CASES = (fine.CASE, poles.CASE, tumbling.CASE, inertia.CASE)
+CASES = (fine.CASE, poles.CASE, tumbling.CASE, inertia.CASE, fast.CASE)
