@@ -32,7 +32,10 @@ class Curve:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes; ``limit``: what is asked, drawn as a line across; ``log``: "x", "y", "xy"."""
+    """One pair of axes; ``limit``: what is asked, drawn as a line across; ``log``: "x", "y", "xy".
+
+    ``ticks``: words for x = 0, 1, 2 ...
+    """
 
     title: str
     xlabel: str
@@ -40,6 +43,7 @@ class Panel:
     curves: tuple
     limit: float = None
     log: str = "y"
+    ticks: tuple = ()
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,13 @@
 """All hard cases, in the order of the page."""
 
-from . import fast, fine, inertia, poles, tumbling
+from . import fast, fine, inertia, lifecycle, newstep, poles, tumbling
 
-CASES = (fine.CASE, poles.CASE, tumbling.CASE, inertia.CASE, fast.CASE)
+CASES = (
+    fine.CASE,
+    poles.CASE,
+    tumbling.CASE,
+    inertia.CASE,
+    fast.CASE,
+    newstep.CASE,
+    lifecycle.CASE,
+)

@@ -28,6 +28,9 @@ def _panel(axis, panel):
         axis.set_xscale("log")
     if "y" in panel.log:
         axis.set_yscale("log")
+    if panel.ticks:
+        axis.set_xticks(range(len(panel.ticks)), panel.ticks)
+        axis.margins(x=0.15)
     if any(curve.label for curve in panel.curves) or panel.limit is not None:
         place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 3}
         axis.legend(fontsize=7, **place)
