@@ -5,6 +5,8 @@
 
 #include "gear_quat_assembly.h"
 
+#include "gear_quat_images.h"
+
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -64,7 +66,8 @@ int GearQuatAssembly::callback(int n, char *in, int &flag, int *&ranks, char *&o
   auto *replies = (Reply *) assembly->memory->smalloc((n + 1) * sizeof(Reply), "gear/quat:replies");
   int count = 0;
   for (int first = 0, last; first < n; first = last) {
-    for (last = first; last < n && sites[last].id == sites[first].id;) ++last;
+    for (last = first; last < n && sites[last].id == sites[first].id; ++last)
+      gear_quat_add_turns_of_flags(assembly->domain, sites[first].x, sites[last].x);
     assembly->reply(sites + first, last - first, replies, ranks, count);
   }
   out = (char *) replies;

@@ -5,6 +5,8 @@
 
 #include "gear_quat_bodies.h"
 
+#include "gear_quat_images.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -269,6 +271,11 @@ void GearQuatBodies::list_sites()
     Site site = {i, owned[owner], {}, {}};
     for (int k = 0; k < 3; ++k) site.arm_body[k] = site_body[i][k];
     domain->unmap(site.wrap, atom->image[i]);
+    double arm[3], expected[3];    // of what the flags take off
+    to_space(frame[site.body].axes, site.arm_body, arm);
+    for (int k = 0; k < 3; ++k)
+      expected[k] = state[site.body].center[k] + arm[k] - atom->x[i][k];
+    gear_quat_add_turns_of_flags(domain, expected, site.wrap);
     sites.push_back(site);
   }
   const auto centered = [](const Site &site) {

@@ -1,0 +1,64 @@
+"""Through more periodic boxes than LAMMPS' image flags can count, which is 512 to either side."""
+
+import numpy as np
+import pytest
+from scenes import two_molecules
+
+# both molecules fly 9.5 boxes in a hundred steps; the flags begin again after 5390 steps in x
+FLIGHT = """
+velocity all set 190.0 -125.0 55.0 sum yes units box
+neigh_modify every 1 delay 0 check yes
+thermo_style custom step f_move[1] f_move[2] f_move[1][1] f_move[1][2] f_move[1][3] &
+  f_move[1][13] f_move[1][14] f_move[1][15]
+thermo_modify norm no format float %.17g
+thermo 2000
+"""
+LENGTH = 20.0
+#: of the energy of rotation: at this speed starts are of order 2, each of them errs by 1e-6
+STARTS = 1e-4
+
+
+def run(lmp, fix, after, ranks=1):
+    result = lmp.run(two_molecules(fix, after=FLIGHT + after), ranks=ranks)
+    assert result.returncode == 0, result.output
+    return result
+
+
+def flight(tables):
+    """Steps (n,) of all runs, and the unwrapped centre of the first molecule there, (n, 3)."""
+    columns = [f"f_move[1][{k}]" for k in range(1, 16)]
+    step = np.concatenate([table["Step"] for table in tables])
+    rows = np.concatenate([np.transpose([t[c] for c in columns if c in t]) for t in tables])
+    return step, rows[:, :3] + LENGTH * rows[:, 3:]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("formulation", ["first", "second"])
+def test_a_body_flies_on(lmp_tree, formulation, ranks):
+    result = run(lmp_tree, f"molecule formulation {formulation}", "run 8000", ranks)
+    step, centre = flight(result.thermo)
+    velocity = (centre[1] - centre[0]) / (0.01 * step[1])
+    assert centre[-1, 0] > 600 * LENGTH  # the flags of its atoms are back among the negative ones
+    assert centre == pytest.approx(centre[0] + 0.01 * step[:, None] * velocity, abs=1e-6)
+    spin = result.thermo[0]["f_move[2]"]
+    assert spin == pytest.approx([spin[0]] * len(spin), rel=STARTS)
+
+
+def test_a_body_is_made_anew_where_the_flags_turn(lmp_tree):
+    """Sites of one body have flags at both ends of their range while it passes from one to the other."""
+    pieces = "run 5340\n" + "unfix move\nfix move all gear/quat molecule\nrun 5\n" * 20
+    result = run(lmp_tree, "molecule", pieces)
+    spin = [value for table in result.thermo for value in table["f_move[2]"]]
+    assert spin == pytest.approx([spin[0]] * len(spin), rel=STARTS)
+
+
+def test_a_restart_beyond(lmp_tree):
+    whole = run(lmp_tree, "molecule", "run 6000\nwrite_restart far.restart\nrun 500")
+    deck = two_molecules(after=FLIGHT.partition("\n")[2].partition("\n")[2] + "run 500")
+    lines = deck.splitlines()
+    begin = next(k for k, line in enumerate(lines) if line.startswith("pair_style"))
+    again = ["units lj", "atom_modify map array", "read_restart far.restart", *lines[begin:]]
+    result = lmp_tree.run("\n".join(again))
+    assert result.returncode == 0, result.output
+    for column, values in whole.thermo[-1].items():
+        assert result.thermo[-1][column] == pytest.approx(values, rel=1e-12, abs=1e-12), column
