@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-COLUMNS = ("mol", "mass", "x", "y", "z")
+COLUMNS = ("mol", "mass")
+WRAPPED, UNWRAPPED = ("x", "y", "z"), ("xu", "yu", "zu")
 VELOCITIES = ("vx", "vy", "vz")
 
 
@@ -43,13 +44,17 @@ class Pose:
     residual: float
 
 
-def read_bodies(path):
-    """Bodies of a dump: dictionary molecule ID -> Sites; molecule 0 is in no body and left out."""
+def read_bodies(path, coordinates=WRAPPED):
+    """Bodies of a dump: dictionary molecule ID -> Sites; molecule 0 is in no body and left out.
+
+    ``coordinates``: the columns that are positions, WRAPPED or UNWRAPPED.
+    """
     from MDAnalysis.coordinates.LAMMPS import DumpReader
 
-    with DumpReader(str(path), dt=1.0, additional_columns=[*COLUMNS, *VELOCITIES]) as reader:
+    columns = [*COLUMNS, *coordinates, *VELOCITIES]
+    with DumpReader(str(path), dt=1.0, additional_columns=columns) as reader:
         frames = [{name: np.array(value) for name, value in frame.data.items()} for frame in reader]
-    missing = [name for name in COLUMNS if name not in frames[0]]
+    missing = [name for name in (*COLUMNS, *coordinates) if name not in frames[0]]
     if missing:
         raise ValueError(f"{path}: the dump lacks the column(s) {' '.join(missing)}")
 
@@ -63,7 +68,7 @@ def read_bodies(path):
         chosen = frames[0]["mol"] == molecule
         velocities = gather(VELOCITIES, chosen) if moving else None
         masses = frames[0]["mass"][chosen]
-        bodies[int(molecule)] = Sites(step, masses, gather("xyz", chosen), velocities)
+        bodies[int(molecule)] = Sites(step, masses, gather(coordinates, chosen), velocities)
     return bodies
 
 

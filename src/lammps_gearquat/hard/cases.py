@@ -1,6 +1,6 @@
 """All hard cases, in the order of the page."""
 
-from . import fast, fine, inertia, lifecycle, newstep, poles, tumbling
+from . import boundaries, fast, fine, inertia, lifecycle, newstep, poles, tumbling
 
 CASES = (
     fine.CASE,
@@ -10,4 +10,5 @@ CASES = (
     fast.CASE,
     newstep.CASE,
     lifecycle.CASE,
+    boundaries.CASE,
 )
