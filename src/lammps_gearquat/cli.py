@@ -4,6 +4,7 @@ import click
 
 import lammps_gearquat
 
+from .commands.analyze import analyze
 from .commands.bench import bench
 from .commands.cases import cases
 from .commands.cost import cost
@@ -24,5 +25,5 @@ def version():
     click.echo(lammps_gearquat.__version__)
 
 
-for command in (bench, cases, cost, drift, hard, horizon, workprecision):
+for command in (analyze, bench, cases, cost, drift, hard, horizon, workprecision):
     main.add_command(command)

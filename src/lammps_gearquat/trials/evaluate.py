@@ -42,8 +42,8 @@ def decade(value):
 def angles(bodies, masses, reference, positions):
     """Angles (..., B) in radians between poses of bodies, both positions (..., n, 3).
 
-    That of the rotation which superposes them best, as in pose.superpose, but for all bodies of
-    equally many sites at once.  Sites in a line only have an axis to turn, a single site has none.
+    That of the rotation which superposes them best, as in analysis.superposition, but of many
+    frames at once.  Sites in a line only have an axis to turn, a single site has none.
     """
     found = np.zeros((*positions.shape[:-2], bodies.max() + 1))
     order = np.argsort(bodies, kind="stable")

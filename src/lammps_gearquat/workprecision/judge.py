@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..pose import superpose
+from ..analysis.bodies import Bodies
+from ..analysis.superposition import superpose
 from .plan import NORM, TANGENCY, TOTAL
 
 
@@ -32,21 +33,19 @@ class Errors:
     tangency: float
 
 
-def bodies_of(molecules):
-    """Indices of the atoms of each body: list of arrays; molecule 0 is in no body."""
-    return [np.flatnonzero(molecules == body) for body in np.unique(molecules) if body != 0]
-
-
 def pose_errors(masses, molecules, before, after, reference):
-    """(position, orientation) as in Errors; all positions (n, 3), unwrapped."""
+    """(position, orientation) as in Errors; all positions (n, 3), unwrapped; molecule 0 is in no body."""
     if not np.isfinite(after).all():
         return np.inf, np.inf
-    shifts, angles = [], []
-    for sites in bodies_of(molecules):
-        poses = [superpose(masses[sites], before[sites], at[sites]) for at in (reference, after)]
-        shifts.append(np.linalg.norm(poses[1].centre - poses[0].centre))
-        turn = Rotation.from_matrix(poses[1].rotation @ poses[0].rotation.T)
-        angles.append(turn.magnitude())
+    bodies = Bodies(molecules, masses)
+    bodies.set_shape(before[bodies.index])
+    centres, turns = [], []
+    for sites in (reference[bodies.index], after[bodies.index]):
+        centres.append(bodies.centre(sites))
+        q, _ = superpose(bodies, sites - centres[-1][bodies.of])
+        turns.append(Rotation.from_quat(q, scalar_first=True))
+    shifts = np.linalg.norm(centres[1] - centres[0], axis=1)
+    angles = (turns[1] * turns[0].inv()).magnitude()
     return tuple(float(np.sqrt(np.mean(np.square(x)))) for x in (shifts, angles))
 
 

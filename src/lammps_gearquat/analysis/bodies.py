@@ -1,0 +1,133 @@
+"""Which sites make which body, and what the bodies are: masses, shapes, principal axes."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+#: a principal moment below this fraction of the largest counts as zero, as in the fix
+LINEAR_FRACTION = 1.0e-7
+#: a site nearer to a plane than this fraction of the body's size is on neither side, as in the fix
+ON_AXIS = 1.0e-6
+
+
+class Bodies:
+    """B bodies of n sites, with a reference shape each.
+
+    ``ids`` (B,); ``index`` (n,): the sites among the atoms they were made from, body by body and of
+    each by rising place; ``of`` (n,): the body of each; ``masses`` (n,), ``mass`` (B,);
+    ``shape`` (n, 3): sites in the body frame, from the centre of mass; ``moments`` (B, 3): principal moments
+    of inertia of the sites as points, the largest first, vanishing ones exactly 0; ``axes`` (B, 3, 3):
+    principal axes as rows, in the body frame; ``point`` and ``linear`` (B,): whether a body is one.
+
+    Units are those of the run: moments in mass x length squared.
+    """
+
+    def __init__(self, numbers, masses):
+        """``numbers`` (n,): ID of each atom's body, 0 for none; ``masses`` (n,)."""
+        numbers, masses = np.asarray(numbers), np.asarray(masses, dtype=float)
+        order = np.argsort(numbers, kind="stable")
+        self.index = order[numbers[order] != 0]
+        if not len(self.index):
+            raise ValueError("no atom is in a body: the ID of the body is 0 for all of them")
+        self.ids, self._starts, self.counts = np.unique(
+            numbers[self.index], return_index=True, return_counts=True
+        )
+        self.of = np.repeat(np.arange(len(self.ids)), self.counts)
+        self.masses = masses[self.index]
+        self.mass = self.sum(self.masses)
+        bad = self.ids[~(self.mass > 0.0)]
+        if len(bad):
+            raise ValueError(
+                f"body {bad[0]} has no mass; the masses of its atoms must add up to more than zero"
+            )
+
+    def __len__(self):
+        return len(self.ids)
+
+    def sum(self, values):
+        """Sum of values (n, ...) over the sites of each body, (B, ...)."""
+        return np.add.reduceat(values, self._starts, axis=0)
+
+    def largest(self, values):
+        """Largest of values (n,) in each body, (B,)."""
+        return np.maximum.reduceat(values, self._starts)
+
+    def centre(self, vectors):
+        """Mass-weighted mean (B, 3) of vectors (n, 3)."""
+        # from the first site: far from the origin no digit of the arms is lost
+        first = vectors[self._starts]
+        rest = self.sum(self.masses[:, None] * (vectors - first[self.of]))
+        return first + rest / self.mass[:, None]
+
+    def whole(self, positions, box, periodic=(True, True, True)):
+        """Positions (n, 3) at the image nearest to the first site of their body.
+
+        ``box`` (3, 3): edges as rows.  Right for bodies smaller than half the box.
+        """
+        away = positions - positions[self._starts][self.of]
+        images = np.round(away @ np.linalg.inv(box)) * np.asarray(periodic)
+        return positions - images @ box
+
+    def set_shape(self, positions, principal=False):
+        """Take sites at ``positions`` (n, 3) for the shape; the body frame has their axes.
+
+        ``principal``: instead the principal axes, sorted and directed as by the fix, so that
+        quaternions become those of its array.
+        """
+        arms = positions - self.centre(positions)[self.of]
+        square = np.einsum("ij,ij->i", arms, arms)
+        tensor = square[:, None, None] * np.eye(3) - arms[:, :, None] * arms[:, None, :]
+        moments, axes = np.linalg.eigh(self.sum(self.masses[:, None, None] * tensor))
+        moments, axes = moments[:, ::-1], np.swapaxes(axes, 1, 2)[:, ::-1].copy()
+        moments[self.counts == 1] = 0.0
+        moments[moments <= LINEAR_FRACTION * moments[:, :1]] = 0.0
+        for b, begin in enumerate(self._starts):
+            own = slice(begin, begin + self.counts[b])
+            _direct(axes[b], arms[own], self.masses[own])
+        self.moments = moments
+        self.point = moments[:, 0] == 0.0
+        self.linear = ~self.point & (moments[:, 2] == 0.0)
+        axes[self.point] = np.eye(3)
+        if principal:
+            arms = np.einsum("nij,nj->ni", axes[self.of], arms)
+            axes = np.broadcast_to(np.eye(3), axes.shape).copy()
+        self.shape, self.axes = arms, axes
+
+    def divided_by_inertia(self, q, vectors):
+        """Vectors (B, 3) in space divided by the inertia of bodies turned by q (B, 4).
+
+        About an axis without inertia the result is 0.
+        """
+        axes = self.axes_space(q)
+        along = np.einsum("bij,bj->bi", axes, vectors)
+        divided = np.divide(along, self.moments, out=np.zeros_like(along), where=self.moments > 0.0)
+        return np.einsum("bij,bi->bj", axes, divided)
+
+    def axes_space(self, q):
+        """Principal axes (B, 3, 3) as rows, in space, of bodies turned by q (B, 4)."""
+        turn = Rotation.from_quat(q, scalar_first=True).as_matrix()
+        return np.einsum("bij,bkj->bki", turn, self.axes)
+
+
+def _direct(axes, arms, masses):
+    """Direct the principal axes (3, 3) of one body in place, by its sites (see the fix's manual).
+
+    The first and the third point to the side of the heaviest site that is on a side, of equals the
+    first; the second completes a right-handed frame, or one of them if all sites are in its plane.
+    """
+    along = arms @ axes.T
+    size = np.abs(along).max()
+
+    def direct(k):
+        sided = np.abs(along[:, k]) >= ON_AXIS * size
+        if size == 0.0 or not sided.any():
+            return False
+        heaviest = np.argmax(np.where(sided, masses, -1.0))
+        if along[heaviest, k] < 0.0:
+            axes[k] = -axes[k]
+        return True
+
+    first, third = direct(0), direct(2)
+    last = 1 if first == third else 2 if first else 0
+    if last != 1:
+        direct(1)
+    axes[last] = np.cross(axes[(last + 1) % 3], axes[(last + 2) % 3])

@@ -1,0 +1,165 @@
+"""Mean squares and autocorrelations of poses and motion, averaged over bodies and origins of time.
+
+All functions take arrays (F, B, ...) as ``Poses`` leaves them, also of a table in a file, and go over a
+few bodies at a time: memory does not grow with their number.  They return (F,): entry k belongs to a lag
+of k frames, see ``lags``; the last entries have few origins of time behind them.  Sums over origins are
+products of Fourier transforms (V. Calandrini et al., Collection SFN 12, 201 (2011), Sec. 4.2).
+"""
+
+import numpy as np
+from scipy import fft
+from scipy.spatial.transform import Rotation
+
+#: numbers held at once in one array
+HELD = 1_000_000
+
+
+def lags(time):
+    """Times (F,) that belong to the lags.  Raises ValueError unless ``time`` (F,) is evenly spaced."""
+    time = np.asarray(time, dtype=float)
+    gaps = np.diff(time)
+    if len(gaps) and (gaps[0] <= 0 or not np.allclose(gaps, gaps[0], rtol=1e-6)):
+        raise ValueError("correlations need frames at equal distances of time, and these are not")
+    return time - time[0]
+
+
+def _portions(values):
+    """Slices of the bodies of values (F, B, ...), of bounded size."""
+    frames, bodies = values.shape[:2]
+    width = max(1, HELD // (frames * max(1, int(np.prod(values.shape[2:])))))
+    for begin in range(0, bodies, width):
+        yield slice(begin, min(begin + width, bodies))
+
+
+def _power(x):
+    """Power spectrum of series x (F, b, k), summed over b and k, for lags without wrapping around."""
+    transform = fft.rfft(x.reshape(len(x), -1), n=fft.next_fast_len(2 * len(x), real=True), axis=0)
+    return (transform.real**2 + transform.imag**2).sum(axis=1)
+
+
+def _products(power, frames):
+    """Sum over origins of x(t) . x(t + lag), (F,), from the power spectrum."""
+    return fft.irfft(power, n=fft.next_fast_len(2 * frames, real=True))[:frames]
+
+
+def _origins(frames):
+    return np.arange(frames, 0, -1)
+
+
+def autocorrelation(values):
+    """Mean of x(t) . x(t + lag), of values (F, B, k), such as velocities; units squared."""
+    frames, bodies = values.shape[:2]
+    power = sum(_power(np.asarray(values[:, own], dtype=float)) for own in _portions(values))
+    return _products(power, frames) / (_origins(frames) * bodies)
+
+
+def _square_displacements(x):
+    """Sum over bodies and origins of |x(t + lag) - x(t)|^2 of x (F, b, 3), (F,)."""
+    x = x - x.mean(axis=0)  # products of distances, not of positions far away
+    square = np.einsum("fbk,fbk->f", x, x)
+    ends = np.concatenate([[0.0], np.cumsum(square)])
+    both = ends[-1] - ends[:-1] + ends[1:][::-1]  # sum of |x(t)|^2 over all second ends, and first
+    return both - 2.0 * _products(_power(x), len(x))
+
+
+def mean_square_displacement(centre):
+    """Mean of |x(t + lag) - x(t)|^2, (F,), of unwrapped centres (F, B, 3); length squared."""
+    frames, bodies = centre.shape[:2]
+    total = sum(
+        _square_displacements(np.asarray(centre[:, own], dtype=float)) for own in _portions(centre)
+    )
+    return np.maximum(total, 0.0) / (_origins(frames) * bodies)
+
+
+def rotation_path(q, axis=None):
+    """Rotation since the first frame, summed over turns from frame to frame, (F, b, 3), radians.
+
+    Unlike an angle it is not bounded (S. Kaemmerer, W. Kob, R. Schilling, Phys. Rev. E 56, 5450 (1997),
+    Eq. 10).  Along space axes.  ``q`` (F, b, 4); ``axis`` (b, 3): axes in the body frame of linear
+    bodies, whose turn is the shortest one of the axis; NaN for the others.
+    """
+    turn = Rotation.from_quat(q.reshape(-1, 4), scalar_first=True)
+    frames, bodies = q.shape[:2]
+    matrices = turn.as_matrix().reshape(frames, bodies, 3, 3)
+    steps = Rotation.from_matrix(
+        (matrices[1:] @ np.swapaxes(matrices[:-1], -1, -2)).reshape(-1, 3, 3)
+    )
+    steps = steps.as_rotvec().reshape(frames - 1, bodies, 3)
+    if axis is not None:
+        linear = np.isfinite(axis[:, 0])
+        along = np.einsum("fbij,bj->fbi", matrices[:, linear], axis[linear])
+        cross = np.cross(along[:-1], along[1:])
+        sine = np.linalg.norm(cross, axis=-1, keepdims=True)
+        angle = np.arctan2(sine, np.einsum("fbi,fbi->fb", along[:-1], along[1:])[..., None])
+        steps[:, linear] = cross * np.divide(angle, sine, out=np.ones_like(sine), where=sine > 0)
+    return np.concatenate([np.zeros((1, bodies, 3)), np.cumsum(steps, axis=0)])
+
+
+def mean_square_rotation(q, bodies=None):
+    """Mean of |phi(t + lag) - phi(t)|^2, (F,), radians squared; and the largest turn between frames.
+
+    phi is ``rotation_path``.  Above pi / 2 between frames turns are mistaken for shorter ones, sooner
+    or later.  ``q`` (F, B, 4); ``bodies`` (Bodies): needed if some are linear.
+    """
+    frames, number = q.shape[:2]
+    axis = None
+    if bodies is not None and bodies.linear.any():
+        axis = np.where(bodies.linear[:, None], bodies.axes[:, 2], np.nan)
+    total, largest = np.zeros(frames), 0.0
+    for own in _portions(q):
+        path = rotation_path(np.asarray(q[:, own]), None if axis is None else axis[own])
+        total += _square_displacements(path)
+        turns = np.linalg.norm(np.diff(path, axis=0), axis=-1)
+        largest = max(largest, turns.max(initial=0.0))
+    return np.maximum(total, 0.0) / (_origins(frames) * number), float(largest)
+
+
+def orientation_correlation(q, axis, order=1):
+    """Mean of P(u(t) . u(t + lag)), (F,), of a body's axis u; P is Legendre's polynomial of ``order``.
+
+    ``q`` (F, B, 4); ``axis`` (3,) or (B, 3), in the body frame; ``order`` 1 or 2.  Raises ValueError for
+    another order or an axis without length.
+    """
+    if order not in (1, 2):
+        raise ValueError(f"order {order}: 1 or 2 is required")
+    axis = np.broadcast_to(np.asarray(axis, dtype=float), (q.shape[1], 3))
+    length = np.linalg.norm(axis, axis=1, keepdims=True)
+    if not (length > 0).all():
+        raise ValueError("an axis needs a length")
+    axis, frames, power = axis / length, len(q), 0.0
+    for own in _portions(q):
+        turn = Rotation.from_quat(np.asarray(q[:, own]).reshape(-1, 4), scalar_first=True)
+        along = np.tile(axis[own], (frames, 1))
+        u = turn.apply(along).reshape(frames, -1, 3)
+        if order == 2:
+            # (u . w)^2 is the product of the tensors u u and w w: six different elements
+            i, j = np.triu_indices(3)
+            u = u[..., i] * u[..., j] * np.where(i == j, 1.0, np.sqrt(2.0))
+        power = power + _power(u)
+    mean = _products(power, frames) / (_origins(frames) * q.shape[1])
+    return mean if order == 1 else 1.5 * mean - 0.5
+
+
+def all_correlations(poses):
+    """Every function above that finished ``Poses`` or ``TablePoses`` have the data for.
+
+    Returns name -> (F,), ``lag`` first, and the largest turn between two frames, radians.  Axes 1 to 3 are the
+    principal ones, the largest moment first; of linear bodies only the third, which is the body's own, and
+    of points none.  Raises ValueError if frames are not evenly spaced in time.
+    """
+    results, bodies = poses.results, getattr(poses, "bodies", None)
+    found = {"lag": lags(results.time)}
+    found["mean_square_displacement"] = mean_square_displacement(results.centre)
+    for name in ("velocity", "omega_space"):
+        if name in results:
+            found[f"{name}_autocorrelation"] = autocorrelation(results[name])
+    if bodies is not None and bodies.point.all():
+        return found, 0.0
+    found["mean_square_rotation"], largest = mean_square_rotation(results.q, bodies)
+    linear = bodies is not None and (bodies.linear | bodies.point).any()
+    for k in (2,) if linear else range(3):
+        axis = np.eye(3)[k] if bodies is None else bodies.axes[:, k]
+        for order in (1, 2):
+            name = f"axis{k + 1}_order{order}"
+            found[name] = orientation_correlation(results.q, axis, order)
+    return found, largest

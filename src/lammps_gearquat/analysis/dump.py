@@ -1,0 +1,306 @@
+"""LAMMPS dumps as MDAnalysis universes, in double precision.
+
+``open_dump`` reads ``dump custom`` (a row an atom), ``open_table`` the ``dump local`` of the local data of
+fix gear/quat (a row a body).  Both give a Universe whose residues are the bodies: ``resids`` are the
+IDs of the bodies, and residue 0, if there is one, holds the atoms that are in none.
+
+MDAnalysis keeps positions and boxes in single precision.  ``DumpFrames`` therefore leaves the same numbers
+a second time, in double precision, in ``Timestep.data``; and it reads a frame at once, not atom by atom.
+"""
+
+import re
+import warnings
+from pathlib import Path
+
+import MDAnalysis
+import numpy as np
+from MDAnalysis.coordinates.LAMMPS import DumpReader
+from MDAnalysis.guesser.tables import masses as MASSES
+from MDAnalysis.lib.mdamath import triclinic_box
+from MDAnalysis.lib.util import anyopen
+
+#: columns of positions, the most useful first: which way they are unwrapped, scaled or not
+POSITIONS = {
+    "unwrapped": ("xu", "yu", "zu"),
+    "scaled unwrapped": ("xsu", "ysu", "zsu"),
+    "wrapped": ("x", "y", "z"),
+    "scaled": ("xs", "ys", "zs"),
+}
+VELOCITIES = ("vx", "vy", "vz")
+IMAGES = ("ix", "iy", "iz")
+HEADER_LINES = 9
+#: column of the fix's table -> name here; each row is one body
+TABLE = dict(enumerate(["x", "y", "z", "vx", "vy", "vz"], 1))
+TABLE |= dict(enumerate(["ix", "iy", "iz", "q0", "q1", "q2", "q3"], 13))
+TABLE |= dict(enumerate(["wx", "wy", "wz", "lx", "ly", "lz"], 20)) | {28: "id"}
+
+
+class DumpError(ValueError):
+    """A dump that cannot be used; the message says what is required."""
+
+
+def read_header(file, name):
+    """Header of the frame that begins here.
+
+    Returns step, number of rows, origin (3,), box (3, 3) with the edges as rows, periodic (3,) and
+    the names of the columns.  Raises DumpError if this is not a header of nine lines.
+    """
+    lines = [file.readline() for _ in range(HEADER_LINES)]
+    if lines[0].startswith(("ITEM: UNITS", "ITEM: TIME\n")):
+        raise DumpError(
+            f"{name}: written with dump_modify units yes or time yes, which MDAnalysis does not read"
+        )
+    expected = "ITEM: TIMESTEP", "ITEM: NUMBER OF", "ITEM: BOX BOUNDS"
+    if not all(line.startswith(word) for line, word in zip(lines[0:5:2], expected)):
+        raise DumpError(
+            f"{name}: no frame of a LAMMPS dump begins where one should; the number of rows must be"
+            " the same in all frames"
+        )
+    kind, *columns = lines[8].split()[1:]
+    if kind not in ("ATOMS", "ENTRIES"):
+        raise DumpError(f"{name}: a dump custom or dump local is required, not 'ITEM: {kind}'")
+    origin, box, periodic = _box(lines[4], lines[5:8], name)
+    return int(lines[1]), int(lines[3]), origin, box, periodic, columns
+
+
+def _box(title, bounds, name):
+    """Origin, edges and periodicity of a box of LAMMPS."""
+    flags = [word for word in title.split() if re.fullmatch(r"[pfsm]{2}", word)]
+    periodic = np.array([flag == "pp" for flag in flags])
+    try:
+        numbers = np.array([line.split() for line in bounds], dtype=float)
+    except ValueError:
+        numbers = np.empty((0, 0))
+    if len(periodic) != 3 or numbers.shape not in ((3, 2), (3, 3)):
+        raise DumpError(f"{name}: a box that is not orthogonal or triclinic as LAMMPS restricts it")
+    low, high = numbers[:, 0].copy(), numbers[:, 1].copy()
+    xy, xz, yz = numbers[:, 2] if numbers.shape == (3, 3) else (0.0, 0.0, 0.0)
+    # bounds of a triclinic box are those of the box around it (LAMMPS, Howto_triclinic)
+    low[:2] -= min(0.0, xy, xz, xy + xz), min(0.0, yz)
+    high[:2] -= max(0.0, xy, xz, xy + xz), max(0.0, yz)
+    box = np.diag(high - low)
+    box[1, 0], box[2, 0], box[2, 1] = xy, xz, yz
+    return low, box, periodic
+
+
+def columns_of(path):
+    """Names of the columns of a dump, and whether it is a ``dump local``."""
+    with anyopen(str(path)) as file:
+        columns = read_header(file, path)[-1]
+    return columns, any(re.fullmatch(r"f_\S+\[\d+\]", c) for c in columns) and "xu" not in columns
+
+
+class DumpFrames(DumpReader):
+    """MDAnalysis' reader of LAMMPS dumps, a frame at once and in double precision.
+
+    ``Timestep.positions`` are those of MDAnalysis (single precision, box moved to the origin);
+    they are unwrapped where the dump tells how.  ``Timestep.data`` holds besides ``step`` and ``time``
+
+    * ``x`` (n, 3): positions as LAMMPS counts them, unwrapped by the dump's own columns if it has them
+    * ``whole``: whether that was so, or nothing is periodic
+    * ``v`` (n, 3): velocities, if the dump has them
+    * ``box`` (3, 3): edges as rows; ``origin`` (3,); ``periodic`` (3,)
+    * each of ``additional_columns`` (n,)
+
+    Rows are sorted by ID.  Raises DumpError if IDs are missing, occur twice or change, if positions
+    are missing, or if the number of rows changes.
+
+    ``names`` renames columns: of a ``dump local`` those of LAMMPS are ``f_ID[1]`` and so on.
+    """
+
+    def __init__(self, filename, additional_columns=(), names=None, **kwargs):
+        self._names, self._ids, self._warned = names or {}, None, False
+        super().__init__(filename, additional_columns=list(additional_columns), **kwargs)
+
+    def _columns(self, header):
+        """Index of each column that is read; the kind of its positions."""
+        index = {self._names.get(name, name): k for k, name in enumerate(header)}
+        kind = next((k for k, names in POSITIONS.items() if set(names) <= set(index)), None)
+        if "id" not in index:
+            raise DumpError(
+                f"{self.filename}: no column id; without it a row cannot be followed from frame to frame"
+            )
+        if kind is None:
+            raise DumpError(
+                f"{self.filename}: no positions; columns xu yu zu or x y z are required"
+            )
+        missing = [name for name in self._additional_columns if name not in index]
+        if missing:
+            raise DumpError(f"{self.filename}: no column {' '.join(missing)}")
+        wanted = ["id", *POSITIONS[kind], *self._additional_columns]
+        for group in (VELOCITIES, IMAGES):
+            wanted += group if set(group) <= set(index) else ()
+        return {name: index[name] for name in wanted}, kind
+
+    def _read_next_timestep(self):
+        ts = self.ts
+        ts.frame += 1
+        if ts.frame >= len(self):
+            raise EOFError
+        step, rows, origin, box, periodic, header = read_header(self._file, self.filename)
+        if rows != self.n_atoms:
+            raise DumpError(
+                f"{self.filename}: {rows} rows at step {step}, {self.n_atoms} in the first frame; the"
+                " number must not change: dump a group whose atoms stay"
+            )
+        columns, kind = self._columns(header)
+        # not by iteration: a file that is iterated over cannot tell where it is
+        lines = [self._file.readline() for _ in range(rows)]
+        try:
+            table = np.loadtxt(lines, usecols=list(columns.values()), ndmin=2)
+        except ValueError as error:
+            raise DumpError(f"{self.filename}, step {step}: {error}") from error
+        self._fill(dict(zip(columns, table.T)), kind, (step, origin, box, periodic))
+        return ts
+
+    def _fill(self, table, kind, frame):
+        """One frame into the Timestep."""
+        ts = self.ts
+        step, origin, box, periodic = frame
+        order = np.argsort(table["id"], kind="stable")
+        table = {name: column[order] for name, column in table.items()}
+        self._check_ids(table["id"], step)
+        x = np.column_stack([table[name] for name in POSITIONS[kind]])
+        if kind.startswith("scaled"):
+            x = origin + x @ box
+        whole = kind.endswith("unwrapped") or not periodic.any()
+        if not whole and all(name in table for name in IMAGES):
+            x = x + np.column_stack([table[name] for name in IMAGES]) @ box
+            whole = True
+        ts.data.update(step=step, time=step * ts.dt, x=x, whole=whole)
+        ts.data.update(box=box, origin=origin, periodic=periodic)
+        ts.dimensions = triclinic_box(*box)
+        ts.positions = x - origin
+        if VELOCITIES[0] in table:
+            ts.data["v"] = np.column_stack([table[name] for name in VELOCITIES])
+            ts.velocities = ts.data["v"]
+        for name in self._additional_columns:
+            ts.data[name] = table[name]
+
+    def _check_ids(self, ids, step):
+        if self._ids is None:
+            if len(np.unique(ids)) < len(ids):
+                raise DumpError(f"{self.filename}: an ID occurs twice at step {step}")
+            self._ids = ids
+        if not np.array_equal(ids, self._ids):
+            raise DumpError(
+                f"{self.filename}: other IDs at step {step} than in the first frame: dump a group whose"
+                " atoms stay"
+            )
+
+    @property
+    def ids(self):
+        """IDs (n,) of the rows, rising."""
+        return self._ids.astype(int)
+
+
+def _names(masses, types):
+    """Names and elements (n,) for viewers, if all masses are those of elements; else T and the type."""
+    symbols = np.array(list(MASSES))
+    weights = np.array([MASSES[symbol] for symbol in symbols])
+    kinds, which = np.unique(masses, return_inverse=True)
+    nearest = np.abs(kinds[:, None] - weights).argmin(axis=1)
+    if (np.abs(weights[nearest] - kinds) < 0.005).all():
+        return (symbols[nearest][which].astype(object),) * 2
+    return np.array([f"T{kind}" for kind in types], dtype=object), np.full(len(types), "", object)
+
+
+def _universe(reader_arguments, ids, bodies, masses, types):
+    """A Universe whose residues are the bodies."""
+    numbers, residue = np.unique(bodies, return_inverse=True)
+    universe = MDAnalysis.Universe.empty(
+        len(ids), n_residues=len(numbers), atom_resindex=residue, trajectory=False
+    )
+    universe.add_TopologyAttr("ids", ids)
+    universe.add_TopologyAttr("resids", numbers)
+    universe.add_TopologyAttr("masses", masses)
+    universe.add_TopologyAttr("types", types.astype(str))
+    names, elements = _names(masses, types)
+    universe.add_TopologyAttr("names", names)
+    universe.add_TopologyAttr("elements", elements)
+    path, arguments = reader_arguments
+    universe.load_new(str(path), format=DumpFrames, **arguments)
+    return universe
+
+
+def _from_data_file(data, atom_style, ids):
+    """Masses, bodies (molecule IDs) and types of the atoms ``ids``, from a LAMMPS data file."""
+    style = {"atom_style": atom_style} if atom_style else {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        known = MDAnalysis.Universe(str(data), topology_format="DATA", format="DATA", **style).atoms
+    order = np.argsort(known.ids)
+    place = np.searchsorted(known.ids[order], ids)
+    found = known.ids[order][np.minimum(place, len(known) - 1)]
+    if not np.array_equal(found, ids):
+        lost = ids[found != ids][0]
+        raise DumpError(f"{data}: no atom {lost}, which the dump has")
+    known = known[order][place]
+    return known.masses, known.resids, known.types
+
+
+def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_style=None):
+    """Universe of a ``dump custom``.
+
+    The dump needs ``id`` and positions (``xu yu zu``, or ``x y z`` with ``ix iy iz`` in a periodic box; scaled
+    ones as well); for energies ``vx vy vz``; ``mol`` and ``mass`` unless ``data`` names the LAMMPS data
+    file (with ``atom_style`` as MDAnalysis writes it, such as "id type x y z", if not full or molecular).
+    ``dump_modify ... format float %.17g`` keeps all digits.  Atoms may be in any order.
+
+    ``body`` is the column whose value is the ID of an atom's body (0: in none), such as ``i_body``;
+    ``potential`` one with energies of atoms, such as ``c_energy``; ``timestep`` that of LAMMPS, so that
+    times are in its units.  Raises DumpError if a column is missing.
+    """
+    columns, local = columns_of(path)
+    if local:
+        raise DumpError(f"{path}: a dump local of the fix; open it with open_table")
+    extra = [name for name in (body, "mass", "type") if name in columns]
+    extra += [potential] if potential else []
+    arguments = {"additional_columns": extra, "dt": timestep}
+    with DumpFrames(str(path), **arguments) as reader:
+        ids, first = reader.ids, reader.ts.data
+    if data is not None:
+        masses, bodies, types = _from_data_file(data, atom_style, ids)
+    else:
+        masses, bodies, types = first.get("mass"), None, np.ones(len(ids), int)
+    if masses is None:
+        raise DumpError(f"{path}: no column mass; dump it, or name the data file")
+    if body in first:
+        bodies = first[body].astype(int)
+    elif bodies is None or body != "mol":
+        raise DumpError(f"{path}: no column {body}; it says which atoms make which body")
+    if "type" in first:
+        types = first["type"].astype(int)
+    kept = {"additional_columns": [potential] if potential else [], "dt": timestep}
+    return _universe((path, kept), ids, bodies, masses, types)
+
+
+def open_table(path, timestep=1.0):
+    """Universe of a ``dump local`` of the fix's local data: an atom a body, at its centre of mass.
+
+    ``dump ID group local N FILE index f_FIX[1] f_FIX[2] ...`` with at least the columns 1 to 6, 13 to 25 and 28.
+    Masses are not among them.  Raises DumpError if a column is missing.
+    """
+    columns, _ = columns_of(path)
+    found = {c: re.fullmatch(r"f_\S+\[(\d+)\]", c) for c in columns}
+    names = {c: TABLE.get(int(match[1]), c) for c, match in found.items() if match}
+    missing = sorted(set(TABLE) - {int(match[1]) for match in found.values() if match})
+    if missing:
+        raise DumpError(
+            f"{path}: the dump local of the fix's table lacks column(s) {' '.join(map(str, missing))}"
+        )
+    extra = [name for name in TABLE.values() if name[0] in "qwl"]
+    arguments = {"additional_columns": extra, "names": names, "dt": timestep}
+    with DumpFrames(str(path), **arguments) as reader:
+        ids = reader.ids
+    return _universe((path, arguments), ids, ids, np.full(len(ids), np.nan), np.ones(len(ids), int))
+
+
+def open_any(path, timestep=1.0, **options):
+    """Universe of a dump of either kind, and whether it is a ``dump local`` of the fix."""
+    local = columns_of(path)[1]
+    if not Path(path).is_file():
+        raise DumpError(f"{path}: no such file")
+    if local:
+        return open_table(path, timestep), True
+    return open_dump(path, timestep=timestep, **options), False

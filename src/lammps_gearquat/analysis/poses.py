@@ -1,0 +1,348 @@
+"""Pose, velocity, energy and momentum of every body in every frame, as MDAnalysis analyses.
+
+``Poses`` finds them from sites, ``TablePoses`` takes them from the ``dump local`` of the fix's own table.
+
+    universe = open_dump("water.dump", timestep=1.0)
+    poses = Poses(universe.atoms, units="real").run(verbose=True)
+    poses.results.centre, poses.results.q                    # (F, B, 3), (F, B, 4)
+    Poses(universe.atoms).run(backend="multiprocessing", n_workers=2)
+    Poses(universe.atoms, out="poses.npy").run()             # as large as the disk allows
+
+All frames of all bodies are one structured array, ``results.table`` (F, B).  With ``out`` it is a file
+that is mapped into memory: each frame is written when it is read, and only its pages are held.
+"""
+
+import csv
+
+import numpy as np
+from MDAnalysis.analysis.base import AnalysisBase
+from MDAnalysis.analysis.results import ResultsGroup
+
+from .bodies import Bodies
+from .superposition import rotate, superpose
+
+VECTOR, ONE = (float, (3,)), (float,)
+POSE = {"centre": VECTOR, "q": (float, (4,)), "residual": ONE}
+MOTION = {
+    "velocity": VECTOR,
+    "omega_space": VECTOR,
+    "angular_momentum_space": VECTOR,
+    "ke_translation": ONE,
+    "ke_rotation": ONE,
+    "velocity_residual": ONE,
+}
+TABLE_MOTION = ("velocity", "omega_space", "angular_momentum_space", "ke_rotation")
+POTENTIAL = {"potential": ONE}
+
+#: mass x velocity^2 -> energy in the units of LAMMPS (mvv2e in its update.cpp)
+KINETIC_TO_ENERGY = {
+    "lj": 1.0,
+    "real": 48.88821291**2,
+    "metal": 1.0364269e-4,
+    "si": 1.0,
+    "cgs": 1.0,
+    "electron": 1.06657236,
+    "micro": 1.0,
+    "nano": 1.0,
+}
+
+
+class _FrameTable(AnalysisBase):
+    """A structured array (F, B), filled frame by frame, in memory or in a file."""
+
+    _analysis_algorithm_is_parallelizable = True
+
+    @classmethod
+    def get_supported_backends(cls):
+        """Serial, and the processes of MDAnalysis' own backends."""
+        return ("serial", "multiprocessing", "dask")
+
+    def __init__(self, atoms, ids, fields, units, out, **kwargs):
+        if units is not None and units not in KINETIC_TO_ENERGY:
+            raise ValueError(f"units {units}: one of {', '.join(KINETIC_TO_ENERGY)} is required")
+        super().__init__(atoms.universe.trajectory, **kwargs)
+        self.atoms, self.ids = atoms, ids
+        self.units = units
+        self._energy = KINETIC_TO_ENERGY[units or "lj"]
+        self._dtype = np.dtype([(name, *kind) for name, kind in fields.items()])
+        self._out = None if out is None else str(out)
+
+    def run(self, start=None, stop=None, step=None, frames=None, **kwargs):
+        """As ``AnalysisBase.run`` of MDAnalysis, which see.
+
+        Raises ValueError if there is no frame.
+        """
+        number = len(self._trajectory)
+        chosen = slice(start, stop, step) if frames is None else frames
+        self._row = {frame: row for row, frame in enumerate(np.arange(number)[chosen].tolist())}
+        if not self._row:
+            raise ValueError("no frame is left to analyse")
+        if self._out:
+            shape = len(self._row), len(self.ids)
+            np.lib.format.open_memmap(self._out, "w+", self._dtype, shape).flush()
+        return super().run(start, stop, step, frames, **kwargs)
+
+    def _prepare(self):
+        self.results.step = np.zeros(self.n_frames, dtype=np.int64)
+        if not self._out:
+            self.results.table = np.zeros((self.n_frames, len(self.ids)), self._dtype)
+
+    def _single_frame(self):
+        self.results.step[self._frame_index] = self._ts.data.get("step", self._ts.frame)
+        if self._out:
+            # opened anew: no process holds more than the pages of its frame
+            table, row = np.load(self._out, mmap_mode="r+"), self._row[self._ts.frame]
+        else:
+            table, row = self.results.table, self._frame_index
+        for name, values in self._frame().items():
+            table[name][row] = values
+
+    def _frame(self):
+        """Fields of the frame at hand: name -> (B, ...)."""
+        raise NotImplementedError
+
+    def _get_aggregator(self):
+        return ResultsGroup({"step": np.concatenate, "table": np.concatenate})
+
+    def _conclude(self):
+        results = self.results
+        if self._out:
+            results.table = np.load(self._out, mmap_mode="r+")
+        self._join()
+        results.time, results.ids = self.times, self.ids
+        for name in self._dtype.names:
+            results[name] = results.table[name]
+
+    def _join(self):
+        """Signs of quaternions that do not jump; centres likewise, where only images are known."""
+        q, centre = self.results.table["q"], self.results.table["centre"]
+        images = self._images()
+        for k in range(1, len(q)):
+            turned = np.einsum("bi,bi->b", q[k], q[k - 1]) < 0.0
+            q[k, turned] *= -1.0
+            if images is not None:
+                box, periodic = images
+                gone = np.round((centre[k] - centre[k - 1]) @ np.linalg.inv(box)) * periodic
+                centre[k] -= gone @ box
+
+    def _images(self):
+        """(box, periodic) if centres are to be joined from frame to frame, else None."""
+        return None
+
+    # --- what is done with the table ------------------------------------------------------------
+    def totals(self):
+        """Sums over the bodies, name -> (F,) or (F, 3); of residuals the largest.
+
+        ``momentum`` and ``angular_momentum_space`` (about the origin) need masses, so a table of sites.
+        """
+        return totals(self.results.table, getattr(self, "mass", None))
+
+    def columns(self):
+        """Every field as a flat column: name -> (F * B,), frame by frame; for pandas.DataFrame."""
+        frames, bodies = self.results.table.shape
+        columns = {
+            "step": np.repeat(self.results.step, bodies),
+            "time": np.repeat(self.results.time, bodies),
+            "body": np.tile(self.ids, frames),
+        }
+        return columns | _flat(self.results.table.reshape(-1))
+
+    def to_csv(self, path):
+        """Write a row for each frame and body, with 17 digits; one frame at a time."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            names = _flat(self.results.table[0])
+            csv.writer(file).writerow(["step", "time", "body", *names])
+            for step, time, frame in zip(self.results.step, self.results.time, self.results.table):
+                values = np.column_stack(list(_flat(frame).values()))
+                keys = np.column_stack([np.full((len(frame), 2), (step, time)), self.ids])
+                np.savetxt(file, np.hstack([keys, values]), fmt="%.17g", delimiter=",")
+
+
+def _flat(records):
+    """Fields of records (n,) as columns; parts of a vector get the names of their axes."""
+    columns = {}
+    for name in records.dtype.names:
+        values = records[name]
+        if values.ndim == 1:
+            columns[name] = values
+        else:
+            parts = "xyz" if values.shape[1] == 3 else "0123"
+            columns |= {f"{name}_{part}": values[:, k] for k, part in enumerate(parts)}
+    return columns
+
+
+def totals(table, mass=None):
+    """Sums over the bodies of a table (F, B), see ``_FrameTable.totals``; ``mass`` (B,)."""
+    names = table.dtype.names
+    found = {n: np.empty(len(table)) for n in names if n.startswith(("ke_", "potential"))}
+    found |= {n: np.empty(len(table)) for n in names if n.endswith("residual")}
+    known = mass is not None and "velocity" in names
+    found |= {n: np.empty((len(table), 3)) for n in ("momentum", "angular_momentum_space") if known}
+    for k, frame in enumerate(table):
+        for name in set(found) & set(names):
+            values = frame[name]
+            found[name][k] = values.max() if name.endswith("residual") else values.sum(axis=0)
+        if known:
+            momentum = mass[:, None] * frame["velocity"]
+            found["momentum"][k] = momentum.sum(axis=0)
+            found["angular_momentum_space"][k] += np.cross(frame["centre"], momentum).sum(axis=0)
+    return found
+
+
+class Poses(_FrameTable):
+    """Poses and motion of rigid bodies from the positions and velocities of their sites.
+
+    Parameters
+    ----------
+    atoms: AtomGroup.  Its residues are the bodies, residue 0 is none; a Universe of ``open_dump``, or any
+        other (a DCD with a topology; single precision then).
+    reference: "first", the shape a body has in its first frame; "principal", the same in its principal
+        axes, so that q is that of the fix; or positions (n_atoms, 3) of all atoms, in their order.
+    units: style of units of LAMMPS; energies are in its units, without it in mass x velocity^2.
+    potential: column with potential energies of atoms that ``open_dump`` was told to read.
+    out: file (.npy) for the table; without it the table is in memory.
+
+    Results
+    -------
+    After ``run``, F frames of B bodies, in units of the run; ``results.table`` has all as one array:
+
+    * ``step``, ``time`` (F,); ``ids`` (B,)
+    * ``centre`` (F, B, 3): center of mass, unwrapped
+    * ``q`` (F, B, 4): quaternion, scalar first, body -> space; its sign is that of the frame before
+    * ``residual`` (F, B): largest distance of a site from where the rigid reference would have it
+    * ``velocity`` (F, B, 3), ``omega_space`` (F, B, 3): motion of a rigid body that fits the velocities of the
+      sites with the least mass-weighted squares; omega in radians per unit of time
+    * ``angular_momentum_space`` (F, B, 3): about the center of mass
+    * ``ke_translation``, ``ke_rotation`` (F, B): kinetic energies of that motion
+    * ``velocity_residual`` (F, B): largest deviation of a site's velocity from it
+    * ``potential`` (F, B)
+
+    The six from ``velocity`` on are there if the frames have velocities.  ``bodies`` (Bodies) has masses, shapes
+    and principal moments.  Sites count as points.  About the axis of a linear body no angle is defined: its
+    q is the shortest rotation from the reference, its omega has no part along the axis; of a point q is
+    1 0 0 0 and omega 0.
+
+    Where only wrapped positions are known, bodies are made whole by nearest images (right if smaller
+    than half the box) and followed from frame to frame (right if they move less than half the box).
+
+    Raises ValueError for bodies without mass and for a reference of another shape.
+    """
+
+    def __init__(self, atoms, reference="first", units=None, potential=None, out=None, **kwargs):
+        self.bodies = Bodies(atoms.resids, atoms.masses)
+        self.mass = self.bodies.mass
+        trajectory = atoms.universe.trajectory
+        self._potential, self.atoms = potential, atoms
+        first = trajectory[0]
+        if potential and potential not in first.data:
+            raise ValueError(f"no column {potential} was read with the dump")
+        has_velocities = "v" in first.data or first.has_velocities
+        fields = POSE | (MOTION if has_velocities else {}) | (POTENTIAL if potential else {})
+        super().__init__(atoms, self.bodies.ids, fields, units, out, **kwargs)
+        self._box = None
+        self._set_reference(reference)
+
+    def _set_reference(self, reference):
+        if isinstance(reference, str):
+            if reference not in ("first", "principal"):
+                raise ValueError(
+                    f"reference {reference}: first, principal or positions are required"
+                )
+            self._ts = self._trajectory[0]
+            self.bodies.set_shape(self._sites()[0], principal=reference == "principal")
+            return
+        reference = np.asarray(reference, dtype=float)
+        if reference.shape != (len(self.atoms), 3):
+            raise ValueError(
+                f"reference: positions of shape {(len(self.atoms), 3)} are required, not {reference.shape}"
+            )
+        self.bodies.set_shape(reference[self.bodies.index])
+
+    def _sites(self):
+        """Positions (n, 3), whole, and velocities (n, 3) or None, of the frame at hand."""
+        ts, own = self._ts, self.atoms.ix[self.bodies.index]
+        if "x" in ts.data:
+            x, v, whole, box = ts.data["x"][own], ts.data.get("v"), ts.data["whole"], ts.data["box"]
+        else:
+            x = ts.positions[own].astype(float)
+            v = ts.velocities if ts.has_velocities else None
+            box = ts.triclinic_dimensions
+            whole = box is None
+        if not whole:
+            self._check_box(box)
+            x = self.bodies.whole(x, box, ts.data.get("periodic", np.ones(3)))
+        return x, None if v is None else v[own].astype(float)
+
+    def _check_box(self, box):
+        if self._box is None:
+            self._box = np.array(box, dtype=float), self._ts.data.get("periodic", np.ones(3))
+        if not np.allclose(box, self._box[0], rtol=1e-6):
+            raise ValueError(
+                f"the box changes, at frame {self._ts.frame}: unwrapped positions (xu yu zu) are required"
+            )
+
+    def _images(self):
+        return self._box
+
+    def _frame(self):
+        bodies = self.bodies
+        x, v = self._sites()
+        centre = bodies.centre(x)
+        arms = x - centre[bodies.of]
+        q, residual = superpose(bodies, arms)
+        fields = {"centre": centre, "q": q, "residual": residual}
+        if v is not None:
+            # of the rigid shape, not of the sites: thin bodies keep their digits
+            fields |= self._motion(q, rotate(q[bodies.of], bodies.shape), v)
+        if self._potential:
+            own = self.atoms.ix[bodies.index]
+            fields["potential"] = bodies.sum(self._ts.data[self._potential][own])
+        return fields
+
+    def _motion(self, q, arms, v):
+        """Velocity, angular velocity and what follows; ``arms`` and ``v`` (n, 3) of the sites."""
+        bodies = self.bodies
+        velocity = bodies.centre(v)
+        relative = v - velocity[bodies.of]
+        momentum = bodies.sum(bodies.masses[:, None] * np.cross(arms, relative))
+        omega = bodies.divided_by_inertia(q, momentum)
+        rest = relative - np.cross(omega[bodies.of], arms)
+        square = np.einsum("bi,bi->b", velocity, velocity)
+        return {
+            "velocity": velocity,
+            "omega_space": omega,
+            "angular_momentum_space": momentum,
+            "ke_translation": 0.5 * self._energy * bodies.mass * square,
+            "ke_rotation": 0.5 * self._energy * np.einsum("bi,bi->b", omega, momentum),
+            "velocity_residual": bodies.largest(np.linalg.norm(rest, axis=1)),
+        }
+
+
+class TablePoses(_FrameTable):
+    """The same from the fix's own table, a Universe of ``open_table``: exact, and one row a body.
+
+    Results are ``step``, ``time``, ``ids``, ``centre``, ``q``, ``velocity``, ``omega_space``,
+    ``angular_momentum_space`` and ``ke_rotation`` as of ``Poses``.  Masses are not in the table.
+    """
+
+    def __init__(self, atoms, units=None, out=None, **kwargs):
+        fields = {name: POSE[name] for name in ("centre", "q")}
+        fields |= {name: MOTION[name] for name in TABLE_MOTION}
+        super().__init__(atoms, atoms.ids, fields, units, out, **kwargs)
+
+    def _frame(self):
+        data, own = self._ts.data, self.atoms.ix
+
+        def columns(letter, parts):
+            return np.column_stack([data[f"{letter}{part}"][own] for part in parts])
+
+        q, momentum = columns("q", "0123"), columns("l", "xyz")
+        omega = rotate(q, columns("w", "xyz"))
+        return {
+            "centre": data["x"][own],
+            "q": q,
+            "velocity": data["v"][own],
+            "omega_space": omega,
+            "angular_momentum_space": momentum,
+            "ke_rotation": 0.5 * self._energy * np.einsum("bi,bi->b", omega, momentum),
+        }

@@ -1,0 +1,89 @@
+"""Stays of bodies near given places, such as the sites of a cage."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from MDAnalysis.lib.distances import capped_distance
+
+
+@dataclass(frozen=True)
+class Stays:
+    """K uninterrupted stays of B bodies at S places, in F frames.
+
+    ``body``, ``place`` (K,): counted from 0; ``begin``, ``end`` (K,): first frame and the one after the last;
+    ``time`` (F,).
+    """
+
+    body: np.ndarray
+    place: np.ndarray
+    begin: np.ndarray
+    end: np.ndarray
+    time: np.ndarray
+    bodies: int
+    places: int
+
+    @property
+    def frames(self):
+        """Length of each stay, (K,)."""
+        return self.end - self.begin
+
+    @property
+    def complete(self):
+        """Whether both begin and end were seen, (K,)."""
+        return (self.begin > 0) & (self.end < len(self.time))
+
+    def fraction(self):
+        """Part of all bodies and frames that is spent at each place, (S,)."""
+        spent = np.bincount(self.place, self.frames, self.places)
+        return spent / (self.bodies * len(self.time))
+
+    def survival(self):
+        """Probability that a body at a place has been there without a break a lag later, (F,).
+
+        Over all origins from which the trajectory is long enough; NaN where there is none.
+        """
+        frames = len(self.time)
+        # a stay of n frames lasts a lag from n - lag origins; sums over longer stays, twice
+        longer = np.cumsum(np.bincount(self.frames, minlength=frames + 1)[::-1])[::-1]
+        lasting = np.cumsum(longer[1:][::-1])[::-1].astype(float)
+        change = np.bincount(self.begin, minlength=frames + 1)
+        change = change - np.bincount(self.end, minlength=frames + 1)
+        asked = np.cumsum(np.cumsum(change)[:frames])[::-1]
+        return np.divide(lasting, asked, out=np.full(frames, np.nan), where=asked > 0)
+
+
+def stays(centre, places, radius, time, box=None):
+    """Stays of centres (F, B, 3) within ``radius`` of the nearest of ``places`` (S, 3).
+
+    ``time`` (F,); ``box`` (6,): lengths and angles of a periodic box, as MDAnalysis has them.  Distances are those
+    of MDAnalysis, in single precision.  Raises ValueError for a radius that is not above zero and places
+    that are not points.
+    """
+    places = np.atleast_2d(np.asarray(places, dtype=float))
+    if places.shape[1] != 3 or not np.isfinite(places).all():
+        raise ValueError("places: three coordinates each are required")
+    if not radius > 0.0:
+        raise ValueError(f"radius {radius:g}: it must be above zero")
+    frames, bodies = centre.shape[:2]
+    at = np.full(bodies, -1)
+    since = np.zeros(bodies, dtype=int)
+    found = []
+    for k in range(frames + 1):
+        now = nearest(centre[k], places, radius, box) if k < frames else np.full(bodies, -1)
+        left = np.flatnonzero((now != at) & (at >= 0))
+        found.append(np.column_stack([left, at[left], since[left], np.full(len(left), k)]))
+        since[now != at] = k
+        at = now
+    columns = np.concatenate(found).T
+    return Stays(*columns, np.asarray(time, dtype=float), bodies, len(places))
+
+
+def nearest(points, places, radius, box=None):
+    """Number (B,) of the nearest of places (S, 3) within ``radius`` of points (B, 3); -1 for none."""
+    pairs, distances = capped_distance(
+        np.asarray(points, dtype=np.float32), places.astype(np.float32), radius, box=box
+    )
+    found = np.full(len(points), -1)
+    order = np.argsort(-distances, kind="stable")  # the nearest is written last
+    found[pairs[order, 0]] = pairs[order, 1]
+    return found

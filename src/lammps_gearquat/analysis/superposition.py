@@ -1,0 +1,78 @@
+"""Superposition of many bodies at once: the rotation that carries reference shapes onto sites.
+
+The rotation with the least mass-weighted squares is the eigenvector to the largest eigenvalue of a symmetric
+4 x 4 matrix (B. K. P. Horn, J. Opt. Soc. Am. A 4, 629 (1987), Sec. 4; Eq. numbers are his).  It is proper
+by construction.  A step of Newton's method follows: the eigenvalues of a thin body are close to each other,
+and the eigenvector alone has two digits less than the positions allow.
+
+Quaternions (B, 4): scalar first, as in the fix's own array; body -> space.
+"""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+
+def horn_matrix(s):
+    """The 4 x 4 matrices (B, 4, 4) of Horn's Eq. 47, of s (B, 3, 3) = sum m shape_a arm_b."""
+    n = np.empty((len(s), 4, 4))
+    n[:, 0, 0] = np.trace(s, axis1=1, axis2=2)
+    for k, (a, b) in enumerate(((1, 2), (2, 0), (0, 1)), 1):
+        n[:, 0, k] = n[:, k, 0] = s[:, a, b] - s[:, b, a]
+        for m in range(1, 4):
+            n[:, k, m] = s[:, k - 1, m - 1] + s[:, m - 1, k - 1]
+        n[:, k, k] -= n[:, 0, 0]
+    return n
+
+
+def rotate(q, vectors):
+    """Vectors (B, 3) turned by quaternions (B, 4)."""
+    u, t = q[:, 1:], 2.0 * np.cross(q[:, 1:], vectors)
+    return vectors + q[:, :1] * t + np.cross(u, t)
+
+
+def shortest_turn(before, after):
+    """Quaternions (B, 4) of the shortest rotation from directions (B, 3) to others, of unit length.
+
+    Of opposite directions: half a turn about an axis across them.
+    """
+    scalar = 1.0 + np.einsum("ij,ij->i", before, after)
+    vector = np.cross(before, after)
+    opposite = scalar < 1e-14
+    if opposite.any():
+        # across the direction: its vector product with the axis it is farthest from
+        far = np.eye(3)[np.argmin(np.abs(before[opposite]), axis=1)]
+        vector[opposite], scalar[opposite] = np.cross(before[opposite], far), 0.0
+    q = np.column_stack([scalar, vector])
+    return q / np.linalg.norm(q, axis=1, keepdims=True)
+
+
+def superpose(bodies, arms):
+    """Quaternions (B, 4), scalar not negative, of the rotations shape -> arms; and residuals (B,).
+
+    ``bodies``: Bodies, whose shapes are turned; ``arms`` (n, 3): sites from their centres of mass, in the order
+    of ``bodies``.  The residual is the largest distance of a site from where its rigid body would have it.
+
+    About the axis of a linear body nothing is known: the rotation is the shortest one from the shape.
+    That of a point is none.
+    """
+    shape, mass = bodies.shape, bodies.masses[:, None]
+    s = bodies.sum((mass * shape)[:, :, None] * arms[:, None, :])
+    q = np.linalg.eigh(horn_matrix(s))[1][:, :, -1]
+    linear, point = bodies.linear, bodies.point
+    if linear.any():
+        axis = bodies.axes[linear, 2]
+        # of all sites, weighted: their mean direction along the axis
+        along = np.einsum("bij,bi->bj", s[linear], axis)
+        q[linear] = shortest_turn(axis, along / np.linalg.norm(along, axis=1, keepdims=True))
+    q[point] = [1.0, 0.0, 0.0, 0.0]
+    turned = rotate(q[bodies.of], shape)
+    torque = bodies.sum(mass * np.cross(turned, arms))
+    q = _composed(bodies.divided_by_inertia(q, torque), q)
+    residual = np.linalg.norm(arms - rotate(q[bodies.of], shape), axis=1)
+    return np.where(q[:, :1] < 0.0, -q, q), bodies.largest(residual)
+
+
+def _composed(rotvec, q):
+    """Quaternions of a further, small rotation by ``rotvec`` (B, 3), radians."""
+    turn = Rotation.from_rotvec(rotvec) * Rotation.from_quat(q, scalar_first=True)
+    return turn.as_quat(scalar_first=True)

@@ -1,0 +1,247 @@
+"""Dumps of the scenes: analysis against the fix's own numbers; the command and what it leaves."""
+
+import csv
+
+import dumps
+import MDAnalysis
+import numpy as np
+import oracle
+import pytest
+from click.testing import CliRunner
+from scipy.spatial.transform import Rotation
+
+from lammps_gearquat.analysis import Poses, TablePoses, open_dump, open_table
+from lammps_gearquat.analysis.poses import KINETIC_TO_ENERGY
+from lammps_gearquat.cli import main
+
+SITES = oracle.Body().sites_body
+
+
+@pytest.fixture(params=["first", "second", "rigid"])
+def dumped(request, run_case, tmp_path):
+    """Thermo series and analysed dump of the same steps of test case 1."""
+    found = run_case(1, formulation=request.param, dt=0.01, steps=5000, every=1000, dump=1000)
+    return found, open_dump(tmp_path / "poses.dump").atoms
+
+
+def test_energies_are_those_of_the_fix(dumped):
+    values, atoms = dumped
+    poses = Poses(atoms).run()
+    found = poses.results
+    assert found.step.tolist() == values.step.tolist() == [0, 1000, 2000, 3000, 4000, 5000]
+    assert found.centre[:, 0] == pytest.approx(values.centre, abs=1e-12)
+    assert found.ke_translation[:, 0] == pytest.approx(values.translation, rel=1e-11)
+    assert found.ke_rotation[:, 0] == pytest.approx(values.rotation, rel=1e-11)
+    assert found.ke_rotation[:, 0] != pytest.approx(values.rotation * 1.01, rel=1e-11)
+    assert found.residual.max() < 1e-12 and found.velocity_residual.max() < 1e-12
+    # whatever the start was: the shape is that of the paper
+    assert Poses(atoms, reference=SITES).run().results.residual.max() < 1e-12
+    moments = np.sort(oracle.Body().moments)[::-1]
+    assert poses.bodies.moments[0] == pytest.approx(moments, rel=1e-13)
+
+
+@pytest.mark.parametrize("formulation", ["first", "second"])
+def test_energy_belongs_to_the_dumped_pose(run_case, tmp_path, formulation):
+    """Potential energy of the dumped sites, computed anew, is the one that thermo prints."""
+    steps = {"dt": 0.05, "steps": 1000, "every": 100, "dump": 100}
+    values = run_case(1, formulation=formulation, **steps)
+    cage = oracle.Cage()
+    for k, ts in enumerate(open_dump(tmp_path / "poses.dump").trajectory):
+        energy, _ = cage.energy_and_forces(ts.data["x"])
+        # what is left is of second order in corrected - predicted
+        assert values.potential[k] == pytest.approx(energy, abs=1e-8)
+        moved = cage.energy_and_forces(ts.data["x"] + [1e-4, 0, 0])[0]
+        assert values.potential[k] != pytest.approx(moved, abs=1e-8)
+
+
+@pytest.mark.parametrize("formulation", ["first", "second"])
+def test_pose_is_that_of_the_oracle(run_case, tmp_path, formulation):
+    """Recovered centre and rotation against the independent integrator."""
+    run_case(1, formulation=formulation, dt=0.02, steps=5000, every=5000, dump=5000)
+    found = Poses(open_dump(tmp_path / "poses.dump").atoms, reference=SITES).run().results
+    problem = oracle.Problem(oracle.Body(), oracle.Cage())
+    state = problem.integrate(problem.start(1), [0.0, 100.0])[-1]
+    assert found.centre[-1, 0] == pytest.approx(state[:3], abs=1e-7)
+    turn = Rotation.from_quat(found.q[-1, 0], scalar_first=True).as_matrix()
+    assert turn == pytest.approx(oracle.rotation_space_body(state[6:10]), abs=1e-7)
+
+
+TABLE = """
+dump table all local ${dump} ${out}.table index f_move[*]
+dump_modify table format float %.17g
+"""
+
+
+@pytest.fixture(scope="module")
+def water(tmp_path_factory):
+    """Folder with water.dump and water.table: 500 molecules, 5 frames of 20 fs."""
+    from running import EXAMPLES, make_lmp_wheel
+
+    folder = tmp_path_factory.mktemp("water")
+    motion = (EXAMPLES / "common" / "in.motion").read_text()
+    # the run comes after the second dump
+    (folder / "in.motion").write_text(motion.replace("timestep ", TABLE + "timestep "))
+    deck = (EXAMPLES / "water" / "in.water").read_text()
+    deck = deck.replace("../common/in.motion", str(folder / "in.motion"))
+    (folder / "in.water").write_text(deck.replace("forces.", str(EXAMPLES / "water" / "forces.")))
+    named = {"steps": 80, "every": 20, "dump": 20, "out": folder / "water"}
+    data = (EXAMPLES / "water" / "data.water").read_text()
+    (folder / "data.water").write_text(data)
+    result = make_lmp_wheel(folder).run(folder / "in.water", named)
+    assert result.returncode == 0, result.output
+    return folder
+
+
+def test_poses_are_those_of_the_fixs_own_array(water):
+    """Quaternion, angular velocity and momentum, centre and velocity, for 500 molecules."""
+    sites = Poses(open_dump(water / "water.dump").atoms, reference="principal", units="real").run()
+    table = TablePoses(open_table(water / "water.table").atoms, units="real").run()
+    assert np.array_equal(sites.results.ids, table.results.ids)
+    assert np.array_equal(sites.results.step, table.results.step)
+    both = Rotation.from_quat(
+        sites.results.q.reshape(-1, 4), scalar_first=True
+    ), Rotation.from_quat(table.results.q.reshape(-1, 4), scalar_first=True)
+    assert (both[0] * both[1].inv()).magnitude().max() < 1e-12
+    for name in ("centre", "velocity", "omega_space", "angular_momentum_space", "ke_rotation"):
+        found, expected = sites.results[name], table.results[name]
+        assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max()), name
+        assert found != pytest.approx(1.01 * expected, abs=1e-3 * np.abs(expected).max()), name
+
+
+def test_bodies_without_images_are_followed_as_with_them(water):
+    """Wrapped positions, molecules cut by the boundary: the same motion from 20 fs to 20 fs."""
+    text = (water / "water.dump").read_text()
+    universe = open_dump(water / "water.dump")
+    frames = []
+    for ts in universe.trajectory:
+        rows = np.column_stack(
+            [universe.atoms.ids, universe.atoms.resids, universe.atoms.masses]
+            + [np.mod(ts.data["x"], ts.data["box"].diagonal())]
+        )
+        edge = text.splitlines()[5]
+        frames.append(dumps.frame(ts.data["step"], rows, "id mol mass x y z", edge))
+    (water / "wrapped.dump").write_text("".join(frames))
+    exact = Poses(universe.atoms).run().results
+    found = Poses(open_dump(water / "wrapped.dump").atoms).run().results
+    moved = found.centre - found.centre[0]
+    assert moved == pytest.approx(exact.centre - exact.centre[0], abs=1e-12)
+    assert found.residual.max() < 1e-12
+
+
+def test_units_are_those_of_lammps():
+    """The factors are what LAMMPS itself uses."""
+    from lammps_gearquat.reference.lammps_forces import _open_lammps
+
+    lmp = _open_lammps(["-screen", "none", "-log", "none"])
+    try:
+        for units, factor in KINETIC_TO_ENERGY.items():
+            lmp.commands_list(["clear", f"units {units}"])
+            assert lmp.extract_global("mvv2e") == factor, units
+    finally:
+        lmp.close()
+
+
+# --- the command ---------------------------------------------------------------------------------
+def run(*arguments):
+    return CliRunner().invoke(main, ["analyze", *map(str, arguments)])
+
+
+def columns(path):
+    return np.genfromtxt(path, delimiter=",", names=True)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
+    result = run(
+        water / "water.dump", "--out", tmp_path, "--units", "real", "--csv", "--jobs", jobs
+    )
+    assert result.exit_code == 0, result.output
+    assert "5 frames of 500 bodies, time 0 to 80." in result.output
+    exact = Poses(open_dump(water / "water.dump").atoms, "principal", units="real").run()
+    assert np.array_equal(np.load(tmp_path / "poses.npy"), exact.results.table)
+    assert columns(tmp_path / "poses.csv")["q_0"].tolist() == exact.columns()["q_0"].tolist()
+    totals = columns(tmp_path / "totals.csv")
+    assert totals["ke_rotation"] == pytest.approx(exact.totals()["ke_rotation"], rel=1e-15)
+    found = columns(tmp_path / "correlations.csv")
+    assert found["lag"].tolist() == [0, 20, 40, 60, 80]
+    assert found["axis1_order1"][0] == pytest.approx(1.0)
+    with open(tmp_path / "bodies.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 500 and rows[0]["kind"] == "general" and float(rows[0]["mass"]) > 18.0
+    for name in ("totals.png", "correlations.png"):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+
+
+def test_command_takes_the_table_of_the_fix(water, tmp_path):
+    result = run(water / "water.table", "--out", tmp_path, "--units", "real")
+    assert result.exit_code == 0, result.output
+    assert "velocity" in np.load(tmp_path / "poses.npy").dtype.names
+    assert "mean_square_rotation" in columns(tmp_path / "correlations.csv").dtype.names
+
+
+@pytest.mark.filterwarnings("ignore:::MDAnalysis")
+@pytest.mark.parametrize(
+    ("suffix", "wrap"), [("dcd", False), ("xtc", True), ("xyz", True), ("pdb", False)]
+)
+def test_command_converts(water, tmp_path, suffix, wrap):
+    """Read again by MDAnalysis: the same molecules, whole, in the same frames."""
+    path = tmp_path / f"water.{suffix}"
+    options = ["--wrap"] if wrap else []
+    result = run(
+        water / "water.dump", "--out", tmp_path, "--convert", path, "--frames", "::2", *options
+    )
+    assert result.exit_code == 0, result.output
+    topology = path if suffix in ("xyz", "pdb") else path.with_suffix(".pdb")
+    other = MDAnalysis.Universe(str(topology), str(path))
+    universe = open_dump(water / "water.dump")
+    assert len(other.trajectory) == 3 and other.atoms.names[:3].tolist() == ["O", "H", "H"]
+    edge = universe.trajectory[0].data["box"][0, 0]
+    for k in range(3):
+        x, found = universe.trajectory[2 * k].data["x"], other.trajectory[k].positions
+        apart = found - x
+        if wrap:
+            # by whole edges, the same for all sites of a molecule
+            images = np.round(apart / edge)
+            assert (images == np.repeat(images[::3], 3, axis=0)).all()
+            apart = apart - images * edge
+            assert np.abs(found.reshape(-1, 3, 3).mean(axis=1) / edge - 0.5).max() < 0.5001
+        assert np.abs(apart).max() < 0.0101
+
+
+def test_command_tells_of_stays(tmp_path):
+    motion = dumps.Motion([3, 3])
+    motion.centre, motion.velocity = np.array([[0.0, 0, 0], [20, 0, 0]]), np.eye(3)[[0, 0]] * 0.5
+    path = dumps.write(tmp_path / "stay.dump", motion, np.arange(8.0))
+    (tmp_path / "places").write_text("0 0 0\n20 0 0\n")
+    result = run(path, "--out", tmp_path, "--near", tmp_path / "places", "--radius", 1.75)
+    assert result.exit_code == 0, result.output
+    assert "2 stays within 1.75 of 2 places: 50.0% of the time." in result.output
+    rows = columns(tmp_path / "stays.csv")
+    assert rows["place"].tolist() == [1, 2] and rows["end"].tolist() == [3, 3]
+
+
+def test_command_says_when_frames_are_too_far_apart(tmp_path):
+    for omega, said in ((2.0, True), (0.02, False)):
+        path = dumps.write(tmp_path / "far.dump", dumps.Motion([4], omega=omega), np.arange(8.0))
+        result = run(path, "--out", tmp_path)
+        assert result.exit_code == 0, result.output
+        assert ("dump more often" in result.output) == said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--select", "resid 99"], "--select resid 99: no such atom"),
+        (["--frames", "99:"], "no frame is left to analyse"),
+        (["--frames", "a:b"], "START:STOP:STEP is required"),
+        (["--near", __file__], "--near and --radius belong together"),
+        (["--convert", "poses.nonsense"], "MDAnalysis writes no such format"),
+        (["--body", "i_body"], "no column i_body"),
+        (["--potential", "c_pe"], "no column c_pe"),
+    ],
+)
+def test_command_refuses_clearly(tmp_path, arguments, text):
+    path = dumps.write(tmp_path / "made.dump", dumps.Motion([3]), [0.0, 1.0])
+    result = run(path, "--out", tmp_path, *arguments)
+    assert result.exit_code != 0 and text in result.output
+    assert "Traceback" not in result.output

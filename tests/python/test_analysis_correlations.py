@@ -1,0 +1,166 @@
+"""Mean squares, correlations and stays of known motions, and the same sums written down directly."""
+
+import dumps
+import numpy as np
+import pytest
+from MDAnalysis.lib.correlations import autocorrelation
+from scipy.spatial.transform import Rotation
+
+from lammps_gearquat.analysis import Poses, correlations, open_dump, residence
+
+RNG = np.random.default_rng(8)
+FRAMES, BODIES = 40, 7
+
+
+@pytest.fixture(params=[1_000_000, 100], ids=["at once", "in portions"])
+def held(request, monkeypatch):
+    monkeypatch.setattr(correlations, "HELD", request.param)
+
+
+def directly(function, *arrays):
+    """Mean over origins and bodies of function(x(t), x(t + lag))."""
+    return np.array(
+        [np.mean([function(a[: FRAMES - k], a[k:]) for a in arrays]) for k in range(FRAMES)]
+    )
+
+
+def square(a, b):
+    return ((b - a) ** 2).sum(axis=-1)
+
+
+def test_displacement_of_a_straight_motion(held):
+    """v^2 t^2, far from the origin."""
+    velocity = RNG.normal(size=(BODIES, 3))
+    time = 0.1 * np.arange(FRAMES)
+    centre = 1e4 + velocity * time[:, None, None]
+    found = correlations.mean_square_displacement(centre)
+    expected = (velocity**2).sum(axis=1).mean() * time**2
+    assert found == pytest.approx(expected, rel=1e-8, abs=1e-10)
+    assert found != pytest.approx(1.01 * expected, rel=5e-3)
+
+
+def test_displacement_of_any_motion(held):
+    centre = RNG.normal(size=(FRAMES, BODIES, 3)).cumsum(axis=0)
+    found = correlations.mean_square_displacement(centre)
+    assert found == pytest.approx(directly(square, centre), rel=1e-12, abs=1e-12)
+
+
+def test_autocorrelation_of_any_motion(held):
+    v = RNG.normal(size=(FRAMES, BODIES, 3)).cumsum(axis=0)
+    expected = directly(lambda a, b: (a * b).sum(axis=-1), v)
+    assert correlations.autocorrelation(v) == pytest.approx(expected, rel=1e-11, abs=1e-11)
+    assert correlations.autocorrelation(1.01 * v) != pytest.approx(expected, rel=5e-3)
+
+
+def rotating(omega, angle=0.2):
+    """Quaternions (F, B, 4) of even rotations from random orientations; and the angle per frame."""
+    omega = omega / np.linalg.norm(omega, axis=1, keepdims=True) * angle
+    start = Rotation.random(len(omega), RNG)
+    turns = [Rotation.from_rotvec(k * omega) * start for k in range(FRAMES)]
+    return np.array([turn.as_quat(scalar_first=True) for turn in turns]), start, omega
+
+
+def test_rotation_is_not_bounded(held):
+    """Even rotation: (omega t)^2, over several turns, whatever the signs of the quaternions."""
+    q, _, _ = rotating(RNG.normal(size=(BODIES, 3)), 0.9)
+    q[::3] *= -1.0
+    found, largest = correlations.mean_square_rotation(q)
+    expected = (0.9 * np.arange(FRAMES)) ** 2
+    assert found == pytest.approx(expected, rel=1e-10, abs=1e-10)
+    assert found != pytest.approx(1.01 * expected, rel=5e-3)
+    assert largest == pytest.approx(0.9, rel=1e-12)
+
+
+def test_orientation_of_an_even_rotation(held):
+    """About an axis at an angle a to u: cos = cos^2 a + sin^2 a cos(omega t)."""
+    q, start, omega = rotating(RNG.normal(size=(BODIES, 3)))
+    axis = np.array([0.3, -0.2, 2.0])
+    u = start.apply(axis / np.linalg.norm(axis))
+    along = (u * omega).sum(axis=1) ** 2 / (omega**2).sum(axis=1)
+    cosine = along + (1.0 - along) * np.cos(0.2 * np.arange(FRAMES))[:, None]
+    first, second = (correlations.orientation_correlation(q, axis, order) for order in (1, 2))
+    assert first == pytest.approx(cosine.mean(axis=1), abs=1e-13)
+    assert second == pytest.approx((1.5 * cosine**2 - 0.5).mean(axis=1), abs=1e-13)
+    assert second != pytest.approx((1.5 * cosine**2 - 0.5).mean(axis=1) * 1.01, abs=1e-3)
+
+
+def test_rotation_of_linear_bodies_is_that_of_their_axes(tmp_path):
+    """Turned across its axis a dumbbell turns like any body; the axis of a point is never asked for."""
+    motion = dumps.Motion([2, 2, 3], linear=[0, 1, 2])
+    axis = motion.turns(0.0).apply([0, 0, 1])
+    motion.omega -= axis * (axis * motion.omega).sum(axis=1, keepdims=True)
+    motion.omega *= 0.5 / np.linalg.norm(motion.omega, axis=1, keepdims=True)
+    path = dumps.write(tmp_path / "linear.dump", motion, np.arange(30.0))
+    poses = Poses(open_dump(path).atoms).run()
+    found, turn = correlations.all_correlations(poses)
+    assert found["mean_square_rotation"] == pytest.approx((0.5 * np.arange(30)) ** 2, abs=1e-9)
+    assert turn == pytest.approx(0.5, rel=1e-10)
+    assert found["axis3_order1"] == pytest.approx(np.cos(0.5 * np.arange(30)), abs=1e-12)
+    assert "axis1_order1" not in found
+
+
+def test_what_cannot_be_correlated():
+    with pytest.raises(ValueError, match="frames at equal distances of time"):
+        correlations.lags([0.0, 1.0, 3.0])
+    assert correlations.lags([2.0, 2.5, 3.0]).tolist() == [0.0, 0.5, 1.0]
+    q = np.tile([1.0, 0, 0, 0], (3, 1, 1))
+    with pytest.raises(ValueError, match="order 3: 1 or 2 is required"):
+        correlations.orientation_correlation(q, [0, 0, 1], 3)
+    with pytest.raises(ValueError, match="an axis needs a length"):
+        correlations.orientation_correlation(q, [0, 0, 0])
+
+
+# --- stays ---------------------------------------------------------------------------------------
+PLACES = np.array([[0.0, 0, 0], [10, 0, 0]])
+
+
+def visiting(places):
+    """Centres (F, 1, 3) at 0.1 from the places with these numbers; -1 is nowhere."""
+    at = np.array([[0.1, 0, 0], [10.1, 0, 0], [50, 0, 0]])
+    return at[list(places)][:, None, :]
+
+
+def test_stays_are_those_made_up():
+    centre = visiting([0, 0, 0, -1, -1, 1, 1, 0, 0, 0])
+    time = 0.5 * np.arange(10)
+    found = residence.stays(centre, PLACES, 1.0, time)
+    rows = np.column_stack([found.body, found.place, found.begin, found.end])
+    assert rows.tolist() == [[0, 0, 0, 3], [0, 1, 5, 7], [0, 0, 7, 10]]
+    assert found.complete.tolist() == [False, True, False]
+    assert found.fraction().tolist() == [0.6, 0.2]
+    # 8 origins; a lag later the last is not seen, and 3 - 1, 2 - 1, 3 - 1 are still there
+    assert found.survival()[:3] == pytest.approx([1.0, 5 / 7, 2 / 6])
+    assert residence.stays(centre, PLACES, 0.05, time).body.tolist() == []
+
+
+def test_the_nearest_place_counts_and_boxes_are_periodic():
+    points = np.array([[4.0, 0, 0], [6.0, 0, 0], [-9.5, 0, 0], [0, 30, 0]])
+    assert residence.nearest(points, PLACES, 7.0).tolist() == [0, 1, -1, -1]
+    box = [20, 20, 20, 90, 90, 90]
+    assert residence.nearest(points, PLACES, 7.0, box).tolist() == [0, 1, 1, -1]
+
+
+def test_survival_of_many_is_that_of_mdanalysis():
+    """All origins have equally many bodies: then means of ratios are the ratio of means."""
+    rng = np.random.default_rng(2)
+    where = np.zeros((30, 8), dtype=int)
+    where[0] = np.arange(8) % 2
+    for k in range(1, 30):
+        where[k] = where[k - 1]
+        pair = 2 * rng.integers(4) + np.arange(2)
+        where[k, pair] = where[k, pair[::-1]]
+    centre = PLACES[where] + 0.01
+    found = residence.stays(centre, PLACES, 1.0, np.arange(30.0)).survival()
+    sets = [{(b, place) for b, place in enumerate(row)} for row in where]
+    _, expected, _ = autocorrelation(sets, 20)
+    assert found[:21] == pytest.approx(expected, rel=1e-12)
+    assert found[1:21] != pytest.approx(np.array(expected[1:]) * 1.01, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("places", "radius", "text"),
+    [([[0, 0]], 1.0, "three coordinates each"), (PLACES, 0.0, "radius 0: it must be above zero")],
+)
+def test_impossible_places(places, radius, text):
+    with pytest.raises(ValueError, match=text):
+        residence.stays(np.zeros((2, 1, 3)), places, radius, [0, 1])

@@ -1,0 +1,255 @@
+"""Dumps as universes: every kind of columns gives the same bodies; unusable dumps are refused clearly."""
+
+import dumps
+import numpy as np
+import pytest
+
+from lammps_gearquat.analysis import DumpError, Poses, open_any, open_dump, open_table
+
+MOTION = dumps.Motion([3, 4, 5])
+TIMES = [0.0, 1.0, 2.0]
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(*args, **kwargs):
+        return dumps.write(tmp_path / "poses.dump", *args, **kwargs)
+
+    return write
+
+
+def centres(path, **options):
+    return Poses(open_dump(path, **options).atoms).run().results.centre
+
+
+def expected():
+    return np.array([MOTION.centres(t) for t in TIMES])
+
+
+def test_columns_are_read_in_double_precision(write):
+    universe = open_dump(write(MOTION, TIMES), timestep=0.5)
+    assert len(universe.residues) == 3 and universe.atoms.ids.tolist() == list(range(1, 13))
+    assert universe.atoms.masses.tolist() == MOTION.masses.tolist()
+    for time, ts in zip(TIMES, universe.trajectory):
+        x, v = MOTION.sites(time)
+        assert np.array_equal(ts.data["x"], x) and np.array_equal(ts.data["v"], v)
+        assert ts.positions == pytest.approx(x + 50.0, abs=1e-5)  # MDAnalysis' own: from the corner
+    assert universe.trajectory.time == 1.0 and universe.trajectory[1].data["step"] == 1
+
+
+def test_atoms_may_be_in_any_order(write):
+    rng = np.random.default_rng(0)
+    path = write(MOTION, TIMES, lambda t, rows: rng.permutation(rows))
+    assert centres(path) == pytest.approx(expected(), abs=1e-13)
+
+
+BOX, EDGE = "-10 10", 20.0
+
+
+def wrapped(time, rows, flags=False):
+    """Positions in the box of EDGE; with image flags if asked."""
+    images = np.floor((rows[:, 4:7] + EDGE / 2) / EDGE)
+    rows = rows.copy()
+    rows[:, 4:7] -= EDGE * images
+    return np.hstack([rows, images]) if flags else rows
+
+
+@pytest.mark.parametrize("bounds", ["pp pp pp", "pp pp ff"])
+def test_image_flags(write, bounds):
+    columns = "id mol type mass x y z vx vy vz ix iy iz"
+    change = lambda t, rows: wrapped(t, rows, True)  # noqa: E731
+    path = write(MOTION, TIMES, change, box=BOX, columns=columns, bounds=bounds)
+    assert centres(path) == pytest.approx(expected(), abs=1e-13)
+
+
+def test_without_image_flags_bodies_are_made_whole_and_followed(write):
+    times = np.linspace(0.0, 400.0, 41)  # some cross the box and go on
+    fast = dumps.Motion([3, 4, 5], seed=3)
+    assert (np.abs(fast.velocity) * 400 > EDGE).any()
+    columns = "id mol type mass x y z vx vy vz"
+    path = write(fast, times, wrapped, box=BOX, columns=columns)
+    poses = Poses(open_dump(path).atoms).run()
+    moved = poses.results.centre - poses.results.centre[0]
+    assert moved == pytest.approx(
+        np.array([fast.centres(t) for t in times]) - fast.centre, abs=1e-11
+    )
+    assert poses.results.residual.max() < 1e-12
+
+
+def test_a_box_that_changes_needs_unwrapped_positions(write, tmp_path):
+    columns = "id mol type mass x y z vx vy vz"
+    path = write(MOTION, TIMES, wrapped, box=BOX, columns=columns)
+    path.write_text(
+        BOX.join(path.read_text().rsplit(BOX, 3)[:3])
+        + "-11 11"
+        + path.read_text().rsplit(BOX, 1)[1]
+    )
+    with pytest.raises(ValueError, match="box changes, at frame 2"):
+        Poses(open_dump(path).atoms).run()
+
+
+@pytest.mark.parametrize("unwrapped", [True, False])
+def test_scaled_positions_in_a_triclinic_box(tmp_path, unwrapped):
+    """Edges (20, 0, 0), (4, 20, 0), (-6, 3, 20); LAMMPS writes the bounds of the box around it."""
+    edges = np.array([[20.0, 0, 0], [4, 20, 0], [-6, 3, 20]])
+    origin = np.array([-10.0, -9, -8])
+    small = dumps.Motion([3, 4, 5], spread=3.0)
+
+    def change(time, rows):
+        rows = rows.copy()
+        rows[:, 4:7] = (rows[:, 4:7] - origin) @ np.linalg.inv(edges)
+        return rows
+
+    names = "xsu ysu zsu" if unwrapped else "xs ys zs"
+    path = dumps.write(
+        tmp_path / "t.dump", small, TIMES, change, columns=f"id mol type mass {names} vx vy vz"
+    )
+    bounds = "xy xz yz pp pp pp\n-16 14 4\n-9 14 -6\n-8 12 3"
+    text = path.read_text().replace("pp pp pp\n-50 50\n-50 50\n-50 50", bounds)
+    path.write_text(text)
+    expected = np.array([small.centres(t) for t in TIMES])
+    assert centres(path) == pytest.approx(expected, abs=1e-12)
+    path.write_text(text.replace("-9 14 -6", "-9 14 -6.06"))
+    assert np.abs(centres(path) - expected).max() > 1e-3
+
+
+DATA = """made up
+
+12 atoms
+1 atom types
+
+-50 50 xlo xhi
+-50 50 ylo yhi
+-50 50 zlo zhi
+
+Masses
+
+1 2.5
+
+Atoms # molecular
+
+"""
+
+
+def test_masses_and_molecules_of_a_data_file(write, tmp_path):
+    data = tmp_path / "data.made"
+    rows = "\n".join(f"{k + 1} {MOTION.of[k] + 1} 1 0 0 0" for k in reversed(range(12)))
+    data.write_text(DATA + rows + "\n")
+    path = write(MOTION, TIMES, lambda t, r: r[:, [0, 4, 5, 6]], columns="id xu yu zu")
+    universe = open_dump(path, data=data)
+    assert universe.atoms.masses.tolist() == [2.5] * 12
+    assert universe.atoms.resids.tolist() == (MOTION.of + 1).tolist()
+    poses = Poses(universe.atoms).run()
+    assert "velocity" not in poses.results and poses.results.residual.max() < 1e-13
+    data.write_text(DATA + "\n".join(rows.splitlines()[1:]) + "\n")
+    with pytest.raises(DumpError, match="no atom 12, which the dump has"):
+        open_dump(path, data=data)
+
+
+def test_bodies_of_another_column(write):
+    columns = dumps.COLUMNS.replace("mol", "i_body")
+    assert centres(write(MOTION, TIMES, columns=columns), body="i_body").shape == (3, 3, 3)
+
+
+def test_atoms_in_no_body_are_left_out(write):
+    def change(time, rows):
+        rows[:3, 1] = 0
+        return rows
+
+    poses = Poses(open_dump(write(MOTION, TIMES, change)).atoms)
+    assert poses.ids.tolist() == [2, 3]
+
+
+# --- what cannot be used -------------------------------------------------------------------------
+def without(name):
+    """Columns and change that leave out a column."""
+    names = dumps.COLUMNS.split()
+    kept = [k for k, column in enumerate(names) if column != name]
+    return {"columns": " ".join(names[k] for k in kept), "change": lambda t, r: r[:, kept]}
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("id", "no column id; without it a row cannot be followed"),
+        ("mol", "no column mol; it says which atoms make which body"),
+        ("mass", "no column mass; dump it, or name the data file"),
+        ("yu", "no positions; columns xu yu zu or x y z are required"),
+    ],
+)
+def test_missing_columns(write, name, text):
+    with pytest.raises(DumpError, match=text):
+        open_dump(write(MOTION, TIMES, **without(name)))
+
+
+def other_frame(change):
+    """A dump whose last frame is changed."""
+    return lambda time, rows: change(rows) if time == TIMES[-1] else rows
+
+
+def renamed(rows):
+    rows[0, 0] = 99
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda rows: rows[:-1], "11 rows at step 2, 12 in the first frame; the number must not"),
+        (renamed, "other IDs at step 2 than in the first frame"),
+    ],
+)
+def test_atoms_that_come_and_go(write, change, text):
+    universe = open_dump(write(MOTION, [*TIMES, 3.0], other_frame(change)))
+    with pytest.raises(DumpError, match=text):
+        Poses(universe.atoms).run()
+
+
+def test_more_atoms_in_the_middle(write):
+    def change(time, rows):
+        return np.vstack([rows, [13, *rows[0, 1:]]]) if time == 1.0 else rows
+
+    universe = open_dump(write(MOTION, TIMES, change))
+    with pytest.raises(DumpError, match="13 rows at step 1, 12 in the first frame"):
+        Poses(universe.atoms).run()
+
+
+def test_an_id_that_occurs_twice(write):
+    def change(time, rows):
+        rows[1, 0] = 1
+        return rows
+
+    with pytest.raises(DumpError, match="an ID occurs twice at step 0"):
+        open_dump(write(MOTION, TIMES, change))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ("ITEM: TIMESTEP", "ITEM: UNITS\nlj\nITEM: TIMESTEP", "units yes or time yes"),
+        ("ITEM: ATOMS", "ITEM: GRID", "a dump custom or dump local is required"),
+        ("ITEM: BOX BOUNDS pp pp pp", "ITEM: BOX BOUNDS", "a box that is not orthogonal or"),
+        ("ITEM: TIMESTEP", "thermo", "no frame of a LAMMPS dump begins where one should"),
+    ],
+)
+def test_other_files(write, old, new, text):
+    path = write(MOTION, TIMES)
+    path.write_text(path.read_text().replace(old, new))
+    with pytest.raises(DumpError, match=text):
+        open_any(path)
+
+
+def test_words_where_numbers_should_be(write):
+    path = write(MOTION, TIMES)
+    path.write_text(path.read_text().replace("\n1 1 1 ", "\n1 1 1 oops"))
+    with pytest.raises(DumpError, match="step 0: .*could not convert string"):
+        open_dump(path)
+
+
+def test_a_table_with_too_few_columns(write):
+    columns = "id mol type mass f_1[1] f_1[2] f_1[3] vx vy vz"
+    path = write(MOTION, TIMES, columns=columns)
+    with pytest.raises(DumpError, match="lacks column\\(s\\) 4 5 6 13"):
+        open_table(path)
+    with pytest.raises(DumpError, match="open it with open_table"):
+        open_dump(path)

@@ -1,0 +1,227 @@
+"""Poses, velocities, energies and momenta of known motions; the same by every backend."""
+
+import dumps
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from lammps_gearquat.analysis import Poses, open_dump
+from lammps_gearquat.analysis.backends import Processes
+
+COUNTS = [4, 3, 6, 2, 1]
+MOTION = dumps.Motion(COUNTS, linear=[3])
+TIMES = np.linspace(0.0, 30.0, 7)
+
+
+@pytest.fixture(scope="module")
+def dump(tmp_path_factory):
+    return dumps.write(tmp_path_factory.mktemp("made") / "made.dump", MOTION, TIMES)
+
+
+@pytest.fixture(scope="module")
+def poses(dump):
+    return Poses(open_dump(dump).atoms).run()
+
+
+def test_poses_are_those_of_the_motion(poses):
+    found = poses.results
+    for k, time in enumerate(TIMES):
+        assert found.centre[k] == pytest.approx(MOTION.centres(time), abs=1e-12)
+        turn = MOTION.turns(time) * MOTION.turns(0.0).inv()
+        error = Rotation.from_quat(found.q[k], scalar_first=True) * turn.inv()
+        assert error.magnitude()[:3].max() < 1e-12
+        off = Rotation.from_rotvec(1.01 * turn.as_rotvec())
+        error = Rotation.from_quat(found.q[k], scalar_first=True) * off.inv()
+        assert k == 0 or error.magnitude()[:3].min() > 1e-5
+    assert found.residual.max() < 1e-13
+
+
+def test_signs_of_quaternions_do_not_jump(tmp_path):
+    fast = dumps.Motion([4] * 20, omega=0.3)
+    path = dumps.write(tmp_path / "fast.dump", fast, np.arange(60.0))
+    q = Poses(open_dump(path).atoms).run().results.q
+    assert (np.einsum("fbi,fbi->fb", q[1:], q[:-1]) > 0.0).all()
+    assert (q[..., 0] < -0.1).any()  # so some had to be turned
+
+
+def linear_part(omega):
+    """Of the linear body only what is across its axis moves its sites; a point does not turn."""
+    axis = MOTION.shape[MOTION.of == 3][0]
+    expected = []
+    for time in TIMES:
+        found = omega.copy()
+        along = MOTION.turns(time)[3].apply(axis / np.linalg.norm(axis))
+        found[3] -= along * (along @ found[3])
+        found[4] = 0.0
+        expected.append(found)
+    return np.array(expected)
+
+
+def test_velocities_are_those_of_the_motion(poses):
+    found = poses.results
+    omega = linear_part(MOTION.omega)
+    assert found.velocity == pytest.approx(np.array([MOTION.velocity] * 7), abs=1e-15)
+    assert found.omega_space == pytest.approx(omega, abs=1e-15)
+    assert found.omega_space != pytest.approx(1.01 * omega, rel=5e-3)
+    assert found.velocity_residual.max() < 1e-15
+
+
+def test_energies_and_momenta_are_those_of_the_sites(poses):
+    """Of rigid sites the sums over the sites are the same, written down a second time."""
+    found, totals = poses.results, poses.totals()
+    for k, time in enumerate(TIMES):
+        x, v = MOTION.sites(time)
+        squares = 0.5 * np.bincount(MOTION.of, MOTION.masses * (v**2).sum(axis=1))
+        kinetic = found.ke_translation[k] + found.ke_rotation[k]
+        assert kinetic == pytest.approx(squares, rel=1e-12)
+        assert kinetic != pytest.approx(1.01 * squares, rel=5e-3)
+        momentum = MOTION.masses[:, None] * v
+        assert totals["momentum"][k] == pytest.approx(momentum.sum(axis=0), abs=1e-12)
+        about = np.cross(x, momentum).sum(axis=0)
+        assert totals["angular_momentum_space"][k] == pytest.approx(about, abs=1e-11)
+        assert totals["angular_momentum_space"][k] != pytest.approx(1.01 * about, rel=5e-3)
+    assert totals["ke_rotation"] == pytest.approx(found.ke_rotation.sum(axis=1))
+    assert (totals["residual"] == found.residual.max(axis=1)).all()
+
+
+def test_residuals_see_what_is_not_rigid(tmp_path):
+    def bent(time, rows):
+        rows = rows.copy()
+        rows[0, 4] += 1e-4 * time
+        rows[5, 8] *= 1.01
+        return rows
+
+    path = dumps.write(tmp_path / "bent.dump", MOTION, TIMES, bent)
+    found = Poses(open_dump(path).atoms).run().results
+    assert (found.residual[1:, 0] > 1e-5).all() and found.residual[:, 1:].max() < 1e-13
+    assert (found.velocity_residual[:, 1] > 1e-6).all()
+    assert found.velocity_residual[:, 2:].max() < 1e-15
+
+
+def test_reference_that_is_given(dump):
+    """The quaternion is then that from the given coordinates."""
+    universe = open_dump(dump)
+    found = Poses(universe.atoms, reference=MOTION.shape + 5.0).run().results
+    for k, time in enumerate(TIMES):
+        turn = Rotation.from_quat(found.q[k], scalar_first=True) * MOTION.turns(time).inv()
+        assert turn.magnitude()[:3].max() < 1e-12
+    off = Poses(universe.atoms, reference=1.01 * MOTION.shape).run().results
+    assert off.residual[:, 0].min() > 1e-3
+    with pytest.raises(
+        ValueError, match=r"positions of shape \(16, 3\) are required, not \(3, 3\)"
+    ):
+        Poses(universe.atoms, reference=np.eye(3))
+    with pytest.raises(ValueError, match="first, principal or positions are required"):
+        Poses(universe.atoms, reference="last")
+
+
+def test_principal_reference_has_diagonal_inertia(dump):
+    poses = Poses(open_dump(dump).atoms, reference="principal").run(stop=2)
+    turn = Rotation.from_quat(poses.results.q[1, :3], scalar_first=True)
+    omega_body = turn.inv().apply(poses.results.omega_space[1, :3])
+    momentum_body = turn.inv().apply(poses.results.angular_momentum_space[1, :3])
+    assert momentum_body == pytest.approx(poses.bodies.moments[:3] * omega_body, abs=1e-13)
+
+
+def test_energies_have_the_units_of_lammps(dump):
+    plain = Poses(open_dump(dump).atoms).run(stop=1).results
+    real = Poses(open_dump(dump).atoms, units="real").run(stop=1).results
+    assert real.ke_rotation == pytest.approx(48.88821291**2 * plain.ke_rotation, rel=1e-14)
+    with pytest.raises(ValueError, match="units imperial: one of lj, real"):
+        Poses(open_dump(dump).atoms, units="imperial")
+
+
+def test_potential_energies_of_atoms(tmp_path):
+    def add(time, rows):
+        return np.column_stack([rows, np.arange(16) + time])
+
+    path = dumps.write(tmp_path / "p.dump", MOTION, TIMES, add, columns=dumps.COLUMNS + " c_pe")
+    poses = Poses(open_dump(path, potential="c_pe").atoms, potential="c_pe").run()
+    assert poses.results.potential[0].tolist() == [6, 15, 57, 27, 15]
+    with pytest.raises(ValueError, match="no column c_pe was read with the dump"):
+        Poses(open_dump(path).atoms, potential="c_pe")
+
+
+# --- how it is run -------------------------------------------------------------------------------
+def backends(tmp_path):
+    """Ways to run: name -> (arguments of Poses, arguments of run)."""
+    own = {"backend": Processes(2), "n_parts": 4, "unsupported_backend": True}
+    shared = {"backend": "multiprocessing", "n_workers": 2}
+    file = {"out": tmp_path / "poses.npy"}
+    return [({}, shared), ({}, own), (file, {}), (file, shared), (file, own)]
+
+
+@pytest.mark.parametrize("way", range(5))
+def test_every_backend_gives_the_same(dump, poses, tmp_path, way):
+    arguments, run = backends(tmp_path)[way]
+    other = Poses(open_dump(dump).atoms, **arguments).run(**run)
+    assert np.array_equal(other.results.table, poses.results.table)
+    assert np.array_equal(other.results.step, poses.results.step)
+    assert np.array_equal(other.times, poses.times)
+
+
+@pytest.mark.parametrize("file", [False, True])
+@pytest.mark.parametrize("span", [{"start": 1, "step": 2}, {"frames": [0, 3, 6]}])
+def test_some_of_the_frames(dump, poses, tmp_path, file, span):
+    out = tmp_path / "some.npy" if file else None
+    found = Poses(open_dump(dump).atoms, out=out).run(**span).results
+    chosen = span.get("frames", [1, 3, 5])
+    assert found.step.tolist() == chosen
+    # signs are those of the frame before, so may differ
+    assert np.array_equal(found.centre, poses.results.centre[chosen])
+    assert np.abs(found.q) == pytest.approx(np.abs(poses.results.q[chosen]), abs=1e-15)
+
+
+def test_no_frame(dump):
+    with pytest.raises(ValueError, match="no frame is left"):
+        Poses(open_dump(dump).atoms).run(start=7)
+
+
+def test_memory_does_not_grow_with_frames(tmp_path):
+    """Six times the frames, with the table in a file: the same memory."""
+    import tracemalloc
+
+    motion = dumps.Motion([3] * 100)
+    peaks = []
+    for frames in (10, 60):
+        path = dumps.write(tmp_path / f"{frames}.dump", motion, np.arange(float(frames)))
+        poses = Poses(open_dump(path).atoms, out=tmp_path / "poses.npy")
+        tracemalloc.start()
+        poses.run()
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    grown = poses.results.table.nbytes * 5 / 6  # what a table in memory needs more
+    assert peaks[1] - peaks[0] < 0.1 * grown
+    # and what is measured would see it
+    tracemalloc.start()
+    Poses(open_dump(path).atoms).run()
+    assert tracemalloc.get_traced_memory()[1] - peaks[1] > grown
+    tracemalloc.stop()
+
+
+def test_csv_has_every_digit(poses, tmp_path):
+    poses.to_csv(tmp_path / "poses.csv")
+    found = np.genfromtxt(tmp_path / "poses.csv", delimiter=",", names=True)
+    columns = poses.columns()
+    assert list(columns) == list(found.dtype.names) and len(found) == 35
+    for name, values in columns.items():
+        assert np.array_equal(values, found[name]), name
+    assert found["body"][:6].tolist() == [1, 2, 3, 4, 5, 1]
+    assert found["centre_y"][7] == poses.results.centre[1, 2, 1]
+    assert found["q_3"][7] == poses.results.q[1, 2, 3]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_other_trajectories(dump, tmp_path):
+    """Any universe of MDAnalysis will do, in single precision."""
+    import MDAnalysis
+
+    universe = open_dump(dump)
+    universe.atoms.write(str(tmp_path / "made.pdb"))
+    universe.atoms.write(str(tmp_path / "made.trr"), frames="all")
+    other = MDAnalysis.Universe(str(tmp_path / "made.pdb"), str(tmp_path / "made.trr"))
+    other.atoms.masses = universe.atoms.masses
+    found, exact = Poses(other.atoms).run().results, Poses(universe.atoms).run().results
+    assert found.q[:, :3] == pytest.approx(exact.q[:, :3], abs=1e-4)
+    assert found.centre - found.centre[0] == pytest.approx(exact.centre - exact.centre[0], abs=1e-4)
+    assert found.omega_space == pytest.approx(exact.omega_space, abs=1e-5)
