@@ -16,7 +16,7 @@ def draw_totals(path, poses, totals):
     """Energies of all bodies, and how far they are from rigid, against time."""
     time = poses.results.time
     energies = [name for name in LABELS if name in totals]
-    residuals = [name for name in totals if name.endswith("residual")]
+    residuals = [name for name in totals if name.endswith("residual") and totals[name].any()]
     panels = [names for names in (energies, residuals) if names]
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(
@@ -36,7 +36,7 @@ def draw_totals(path, poses, totals):
                 axis.set_ylabel("away from rigid, at most")
             else:
                 axis.set_ylabel("energy" + (f" (units {poses.units})" if poses.units else ""))
-            axis.legend(loc="upper right", ncols=3)
+            axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
         axes[-1, 0].set_xlabel("time")
         figure.savefig(path)
         plt.close(figure)

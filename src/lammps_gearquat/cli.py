@@ -11,6 +11,7 @@ from .commands.cost import cost
 from .commands.drift import drift
 from .commands.hard import hard
 from .commands.horizon import horizon
+from .commands.pictures import pictures
 from .commands.workprecision import workprecision
 
 
@@ -25,5 +26,5 @@ def version():
     click.echo(lammps_gearquat.__version__)
 
 
-for command in (analyze, bench, cases, cost, drift, hard, horizon, workprecision):
+for command in (analyze, bench, cases, cost, drift, hard, horizon, pictures, workprecision):
     main.add_command(command)

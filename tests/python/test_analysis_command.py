@@ -245,3 +245,15 @@ def test_command_refuses_clearly(tmp_path, arguments, text):
     result = run(path, "--out", tmp_path, *arguments)
     assert result.exit_code != 0 and text in result.output
     assert "Traceback" not in result.output
+
+
+def test_the_how_to_works(water, tmp_path, monkeypatch):
+    """The Python of doc/analysis.md runs as it stands."""
+    from running import ROOT
+
+    text = (ROOT / "doc" / "analysis.md").read_text()
+    code = text.partition("```python\n")[2].partition("```")[0]
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "water.dump").symlink_to(water / "water.dump")
+    exec(compile(code, "doc/analysis.md", "exec"), {})
+    assert len(columns(tmp_path / "poses.csv")) == 50

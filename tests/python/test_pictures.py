@@ -1,0 +1,101 @@
+"""The camera and what it draws; pictures and film of a made-up motion; what is published."""
+
+import numpy as np
+import pytest
+from PIL import Image
+from scipy.spatial.transform import Rotation
+
+from lammps_gearquat import checkout
+from lammps_gearquat.pictures import figures, film, page, scenes
+from lammps_gearquat.pictures.view import Camera, sphere_image
+
+
+def test_camera_looks_along_its_direction():
+    camera = Camera((1.0, 2.0, 3.0), -90.0, 0.0, 10.0)  # from -y: x to the right, z up
+    at, depth, scale = camera.project([[1, 2, 3], [2, 2, 3], [1, 2, 4], [1, -3, 3]])
+    assert at == pytest.approx(np.array([[0, 0], [1, 0], [0, 1], [0, 0]]), abs=1e-14)
+    assert depth == pytest.approx([0, 0, 0, 5], abs=1e-14)
+    assert scale == pytest.approx([1, 1, 1, 2])  # half as far: twice as large
+    assert camera.frame() @ camera.frame().T == pytest.approx(np.eye(3), abs=1e-15)
+    assert np.linalg.det(Camera((0, 0, 0), 33.0, 21.0, 1.0).frame()) == pytest.approx(1.0)
+
+
+def test_sphere_is_round_and_lit():
+    image = sphere_image("#d55e00")
+    assert image[0, 0, 3] == 0.0 and image[48, 48, 3] == 1.0
+    assert image[70, 30, :3].sum() > image[20, 70, :3].sum()  # light from upper left
+    assert (sphere_image("#d55e00", fade=1.0)[48, 48, :3] == 1.0).all()
+
+
+@pytest.fixture
+def scene():
+    """An even rotation along a straight line."""
+    time = np.arange(0.0, 240.0, 2.0)
+    turn = Rotation.from_rotvec(np.outer(time, [0.02, 0.01, 0.03]))
+    axes = np.swapaxes(turn.as_matrix(), 1, 2)
+    centre = np.outer(time, [0.3, -0.1, 0.05]) + [70.0, 0.0, 0.0]
+    shape = np.array([[3, -4, -9], [-3, -4, -9], [0, 0, -9], [0, 0, 3]])
+    sites = centre[:, None] + np.einsum("fij,nj->fni", turn.as_matrix(), shape)
+    energy = 1.0 + 0.1 * np.sin(time)
+    omega = np.tile([0.02, 0.01, 0.03], (len(time), 1))
+    return scenes.Scene(1, time, centre, sites, axes, omega, -energy, 0.5 * energy, 0.5 * energy)
+
+
+def test_pictures_are_drawn(scene, tmp_path):
+    for name, draw in (
+        ("orbit", figures.draw_orbit),
+        ("tumbling", figures.draw_tumbling),
+        ("energy", figures.draw_energy),
+    ):
+        draw(tmp_path / f"{name}.png", scene)
+        with Image.open(tmp_path / f"{name}.png") as picture:
+            assert picture.size == (1536, 864)
+            assert len(picture.convert("RGB").getcolors(10**6)) > 50  # something is on it
+
+
+def test_film_has_a_picture_for_each_sample(scene, tmp_path):
+    film.draw_film(tmp_path / "film.gif", scene, begin=200.0, every=4)
+    with Image.open(tmp_path / "film.gif") as found:
+        assert found.n_frames == 5 and found.size == (640, 360)
+        first = np.asarray(found.convert("RGB"))
+        found.seek(4)
+        assert (np.asarray(found.convert("RGB")) != first).any()
+
+
+def test_what_is_published_is_small_enough():
+    from running import ROOT
+
+    sizes = {name: (ROOT / "doc" / "pictures" / name).stat().st_size for name in page.PICTURES}
+    assert sizes["leaving.gif"] < 1.5e6 and max(sizes.values()) == sizes["leaving.gif"]
+
+
+def test_publishing(tmp_path):
+    out, folder = tmp_path / "out", tmp_path / "checkout"
+    out.mkdir()
+    (folder / "src" / "GEARQUAT").mkdir(parents=True)
+    for name in page.PICTURES:
+        (out / name).write_bytes(b"made up")
+    (folder / "README.md").write_text("before\n")
+    with pytest.raises(checkout.PublishError):
+        page.publish(folder, out)
+    begin = checkout.begin(page.COMMAND)
+    (folder / "README.md").write_text(f"before\n{begin}\nold\n{checkout.END}\nafter\n")
+    page.publish(folder, out)
+    text = (folder / "README.md").read_text()
+    assert "doc/pictures/leaving.gif" in text and "old" not in text and text.endswith("after\n")
+    assert all(name in (folder / "doc" / "pictures.md").read_text() for name in page.PICTURES)
+    assert (folder / "doc" / "pictures" / "orbit.png").read_bytes() == b"made up"
+
+
+def test_scenes_are_those_of_the_fix(monkeypatch, tmp_path):
+    """A short run: positions, energies and angular velocity of one and the same samples."""
+    monkeypatch.setattr(scenes, "RUNS", {1: (0.01, 4.0, 0.5)})
+    found = scenes.run(tmp_path)[1]
+    assert found.time == pytest.approx(0.5 * np.arange(9))
+    assert found.total == pytest.approx(np.full(9, found.total[0]), abs=1e-10)
+    masses = np.array([2.0, 2.0, 10.0, 50.0])
+    centres = np.einsum("n,fni->fi", masses, found.sites) / masses.sum()
+    assert centres == pytest.approx(found.centre, abs=1e-12)
+    moved = (found.centre[2:] - found.centre[:-2]) / 1.0
+    kinetic = 32.0 * (moved**2).sum(axis=1)
+    assert kinetic == pytest.approx(found.translation[1:-1], rel=1e-2)
