@@ -225,3 +225,30 @@ def test_other_trajectories(dump, tmp_path):
     assert found.q[:, :3] == pytest.approx(exact.q[:, :3], abs=1e-4)
     assert found.centre - found.centre[0] == pytest.approx(exact.centre - exact.centre[0], abs=1e-4)
     assert found.omega_space == pytest.approx(exact.omega_space, abs=1e-5)
+
+
+def resident():
+    """Bytes of this process in memory, mapped files as well."""
+    import os
+
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def test_pages_of_a_mapped_file_are_let_go(tmp_path):
+    """Nothing that was written is lost, and what is held does not grow with what is gone over."""
+    from lammps_gearquat.analysis import mapped
+
+    table = np.lib.format.open_memmap(tmp_path / "t.npy", "w+", [("a", float)], (400, 20000))
+    before, held = resident(), []
+    for k in mapped.rows(table["a"]):
+        table["a"][k] = k
+        held.append(resident() - before)
+    assert max(held) < 0.2 * table.nbytes
+    assert (table["a"][:, 7] == np.arange(400)).all()
+    assert (np.load(tmp_path / "t.npy")["a"][:, -1] == np.arange(400)).all()
+    # and without letting go it does
+    mapped.release(table)
+    before = resident()
+    assert table["a"].sum() == 20000 * 399 * 200
+    assert resident() - before > 0.8 * table.nbytes

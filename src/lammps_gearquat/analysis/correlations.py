@@ -10,6 +10,8 @@ import numpy as np
 from scipy import fft
 from scipy.spatial.transform import Rotation
 
+from . import mapped
+
 #: numbers held at once in one array
 HELD = 1_000_000
 
@@ -29,6 +31,7 @@ def _portions(values):
     width = max(1, HELD // (frames * max(1, int(np.prod(values.shape[2:])))))
     for begin in range(0, bodies, width):
         yield slice(begin, min(begin + width, bodies))
+        mapped.release(values)
 
 
 def _power(x):

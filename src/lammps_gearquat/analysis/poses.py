@@ -18,6 +18,7 @@ import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
 from MDAnalysis.analysis.results import ResultsGroup
 
+from . import mapped
 from .bodies import Bodies
 from .superposition import rotate, superpose
 
@@ -117,7 +118,7 @@ class _FrameTable(AnalysisBase):
         """Signs of quaternions that do not jump; centres likewise, where only images are known."""
         q, centre = self.results.table["q"], self.results.table["centre"]
         images = self._images()
-        for k in range(1, len(q)):
+        for k in mapped.rows(q, 1):
             turned = np.einsum("bi,bi->b", q[k], q[k - 1]) < 0.0
             q[k, turned] *= -1.0
             if images is not None:
@@ -152,7 +153,8 @@ class _FrameTable(AnalysisBase):
         with open(path, "w", newline="", encoding="utf-8") as file:
             names = _flat(self.results.table[0])
             csv.writer(file).writerow(["step", "time", "body", *names])
-            for step, time, frame in zip(self.results.step, self.results.time, self.results.table):
+            for k in mapped.rows(self.results.table):
+                frame, step, time = (self.results[name][k] for name in ("table", "step", "time"))
                 values = np.column_stack(list(_flat(frame).values()))
                 keys = np.column_stack([np.full((len(frame), 2), (step, time)), self.ids])
                 np.savetxt(file, np.hstack([keys, values]), fmt="%.17g", delimiter=",")
@@ -178,7 +180,8 @@ def totals(table, mass=None):
     found |= {n: np.empty(len(table)) for n in names if n.endswith("residual")}
     known = mass is not None and "velocity" in names
     found |= {n: np.empty((len(table), 3)) for n in ("momentum", "angular_momentum_space") if known}
-    for k, frame in enumerate(table):
+    for k in mapped.rows(table):
+        frame = table[k]
         for name in set(found) & set(names):
             values = frame[name]
             found[name][k] = values.max() if name.endswith("residual") else values.sum(axis=0)

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from MDAnalysis.lib.distances import capped_distance
 
+from . import mapped
+
 
 @dataclass(frozen=True)
 class Stays:
@@ -68,12 +70,16 @@ def stays(centre, places, radius, time, box=None):
     at = np.full(bodies, -1)
     since = np.zeros(bodies, dtype=int)
     found = []
-    for k in range(frames + 1):
-        now = nearest(centre[k], places, radius, box) if k < frames else np.full(bodies, -1)
+
+    def change(k, now):
         left = np.flatnonzero((now != at) & (at >= 0))
         found.append(np.column_stack([left, at[left], since[left], np.full(len(left), k)]))
         since[now != at] = k
-        at = now
+        at[:] = now
+
+    for k in mapped.rows(centre):
+        change(k, nearest(centre[k], places, radius, box))
+    change(frames, np.full(bodies, -1))
     columns = np.concatenate(found).T
     return Stays(*columns, np.asarray(time, dtype=float), bodies, len(places))
 
