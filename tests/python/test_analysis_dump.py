@@ -249,7 +249,15 @@ def test_words_where_numbers_should_be(write):
 def test_a_table_with_too_few_columns(write):
     columns = "id mol type mass f_1[1] f_1[2] f_1[3] vx vy vz"
     path = write(MOTION, TIMES, columns=columns)
+    path.write_text(path.read_text().replace("ITEM: ATOMS", "ITEM: ENTRIES"))
     with pytest.raises(DumpError, match="lacks column\\(s\\) 4 5 6 13"):
         open_table(path)
     with pytest.raises(DumpError, match="open it with open_table"):
         open_dump(path)
+
+
+def test_columns_of_other_fixes_do_no_harm(write):
+    add = lambda t, rows: np.column_stack([rows, rows[:, 0]])  # noqa: E731
+    path = write(MOTION, TIMES, add, columns=dumps.COLUMNS + " f_average[1]")
+    assert centres(path) == pytest.approx(expected(), abs=1e-13)
+    assert open_any(path)[1] is False

@@ -42,8 +42,8 @@ class DumpError(ValueError):
 def read_header(file, name):
     """Header of the frame that begins here.
 
-    Returns step, number of rows, origin (3,), box (3, 3) with the edges as rows, periodic (3,) and
-    the names of the columns.  Raises DumpError if this is not a header of nine lines.
+    Returns step, number of rows, origin (3,), box (3, 3) with the edges as rows, periodic (3,),
+    ATOMS or ENTRIES, and the names of the columns.  Raises DumpError if this is not a header of nine lines.
     """
     lines = [file.readline() for _ in range(HEADER_LINES)]
     if lines[0].startswith(("ITEM: UNITS", "ITEM: TIME\n")):
@@ -60,7 +60,7 @@ def read_header(file, name):
     if kind not in ("ATOMS", "ENTRIES"):
         raise DumpError(f"{name}: a dump custom or dump local is required, not 'ITEM: {kind}'")
     origin, box, periodic = _box(lines[4], lines[5:8], name)
-    return int(lines[1]), int(lines[3]), origin, box, periodic, columns
+    return int(lines[1]), int(lines[3]), origin, box, periodic, kind, columns
 
 
 def _box(title, bounds, name):
@@ -86,8 +86,8 @@ def _box(title, bounds, name):
 def columns_of(path):
     """Names of the columns of a dump, and whether it is a ``dump local``."""
     with anyopen(str(path)) as file:
-        columns = read_header(file, path)[-1]
-    return columns, any(re.fullmatch(r"f_\S+\[\d+\]", c) for c in columns) and "xu" not in columns
+        *_, kind, columns = read_header(file, path)
+    return columns, kind == "ENTRIES"
 
 
 class DumpFrames(DumpReader):
@@ -137,7 +137,7 @@ class DumpFrames(DumpReader):
         ts.frame += 1
         if ts.frame >= len(self):
             raise EOFError
-        step, rows, origin, box, periodic, header = read_header(self._file, self.filename)
+        step, rows, origin, box, periodic, _, header = read_header(self._file, self.filename)
         if rows != self.n_atoms:
             raise DumpError(
                 f"{self.filename}: {rows} rows at step {step}, {self.n_atoms} in the first frame; the"
