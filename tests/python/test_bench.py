@@ -396,7 +396,7 @@ def test_publishing(tmp_path, out):
     (out / "many_bodies.png").write_bytes(b"picture")
     bench_page.publish(tmp_path, out, made_up())
     text = (tmp_path / "doc" / "many_bodies.md").read_text()
-    assert "(figures/many_bodies.png)" in text
+    assert "(many_bodies/many_bodies.png)" in text
     assert (tmp_path / "doc" / "figures" / "many_bodies.png").read_bytes() == b"picture"
     assert (tmp_path / "README.md").read_text() == readme
 

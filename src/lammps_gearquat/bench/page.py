@@ -13,7 +13,7 @@ from ..checkout import find, provenance
 from ..report import markdown_table
 
 COMMAND = "gearquat bench --publish"
-PAGE, PICTURE = "many_bodies.md", "many_bodies.png"
+PAGE, PICTURE, FOLDER = "many_bodies.md", "many_bodies.png", "many_bodies"
 TIMINGS_HEADER = ("method", "bodies", "ranks", "round", "steps", "loop", "comm", "modify") + (
     "start evaluations",
     "start seconds",
@@ -260,7 +260,7 @@ def write(out, results):
 def publish(folder, out, results):
     """Write page and picture into a checkout."""
     folder, out = checkout(folder), Path(out)
-    (folder / "doc" / "figures").mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(out / PICTURE, folder / "doc" / "figures" / PICTURE)
-    text = page_text(out, results, f"figures/{PICTURE}")
+    (folder / "doc" / FOLDER).mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(out / PICTURE, folder / "doc" / FOLDER / PICTURE)
+    text = page_text(out, results, f"{FOLDER}/{PICTURE}")
     (folder / "doc" / PAGE).write_text(text, encoding="utf-8")

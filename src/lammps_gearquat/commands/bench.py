@@ -34,7 +34,7 @@ BAR = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
     "--publish",
     "publish_to",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Checkout whose doc/many_bodies.md and doc/figures are to show the results.",
+    help="Checkout whose doc/many_bodies.md is to show the results.",
 )
 def bench(out, rounds, quick, jobs, lmp, mpiexec, publish_to):
     """Many bodies: time, memory, growth, pressure and temperature in water.
