@@ -397,7 +397,7 @@ def test_publishing(tmp_path, out):
     bench_page.publish(tmp_path, out, made_up())
     text = (tmp_path / "doc" / "many_bodies.md").read_text()
     assert "(many_bodies/many_bodies.png)" in text
-    assert (tmp_path / "doc" / "figures" / "many_bodies.png").read_bytes() == b"picture"
+    assert (tmp_path / "doc" / "many_bodies" / "many_bodies.png").read_bytes() == b"picture"
     assert (tmp_path / "README.md").read_text() == readme
 
 
