@@ -53,6 +53,7 @@ missing_for_tests() {
   have ninja || echo ninja-build
   have ccache || echo ccache
   have xz || echo xz-utils
+  have valgrind || echo valgrind
   have mpicxx.openmpi || echo libopenmpi-dev
   have mpirun.openmpi || echo openmpi-bin
   [ -e /usr/include/yaml.h ] || echo libyaml-dev

@@ -352,6 +352,12 @@ GearQuatCensus GearQuatBodies::census(int groupbit) const
   return GearQuatCensus(lmp, sites);
 }
 
+void GearQuatBodies::expect_forces(bool any)
+{
+  any_forces = any;
+  if (!any) std::fill(load.begin(), load.end(), Load());
+}
+
 void GearQuatBodies::spread_labels(std::vector<double> &label)
 {
   labels = label.data();
@@ -447,8 +453,8 @@ void GearQuatBodies::place_extended()
 
 void GearQuatBodies::gather_loads(double **f, double **torque)
 {
-  for (auto &one : load) one = Load();
   if (!any_forces) return;
+  for (auto &one : load) one = Load();
   const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
   for (; site != arms; ++site)
     for (int k = 0; k < 3; ++k) load[site->body].force[k] += f[site->atom][k];

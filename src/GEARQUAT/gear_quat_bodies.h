@@ -102,7 +102,7 @@ class GearQuatBodies : protected Pointers {
   /// Fresh bodies have got their histories.
   void take_in_fresh();
   /// Whether anything in the scene may make a force; if not, nothing is gathered.
-  void expect_forces(bool any) { any_forces = any; }
+  void expect_forces(bool any);
 
   void spread_states();
   /// Positions of all sites, and velocities if anything reads them before the next call.

@@ -9,6 +9,7 @@ from .commands.bench import bench
 from .commands.cases import cases
 from .commands.cost import cost
 from .commands.drift import drift
+from .commands.effects import effects
 from .commands.hard import hard
 from .commands.horizon import horizon
 from .commands.pictures import pictures
@@ -26,5 +27,16 @@ def version():
     click.echo(lammps_gearquat.__version__)
 
 
-for command in (analyze, bench, cases, cost, drift, hard, horizon, pictures, workprecision):
+for command in (
+    analyze,
+    bench,
+    cases,
+    cost,
+    drift,
+    effects,
+    hard,
+    horizon,
+    pictures,
+    workprecision,
+):
     main.add_command(command)

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from scenes import two_molecules, whole_deck
+from scenes import last_frame, two_molecules, whole_deck
 
 TITLE = re.compile(r"^Fix gear/quat (\S+): (\d+) bodies of (.+) sites, (\d+) degrees of freedom$")
 ROW = re.compile(r"^  (\S.{19}) (on |off)  (\S.*)$")
@@ -73,13 +73,13 @@ SHAPES = {
 }
 
 
-def bodies(*shapes, style="molecular", before="", after="run 0", fix="molecule"):
-    """A deck with one body of each of the shapes, 5 apart along x, in a box that is not periodic."""
+def bodies(*shapes, style="molecular", before="", after="run 0", fix="molecule", apart=5):
+    """A deck with one body of each of the shapes along x, in a box that is not periodic."""
     lines, first = [], 1
     for k, shape in enumerate(shapes):
         sites = [[float(x) for x in site.split()] for site in SHAPES[shape][0].split(",")]
         for x, y, z in sites:
-            lines.append(f"create_atoms 1 single {x + 5 * k} {y} {z}")
+            lines.append(f"create_atoms 1 single {x + apart * k} {y} {z}")
         lines.append(f"set atom {first}*{first + len(sites) - 1} mol {k + 1}")
         first += len(sites)
     return "\n".join(
@@ -267,3 +267,42 @@ def test_atoms_that_no_body_uses(lmp):
     assert "in no body" not in text
     moved = two_molecules("group 2 left right", groups + "\ngroup third id 3\nfix third third nve")
     assert "in no body, 0 of them moved by no fix" in "\n".join(report(lmp.run(moved)))
+
+
+# --- what is left out changes nothing ------------------------------------------------------------
+MIXED = """
+dump poses all custom 50 mixed.dump id x y z vx vy vz
+dump_modify poses sort id format float %.17g
+"""
+
+
+def mixed(steps, formulation="second"):
+    """Points, a rod and an asymmetric body that attract each other, across several ranks."""
+    shapes = "points", "linear", "asymmetric tops", "points", "linear"
+    deck = bodies(*shapes, after="", fix=f"molecule formulation {formulation}", apart=4)
+    deck = deck.replace("lj/cut 3.0", "lj/cut 50.0").replace("1.0 0.2", "1.0 1.5")
+    return f"{deck}\nvelocity all create 1.0 4711 loop geom\ntimestep 0.002{MIXED}run {steps}\n"
+
+
+@pytest.mark.parametrize("formulation", ["first", "second"])
+def test_points_among_tops_on_several_ranks(lmp_tree, formulation):
+    """On four ranks bodies have ghosts or not, on one none: the same to rounding."""
+    ends = []
+    for ranks in (1, 4):
+        result = lmp_tree.run("processors * 1 1\n" + mixed(50, formulation), ranks=ranks)
+        assert result.returncode == 0, result.output
+        ends.append(last_frame(lmp_tree.folder / "mixed.dump"))
+    assert ends[1] == pytest.approx(ends[0], abs=1e-12)
+    start = lmp_tree.run(mixed(0, formulation))
+    assert start.returncode == 0
+    moved = ends[0][:, 1:] - last_frame(lmp_tree.folder / "mixed.dump")[:, 1:]
+    assert abs(moved).max(axis=1).min() > 1e-3  # all of them
+
+
+def test_a_lone_site_is_a_point_to_the_last_bit(lmp_tree):
+    """An atom alone stays where it is placed: no rounding of its centre, whatever its mass."""
+    deck = bodies("points").replace("single 0.0 0.0 0.0", "single 0.1 0.3 0.7")
+    deck = deck.replace("mass 1 1.0", "mass 1 0.3").replace("run 0", "") + MIXED + "run 50"
+    result = lmp_tree.run(deck)
+    assert result.returncode == 0, result.output
+    assert list(last_frame(lmp_tree.folder / "mixed.dump")[0, 1:4]) == [0.1, 0.3, 0.7]

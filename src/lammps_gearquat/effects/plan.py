@@ -1,0 +1,107 @@
+"""What is measured: effects, each a row, and the rungs of the ladder, each a step up.
+
+An effect that the fix learns is one more Effect here, and one more Rung if it belongs on the ladder.
+"""
+
+from dataclasses import dataclass, replace
+
+from .scenes import Scene
+
+FULL = Scene()  # nothing acts on the bodies
+MOVED = replace(FULL, forces="neutral")
+POINTS = replace(MOVED, shape="point")
+LINEAR = replace(MOVED, shape="linear")
+CHARGED = replace(MOVED, forces="charged")
+EACH, CHARGED_EACH = replace(MOVED, each=True), replace(CHARGED, each=True)
+PERIODIC = replace(FULL, boundary="p p p")
+UNSIZED, SIZED = (
+    replace(
+        FULL,
+        style="hybrid sphere full",
+        before=f"set group all mass 12.0\nset group all diameter {diameter}",
+    )
+    for diameter in (0.0, 0.5)
+)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect: ``on`` differs from ``base`` by it alone; no ``on``: one rank cannot have it.
+
+    ``own``: pattern of the names of functions that belong to it alone, "" for none.  ``off``: a scene
+    where it could be but is not called for, ``never``: one where it cannot be, equal otherwise.
+    """
+
+    name: str
+    on: Scene
+    base: Scene
+    own: str = ""
+    off: Scene = None
+    never: Scene = None
+
+    @property
+    def idle(self):
+        """The scene in which its own functions must not run."""
+        return self.off or self.base
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A rung: ``on`` is one effect more than ``base``, both with all that is below them.
+
+    ``row``: name of the Effect that measures the same without what is below, "" if there is none.
+    """
+
+    name: str
+    on: Scene
+    base: Scene = None
+    row: str = ""
+
+
+EFFECTS = (
+    Effect(
+        "rotation",
+        MOVED,
+        POINTS,
+        own=r"GearQuat::Integrator::(correct|body_state|correct_(first|second)<.*>)\("
+        r"|GearQuatBodies::update_frame\(",
+    ),
+    Effect("torques of forces", MOVED, FULL, own=r"GearQuatBodies::gather_loads"),
+    Effect("finite size", SIZED, UNSIZED, own=r"GearQuatExtended::", off=UNSIZED, never=FULL),
+    Effect(
+        "images",
+        replace(PERIODIC, crossing=True),
+        PERIODIC,
+        own=r"GearQuatBodies::place<\w+, \w+, true>",
+        off=PERIODIC,
+        never=FULL,
+    ),
+    Effect(
+        "virial",
+        replace(EACH, columns="press"),
+        EACH,
+        own=r"::(tally_virial|v_tally|constraint_force|spread_loads)\(",
+        off=MOVED,
+        never=replace(MOVED, after="fix_modify move virial no"),
+    ),
+    Effect("ghost bodies", None, MOVED, own=r"GearQuatBodies::(un)?pack_|FixGearQuat::(un)?pack_"),
+    Effect("predicted velocities", replace(MOVED, after="fix reads all viscous 0.0"), MOVED),
+    Effect("compensated sums", replace(MOVED, words="compensate yes"), MOVED),
+)
+
+LADDER = (
+    Rung("point particles", POINTS),
+    Rung("linear bodies", LINEAR, POINTS),
+    Rung("full bodies", MOVED, LINEAR),
+    Rung("charges", CHARGED, MOVED),
+    Rung("virial", replace(CHARGED_EACH, columns="press"), CHARGED_EACH, "virial"),
+)
+
+
+def scenes():
+    """Every scene once, in their order."""
+    found = [
+        scene for effect in EFFECTS for scene in (effect.on, effect.base, effect.off, effect.never)
+    ]
+    found += [scene for rung in LADDER for scene in (rung.on, rung.base)]
+    return list(dict.fromkeys(scene for scene in found if scene))

@@ -1,0 +1,100 @@
+"""Scenes that differ in one effect: equal bodies on a cubic lattice.  Units: metal."""
+
+from dataclasses import dataclass
+
+#: sites of a body in Angstrom, and their charges; all masses are equal
+SHAPES = {
+    "point": [(0.0, 0.0, 0.0)],
+    "linear": [(-1.0, 0.0, 0.0), (0.2, 0.0, 0.0), (0.9, 0.0, 0.0)],
+    "triangle": [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.2, 0.1)],
+}
+CHARGES = {1: [0.0], 3: [-0.4, 0.1, 0.3]}
+SPACING = 5.0
+
+_DECK = """\
+units metal
+atom_style {style}
+atom_modify map array sort 0 0.0
+boundary {boundary}
+lattice sc {spacing}
+region box block 0 {side} 0 {side} 0 {side}
+create_box 1 box
+molecule body molecule.{shape}
+lattice sc {spacing} origin {origin} {origin} {origin}
+create_atoms 0 box mol body 4711
+mass 1 12.0
+{before}
+velocity all create 300.0 4711 loop geom
+{forces}
+neigh_modify exclude molecule/intra all every 100000 delay 0 check no
+timestep 0.0005
+fix move all gear/quat molecule report no {words}
+{after}
+thermo_style custom step {columns}
+thermo {every}
+"""
+
+_FORCES = {
+    "none": "pair_style zero 5.0\npair_coeff * *",
+    "neutral": "pair_style lj/cut 5.0\npair_coeff * * 0.005 2.0",
+    "charged": "pair_style lj/cut/coul/cut 5.0\npair_coeff * * 0.005 2.0",
+}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One scene.  ``words``: keywords of the fix; ``before``, ``after``: lines around it;
+    ``columns``: of the output besides the step; ``each``: output in every step, not at the end only;
+    ``crossing``: bodies lie across the boundaries of the box.
+    """
+
+    shape: str = "triangle"
+    forces: str = "none"
+    words: str = ""
+    boundary: str = "f f f"
+    style: str = "full"
+    before: str = ""
+    after: str = ""
+    columns: str = ""
+    each: bool = False
+    crossing: bool = False
+
+    @property
+    def sites(self):
+        """Sites of a body."""
+        return len(SHAPES[self.shape])
+
+    def deck(self, side, steps):
+        """Script with side^3 bodies; its second run has ``steps`` steps, the first one the start."""
+        text = _DECK.format(
+            style=self.style,
+            boundary=self.boundary,
+            spacing=SPACING,
+            side=side,
+            shape=self.shape,
+            origin=0.0 if self.crossing else 0.4,
+            before=self.before,
+            forces=_FORCES[self.forces],
+            words=self.words,
+            after=self.after,
+            columns=self.columns,
+            every=1 if self.each else steps,
+        )
+        return text + f"run 1\nrun {steps}\n"
+
+
+def write_molecules(folder):
+    """Templates that the decks read."""
+    for shape, sites in SHAPES.items():
+        numbered = list(enumerate(sites, 1))
+        lines = [f"{shape} body", "", f"{len(sites)} atoms", "", "Coords", ""]
+        lines += [f"{k} {x} {y} {z}" for k, (x, y, z) in numbered]
+        lines += ["", "Types", "", *(f"{k} 1" for k, _ in numbered)]
+        lines += [
+            "",
+            "Charges",
+            "",
+            *(f"{k} {CHARGES[len(sites)][k - 1]}" for k, _ in numbered),
+            "",
+        ]
+        (folder / f"molecule.{shape}").write_text("\n".join(lines), encoding="utf-8")

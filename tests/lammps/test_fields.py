@@ -1,0 +1,62 @@
+"""examples/fields: LAMMPS' own fixes act on the sites of bodies."""
+
+import re
+
+import numpy as np
+import pytest
+
+FORMULATIONS = ["first", "second"]
+
+
+@pytest.fixture
+def fields(lmp_tree, examples):
+    """Run the example with an effect: fields(effect, **variables) -> result, columns of the log."""
+
+    def run(effect, **variables):
+        deck = (examples / "fields" / "in.fields").read_text()
+        deck = deck.replace(" molecule.body", f" {examples / 'fields' / 'molecule.body'}")
+        result = lmp_tree.run(deck, {"effect": effect, **variables})
+        assert result.returncode == 0, result.output
+        return result, {name: np.array(column) for name, column in result.thermo[-1].items()}
+
+    return run
+
+
+# acceleration of the common centre: g, and q E / m
+@pytest.mark.parametrize("effect, pull", [("gravity", -0.1), ("field", 0.5 * 0.2 / 4.0)])
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_constant_forces_give_the_exact_fall(fields, effect, pull, formulation):
+    _, log = fields(effect, words=f"formulation {formulation}")
+    fallen = log["c_centre[3]"] - 0.5 * pull * log["Time"] ** 2
+    assert np.abs(fallen).max() < 1e-12
+    assert np.abs(fallen - 0.005 * pull * log["Time"] ** 2).max() > 1e-3  # 1 % shows
+    for k in (1, 2):
+        assert np.abs(log[f"c_centre[{k}]"]).max() < 1e-12
+    change = 1e-12 if effect == "gravity" else 1e-9  # dipoles swing
+    assert log["TotEng"] == pytest.approx(np.full(11, log["TotEng"][0]), rel=change)
+    assert np.ptp(log["KinEng"]) > 0.01 * log["KinEng"][0]
+
+
+def test_a_wall_sends_bodies_back_and_keeps_the_energy(fields):
+    _, log = fields("wall", steps=2000, dt=0.005)
+    assert log["TotEng"] == pytest.approx(np.full(21, log["TotEng"][0]), rel=2e-6)
+    assert log["PotEng"].max() > 0.1
+    _, free = fields("none", steps=2000, dt=0.005)
+    assert (log["c_centre[3]"] - free["c_centre[3]"])[-1] > 0.1
+
+
+def test_a_thermostat_sets_the_temperature(fields):
+    result, log = fields("langevin", steps=20000, every=20)
+    assert "start with known forces only (order 2)" in result.output
+    assert log["Temp"][50:].mean() == pytest.approx(1.0, abs=0.03)
+    _, colder = fields("langevin", steps=20000, every=20, temperature=0.9)
+    assert colder["Temp"][50:].mean() == pytest.approx(0.9, abs=0.03)
+
+
+def test_nothing_is_computed_for_a_field_that_is_absent(fields):
+    on = fields("gravity")[0].log
+    off, log = fields("none")
+    assert re.search(r"torques of forces +off +nothing in the scene makes forces", off.log)
+    assert re.search(r"predicted velocities +off", off.log)
+    assert re.search(r"torques of forces +on", on) and "fix field (gravity) may read them" in on
+    assert log["KinEng"] == pytest.approx(np.full(11, log["KinEng"][0]), rel=1e-12)

@@ -1,0 +1,104 @@
+"""`gearquat effects`: reading of profiles, texts and refusals; the counts are in tests/lammps."""
+
+from dataclasses import replace
+
+import pytest
+from click.testing import CliRunner
+
+from lammps_gearquat.cli import main
+from lammps_gearquat.effects import count, figures, page, plan, runs
+from lammps_gearquat.lammps_runner import LammpsError
+
+PART = """\
+# callgrind format
+events: Ir
+fn=LAMMPS_NS::Verlet::run(int)
+0 5
+cfn=LAMMPS_NS::FixGearQuat::final_integrate()
+calls=10 0
+0 1000
+cfn=LAMMPS_NS::PairLJCut::compute(int, int)
+calls=10 0
+0 300
+fn=LAMMPS_NS::FixGearQuat::final_integrate()
+0 400
++3 300
+cob=lmp
+cfi=file
+cfn=LAMMPS_NS::FixGearQuat::show_bodies()
+calls=1 0
+0 300
+fn=LAMMPS_NS::FixGearQuat::show_bodies()
+* 300
+"""
+
+
+def test_a_profile_is_read():
+    profile = count.parse(PART)
+    assert profile.own["LAMMPS_NS::FixGearQuat::final_integrate()"] == 700
+    assert profile.fix == 700 and profile.forces == 300
+    assert profile.of("show_bodies") == 300
+    assert sum(profile.own.values()) == 5 + 700 + 300
+    assert count.parse(PART.replace("0 1000", "0 1010")).fix == 710
+
+
+def made_up(cost=lambda scene, number: 100 * number + 7):
+    """Results in which a scene's step takes cost(scene, its number) instructions a body."""
+    sizes = runs.QUICK
+    results = runs.Results(sizes)
+    for number, scene in enumerate(plan.scenes(), 1):
+        for side in sizes.counted:
+            fix = round(sizes.counted_steps * (5 + side**3 * cost(scene, number)))
+            text = PART.replace("0 1000", f"0 {fix + 300}")
+            results.profiles[scene, side] = count.parse(text)
+        results.seconds[scene] = [(1e-6 * number, 2e-6), (1.1e-6 * number, 2e-6)]
+    results.cage = runs.Cage([2e-6, 3e-6, 4e-6], [1e-6] * 3, 435, 104)
+    return results
+
+
+def test_numbers_are_those_of_a_body_and_a_step(tmp_path):
+    results = made_up()
+    assert results.fix(plan.scenes()[0]) == pytest.approx(107)
+    assert results.nanoseconds(plan.scenes()[0])[1:] == pytest.approx((1e3 / 64, 1.1e3 / 64))
+    assert results.cage.speedup == 3.0
+    assert "435 pairs" in page.cage_sentence(results) and "3.0 times" in page.cage_sentence(results)
+    assert len(page.effects_table(results)[1]) == len(plan.EFFECTS)
+    assert len(page.ladder_table(results)[1]) == len(plan.LADDER)
+    figures.draw(tmp_path / "ladder.png", results)
+    assert (tmp_path / "ladder.png").stat().st_size > 5000
+
+
+def test_an_effect_that_is_not_free_is_named():
+    even = made_up(lambda scene, number: 1000)
+    assert page.off_sentence(even).startswith("Of every effect that is off, 0 instructions")
+    virial = next(effect for effect in plan.EFFECTS if effect.name == "virial")
+    dear = made_up(lambda scene, number: 1001 if scene == virial.off else 1000)
+    assert page.off_sentence(dear) == "Not free when off: virial."
+
+
+def test_own_functions_where_an_effect_is_off_are_named():
+    results = made_up(lambda scene, number: 1000)
+    effect = next(effect for effect in plan.EFFECTS if effect.name == "finite size")
+    key = effect.idle, results.sizes.counted[1]
+    own = results.profiles[key].own + type(results.profiles[key].own)(
+        {"GearQuatExtended::place": 9}
+    )
+    results.profiles[key] = replace(results.profiles[key], own=own)
+    assert page.off_sentence(results) == "Not free when off: finite size."
+
+
+def test_without_valgrind_the_line_that_installs_it_is_told(monkeypatch, tmp_path):
+    monkeypatch.setattr(count.shutil, "which", lambda name: None)
+    with pytest.raises(LammpsError, match="apt-get install -y --no-install-recommends valgrind"):
+        count.find_valgrind()
+
+
+def test_a_program_without_names_is_refused(tmp_path):
+    (tmp_path / "callgrind.1").write_text("")
+    with pytest.raises(LammpsError, match="has no names of functions"):
+        count._parts(tmp_path)
+
+
+def test_quick_times_are_not_published(tmp_path):
+    done = CliRunner().invoke(main, ["effects", "--quick", "--publish", str(tmp_path)])
+    assert done.exit_code == 2 and "needs the times in full" in done.output
