@@ -104,8 +104,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   const bool variable = args->control.eps > 0.0;
   args->scheme.trial = variable;
   bodies = new GearQuatBodies(lmp, this, args->scheme);
-  if (variable)
-    tolerance = new GearQuatTolerance(lmp, this, args->scheme, args->control, *bodies);
+  if (variable) tolerance = new GearQuatTolerance(lmp, this, args->scheme, args->control, *bodies);
   size_vector = GearQuatSums::ELEMENTS + (variable ? GearQuatTolerance::ELEMENTS : 0);
   extlist = new int[size_vector]{1, 1};
   blowup = new GearQuatBlowup(lmp, *bodies, args->scheme);

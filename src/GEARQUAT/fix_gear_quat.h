@@ -23,7 +23,7 @@ FixStyle(gear/quat,FixGearQuat);
 namespace GearQuat {
 class Integrator;
 struct Scheme;
-}
+}    // namespace GearQuat
 
 namespace LAMMPS_NS {
 

@@ -106,8 +106,9 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
   for (int iarg = 0; iarg < narg; iarg += 2) {
     const std::string key = arg[iarg];
     const std::set<std::string> known = {
-        "formulation", "values", "passes", "start",  "c0",     "omega", "momentum", "project", "compensate",
-        "tolerance",   "dtmin",  "dtmax",  "infile", "reinit", "mol",   "force",    "torque",  "report"};
+        "formulation", "values",  "passes",     "start",     "c0",     "omega",
+        "momentum",    "project", "compensate", "tolerance", "dtmin",  "dtmax",
+        "infile",      "reinit",  "mol",        "force",     "torque", "report"};
     if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (key == "force" || key == "torque") {    // may be given many times
       masks.push_back(parse_mask(lmp, narg - iarg, arg + iarg));
@@ -143,7 +144,7 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
       const double number = utils::numeric(FLERR, value, false, lmp);
       if (!(number > 0.0) || !std::isfinite(number))
         error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", key, value);
-      (key == "tolerance" ? control.eps
+      (key == "tolerance"   ? control.eps
            : key == "dtmin" ? control.shortest
                             : control.longest) = number;
     } else if (key == "report")

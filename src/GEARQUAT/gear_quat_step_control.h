@@ -122,14 +122,14 @@ class StepControl {
   /// What an other number of values has to promise: an error smaller by this.
   static constexpr double FEWER = 4.0, MORE = 10.0;
 
-  double eps = 0.0;                    ///< error a step may make
+  double eps = 0.0;                        ///< error a step may make
   double shortest = 0.0, longest = 0.0;    ///< limits of the step; longest 0: none
-  int fewest = 0, most = 0;            ///< limits of the number of values
+  int fewest = 0, most = 0;                ///< limits of the number of values
 
   struct Next {
-    double step;       ///< with the sign of the present one
+    double step;    ///< with the sign of the present one
     int values;
-    bool held;         ///< would be shorter, but for the limit
+    bool held;    ///< would be shorter, but for the limit
   };
 
   /// step, values: of the step that made these errors.  steady: steps made with that number.

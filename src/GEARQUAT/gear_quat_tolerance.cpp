@@ -40,17 +40,19 @@ GearQuatTolerance::GearQuatTolerance(LAMMPS *lmp, const Fix *fix, const Scheme &
 void GearQuatTolerance::refuse_scene() const
 {
   if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix gear/quat tolerance cannot be used with run_style respa: its levels have "
-                      "steps of their own");
+    error->all(FLERR,
+               "Fix gear/quat tolerance cannot be used with run_style respa: its levels have "
+               "steps of their own");
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
     int dim;
     if (utils::strmatch(other->style, "^dt/reset") ||
         (utils::strmatch(other->style, "^gear/quat") && other->extract("tolerance", dim)))
-      error->all(FLERR,
-                 "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
-                 "do so",
-                 other->id, other->style);
+      error->all(
+          FLERR,
+          "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
+          "do so",
+          other->id, other->style);
   }
 }
 
@@ -94,10 +96,11 @@ void GearQuatTolerance::shorten_first_step()
     if (other == fix) break;
     if (!other->time_integrate) continue;
     if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix gear/quat tolerance: the error of the first step is estimated as {:.2g}, "
-                     "more than {:.2g}; define fix {} ({}) after this fix, or use a time step of {:.2g}",
-                     largest, control.eps, other->id, other->style, size);
+      error->warning(
+          FLERR,
+          "Fix gear/quat tolerance: the error of the first step is estimated as {:.2g}, "
+          "more than {:.2g}; define fix {} ({}) after this fix, or use a time step of {:.2g}",
+          largest, control.eps, other->id, other->style, size);
     return;
   }
 
@@ -136,10 +139,11 @@ bool GearQuatTolerance::choose()
   errors = StepErrors();
   fresh = false;
   if (std::isinf(all[1]))
-    error->all(FLERR,
-               "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
-               "are wrong, or the motion is lost: use a smaller tolerance",
-               update->ntimestep);
+    error->all(
+        FLERR,
+        "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
+        "are wrong, or the motion is lost: use a smaller tolerance",
+        update->ntimestep);
 
   const double step = update->dt, size = std::fabs(step);
   const int values = present.values();
@@ -155,10 +159,11 @@ bool GearQuatTolerance::choose()
   if (next.held) {
     kept.held += 1.0;
     if (!told && comm->me == 0)
-      error->warning(FLERR,
-                     "Fix gear/quat tolerance: step {} makes an error of {:.2g}, more than {:.2g}, but "
-                     "dtmin keeps the time step at {:.3g}; further such steps are counted",
-                     update->ntimestep, all[1], control.eps, control.shortest);
+      error->warning(
+          FLERR,
+          "Fix gear/quat tolerance: step {} makes an error of {:.2g}, more than {:.2g}, but "
+          "dtmin keeps the time step at {:.3g}; further such steps are counted",
+          update->ntimestep, all[1], control.eps, control.shortest);
     told = true;
   }
   if (next.values != values) change_values(next.values);
@@ -197,8 +202,8 @@ void GearQuatTolerance::keep_step(double step)
   next_step = step;
   if (update->dt == step) return;
   if (comm->me == 0)
-    utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n", step,
-                   update->dt);
+    utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n",
+                   step, update->dt);
   change_step();
 }
 

@@ -3,6 +3,8 @@
 The scene is test case 1, whose body passes a bare 1/r singularity again and again.
 """
 
+import re
+
 import numpy as np
 import pytest
 from running import EXAMPLES
@@ -195,3 +197,37 @@ def test_two_controls_are_refused(lmp_tree):
     respa = two_molecules(fix="molecule tolerance 1e-8", before="run_style respa 2 1 pair 2")
     result = lmp_tree.run(respa)
     assert any("tolerance cannot be used with run_style respa" in e for e in result.errors)
+
+
+@pytest.mark.parametrize("formulation", ["second", "first"])
+@pytest.mark.parametrize("distance", [0.02, 0.002])
+def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, formulation):
+    def run(**settings):
+        deck = EXAMPLES / "hard" / "encounter" / "in.encounter"
+        words = dict(distance=distance, formulation=formulation) | settings
+        result = lmp_tree.run(deck, variables=words)
+        assert result.returncode == 0, result.output
+        return {key: np.array(column) for key, column in result.thermo[0].items()}
+
+    met = run()
+    depth = -met["c_potential"].min()
+    assert depth == pytest.approx(0.5 / distance, rel=0.4)
+    assert np.abs(met["v_total"] - met["v_total"][0]).max() < 1e-8 * depth
+    assert met[LARGEST][-1] < 10
+    fixed = run(tolerance=0, dt=0.001, steps=8000, more="")
+    assert np.abs(fixed["v_total"] - fixed["v_total"][0]).max() > 1e-8 * depth
+
+
+@pytest.mark.parametrize("formulation", ["second", "first"])
+def test_case_1_for_long(lmp_tree, formulation):
+    deck = EXAMPLES / "hard" / "long" / "in.long"
+    variables = dict(formulation=formulation, shift="3e-9", until=2500)
+    result = lmp_tree.run(deck, variables=variables)
+    assert result.returncode == 0, result.output
+    line = re.findall(
+        r"^evaluations (\S+), energy off by (\S+) sampled, (\S+) at", result.log, re.M
+    )
+    evaluations, sampled, every_step = map(float, line[-1])
+    assert 2500 / evaluations > 50000 / 1e6
+    assert sampled < 1e-10 and every_step < 1e-9
+    assert sampled > 0

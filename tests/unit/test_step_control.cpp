@@ -260,13 +260,13 @@ TEST(StepControl, TheEstimateIsTheCorrectorsOwn)
     const Oracle::CageScene scene(1, true);
     const Integrator integrator(scheme, 0.1);
     vector<double> rows(MAX_SIZE, 0.0);
-    seed(scheme, scene.body, local_series(scene.body, scene.start, scene.load(scene.start, 1.0), 0.1),
-         0.1, 0.1, rows.data());
+    seed(scheme, scene.body,
+         local_series(scene.body, scene.start, scene.load(scene.start, 1.0), 0.1), 0.1, 0.1,
+         rows.data());
     StepErrors errors;
     integrator.predict(rows.data());
-    const Correction own =
-        VariableOrder(scheme).correct(integrator, scene.body, scene.load(scene.start, 1.0),
-                                      rows.data(), errors);
+    const Correction own = VariableOrder(scheme).correct(
+        integrator, scene.body, scene.load(scene.start, 1.0), rows.data(), errors);
     const double larger = std::max(own.position_error, own.angle_error);
     EXPECT_GT(larger, 0.0);
     EXPECT_NEAR(errors.same / larger, 1.0, 1e-9) << name(scheme) << " " << scheme.values();
@@ -326,7 +326,8 @@ TEST(StepControl, TheErrorFollowsEps)
                   body.largest, body.changes, body.scheme.values());
       EXPECT_LT(body.largest, 60.0);    // no step that would have had to be redone
     }
-    const double slope = std::log(errors.front() / errors.back()) / std::log(eps.front() / eps.back());
+    const double slope =
+        std::log(errors.front() / errors.back()) / std::log(eps.front() / eps.back());
     std::printf("error ~ eps^%.2f\n", slope);
     EXPECT_GT(slope, 0.75);
     EXPECT_LT(slope, 1.25);
