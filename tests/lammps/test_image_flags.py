@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 from scenes import two_molecules
 
-# both molecules fly 9.5 boxes in a hundred steps; the flags begin again after 5390 steps in x
+# both molecules fly 9.5 boxes in a hundred steps; the flags begin again after 5384 steps in x
 FLIGHT = """
+group first molecule 1
+group second molecule 2
+velocity first zero linear
+velocity second zero linear
 velocity all set 190.0 -125.0 55.0 sum yes units box
 neigh_modify every 1 delay 0 check yes
 thermo_style custom step f_move[1] f_move[2] f_move[1][1] f_move[1][2] f_move[1][3] &
@@ -46,15 +50,18 @@ def test_a_body_flies_on(lmp_tree, formulation, ranks):
 
 def test_a_body_is_made_anew_where_the_flags_turn(lmp_tree):
     """Sites of one body have flags at both ends of their range while it passes from one to the other."""
-    pieces = "run 5340\n" + "unfix move\nfix move all gear/quat molecule\nrun 5\n" * 20
-    result = run(lmp_tree, "molecule", pieces)
+    slowly = "velocity all set -170.0 125.0 -55.0 sum yes units box\n"
+    anew = "unfix move\nfix move all gear/quat molecule\nrun 2\n" * 30
+    result = run(lmp_tree, "molecule", "run 5380\n" + slowly + anew)
+    x = [value for table in result.thermo for value in table["f_move[1][1]"]]
+    assert max(x[2:]) > 9.5 and min(x[2:]) < -9.5  # it has passed, in small steps
     spin = [value for table in result.thermo for value in table["f_move[2]"]]
     assert spin == pytest.approx([spin[0]] * len(spin), rel=STARTS)
 
 
 def test_a_restart_beyond(lmp_tree):
     whole = run(lmp_tree, "molecule", "run 6000\nwrite_restart far.restart\nrun 500")
-    deck = two_molecules(after=FLIGHT.partition("\n")[2].partition("\n")[2] + "run 500")
+    deck = two_molecules(after=FLIGHT[FLIGHT.index("neigh_modify") :] + "run 500")
     lines = deck.splitlines()
     begin = next(k for k, line in enumerate(lines) if line.startswith("pair_style"))
     again = ["units lj", "atom_modify map array", "read_restart far.restart", *lines[begin:]]
