@@ -1,6 +1,6 @@
 """All hard cases, in the order of the page."""
 
-from . import boundaries, fast, fine, inertia, lifecycle, newstep, poles, tumbling
+from . import boundaries, cutoff, fast, fine, inertia, lifecycle, newstep, poles, tumbling
 
 CASES = (
     fine.CASE,
@@ -11,4 +11,5 @@ CASES = (
     newstep.CASE,
     lifecycle.CASE,
     boundaries.CASE,
+    cutoff.CASE,
 )
