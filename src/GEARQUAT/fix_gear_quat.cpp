@@ -23,6 +23,7 @@
 #include "gear_quat_checks.h"
 #include "gear_quat_extract.h"
 #include "gear_quat_infile_out.h"
+#include "gear_quat_isokinetic.h"
 #include "gear_quat_masks.h"
 #include "gear_quat_report.h"
 #include "gear_quat_scene.h"
@@ -73,10 +74,10 @@ static const char cite_gear_quat[] =
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), masks(nullptr), table(nullptr),
-    sums(nullptr), extracts(nullptr), blowup(nullptr), tolerance(nullptr), started(false),
-    met_atoms(false), reported(false), h(0.0), integrator(nullptr), velocities_read(true),
-    f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
+    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), masks(nullptr), isokinetic(nullptr),
+    table(nullptr), sums(nullptr), extracts(nullptr), blowup(nullptr), tolerance(nullptr),
+    started(false), met_atoms(false), reported(false), h(0.0), integrator(nullptr),
+    velocities_read(true), f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
 
@@ -106,7 +107,13 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   bodies = new GearQuatBodies(lmp, this, args->scheme);
   if (variable) tolerance = new GearQuatTolerance(lmp, this, args->scheme, args->control, *bodies);
   size_vector = GearQuatSums::ELEMENTS + (variable ? GearQuatTolerance::ELEMENTS : 0);
+  if (args->isokinetic != Isokinetic::NONE) {    // not with tolerance
+    isokinetic =
+        new GearQuatIsokinetic(lmp, *bodies, args->scheme, args->isokinetic, args->rescale);
+    size_vector += GearQuatIsokinetic::ELEMENTS;
+  }
   extlist = new int[size_vector]{1, 1};
+  if (isokinetic) extlist[GearQuatSums::ELEMENTS + GearQuatIsokinetic::HEAT] = 1;
   blowup = new GearQuatBlowup(lmp, *bodies, args->scheme);
   table = new GearQuatTable(lmp, *bodies);
   sums = new GearQuatSums(lmp, *bodies);
@@ -145,6 +152,7 @@ FixGearQuat::~FixGearQuat()
   delete extracts;
   delete sums;
   delete table;
+  delete isokinetic;
   delete masks;
   delete bodies;
   delete[] extlist;
@@ -201,9 +209,11 @@ void FixGearQuat::follow_time_step()
     integrator->set_step(step);
   else
     make_integrator(step);
-  if (started)
+  if (started && ratio != 1.0) {
     for (int ibody = 0; ibody < bodies->nowned(); ++ibody)
-      if (ratio != 1.0) integrator->rescale(bodies->history(ibody), ratio);
+      integrator->rescale(bodies->history(ibody), ratio);
+    if (isokinetic) isokinetic->rescale_step(ratio);
+  }
   h = step;
 }
 
@@ -247,6 +257,7 @@ void FixGearQuat::setup(int vflag)
   for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
   v_init(vflag);
   bodies->gather_loads(atom->f, atom->torque);
+  if (isokinetic) isokinetic->begin_run(!started);
   if (evflag) tally_virial(atom->f);
   table->forget();
   show_bodies();
@@ -293,7 +304,7 @@ void FixGearQuat::final_integrate()
 /// Higher rows of the histories: `h`, poses, velocities and present loads are known.
 void FixGearQuat::start()
 {
-  GearQuatBootstrap bootstrap(lmp, this, *bodies,
+  GearQuatBootstrap bootstrap(lmp, this, *bodies, isokinetic,
                               tolerance ? tolerance->scheme_of_start() : args->scheme, h);
   bool full = false;
   if (args->start == GearQuatArguments::Start::ZERO)
@@ -335,7 +346,10 @@ void FixGearQuat::finish_step(double **f, double **torque)
   bodies->gather_loads(f, torque);
   if (evflag) tally_virial(f);
 
-  masks->any() ? correct_bodies<true>(f) : correct_bodies<false>(f);
+  if (isokinetic)
+    correct_together(f);
+  else
+    masks->any() ? correct_bodies<true>(f) : correct_bodies<false>(f);
   bodies->spread_states();
   bodies->place_sites(true);
   if (output->next == update->ntimestep || modify->n_end_of_step > (tolerance ? 1 : 0))
@@ -359,10 +373,19 @@ template <bool MASKED> void FixGearQuat::correct_bodies(double **f)
                                                                   : 3;    // terms of a fresh body
   for (const int ibody : bodies->fresh) {
     blowup->check_load(ibody, h, f);
-    GearQuatBootstrap::seed_body(*bodies, ibody, present_scheme(), h, known);
+    GearQuatBootstrap::seed_body(*bodies, ibody, bodies->acting(ibody), present_scheme(), h, known);
     if (tolerance) tolerance->note_fresh();
   }
   bodies->take_in_fresh();
+}
+
+/// Under a constraint of all of them.
+void FixGearQuat::correct_together(double **f)
+{
+  isokinetic->correct(*integrator);
+  const MotionLimits limits = blowup->limits(h);
+  for (int ibody = 0; ibody < bodies->nowned(); ++ibody)
+    if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
 }
 
 /// POINT: without moments of inertia.
@@ -460,7 +483,8 @@ double FixGearQuat::compute_scalar()
 
 double FixGearQuat::compute_vector(int n)
 {
-  if (n >= GearQuatSums::ELEMENTS) return tolerance->element(n - GearQuatSums::ELEMENTS);
+  const int further = n - GearQuatSums::ELEMENTS;
+  if (further >= 0) return tolerance ? tolerance->element(further) : isokinetic->element(further);
   return sums->element(n, started ? integrator : nullptr);
 }
 
@@ -555,6 +579,7 @@ void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 struct GlobalRestart {
   double formulation, values, compensate, started, h, extended, variable;
   GearQuatTolerance::Memory memory;
+  GearQuatIsokinetic::Kept isokinetic;
 };
 
 void FixGearQuat::write_restart(FILE *fp)
@@ -568,7 +593,8 @@ void FixGearQuat::write_restart(FILE *fp)
                               h,
                               (double) bodies->has_extended(),
                               (double) scheme.trial,
-                              tolerance ? tolerance->memory() : GearQuatTolerance::Memory()};
+                              tolerance ? tolerance->memory() : GearQuatTolerance::Memory(),
+                              isokinetic ? isokinetic->keep() : GearQuatIsokinetic::Kept()};
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
@@ -591,16 +617,19 @@ void FixGearQuat::restart(char *buf)
   const Scheme &scheme = args->scheme;
   const bool same = data.formulation == (double) scheme.first() &&
       data.values == (double) scheme.values() && data.compensate == (double) scheme.compensate &&
-      data.variable == (double) scheme.trial;
+      data.variable == (double) scheme.trial &&
+      (isokinetic ? isokinetic->take(data.isokinetic)
+                  : data.isokinetic.mode == (double) Isokinetic::NONE);
   started = data.started != 0.0 && same;
   if (tolerance && started) tolerance->recall(data.memory);
   met_atoms = true;
   h = data.h;
   if (data.started != 0.0 && !same && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: the restart file has histories of another formulation or "
-                   "another number of values, or only one of the two runs has a tolerance; "
-                   "poses and velocities are kept, the higher derivatives start anew");
+    error->warning(
+        FLERR,
+        "Fix gear/quat: the restart file has histories of another formulation, another "
+        "number of values or another isokinetic, or only one of the two runs has a tolerance; "
+        "poses and velocities are kept, the higher derivatives start anew");
 }
 
 int FixGearQuat::pack_restart(int i, double *buf)

@@ -78,6 +78,7 @@ class FixGearQuat : public Fix {
   class GearQuatArguments *args;
   class GearQuatBodies *bodies;
   class GearQuatMasks *masks;
+  class GearQuatIsokinetic *isokinetic;    // null without
   class GearQuatTable *table;
   class GearQuatSums *sums;
   class GearQuatExtract *extracts;
@@ -100,6 +101,7 @@ class FixGearQuat : public Fix {
   void begin_step();
   void finish_step(double **, double **);
   template <bool MASKED> void correct_bodies(double **);
+  void correct_together(double **);
   template <bool MASKED, bool POINT> void correct_body(int);
   void tally_virial(double **);
   void show_bodies();

@@ -21,6 +21,7 @@
 
 using namespace LAMMPS_NS;
 using GearQuat::Formulation;
+using GearQuat::Isokinetic;
 
 // what is used unless the user says otherwise; measured, see doc/decisions.md
 
@@ -78,6 +79,17 @@ int GearQuatArguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
   return 0;
 }
 
+static Isokinetic isokinetic_of(const std::string &value, Error *error)
+{
+  const std::map<std::string, Isokinetic> words = {
+      {"none", Isokinetic::NONE}, {"total", Isokinetic::TOTAL}, {"separate", Isokinetic::SEPARATE}};
+  const auto found = words.find(value);
+  if (found == words.end())
+    error->all(FLERR, "Fix gear/quat isokinetic: unknown value {} (none, total or separate)",
+               value);
+  return found->second;
+}
+
 static GearQuatArguments::Report report_of(const std::string &value, Error *error)
 {
   using Report = GearQuatArguments::Report;
@@ -106,9 +118,9 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
   for (int iarg = 0; iarg < narg; iarg += 2) {
     const std::string key = arg[iarg];
     const std::set<std::string> known = {
-        "formulation", "values",  "passes",     "start",     "c0",     "omega",
-        "momentum",    "project", "compensate", "tolerance", "dtmin",  "dtmax",
-        "infile",      "reinit",  "mol",        "force",     "torque", "report"};
+        "formulation", "values",     "passes",    "start",  "c0",         "omega",  "momentum",
+        "project",     "compensate", "tolerance", "dtmin",  "dtmax",      "infile", "reinit",
+        "mol",         "force",      "torque",    "report", "isokinetic", "rescale"};
     if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
     if (key == "force" || key == "torque") {    // may be given many times
       masks.push_back(parse_mask(lmp, narg - iarg, arg + iarg));
@@ -149,6 +161,10 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
                             : control.longest) = number;
     } else if (key == "report")
       report = report_of(value, error);
+    else if (key == "isokinetic")
+      isokinetic = isokinetic_of(value, error);
+    else if (key == "rescale")
+      rescale = choice(key, value, "no", "yes");
     else if (key == "mol")
       mol = value;
     else
@@ -179,6 +195,7 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     if (!scheme.first() && seen.count(key))
       error->all(FLERR, "Fix gear/quat keyword {} belongs to formulation first", key);
 
+  check_isokinetic(lmp, seen.count("rescale"));
   if (!mol.empty() && !masks.empty())
     error->all(FLERR,
                "Fix gear/quat keywords force and torque cannot be used with mol: the numbers of "
@@ -209,6 +226,32 @@ void GearQuatArguments::check_control(LAMMPS *lmp, int fewest)
   if (control.longest > 0.0 && control.shortest > control.longest)
     lmp->error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                     control.longest);
+}
+
+void GearQuatArguments::check_isokinetic(LAMMPS *lmp, bool rescale_given) const
+{
+  Error *error = lmp->error;
+  if (isokinetic == Isokinetic::NONE) {
+    if (rescale_given)
+      error->all(FLERR, "Fix gear/quat keyword rescale belongs to isokinetic total or separate");
+    return;
+  }
+  if (!scheme.first())
+    error->all(FLERR,
+               "Fix gear/quat keyword isokinetic belongs to formulation first: its constraint acts "
+               "on momenta, which formulation second does not have");
+  if (!masks.empty())
+    error->all(FLERR,
+               "Fix gear/quat keywords force and torque cannot be used with isokinetic, which acts "
+               "on all momenta: define a second fix for the bodies that are held");
+  if (!mol.empty())
+    error->all(FLERR,
+               "Fix gear/quat keyword mol cannot be used with isokinetic: bodies that come bring "
+               "kinetic energy");
+  if (control.eps > 0.0)
+    error->all(FLERR,
+               "Fix gear/quat keyword tolerance cannot be used with isokinetic: heat and "
+               "multipliers are those of one step and one number of values");
 }
 
 /// arg: the keyword and what follows.

@@ -36,6 +36,8 @@ struct GearQuatArguments {
   std::string infile;
   std::string mol;    ///< template of bodies to come
   std::vector<GearQuatMaskWords> masks;
+  GearQuat::Isokinetic isokinetic = GearQuat::Isokinetic::NONE;
+  bool rescale = true;
 
   /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
   /// names the word and what is required.
@@ -48,6 +50,7 @@ struct GearQuatArguments {
   int parse_bodystyle(LAMMPS *lmp, int narg, char **arg);
   void parse_keywords(LAMMPS *lmp, int narg, char **arg);
   void check_control(LAMMPS *lmp, int fewest);
+  void check_isokinetic(LAMMPS *lmp, bool rescale_given) const;
   static GearQuatMaskWords parse_mask(LAMMPS *lmp, int narg, char **arg);
   std::vector<tagint> molecule_ids(LAMMPS *lmp, int groupbit) const;
   std::vector<tagint> group_ids(LAMMPS *lmp, int groupbit) const;

@@ -34,11 +34,27 @@ static constexpr int JUMPING = 3;
 /* ---------------------------------------------------------------------- */
 
 GearQuatBootstrap::GearQuatBootstrap(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
-                                     const Scheme &scheme, double h) :
+                                     GearQuatIsokinetic *isokinetic, const Scheme &scheme,
+                                     double h) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), scheme(scheme), h(h), collocation(scheme.values()), evaluations(0),
-    jumps(0)
+    fix(fix), bodies(bodies), isokinetic(isokinetic), scheme(scheme), h(h),
+    collocation(scheme.values()), evaluations(0), jumps(0),
+    power(collocation.number_of_nodes(), 0.0)
 {
+}
+
+/// States and loads are those of a node: what the constraint makes of them.
+void GearQuatBootstrap::measure(int node)
+{
+  if (!isokinetic) return;
+  isokinetic->measure();
+  power[collocation.pairs() + node] = isokinetic->power();
+}
+
+/// What moves a body, after measure().
+Load GearQuatBootstrap::acting(int ibody) const
+{
+  return isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
 }
 
 void GearQuatBootstrap::zero()
@@ -48,14 +64,20 @@ void GearQuatBootstrap::zero()
 
 void GearQuatBootstrap::seed_local(int terms)
 {
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) seed_body(bodies, ibody, scheme, h, terms);
+  measure(0);
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    seed_body(bodies, ibody, acting(ibody), scheme, h, terms);
+  if (isokinetic) {
+    const double heat[2] = {0.0, h * isokinetic->power()};
+    isokinetic->seed_heat(heat, 2, h, h);
+  }
 }
 
-void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Scheme &scheme, double h,
-                                  int terms)
+void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Load &acting,
+                                  const Scheme &scheme, double h, int terms)
 {
   const RigidBody &rigid = bodies.body[ibody].rigid;
-  auto series = local_series(rigid, bodies.state[ibody], bodies.acting(ibody), h);
+  auto series = local_series(rigid, bodies.state[ibody], acting, h);
   series.terms = terms;
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
@@ -133,10 +155,11 @@ double GearQuatBootstrap::length(const GearQuatBody &body) const
 /// False, with a reason, if the nodes are too far apart.
 bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
 {
+  measure(0);
   work.resize(bodies.nowned());
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     collocation.begin(
-        local_series(bodies.body[ibody].rigid, bodies.state[ibody], bodies.acting(ibody), spacing),
+        local_series(bodies.body[ibody].rigid, bodies.state[ibody], acting(ibody), spacing),
         work[ibody]);
 
   double change = 0.0;
@@ -164,6 +187,11 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     seed(scheme, bodies.body[ibody].rigid, collocation.series(work[ibody]), spacing, h,
          bodies.history(ibody));
+  if (isokinetic) {
+    std::vector<double> heat(power.size() + 1);
+    collocation.integrate(power.data(), spacing, heat.data());
+    isokinetic->seed_heat(heat.data(), (int) heat.size(), spacing, h);
+  }
   return true;
 }
 
@@ -203,12 +231,12 @@ bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, 
   forces.evaluate();
   ++evaluations;
   bodies.gather_loads(atom->f, atom->torque);
+  measure(node);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const GearQuatBody &body = bodies.body[ibody];
-    change =
-        std::max(change,
-                 collocation.set_load(node, body.rigid, bodies.state[ibody], bodies.acting(ibody),
-                                      spacing, length(body), work[ibody]));
+    change = std::max(change,
+                      collocation.set_load(node, body.rigid, bodies.state[ibody], acting(ibody),
+                                           spacing, length(body), work[ibody]));
   }
   return true;
 }

@@ -11,6 +11,7 @@
 
 #include "gear_quat_bodies.h"
 #include "gear_quat_forces.h"
+#include "gear_quat_isokinetic.h"
 #include "gear_quat_startup.h"
 
 #include <string>
@@ -20,15 +21,17 @@ namespace LAMMPS_NS {
 
 class GearQuatBootstrap : protected Pointers {
  public:
-  /// bodies: states and loads of owned bodies are those of the start.  h: the step of the histories.
+  /// bodies: states and loads of owned bodies are those of the start.  isokinetic: null without such
+  /// a constraint.  h: the step of the histories.
   GearQuatBootstrap(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
-                    const GearQuat::Scheme &scheme, double h);
+                    GearQuatIsokinetic *isokinetic, const GearQuat::Scheme &scheme, double h);
 
   /// The paper's start: every second and higher derivative is zero.
   void zero();
-  /// History of one body from what its state and its load determine.  terms: 2, or 3 for the load too.
-  static void seed_body(GearQuatBodies &bodies, int ibody, const GearQuat::Scheme &scheme, double h,
-                        int terms);
+  /// History of one body from what its state and the load that acts on it determine.  terms: 2, or
+  /// 3 for the load too.
+  static void seed_body(GearQuatBodies &bodies, int ibody, const GearQuat::Load &acting,
+                        const GearQuat::Scheme &scheme, double h, int terms);
   /// Derivatives consistent with the trajectory; where forces cannot be followed, those that the
   /// present loads determine, and a message on rank 0.  After the call atoms are as before.
   /// Returns true if all rows are known.
@@ -40,6 +43,7 @@ class GearQuatBootstrap : protected Pointers {
  private:
   const Fix *fix;
   GearQuatBodies &bodies;
+  GearQuatIsokinetic *isokinetic;
   GearQuat::Scheme scheme;
   double h;
 
@@ -49,7 +53,11 @@ class GearQuatBootstrap : protected Pointers {
   int jumps;             ///< spacings at which forces seemed to jump
   std::string reason;    ///< why the last spacing failed, or what is to be said about it
 
+  std::vector<double> power;    ///< of all forces at the nodes, where a constraint takes it
+
   void seed_local(int terms);
+  void measure(int node);
+  GearQuat::Load acting(int ibody) const;
   double first_spacing() const;
   double length(const GearQuatBody &body) const;
   double truncation() const;

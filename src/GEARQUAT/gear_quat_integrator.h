@@ -20,6 +20,7 @@
 #define GEAR_QUAT_INTEGRATOR_H
 
 #include "gear_quat_coefficients.h"
+#include "gear_quat_gauss.h"
 #include "gear_quat_nordsieck.h"
 #include "gear_quat_rigid_body.h"
 
@@ -163,30 +164,72 @@ class Integrator {
   /// Correct a predicted history with the load met at the predicted pose, then project.
   Correction correct(const RigidBody &body, const Load &load, double *rows) const
   {
-    const double *quat = rows + scheme.quaternion();
-    Residual total = {};
-    double x[3], q[4], a[9], torque_body[3];
-    copy(rows + Scheme::POSITION, 3, x);
-    copy(quat, 4, q);
-    rotation_matrix(q, scheme.norm2(q), a);
-    to_body(a, load.torque_space, torque_body);
-
+    Pending pending = begin(load, rows);
+    const double *torque_body = pending.torque_body;
     if (scheme.first())
-      scheme.compensate ? correct_first<First<1>>(body, load, torque_body, rows, total)
-                        : correct_first<First<0>>(body, load, torque_body, rows, total);
+      scheme.compensate ? correct_first<First<1>>(body, load, torque_body, rows, pending.total)
+                        : correct_first<First<0>>(body, load, torque_body, rows, pending.total);
     else
-      scheme.compensate ? correct_second<Second<2>>(body, load, torque_body, rows, total)
-                        : correct_second<Second<0>>(body, load, torque_body, rows, total);
+      scheme.compensate ? correct_second<Second<2>>(body, load, torque_body, rows, pending.total)
+                        : correct_second<Second<0>>(body, load, torque_body, rows, pending.total);
+    return conclude(load, rows, pending);
+  }
 
-    Correction result;
-    double dx[3], dq[4], angle_body[3];
-    for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
-    for (int i = 0; i < 4; ++i) dq[i] = quat[i] - q[i];
-    angular_velocity(q, dot4(q, q), dq, angle_body);
-    result.work = dot3(load.force, dx) + dot3(torque_body, angle_body);
-    result.position_error = error_weight * std::sqrt(dot3(total.x, total.x));
-    result.angle_error = 2.0 * error_weight * std::sqrt(dot4(total.q, total.q));
-    return result;
+  // First-order form under a constraint of all bodies together: the same correction pass by pass,
+  // begin(), passes times [alpha of all bodies] -> correct_pass(), then finish(), scale_momenta().
+
+  struct Residual {    ///< summed over the passes
+    double x[3], q[4];
+  };
+  /// What a correction remembers of the prediction.
+  struct Pending {
+    double x[3], q[4], torque_body[3];
+    Residual total;
+  };
+
+  Pending begin(const Load &load, const double *rows) const
+  {
+    Pending pending;
+    double a[9];
+    copy(rows + Scheme::POSITION, 3, pending.x);
+    copy(rows + scheme.quaternion(), 4, pending.q);
+    rotation_matrix(pending.q, scheme.norm2(pending.q), a);
+    to_body(a, load.torque_space, pending.torque_body);
+    pending.total = Residual();
+    return pending;
+  }
+
+  void correct_pass(const RigidBody &body, const Load &load, const Multipliers &alpha, double *rows,
+                    Pending &pending) const
+  {
+    const Damping damping = {alpha};
+    scheme.compensate ? pass_first<First<1>>(body, load, damping, rows, pending)
+                      : pass_first<First<0>>(body, load, damping, rows, pending);
+  }
+
+  /// Projects |q| = 1.
+  Correction finish(const Load &load, double *rows, const Pending &pending) const
+  {
+    if (scheme.project)
+      scheme.compensate ? project_row<First<1>>(rows) : project_row<First<0>>(rows);
+    return conclude(load, rows, pending);
+  }
+
+  void scale_momenta(const Multipliers &factor, double *rows) const
+  {
+    double change[3];
+    for (int i = 0; i < 3; ++i) change[i] = (factor.translation - 1.0) * rows[Scheme::MOMENTUM + i];
+    add_first(rows, Scheme::MOMENTUM, change);
+    for (int i = 0; i < 3; ++i) change[i] = (factor.rotation - 1.0) * rows[Scheme::OMEGA + i];
+    add_first(rows, Scheme::OMEGA, change);
+  }
+
+  /// A scalar y with the step and the coefficients of the bodies, y' = rate: its n rows to t + h.
+  void advance(double *rows_of_scalar, double rate) const
+  {
+    Nordsieck<1>::predict(rows_of_scalar, n);
+    const double residual = h * rate - rows_of_scalar[1];
+    Nordsieck<1>::correct<1>(rows_of_scalar, n, c, 0, &residual);
   }
 
   /// Torque and moments of inertia have no part in it.
@@ -195,8 +238,8 @@ class Integrator {
     double x[3], residual[3] = {0.0, 0.0, 0.0}, dx[3];
     copy(rows + Scheme::POSITION, 3, x);
     if (scheme.first())
-      scheme.compensate ? correct_center_first<First<1>>(body, load, rows, residual)
-                        : correct_center_first<First<0>>(body, load, rows, residual);
+      scheme.compensate ? correct_center_first<First<1>>(body, load, Undamped(), rows, residual)
+                        : correct_center_first<First<0>>(body, load, Undamped(), rows, residual);
     else
       scheme.compensate ? correct_center_second<Second<2>>(body, load, rows, residual)
                         : correct_center_second<Second<0>>(body, load, rows, residual);
@@ -217,8 +260,21 @@ class Integrator {
   double c[MAX_VALUES];
   double error_weight;
 
-  struct Residual {    ///< summed over the passes
-    double x[3], q[4];
+  /// What Gauss's principle adds to p' and omega'; nothing without a constraint.
+  struct Undamped {
+    void momentum(const double *, double *) const {}
+    void rotation(const double *, double *) const {}
+  };
+  struct Damping {
+    Multipliers alpha;
+    void momentum(const double *p, double *rate) const
+    {
+      for (int i = 0; i < 3; ++i) rate[i] -= alpha.translation * p[i];
+    }
+    void rotation(const double *omega_body, double *rate) const
+    {
+      for (int i = 0; i < 3; ++i) rate[i] -= alpha.rotation * omega_body[i];
+    }
   };
 
   static void copy(const double *from, int n, double *to)
@@ -237,42 +293,77 @@ class Integrator {
       for (int i = 0; i < COUNT; ++i) total[i] += target[i];
   }
 
-  /// Momenta (Eq. 14) and positions (Eq. 13): forces stay, so one pass is all.
-  template <class History>
-  void correct_center_first(const RigidBody &body, const Load &load, double *rows,
-                            double *residual) const
+  /// Momenta (Eq. 14) and positions (Eq. 13): as long as forces stay one pass is all.
+  template <class History, class Damper>
+  void correct_center_first(const RigidBody &body, const Load &load, const Damper &damper,
+                            double *rows, double *residual) const
   {
     const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
     double before[3], target[3];
     copy(momentum, 3, before);
-    for (int i = 0; i < 3; ++i) target[i] = h * load.force[i];
+    copy(load.force, 3, target);
+    damper.momentum(before, target);
+    for (int i = 0; i < 3; ++i) target[i] *= h;
     feed_back<History, 3>(rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
     feed_back<History, 3>(rows, rates, Scheme::POSITION, target, residual);
   }
 
-  template <class History>
-  void correct_first(const RigidBody &body, const Load &load, const double *torque_body,
-                     double *rows, Residual &total) const
+  /// Angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16).
+  template <class History, class Damper>
+  void correct_rotation_first(const RigidBody &body, const double *torque_body,
+                              const Damper &damper, double *rows, double *residual) const
   {
     const int quat = scheme.quaternion();
     const double *rates = rows + scheme.width(), *omega_body = rows + Scheme::OMEGA;
     double before[3], target[4];
-    correct_center_first<History>(body, load, rows, total.x);
+    copy(omega_body, 3, before);
+    angular_acceleration(body, torque_body, before, target);
+    damper.rotation(before, target);
+    for (int i = 0; i < 3; ++i) target[i] *= h;
+    feed_back<History, 3>(rows, rates, Scheme::OMEGA, target);
+    quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
+    for (int i = 0; i < 4; ++i) target[i] *= h;
+    feed_back<History, 4>(rows, rates, quat, target, residual);
+  }
 
-    // angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16)
-
-    for (int pass = 0; pass < scheme.passes; ++pass) {
-      copy(omega_body, 3, before);
-      angular_acceleration(body, torque_body, before, target);
-      for (int i = 0; i < 3; ++i) target[i] *= h;
-      feed_back<History, 3>(rows, rates, Scheme::OMEGA, target);
-      quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
-      for (int i = 0; i < 4; ++i) target[i] *= h;
-      feed_back<History, 4>(rows, rates, quat, target, total.q);
-    }
+  template <class History>
+  void correct_first(const RigidBody &body, const Load &load, const double *torque_body,
+                     double *rows, Residual &total) const
+  {
+    correct_center_first<History>(body, load, Undamped(), rows, total.x);
+    for (int pass = 0; pass < scheme.passes; ++pass)
+      correct_rotation_first<History>(body, torque_body, Undamped(), rows, total.q);
     if (scheme.project) project_row<History>(rows);
+  }
+
+  template <class History>
+  void pass_first(const RigidBody &body, const Load &load, const Damping &damping, double *rows,
+                  Pending &pending) const
+  {
+    correct_center_first<History>(body, load, damping, rows, pending.total.x);
+    correct_rotation_first<History>(body, pending.torque_body, damping, rows, pending.total.q);
+  }
+
+  void add_first(double *rows, int component, const double *change) const
+  {
+    scheme.compensate ? First<1>::add<3>(rows, n, 0, component, change)
+                      : First<0>::add<3>(rows, n, 0, component, change);
+  }
+
+  Correction conclude(const Load &load, const double *rows, const Pending &pending) const
+  {
+    Correction result;
+    const double *q = rows + scheme.quaternion();
+    double dx[3], dq[4], angle_body[3];
+    for (int i = 0; i < 3; ++i) dx[i] = rows[i] - pending.x[i];
+    for (int i = 0; i < 4; ++i) dq[i] = q[i] - pending.q[i];
+    angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
+    result.work = dot3(load.force, dx) + dot3(pending.torque_body, angle_body);
+    result.position_error = error_weight * std::sqrt(dot3(pending.total.x, pending.total.x));
+    result.angle_error = 2.0 * error_weight * std::sqrt(dot4(pending.total.q, pending.total.q));
+    return result;
   }
 
   /// Positions (Eq. 17): forces stay, so one pass is all.

@@ -227,6 +227,20 @@ class Collocation {
     return series;
   }
 
+  int number_of_nodes() const { return nodes; }
+
+  /// The rate of a scalar at all nodes, from -half on, as series of the scalar that is zero at the
+  /// start: `nodes + 1` terms in units of the node spacing.
+  void integrate(const double *rate, double spacing, double *c) const
+  {
+    c[0] = 0.0;
+    for (int j = 0; j < nodes; ++j) {
+      long double sum = 0.0;
+      for (int l = 0; l < nodes; ++l) sum += monomial[j][l] * rate[l];
+      c[j + 1] = double(spacing * sum / (j + 1));
+    }
+  }
+
  private:
   /// Motion slower than this part of the body's size (of a radian) in a step is none.
   static constexpr double SMALLEST = 1.0e-4;

@@ -75,6 +75,11 @@ ARGUMENTS = {
     "molecule torque 2*1 off off off": "torque: bodies 2*1 are neither a number from 1 to 2",
     "molecule torque left on on off": "torque: bodies left are neither a number from 1 to 2",
     "molecule mol some force * on on off": "force and torque cannot be used with mol",
+    "molecule formulation first isokinetic both": "unknown value both (none, total or separate)",
+    "molecule isokinetic total": "keyword isokinetic belongs to formulation first",
+    "molecule rescale yes": "keyword rescale belongs to isokinetic total or separate",
+    "molecule formulation first isokinetic total mol some": "mol cannot be used with isokinetic",
+    "molecule formulation first isokinetic total force 1 on on off": "cannot be used with isokinetic",
 }
 GROUPS = """
 group left id 1 2 3

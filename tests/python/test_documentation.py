@@ -49,6 +49,7 @@ VALUES = {
         r'key == "(\w+)"\)\s*\S+ =\s*choice\(key, value, "(\w+)", "(\w+)"\)', ARGUMENTS
     )
 }
+VALUES["isokinetic"] = set(re.findall(r'{"(\w+)", Isokinetic::', ARGUMENTS))
 VALUES["report"] = set(re.findall(r'{"(\w+)", Report::', ARGUMENTS))
 
 
@@ -132,6 +133,7 @@ fix property all property/atom i_body
 set group left i_body 1
 set group right i_body 2
 variable body atom id>2
+velocity all create 1.0 4711 loop geom
 pair_style zero 2.0
 pair_coeff * *
 thermo_modify norm no

@@ -1,0 +1,103 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Constant kinetic energy by Gauss's principle of least constraint, for first-order equations:
+
+     p' = F - alpha p,   L' = tau - alpha L      (space frame; body frame: omega' gains -alpha omega)
+     alpha = sum(F.v + tau.omega) / sum(m v.v + omega.I.omega)
+
+   with the sums over all bodies, so that d/dt of the lower one vanishes; the gyroscopic term does no
+   work.  `total` has one alpha, `separate` one for translation and one for rotation, each from its own
+   terms.  For points: D. J. Evans, W. G. Hoover, B. H. Failor, B. Moran, A. J. C. Ladd, Phys. Rev. A
+   28, 1016 (1983). */
+
+#ifndef GEAR_QUAT_GAUSS_H
+#define GEAR_QUAT_GAUSS_H
+
+#include "gear_quat_rigid_body.h"
+
+namespace GearQuat {
+
+enum class Isokinetic { NONE, TOTAL, SEPARATE };
+
+/// Sums over bodies: powers of forces and torques, and twice the kinetic energies.
+struct KineticSums {
+  double force_power = 0.0;
+  double torque_power = 0.0;
+  double translation = 0.0;
+  double rotation = 0.0;
+
+  double power() const { return force_power + torque_power; }
+
+  /// torque_body: about the centre of mass.
+  void add(const RigidBody &body, const double *force, const double *torque_body,
+           const double *velocity, const double *omega_body)
+  {
+    force_power += dot3(force, velocity);
+    torque_power += dot3(torque_body, omega_body);
+    translation += 2.0 * translational_energy(body, velocity);
+    rotation += 2.0 * rotational_energy(body, omega_body);
+  }
+
+  void add(const RigidBody &body, const Load &load, const BodyState &state)
+  {
+    double a[9], torque_body[3];
+    rotation_matrix(state.q, dot4(state.q, state.q), a);
+    to_body(a, load.torque_space, torque_body);
+    add(body, load.force, torque_body, state.velocity, state.omega_body);
+  }
+};
+
+/// Of momenta and of angular momenta, 1/time or without unit.
+struct Multipliers {
+  double translation = 0.0;
+  double rotation = 0.0;
+};
+
+/// The alpha of each; zero where there is no kinetic energy to be kept.
+inline Multipliers multipliers(Isokinetic mode, const KineticSums &sums)
+{
+  auto ratio = [](double power, double twice) {
+    return twice > 0.0 ? power / twice : 0.0;
+  };
+  if (mode == Isokinetic::SEPARATE)
+    return {ratio(sums.force_power, sums.translation), ratio(sums.torque_power, sums.rotation)};
+  const double both = ratio(sums.power(), sums.translation + sums.rotation);
+  return {both, both};
+}
+
+/// What momenta have to be multiplied with to have the kinetic energies of `wanted` again.
+inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
+                                 const KineticSums &found)
+{
+  auto factor = [](double is_wanted, double is_found) {
+    return is_found > 0.0 ? std::sqrt(is_wanted / is_found) : 1.0;
+  };
+  if (mode == Isokinetic::SEPARATE)
+    return {factor(wanted.translation, found.translation), factor(wanted.rotation, found.rotation)};
+  const double both =
+      factor(wanted.translation + wanted.rotation, found.translation + found.rotation);
+  return {both, both};
+}
+
+/// The load with the forces of the constraint, -alpha p and -alpha L.
+inline Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
+                        const Multipliers &alpha)
+{
+  double a[9], momentum_body[3], momentum_space[3];
+  rotation_matrix(state.q, dot4(state.q, state.q), a);
+  for (int i = 0; i < 3; ++i) momentum_body[i] = body.inertia[i] * state.omega_body[i];
+  to_space(a, momentum_body, momentum_space);
+  Load damped = load;
+  for (int i = 0; i < 3; ++i) {
+    damped.force[i] -= alpha.translation * body.mass * state.velocity[i];
+    damped.torque_space[i] -= alpha.rotation * momentum_space[i];
+  }
+  return damped;
+}
+
+}    // namespace GearQuat
+
+#endif

@@ -1,0 +1,171 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_isokinetic.h"
+
+#include "error.h"
+#include "force.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// a kinetic energy less than this part of the other one is rounding of velocities
+
+static constexpr double NOTHING = 1.0e-24;
+
+/* ---------------------------------------------------------------------- */
+
+GearQuatIsokinetic::GearQuatIsokinetic(LAMMPS *lmp, GearQuatBodies &bodies, const Scheme &scheme,
+                                       Isokinetic mode, bool rescale) :
+    Pointers(lmp),
+    bodies(bodies), scheme(scheme), mode(mode), rescale(rescale), counted(0), heat{}
+{
+}
+
+KineticSums GearQuatIsokinetic::over_all(const KineticSums &here) const
+{
+  static constexpr int N = sizeof(KineticSums) / sizeof(double);
+  KineticSums all;
+  MPI_Allreduce((void *) &here, (void *) &all, N, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+void GearQuatIsokinetic::measure()
+{
+  KineticSums here;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here.add(bodies.body[ibody].rigid, bodies.load[ibody], bodies.state[ibody]);
+  sums = over_all(here);
+  alpha = multipliers(mode, sums);
+}
+
+void GearQuatIsokinetic::begin_run(bool afresh)
+{
+  measure();
+  refuse_rest();
+  if (!afresh && counted == bodies.number()) return;
+  target = sums;
+  counted = bodies.number();
+}
+
+/// Without kinetic energy there is no multiplier.
+void GearQuatIsokinetic::refuse_rest() const
+{
+  int turn_here = 0, turn;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    if (bodies.body[ibody].rigid.rotational_freedoms() > 0) turn_here = 1;
+  MPI_Allreduce(&turn_here, &turn, 1, MPI_INT, MPI_MAX, world);
+
+  const char *missing = nullptr;
+  if (sums.translation + sums.rotation <= 0.0)
+    missing = "";
+  else if (mode == Isokinetic::SEPARATE && sums.translation <= NOTHING * sums.rotation)
+    missing = "translational ";
+  else if (mode == Isokinetic::SEPARATE && turn && sums.rotation <= NOTHING * sums.translation)
+    missing = "rotational ";
+  if (missing)
+    error->all(FLERR,
+               "Fix gear/quat isokinetic {}: the {}kinetic energy of the bodies is zero and would "
+               "stay so; give them velocities first",
+               mode == Isokinetic::SEPARATE ? "separate" : "total", missing);
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+/// With the torques at the predicted pose and the velocities of now.
+KineticSums GearQuatIsokinetic::of_pending() const
+{
+  KineticSums here;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const BodyState &s = bodies.state[ibody];
+    here.add(bodies.body[ibody].rigid, bodies.load[ibody].force, pending[ibody].torque_body,
+             s.velocity, s.omega_body);
+  }
+  return over_all(here);
+}
+
+void GearQuatIsokinetic::correct(const Integrator &integrator)
+{
+  const int n = bodies.nowned();
+  pending.resize(n);
+  for (int ibody = 0; ibody < n; ++ibody)
+    pending[ibody] = integrator.begin(bodies.load[ibody], bodies.history(ibody));
+
+  for (int pass = 0; pass < scheme.passes; ++pass) {
+    alpha = multipliers(mode, of_pending());
+    for (int ibody = 0; ibody < n; ++ibody) {
+      const RigidBody &rigid = bodies.body[ibody].rigid;
+      double *rows = bodies.history(ibody);
+      integrator.correct_pass(rigid, bodies.load[ibody], alpha, rows, pending[ibody]);
+      bodies.state[ibody] = integrator.body_state(rigid, rows);
+    }
+  }
+
+  sums = of_pending();
+  alpha = multipliers(mode, sums);
+  integrator.advance(heat, sums.power());
+  if (counted != bodies.number()) {    // some were removed, with what they had
+    target = sums;
+    counted = bodies.number();
+  }
+  const Multipliers factor = scale_factors(mode, target, sums);
+  if (rescale)
+    heat[0] += 0.5 * (sums.translation + sums.rotation - target.translation - target.rotation);
+
+  for (int ibody = 0; ibody < n; ++ibody) {
+    double *rows = bodies.history(ibody);
+    bodies.last[ibody] = integrator.finish(bodies.load[ibody], rows, pending[ibody]);
+    if (rescale) integrator.scale_momenta(factor, rows);
+    bodies.state[ibody] = integrator.body_state(bodies.body[ibody].rigid, rows);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   heat
+------------------------------------------------------------------------- */
+
+void GearQuatIsokinetic::seed_heat(const double *series, int terms, double series_step, double h)
+{
+  double power = 1.0;
+  for (int j = 1; j < scheme.values(); ++j) {
+    power *= h / series_step;
+    heat[j] = j < terms ? power * series[j] : 0.0;
+  }
+}
+
+void GearQuatIsokinetic::rescale_step(double ratio)
+{
+  Nordsieck<1>::rescale(heat, scheme.values(), ratio);
+}
+
+double GearQuatIsokinetic::element(int n) const
+{
+  if (n == HEAT) return heat[0] * force->mvv2e;
+  return n == ALPHA_TRANSLATION ? alpha.translation : alpha.rotation;
+}
+
+/* ----------------------------------------------------------------------
+   restart
+------------------------------------------------------------------------- */
+
+GearQuatIsokinetic::Kept GearQuatIsokinetic::keep() const
+{
+  Kept kept = {(double) mode, (double) counted, target, {}};
+  std::copy_n(heat, MAX_VALUES, kept.heat);
+  return kept;
+}
+
+bool GearQuatIsokinetic::take(const Kept &kept)
+{
+  if (kept.mode != (double) mode) return false;
+  counted = (bigint) kept.bodies;
+  target = kept.target;
+  std::copy_n(kept.heat, MAX_VALUES, heat);
+  return true;
+}

@@ -1,0 +1,85 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keyword isokinetic: bodies whose kinetic energy stays what it is (gear_quat_gauss.h).  The multipliers
+   need sums over all bodies on all ranks: a reduction of four numbers in every pass of the corrector,
+   and one after it.
+
+   The heat that the constraint takes, W' = sum(F.v + tau.omega), is integrated as the bodies are, so
+   that potential and kinetic energy and W are constant to the order of the method. */
+
+#ifndef LMP_GEAR_QUAT_ISOKINETIC_H
+#define LMP_GEAR_QUAT_ISOKINETIC_H
+
+#include "gear_quat_bodies.h"
+
+namespace LAMMPS_NS {
+
+class GearQuatIsokinetic : protected Pointers {
+ public:
+  /// Elements of the fix's vector behind those of GearQuatSums.
+  enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS };
+
+  /// rescale: after each step momenta are scaled to the kinetic energy at the start.
+  GearQuatIsokinetic(LAMMPS *lmp, GearQuatBodies &bodies, const GearQuat::Scheme &scheme,
+                     GearQuat::Isokinetic mode, bool rescale);
+
+  // all collective
+
+  /// Before a run: states and loads are those of its first step.  afresh: the kinetic energy to be
+  /// kept is that of now.  Ends the run if there is none.
+  void begin_run(bool afresh);
+  /// Multipliers of the present states and loads.
+  void measure();
+  /// One step: correct the predicted histories and states.
+  void correct(const GearQuat::Integrator &integrator);
+
+  // after measure()
+
+  /// What moves an owned body.
+  GearQuat::Load acting(int ibody) const
+  {
+    return GearQuat::damped_load(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody],
+                                 alpha);
+  }
+  /// Of all forces and torques.
+  double power() const { return sums.power(); }
+  double element(int n) const;
+
+  /// Higher derivatives of the heat from `terms` terms of a series in units of series_step.
+  void seed_heat(const double *series, int terms, double series_step, double h);
+  /// Histories are rescaled to another time step.
+  void rescale_step(double ratio);
+
+  /// What a restart file holds, the same on all ranks.
+  struct Kept {
+    double mode, bodies;
+    GearQuat::KineticSums target;
+    double heat[GearQuat::MAX_VALUES];
+  };
+  Kept keep() const;
+  /// False if the file is of another kind of constraint.
+  bool take(const Kept &kept);
+
+ private:
+  GearQuatBodies &bodies;
+  GearQuat::Scheme scheme;
+  GearQuat::Isokinetic mode;
+  bool rescale;
+
+  GearQuat::KineticSums sums, target;
+  GearQuat::Multipliers alpha;
+  bigint counted;                       ///< bodies that the target belongs to
+  double heat[GearQuat::MAX_VALUES];    ///< Nordsieck history
+  std::vector<GearQuat::Integrator::Pending> pending;
+
+  void refuse_rest() const;
+  GearQuat::KineticSums over_all(const GearQuat::KineticSums &here) const;
+  GearQuat::KineticSums of_pending() const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

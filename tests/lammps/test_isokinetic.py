@@ -1,0 +1,262 @@
+"""Keyword isokinetic: constant kinetic energy, the heat it takes, ranks, restart, what is refused."""
+
+import numpy as np
+import pytest
+from scenes import last_frame, one_after_the_other, restarted, two_molecules, water, water_data
+
+MODES = ["total", "separate"]
+
+# Three triangles and a dumbbell that attract each other and hold together; nothing is cut off.
+CLUSTER = """
+units lj
+atom_style molecular
+atom_modify map array sort 0 0.0
+boundary f f f
+region box block -9 9 -9 9 -9 9
+create_box 1 box
+create_atoms 1 single 0.0 0.0 0.0
+create_atoms 1 single 0.7 0.0 0.1
+create_atoms 1 single 0.0 0.6 0.2
+create_atoms 1 single 2.0 0.3 0.0
+create_atoms 1 single 2.5 0.9 0.1
+create_atoms 1 single 2.6 0.0 0.6
+create_atoms 1 single 0.8 2.0 0.4
+create_atoms 1 single 1.4 2.3 0.0
+create_atoms 1 single 0.9 1.9 1.1
+create_atoms 1 single 1.0 0.6 -1.6
+create_atoms 1 single 1.4 1.1 -1.8
+mass 1 1.0
+set atom 1*3 mol 1
+set atom 4*6 mol 2
+set atom 7*9 mol 3
+set atom 10*11 mol 4
+velocity all create 0.6 4711 loop geom
+pair_style lj/cut 40.0
+pair_coeff 1 1 0.3 1.0
+neigh_modify exclude molecule/intra all
+timestep {dt}
+{style}
+fix move all gear/quat molecule formulation first {words}
+fix_modify move energy yes
+variable k equal f_move[1]+f_move[2]
+variable all equal etotal+f_move[9]
+thermo_style custom step v_k f_move[1] f_move[2] pe etotal f_move[9] f_move[10] f_move[11] v_all
+thermo_modify norm no format float %.17g
+thermo {every}
+{run}
+"""
+
+
+def cluster(words, dt=0.004, time=0.8, run=None, every=None, style=""):
+    steps = round(time / dt)
+    return CLUSTER.format(
+        words=words, dt=dt, run=run or f"run {steps}", every=every or steps // 8, style=style
+    )
+
+
+def run(lmp, decks, ranks=1):
+    result = lmp.run(one_after_the_other(decks), ranks=ranks)
+    assert result.returncode == 0, result.output
+    return result
+
+
+def largest_change(table, column):
+    values = np.array(table[column])
+    return np.abs(values - values[0]).max()
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_kinetic_energy_and_heat_to_the_order_of_the_method(lmp_tree, mode):
+    """Of the first steps too: the start knows the constraint."""
+    values, steps = 6, (0.008, 0.004, 0.002)
+    words = f"isokinetic {mode} rescale no values {values}"
+    decks = [cluster(words, dt) for dt in steps]
+    decks += [cluster(words, dt, time=2 * dt, every=1) for dt in steps]
+    tables = run(lmp_tree, decks).thermo
+    for first, column in ((0, "v_k"), (0, "v_all"), (3, "v_k"), (3, "v_all")):
+        errors = [largest_change(table, column) for table in tables[first : first + 3]]
+        assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > values - 1.3, (first, column)
+    parts = ["f_move[1]", "f_move[2]"]
+    constant = [largest_change(tables[2], part) < 1e-6 for part in parts]
+    assert constant == [mode == "separate"] * 2
+    # energy does go to and fro, and the heat is no small thing
+    assert largest_change(tables[2], "TotEng") > 1e4 * largest_change(tables[2], "v_all")
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_rescaled_momenta_keep_it_to_rounding(lmp_tree, mode):
+    kept, free = run(
+        lmp_tree,
+        [cluster(f"isokinetic {mode} rescale {word}", 0.008, 8.0) for word in ("yes", "no")],
+    ).thermo
+    columns = ["v_k"] if mode == "total" else ["f_move[1]", "f_move[2]"]
+    for column in columns:
+        assert largest_change(kept, column) < 1e-13 * kept[column][0]
+        assert largest_change(free, column) > 1e-9 * free[column][0]
+    assert largest_change(kept, "v_all") < 1e-3 * largest_change(kept, "TotEng")
+
+
+def test_multipliers_take_what_the_forces_do(lmp_tree):
+    """alpha 2K is the power of the forces: the rate at which potential energy is lost."""
+    for mode, table in zip(
+        MODES,
+        run(lmp_tree, [cluster(f"isokinetic {m}", 0.001, 0.02, every=1) for m in MODES]).thermo,
+    ):
+        pe, translation, rotation = (
+            np.array(table[c]) for c in ("PotEng", "f_move[1]", "f_move[2]")
+        )
+        alpha = [np.array(table[f"f_move[{k}]"]) for k in (10, 11)]
+        power = 2 * (alpha[0] * translation + alpha[1] * rotation)
+        n = len(pe) // 2
+        derivative = (8 * (pe[n + 1] - pe[n - 1]) - (pe[n + 2] - pe[n - 2])) / (12 * 0.001)
+        assert power[n] == pytest.approx(-derivative, rel=1e-6)
+        assert (alpha[0] == alpha[1]).all() == (mode == "total")
+
+
+def test_points_have_one_multiplier(lmp_tree):
+    """Bodies of one atom: no rotation, and none is asked for."""
+    deck = (
+        cluster("isokinetic separate", 0.002)
+        .replace("exclude molecule/intra all", "every 1")
+        .replace("0.3 1.0", "0.3 0.4")
+    )
+    deck = deck.replace("gear/quat molecule", "gear/quat custom v_single")
+    deck = deck.replace("{style}", "").replace(
+        "fix move all", "variable single atom id\nfix move all"
+    )
+    table = run(lmp_tree, [deck]).thermo[0]
+    assert set(table["f_move[2]"]) == set(table["f_move[11]"]) == {0.0}
+    assert largest_change(table, "v_k") < 1e-13 * table["v_k"][0]
+    assert largest_change(table, "v_all") < 1e-4 * largest_change(table, "TotEng")
+
+
+# --- runs, ranks, restart ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_ranks(lmp_tree, mode):
+    data = water_data(lmp_tree.folder / "data.water")
+    fix = f"gear/quat molecule formulation first isokinetic {mode}"
+    frames = []
+    for ranks in (1, 2, 4):
+        run(lmp_tree, [water(data, fix, 0.1, 300, dump=f"{ranks}.dump")], ranks)
+        frames.append(last_frame(lmp_tree.folder / f"{ranks}.dump")[:, 1:])
+    for other in frames[1:]:
+        for part in (slice(0, 3), slice(3, 6)):
+            scale = np.abs(frames[0][:, part]).max()
+            assert np.abs(other[:, part] - frames[0][:, part]).max() < 1e-12 * scale
+
+
+END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"
+
+
+def continued(deck, file):
+    """The deck with its atoms and potential from a restart file."""
+    return (
+        f"units lj\natom_modify sort 0 0.0\nread_restart {file}\nneigh_" + deck.split("neigh_")[1]
+    )
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
+    decks = []
+    for mode in MODES:
+        for name, commands in {
+            f"{mode}-whole": "run 100",
+            f"{mode}-halves": f"run 50\nwrite_restart {mode}.half\nrun 50",
+            f"{mode}-again": "run 50",
+        }.items():
+            words = f"isokinetic {mode} passes 1" if ranks == 2 else f"isokinetic {mode}"
+            deck = cluster(words, every=50, run=f"{commands}\n{END.format(name)}")
+            decks.append(continued(deck, f"{mode}.half") if name.endswith("again") else deck)
+    tables = run(lmp_tree, decks, ranks).thermo
+    ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
+    for n, mode in enumerate(MODES):
+        assert ends[f"{mode}-whole"] == ends[f"{mode}-halves"] == ends[f"{mode}-again"]
+        whole, _, half, again = tables[4 * n : 4 * n + 4]
+        for column in ("f_move[9]", "v_k"):  # heat goes on
+            assert whole[column][-1] == half[column][-1] == again[column][-1], column
+    assert ends["total-whole"] != ends["separate-whole"]
+
+
+def test_another_constraint_after_a_restart_begins_anew(lmp_tree):
+    first = cluster("isokinetic total", run="run 50\nwrite_restart half\nrun 0")
+    others = [
+        continued(cluster(words, run="run 20"), "half") for words in ("isokinetic separate", "")
+    ]
+    others[1] = others[1].replace("f_move[9] f_move[10] f_move[11]", "").replace("+f_move[9]", "")
+    result = run(lmp_tree, [first, *others])
+    assert result.output.count("another number of values or another isokinetic") == 2
+    separate = result.thermo[2]
+    assert largest_change(separate, "f_move[1]") < 1e-13 * separate["f_move[1]"][0]
+    assert largest_change(result.thermo[3], "v_k") > 1e-3
+
+
+def test_the_energy_to_keep_is_that_of_the_atoms(lmp_tree):
+    """Velocities scaled between runs, and a body taken away: what is there then is kept."""
+    commands = (
+        "run 20\nvariable fast atom 1.1*vx\nvelocity all set v_fast NULL NULL\nrun 20\n"
+        "group gone molecule 4\ndelete_atoms group gone compress no\nrun 20\ntimestep 0.002\nrun 20"
+    )
+    tables = run(lmp_tree, [cluster("isokinetic total", run=commands, every=10)], 2).thermo
+    for table in tables:
+        assert largest_change(table, "v_k") < 1e-12 * table["v_k"][0]
+    kept = [table["v_k"][0] for table in tables]
+    assert kept[0] < 0.999 * kept[1] and kept[2] < 0.999 * kept[1]
+    assert kept[3] == pytest.approx(kept[2], rel=1e-12)
+    # the step is another, the heat goes on
+    heat = [table["f_move[9]"] for table in tables]
+    assert heat[2][-1] == heat[3][0] != 0.0
+    assert largest_change(tables[3], "v_all") < 1e-4
+
+
+def test_respa(lmp_tree):
+    decks = [
+        cluster("isokinetic total", style=style, run=f"run 50\n{END.format(name)}")
+        for name, style in (("verlet", ""), ("respa", "run_style respa 2 1 pair 1 kspace 2"))
+    ]
+    run(lmp_tree, decks)
+    one, two = (
+        np.loadtxt(lmp_tree.folder / f"{name}.end", skiprows=9) for name in ("verlet", "respa")
+    )
+    assert np.abs(one - two).max() < 1e-12
+
+
+# --- what is refused --------------------------------------------------------------------------
+
+AT_REST = {
+    ("total", "velocity all set 0 0 0"): "total: the kinetic energy of the bodies is zero",
+    ("separate", "velocity all set 0 0 0"): "separate: the kinetic energy of the bodies is zero",
+    (
+        "separate",
+        "velocity all set 0.3 0 0.1",
+    ): "the rotational kinetic energy of the bodies is zero",
+    (
+        "separate",
+        "velocity all set v_sx v_sy 0",
+    ): "the translational kinetic energy of the bodies is",
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("mode, velocities", AT_REST)
+def test_nothing_to_keep_is_refused(lmp_tree, mode, velocities, ranks):
+    # one body about the origin turns without moving
+    spin = "variable sx atom -y\nvariable sy atom x\n"
+    square = "".join(
+        f"create_atoms 1 single {x} {y} 0\n" for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))
+    )
+    deck = two_molecules(f"molecule formulation first isokinetic {mode}", f"{spin}{velocities}")
+    if "v_sx" in velocities:
+        lines = [line for line in deck.splitlines() if not line.startswith(("create_atoms", "set"))]
+        deck = "\n".join(lines).replace("mass 1", f"{square}set group all mol 1\nmass 1")
+    result = lmp_tree.run(deck, ranks=ranks)
+    assert result.returncode != 0
+    assert AT_REST[mode, velocities] in " ".join(result.output.split()), result.output
+
+
+def test_a_spin_alone_has_a_total(lmp_tree):
+    deck = two_molecules(
+        "molecule formulation first isokinetic total", "velocity all set 0.3 0 0.1"
+    )
+    assert lmp_tree.run(deck).returncode == 0
