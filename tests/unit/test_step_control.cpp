@@ -55,7 +55,7 @@ double growth(const Scheme &scheme, double ratio)
 /// A polynomial of degree `degree` in every column, about t, as rows for the step h.
 vector<double> polynomial(const Scheme &scheme, int degree, double t, double h)
 {
-  vector<double> rows(MAX_SIZE, 0.0);
+  vector<double> rows(2 * MAX_SIZE, 0.0);
   for (int j = 0; j <= degree; ++j)
     for (int c = 0; c < scheme.width(); ++c) {
       double taylor = 0.0, choose = 1.0;    // p(t) = sum over k of (1 + c/10) t^k / (1 + k)
@@ -91,7 +91,7 @@ struct Following {
 
   Following(Formulation formulation, double eps, double first_step, int values = 0) :
       scene(1, true), scheme(varying(formulation, formulation == FIRST ? 8 : 10)), h(first_step),
-      integrator(scheme, h), order(scheme), rows(MAX_SIZE, 0.0)
+      integrator(scheme, h), order(scheme), rows(2 * MAX_SIZE, 0.0)
   {
     control.eps = eps;
     control.fewest = values ? values : formulation == FIRST ? FIRST_FEWEST : SECOND_FEWEST;
@@ -215,7 +215,7 @@ TEST(StepControl, CarriesStayWithTheirRows)
   for (Formulation formulation : {FIRST, SECOND}) {
     const Scheme six = varying(formulation, 6, true), seven = varying(formulation, 7, true);
     const int width = six.width(), carries = six.carries() * width;
-    vector<double> rows(MAX_SIZE, 0.0), carry(carries), trial(width);
+    vector<double> rows(2 * MAX_SIZE, 0.0), carry(carries), trial(width);
     for (int i = 0; i < six.size(); ++i) rows[i] = 1.0 + i;
     const vector<double> before = rows;
     VariableOrder(six).add_row(rows.data());
@@ -259,7 +259,7 @@ TEST(StepControl, TheEstimateIsTheCorrectorsOwn)
     scheme.trial = true;
     const Oracle::CageScene scene(1, true);
     const Integrator integrator(scheme, 0.1);
-    vector<double> rows(MAX_SIZE, 0.0);
+    vector<double> rows(2 * MAX_SIZE, 0.0);
     seed(scheme, scene.body,
          local_series(scene.body, scene.start, scene.load(scene.start, 1.0), 0.1), 0.1, 0.1,
          rows.data());
