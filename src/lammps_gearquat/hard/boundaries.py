@@ -35,6 +35,8 @@ def judge(results):
     rows = []
     for place, words in PLACES.items():
         for box in CELLS:
+            if (place, box, FORMULATIONS[0]) not in results:
+                continue
             found = [results[place, box, f] for f in FORMULATIONS]
             worst = max(off.max() for _, off, _ in found)
             count = min(number for _, _, number in found)

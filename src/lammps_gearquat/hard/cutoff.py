@@ -90,7 +90,9 @@ def panels(results):
     for method, colour in colours.items():
         water = results[method]
         hot.append(Curve(method, water.time / 1000, water.temperature, colour))
-        energy.append(Curve(method, water.time / 1000, (water.total - water.total[0]) / 1000, colour))
+        energy.append(
+            Curve(method, water.time / 1000, (water.total - water.total[0]) / 1000, colour)
+        )
     return (
         Panel("step 2 fs", "time, ps", "temperature, K", tuple(hot), log=""),
         Panel("step 2 fs", "time, ps", "energy - start, 1000 kcal/mol", tuple(energy), log=""),

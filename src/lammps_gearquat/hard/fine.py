@@ -46,8 +46,8 @@ def panels(results):
     )
 
 
-def measure(runs, steps=50_000_000):
-    """(formulation, compensate) -> Series."""
+def measure(runs, steps=50_000_000, **options):
+    """(formulation, compensate) -> Series; ``options``: variables of the deck."""
     variables = {
         f"{formulation}-{SUMS[compensate]}": {
             "formulation": formulation,
@@ -55,6 +55,7 @@ def measure(runs, steps=50_000_000):
             "steps": steps,
             "every": 10_000,
         }
+        | options
         for formulation in FORMULATIONS
         for compensate in SUMS
     }

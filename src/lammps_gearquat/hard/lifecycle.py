@@ -40,6 +40,8 @@ def judge(results):
     """Rows; ``results``: (life or "whole", formulation) -> Lived."""
     rows = []
     for life, (words, same) in LIVES.items():
+        if (life, FORMULATIONS[0]) not in results:
+            continue
         pairs = [(results["whole", f], results[life, f]) for f in FORMULATIONS]
         worst = max(np.abs(a.positions - b.positions).max() for a, b in pairs)
         if not same:
@@ -50,8 +52,9 @@ def judge(results):
         rows.append(
             Row(f"{words}: sites at the end, both formulations", "bit-identical", measured, equal)
         )
-    worst = max(results["rerun-yes", f].rerun for f in FORMULATIONS)
-    rows.append(at_most("`rerun`: total energy at dumped poses", RERUN, worst))
+    again = [lived.rerun for (life, _), lived in results.items() if life == "rerun-yes"]
+    if again:
+        rows.append(at_most("`rerun`: total energy at dumped poses", RERUN, max(again)))
     return tuple(rows)
 
 
@@ -95,7 +98,10 @@ def _lived(finished):
 
 
 def measure(runs, lives=tuple(LIVES), **options):
-    """(life or "whole", formulation) -> Lived, and the thermo table of the whole run."""
+    """(life or "whole", formulation) -> Lived, and the thermo table of the whole run.
+
+    The life "continued" needs "restart", which writes the file it begins from.
+    """
     variables = {}
     for formulation in FORMULATIONS:
         for name in ("whole", *lives):

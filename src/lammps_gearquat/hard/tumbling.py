@@ -25,9 +25,7 @@ def errors(sites, dt):
     relative error of the energy and of the length of L, each (F - 1,).
     """
     first = np.zeros(len(sites.masses), dtype=int)
-    bodies, start = bodies_from_sites(
-        sites.masses, sites.positions[0], sites.velocities[0], first
-    )
+    bodies, start = bodies_from_sites(sites.masses, sites.positions[0], sites.velocities[0], first)
     problem = Problem("top", bodies, FreeField(), start)
     top = FreeTop(bodies.moments[0], start.omega_body[0], start.q[0])
     energy = float((bodies.moments * start.omega_body**2).sum()) / 2
@@ -35,7 +33,9 @@ def errors(sites, dt):
     found = []
     for step, positions, velocities in zip(sites.step, sites.positions, sites.velocities):
         q, omega_body = top.at(np.longdouble(dt) * step)
-        exact = problem.site_positions(State(start.centre, start.velocity, q[None], omega_body[None]))
+        exact = problem.site_positions(
+            State(start.centre, start.velocity, q[None], omega_body[None])
+        )
         turn = pose.superpose(sites.masses, exact.astype(float), positions).rotation
         motion = pose.rigid_motion(sites.masses, positions, velocities)
         arms = positions - pose.centre_of_mass(sites.masses, positions)
