@@ -46,6 +46,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -360,14 +361,17 @@ void FixGearQuat::finish_step(double **f, double **torque)
 template <bool MASKED> void FixGearQuat::correct_bodies(double **f)
 {
   const MotionLimits limits = blowup->limits(h);
-  for (const int ibody : bodies->points) {
-    correct_body<MASKED, true>(ibody);
-    if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
-  }
-  for (const int ibody : bodies->tops) {
-    correct_body<MASKED, false>(ibody);
-    if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
-  }
+  const auto correct = [&](auto changing) {
+    for (const int ibody : bodies->points) {
+      correct_body<MASKED, true, changing>(ibody);
+      if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
+    }
+    for (const int ibody : bodies->tops) {
+      correct_body<MASKED, false, changing>(ibody);
+      if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
+    }
+  };
+  tolerance ? correct(std::true_type()) : correct(std::false_type());
 
   const int known = args->start == GearQuatArguments::Start::ZERO ? 2
                                                                   : 3;    // terms of a fresh body
@@ -388,8 +392,8 @@ void FixGearQuat::correct_together(double **f)
     if (!limits.keep(bodies->state[ibody])) blowup->stop(ibody, bodies->state[ibody], h, f);
 }
 
-/// POINT: without moments of inertia.
-template <bool MASKED, bool POINT> void FixGearQuat::correct_body(int ibody)
+/// POINT: without moments of inertia.  CHANGING: the time step follows the error.
+template <bool MASKED, bool POINT, bool CHANGING> void FixGearQuat::correct_body(int ibody)
 {
   double *rows = bodies->history(ibody);
   const RigidBody &rigid = bodies->body[ibody].rigid;
@@ -397,7 +401,7 @@ template <bool MASKED, bool POINT> void FixGearQuat::correct_body(int ibody)
   BodyState &state = bodies->state[ibody];
   const BodyState before = state;
   Correction &last = bodies->last[ibody];
-  if (tolerance)
+  if (CHANGING)
     last = tolerance->correct(*integrator, ibody, load);
   else
     last = POINT ? integrator->correct_center(rigid, load, rows)

@@ -102,7 +102,7 @@ class FixGearQuat : public Fix {
   void finish_step(double **, double **);
   template <bool MASKED> void correct_bodies(double **);
   void correct_together(double **);
-  template <bool MASKED, bool POINT> void correct_body(int);
+  template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int);
   void tally_virial(double **);
   void show_bodies();
 };

@@ -16,7 +16,7 @@ from ..lammps_runner import LammpsError
 from .scenes import write_molecules
 
 INSTALL = "sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
-HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial|final)_integrate\(")
+HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
 #: what is done for output alone
 OUTPUT = re.compile(r"LAMMPS_NS::FixGearQuat::show_bodies\(")
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")

@@ -179,6 +179,8 @@ def page_text(out, results, picture=PICTURE):
         "  step (the tests whether an effect is on) is not in it.",
         '- Bodies of three sites, points of one, formulation *second* with its defaults. "On" is what the',
         "  effect adds to the same scene without it; rotation adds to points two sites as well.",
+        f"- With a changing step, and below it, the fix has `{plan.FIXED}`, and the tolerance leaves the step",
+        "  where it is: the same steps are compared.",
         '- "Off: own functions": instructions in functions that serve this effect only, in a scene that does',
         '  not call for it. "Off: beside never": such a scene less one where it cannot be (virial:',
         "  `fix_modify virial no`; finite size: no radius; images: no periodic direction).",

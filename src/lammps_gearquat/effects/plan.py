@@ -13,6 +13,9 @@ POINTS = replace(MOVED, shape="point")
 LINEAR = replace(MOVED, shape="linear")
 CHARGED = replace(MOVED, forces="charged")
 EACH, CHARGED_EACH = replace(MOVED, each=True), replace(CHARGED, each=True)
+#: control of the error with all its work, but nothing that changes: the same steps are compared
+FIXED = "values 5"
+TOLERANCE = f"{FIXED} tolerance 1e-20 dtmin 0.0005 dtmax 0.0005"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
     replace(
@@ -86,6 +89,18 @@ EFFECTS = (
     ),
     Effect("ghost bodies", None, MOVED, own=r"GearQuatBodies::(un)?pack_|FixGearQuat::(un)?pack_"),
     Effect("predicted velocities", replace(MOVED, after="fix reads all viscous 0.0"), MOVED),
+    Effect(
+        "changing step",
+        replace(MOVED, words=TOLERANCE),
+        replace(MOVED, words=FIXED),
+        own=r"GearQuatTolerance::|GearQuat::VariableOrder::",
+    ),
+    Effect(
+        "masks",
+        replace(MOVED, words="force * on on off"),
+        MOVED,
+        own=r"correct_bodies<true>|GearQuatBodies::acting",
+    ),
     Effect("compensated sums", replace(MOVED, words="compensate yes"), MOVED),
 )
 
@@ -94,7 +109,18 @@ LADDER = (
     Rung("linear bodies", LINEAR, POINTS),
     Rung("full bodies", MOVED, LINEAR),
     Rung("charges", CHARGED, MOVED),
-    Rung("virial", replace(CHARGED_EACH, columns="press"), CHARGED_EACH, "virial"),
+    Rung(
+        "changing step",
+        replace(CHARGED, words=TOLERANCE),
+        replace(CHARGED, words=FIXED),
+        "changing step",
+    ),
+    Rung(
+        "virial",
+        replace(CHARGED_EACH, words=TOLERANCE, columns="press"),
+        replace(CHARGED_EACH, words=TOLERANCE),
+        "virial",
+    ),
 )
 
 
