@@ -69,9 +69,11 @@ def measure(runs, steps=50_000_000, **options):
 def run(runs):
     """Finding of the case."""
     results = measure(runs)
+    potential = results["second", "yes"].potential
     text = (
         "Consistent body, start of test case 1, defaults of the fix, energy sampled once per unit of "
-        "time. The charges of the cage are reconstructed."
+        f"time. The potential energy stays between {potential.min():.1f} and {potential.max():.1f}: this "
+        "trajectory meets no bare charge before its end. The charges of the cage are reconstructed."
     )
     return Finding(judge(results), panels(results), text)
 
