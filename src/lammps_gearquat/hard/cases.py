@@ -1,15 +1,30 @@
 """All hard cases, in the order of the page."""
 
-from . import boundaries, cutoff, fast, fine, inertia, lifecycle, newstep, poles, tumbling
-
-CASES = (
-    fine.CASE,
-    poles.CASE,
-    tumbling.CASE,
-    inertia.CASE,
-    fast.CASE,
-    newstep.CASE,
-    lifecycle.CASE,
-    boundaries.CASE,
-    cutoff.CASE,
+from . import (
+    boundaries,
+    cutoff,
+    encounter,
+    fast,
+    fine,
+    inertia,
+    lifecycle,
+    long,
+    newstep,
+    poles,
+    tumbling,
 )
+
+MODULES = (
+    encounter,
+    long,
+    fine,
+    poles,
+    tumbling,
+    inertia,
+    fast,
+    newstep,
+    lifecycle,
+    boundaries,
+    cutoff,
+)
+CASES = tuple(module.CASE for module in MODULES)
