@@ -8,10 +8,12 @@ import pytest
 from lammps_gearquat.hard import (
     boundaries,
     cutoff,
+    encounter,
     fast,
     fine,
     inertia,
     lifecycle,
+    long,
     newstep,
     poles,
     tumbling,
@@ -26,6 +28,32 @@ def runs(tmp_path):
 
 def verdicts(rows):
     return [row.met for row in rows]
+
+
+def test_encounter(runs):
+    results = encounter.measure(runs, ["0.02"])
+    assert all(verdicts(encounter.judge(results)))
+    fixed = f"step {encounter.STEP:g}, second"
+    results["0.02", "tolerance, second"] = results["0.02", fixed]
+    assert verdicts(encounter.judge(results)) == [False, True, True]
+
+
+def test_long(runs, tmp_path):
+    short = {"until": 200, "steps": 100_000}
+    assert all(verdicts(long.judge(long.measure(runs, ["0e-9"], **short))))
+    loose = long.measure(Runs(tmp_path / "loose"), ["0e-9"], **short, tolerance=1e-9)
+    assert verdicts(long.judge(loose)) == [False, False, True] * 2
+
+
+def test_the_worst_start_counts():
+    good, bad = long.told(
+        "evaluations 10, energy off by 1e-10 sampled, 2e-10 at every step\n"
+    ), long.Long(1_000_001, 1.01e-9, 1.01e-8)
+    assert (good.evaluations, good.sampled, good.every) == (10, 1e-10, 2e-10)
+    assert verdicts(long.judge({"first": [good, good]})) == [True] * 3
+    assert verdicts(long.judge({"first": [good, bad]})) == [False] * 3
+    with pytest.raises(ValueError, match="last line"):
+        long.told("Total wall time")
 
 
 def test_fine_steps(runs, tmp_path):
@@ -69,8 +97,8 @@ def test_tumbling(runs, tmp_path):
 
 
 def test_inertia(runs, tmp_path, monkeypatch):
-    monkeypatch.setattr(inertia, "COARSEST", 40)
-    monkeypatch.setattr(inertia, "HALVINGS", 4)
+    monkeypatch.setattr(inertia, "COARSEST", 80)
+    monkeypatch.setattr(inertia, "HALVINGS", 3)
     assert all(verdicts(inertia.judge(inertia.measure(runs, ["thin3"]))))
     zero = inertia.measure(Runs(tmp_path / "zero"), ["thin3"], start="zero")
     assert not verdicts(inertia.judge(zero))[0]  # order 1

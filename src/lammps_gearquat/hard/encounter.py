@@ -21,7 +21,7 @@ def judge(results):
     Errors are relative to the depth of the potential that the runs with a tolerance meet.
     """
     rows = []
-    for distance in DISTANCES:
+    for distance in dict.fromkeys(distance for distance, _ in results):
         off = {m: relative_error(results, distance, m).max() for m in METHODS}
         for formulation in FORMULATIONS:
             method = f"tolerance, {formulation}"
