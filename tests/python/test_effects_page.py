@@ -59,9 +59,9 @@ def made_up(cost=lambda scene, number: 100 * number + 7):
 def test_numbers_are_those_of_a_body_and_a_step(tmp_path):
     results = made_up()
     assert results.fix(plan.scenes()[0]) == pytest.approx(107)
-    assert results.nanoseconds(plan.scenes()[0])[1:] == pytest.approx((1e3 / 64, 1.1e3 / 64))
-    assert results.cage.speedup == 3.0
-    assert "435 pairs" in page.cage_sentence(results) and "3.0 times" in page.cage_sentence(results)
+    assert results.nanoseconds(plan.scenes()[0]) == pytest.approx(1e3 / 64)
+    assert results.cage.speedup == 2.0
+    assert "435 pairs" in page.cage_sentence(results) and "2.0 times" in page.cage_sentence(results)
     assert len(page.effects_table(results)[1]) == len(plan.EFFECTS)
     assert len(page.ladder_table(results)[1]) == len(plan.LADDER)
     figures.draw(tmp_path / "ladder.png", results)

@@ -28,9 +28,9 @@ def draw(path, results):
     """Two panels: instructions and time of a body and step in the fix, rung by rung."""
     counts = [results.fix(rung.on) for rung in plan.LADDER]
     count_steps = [results.fix(r.on) - (results.fix(r.base) if r.base else 0) for r in plan.LADDER]
-    times = [results.nanoseconds(rung.on)[0] for rung in plan.LADDER]
+    times = [results.nanoseconds(rung.on) for rung in plan.LADDER]
     time_steps = [
-        results.nanoseconds(r.on)[0] - (results.nanoseconds(r.base)[0] if r.base else 0)
+        results.nanoseconds(r.on) - (results.nanoseconds(r.base) if r.base else 0)
         for r in plan.LADDER
     ]
     with plt.rc_context(STYLE):

@@ -29,7 +29,7 @@ def number(value):
 
 def _time(results, on, base=None):
     """Nanoseconds, or what ``on`` takes more than ``base``."""
-    more = results.nanoseconds(on)[0] - (results.nanoseconds(base)[0] if base else 0.0)
+    more = results.nanoseconds(on) - (results.nanoseconds(base) if base else 0.0)
     return f"{more:.0f}"
 
 
@@ -67,7 +67,7 @@ def ladder_table(results):
         more = number(results.fix(rung.on) - results.fix(rung.base)) if rung.base else ""
         effect = row_of(rung)
         alone = number(results.fix(effect.on) - results.fix(effect.base)) if effect else ""
-        pair = f"{results.nanoseconds(rung.on, 1)[0]:.0f}"
+        pair = f"{results.nanoseconds(rung.on, 1):.0f}"
         line = [rung.name, number(results.fix(rung.on)), more, alone, _time(results, rung.on), pair]
         rows.append(line)
     return header, rows
@@ -132,7 +132,7 @@ def cage_sentence(results):
     return (
         f"In the paper's cage the list has {cage.pairs} pairs. With the lines that the scene report "
         f"proposes it has {cage.left}, and a step takes {1e6 * min(cage.mended):.2f} µs instead of "
-        f"{1e6 * min(cage.plain):.2f} µs, {cage.speedup:.1f} times less (median of "
+        f"{1e6 * min(cage.plain):.2f} µs, {cage.speedup:.1f} times less (the least of "
         f"{len(cage.plain)})."
     )
 
@@ -180,11 +180,12 @@ def page_text(out, results, picture=PICTURE):
         '- Bodies of three sites, points of one, formulation *second* with its defaults. "On" is what the',
         "  effect adds to the same scene without it; rotation adds to points two sites as well.",
         f"- With a changing step, and below it, the fix has `{plan.FIXED}`, and the tolerance leaves the step",
-        "  where it is: the same steps are compared.",
+        "  where it is: the same steps are compared. The thermostat is `isokinetic total`, its scenes are of",
+        "  formulation *first*; it cannot be had with a changing step.",
         '- "Off: own functions": instructions in functions that serve this effect only, in a scene that does',
         '  not call for it. "Off: beside never": such a scene less one where it cannot be (virial:',
         "  `fix_modify virial no`; finite size: no radius; images: no periodic direction).",
-        f"- Times: LAMMPS' timers, {results.sizes.timed**3} bodies, {results.sizes.timed_steps} steps, medians of "
+        f"- Times: LAMMPS' timers, {results.sizes.timed**3} bodies, {results.sizes.timed_steps} steps, the least of "
         f"{results.sizes.rounds}; differences of a few ns are noise.",
     ]
     return "\n".join(lines) + "\n"

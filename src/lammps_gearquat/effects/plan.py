@@ -16,6 +16,9 @@ EACH, CHARGED_EACH = replace(MOVED, each=True), replace(CHARGED, each=True)
 #: control of the error with all its work, but nothing that changes: the same steps are compared
 FIXED = "values 5"
 TOLERANCE = f"{FIXED} tolerance 1e-20 dtmin 0.0005 dtmax 0.0005"
+#: Gauss's principle needs the first formulation, and a step of its own
+FIRST = "formulation first"
+ISOKINETIC = f"{FIRST} isokinetic total"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
     replace(
@@ -101,6 +104,12 @@ EFFECTS = (
         MOVED,
         own=r"correct_bodies<true>|GearQuatBodies::acting",
     ),
+    Effect(
+        "thermostat",
+        replace(MOVED, words=ISOKINETIC),
+        replace(MOVED, words=FIRST),
+        own=r"GearQuatIsokinetic::|FixGearQuat::correct_together",
+    ),
     Effect("compensated sums", replace(MOVED, words="compensate yes"), MOVED),
 )
 
@@ -120,6 +129,12 @@ LADDER = (
         replace(CHARGED_EACH, words=TOLERANCE, columns="press"),
         replace(CHARGED_EACH, words=TOLERANCE),
         "virial",
+    ),
+    Rung(
+        "thermostat",
+        replace(CHARGED_EACH, words=ISOKINETIC, columns="press"),
+        replace(CHARGED_EACH, words=FIRST, columns="press"),
+        "thermostat",
     ),
 )
 
