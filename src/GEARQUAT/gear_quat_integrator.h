@@ -262,19 +262,13 @@ class Integrator {
 
   /// What Gauss's principle adds to p' and omega'; nothing without a constraint.
   struct Undamped {
-    void momentum(const double *, double *) const {}
-    void rotation(const double *, double *) const {}
+    double momentum(double rate, double) const { return rate; }
+    double rotation(double rate, double) const { return rate; }
   };
   struct Damping {
     Multipliers alpha;
-    void momentum(const double *p, double *rate) const
-    {
-      for (int i = 0; i < 3; ++i) rate[i] -= alpha.translation * p[i];
-    }
-    void rotation(const double *omega_body, double *rate) const
-    {
-      for (int i = 0; i < 3; ++i) rate[i] -= alpha.rotation * omega_body[i];
-    }
+    double momentum(double rate, double p) const { return rate - alpha.translation * p; }
+    double rotation(double rate, double omega) const { return rate - alpha.rotation * omega; }
   };
 
   static void copy(const double *from, int n, double *to)
@@ -301,9 +295,7 @@ class Integrator {
     const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
     double before[3], target[3];
     copy(momentum, 3, before);
-    copy(load.force, 3, target);
-    damper.momentum(before, target);
-    for (int i = 0; i < 3; ++i) target[i] *= h;
+    for (int i = 0; i < 3; ++i) target[i] = h * damper.momentum(load.force[i], before[i]);
     feed_back<History, 3>(rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
@@ -320,8 +312,7 @@ class Integrator {
     double before[3], target[4];
     copy(omega_body, 3, before);
     angular_acceleration(body, torque_body, before, target);
-    damper.rotation(before, target);
-    for (int i = 0; i < 3; ++i) target[i] *= h;
+    for (int i = 0; i < 3; ++i) target[i] = h * damper.rotation(target[i], before[i]);
     feed_back<History, 3>(rows, rates, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
