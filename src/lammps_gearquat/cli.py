@@ -12,6 +12,7 @@ from .commands.drift import drift
 from .commands.effects import effects
 from .commands.hard import hard
 from .commands.horizon import horizon
+from .commands.isokinetic import isokinetic
 from .commands.pictures import pictures
 from .commands.workprecision import workprecision
 
@@ -36,6 +37,7 @@ for command in (
     effects,
     hard,
     horizon,
+    isokinetic,
     pictures,
     workprecision,
 ):

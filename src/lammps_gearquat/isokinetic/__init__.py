@@ -1,0 +1,1 @@
+"""Constant kinetic energy: runs.py (plan, logs), judge.py (verdicts), figures.py, page.py."""
