@@ -25,7 +25,7 @@ BAR = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
     "--publish",
     "publish_to",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Checkout whose doc/effects.md and doc/figures are to show the results.",
+    help="Checkout whose doc/effects.md and doc/effects are to show the results.",
 )
 def effects(out, quick, lmp, publish_to):
     """What each effect of a scene costs, on and off: instructions, counted by valgrind, and time.

@@ -11,7 +11,7 @@ from ..report import markdown_table
 from . import plan
 
 COMMAND = "gearquat effects --publish"
-PAGE, PICTURE = "effects.md", "effects.png"
+PAGE, PICTURE, FOLDER = "effects.md", "effects.png", "effects"
 CAPTION = (
     "The ladder: what a body costs in a step of the fix, by rung; instructions (left) and time."
 )
@@ -204,6 +204,7 @@ def write(out, results):
 def publish(folder, out, results):
     """Write page and picture into a checkout."""
     folder, out = checkout(folder), Path(out)
-    shutil.copyfile(out / PICTURE, folder / "doc" / "figures" / PICTURE)
-    text = page_text(out, results, f"figures/{PICTURE}")
+    (folder / "doc" / FOLDER).mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(out / PICTURE, folder / "doc" / FOLDER / PICTURE)
+    text = page_text(out, results, f"{FOLDER}/{PICTURE}")
     (folder / "doc" / PAGE).write_text(text, encoding="utf-8")
