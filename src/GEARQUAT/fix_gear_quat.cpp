@@ -75,9 +75,7 @@ static const char cite_gear_quat[] =
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(nullptr), bodies(nullptr), masks(nullptr), isokinetic(nullptr),
-    table(nullptr), sums(nullptr), extracts(nullptr), blowup(nullptr), tolerance(nullptr),
-    started(false), met_atoms(false), reported(false), h(0.0), integrator(nullptr),
+    Fix(lmp, narg, arg), started(false), met_atoms(false), reported(false), h(0.0),
     velocities_read(true), f_sum(nullptr), torque_sum(nullptr), nmax_sum(0)
 {
   if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
@@ -102,26 +100,23 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
   if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
 
-  args = new GearQuatArguments(lmp, narg, arg);
+  args.reset(new GearQuatArguments(lmp, narg, arg));
   const bool variable = args->control.eps > 0.0;
   args->scheme.trial = variable;
-  bodies = new GearQuatBodies(lmp, this, args->scheme);
-  if (variable) tolerance = new GearQuatTolerance(lmp, this, args->scheme, args->control, *bodies);
+  bodies.reset(new GearQuatBodies(lmp, this, args->scheme));
+  if (variable)
+    tolerance.reset(new GearQuatTolerance(lmp, this, args->scheme, args->control, *bodies));
   size_vector = GearQuatSums::ELEMENTS + (variable ? GearQuatTolerance::ELEMENTS : 0);
   if (args->isokinetic != Isokinetic::NONE) {    // not with tolerance
-    isokinetic =
-        new GearQuatIsokinetic(lmp, *bodies, args->scheme, args->isokinetic, args->rescale);
+    isokinetic.reset(
+        new GearQuatIsokinetic(lmp, *bodies, args->scheme, args->isokinetic, args->rescale));
     size_vector += GearQuatIsokinetic::ELEMENTS;
   }
-  extlist = new int[size_vector]{1, 1};
-  if (isokinetic) extlist[GearQuatSums::ELEMENTS + GearQuatIsokinetic::HEAT] = 1;
-  blowup = new GearQuatBlowup(lmp, *bodies, args->scheme);
-  table = new GearQuatTable(lmp, *bodies);
-  sums = new GearQuatSums(lmp, *bodies);
+  blowup.reset(new GearQuatBlowup(lmp, *bodies, args->scheme));
+  table.reset(new GearQuatTable(lmp, *bodies));
+  sums.reset(new GearQuatSums(lmp, *bodies));
   find_template(lmp, args->mol);    // it has to exist
-  extracts = new GearQuatExtract(lmp, *bodies, args->mol);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
+  extracts.reset(new GearQuatExtract(lmp, *bodies, args->mol));
   maxexchange = bodies->max_exchange();
   comm_forward = bodies->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
@@ -132,8 +127,14 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
   if (bodies->number() == 0 && args->mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
-  masks = new GearQuatMasks(lmp, args->masks, *bodies);
+  masks.reset(new GearQuatMasks(lmp, args->masks, *bodies));
   size_array_rows = bodies->number();
+
+  // only now that nothing can fail: LAMMPS would go on calling a fix that does not exist
+  extlist = new int[size_vector]{1, 1};
+  if (isokinetic) extlist[GearQuatSums::ELEMENTS + GearQuatIsokinetic::HEAT] = 1;
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
     utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", bodies->number(),
                    bodies->number_of_sites());
@@ -146,16 +147,6 @@ FixGearQuat::~FixGearQuat()
   if (copymode) return;
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
-  delete integrator;
-  delete tolerance;
-  delete args;
-  delete blowup;
-  delete extracts;
-  delete sums;
-  delete table;
-  delete isokinetic;
-  delete masks;
-  delete bodies;
   delete[] extlist;
   memory->destroy(f_sum);
   memory->destroy(torque_sum);
@@ -195,8 +186,7 @@ const Scheme &FixGearQuat::present_scheme() const
 
 void FixGearQuat::make_integrator(double step)
 {
-  delete integrator;
-  integrator = new Integrator(present_scheme(), step);
+  integrator.reset(new Integrator(present_scheme(), step));
 }
 
 /// Called whenever the time step may have changed; histories keep their polynomials.
@@ -305,7 +295,7 @@ void FixGearQuat::final_integrate()
 /// Higher rows of the histories: `h`, poses, velocities and present loads are known.
 void FixGearQuat::start()
 {
-  GearQuatBootstrap bootstrap(lmp, this, *bodies, isokinetic,
+  GearQuatBootstrap bootstrap(lmp, this, *bodies, isokinetic.get(),
                               tolerance ? tolerance->scheme_of_start() : args->scheme, h);
   bool full = false;
   if (args->start == GearQuatArguments::Start::ZERO)
@@ -489,7 +479,7 @@ double FixGearQuat::compute_vector(int n)
 {
   const int further = n - GearQuatSums::ELEMENTS;
   if (further >= 0) return tolerance ? tolerance->element(further) : isokinetic->element(further);
-  return sums->element(n, started ? integrator : nullptr);
+  return sums->element(n, started ? integrator.get() : nullptr);
 }
 
 double FixGearQuat::compute_array(int i, int j)

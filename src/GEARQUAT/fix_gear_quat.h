@@ -20,6 +20,8 @@ FixStyle(gear/quat,FixGearQuat);
 
 #include "fix.h"
 
+#include <memory>
+
 namespace GearQuat {
 class Integrator;
 struct Scheme;
@@ -75,21 +77,22 @@ class FixGearQuat : public Fix {
   void *extract(const char *, int &) override;
 
  private:
-  class GearQuatArguments *args;
-  class GearQuatBodies *bodies;
-  class GearQuatMasks *masks;
-  class GearQuatIsokinetic *isokinetic;    // null without
-  class GearQuatTable *table;
-  class GearQuatSums *sums;
-  class GearQuatExtract *extracts;
-  class GearQuatBlowup *blowup;
-  class GearQuatTolerance *tolerance;    // null: the step is LAMMPS' own
+  // in the order in which they depend on each other; a constructor that ends in an error frees them
+  std::unique_ptr<class GearQuatArguments> args;
+  std::unique_ptr<class GearQuatBodies> bodies;
+  std::unique_ptr<class GearQuatMasks> masks;
+  std::unique_ptr<class GearQuatIsokinetic> isokinetic;    // null without
+  std::unique_ptr<class GearQuatTable> table;
+  std::unique_ptr<class GearQuatSums> sums;
+  std::unique_ptr<class GearQuatExtract> extracts;
+  std::unique_ptr<class GearQuatBlowup> blowup;
+  std::unique_ptr<class GearQuatTolerance> tolerance;    // null: the step is LAMMPS' own
 
   bool started;      // histories are those of the step h
   bool met_atoms;    // bodies were compared with the atoms in a run before
   bool reported;     // the scene, once
   double h;          // step of the histories
-  GearQuat::Integrator *integrator;
+  std::unique_ptr<GearQuat::Integrator> integrator;
   bool velocities_read;            // between prediction and correction, by others
   double **f_sum, **torque_sum;    // r-RESPA: of all levels; torques where atoms have some
   int nmax_sum;

@@ -27,6 +27,10 @@ using GearQuat::Isokinetic;
 
 static constexpr int FIRST_VALUES = 6, SECOND_VALUES = 8, PASSES = 2;
 
+// a pass more is of no use from three on; a number with too many digits would seem to hang
+
+static constexpr int PASSES_MOST = 100;
+
 static constexpr int MASK_WORDS = 5;    // force M xflag yflag zflag
 
 static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
@@ -130,6 +134,7 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
     if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
     const std::string value = arg[iarg + 1];
+    if (value.empty()) error->all(FLERR, "Fix gear/quat {}: the value is an empty word", key);
 
     if (key == "formulation")
       scheme.formulation = choice(key, value, "first", "second") ? Formulation::SECOND
@@ -182,8 +187,8 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
   if (scheme.rows < fewest || scheme.rows > most)
     error->all(FLERR, "Fix gear/quat values: {} is not from {} to {}, as formulation {} requires",
                scheme.rows, fewest, most, scheme.first() ? "first" : "second");
-  if (scheme.passes < 1)
-    error->all(FLERR, "Fix gear/quat passes: {} is not positive", scheme.passes);
+  if (scheme.passes < 1 || scheme.passes > PASSES_MOST)
+    error->all(FLERR, "Fix gear/quat passes: {} is not from 1 to {}", scheme.passes, PASSES_MOST);
   if (tolerance) check_control(lmp, fewest);
   for (const auto *key : {"dtmin", "dtmax"})
     if (!tolerance && seen.count(key))
@@ -340,6 +345,9 @@ std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) cons
   return ids;
 }
 
+/// What a value may be, and how far values may be apart: every double here is an integer.
+static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
+
 /// Bodies are numbered from the smallest value in the group, as fix rigid numbers them.
 std::vector<tagint> GearQuatArguments::custom_ids(LAMMPS *lmp, int groupbit) const
 {
@@ -366,14 +374,31 @@ std::vector<tagint> GearQuatArguments::custom_ids(LAMMPS *lmp, int groupbit) con
                  custom);
     std::vector<double> value(atom->nlocal + 1);
     variable->compute_atom(index, 0, value.data(), 1, 0);
-    for (int i = 0; i < atom->nlocal; ++i) ids[i] = (tagint) std::llround(value[i]);
+    tagint unusable = 0;
+    for (int i = 0; i < atom->nlocal; ++i) {
+      if (!(atom->mask[i] & groupbit)) continue;
+      if (std::fabs(value[i]) < MOST_CUSTOM)
+        ids[i] = (tagint) std::llround(value[i]);
+      else
+        unusable = atom->tag[i];
+    }
+    if ((unusable = anywhere(lmp, unusable)))
+      error->all(FLERR, "Fix gear/quat custom {}: the value of atom {} is no number below {:g}",
+                 custom, unusable, MOST_CUSTOM);
   } else
     error->all(FLERR, "Fix gear/quat custom: {} is neither i_name nor v_name", custom);
 
-  tagint smallest = MAXTAGINT, all;
+  bigint largest[2] = {-MAXBIGINT, -MAXBIGINT}, all[2];    // of the value, and of its negative
   for (int i = 0; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) smallest = std::min(smallest, ids[i]);
-  MPI_Allreduce(&smallest, &all, 1, MPI_LMP_TAGINT, MPI_MIN, lmp->world);
-  for (int i = 0; i < atom->nlocal; ++i) ids[i] = (atom->mask[i] & groupbit) ? ids[i] - all + 1 : 0;
+    if (atom->mask[i] & groupbit) {
+      largest[0] = std::max(largest[0], (bigint) ids[i]);
+      largest[1] = std::max(largest[1], -(bigint) ids[i]);
+    }
+  MPI_Allreduce(largest, all, 2, MPI_LMP_BIGINT, MPI_MAX, lmp->world);
+  if ((double) all[0] + (double) all[1] >= MOST_CUSTOM)
+    error->all(FLERR, "Fix gear/quat custom {}: values from {} to {} are too far apart", custom,
+               -all[1], all[0]);
+  for (int i = 0; i < atom->nlocal; ++i)
+    ids[i] = (atom->mask[i] & groupbit) ? (tagint) (ids[i] + all[1] + 1) : 0;
   return ids;
 }

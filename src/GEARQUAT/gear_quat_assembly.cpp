@@ -20,6 +20,7 @@ using namespace GearQuat;
 
 static constexpr int IRREGULAR = 0;
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
+static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
 
 std::vector<GearQuatAssembly::PlacedSite> GearQuatAssembly::place_sites(std::vector<Site> &sites)
 {
@@ -142,13 +143,15 @@ GearQuatAssembly::OwnedBody GearQuatAssembly::make_body(const Site *sites, int n
   if (stated != given.end()) {
     found.push_back(owned.body.id);
     owned.body.from_file = 1;
-    find_frame(take_given(stated->second, owned), sites, n, axes, owned);
+    const Momenta momenta = take_given(stated->second, owned);
+    check_place(sites, n, owned);
+    find_frame(momenta, sites, n, axes, owned);
   } else {
     const Momenta momenta = average(sites, n, owned);
     if (owned.body.rigid.mass > 0.0)
       find_frame(momenta, sites, n, axes, owned);
     else
-      massless = owned.body.id;
+      faulty[MASSLESS] = owned.body.id;
   }
   return owned;
 }
@@ -217,9 +220,7 @@ void GearQuatAssembly::find_frame(const Momenta &momenta, const Site *sites, int
 {
   double *moments = owned.body.rigid.inertia;
   principal_axes(momenta.inertia_space, moments, axes);
-  const double largest = *std::max_element(moments, moments + 3);
-  if (*std::min_element(moments, moments + 3) < -LINEAR_FRACTION * largest)
-    impossible = owned.body.id;
+  check_moments(owned);
   drop_vanishing_moments(moments);
   if (domain->dimension == 3) {    // in two dimensions the z axis stays where it is, exactly
     sort_axes(moments, axes);
@@ -230,6 +231,9 @@ void GearQuatAssembly::find_frame(const Momenta &momenta, const Site *sites, int
   to_body(axes, momenta.angular_momentum_space, momentum_body);
   for (int k = 0; k < 3; ++k)
     owned.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
+  for (int k = 0; k < 3; ++k)
+    if (!std::isfinite(owned.state.omega_body[k]) || !std::isfinite(owned.state.velocity[k]))
+      faulty[NOT_FINITE] = owned.body.id;
 }
 
 /// Senses that belong to the body, not to its orientation at the start: the first and the third
@@ -269,24 +273,56 @@ void GearQuatAssembly::orient_axes(const Site *sites, int n, const double *cente
   cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   what no body can be
+------------------------------------------------------------------------- */
+
+/// In the order of GearQuatAssembly's faults; the first that is met is told.
+static const char *const FAULT_TEXTS[] = {
+    "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
+    "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
+    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment; no body "
+    "has",
+    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the two "
+    "others; no body has",
+    "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
+    "position and its image flags right?"};
+
+/// A given centre may lie outside of the body, but not by half a box: image flags belong to it.
+void GearQuatAssembly::check_place(const Site *sites, int n, const OwnedBody &owned)
+{
+  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
+  const double far = owned.body.extent + 0.5 * longest;
+  for (int i = 0; i < n; ++i) {
+    double d2 = 0.0;
+    for (int k = 0; k < 3; ++k) d2 += std::pow(sites[i].x[k] - owned.state.center[k], 2);
+    if (d2 <= far * far) return;
+  }
+  faulty[APART] = owned.body.id;
+}
+
+/// Of sums over masses all this holds by itself, up to rounding.
+void GearQuatAssembly::check_moments(const OwnedBody &owned)
+{
+  const double *moments = owned.body.rigid.inertia;
+  const double largest = std::max({moments[0], moments[1], moments[2]});
+  const double smallest = std::min({moments[0], moments[1], moments[2]});
+  const double sum = moments[0] + moments[1] + moments[2];
+  if (!std::isfinite(sum))
+    faulty[NOT_FINITE] = owned.body.id;
+  else if (smallest < -LINEAR_FRACTION * largest)
+    faulty[NEGATIVE] = owned.body.id;
+  else if (owned.body.from_file && domain->dimension == 3 &&
+           (1.0 - ROUNDED) * largest > sum - largest)
+    faulty[UNBALANCED] = owned.body.id;
+}
 
 void GearQuatAssembly::report_faults()
 {
-  tagint any = 0;
-  MPI_Allreduce(&massless, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (any > 0)
-    error->all(FLERR,
-               "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to "
-               "more than zero",
-               any);
-
-  MPI_Allreduce(&impossible, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (any > 0)
-    error->all(FLERR,
-               "Fix gear/quat infile: the inertia tensor of body {} has a negative principal "
-               "moment; no body has",
-               any);
+  tagint any[FAULTS];
+  MPI_Allreduce(faulty, any, FAULTS, MPI_LMP_TAGINT, MPI_MAX, world);
+  for (int fault = 0; fault < FAULTS; ++fault)
+    if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
 
   int matched = (int) found.size(), all_matched = 0;
   MPI_Allreduce(&matched, &all_matched, 1, MPI_INT, MPI_SUM, world);

@@ -63,9 +63,9 @@ class GearQuatAssembly : protected Pointers {
 
  private:
   const GivenBodies &given;
-  tagint massless = 0;          ///< a body without mass met on this rank
-  tagint impossible = 0;        ///< a given body with a negative principal moment, likewise
-  std::vector<tagint> found;    ///< given bodies met on this rank
+  enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS };
+  tagint faulty[FAULTS] = {};    ///< a body met on this rank with each fault, 0 for none
+  std::vector<tagint> found;     ///< given bodies met on this rank
 
   OwnedBody make_body(const Site *sites, int n, double axes[9], int &owner);
 
@@ -78,6 +78,8 @@ class GearQuatAssembly : protected Pointers {
   void find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
                   OwnedBody &owned);
   void orient_axes(const Site *sites, int n, const double *center, double axes[9]) const;
+  void check_place(const Site *sites, int n, const OwnedBody &owned);
+  void check_moments(const OwnedBody &owned);
   void report_faults();
 
   template <typename Reply> std::vector<Reply> meet(std::vector<Site> &sites);

@@ -62,12 +62,15 @@ void GearQuatBlowup::stop(int ibody, const BodyState &s, double h, double **f) c
   for (const auto &site : bodies.sites)
     if (site.body == ibody && atom->molecule_flag && atom->molecule[site.atom] != id)
       molecule = fmt::format(" (molecule {})", atom->molecule[site.atom]);
-  error->one(
-      FLERR,
-      "Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. Use a smaller time step "
-      "than {:g} or fewer values than {}, or begin with atoms further apart",
-      update->ntimestep, time, id, molecule, what_happened(ibody, s, h), where(ibody, f),
-      std::fabs(h), scheme.values());
+  const std::string change = scheme.trial
+      ? fmt::format("a smaller tolerance, or a dtmax shorter than {:g},", std::fabs(h))
+      : fmt::format("a smaller time step than {:g} or fewer values than {},", std::fabs(h),
+                    scheme.values());
+  error->one(FLERR,
+             "Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. Use {} or begin with "
+             "atoms further apart",
+             update->ntimestep, time, id, molecule, what_happened(ibody, s, h), where(ibody, f),
+             change);
 }
 
 /// What is beyond the limits, the first thing in the order of cause and effect.

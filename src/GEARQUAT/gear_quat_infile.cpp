@@ -10,31 +10,58 @@
 #include "lammps.h"
 #include "utils.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <vector>
 
 using namespace LAMMPS_NS;
 
 static constexpr int COLUMNS = 20;
 
-using Line = std::array<double, COLUMNS>;
-
 namespace {
+
+/// A line of the file; body ID and image flags are integers, the numbers are those between them.
+struct Line {
+  enum { MASS, CENTER, INERTIA = 4, VELOCITY = 10, ANGULAR_MOMENTUM = 13, NUMBERS = 16 };
+  tagint id;
+  int image[3];
+  double number[NUMBERS];
+};
 
 /// A fault of the file, kept until all ranks can report it together.
 struct Fault {
   std::string text;
 };
 
+/// LAMMPS' own splitting takes quotation marks for something, and reads on where one is not closed.
+std::vector<std::string> words_of(const std::string &line)
+{
+  std::istringstream stream(utils::trim_comment(line));
+  return {std::istream_iterator<std::string>(stream), std::istream_iterator<std::string>()};
+}
+
 double number(const std::string &word, const std::string &where)
 {
-  if (!utils::is_double(word)) throw Fault{where + ": '" + word + "' is not a number"};
-  const double value = std::strtod(word.c_str(), nullptr);
+  char *end = nullptr;
+  const double value = std::strtod(word.c_str(), &end);
+  if (!utils::is_double(word) || end != word.c_str() + word.size())
+    throw Fault{where + ": '" + word.c_str() + "' is not a number"};
   if (!std::isfinite(value)) throw Fault{where + ": '" + word + "' is not a finite number"};
   return value;
+}
+
+/// Between -most and most; more is given as most + 1, so that the caller can say what is too large.
+bigint integer(const std::string &word, const std::string &where, const char *what, bigint most)
+{
+  char *end = nullptr;
+  const bigint value = std::strtoll(word.c_str(), &end, 10);    // the largest there is, if beyond
+  if (!utils::is_integer(word) || end != word.c_str() + word.size())
+    throw Fault{where + ": '" + word.c_str() + "' is not an integer (" + what + ")"};
+  return value > most || value < -most ? most + 1 : value;
 }
 
 Line parse_line(const std::vector<std::string> &words, const std::string &where)
@@ -43,24 +70,24 @@ Line parse_line(const std::vector<std::string> &words, const std::string &where)
     throw Fault{where + " has " + std::to_string(words.size()) + " words instead of " +
                 std::to_string(COLUMNS) +
                 ": ID mass x y z ixx iyy izz ixy ixz iyz vx vy vz lx ly lz ix iy iz"};
+  static constexpr const char *INTEGERS = "body ID and image flags are";
   Line line;
-  for (int i = 0; i < COLUMNS; ++i) {
-    const bool whole = i == 0 || i >= COLUMNS - 3;
-    if (whole && !utils::is_integer(words[i]))
-      throw Fault{where + ": '" + words[i] + "' is not an integer (body ID and image flags are)"};
-    line[i] = number(words[i], where);
-  }
-  if (line[0] < 1.0 || line[0] > MAXTAGINT)
+  const bigint id = integer(words[0], where, INTEGERS, MAXTAGINT - 1);
+  if (id < 1 || id == MAXTAGINT)
     throw Fault{where + ": body ID " + words[0] + " is not positive or too large"};
-  for (int i = COLUMNS - 3; i < COLUMNS; ++i)
-    if (std::fabs(line[i]) >= IMGMAX)
-      throw Fault{where + ": image flag " + words[i] + " is too large"};
-  if (line[1] <= 0.0)
+  line.id = (tagint) id;
+  for (int i = 0; i < 3; ++i) {
+    const std::string &word = words[1 + Line::NUMBERS + i];
+    line.image[i] = (int) integer(word, where, INTEGERS, IMGMAX - 1);
+    if (line.image[i] == IMGMAX) throw Fault{where + ": image flag " + word + " is too large"};
+  }
+  for (int i = 0; i < Line::NUMBERS; ++i) line.number[i] = number(words[1 + i], where);
+  if (line.number[Line::MASS] <= 0.0)
     throw Fault{where + ": mass " + words[1] + " of body " + words[0] + " is not positive"};
-  for (int i = 5; i < 8; ++i)
-    if (line[i] < 0.0)
+  for (int i = 0; i < 3; ++i)
+    if (line.number[Line::INERTIA + i] < 0.0)
       throw Fault{where + ": body " + words[0] + " has a negative diagonal moment of inertia " +
-                  words[i]};
+                  words[1 + Line::INERTIA + i]};
   return line;
 }
 
@@ -70,34 +97,34 @@ std::vector<Line> parse_file(const std::string &filename)
   if (!file) throw Fault{"cannot open file " + filename};
 
   std::vector<Line> lines;
-  std::map<double, int> seen;
+  std::map<tagint, int> seen;
   std::string text;
-  bool counted = false;
-  long expected = 0;
+  std::string announced;
+  bigint expected = 0;
   for (int n = 1; std::getline(file, text); ++n) {
-    const auto words = utils::split_words(utils::trim_comment(text));
+    const auto words = words_of(text);
     if (words.empty()) continue;
     const std::string where = "file " + filename + ", line " + std::to_string(n);
-    if (!counted) {
-      counted = true;
+    if (announced.empty()) {
+      announced = words[0];
       if (words.size() != 1 || !utils::is_integer(words[0]))
         throw Fault{where + ": the first line must be the number of bodies"};
-      expected = (long) number(words[0], where);
+      expected = integer(words[0], where, "the number of bodies is", MAXSMALLINT);
       continue;
     }
     lines.push_back(parse_line(words, where));
-    const double id = lines.back()[0];
+    const tagint id = lines.back().id;
     if (seen.count(id))
       throw Fault{where + ": body " + words[0] + " was given on line " + std::to_string(seen[id]) +
                   " already"};
     seen[id] = n;
   }
-  if (!counted)
+  if (announced.empty())
     throw Fault{"file " + filename +
                 " is empty: its first line must be the number "
                 "of bodies"};
-  if (expected != (long) lines.size())
-    throw Fault{"file " + filename + " announces " + std::to_string(expected) + " bodies and has " +
+  if (expected != (bigint) lines.size())
+    throw Fault{"file " + filename + " announces " + announced + " bodies and has " +
                 std::to_string(lines.size())};
   return lines;
 }
@@ -125,20 +152,22 @@ GivenBodies LAMMPS_NS::read_given_bodies(LAMMPS *lmp, const std::string &filenam
   if (!fault.empty()) lmp->error->all(FLERR, "Fix gear/quat infile: {}", fault);
 
   lines.resize(size[1]);
-  MPI_Bcast(lines.data(), COLUMNS * size[1], MPI_DOUBLE, 0, lmp->world);
+  MPI_Datatype type;
+  MPI_Type_contiguous(sizeof(Line), MPI_BYTE, &type);
+  MPI_Type_commit(&type);
+  MPI_Bcast(lines.data(), size[1], type, 0, lmp->world);
+  MPI_Type_free(&type);
 
   GivenBodies bodies;
   for (const auto &line : lines) {
     GivenBody body;
-    body.mass = line[1];
-    for (int i = 0; i < 3; ++i) {
-      body.center[i] = line[2 + i];
-      body.velocity[i] = line[11 + i];
-      body.angular_momentum_space[i] = line[14 + i];
-      body.image[i] = (int) line[17 + i];
-    }
-    for (int i = 0; i < 6; ++i) body.inertia[i] = line[5 + i];
-    bodies[(tagint) line[0]] = body;
+    body.mass = line.number[Line::MASS];
+    std::copy_n(line.number + Line::CENTER, 3, body.center);
+    std::copy_n(line.number + Line::INERTIA, 6, body.inertia);
+    std::copy_n(line.number + Line::VELOCITY, 3, body.velocity);
+    std::copy_n(line.number + Line::ANGULAR_MOMENTUM, 3, body.angular_momentum_space);
+    std::copy_n(line.image, 3, body.image);
+    bodies[line.id] = body;
   }
   return bodies;
 }

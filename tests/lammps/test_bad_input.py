@@ -23,6 +23,8 @@ ARGUMENTS = {
     "custom i_real": "requires an integer vector of that name",
     "custom v_nosuch": "requires an atom-style or atomfile-style variable",
     "custom v_equal": "requires an atom-style or atomfile-style variable",
+    "custom v_huge": "custom v_huge: the value of atom 6 is no number below 2.14748e+09",
+    "custom i_far": "custom i_far: values from -2147483647 to 2147483647 are too far apart",
     "molecule sloppy yes": "Unknown fix gear/quat keyword: sloppy",
     "molecule langevin 1 1 1 1": "Unknown fix gear/quat keyword: langevin",
     "molecule formulation": "missing argument",
@@ -35,7 +37,8 @@ ARGUMENTS = {
     "molecule formulation first values 2": "2 is not from 3 to 8, as formulation first requires",
     "molecule values 9 formulation first": "9 is not from 3 to 8, as formulation first requires",
     "molecule passes": "missing argument",
-    "molecule passes 0": "passes: 0 is not positive",
+    "molecule passes 0": "passes: 0 is not from 1 to 100",
+    "molecule passes 101": "passes: 101 is not from 1 to 100",
     "molecule passes 1.5": "integer",
     "molecule compensate": "missing argument",
     "molecule compensate 1": "compensate: unknown value 1 (no or yes)",
@@ -68,6 +71,8 @@ ARGUMENTS = {
     "molecule tolerance 1e-8 dtmin 0.2 dtmax 0.1": "dtmin: 0.2 is larger than dtmax, 0.1",
     "molecule tolerance 1e-8 values 11": "11 values are more than 10",
     "molecule infile": "missing argument",
+    'molecule infile ""': "infile: the value is an empty word",
+    'molecule mol ""': "mol: the value is an empty word",
     "molecule infile bodies reinit yes": "reinit yes cannot be used with infile",
     "molecule force 1 on on": "missing argument",
     "molecule force 1 on on yes": "force: unknown zflag yes (on or off)",
@@ -84,7 +89,10 @@ ARGUMENTS = {
 GROUPS = """
 group left id 1 2 3
 group right id 4 5 6
-fix real all property/atom d_real
+fix real all property/atom d_real i_far
+set group left i_far -2147483647
+set group right i_far 2147483647
+variable huge atom (id>3)*exp(1000)
 variable equal equal 1.0
 """
 
@@ -107,6 +115,13 @@ INFILES = {
     f"1\n{ID1[:-1]}99999999999\n": "file bodies, line 2: image flag 99999999999 is too large",
     f"1\n{ID1.replace(' 1 1 1 0 0 0', ' 1 1 1 5 0 0')}\n": "tensor of body 1 has a negative principal",
     f"1\n7{ID1[1:]}\n": "no atom belongs to body 7",
+    f"{10**30}\n{ID1}\n": f"file bodies announces {10**30} bodies and has 1",
+    f"1\n{ID1} '\n": "file bodies, line 2 has 21 words instead of 20",
+    f"1\n{ID1.replace('0.33', '0.33' + chr(0) + '5')}\n": "file bodies, line 2: '0.33' is not a number",
+    f"1\n{ID1.replace(' 1 1 1 ', ' 1e308 1e308 1e308 ')}\n": "body 1 are not finite numbers",
+    f"1\n{ID1.replace(' 1 1 1 ', ' 1 1 2.01 ')}\n": "moment of body 1 is more than the sum of the two",
+    f"1\n{ID1.replace('0.33', '20.33')}\n": "center of mass of body 1 is far away from all its atoms",
+    f"1\n{ID1[:-1]}1\n": "are its position and its image flags right?",
     f"1\n{ID1.replace('3.0', '0.0')}\n": "file bodies, line 2: mass 0.0 of body 1 is not positive",
     f"1\n{ID1.replace(' 1 1 1 ', ' 1 -1 1 ')}\n": "negative diagonal moment of inertia -1",
 }

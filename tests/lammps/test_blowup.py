@@ -25,7 +25,7 @@ TOO_MUCH = "exp(1000*v_on)"
 
 WHERE = re.compile(
     r"Fix gear/quat: blow-up in step (\d+), time (\S+): body (\d+) (.*?); its atom (\d+) is (\S+) away "
-    r"from atom (\d+)(.*?)\. Use a smaller time step than (\S+) or fewer values than (\d+)"
+    r"from atom (\d+)(.*?)\. Use a smaller time step than (\S+) or fewer values than (\d+), or"
 )
 
 

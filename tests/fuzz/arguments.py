@@ -1,0 +1,259 @@
+"""Argument lines of the fix: made by the grammar of the manual, broken, and judged by that grammar.
+
+What is here is written from doc/fix_gear_quat.rst, not from the source.
+"""
+
+import re
+
+from . import tokens
+
+SETUP = """
+units lj
+atom_style molecular
+atom_modify map array
+region box block -10 10 -10 10 -10 10
+create_box 1 box
+create_atoms 1 single 0.0 0.0 0.0
+create_atoms 1 single 1.0 0.0 0.0
+create_atoms 1 single 0.0 1.2 0.1
+create_atoms 1 single 5.0 5.0 5.0
+create_atoms 1 single 6.0 5.0 5.0
+create_atoms 1 single 5.0 6.2 5.1
+mass 1 1.0
+set atom 1*3 mol 1
+set atom 4*6 mol 2
+velocity all create 1.0 4711 loop geom
+pair_style zero 2.0
+pair_coeff * *
+timestep 0.01
+thermo_modify norm no
+group left id 1 2 3
+group right id 4 5 6
+group most id 1 2 3 4
+group nobody empty
+fix made all property/atom i_which i_far i_none d_real i2_two 2
+set group left i_which -7
+set group right i_which 4
+set group left i_far -2147483647
+set group right i_far 2147483647
+set atom 1*6 i_none 3
+variable half atom (id>3)*5-2
+variable wide atom (id>3)*1.0e12
+variable huge atom (id>3)*exp(1000)
+variable equal equal 1.0
+molecule two molecule.two
+molecule heavy molecule.two
+"""
+FILES = {
+    "molecule.two": "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n",
+    "bodies": "1\n1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0\n",
+    "broken": "1\n1 3.0 0.33\n",
+    "empty": "",
+}
+
+GROUPS = {"all": {1, 2, 3, 4, 5, 6}, "left": {1, 2, 3}, "right": {4, 5, 6}, "most": {1, 2, 3, 4}}
+GROUPS["nobody"] = set()
+APART = ("i_far", "v_wide", "v_huge")  # no integers, or too far apart to be numbered
+CUSTOM = ("i_which", "i_none", "v_half")  # integers, and not too far apart
+TEMPLATES = ("two", "heavy")
+INFILES = ("bodies",)
+
+WORDS = {
+    "formulation": ("second", "first"),
+    "compensate": ("no", "yes"),
+    "start": ("bootstrap", "zero"),
+    "c0": ("position", "velocity"),
+    "omega": ("corrected", "predicted"),
+    "momentum": ("corrected", "predicted"),
+    "project": ("yes", "no"),
+    "reinit": ("yes", "no"),
+    "report": ("no", "short", "long"),
+}
+RANGE = {"second": (4, 12), "first": (3, 8)}
+PASSES = (1, 100)
+TOLERANCE_MOST = 10  # values
+REALS = ("tolerance", "dtmin", "dtmax")
+MASKS = ("force", "torque")  # followed by four words, any number of times
+KEYWORDS = (*WORDS, "values", "passes", *REALS, "infile", "mol")
+POOL = (
+    *KEYWORDS,
+    *MASKS,
+    *("on", "off", "*", "1*", "*2", "1*2", "2*1", "3", "1e-10", "1e-3", "0.1", "0"),
+    *(value for values in WORDS.values() for value in values),
+    *GROUPS,
+    *CUSTOM,
+    *APART,
+    *("i_nosuch", "d_real", "i_real", "i_two", "i2_two", "v_equal"),
+    *("bodies", "broken", "empty", "nosuch", "two"),
+    *("single", "molecule", "group", "custom", "1", "2", "3", "8", ""),
+)
+
+
+# --- the grammar ----------------------------------------------------------------------------------
+def as_read(word):
+    """With the sign that LAMMPS takes for what it looks like."""
+    return word.replace("\u2212", "-")
+
+
+def integer(word):
+    """The integer that a word is for LAMMPS, or None."""
+    number = tokens.integer(as_read(word))
+    return None if number is None or abs(number) > 2**31 - 1 else number
+
+
+def positive(word):
+    """The positive number that a word is for LAMMPS, or None."""
+    number = tokens.real(as_read(word))
+    return None if number is None or number <= 0.0 else number
+
+
+def bodystyle(words):
+    """How many words say which bodies there are, and how many there are; None if they do not say."""
+    style = words[0] if words else None
+    if style in ("single", "molecule"):
+        return 1, 1 if style == "single" else 2
+    if style == "custom":
+        bodies = 1 if words[1:2] == ["i_none"] else 2
+        return (2, bodies) if len(words) > 1 and words[1] in CUSTOM else None
+    if style == "group":
+        count = integer(words[1]) if len(words) > 1 else None
+        if count is None or not 0 < count <= len(words) - 2:
+            return None
+        names = words[2 : 2 + count]
+        if any(name not in GROUPS for name in names):
+            return None
+        atoms = [atom for name in names for atom in GROUPS[name]]
+        if not atoms or len(atoms) != len(set(atoms)):
+            return None
+        return 2 + count, sum(1 for name in names if GROUPS[name])
+    return None
+
+
+def take_masks(words, bodies):
+    """The words without those of MASKS, or None if there is a wrong one among these."""
+    rest, at = [], 0
+    while at < len(words):
+        if words[at] not in MASKS:
+            rest += words[at : at + 2]
+            at += 2
+            continue
+        if len(words) < at + 5 or any(flag not in ("on", "off") for flag in words[at + 2 : at + 5]):
+            return None
+        found = re.fullmatch(r"([0-9]*)(\*?)([0-9]*)", words[at + 1])
+        if not found or words[at + 1] == "":
+            return None
+        low, star, high = found.groups()
+        first = int((low or "1")[:30])
+        last = int((high or str(bodies))[:30]) if star else first
+        if not 1 <= first <= last <= bodies:
+            return None
+        at += 5
+    return rest
+
+
+def values_allowed(given):
+    """Whether each value belongs to its keyword, and the keywords to each other."""
+    formulation = given.get("formulation", "second")
+    for key, value in given.items():
+        if key in WORDS and value not in WORDS[key]:
+            return False
+    for key, bounds in (("values", RANGE.get(formulation)), ("passes", PASSES)):
+        if key in given:
+            number = integer(given[key])
+            if number is None or not bounds[0] <= number <= bounds[1]:
+                return False
+    for key in REALS:
+        if key in given and (positive(given[key]) is None or "tolerance" not in given):
+            return False
+    if "dtmin" in given and "dtmax" in given:
+        if positive(given["dtmin"]) > positive(given["dtmax"]):
+            return False
+    if "tolerance" in given and integer(given.get("values", "0")) > TOLERANCE_MOST:
+        return False
+    if formulation == "first" and "c0" in given:
+        return False
+    if formulation == "second" and ("omega" in given or "momentum" in given):
+        return False
+    return not ("infile" in given and given.get("reinit") == "yes")
+
+
+def is_valid(words):
+    """Whether the fix has to accept these words behind its style, in the scene SETUP."""
+    found = bodystyle(words)
+    if found is None:
+        return False
+    used, bodies = found
+    rest = take_masks(words[used:], bodies)
+    if rest is None:
+        return False
+    keys = rest[::2]
+    if len(rest) % 2 or len(set(keys)) != len(keys) or any(key not in KEYWORDS for key in keys):
+        return False
+    given = dict(zip(keys, rest[1::2]))
+    if not values_allowed(given):
+        return False
+    masked = len(rest) < len(words) - used
+    if "mol" in given and (given["mol"] not in TEMPLATES or words[0] != "molecule" or masked):
+        return False
+    if "infile" not in given:
+        return True
+    # which states body 1
+    return given["infile"] in INFILES and not (words[0] == "group" and not GROUPS[words[2]])
+
+
+# --- inputs ---------------------------------------------------------------------------------------
+def valid(rng):
+    """Words that the fix accepts, but for a few that look so."""
+    style = rng.choice(("single", "molecule", "molecule", "group", "custom"))
+    words = [style]
+    if style == "group":
+        words += rng.choice(
+            (["1", "all"], ["2", "left", "right"], ["1", "most"], ["2", "nobody", "left"])
+        )
+    elif style == "custom":
+        words.append(rng.choice((*CUSTOM, *CUSTOM, *APART)))
+    formulation = rng.choice(("first", "second"))
+    choices = {key: rng.choice(values) for key, values in WORDS.items()}
+    choices["formulation"] = formulation
+    choices["values"] = str(rng.randint(*RANGE[formulation]))
+    choices["passes"] = str(rng.randint(1, 3))
+    choices["infile"], choices["mol"] = "bodies", "two"
+    choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
+    choices["dtmin"], choices["dtmax"] = "1e-5", rng.choice(("1e-5", "0.1", "1"))
+    keys = [key for key in choices if rng.random() < 0.35]
+    if formulation == "first" and "formulation" not in keys:
+        keys.append("formulation")
+    wrong = {"c0"} if formulation == "first" else {"omega", "momentum"}
+    wrong |= {"mol"} if style != "molecule" else set()
+    wrong |= {"reinit"} if "infile" in keys else set()
+    wrong |= {"dtmin", "dtmax"} if "tolerance" not in keys else set()
+    wrong |= (
+        {"values"} if "tolerance" in keys and int(choices["values"]) > TOLERANCE_MOST else set()
+    )
+    pairs = [[key, choices[key]] for key in keys if key not in wrong]
+    if ["mol", "two"] not in pairs and rng.random() < 0.3:
+        for _ in range(rng.choice((1, 1, 2))):
+            flags = [rng.choice(("on", "off")) for _ in range(3)]
+            pairs.append([rng.choice(MASKS), rng.choice(("1", "*", "1*")), *flags])
+    rng.shuffle(pairs)
+    return words + [word for pair in pairs for word in pair]
+
+
+def make(rng):
+    """Words, a fifth of them valid on purpose."""
+    words = valid(rng)
+    for _ in range(rng.choice((0, 1, 1, 2, 4))):
+        words = tokens.mutated(rng, words, POOL)
+    return words
+
+
+def quoted(words):
+    """As LAMMPS reads them from an input script: each word as it is."""
+    plain = re.compile(r"[!-~]+")  # LAMMPS takes some other characters for spaces
+    return " ".join(word if plain.fullmatch(word) else f'"{word}"' for word in words)
+
+
+def judge(rng):
+    """An input: what LAMMPS is told, and whether it has to accept it."""
+    words = make(rng)
+    return f"fix move all gear/quat {quoted(words)}", is_valid(words)
