@@ -28,7 +28,9 @@ def angle(q, rotation):
     return (Rotation.from_quat(q, scalar_first=True) * rotation.inv()).magnitude()
 
 
-@pytest.mark.parametrize("stretch", [(1, 1, 1), (1, 1, 0), (0.05, 0.05, 1), (1, 0.05, 0)])
+@pytest.mark.parametrize(
+    "stretch", [(1, 1, 1), (1, 1, 0), (0.05, 0.05, 1), (1, 0.05, 0), (3e-3, 3e-3, 1)]
+)
 def test_known_rotations_are_found(stretch):
     bodies = bodies_of(np.arange(300) % 5 + 4, stretch)
     rotation = Rotation.random(300, RNG)

@@ -3,7 +3,7 @@
 The rotation with the least mass-weighted squares is the eigenvector to the largest eigenvalue of a symmetric
 4 x 4 matrix (B. K. P. Horn, J. Opt. Soc. Am. A 4, 629 (1987), Sec. 4; Eq. numbers are his).  It is proper
 by construction.  A step of Newton's method follows: the eigenvalues of a thin body are close to each other,
-and the eigenvector alone has two digits less than the positions allow.
+and the eigenvector alone has as many digits less than the positions allow as its width has less than its length.
 
 Quaternions (B, 4): scalar first, as in the fix's own array; body -> space.
 """
@@ -65,11 +65,19 @@ def superpose(bodies, arms):
         along = np.einsum("bij,bi->bj", s[linear], axis)
         q[linear] = shortest_turn(axis, along / np.linalg.norm(along, axis=1, keepdims=True))
     q[point] = [1.0, 0.0, 0.0, 0.0]
-    turned = rotate(q[bodies.of], shape)
-    torque = bodies.sum(mass * np.cross(turned, arms))
-    q = _composed(bodies.divided_by_inertia(q, torque), q)
+    q = _composed(bodies.divided_by_inertia(q, _torque(bodies, q, arms)), q)
     residual = np.linalg.norm(arms - rotate(q[bodies.of], shape), axis=1)
     return np.where(q[:, :1] < 0.0, -q, q), bodies.largest(residual)
+
+
+def _torque(bodies, q, arms):
+    """Sums (B, 3) in space of m turned shape x arms; zero where q fits best."""
+    # taken along principal axes: about a thin body's own axis it is no difference of larger numbers
+    axes = bodies.axes_space(q)
+    own = np.einsum("nij,nj->ni", bodies.axes[bodies.of], bodies.shape)
+    found = np.einsum("nij,nj->ni", axes[bodies.of], arms)
+    torque = bodies.sum(bodies.masses[:, None] * np.cross(own, found))
+    return np.einsum("bij,bi->bj", axes, torque)
 
 
 def _composed(rotvec, q):
