@@ -19,6 +19,7 @@ from lammps_gearquat.hard import (
     tumbling,
 )
 from lammps_gearquat.hard.runs import Runs
+from lammps_gearquat.hard.sites import Sites
 
 
 @pytest.fixture
@@ -106,8 +107,6 @@ def test_inertia(runs, tmp_path, monkeypatch):
 
 def test_exact_pendulums():
     """The answers for linear bodies keep energy, shape, and small swings are harmonic."""
-    from lammps_gearquat.pose import Sites
-
     arms = np.outer([0.9, 0.1, -1.0], [0.0, 0.6, 0.8])
     for speed in (1e-4, 0.9):
         spins = speed * np.outer([0.9, 0.1, -1.0], [1.0, 0.0, 0.0])

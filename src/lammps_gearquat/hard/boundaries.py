@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from .. import pose
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
 
 ASKED = 1e-10
@@ -61,13 +60,6 @@ def panels(results):
     return tuple(shown)
 
 
-def _sites(finished):
-    """Time (F,) and unwrapped positions (F, 10, 3) of the sites of both bodies."""
-    bodies = pose.read_bodies(finished.dump, pose.UNWRAPPED)
-    positions = np.concatenate([body.positions for body in bodies.values()], axis=1)
-    return bodies[1].step, positions
-
-
 def measure(runs, places=tuple(PLACES), steps=40_000, **options):
     """(place, box, formulation) -> (time, difference, crossings)."""
     variables = {
@@ -90,11 +82,12 @@ def measure(runs, places=tuple(PLACES), steps=40_000, **options):
     results = {}
     for place in places:
         for formulation in FORMULATIONS:
-            step, here = _sites(found[f"{place}-open-{formulation}"])
+            open_box = found[f"{place}-open-{formulation}"].sites
+            time, here = 0.01 * open_box.step, open_box.positions
             for box, cell in CELLS.items():
-                _, there = _sites(found[f"{place}-{box}-{formulation}"])
+                there = found[f"{place}-{box}-{formulation}"].sites.positions
                 off = difference(there, here, cell)
-                results[place, box, formulation] = 0.01 * step, off, crossings(here, cell)
+                results[place, box, formulation] = time, off, crossings(here, cell)
     return results
 
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import mpmath as mp
 import numpy as np
 
-from .. import pose
-from ..reference import Problem, bodies_from_sites, integrators
+from ..reference import Problem, State, integrators
 from ..reference.fields import LennardJonesUnits
 from ..report import Row
+from ..workprecision.judge import pose_errors
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most
 
 BODIES = {
@@ -78,34 +78,22 @@ def _line(sites, time):
 
 
 def exact(body, sites, time):
-    """Sites (n, 3) of a body at ``time``; ``sites``: its pose.Sites, the first frame is the start."""
+    """Sites (n, 3) of a body at ``time``; ``sites``: its Sites, the first frame is the start."""
     if body in WITHOUT_AXIS:
         return _line(sites, time)
-    first = np.zeros(len(sites.masses), dtype=int)
-    shapes, start = bodies_from_sites(sites.masses, sites.positions[0], sites.velocities[0], first)
+    shapes, start = sites.start()
     field = Springs(sites.positions[0].astype(np.longdouble))
     problem = Problem(body, shapes, field, start)
-    from ..reference import State
-
     packed = integrators.integrate(problem, [time]).states[0]
     return problem.site_positions(State.of(packed)).astype(float)
 
 
 def off(masses, positions, others):
-    """(distance of the centres of mass, angle in radians) between two poses of a body, (n, 3)."""
-    centres = [pose.centre_of_mass(masses, sites) for sites in (positions, others)]
-    distance = float(np.linalg.norm(centres[1] - centres[0]))
-    arms, turned = positions - centres[0], others - centres[1]
-    rank = np.linalg.matrix_rank(arms, tol=1e-6 * (np.abs(arms).max() + 1e-300))
-    if len(masses) == 1:
-        return distance, 0.0
-    if rank == 1:
-        a, b = arms[0] / np.linalg.norm(arms[0]), turned[0] / np.linalg.norm(turned[0])
-        return distance, float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b))
-    rotation = pose.superpose(masses, positions, others).rotation
-    skew = np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0]])
-    skew = np.append(skew, rotation[1, 0] - rotation[0, 1])
-    return distance, float(np.arctan2(np.linalg.norm(skew) / 2, (np.trace(rotation) - 1) / 2))
+    """(distance of the centres of mass, angle in radians) between two poses of a body, (n, 3).
+
+    The angle of a linear body is that between its axes, a single site has none.
+    """
+    return pose_errors(masses, np.ones(len(masses), dtype=int), positions, others, positions)
 
 
 @dataclass(frozen=True)
@@ -213,8 +201,8 @@ def measure(runs, bodies=tuple(BODIES), rates=None, **options):
         estimates = [finished.thermo[column] for column in v["more"].split()]
         promise = tuple(float(np.nan_to_num(e, nan=np.inf).sum()) for e in estimates)
         error = (float("inf"), float("inf"))
-        if not finished.error and np.isfinite(finished.bodies[1].positions).all():
-            sites = finished.bodies[1]
+        if not finished.error:
+            sites = finished.sites
             if v["body"] not in answers:
                 answers[v["body"]] = exact(v["body"], sites, times[v["body"]])
             error = off(sites.masses, answers[v["body"]], sites.positions[-1])

@@ -90,7 +90,7 @@ def panels(results, whole):
 def _lived(finished):
     """Lived of a finished run; that of a rerun compares its energies with the run's own."""
     text = finished.dump.read_text(encoding="utf-8").rpartition("ITEM: ATOMS")[2]
-    positions, rerun = finished.bodies[1].positions[-1], None
+    positions, rerun = finished.sites.positions[-1], None
     if len(finished.tables) == 3:  # first part, rerun, second part
         run, again = (table["v_total"] for table in finished.tables[:2])
         rerun = float(np.abs(run - again).max())

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import pose
-from ..reference import Cage, Problem, bodies_from_sites, paper_problem, reference_state
+from ..reference import Cage, Problem, paper_problem, reference_state
 from ..report import Row
 from .case import FORMULATIONS, Case, Curve, Finding, Panel
+from .sites import read_sites
 
 ASKED = 2.0
 #: time between changes
@@ -40,11 +40,8 @@ def _distance(problem, time, sites):
 
 
 def errors(change, end, time):
-    """Errors of a run; ``change`` and ``end``: its pose.Sites there; ``time``: of the end."""
-    first = np.zeros(len(change.masses), dtype=int)
-    bodies, state = bodies_from_sites(
-        change.masses, change.positions[0], change.velocities[0], first
-    )
+    """Errors of a run; ``change`` and ``end``: its Sites there; ``time``: of the end."""
+    bodies, state = change.start()
     after = Problem("after the change", bodies, Cage(), state)
     return Errors(_distance(paper_problem(1), time, end), _distance(after, SPAN, end))
 
@@ -115,9 +112,9 @@ def measure(runs, changes=tuple(CHANGES), **options):
     results = {}
     for name, finished in found.items():
         change, formulation, kind = name.split("-")
-        middle = pose.read_bodies(finished.dump.with_suffix(".change"))[1]
+        middle = read_sites(finished.dump.with_suffix(".change"))
         time = SPAN * (3 if CHANGES[change][3] else 2)
-        results[change, formulation, kind] = errors(middle, finished.bodies[1], time)
+        results[change, formulation, kind] = errors(middle, finished.sites, time)
     return results
 
 

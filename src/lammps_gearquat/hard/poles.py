@@ -74,7 +74,7 @@ def measure(runs, poses=tuple(POSES), **options):
     for pose in poses:
         for formulation in FORMULATIONS:
             straight, turned = (found[f"{pose}-{formulation}-{frame}"] for frame in FRAMES)
-            positions = [run.bodies[1].positions for run in (straight, turned)]
+            positions = [run.sites.positions for run in (straight, turned)]
             thermo = straight.thermo
             angle = theta([thermo[name] for name in columns.split()])
             off = difference(*positions, rotation())

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import pose
 from ..decks import examples_folder
 from ..lammps_runner import Interrupted, Job, LammpsError, run
+from .sites import read_sites
 
 
 def tables(log):
@@ -56,9 +56,9 @@ class Finished:
         return self.tables[-1]
 
     @cached_property
-    def bodies(self):
-        """Bodies of the dump: molecule ID -> pose.Sites."""
-        return pose.read_bodies(self.dump)
+    def sites(self):
+        """Sites of the dump."""
+        return read_sites(self.dump)
 
 
 class Runs:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from .. import pose
-from ..reference import FreeField, Problem, State, bodies_from_sites
+from ..analysis import Poses, open_dump
+from ..reference import quaternion as qt
 from ..reference.free_top import FreeTop
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
 
@@ -12,37 +12,23 @@ STEP, STEPS, SAMPLES = 0.01, 10_000_000, 200
 VALUES = {"second": 10, "first": 8}
 
 
-def turned_by(rotation):
-    """Angle (radians) of a small rotation matrix (3, 3), to rounding."""
-    skew = rotation - rotation.T
-    return float(np.sqrt(skew[2, 1] ** 2 + skew[0, 2] ** 2 + skew[1, 0] ** 2) / 2)
+def errors(finished, dt):
+    """Errors of a free top that was dumped, at its frames after the first, whose motion is the exact one.
 
-
-def errors(sites, dt):
-    """Errors of a dumped free top at its frames after the first, whose motion is the exact one.
-
-    ``sites``: pose.Sites.  Returns time, angle (radians) between exact and found orientation,
-    relative error of the energy and of the length of L, each (F - 1,).
+    Returns time, angle (radians) between exact and found orientation, relative error of the energy
+    and of the length of L, each (F - 1,).
     """
-    first = np.zeros(len(sites.masses), dtype=int)
-    bodies, start = bodies_from_sites(sites.masses, sites.positions[0], sites.velocities[0], first)
-    problem = Problem("top", bodies, FreeField(), start)
+    bodies, start = finished.sites.start()
     top = FreeTop(bodies.moments[0], start.omega_body[0], start.q[0])
+    momentum = float(np.linalg.norm((bodies.moments * start.omega_body).astype(float)))
     energy = float((bodies.moments * start.omega_body**2).sum()) / 2
-    length = float(np.sqrt(((bodies.moments * start.omega_body) ** 2).sum()))
-    found = []
-    for step, positions, velocities in zip(sites.step, sites.positions, sites.velocities):
-        q, omega_body = top.at(np.longdouble(dt) * step)
-        exact = problem.site_positions(
-            State(start.centre, start.velocity, q[None], omega_body[None])
-        )
-        turn = pose.superpose(sites.masses, exact.astype(float), positions).rotation
-        motion = pose.rigid_motion(sites.masses, positions, velocities)
-        arms = positions - pose.centre_of_mass(sites.masses, positions)
-        momentum = pose.inertia_tensor(sites.masses, arms) @ motion.omega_space
-        off = abs(np.linalg.norm(momentum) / length - 1)
-        found.append((step * dt, turned_by(turn), abs(motion.rotation / energy - 1), off))
-    return np.array(found).T[:, 1:]
+    found = Poses(open_dump(finished.dump, timestep=dt).atoms).run().results
+    exact = np.array([top.at(np.longdouble(dt) * step)[0] for step in found.step])
+    turned = np.roll(found.q[:, 0], -1, axis=1)  # since the first frame; scalar last
+    angle = qt.angle_between(turned, qt.product(exact, qt.conjugate(start.q))).astype(float)
+    length = np.linalg.norm(found.angular_momentum_space[:, 0], axis=1)
+    off = [np.abs(found.ke_rotation[:, 0] / energy - 1), np.abs(length / momentum - 1)]
+    return np.array([found.time, angle, *off])[:, 1:]
 
 
 def judge(results, asked=ASKED):
@@ -89,7 +75,7 @@ def measure(runs, steps=STEPS, samples=SAMPLES, **options):
         for formulation in FORMULATIONS
     }
     found = runs.many("tumbling", variables)
-    return {name: errors(finished.bodies[1], STEP) for name, finished in found.items()}
+    return {name: errors(finished, STEP) for name, finished in found.items()}
 
 
 def run(runs):
