@@ -3,14 +3,16 @@
 Exactly as the paper ran them: zero start, nothing projected, every formula as it stands (Eqs. 5 to 18
 as corrected), so that |q| wanders off 1 and the matrix of Eq. 8 is not quite a rotation.  Then the
 motion depends on the choice of body axes: A(q) = |q|^2 R + (|q|^2 - 1) 1 holds for no other labelling
-of the principal axes.  ``Frame`` turns the body axes of the oracle's body into any of the 24.
+of the principal axes.  ``turn`` takes the body axes of the reference into any of the 24.
 """
 
 import itertools
 from math import comb
 
 import numpy as np
-import oracle
+
+from lammps_gearquat.reference import paper_problem
+from lammps_gearquat.reference import quaternion as qt
 
 FIRST = np.array([251 / 720, 1, 11 / 12, 1 / 3, 1 / 24])  # Table 1
 SECOND = np.array([3 / 16, 251 / 360, 1, 11 / 18, 1 / 6, 1 / 60])  # Table 2
@@ -62,13 +64,14 @@ class PaperGear:
     """One body moved as the paper did, its body axes chosen by ``turn``."""
 
     def __init__(self, kind, case, h, turn, predicted_momentum=True):
-        self.cage, body = oracle.Cage(), oracle.Body(kind)
-        start = oracle.Problem(body, self.cage).start(case)
-        self.h, self.mass, self.predicted_momentum = h, body.mass, predicted_momentum
-        self.moments, self.sites = np.abs(turn) @ body.moments, body.sites_body @ turn.T
+        problem = paper_problem(case, kind, np.float64)
+        self.cage, bodies, start = problem.field, problem.bodies, problem.start
+        self.h, self.mass, self.predicted_momentum = h, bodies.masses[0], predicted_momentum
+        self.moments, self.sites = np.abs(turn) @ bodies.moments[0], bodies.sites_body @ turn.T
         # space <- old body <- new body
-        self.q = oracle.quaternion_product(start[6:10], quaternion_of(turn))
-        self.centre, self.velocity, self.omega = start[:3], start[3:6], turn @ start[10:13]
+        self.q = qt.product(start.q[0], quaternion_of(turn))
+        self.centre, self.velocity = start.centre[0], start.velocity[0]
+        self.omega = turn @ start.omega_body[0]
 
     def accelerations(self, centre, q, omega):
         """Force (3,) and rate of omega (3,), Eqs. 7, 10 and 12."""
