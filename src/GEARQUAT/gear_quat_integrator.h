@@ -215,12 +215,14 @@ class Integrator {
     return conclude(load, rows, pending);
   }
 
-  void scale_momenta(const Multipliers &factor, double *rows) const
+  /// A rotation about an axis without inertia stays: it has no momentum.
+  void scale_momenta(const RigidBody &body, const Multipliers &factor, double *rows) const
   {
     double change[3];
     for (int i = 0; i < 3; ++i) change[i] = (factor.translation - 1.0) * rows[Scheme::MOMENTUM + i];
     add_first(rows, Scheme::MOMENTUM, change);
-    for (int i = 0; i < 3; ++i) change[i] = (factor.rotation - 1.0) * rows[Scheme::OMEGA + i];
+    for (int i = 0; i < 3; ++i)
+      change[i] = body.inertia[i] > 0.0 ? (factor.rotation - 1.0) * rows[Scheme::OMEGA + i] : 0.0;
     add_first(rows, Scheme::OMEGA, change);
   }
 
@@ -260,15 +262,15 @@ class Integrator {
   double c[MAX_VALUES];
   double error_weight;
 
-  /// What Gauss's principle adds to p' and omega'; nothing without a constraint.
+  /// What Gauss's principle adds to force and torque; nothing without a constraint.
   struct Undamped {
-    double momentum(double rate, double) const { return rate; }
-    double rotation(double rate, double) const { return rate; }
+    double force(double met, double) const { return met; }
+    double torque(double met, double) const { return met; }
   };
   struct Damping {
     Multipliers alpha;
-    double momentum(double rate, double p) const { return rate - alpha.translation * p; }
-    double rotation(double rate, double omega) const { return rate - alpha.rotation * omega; }
+    double force(double met, double p) const { return met - alpha.translation * p; }
+    double torque(double met, double l) const { return met - alpha.rotation * l; }
   };
 
   static void copy(const double *from, int n, double *to)
@@ -295,7 +297,7 @@ class Integrator {
     const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
     double before[3], target[3];
     copy(momentum, 3, before);
-    for (int i = 0; i < 3; ++i) target[i] = h * damper.momentum(load.force[i], before[i]);
+    for (int i = 0; i < 3; ++i) target[i] = h * damper.force(load.force[i], before[i]);
     feed_back<History, 3>(rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
@@ -309,10 +311,12 @@ class Integrator {
   {
     const int quat = scheme.quaternion();
     const double *rates = rows + scheme.width(), *omega_body = rows + Scheme::OMEGA;
-    double before[3], target[4];
+    double before[3], torque[3], target[4];
     copy(omega_body, 3, before);
-    angular_acceleration(body, torque_body, before, target);
-    for (int i = 0; i < 3; ++i) target[i] = h * damper.rotation(target[i], before[i]);
+    for (int i = 0; i < 3; ++i)
+      torque[i] = damper.torque(torque_body[i], body.inertia[i] * before[i]);
+    angular_acceleration(body, torque, before, target);
+    for (int i = 0; i < 3; ++i) target[i] *= h;
     feed_back<History, 3>(rows, rates, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;

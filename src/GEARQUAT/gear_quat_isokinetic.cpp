@@ -121,7 +121,7 @@ void GearQuatIsokinetic::correct(const Integrator &integrator)
   for (int ibody = 0; ibody < n; ++ibody) {
     double *rows = bodies.history(ibody);
     bodies.last[ibody] = integrator.finish(bodies.load[ibody], rows, pending[ibody]);
-    if (rescale) integrator.scale_momenta(factor, rows);
+    if (rescale) integrator.scale_momenta(bodies.body[ibody].rigid, factor, rows);
     bodies.state[ibody] = integrator.body_state(bodies.body[ibody].rigid, rows);
   }
 }

@@ -120,7 +120,7 @@ struct Host {
     const Multipliers factor = scale_factors(mode, target, found);
     for (size_t b = 0; b < bodies.size(); ++b) {
       integrator.finish(loads[b], rows[b].data(), pending[b]);
-      if (rescale) integrator.scale_momenta(factor, rows[b].data());
+      if (rescale) integrator.scale_momenta(bodies[b], factor, rows[b].data());
       states[b] = integrator.body_state(bodies[b], rows[b].data());
     }
   }
@@ -371,4 +371,29 @@ TEST(Isokinetic, ScaledMomentaKeepTheKineticEnergyToRounding)
           EXPECT_GT(largest, 1.0e-6);
       }
     }
+}
+
+TEST(Isokinetic, AnAxisWithoutInertiaIsLeftAlone)
+{
+  // a negative multiplier makes momenta grow, and would make rounding about the axis grow with them
+  const RigidBody rod = {1.0, {0.8, 0.8, 0.0}};
+  BodyState state = {{0.0, 0.0, 0.0}, {0.5, 0.5, -0.5, 0.5}, {0.1, 0.2, 0.0}, {1.0, 0.3, 1.0e-14}};
+  const Scheme scheme = scheme_with(6, 2);
+  const double h = 0.01;
+  const Multipliers alpha = {-0.2, -0.2}, grown = {1.05, 1.05};
+  const Integrator integrator(scheme, h);
+  vector<double> rows(scheme.size());
+  seed(scheme, rod, local_series(rod, state, damped_load(rod, state, Load{}, alpha), h), h, h,
+       rows.data());
+  const double axis = rows[Scheme::OMEGA + 2], across = rows[Scheme::OMEGA];
+  for (int n = 0; n < 1000; ++n) {
+    integrator.predict(rows.data());
+    auto pending = integrator.begin(Load{}, rows.data());
+    for (int pass = 0; pass < scheme.passes; ++pass)
+      integrator.correct_pass(rod, Load{}, alpha, rows.data(), pending);
+    integrator.finish(Load{}, rows.data(), pending);
+  }
+  integrator.scale_momenta(rod, grown, rows.data());
+  EXPECT_NEAR(rows[Scheme::OMEGA + 2], axis, 1.0e-15);
+  EXPECT_NEAR(rows[Scheme::OMEGA] / across, 1.05 * std::exp(2.0), 1.0e-4);
 }
