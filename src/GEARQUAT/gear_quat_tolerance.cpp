@@ -133,7 +133,7 @@ Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody,
 
 bool GearQuatTolerance::choose()
 {
-  const double here[4] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0};
+  double here[4] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0};    // not const: STUBS
   double all[4];
   MPI_Allreduce(here, all, 4, MPI_DOUBLE, MPI_MAX, world);
   errors = StepErrors();
