@@ -22,11 +22,6 @@ FixStyle(gear/quat,FixGearQuat);
 
 #include <memory>
 
-namespace GearQuat {
-class Integrator;
-struct Scheme;
-}    // namespace GearQuat
-
 namespace LAMMPS_NS {
 
 class FixGearQuat : public Fix {
@@ -78,34 +73,20 @@ class FixGearQuat : public Fix {
 
  private:
   // in the order in which they depend on each other; a constructor that ends in an error frees them
-  std::unique_ptr<class GearQuatArguments> args;
+  std::unique_ptr<struct GearQuatArguments> args;
   std::unique_ptr<class GearQuatBodies> bodies;
-  std::unique_ptr<class GearQuatMasks> masks;
-  std::unique_ptr<class GearQuatIsokinetic> isokinetic;    // null without
+  std::unique_ptr<class GearQuatMotion> motion;
+  std::unique_ptr<class GearQuatRespa> respa;
   std::unique_ptr<class GearQuatTable> table;
   std::unique_ptr<class GearQuatSums> sums;
   std::unique_ptr<class GearQuatExtract> extracts;
-  std::unique_ptr<class GearQuatBlowup> blowup;
-  std::unique_ptr<class GearQuatTolerance> tolerance;    // null: the step is LAMMPS' own
 
-  bool started;      // histories are those of the step h
-  bool met_atoms;    // bodies were compared with the atoms in a run before
-  bool reported;     // the scene, once
-  double h;          // step of the histories
-  std::unique_ptr<GearQuat::Integrator> integrator;
-  bool velocities_read;            // between prediction and correction, by others
-  double **f_sum, **torque_sum;    // r-RESPA: of all levels; torques where atoms have some
-  int nmax_sum;
+  bool met_atoms;          // bodies were compared with the atoms in a run before
+  bool reported;           // the scene, once
+  bool velocities_read;    // between prediction and correction, by others
 
-  const GearQuat::Scheme &present_scheme() const;
-  void make_integrator(double);
-  void follow_time_step();
-  void start();
   void begin_step();
   void finish_step(double **, double **);
-  template <bool MASKED> void correct_bodies(double **);
-  void correct_together(double **);
-  template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int);
   void tally_virial(double **);
   void show_bodies();
 };

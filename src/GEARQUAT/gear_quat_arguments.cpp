@@ -189,6 +189,7 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
                scheme.rows, fewest, most, scheme.first() ? "first" : "second");
   if (scheme.passes < 1 || scheme.passes > PASSES_MOST)
     error->all(FLERR, "Fix gear/quat passes: {} is not from 1 to {}", scheme.passes, PASSES_MOST);
+  scheme.trial = tolerance;
   if (tolerance) check_control(lmp, fewest);
   for (const auto *key : {"dtmin", "dtmax"})
     if (!tolerance && seen.count(key))

@@ -18,8 +18,8 @@ BAR = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
 @click.option("--quick", is_flag=True, help="All counts, but times from one short run each.")
 @click.option(
     "--lmp",
-    help="LAMMPS program, not stripped; default: build/tree/lmp of a checkout, the one beside this "
-    "Python, or on the PATH.",
+    help="LAMMPS program, not stripped; default: build/tree/lmp of the checkout that is published to, the "
+    "one beside this Python, or on the PATH.",
 )
 @click.option(
     "--publish",
@@ -49,6 +49,9 @@ def effects(out, quick, lmp, publish_to):
     sizes = runs.QUICK if quick else runs.Sizes()
     out = out.resolve()
     out.mkdir(parents=True, exist_ok=True)
+    tree = publish_to and (publish_to / "build/tree/lmp").resolve()
+    if not lmp and tree and tree.is_file():
+        lmp = tree
     try:
         with tqdm(total=runs.work(sizes), bar_format=BAR, desc="running LAMMPS") as progress:
             results = runs.measure(out, sizes, lmp, progress.update)

@@ -108,7 +108,7 @@ EFFECTS = (
         "thermostat",
         replace(MOVED, words=ISOKINETIC),
         replace(MOVED, words=FIRST),
-        own=r"GearQuatIsokinetic::|FixGearQuat::correct_together",
+        own=r"GearQuatIsokinetic::|GearQuatMotion::correct_together",
     ),
     Effect("compensated sums", replace(MOVED, words="compensate yes"), MOVED),
 )

@@ -145,15 +145,9 @@ def work(sizes):
     return 1 + sizes.rounds * (len(plan.scenes()) + 2)
 
 
-def find_program(lmp=None):
-    """LAMMPS to count in: the one given, or that of a checkout's tree build, or as everywhere."""
-    tree = examples_folder().parent / "build" / "tree" / "lmp"
-    return find_lmp(lmp or (tree if tree.is_file() else None))
-
-
 def measure(folder, sizes=Sizes(), lmp=None, progress=lambda runs: None):
     """Results.  ``folder`` gets decks, profiles and ``logs``."""
-    folder, lmp = Path(folder), find_program(lmp)
+    folder, lmp = Path(folder), find_lmp(lmp)
     count.find_valgrind()
     (folder / "logs").mkdir(parents=True, exist_ok=True)
     results = Results(sizes)

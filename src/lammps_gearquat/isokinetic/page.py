@@ -96,8 +96,8 @@ def water_table(results):
         mean = judge.energy(results, method)
         unit = KILOJOULES / MOLECULES
         value, error = unit * float(mean.value), unit * float(mean.error)
-        kinetic, scatter = judge.kinetic(results, method)
-        row = [TITLES[method], f"{value:.3f} ± {error:.3f}", f"{kinetic:.2f} ± {scatter:.1g}"]
+        kinetic, scatter = (unit * number for number in judge.kinetic(results, method))
+        row = [TITLES[method], f"{value:.3f} ± {error:.3f}", f"{kinetic:.4f} ± {scatter:.1g}"]
         if method == THERMOSTAT:
             row += ["", ""]
         else:
@@ -107,8 +107,8 @@ def water_table(results):
         rows.append(row)
     header = [
         "water",
-        "potential energy, kJ/mol of molecules, ± standard error",
-        "kinetic energy, kcal/mol in all, ± its fluctuation",
+        "potential energy, kJ/mol, ± standard error",
+        "kinetic energy, kJ/mol, ± its fluctuation",
         "energy less the thermostat's, standard errors",
         "g(r) less the thermostat's, largest, standard errors (value)",
     ]

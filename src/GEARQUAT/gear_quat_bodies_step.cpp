@@ -1,0 +1,152 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Body store, in a step: states to ghost bodies, atoms to their places, forces to bodies. */
+
+#include "gear_quat_bodies.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "force.h"
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ---------------------------------------------------------------------- */
+
+void GearQuatBodies::spread_states()
+{
+  if (any_ghosts) {
+    forward = Forward::STATES;
+    comm->forward_comm(fix, STATE_SIZE);
+  }
+  update_frames();
+}
+
+void GearQuatBodies::spread_loads()
+{
+  if (!any_ghosts) return;
+  forward = Forward::LOADS;
+  comm->forward_comm(fix, LOAD_SIZE);
+}
+
+void GearQuatBodies::update_frame(int ibody)
+{
+  const BodyState &s = state[ibody];
+  rotation_matrix(s.q, scheme.norm2(s.q), frame[ibody].axes);
+  to_space(frame[ibody].axes, s.omega_body, frame[ibody].omega_space);
+}
+
+void GearQuatBodies::update_frames()
+{
+  for (const int ibody : tops) update_frame(ibody);
+  for (const int ibody : ghost_tops) update_frame(ibody);
+}
+
+template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void GearQuatBodies::place()
+{
+  const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
+  for (; site != arms; ++site) {
+    const BodyState &s = state[site->body];
+    for (int k = 0; k < 3; ++k) {
+      if (POSITIONS) atom->x[site->atom][k] = WRAPPED ? s.center[k] - site->wrap[k] : s.center[k];
+      if (VELOCITIES) atom->v[site->atom][k] = s.velocity[k];
+    }
+  }
+  for (; site != end; ++site) {
+    const BodyState &s = state[site->body];
+    const Frame &fr = frame[site->body];
+    double arm[3], spin[3];
+    to_space(fr.axes, site->arm_body, arm);
+    if (POSITIONS) {
+      double *x = atom->x[site->atom];
+      for (int k = 0; k < 3; ++k) {
+        x[k] = s.center[k] + arm[k];
+        if (WRAPPED) x[k] -= site->wrap[k];
+      }
+    }
+    if (VELOCITIES) {
+      double *v = atom->v[site->atom];
+      cross3(fr.omega_space, arm, spin);
+      for (int k = 0; k < 3; ++k) v[k] = s.velocity[k] + spin[k];
+    }
+  }
+}
+
+template <bool POSITIONS, bool VELOCITIES> void GearQuatBodies::place()
+{
+  wrapped ? place<POSITIONS, VELOCITIES, true>() : place<POSITIONS, VELOCITIES, false>();
+}
+
+void GearQuatBodies::place_sites(bool velocities)
+{
+  velocities ? place<true, true>() : place<true, false>();
+  if (!extended.sites.empty()) extended.place(state, true, velocities);
+}
+
+void GearQuatBodies::place_velocities()
+{
+  place<false, true>();
+  if (!extended.sites.empty()) extended.place(state, false, true);
+}
+
+void GearQuatBodies::place_extended()
+{
+  if (!extended.sites.empty()) extended.place(state, true, true);
+}
+
+void GearQuatBodies::gather_loads(double **f, double **torque)
+{
+  if (!any_forces) return;
+  for (auto &one : load) one = Load();
+  const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
+  for (; site != arms; ++site)
+    for (int k = 0; k < 3; ++k) load[site->body].force[k] += f[site->atom][k];
+  for (; site != end; ++site) {
+    const double *force = f[site->atom];
+    Load &sum = load[site->body];
+    double arm[3], moment[3];
+    to_space(frame[site->body].axes, site->arm_body, arm);
+    cross3(arm, force, moment);
+    for (int k = 0; k < 3; ++k) {
+      sum.force[k] += force[k];
+      sum.torque_space[k] += moment[k];
+    }
+  }
+  if (!extended.sites.empty()) extended.add_torques(torque, load);
+  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
+
+  const double ftm2v = force->ftm2v;
+  for (int ibody = 0; ibody < nown; ++ibody)
+    for (int k = 0; k < 3; ++k) {
+      load[ibody].force[k] *= ftm2v;
+      load[ibody].torque_space[k] *= ftm2v;
+    }
+}
+
+void GearQuatBodies::constraint_force(const Site &site, double **f, double *arm_space,
+                                      double *constraint) const
+{
+  const Frame &fr = frame[site.body];
+  const Load &l = load[site.body];
+  const RigidBody &rigid = body[site.body].rigid;
+  double torque_body[3], alpha_body[3], alpha_space[3], tangential[3], spin[3], radial[3];
+  to_body(fr.axes, l.torque_space, torque_body);
+  angular_acceleration(rigid, torque_body, state[site.body].omega_body, alpha_body);
+  to_space(fr.axes, alpha_body, alpha_space);
+
+  to_space(fr.axes, site.arm_body, arm_space);
+  cross3(alpha_space, arm_space, tangential);
+  cross3(fr.omega_space, arm_space, spin);
+  cross3(fr.omega_space, spin, radial);
+  const double mass = atom_mass(site.atom) / force->ftm2v;
+  for (int k = 0; k < 3; ++k)
+    constraint[k] = mass * (l.force[k] / rigid.mass + tangential[k] + radial[k]) - f[site.atom][k];
+}
+
+double GearQuatBodies::atom_mass(int i) const
+{
+  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}

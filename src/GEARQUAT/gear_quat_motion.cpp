@@ -1,0 +1,269 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_motion.h"
+
+#include "gear_quat_bootstrap.h"
+
+#include "comm.h"
+#include "error.h"
+#include "update.h"
+
+#include <cmath>
+#include <type_traits>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ---------------------------------------------------------------------- */
+
+GearQuatMotion::GearQuatMotion(LAMMPS *lmp, Fix *fix, const GearQuatArguments &args,
+                               GearQuatBodies &bodies) :
+    Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme),
+    started(false), h(0.0)
+{
+  if (args.control.eps > 0.0)
+    tolerance.reset(new GearQuatTolerance(lmp, fix, args.scheme, args.control, bodies));
+  if (args.isokinetic != Isokinetic::NONE)    // not with tolerance
+    isokinetic.reset(
+        new GearQuatIsokinetic(lmp, bodies, args.scheme, args.isokinetic, args.rescale));
+}
+
+void GearQuatMotion::meet_bodies()
+{
+  masks.reset(new GearQuatMasks(lmp, args.masks, bodies));
+}
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+void GearQuatMotion::init()
+{
+  if (tolerance) tolerance->refuse_scene();
+  if (tolerance && started) tolerance->keep_step(h);
+  follow_time_step();
+}
+
+const Scheme &GearQuatMotion::present_scheme() const
+{
+  return tolerance ? tolerance->scheme() : args.scheme;
+}
+
+void GearQuatMotion::make_integrator(double step)
+{
+  integrator.reset(new Integrator(present_scheme(), step));
+}
+
+void GearQuatMotion::follow_time_step()
+{
+  const double step = update->dt;
+  if (step == 0.0 || !std::isfinite(step)) return;
+  if (integrator && step == h) return;
+  if (tolerance && started && !tolerance->owns_step()) return;    // it is put back in init()
+  const double ratio = step / h;
+  if (integrator)
+    integrator->set_step(step);
+  else
+    make_integrator(step);
+  if (started && ratio != 1.0) {
+    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+      integrator->rescale(bodies.history(ibody), ratio);
+    if (isokinetic) isokinetic->rescale_step(ratio);
+  }
+  h = step;
+}
+
+void GearQuatMotion::impose_masks()
+{
+  if (!masks->impose(bodies) || !started) return;    // only those of a restart file can be others
+  started = false;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: keywords force and torque turn off other components than in "
+                   "the run that wrote the restart file; poses and velocities are kept, the "
+                   "higher derivatives start anew");
+}
+
+void GearQuatMotion::begin_run()
+{
+  if (isokinetic) isokinetic->begin_run(!started);
+}
+
+void GearQuatMotion::start(double **f)
+{
+  blowup.check_loads(h, f);
+  GearQuatBootstrap bootstrap(lmp, fix, bodies, isokinetic.get(),
+                              tolerance ? tolerance->scheme_of_start() : args.scheme, h);
+  bool full = false;
+  if (args.start == GearQuatArguments::Start::ZERO)
+    bootstrap.zero();
+  else
+    full = bootstrap.run();
+  started = true;
+  if (!tolerance) return;
+  tolerance->begin(full);
+  make_integrator(h);
+  if (full) tolerance->shorten_first_step();
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+void GearQuatMotion::predict(double **f)
+{
+  const MotionLimits limits = blowup.limits(h);
+  const auto check = [&](int ibody) {
+    const BodyState &state = bodies.state[ibody];
+    if (!limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
+  };
+  for (const int ibody : bodies.points) {
+    double *rows = bodies.history(ibody);
+    integrator->predict_center(rows);
+    integrator->center_state(bodies.body[ibody].rigid, rows, bodies.state[ibody]);
+    check(ibody);
+  }
+  for (const int ibody : bodies.tops) {
+    double *rows = bodies.history(ibody);
+    integrator->predict(rows);
+    bodies.state[ibody] = integrator->body_state(bodies.body[ibody].rigid, rows);
+    check(ibody);
+  }
+}
+
+void GearQuatMotion::correct(double **f)
+{
+  if (isokinetic)
+    correct_together(f);
+  else
+    masks->any() ? correct_bodies<true>(f) : correct_bodies<false>(f);
+}
+
+/// MASKED: some components of the loads do not act.
+template <bool MASKED> void GearQuatMotion::correct_bodies(double **f)
+{
+  const MotionLimits limits = blowup.limits(h);
+  const auto correct_all = [&](auto changing) {
+    for (const int ibody : bodies.points) {
+      correct_body<MASKED, true, changing>(ibody);
+      if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
+    }
+    for (const int ibody : bodies.tops) {
+      correct_body<MASKED, false, changing>(ibody);
+      if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
+    }
+  };
+  tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
+  begin_fresh(f);
+}
+
+/// POINT: without moments of inertia.  CHANGING: the time step follows the error.
+template <bool MASKED, bool POINT, bool CHANGING> void GearQuatMotion::correct_body(int ibody)
+{
+  double *rows = bodies.history(ibody);
+  const RigidBody &rigid = bodies.body[ibody].rigid;
+  const Load load = MASKED ? bodies.acting(ibody) : bodies.load[ibody];
+  BodyState &state = bodies.state[ibody];
+  const BodyState before = state;
+  Correction &last = bodies.last[ibody];
+  if (CHANGING)
+    last = tolerance->correct(*integrator, ibody, load);
+  else
+    last = POINT ? integrator->correct_center(rigid, load, rows)
+                 : integrator->correct(rigid, load, rows);
+  if (POINT)
+    integrator->center_state(rigid, rows, state);
+  else
+    state = integrator->body_state(rigid, rows);
+  if (MASKED) last.work = work_between(bodies.load[ibody], before, state);
+}
+
+/// Under a constraint of all of them.
+void GearQuatMotion::correct_together(double **f)
+{
+  isokinetic->correct(*integrator);
+  const MotionLimits limits = blowup.limits(h);
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
+}
+
+/// Bodies that came in this step: their histories begin with what is known of them.
+void GearQuatMotion::begin_fresh(double **f)
+{
+  const int known = args.start == GearQuatArguments::Start::ZERO ? 2 : 3;
+  for (const int ibody : bodies.fresh) {
+    blowup.check_load(ibody, h, f);
+    GearQuatBootstrap::seed_body(bodies, ibody, bodies.acting(ibody), present_scheme(), h, known);
+    if (tolerance) tolerance->note_fresh();
+  }
+  bodies.take_in_fresh();
+}
+
+void GearQuatMotion::choose_step()
+{
+  if (tolerance->choose()) make_integrator(h);
+  tolerance->change_step();
+}
+
+/* ----------------------------------------------------------------------
+   outputs
+------------------------------------------------------------------------- */
+
+int GearQuatMotion::elements() const
+{
+  if (tolerance) return GearQuatTolerance::ELEMENTS;
+  return isokinetic ? GearQuatIsokinetic::ELEMENTS : 0;
+}
+
+double GearQuatMotion::element(int n) const
+{
+  return tolerance ? tolerance->element(n) : isokinetic->element(n);
+}
+
+int GearQuatMotion::extensive(int n) const
+{
+  return isokinetic && n == GearQuatIsokinetic::HEAT ? 1 : 0;
+}
+
+const Integrator *GearQuatMotion::present_integrator() const
+{
+  return started ? integrator.get() : nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   restart
+------------------------------------------------------------------------- */
+
+GearQuatMotion::Kept GearQuatMotion::keep() const
+{
+  const Scheme &scheme = args.scheme;
+  return {(double) scheme.first(),
+          (double) scheme.values(),
+          (double) scheme.compensate,
+          (double) started,
+          h,
+          (double) scheme.trial,
+          tolerance ? tolerance->memory() : GearQuatTolerance::Memory(),
+          isokinetic ? isokinetic->keep() : GearQuatIsokinetic::Kept()};
+}
+
+void GearQuatMotion::take(const Kept &kept)
+{
+  const Kept mine = keep();
+  const bool same = kept.formulation == mine.formulation && kept.values == mine.values &&
+      kept.compensate == mine.compensate && kept.variable == mine.variable &&
+      (isokinetic ? isokinetic->take(kept.isokinetic)
+                  : kept.isokinetic.mode == (double) Isokinetic::NONE);
+  started = kept.started != 0.0 && same;
+  if (tolerance && started) tolerance->recall(kept.tolerance);
+  h = kept.h;
+  if (kept.started != 0.0 && !same && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat: the restart file has histories of another formulation, another "
+        "number of values or another isokinetic, or only one of the two runs has a tolerance; "
+        "poses and velocities are kept, the higher derivatives start anew");
+}

@@ -1,0 +1,98 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Motion of all owned bodies: predicted, then corrected with the loads that the store has gathered.
+   Knows which laws hold in this run (masks, isokinetic, tolerance) and decides once a step, not once
+   a body, which of them the loop over bodies has to heed.
+
+   The fix calls, every step: start(), the first time; predict(); [places sites, forces, gathers
+   loads]; correct(); and with a changing step, when all fixes have finished it, choose_step(). */
+
+#ifndef LMP_GEAR_QUAT_MOTION_H
+#define LMP_GEAR_QUAT_MOTION_H
+
+#include "gear_quat_arguments.h"
+#include "gear_quat_blowup.h"
+#include "gear_quat_isokinetic.h"
+#include "gear_quat_tolerance.h"
+
+#include <memory>
+
+namespace LAMMPS_NS {
+
+class GearQuatMotion : protected Pointers {
+ public:
+  /// bodies: empty, with histories of args.scheme.
+  GearQuatMotion(LAMMPS *lmp, Fix *fix, const GearQuatArguments &args, GearQuatBodies &bodies);
+
+  /// The bodies are there: masks are given to them.  Collective.
+  void meet_bodies();
+  /// Before a run; ends it if something else in it stands in the way of a changing step.
+  void init();
+  /// LAMMPS' time step may have changed; histories keep their polynomials.
+  void follow_time_step();
+  /// Histories have to be made anew.
+  void forget() { started = false; }
+  /// Masks of the command hold from here on, whatever a restart file said.  Collective.
+  void impose_masks();
+  /// Poses, velocities and loads are those of the first step.  Collective.
+  void begin_run();
+
+  /// True once bodies have histories.
+  bool has_started() const { return started; }
+  /// Make the histories from poses, velocities and present loads, which f belongs to.  Collective.
+  void start(double **f);
+  void predict(double **f);
+  /// f: forces that the loads were gathered from.
+  void correct(double **f);
+
+  bool changes_step() const { return tolerance != nullptr; }
+  /// With tolerance only, when all fixes have finished the step.  Collective.
+  void choose_step();
+
+  // elements of the fix's vector behind those of GearQuatSums
+
+  int elements() const;
+  double element(int n) const;
+  /// 1 if an element grows with the number of bodies.
+  int extensive(int n) const;
+  /// Null before the start.
+  const GearQuat::Integrator *present_integrator() const;
+
+  /// What a restart file holds beside the histories.
+  struct Kept {
+    double formulation, values, compensate, started, h, variable;
+    GearQuatTolerance::Memory tolerance;
+    GearQuatIsokinetic::Kept isokinetic;
+  };
+  Kept keep() const;
+  /// The histories of the file are about to arrive; where they are of another kind than this
+  /// command's they are made anew, and rank 0 says so.
+  void take(const Kept &kept);
+
+ private:
+  Fix *fix;
+  const GearQuatArguments &args;
+  GearQuatBodies &bodies;
+  GearQuatBlowup blowup;
+  std::unique_ptr<GearQuatMasks> masks;
+  std::unique_ptr<GearQuatIsokinetic> isokinetic;    ///< null without
+  std::unique_ptr<GearQuatTolerance> tolerance;      ///< null: the step is LAMMPS' own
+  std::unique_ptr<GearQuat::Integrator> integrator;
+
+  bool started;    ///< histories are those of the step h
+  double h;        ///< step of the histories
+
+  const GearQuat::Scheme &present_scheme() const;
+  void make_integrator(double step);
+  template <bool MASKED> void correct_bodies(double **f);
+  template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody);
+  void correct_together(double **f);
+  void begin_fresh(double **f);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

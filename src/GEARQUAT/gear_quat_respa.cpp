@@ -1,0 +1,56 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_respa.h"
+
+#include "atom.h"
+#include "library.h"
+#include "memory.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+GearQuatRespa::GearQuatRespa(LAMMPS *lmp) : Pointers(lmp), f(nullptr), torque(nullptr), nmax(0) {}
+
+GearQuatRespa::~GearQuatRespa()
+{
+  memory->destroy(f);
+  memory->destroy(torque);
+}
+
+bool GearQuatRespa::outermost(int level) const
+{
+  return level == *(const int *) lammps_extract_global(lmp, "respa_levels") - 1;
+}
+
+/// Atoms may have been exchanged since the step began.
+void GearQuatRespa::begin()
+{
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(f);
+    memory->destroy(torque);
+    memory->create(f, nmax, 3, "gear/quat:f_sum");
+    if (atom->torque_flag) memory->create(torque, nmax, 3, "gear/quat:torque_sum");
+  }
+  std::fill_n(f[0], 3 * (size_t) nmax, 0.0);
+  if (torque) std::fill_n(torque[0], 3 * (size_t) nmax, 0.0);
+}
+
+void GearQuatRespa::add(int level)
+{
+  if (level == 0) begin();
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int k = 0; k < 3; ++k) f[i][k] += atom->f[i][k];
+  if (!torque) return;
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int k = 0; k < 3; ++k) torque[i][k] += atom->torque[i][k];
+}
+
+double GearQuatRespa::memory_usage() const
+{
+  return (torque ? 6.0 : 3.0) * nmax * sizeof(double);
+}

@@ -1,0 +1,39 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* r-RESPA with one step for all levels: the forces of a step are the sum over the levels, each of
+   which LAMMPS shows in atom->f when that level ends. */
+
+#ifndef LMP_GEAR_QUAT_RESPA_H
+#define LMP_GEAR_QUAT_RESPA_H
+
+#include "pointers.h"
+
+namespace LAMMPS_NS {
+
+class GearQuatRespa : protected Pointers {
+ public:
+  GearQuatRespa(LAMMPS *lmp);
+  ~GearQuatRespa() override;
+
+  /// True for the level that begins and ends a step.
+  bool outermost(int level) const;
+  /// The forces, and torques where atoms have some, of one level; level 0 begins a sum.
+  void add(int level);
+
+  double **forces() const { return f; }
+  double **torques() const { return torque; }    ///< null where atoms have none
+  double memory_usage() const;
+
+ private:
+  double **f, **torque;
+  int nmax;
+
+  void begin();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
