@@ -8,6 +8,7 @@ import datetime
 import os
 import platform
 import re
+import shutil
 from importlib import metadata
 from pathlib import Path
 
@@ -38,14 +39,27 @@ def write_block(page, command, block):
     page.write_text(f"{before}{begin(command)}\n{block}\n{END}{after}", encoding="utf-8")
 
 
-def find(folder, command):
-    """``folder`` as a Path, if it is a checkout whose README has a block for the command."""
+def find(folder, command=None):
+    """``folder`` as a Path, if it is a checkout, and its README has a block for the command, if any."""
     folder = Path(folder).resolve()
     readme = folder / "README.md"
     if not (folder / "src" / "GEARQUAT").is_dir() or not readme.is_file():
         raise PublishError(f"{folder} is not a checkout of GEARQUAT")
-    split_block(readme.read_text(encoding="utf-8"), command)
+    if command:
+        split_block(readme.read_text(encoding="utf-8"), command)
     return folder
+
+
+def write_page(folder, name, text, pictures=()):
+    """A page that one command writes as a whole: doc/<name>.md, its pictures in doc/<name>.
+
+    ``folder``: the checkout; ``pictures``: files, which the text calls <name>/<file>.
+    """
+    doc = find(folder) / "doc"
+    (doc / name).mkdir(parents=True, exist_ok=True)
+    for picture in pictures:
+        shutil.copyfile(picture, doc / name / picture.name)
+    (doc / f"{name}.md").write_text(text, encoding="utf-8")
 
 
 # --- where it was measured ----------------------------------------------------------------------

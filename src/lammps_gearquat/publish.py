@@ -9,7 +9,7 @@ from pathlib import Path
 
 from . import accuracy, report
 from .cases import ACCURACY_END, ACCURACY_STEPS
-from .checkout import END, PublishError, begin, find, provenance, split_block, write_block
+from .checkout import begin, find, provenance, split_block, write_block
 from .claims import EXPLAINED, NOT, REPRODUCED
 
 COMMAND = "gearquat cases --publish"
@@ -24,11 +24,6 @@ FIGURES = {
     "figure09.png": "Fig. 9 of the paper: kinetic energies in test case 3, where the body leaves.",
 }
 GEAR_SECOND, GEAR_FIRST, PAPER_SECOND, _, RIGID = accuracy.METHODS
-
-
-def checkout(folder):
-    """``folder`` as a Path, if it is a checkout."""
-    return find(folder, COMMAND)
 
 
 def split_readme(text):
@@ -125,7 +120,7 @@ def results_text(claims, results, out):
 
 def publish(folder, out, claims, results):
     """Write it all.  ``folder``: the checkout; ``out``: where the run left its logs and figures."""
-    folder, out = checkout(folder), Path(out)
+    folder, out = find(folder, COMMAND), Path(out)
     figures = folder / "doc" / "figures"
     figures.mkdir(parents=True, exist_ok=True)
     for name in FIGURES:

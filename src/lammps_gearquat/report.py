@@ -1,13 +1,12 @@
 """Write and print the tables: claims with their verdicts, Table 7 by threshold, accuracy."""
 
-import csv
 import textwrap
-from dataclasses import dataclass
 
 from . import accuracy
 from . import divergence as dv
 from .cases import ACCURACY_END, ACCURACY_STEPS, ACCURATE, ROWS, STEP
 from .claims import THRESHOLDS, all_claims, parting_times, show_time
+from .tables import markdown_table, write_csv
 
 PAPER_TIMES = {1: "1300", 2: "250-300", 3: "800"}
 NOTE = (
@@ -15,21 +14,6 @@ NOTE = (
     "say which body it ran (consistent: a real rigid body; unrotated: principal moments along the "
     "unrotated axes): both are shown. Every verdict follows from the numbers by the rule beside it."
 )
-
-
-@dataclass(frozen=True)
-class Row:
-    """One demand: what it is about, what is asked, what was measured, and whether that is met."""
-
-    what: str
-    asked: str
-    measured: str
-    met: bool
-
-    @property
-    def verdict(self):
-        """In words."""
-        return "met" if self.met else "not met"
 
 
 def table7(results):
@@ -47,15 +31,6 @@ def table7(results):
         times = tuple(dv.parting_time(*pair, threshold) for threshold in THRESHOLDS)
         lines.append(("fix rigid/nve/small against the second formulation", case, dt, times))
     return lines
-
-
-def _markdown_row(cells):
-    return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
-
-
-def markdown_table(header, rows):
-    lines = [_markdown_row(header), "|" + "---|" * len(header)]
-    return lines + [_markdown_row(row) for row in rows]
 
 
 def table7_markdown(lines):
@@ -103,11 +78,6 @@ def claim_rows(claims):
     return [(c.source, c.paper, c.measured, c.rule, c.verdict, c.why) for c in claims]
 
 
-def _write_csv(path, header, rows):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([header, *rows])
-
-
 def tables_markdown(claims, results):
     """Claims, Table 7 and accuracy as Markdown lines, headings of the second level."""
     text = [NOTE, "", *markdown_table(CLAIM_HEADER, claim_rows(claims))]
@@ -123,11 +93,11 @@ def write_tables(folder, results):
     The CSV files are ``table.csv`` (claims), ``table7.csv`` and ``accuracy.csv``.
     """
     claims = all_claims(results)
-    _write_csv(folder / "table.csv", CLAIM_HEADER, claim_rows(claims))
+    write_csv(folder / "table.csv", CLAIM_HEADER, claim_rows(claims))
     names = [f"apart by {threshold:g}" for threshold in THRESHOLDS]
     times = [(label, case, dt, *found) for label, case, dt, found in table7(results)]
-    _write_csv(folder / "table7.csv", ("row", "case", "step", *names), times)
-    _write_csv(folder / "accuracy.csv", *accuracy_rows(results))
+    write_csv(folder / "table7.csv", ("row", "case", "step", *names), times)
+    write_csv(folder / "accuracy.csv", *accuracy_rows(results))
     text = ["# The paper's claims and what was measured", "", *tables_markdown(claims, results)]
     (folder / "table.md").write_text("\n".join(text) + "\n", encoding="utf-8")
     return claims

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import last_frame, one_after_the_other, restarted, two_molecules, water, water_data
+from scenes import last_frame, one_after_the_other, two_molecules, water, water_data
 
 MODES = ["total", "separate"]
 

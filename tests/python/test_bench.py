@@ -15,7 +15,7 @@ from lammps_gearquat.bench import page as bench_page
 from lammps_gearquat.bench import runs as bench
 from lammps_gearquat import publish as cases
 from lammps_gearquat.bench.runs import FIRST, FROZEN, NVE_SMALL, SECOND, SMALL
-from lammps_gearquat.checkout import PublishError
+from lammps_gearquat.checkout import END, PublishError
 from lammps_gearquat.commands.bench import bench as command
 from lammps_gearquat.lammps_runner import LammpsError
 
@@ -391,7 +391,7 @@ def test_publishing(tmp_path, out):
     with pytest.raises(PublishError, match="is not a checkout of GEARQUAT"):
         bench_page.publish(tmp_path, out, made_up())
     (tmp_path / "src" / "GEARQUAT").mkdir(parents=True)
-    readme = f"{cases.BEGIN}\nnumbers\n{cases.END}\n"
+    readme = f"{cases.BEGIN}\nnumbers\n{END}\n"
     (tmp_path / "README.md").write_text(readme)
     (out / "many_bodies.png").write_bytes(b"picture")
     bench_page.publish(tmp_path, out, made_up())

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat.checkout import PublishError
+from lammps_gearquat.checkout import END, PublishError
 from lammps_gearquat.commands.hard import hard as command
 from lammps_gearquat.hard import figures, page
 from lammps_gearquat.hard.case import Case, Curve, Finding, Panel, at_most
 from lammps_gearquat.hard.cases import CASES
 from lammps_gearquat.hard.runs import tables
-from lammps_gearquat.publish import BEGIN, END
+from lammps_gearquat.publish import BEGIN
 
 
 def made_up(measured=1e-12):
@@ -85,7 +85,7 @@ def test_page_and_table(out):
     rows = list(csv.reader((out / "hard.csv").open(encoding="utf-8")))
     assert rows[0] == list(page.HEADER) and rows[1][-1] == "met"
     page.write(out, {CASE: made_up(1.01e-12)})
-    assert "Of 1 demands 0 are met, 1 missed." in (out / page.PAGE).read_text()
+    assert "Of 1 demands 0 are met, 1 not." in (out / page.PAGE).read_text()
     assert "MISSED an error" in page.console_text({CASE: made_up(1.01e-12)})
 
 

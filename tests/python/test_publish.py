@@ -6,10 +6,11 @@ import pytest
 from click.testing import CliRunner
 
 from lammps_gearquat import accuracy, cases, claims, cli, publish
+from lammps_gearquat.checkout import END, PublishError, find
 from lammps_gearquat.claims import REPRODUCED
 from running import ROOT
 
-FRAME = f"# Title\n\n{publish.BEGIN}\nold numbers\n{publish.END}\n\nThe rest.\n"
+FRAME = f"# Title\n\n{publish.BEGIN}\nold numbers\n{END}\n\nThe rest.\n"
 
 
 @pytest.fixture
@@ -74,13 +75,11 @@ def test_errors_are_measured_against_the_reference(results):
     assert min(min(row) for row in accuracy.position_errors(exact).values()) > 0.5
 
 
-@pytest.mark.parametrize(
-    "text", ["", FRAME.replace(publish.END, ""), FRAME + FRAME, publish.END + publish.BEGIN]
-)
+@pytest.mark.parametrize("text", ["", FRAME.replace(END, ""), FRAME + FRAME, END + publish.BEGIN])
 def test_a_readme_without_its_markers_is_refused(folder, text):
     (folder / "README.md").write_text(text)
-    with pytest.raises(publish.PublishError, match="README.md needs one"):
-        publish.checkout(folder)
+    with pytest.raises(PublishError, match="README.md needs one"):
+        find(folder, publish.COMMAND)
 
 
 def test_another_folder_is_refused_before_anything_runs(tmp_path):
@@ -92,7 +91,7 @@ def test_another_folder_is_refused_before_anything_runs(tmp_path):
 
 def test_what_is_committed():
     """README and results are those of one run, the pictures are small, all is marked."""
-    publish.checkout(ROOT)
+    find(ROOT, publish.COMMAND)
     _, block, after = publish.split_readme((ROOT / "README.md").read_text())
     text = (ROOT / "doc" / "results.md").read_text()
     rows = re.findall(r"^\| .* \|$", block, re.M)

@@ -11,7 +11,7 @@ from scipy import stats
 
 from .runs import GEAR, NVE_SMALL, SECOND, bodies_of
 from .decks import MOLECULES
-from ..report import Row
+from ..tables import Row
 
 #: time in the fix and memory, over fix rigid/nve/small's
 TIME_ASKED, MEMORY_ASKED = 1.0, 1.5

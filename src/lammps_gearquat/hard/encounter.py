@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..report import Row
+from ..tables import Row
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
 
 ASKED = 1e-8

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, floor
-from ..report import Row
+from ..tables import Row
 
 ASKED = 100.0
 EVENTS = {"wall": "collision with a wall", "spin": "spin a hundred times thermal"}

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..reference import Problem, State, integrators
 from ..reference.fields import LennardJonesUnits
-from ..report import Row
+from ..tables import Row
 from ..workprecision.judge import pose_errors
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most
 

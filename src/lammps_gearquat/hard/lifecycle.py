@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..report import Row
+from ..tables import Row
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
 
 STEPS, MIDDLE, EVERY = 2000, 660, 20

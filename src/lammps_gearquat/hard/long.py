@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most
-from ..report import Row
+from ..tables import Row
 
 #: energy sampled about every 10, at every step, and evaluations of the forces
 SAMPLED, EVERY_STEP, EVALUATIONS = 1e-9, 1e-8, 1_000_000

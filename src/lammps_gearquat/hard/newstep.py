@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..reference import Cage, Problem, paper_problem, reference_state
-from ..report import Row
+from ..tables import Row
 from .case import FORMULATIONS, Case, Curve, Finding, Panel
 from .sites import read_sites
 

@@ -1,39 +1,25 @@
 """Demands of the hard cases as CSV, and the page doc/hard_cases.md: every number from Findings."""
 
-import csv
 import shutil
 from pathlib import Path
 
-from .. import publish as cases_of_the_paper
+from .. import tables
 from ..checkout import find, provenance
-from ..report import markdown_table
+from ..tables import markdown_table, verdict, write_csv
 
 COMMAND = "gearquat hard --publish"
 PAGE = "hard_cases.md"
-HEADER = ("case", "what", "asked", "measured", "verdict")
-
-
-def checkout(folder):
-    """``folder`` as a Path, if it is a checkout: this page is all ours, README has no part in it."""
-    return find(folder, cases_of_the_paper.COMMAND)
+HEADER = ("case", *tables.HEADER)
 
 
 def table(findings):
     """Rows below HEADER; ``findings``: Case -> Finding."""
-    return [
-        (case.title, row.what, row.asked, row.measured, "met" if row.met else "missed")
-        for case, finding in findings.items()
-        for row in finding.rows
-    ]
+    return [(case.title, *row.cells) for case, finding in findings.items() for row in finding.rows]
 
 
-def verdict(findings):
-    """One sentence: how many demands are met."""
-    rows = [row for finding in findings.values() for row in finding.rows]
-    missed = sum(not row.met for row in rows)
-    if not missed:
-        return f"All {len(rows)} demands are met."
-    return f"Of {len(rows)} demands {len(rows) - missed} are met, {missed} missed."
+def sentence(findings):
+    """How many demands are met."""
+    return verdict([row for finding in findings.values() for row in finding.rows])
 
 
 def picture_of(case):
@@ -49,7 +35,7 @@ def page_text(out, findings, picture=picture_of):
         "",
         f"Written by `{COMMAND}`; do not edit. {provenance(out)}",
         "",
-        f"{verdict(findings)} Each scene is under `examples/hard`; `gearquat hard` runs all of them, "
+        f"{sentence(findings)} Each scene is under `examples/hard`; `gearquat hard` runs all of them, "
         "`gearquat hard --only KEY` one.",
         "",
         *markdown_table(HEADER, shown),
@@ -68,15 +54,14 @@ def _with_cases(findings):
 
 def write(out, findings):
     """hard.csv and the page, in the folder of the run; pictures are in its ``figures``."""
-    with open(Path(out) / "hard.csv", "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([HEADER, *table(findings)])
+    write_csv(Path(out) / "hard.csv", HEADER, table(findings))
     text = page_text(out, findings, lambda case: f"figures/{case.key}.png")
     (Path(out) / PAGE).write_text(text, encoding="utf-8")
 
 
 def publish(folder, out, findings):
     """Put page and pictures into the checkout ``folder``."""
-    folder = checkout(folder)
+    folder = find(folder)
     for case in findings:
         name = f"{case.key}.png"
         target = folder / "examples" / "hard" / case.key / name
@@ -92,4 +77,4 @@ def console_text(findings):
         for row in finding.rows:
             word = "met   " if row.met else "MISSED"
             lines.append(f"  {word} {row.what}: {row.measured}; asked: {row.asked}")
-    return "\n".join([*lines, "", verdict(findings)])
+    return "\n".join([*lines, "", sentence(findings)])

@@ -10,6 +10,7 @@ import numpy as np
 from scipy import stats
 
 from ..drift.runs import slope
+from ..tables import Row
 from .runs import CONSTRAINTS, THERMOSTAT, DriftRun
 
 #: largest relative change of a rescaled kinetic energy
@@ -129,21 +130,6 @@ def compare_distributions(results, method):
 
 
 # --- what was asked -----------------------------------------------------------------------------
-@dataclass(frozen=True)
-class Row:
-    """One demand."""
-
-    what: str
-    asked: str
-    measured: str
-    met: bool
-
-    @property
-    def verdict(self):
-        """``met`` in a word."""
-        return "met" if self.met else "not met"
-
-
 def rows(results):
     """All demands."""
     found = []

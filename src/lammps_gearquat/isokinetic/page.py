@@ -1,12 +1,9 @@
 """Tables of ``gearquat isokinetic`` as CSV, and the page doc/isokinetic.md: numbers from Results."""
 
-import csv
-import shutil
 from pathlib import Path
 
-from .. import publish as cases
-from ..checkout import find, provenance
-from ..report import markdown_table
+from ..checkout import provenance, write_page
+from ..tables import HEADER, markdown_table, verdict, write_csv
 from . import judge
 from .runs import CONSTRAINTS, MOLECULES, TEMPERATURE, THERMOSTAT, TITLES, DriftRun
 
@@ -17,34 +14,23 @@ KILOJOULES = 4.184
 METHODS = (*CONSTRAINTS, THERMOSTAT)
 
 
-def checkout(folder):
-    """``folder`` as a Path, if it is a checkout: this page is all ours, README has no part in it."""
-    return find(folder, cases.COMMAND)
-
-
 # --- CSV ----------------------------------------------------------------------------------------
-def _write(path, header, rows):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([header, *rows])
-
-
-def write_csv(folder, results):
+def write_tables(folder, results):
     """isokinetic.csv (demands), drift.csv, distribution.csv."""
     folder = Path(folder)
-    rows = [(row.what, row.asked, row.measured, row.verdict) for row in judge.rows(results)]
-    _write(folder / "isokinetic.csv", ("what", "asked", "measured", "verdict"), rows)
+    write_csv(folder / "isokinetic.csv", HEADER, [row.cells for row in judge.rows(results)])
     rows = []
     for run, kept in results.kept.items():
         rate, error = judge.drift_rate(kept)
         head = (run.constraint, run.rescale, run.dt)
         rows.append((*head, rate, error, judge.largest(results, run), abs(kept.balance).max()))
     header = ("constraint", "rescaled", "step", "drift", "standard error", "largest", "balance")
-    _write(folder / "drift.csv", header, rows)
+    write_csv(folder / "drift.csv", header, rows)
     rows = []
     for method in METHODS:
         distances, g = judge.distribution(results, method)
         rows += [(method, *values) for values in zip(distances, g.value, g.error)]
-    _write(folder / "distribution.csv", ("method", "r", "g", "standard error"), rows)
+    write_csv(folder / "distribution.csv", ("method", "r", "g", "standard error"), rows)
 
 
 # --- tables -------------------------------------------------------------------------------------
@@ -116,13 +102,6 @@ def water_table(results):
 
 
 # --- the page -----------------------------------------------------------------------------------
-def _verdict(rows):
-    missed = sum(not row.met for row in rows)
-    if not missed:
-        return f"All {len(rows)} demands are met."
-    return f"Of {len(rows)} demands {len(rows) - missed} are met, {missed} not."
-
-
 def _method(plan):
     """Rules behind the numbers."""
     steps = f"{plan.drift_steps:,}".replace(",", " ")
@@ -146,7 +125,6 @@ def _method(plan):
 def page_text(out, results, picture=PICTURE):
     """The page; ``out``: folder of the run, ``picture``: where the picture is, from the page."""
     rows = judge.rows(results)
-    table = [(row.what, row.asked, row.measured, row.verdict) for row in rows]
     packages = ("lammps-gearquat", "numpy", "scipy")
     lines = [
         "# Constant kinetic energy",
@@ -155,9 +133,9 @@ def page_text(out, results, picture=PICTURE):
         "",
         f"![Kinetic energy over time, its drift by step, pair distribution of water.]({picture})",
         "",
-        _verdict(rows),
+        verdict(rows),
         "",
-        *markdown_table(("what", "asked", "measured", "verdict"), table),
+        *markdown_table(HEADER, [row.cells for row in rows]),
         "",
         "## The kinetic energy",
         "",
@@ -177,14 +155,11 @@ def page_text(out, results, picture=PICTURE):
 
 def write(out, results):
     """Tables as CSV and the page, in the folder of the run."""
-    write_csv(out, results)
+    write_tables(out, results)
     (Path(out) / PAGE).write_text(page_text(out, results), encoding="utf-8")
 
 
 def publish(folder, out, results):
     """Write page and picture into a checkout."""
-    folder, out = checkout(folder), Path(out)
-    (folder / "doc" / FOLDER).mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(out / PICTURE, folder / "doc" / FOLDER / PICTURE)
     text = page_text(out, results, f"{FOLDER}/{PICTURE}")
-    (folder / "doc" / PAGE).write_text(text, encoding="utf-8")
+    write_page(folder, FOLDER, text, [Path(out) / PICTURE])

@@ -1,8 +1,6 @@
 """The pictures in a checkout: doc/pictures, doc/pictures.md, and the film in README."""
 
-import shutil
-
-from ..checkout import find, write_block
+from ..checkout import find, write_block, write_page
 
 COMMAND = "gearquat pictures --publish"
 PICTURES = {
@@ -19,13 +17,10 @@ come from dumps by `lammps_gearquat.analysis` ([how to](analysis.md)); charges o
 def publish(folder, out):
     """Write it all.  ``folder``: the checkout; ``out``: where the pictures are."""
     folder = find(folder, COMMAND)
-    place = folder / "doc" / "pictures"
-    place.mkdir(parents=True, exist_ok=True)
     lines = ["# Pictures for a talk", "", f"Written by `{COMMAND}`; do not edit.", "", HOW]
     for name, text in PICTURES.items():
-        shutil.copyfile(out / name, place / name)
         lines += ["", f"![{text}](pictures/{name})", "", f"*{text}*"]
-    (folder / "doc" / "pictures.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_page(folder, "pictures", "\n".join(lines) + "\n", [out / name for name in PICTURES])
     film = PICTURES["leaving.gif"]
     block = f"![{film}](doc/pictures/leaving.gif)\n\n*{film} More: [pictures](doc/pictures.md).*"
     write_block(folder / "README.md", COMMAND, block)

@@ -1,13 +1,12 @@
 """doc/accuracy_cost.md and README's block: every number on them comes from Results."""
 
-import shutil
 from pathlib import Path
 
 import numpy as np
 
-from ..checkout import find, provenance, write_block
+from ..checkout import find, provenance, write_block, write_page
 from ..divergence import error_order
-from ..report import markdown_table
+from ..tables import markdown_table
 from . import plan, tables
 from .evaluate import RULE
 
@@ -25,11 +24,6 @@ PICTURES = {
 }
 #: errors the sentences speak of
 SAMPLE, FINE = 1e-6, 1e-8
-
-
-def checkout(folder):
-    """``folder`` as a Path, if it is a checkout with a place for the results."""
-    return find(folder, COMMAND)
 
 
 def _milliseconds(cost):
@@ -237,13 +231,9 @@ def readme_block(out, results):
 
 def publish(folder, out, results, drift=None):
     """Write page, pictures and README's block into a checkout."""
-    folder, out = checkout(folder), Path(out)
-    pictures = folder / "doc" / FOLDER
-    pictures.mkdir(parents=True, exist_ok=True)
-    for name in PICTURES:
-        shutil.copyfile(out / "figures" / name, pictures / name)
+    folder, out = find(folder, COMMAND), Path(out)
+    pictures = [out / "figures" / name for name in PICTURES]
     if drift:
-        shutil.copyfile(Path(drift) / "drift.png", pictures / "drift.png")
-    text = page_text(out, results, drift, FOLDER)
-    (folder / "doc" / PAGE).write_text(text, encoding="utf-8")
+        pictures.append(Path(drift) / "drift.png")
+    write_page(folder, FOLDER, page_text(out, results, drift, FOLDER), pictures)
     write_block(folder / "README.md", COMMAND, readme_block(out, results))

@@ -18,8 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ..lammps_runner import LammpsError
 
-class DeckError(RuntimeError):
+
+class DeckError(LammpsError):
     """A deck that cannot be run here."""
 
 
