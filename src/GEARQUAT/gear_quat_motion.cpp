@@ -17,12 +17,17 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
+// a history made with a step so much longer than the next one is not worth keeping: what it has in
+// its higher rows is as wrong as that step was
+
+static constexpr double SHORTER = 0.49;
+
 /* ---------------------------------------------------------------------- */
 
 GearQuatMotion::GearQuatMotion(LAMMPS *lmp, Fix *fix, const GearQuatArguments &args,
                                GearQuatBodies &bodies) :
     Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme),
-    started(false), h(0.0)
+    started(false), h(0.0), h_made(0.0)
 {
   if (args.control.eps > 0.0)
     tolerance.reset(new GearQuatTolerance(lmp, fix, args.scheme, args.control, bodies));
@@ -45,6 +50,20 @@ void GearQuatMotion::init()
   if (tolerance) tolerance->refuse_scene();
   if (tolerance && started) tolerance->keep_step(h);
   follow_time_step();
+  if (started && std::fabs(h) < SHORTER * std::fabs(h_made) && can_start_anew()) {
+    started = false;
+    if (comm->me == 0)
+      utils::logmesg(lmp,
+                     "Fix gear/quat: the time step is less than half of that of the last steps, "
+                     "histories start anew\n");
+  }
+}
+
+/// True if a new start would be of full order, and nothing but the histories would be new.
+bool GearQuatMotion::can_start_anew() const
+{
+  return !tolerance && !isokinetic && args.start == GearQuatArguments::Start::BOOTSTRAP &&
+      GearQuatForces(lmp, fix).reason().empty();
 }
 
 const Scheme &GearQuatMotion::present_scheme() const
@@ -115,6 +134,7 @@ void GearQuatMotion::start(double **f)
 
 void GearQuatMotion::predict(double **f)
 {
+  h_made = h;
   const MotionLimits limits = blowup.limits(h);
   const auto check = [&](int ibody) {
     const BodyState &state = bodies.state[ibody];
@@ -259,7 +279,7 @@ void GearQuatMotion::take(const Kept &kept)
                   : kept.isokinetic.mode == (double) Isokinetic::NONE);
   started = kept.started != 0.0 && same;
   if (tolerance && started) tolerance->recall(kept.tolerance);
-  h = kept.h;
+  h = h_made = kept.h;
   if (kept.started != 0.0 && !same && comm->me == 0)
     error->warning(
         FLERR,

@@ -29,7 +29,8 @@ class GearQuatMotion : protected Pointers {
 
   /// The bodies are there: masks are given to them.  Collective.
   void meet_bodies();
-  /// Before a run; ends it if something else in it stands in the way of a changing step.
+  /// Before a run; ends it if something else in it stands in the way of a changing step.  Histories
+  /// of a much longer step are dropped where a full start is possible.  Collective.
   void init();
   /// LAMMPS' time step may have changed; histories keep their polynomials.
   void follow_time_step();
@@ -82,11 +83,13 @@ class GearQuatMotion : protected Pointers {
   std::unique_ptr<GearQuatTolerance> tolerance;      ///< null: the step is LAMMPS' own
   std::unique_ptr<GearQuat::Integrator> integrator;
 
-  bool started;    ///< histories are those of the step h
-  double h;        ///< step of the histories
+  bool started;     ///< histories are those of the step h
+  double h;         ///< step of the histories
+  double h_made;    ///< step that they were made with
 
   const GearQuat::Scheme &present_scheme() const;
   void make_integrator(double step);
+  bool can_start_anew() const;
   template <bool MASKED> void correct_bodies(double **f);
   template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody);
   void correct_together(double **f);

@@ -225,3 +225,18 @@ def test_unfix_and_back(case1):
     # poses and velocities come back from the atoms, the rest from a new start
     assert end(again) == pytest.approx(end(whole), abs=1e-7)
     assert (end(again) != end(whole)).any()
+
+
+def test_a_step_shorter_than_half_begins_anew(case1):
+    """Not at a half, nor if the step is back before it is used, nor where a start would not be full."""
+    said = "less than half of that of the last steps, histories start anew"
+    shorter = case1.run("run 100\ntimestep 0.008\nrun 100")
+    assert shorter.stdout.count(said) == 1
+    assert shorter.stdout.count("force evaluations") == 2
+    for commands, more in (
+        ("timestep 0.01", {}),
+        ("timestep 0.008\ntimestep 0.02", {}),
+        ("timestep 0.008", {"start": "zero"}),
+        ("fix noise body langevin 1.0 1.0 1.0 4711\ntimestep 0.008", {}),
+    ):
+        assert said not in case1.run(f"run 100\n{commands}\nrun 100", **more).stdout, commands

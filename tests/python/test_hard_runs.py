@@ -136,11 +136,13 @@ def test_collision(runs):
 
 
 def test_new_step(runs, tmp_path):
-    results = newstep.measure(runs, ["double"])
+    changes = ["double", "back"]  # rescaled, and started anew
+    results = newstep.measure(runs, changes)
     assert all(verdicts(newstep.judge(results)))
-    zero = newstep.measure(Runs(tmp_path / "zero"), ["double"], start="zero")
-    for formulation in newstep.FORMULATIONS:  # as if the history were left out at the change
-        results["double", formulation, "kept"] = zero["double", formulation, "anew"]
+    zero = newstep.measure(Runs(tmp_path / "zero"), changes, start="zero")
+    for change in changes:
+        for formulation in newstep.FORMULATIONS:  # as if the history were left out at the change
+            results[change, formulation, "kept"] = zero[change, formulation, "anew"]
     assert not any(verdicts(newstep.judge(results)))
 
 

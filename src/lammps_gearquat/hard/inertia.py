@@ -201,7 +201,9 @@ def measure(runs, bodies=tuple(BODIES), rates=None, **options):
         estimates = [finished.thermo[column] for column in v["more"].split()]
         promise = tuple(float(np.nan_to_num(e, nan=np.inf).sum()) for e in estimates)
         error = (float("inf"), float("inf"))
-        if not finished.error:
+        if finished.error:
+            promise = error  # the fix has ended the run: it has promised nothing
+        else:
             sites = finished.sites
             if v["body"] not in answers:
                 answers[v["body"]] = exact(v["body"], sites, times[v["body"]])

@@ -1,4 +1,4 @@
-"""The time step changes in mid-run: the history is rescaled, and the run goes on as if started anew.
+"""The time step changes in mid-run: the run goes on as if started anew.
 
 Two errors are told, both against the reference in long double: that of the whole run from its start,
 and that made after the last change alone, from the state at that change.
@@ -128,9 +128,8 @@ def run(runs):
     text = (
         f"Test case 1, consistent body, defaults of the fix, a change every {SPAN:g} units of time "
         f"(steps {steps}). What a coarse step leaves in the higher derivatives is as wrong as that "
-        "step was: where the step shrinks by ten, errors that a new start would avoid are made in the "
-        "steps that follow. They are small beside the error the run has by then; `unfix` and `fix` "
-        "again avoid them. The charges of the cage are reconstructed."
+        "step was: where the step becomes shorter than half, the fix starts the histories anew by "
+        "itself; elsewhere it rescales them. The charges of the cage are reconstructed."
     )
     return Finding(judge(results), panels(results), text)
 

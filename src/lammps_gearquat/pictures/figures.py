@@ -40,9 +40,11 @@ def add_body(stage, sites, width=3.0):
         stage.spheres(site, radius, colour)
 
 
-def _title(figure, title, note):
+def _title(figure, title, note, side="right"):
     figure.suptitle(title, x=0.02, ha="left", fontsize=15, fontweight="bold")
-    figure.text(0.98, 0.015, note, ha="right", fontsize=8, color="#666666")
+    figure.text(
+        0.98 if side == "right" else 0.02, 0.015, note, ha=side, fontsize=8, color="#666666"
+    )
 
 
 def _time_bar(figure, axis, end):
@@ -78,7 +80,7 @@ def draw_orbit(path, scene):
         axes[0].set_title("in its cage", loc="left")
         axes[1].set_title("near the sphere that holds it", loc="left")
         _time_bar(figure, axes[1], scene.time[-1])
-        _title(figure, "Test case 1: the body cannot leave", NOTE)
+        _title(figure, "Test case 1: the body cannot leave", NOTE, "left")
         figure.savefig(path)
         plt.close(figure)
 
