@@ -10,6 +10,7 @@ from click.testing import CliRunner
 from lammps_gearquat import series
 from lammps_gearquat.commands.drift import drift as command
 from lammps_gearquat.drift import figures as drift_figures
+from lammps_gearquat.drift import judge, page
 from lammps_gearquat.drift import runs as drift
 from lammps_gearquat.lammps_runner import LammpsError
 
@@ -18,7 +19,7 @@ TIME = np.arange(2001.0)
 
 # --- the slope ----------------------------------------------------------------------------------
 def test_slope_of_a_line():
-    found, uncertainty = drift.slope(TIME, 3e-9 * TIME - 1.0)
+    found, uncertainty = judge.slope(TIME, 3e-9 * TIME - 1.0)
     assert found == pytest.approx(3e-9, rel=1e-6)
     assert found != pytest.approx(1.01 * 3e-9, rel=1e-3)
     assert uncertainty < 1e-6 * found
@@ -26,11 +27,11 @@ def test_slope_of_a_line():
 
 def test_slope_does_not_see_an_oscillation():
     error = np.sin(TIME * 0.7)
-    found, uncertainty = drift.slope(TIME, error)
-    assert abs(found) < drift.SIGNIFICANT * uncertainty
-    found, uncertainty = drift.slope(TIME, error + 1e-3 * TIME)
-    assert found == pytest.approx(1e-3, abs=drift.SIGNIFICANT * uncertainty)
-    assert abs(found) > drift.SIGNIFICANT * uncertainty
+    found, uncertainty = judge.slope(TIME, error)
+    assert abs(found) < judge.SIGNIFICANT * uncertainty
+    found, uncertainty = judge.slope(TIME, error + 1e-3 * TIME)
+    assert found == pytest.approx(1e-3, abs=judge.SIGNIFICANT * uncertainty)
+    assert abs(found) > judge.SIGNIFICANT * uncertainty
 
 
 def correlated(rng, memory):
@@ -54,31 +55,31 @@ def test_uncertainty_is_the_scatter_of_repeated_slopes(memory):
     """With correlated noise too, where the textbook formula is far too sure."""
     rng = np.random.default_rng(20251121)
     series_of_noise = [correlated(rng, memory) for _ in range(200)]
-    found, told = np.array([drift.slope(TIME, noise) for noise in series_of_noise]).T
+    found, told = np.array([judge.slope(TIME, noise) for noise in series_of_noise]).T
     assert np.mean(told) == pytest.approx(np.std(found), rel=0.3)
     naive = np.mean([independent(noise) for noise in series_of_noise])
     assert (naive == pytest.approx(np.std(found), rel=0.3)) == (memory == 0.0)
-    significant = np.abs(found) > drift.SIGNIFICANT * told
+    significant = np.abs(found) > judge.SIGNIFICANT * told
     assert significant.mean() < 0.03
 
 
 def test_too_few_samples_are_refused():
     with pytest.raises(ValueError, match="20 samples or more, not 5"):
-        drift.slope(TIME[:5], TIME[:5])
+        judge.slope(TIME[:5], TIME[:5])
 
 
 # --- one run ------------------------------------------------------------------------------------
 def test_judging_a_series():
     total = -2.0 + 1e-6 * TIME + 1e-4 * np.sin(TIME)
-    found = drift.judge(TIME, total, kinetic=1.0)
+    found = judge.judge(TIME, total, kinetic=1.0)
     assert found.slope == pytest.approx(1e-6, rel=1e-2)
     assert found.largest == pytest.approx(np.abs(total + 2.0).max())
     assert found.largest != pytest.approx(1.01 * np.abs(total + 2.0).max())
     assert found.drifts and not found.spoiled
     assert (np.diff(found.largest_so_far) >= 0).all()
     assert found.largest_so_far[-1] == found.largest
-    assert drift.judge(TIME, total, kinetic=0.01).spoiled
-    stuck = drift.judge(TIME, -2.0 + np.where(TIME > 0, 0.5, 0.0), kinetic=1.0)
+    assert judge.judge(TIME, total, kinetic=0.01).spoiled
+    stuck = judge.judge(TIME, -2.0 + np.where(TIME > 0, 0.5, 0.0), kinetic=1.0)
     assert stuck.drifts, "an energy that was lost at once has no slope, but it did not hold"
 
 
@@ -127,11 +128,11 @@ def made_up(errors, steps=10_000_000):
         for dt, largest in zip(SCENE.dts, values):
             run = drift.Run(SCENE, method, dt, steps)
             if largest is None:
-                results[run] = drift.lost(10.0)
+                results[run] = judge.lost(10.0)
             else:
                 wave = largest * np.sin(TIME) if method in (drift.NO_SQUISH, NVE) else 0.0
                 line = largest * TIME / TIME[-1] if method not in (drift.NO_SQUISH, NVE) else 0.0
-                results[run] = drift.judge(TIME, 7.0 + wave + line, kinetic=7.0)
+                results[run] = judge.judge(TIME, 7.0 + wave + line, kinetic=7.0)
     return results
 
 
@@ -146,7 +147,7 @@ TYPICAL = {
 
 
 def test_verdict_says_who_holds_the_energy():
-    winner, default, best, compensated, verlet, calm, spoiled, gone = drift.verdict(
+    winner, default, best, compensated, verlet, calm, spoiled, gone = page.verdict(
         made_up(TYPICAL), SCENE
     )
     assert winner.endswith("`fix gear/quat` at 0.02; NO_SQUISH at 0.2.")
@@ -165,29 +166,29 @@ def test_verdict_flips_with_the_numbers():
         drift.DEFAULT_COMPENSATED: (1e-2, 1e-4),
         HIGH: (1e-2, 1e-4),
     }
-    winner, default, *_, gone = drift.verdict(made_up(flipped), SCENE)
+    winner, default, *_, gone = page.verdict(made_up(flipped), SCENE)
     assert winner.endswith("`fix gear/quat` at 0.2; NO_SQUISH at 0.02.")
     assert default.endswith("better at 0.2 (100 times); worse at 0.02 (100 times).")
     assert gone == "Numbers no longer finite: none."
     equal = flipped | {drift.NO_SQUISH: (1e-2, 1e-4), NVE: (1.01e-2, 1e-4)}
-    assert drift.verdict(made_up(equal), SCENE)[0].endswith("each step: neither at 0.02, 0.2.")
+    assert page.verdict(made_up(equal), SCENE)[0].endswith("each step: neither at 0.02, 0.2.")
 
 
 def test_only_methods_that_were_run_are_compared():
     few = {method: TYPICAL[method] for method in (drift.DEFAULT, drift.NO_SQUISH)}
-    sentences = drift.verdict(made_up(few), SCENE)
+    sentences = page.verdict(made_up(few), SCENE)
     assert not any("compensated" in sentence or "rigid/small" in sentence for sentence in sentences)
 
 
 def test_account_holds_every_number(tmp_path):
     results = made_up(TYPICAL)
-    text = "\n".join(drift.markdown(results))
+    text = "\n".join(page.markdown(results))
     assert "## Energy over 10 000 000 steps" in text
     assert f"| {drift.DEFAULT.label} | 1.0e-07 | lost, t = 10 |" in text
     assert text.count("| fix rigid/nve/small |") == 2
     slope = replace(results[drift.Run(SCENE, HIGH, 0.02, 10_000_000)], slope=1.01e-12)
-    assert drift.show_slope(slope).startswith("1.0e-12 ±")
-    drift.write_csv(tmp_path / "drift.csv", results)
+    assert page.show_slope(slope).startswith("1.0e-12 ±")
+    page.write(tmp_path, results)
     rows = list(csv.DictReader((tmp_path / "drift.csv").open()))
     assert len(rows) == 12
     assert rows[0]["method"] == drift.DEFAULT.label and float(rows[0]["largest"]) == 1e-7
@@ -232,6 +233,7 @@ def test_small_run(tmp_path):
     assert found[drift.NO_SQUISH, 1.0].lost is None
     errors = [found[method, 0.02].largest for method in (HIGH, drift.DEFAULT, drift.NO_SQUISH)]
     assert errors == sorted(errors) and errors[0] < 1e-9 < 1e-6 < errors[2]
+    page.write(tmp_path, results)
     assert "NO_SQUISH at 1" in (tmp_path / "drift.md").read_text()
     assert (tmp_path / "drift.csv").is_file()
 

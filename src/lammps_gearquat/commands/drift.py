@@ -23,12 +23,13 @@ def drift(out, steps, jobs, lmp):
     settings of fix gear/quat and with LAMMPS' own rigid fixes.  Leaves drift.csv, drift.png,
     drift.md and the logs.
     """
-    from ..drift import figures
+    from ..drift import figures, page
     from ..drift import runs as long_runs
 
     with measurement(out) as out:
         with shares() as progress:
             results = long_runs.measure(out, steps, lmp, jobs, progress)
+        page.write(out, results)
         figures.draw(out / "drift.png", results)
     click.echo((out / "drift.md").read_text(encoding="utf-8"))
     click.echo(f"Table, picture and logs are in {out}")

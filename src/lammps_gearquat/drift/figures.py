@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from .runs import SIGNIFICANT  # noqa: E402
+from .judge import SIGNIFICANT  # noqa: E402
 from ..figures import STYLE  # noqa: E402
 
 #: kind of method -> colours from light to dark, marker

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..drift.runs import slope
+from ..drift.judge import slope
 from ..tables import Row
 from .case import Case, Curve, Finding, Panel
 

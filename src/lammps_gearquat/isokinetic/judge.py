@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from ..drift.runs import slope
+from ..drift.judge import slope
 from ..tables import Row
 from .runs import CONSTRAINTS, THERMOSTAT, DriftRun
 
