@@ -6,7 +6,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
 
-from .figures import COLOUR, STYLE  # noqa: E402
+from .style import COLOUR, STYLE  # noqa: E402
 
 LABELS = {"ke_translation": "translation", "ke_rotation": "rotation", "potential": "potential"}
 AXES = ("#0072b2", "#d55e00", "#009e73")

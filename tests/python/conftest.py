@@ -3,7 +3,8 @@
 import pytest
 from synthetic import made_up
 
-from lammps_gearquat import cases, series
+from lammps_gearquat import series
+from lammps_gearquat.cases import runs as cases
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from lammps_gearquat.bench import figures as bench_figures
 from lammps_gearquat.bench import judge
 from lammps_gearquat.bench import page as bench_page
 from lammps_gearquat.bench import runs as bench
-from lammps_gearquat import publish as cases
+from lammps_gearquat.cases import page as cases
 from lammps_gearquat.bench.runs import FIRST, FROZEN, NVE_SMALL, SECOND, SMALL
 from lammps_gearquat.checkout import END, PublishError
 from lammps_gearquat.commands.bench import bench as command

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from synthetic import PARTS, made_up
 
-from lammps_gearquat import cases, claims, figures, report
-from lammps_gearquat.claims import EXPLAINED, NOT, REPRODUCED
+from lammps_gearquat.cases import claims, figures
+from lammps_gearquat.cases import runs as cases
+from lammps_gearquat.cases import tables
+from lammps_gearquat.cases.claims import EXPLAINED, NOT, REPRODUCED
 
 
 def spoil(results, change, **chosen):
@@ -142,7 +144,7 @@ def test_step_independence(results):
 
 
 def test_tables_are_written(results, tmp_path):
-    found = report.write_tables(tmp_path, results)
+    found = tables.write_tables(tmp_path, results)
     with open(tmp_path / "table.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [row["verdict"] for row in rows] == [claim.verdict for claim in found]
@@ -152,7 +154,7 @@ def test_tables_are_written(results, tmp_path):
         times = list(csv.DictReader(file))
     assert len(times) == (len(cases.ROWS) + 1) * 3
     assert float(times[0]["apart by 0.1"]) == PARTS[1]
-    shown = report.console_text(found, results)
+    shown = tables.console_text(found, results)
     assert all(claim.verdict.upper() in shown for claim in found)
 
 

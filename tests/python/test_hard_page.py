@@ -13,7 +13,7 @@ from lammps_gearquat.hard import figures, page
 from lammps_gearquat.hard.case import Case, Curve, Finding, Panel, at_most
 from lammps_gearquat.hard.cases import CASES
 from lammps_gearquat.hard.runs import tables
-from lammps_gearquat.publish import BEGIN
+from lammps_gearquat.cases.page import BEGIN
 
 
 def made_up(measured=1e-12):

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat import accuracy, decks
+from lammps_gearquat import decks
+from lammps_gearquat.cases import accuracy
 from lammps_gearquat.commands.workprecision import SCENES, workprecision
 from lammps_gearquat.workprecision import conduct, measure, plan, worker
 from lammps_gearquat.workprecision.references import reference_of

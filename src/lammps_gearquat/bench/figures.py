@@ -9,7 +9,7 @@ import numpy as np  # noqa: E402
 
 from . import judge  # noqa: E402
 from .runs import COMPARED, GEAR, NVE_SMALL, SMALL, bodies_of  # noqa: E402
-from ..figures import COLOUR, STYLE  # noqa: E402
+from ..style import COLOUR, STYLE  # noqa: E402
 
 #: method -> colour and marker
 LOOK = {

@@ -17,15 +17,15 @@ def cases(out, full, jobs, lmp, publish_to):
     Leaves table.md, table.csv, table7.csv, accuracy.csv, the paper's Figures 2 to 13 as PNG
     (figures) and every series as CSV (series).
     """
-    from .. import figures, publish, report
-    from ..cases import run_cases
+    from ..cases import figures, page, tables
+    from ..cases.runs import run_cases
 
-    with measurement(out, publish_to, publish.COMMAND) as out:
+    with measurement(out, publish_to, page.COMMAND) as out:
         with shares() as progress:
             results = run_cases(out, full, lmp, jobs, progress)
-        claims = report.write_tables(out, results)
+        claims = tables.write_tables(out, results)
         figures.draw_all(out / "figures", results)
     if publish_to:
-        publish.publish(publish_to, out, claims, results)
-    click.echo(report.console_text(claims, results))
+        page.publish(publish_to, out, claims, results)
+    click.echo(tables.console_text(claims, results))
     click.echo(f"\nTables, figures and series are in {out}")

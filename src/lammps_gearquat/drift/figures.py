@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from .judge import SIGNIFICANT  # noqa: E402
-from ..figures import STYLE  # noqa: E402
+from ..style import STYLE  # noqa: E402
 
 #: kind of method -> colours from light to dark, marker
 KINDS = {

@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 from . import plan  # noqa: E402
-from ..figures import COLOUR, STYLE  # noqa: E402
+from ..style import COLOUR, STYLE  # noqa: E402
 
 
 def _bars(axis, below, more, title, unit):

@@ -17,7 +17,7 @@ FORMULATIONS = ("second", "first")
 
 @dataclass(frozen=True)
 class Curve:
-    """One line of a panel: ``x``, ``y`` (n,); ``colour`` is a name of figures.COLOUR.
+    """One line of a panel: ``x``, ``y`` (n,); ``colour`` is a name of style.COLOUR.
 
     ``line`` ("" for none) and ``marker`` are matplotlib's.
     """

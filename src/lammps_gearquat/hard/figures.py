@@ -6,7 +6,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
 
-from ..figures import COLOUR, STYLE  # noqa: E402
+from ..style import COLOUR, STYLE  # noqa: E402
 
 
 def _panel(axis, panel):

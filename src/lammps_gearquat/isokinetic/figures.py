@@ -9,7 +9,7 @@ import numpy as np  # noqa: E402
 
 from . import judge  # noqa: E402
 from .runs import CONSTRAINTS, THERMOSTAT, TITLES, DriftRun  # noqa: E402
-from ..figures import STYLE  # noqa: E402
+from ..style import STYLE  # noqa: E402
 
 COLOUR = {"total": "#d55e00", "separate": "#0072b2", THERMOSTAT: "#222222"}
 

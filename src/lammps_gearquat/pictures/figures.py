@@ -7,8 +7,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from ..claims import CAGE, CAGE_CHARGES, CAGE_SPACING  # noqa: E402
-from ..figures import COLOUR, RECONSTRUCTED, STYLE  # noqa: E402
+from ..cases.claims import CAGE, CAGE_CHARGES, CAGE_SPACING  # noqa: E402
+from ..style import COLOUR, RECONSTRUCTED, STYLE  # noqa: E402
 from .view import Camera, Stage  # noqa: E402
 
 SLIDE = (9.6, 5.4)

@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from ..figures import STYLE  # noqa: E402
+from ..style import STYLE  # noqa: E402
 from . import evaluate  # noqa: E402
 from .cost import NORMS  # noqa: E402
 

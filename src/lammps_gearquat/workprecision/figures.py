@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib import ticker  # noqa: E402
 
-from ..figures import RECONSTRUCTED, STYLE  # noqa: E402
+from ..style import RECONSTRUCTED, STYLE  # noqa: E402
 from . import plan, tables  # noqa: E402
 from .evaluate import RULE, fitted_order  # noqa: E402
 from .results import facts  # noqa: E402

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import divergence as dv
-from .cases import (
+from .. import divergence as dv
+from .runs import (
     ACCURATE,
     AS_PRINTED,
     FINE_STEP,

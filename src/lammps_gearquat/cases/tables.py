@@ -2,11 +2,11 @@
 
 import textwrap
 
+from .. import divergence as dv
+from ..tables import markdown_table, write_csv
 from . import accuracy
-from . import divergence as dv
-from .cases import ACCURACY_END, ACCURACY_STEPS, ACCURATE, ROWS, STEP
 from .claims import THRESHOLDS, all_claims, parting_times, show_time
-from .tables import markdown_table, write_csv
+from .runs import ACCURACY_END, ACCURACY_STEPS, ACCURATE, ROWS, STEP
 
 PAPER_TIMES = {1: "1300", 2: "250-300", 3: "800"}
 NOTE = (

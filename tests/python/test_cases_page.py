@@ -5,12 +5,15 @@ import re
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat import accuracy, cases, claims, cli, publish
+from lammps_gearquat import cli
+from lammps_gearquat.cases import accuracy, claims
+from lammps_gearquat.cases import page
+from lammps_gearquat.cases import runs as cases
 from lammps_gearquat.checkout import END, PublishError, find
-from lammps_gearquat.claims import REPRODUCED
+from lammps_gearquat.cases.claims import REPRODUCED
 from running import ROOT
 
-FRAME = f"# Title\n\n{publish.BEGIN}\nold numbers\n{END}\n\nThe rest.\n"
+FRAME = f"# Title\n\n{page.BEGIN}\nold numbers\n{END}\n\nThe rest.\n"
 
 
 @pytest.fixture
@@ -27,7 +30,7 @@ def out(tmp_path):
     path = tmp_path / "out"
     for name in ("figures", "logs"):
         (path / name).mkdir(parents=True)
-    for name in publish.FIGURES:
+    for name in page.FIGURES:
         (path / "figures" / name).write_bytes(name.encode())
     (path / "logs" / "log.one").write_text("LAMMPS (1 Jan 2030)\nrun\n")
     return path
@@ -35,32 +38,32 @@ def out(tmp_path):
 
 def test_everything_is_written(folder, out, results):
     found = claims.all_claims(results)
-    publish.publish(folder, out, found, results)
+    page.publish(folder, out, found, results)
     text = (folder / "doc" / "results.md").read_text()
     for words in ("LAMMPS (1 Jan 2030)", "do not edit", "reconstructed", "Table 7", "µs a step"):
         assert words in text
     assert all(claim.paper in text and claim.rule in text for claim in found)
     assert text.count("reproduced |") >= sum(claim.verdict == REPRODUCED for claim in found)
-    for name in publish.FIGURES:
+    for name in page.FIGURES:
         assert (folder / "doc" / "figures" / name).read_bytes() == name.encode()
         assert f"(figures/{name})" in text
     readme = (folder / "README.md").read_text()
     assert readme.startswith("# Title\n") and readme.endswith("The rest.\n")
     assert "old numbers" not in readme and "reconstructed" in readme
-    publish.publish(folder, out, found, results)  # and again: nothing piles up
+    page.publish(folder, out, found, results)  # and again: nothing piles up
     assert (folder / "README.md").read_text() == readme
 
 
 def test_sentences_follow_the_numbers(results, monkeypatch):
     errors = {label: [1e-3] * 4 for label in accuracy.METHODS}
-    errors[publish.GEAR_FIRST], errors[publish.GEAR_SECOND] = [1e-5] * 4, [1e-6] * 4
+    errors[page.GEAR_FIRST], errors[page.GEAR_SECOND] = [1e-5] * 4, [1e-6] * 4
     monkeypatch.setattr(accuracy, "position_errors", lambda _: errors)
     monkeypatch.setattr(accuracy, "energy_errors", lambda _: errors)
-    sentence = publish.accuracy_sentence(results)
+    sentence = page.accuracy_sentence(results)
     assert "100 times closer" in sentence and "the second 1 000 times" in sentence
-    assert "worse" not in publish.energy_sentence(results)
-    errors[publish.GEAR_SECOND][3] = 1.0
-    assert "worse at 1: Gear's method is not symplectic" in publish.energy_sentence(results)
+    assert "worse" not in page.energy_sentence(results)
+    errors[page.GEAR_SECOND][3] = 1.0
+    assert "worse at 1: Gear's method is not symplectic" in page.energy_sentence(results)
 
 
 def test_errors_are_measured_against_the_reference(results):
@@ -75,11 +78,11 @@ def test_errors_are_measured_against_the_reference(results):
     assert min(min(row) for row in accuracy.position_errors(exact).values()) > 0.5
 
 
-@pytest.mark.parametrize("text", ["", FRAME.replace(END, ""), FRAME + FRAME, END + publish.BEGIN])
+@pytest.mark.parametrize("text", ["", FRAME.replace(END, ""), FRAME + FRAME, END + page.BEGIN])
 def test_a_readme_without_its_markers_is_refused(folder, text):
     (folder / "README.md").write_text(text)
     with pytest.raises(PublishError, match="README.md needs one"):
-        find(folder, publish.COMMAND)
+        find(folder, page.COMMAND)
 
 
 def test_another_folder_is_refused_before_anything_runs(tmp_path):
@@ -91,8 +94,8 @@ def test_another_folder_is_refused_before_anything_runs(tmp_path):
 
 def test_what_is_committed():
     """README and results are those of one run, the pictures are small, all is marked."""
-    find(ROOT, publish.COMMAND)
-    _, block, after = publish.split_readme((ROOT / "README.md").read_text())
+    find(ROOT, page.COMMAND)
+    _, block, after = page.split_readme((ROOT / "README.md").read_text())
     text = (ROOT / "doc" / "results.md").read_text()
     rows = re.findall(r"^\| .* \|$", block, re.M)
     assert len(rows) == 2 * (1 + len(accuracy.METHODS))
@@ -104,5 +107,5 @@ def test_what_is_committed():
     prose = re.sub(r"<!-- begin: .*?<!-- end -->|^    .*?$", "", after, flags=re.S | re.M)
     assert "## Two commands" in prose and not re.search(r"\d(\.\d+)?e[-+]\d", prose)
     sizes = {path.name: path.stat().st_size for path in (ROOT / "doc" / "figures").iterdir()}
-    assert set(sizes) == set(publish.FIGURES)
+    assert set(sizes) == set(page.FIGURES)
     assert sizes["overview.png"] < 200_000 and sum(sizes.values()) < 1_000_000

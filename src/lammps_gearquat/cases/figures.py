@@ -11,9 +11,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
+from .. import divergence as dv  # noqa: E402
+from ..style import COLOUR, RECONSTRUCTED, STYLE  # noqa: E402
 from . import accuracy  # noqa: E402
-from . import divergence as dv  # noqa: E402
-from .cases import (  # noqa: E402
+from .claims import CAGE, CAGE_CHARGES, CAGE_SPACING  # noqa: E402
+from .runs import (  # noqa: E402
     ACCURACY_END,
     ACCURACY_STEPS,
     ACCURATE,
@@ -23,34 +25,7 @@ from .cases import (  # noqa: E402
     ROWS,
     STEP,
 )
-from .claims import CAGE, CAGE_CHARGES, CAGE_SPACING  # noqa: E402
 
-COLOUR = {
-    "potential": "#0072b2",
-    "kinetic": "#d55e00",
-    "total": "#222222",
-    "translation": "#009e73",
-    "rotation": "#cc79a7",
-    "first": "#d55e00",
-    "second": "#0072b2",
-    "rigid": "#888888",
-    "x": "#0072b2",
-    "y": "#d55e00",
-    "z": "#009e73",
-}
-STYLE = {
-    "figure.dpi": 110,
-    "savefig.dpi": 150,
-    "font.size": 10,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.alpha": 0.25,
-    "lines.linewidth": 0.9,
-    "legend.frameon": False,
-}
-
-RECONSTRUCTED = "charges of the cage: reconstructed"
 AS_PAPER = f"zero start and nothing projected, as the paper ran; {RECONSTRUCTED}"
 
 ENERGIES = {"potential": "potential", "kinetic": "kinetic", "total": "total"}

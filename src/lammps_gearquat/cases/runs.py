@@ -8,8 +8,8 @@ once per unit of time.
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import decks, series
-from .lammps_runner import Job, run_many
+from .. import decks, series
+from ..lammps_runner import Job, run_many
 
 FORMULATIONS = ("first", "second")
 

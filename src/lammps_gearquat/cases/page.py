@@ -7,10 +7,10 @@ import shutil
 from collections import Counter
 from pathlib import Path
 
-from . import accuracy, report
-from .cases import ACCURACY_END, ACCURACY_STEPS
-from .checkout import begin, find, provenance, split_block, write_block
+from ..checkout import begin, find, provenance, split_block, write_block
+from . import accuracy, tables
 from .claims import EXPLAINED, NOT, REPRODUCED
+from .runs import ACCURACY_END, ACCURACY_STEPS
 
 COMMAND = "gearquat cases --publish"
 BEGIN = begin(COMMAND)
@@ -80,7 +80,7 @@ def readme_block(claims, results, out):
         f"*{FIGURES['overview.png']} The charges of the cage are reconstructed: the paper does not "
         "print them.*",
         "",
-        *report.accuracy_markdown(results),
+        *tables.accuracy_markdown(results),
         "",
         f"Test case 1, consistent body; its trajectory to t = {ACCURACY_END:g} is known from "
         "extended precision. One step is one evaluation of the forces in every row. "
@@ -106,7 +106,7 @@ def results_text(claims, results, out):
         "",
         counted(claims),
         "",
-        *report.tables_markdown(claims, results),
+        *tables.tables_markdown(claims, results),
         "",
         "## Figures",
         "",

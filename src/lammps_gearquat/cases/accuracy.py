@@ -8,9 +8,9 @@ import functools
 
 import numpy as np
 
-from . import divergence as dv
-from .cases import ACCURACY_END, ACCURACY_STEPS, ACCURATE, COARSE_STEPS, STEP
-from .reference import paper_problem, reference_state
+from .. import divergence as dv
+from ..reference import paper_problem, reference_state
+from .runs import ACCURACY_END, ACCURACY_STEPS, ACCURATE, COARSE_STEPS, STEP
 
 
 @functools.cache

@@ -1,0 +1,28 @@
+"""How all pictures look: colours, matplotlib's settings, and what is said of the cage."""
+
+COLOUR = {
+    "potential": "#0072b2",
+    "kinetic": "#d55e00",
+    "total": "#222222",
+    "translation": "#009e73",
+    "rotation": "#cc79a7",
+    "first": "#d55e00",
+    "second": "#0072b2",
+    "rigid": "#888888",
+    "x": "#0072b2",
+    "y": "#d55e00",
+    "z": "#009e73",
+}
+STYLE = {
+    "figure.dpi": 110,
+    "savefig.dpi": 150,
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.alpha": 0.25,
+    "lines.linewidth": 0.9,
+    "legend.frameon": False,
+}
+
+RECONSTRUCTED = "charges of the cage: reconstructed"
