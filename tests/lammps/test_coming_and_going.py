@@ -223,18 +223,18 @@ fix field all addforce v_fx v_fy v_fz
 timestep {dt}
 {commands}
 dump poses all custom 1 poses.dump id xu yu zu vx vy vz
-dump_modify poses sort id format float %.17g
+dump_modify poses sort id time yes format float %.17g
 run {steps}
 """
 
 
-def insertion_error(lmp, dt, words):
-    """Of a molecule that is inserted and then moves in a field for two units of time.
+def insertion_error(lmp, dt, words, steps=None):
+    """Of a molecule that is inserted and then moves in a field for about two units of time.
 
     The exact motion is that of a body which has it from the start, with steps of 0.01.
     """
     (lmp.folder / "molecule.spce").write_text(SPCE)
-    steps = round(2.0 / dt)
+    steps = steps or round(2.0 / dt)
     insert = (
         "region here block 1 2 1 2 1 2\n"
         "fix in all deposit 1 0 1 4711 region here near 0.5 mol spce rigid move "
@@ -243,9 +243,10 @@ def insertion_error(lmp, dt, words):
     deck = FIELD.format(atoms="", words=words, dt=dt, commands=insert, steps=steps + 1)
     result = lmp.run(deck)
     assert result.returncode == 0, result.output
-    frames = (lmp.folder / "poses.dump").read_text().split("ITEM: TIMESTEP")[1:]
+    frames = (lmp.folder / "poses.dump").read_text().split("ITEM: TIME\n")[1:]
+    begin, finish = (float(frames[k].split(None, 1)[0]) for k in (1, -1))
     start, end = (
-        np.loadtxt(frame.split("ITEM: ATOMS")[1].splitlines()[1:])
+        np.loadtxt(frame.split("ITEM: ATOMS")[1].splitlines()[1:4])
         for frame in (frames[1], frames[-1])
     )
     assert len(start) == 3
@@ -254,7 +255,8 @@ def insertion_error(lmp, dt, words):
         for i, (x, y, z) in enumerate(start[:, 1:4])
     ]
     atoms.append("set atom 1*3 mol 1\nvelocity all set 0.3 -0.2 0.4")
-    deck = FIELD.format(atoms="\n".join(atoms), words="", dt=0.01, commands="", steps=200)
+    step = (finish - begin) / 200
+    deck = FIELD.format(atoms="\n".join(atoms), words="", dt=step, commands="", steps=200)
     result = lmp.run(deck)
     assert result.returncode == 0, result.output
     return np.abs(end - last_frame(lmp.folder / "poses.dump"))[:, 1:].max()
@@ -268,6 +270,17 @@ def test_order_of_the_start_of_an_inserted_body(lmp_tree, formulation, start, or
     errors = [insertion_error(lmp_tree, dt, words) for dt in (0.04, 0.02, 0.01)]
     slopes = np.log2(np.divide(errors[:-1], errors[1:]))
     assert slopes == pytest.approx([order, order], abs=0.35)
+
+
+@pytest.mark.parametrize("formulation", ["first", "second"])
+def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
+    """But for the first step of the inserted body, which is as long as it was before."""
+
+    def error(dt, eps):
+        return insertion_error(lmp_tree, dt, f"formulation {formulation} tolerance {eps}", 300)
+
+    fine = error(0.001, 1e-10)
+    assert fine < 1e-6 and error(0.001, 1e-6) > 100 * fine and error(0.04, 1e-10) > 100 * fine
 
 
 def test_a_restart_with_an_inserted_body(lmp_tree):

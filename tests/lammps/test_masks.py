@@ -34,7 +34,7 @@ fix move all gear/quat {bodystyle} formulation {formulation} {masks}
 fix_modify move energy yes
 timestep {dt}
 {style}
-thermo_style custom step ke pe etotal f_move[1] f_move[2]
+thermo_style custom step time ke pe etotal f_move[1] f_move[2]
 thermo_modify norm no format float %.17g
 thermo {steps}
 dump poses all custom {steps} {name}.dump id xu yu zu vx vy vz
@@ -91,6 +91,15 @@ def test_a_held_body_spins_as_a_pendulum(lmp_tree, formulation):
     assert energy[-1] == pytest.approx(energy[0], abs=1e-12)
     free, _ = rotor(lmp_tree, "free", formulation, masks="")
     assert np.abs(free - exact).max() > 0.1
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
+    end, result = rotor(lmp_tree, "varied", formulation, f"{HELD} tolerance 1e-13")
+    time = result.thermo[0]["Time"][-1]
+    assert time > 2 * 4.0  # the step has grown
+    assert np.abs(end - held_rotor(time)).max() < 1e-10
+    assert np.abs(end - held_rotor(1.01 * time)).max() > 1e-3
 
 
 @pytest.mark.parametrize("formulation, values, order", [("first", 5, 5), ("second", 6, 5)])
