@@ -143,26 +143,30 @@ def orientation_correlation(q, axis, order=1):
     return mean if order == 1 else 1.5 * mean - 0.5
 
 
-def all_correlations(poses):
+def all_correlations(poses, progress=iter):
     """Every function above that finished ``Poses`` or ``TablePoses`` have the data for.
 
     Returns name -> (F,), ``lag`` first, and the largest turn between two frames, radians.  Axes 1 to 3 are the
     principal ones, the largest moment first; of linear bodies only the third, which is the body's own, and
-    of points none.  Raises ValueError if frames are not evenly spaced in time.
+    of points none.  ``progress`` goes over the list of functions, as tqdm does.  Raises ValueError if
+    frames are not evenly spaced in time.
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
-    found = {"lag": lags(results.time)}
-    found["mean_square_displacement"] = mean_square_displacement(results.centre)
+    lag = lags(results.time)
+    tasks = [("mean_square_displacement", mean_square_displacement, (results.centre,))]
     for name in ("velocity", "omega_space"):
         if name in results:
-            found[f"{name}_autocorrelation"] = autocorrelation(results[name])
-    if bodies is not None and bodies.point.all():
-        return found, 0.0
-    found["mean_square_rotation"], largest = mean_square_rotation(results.q, bodies)
-    linear = bodies is not None and (bodies.linear | bodies.point).any()
-    for k in (2,) if linear else range(3):
-        axis = np.eye(3)[k] if bodies is None else bodies.axes[:, k]
-        for order in (1, 2):
-            name = f"axis{k + 1}_order{order}"
-            found[name] = orientation_correlation(results.q, axis, order)
-    return found, largest
+            tasks.append((f"{name}_autocorrelation", autocorrelation, (results[name],)))
+    if bodies is None or not bodies.point.all():
+        tasks.append(("mean_square_rotation", mean_square_rotation, (results.q, bodies)))
+        linear = bodies is not None and (bodies.linear | bodies.point).any()
+        for k in (2,) if linear else range(3):
+            axis = np.eye(3)[k] if bodies is None else bodies.axes[:, k]
+            for order in (1, 2):
+                name = f"axis{k + 1}_order{order}"
+                tasks.append((name, orientation_correlation, (results.q, axis, order)))
+    found = {name: function(*arguments) for name, function, arguments in progress(tasks)}
+    largest = 0.0
+    if "mean_square_rotation" in found:
+        found["mean_square_rotation"], largest = found["mean_square_rotation"]
+    return {"lag": lag, **found}, largest

@@ -131,14 +131,18 @@ def _run(dump, out, frames, options):
 def _correlate(out, poses):
     """correlations.csv and its picture, unless frames are too few or unevenly spaced."""
     import numpy as np
+    from tqdm import tqdm
 
     from .. import analysis_figures as figures
     from ..analysis import correlations, tables
 
+    def progress(functions):
+        return tqdm(functions, desc="correlating", unit="function")
+
     if len(poses.results.time) < 3:
         return click.echo("Fewer than three frames: no correlations.")
     try:
-        found, turn = correlations.all_correlations(poses)
+        found, turn = correlations.all_correlations(poses, progress)
     except ValueError as error:
         return click.echo(f"No correlations: {error}")
     if turn > np.pi / 2:
