@@ -1,6 +1,6 @@
 """Argument lines of the fix: made by the grammar of the manual, broken, and judged by that grammar.
 
-What is here is written from doc/fix_gear_quat.rst, not from the source.
+What is here is written from doc/src/fix_gear_quat.rst, not from the source.
 """
 
 import re

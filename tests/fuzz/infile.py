@@ -1,6 +1,6 @@
 """Files for the keyword infile: made as the manual has them, broken, and judged by rules of their own.
 
-What is here is written from doc/fix_gear_quat.rst, not from the source.
+What is here is written from doc/src/fix_gear_quat.rst, not from the source.
 """
 
 import re

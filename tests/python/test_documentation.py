@@ -12,7 +12,7 @@ from running import ROOT
 SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
 FORCES = (SOURCES / "gear_quat_forces.cpp").read_text()
-MANUAL = (ROOT / "doc" / "fix_gear_quat.rst").read_text()
+MANUAL = (ROOT / "doc" / "src" / "fix_gear_quat.rst").read_text()
 README = (ROOT / "README.md").read_text()
 
 
