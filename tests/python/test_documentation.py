@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from lammps_gearquat.workprecision import stability
+from pages import README, readme_script
 from running import ROOT
 
 SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
 FORCES = (SOURCES / "gear_quat_forces.cpp").read_text()
 MANUAL = (ROOT / "doc" / "src" / "fix_gear_quat.rst").read_text()
-README = (ROOT / "README.md").read_text()
 
 
 def section(title, text=MANUAL):
@@ -42,7 +42,15 @@ def documented_values(key, text):
 
 
 ACCEPTED = set(strings("known", ARGUMENTS))
-NAMES = {"infile", "mol", "tolerance", "dtmin", "dtmax", "force", "torque"}  # without a default value
+NAMES = {
+    "infile",
+    "mol",
+    "tolerance",
+    "dtmin",
+    "dtmax",
+    "force",
+    "torque",
+}  # without a default value
 VALUES = {
     key: {no, yes}
     for key, no, yes in re.findall(
@@ -161,13 +169,20 @@ def test_every_example_is_accepted(lmp_wheel, line):
     assert result.thermo[-1]["Step"] == [0, 2]
 
 
+def words_of_examples(text):
+    return {word for line in examples(text) for word in line.split()}
+
+
+def test_every_keyword_has_an_example():
+    styles = re.search(r"^\* bodystyle = (.*)$", section("Syntax"), re.M)[1]
+    assert ACCEPTED | set(re.findall(r"\*(\w+)\*", styles)) <= words_of_examples(MANUAL)
+    for key in ACCEPTED:
+        assert key not in words_of_examples(MANUAL.replace(f" {key} ", " ")), key
+
+
 def test_an_example_that_is_wrong_is_noticed(lmp_wheel):
     for line in ("fix 1 all gear/quat molecule formulation third", "fix_modify 1 energy maybe"):
         assert run_example(lmp_wheel, line).returncode != 0
-
-
-def readme_script():
-    return re.search(r"^```\n(# in\.\w+\n.*?)^```", README, re.M | re.S)[1]
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -182,14 +197,33 @@ def test_the_script_of_readme_runs(lmp_wheel, ranks):
     assert kinetic == pytest.approx(thermo["KinEng"])
 
 
-PAGES = ["README.md", *(f"doc/{page.name}" for page in (ROOT / "doc").glob("*.md"))]
+PAGES = ["README.md", *(str(page.relative_to(ROOT)) for page in (ROOT / "doc").glob("**/*.md"))]
 
 
 @pytest.mark.parametrize("page", PAGES)
 def test_every_link_leads_somewhere(page):
     path = ROOT / page
-    links = re.findall(r"\]\(([^)#:]+)\)", path.read_text())
+    links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text())
     assert [link for link in links if not (path.parent / link).exists()] == []
+
+
+# --- what LAMMPS' own manual asks of a page, from the Makefile of its doc folder ---------------------
+#: what -> pattern, example
+MISTAKES = {
+    "a character that is not ASCII": (r"[^\n -~]", "\u00e9"),
+    "a role without its second colon": (r" :[a-z]+`", " :ref`a"),
+    "a link with one underscore too few": (r" `[^`]+<[a-z][^`]+`[^_]", " `a <b>` "),
+    "a role without a quote": (r":(?:ref|doc):[^`]", ":doc:a"),
+    "a role without colons": (r"(?:ref|doc)`[^`]", "doc`a"),
+    "space at the end of a line": (r"[ \t]$", "a "),
+}
+
+
+@pytest.mark.parametrize("what", MISTAKES)
+def test_the_page_is_written_as_the_manual_of_lammps(what):
+    pattern, example = MISTAKES[what]
+    assert not re.search(pattern, MANUAL, re.M)
+    assert re.search(pattern, MANUAL + example, re.M)
 
 
 # --- numbers -------------------------------------------------------------------------------------

@@ -1,0 +1,44 @@
+"""README and the how-to pages, as tests read them."""
+
+from __future__ import annotations
+
+import re
+
+from running import ROOT
+
+README = (ROOT / "README.md").read_text()
+
+
+def readme_script() -> str:
+    """The smallest input script, as README has it."""
+    return re.search(r"^```\n(# in\.\w+\n.*?)^```", README, re.M | re.S)[1]
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """Texts of the fenced blocks of a how-to page that are in a language."""
+    text = (ROOT / "doc" / "howto" / f"{page}.md").read_text()
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.M | re.S)
+
+
+def _subject(line: str) -> list[str]:
+    words = line.split() or [""]
+    named = ("fix", "dump", "fix_modify", "dump_modify")
+    return words[: 2 if words[0] in named else 1]
+
+
+def edited(script: str, block: str) -> str:
+    """A script with the lines of a block.
+
+    A line replaces the one of the same command (and ID, of those that have one); others come before
+    the ``run``, or at the end if the block has had its own ``run`` before them.
+    """
+    lines, ran = script.splitlines(), False
+    for line in block.splitlines():
+        same = [i for i, old in enumerate(lines) if _subject(old) == _subject(line)]
+        run = next(i for i, old in enumerate(lines) if _subject(old) == ["run"])
+        if same:
+            lines[same[0]] = line
+        else:
+            lines.insert(len(lines) if ran else run, line)
+        ran = ran or _subject(line) == ["run"]
+    return "\n".join(lines) + "\n"
