@@ -105,20 +105,28 @@ make_venv() {
   fi
 }
 
-# The build requirements live in .venv too, so that a rebuild compiles only what has changed.
-pip_install_repository() {
-  local extra="$1" requirements
-  cd "$ROOT"
-  requirements="$(.venv/bin/python - <<'EOF'
+# listed KEY...: the requirements that pyproject.toml lists there
+listed() {
+  "$ROOT/.venv/bin/python" - "$ROOT/pyproject.toml" "$@" <<'EOF'
+import sys
 try:
     import tomllib
 except ImportError:  # Python 3.10
     from pip._vendor import tomli as tomllib
-with open("pyproject.toml", "rb") as file:
-    print("\n".join(tomllib.load(file)["build-system"]["requires"]))
+with open(sys.argv[1], "rb") as file:
+    found = tomllib.load(file)
+for key in sys.argv[2:]:
+    found = found[key]
+print("\n".join(found))
 EOF
-)"
-  printf '%s\n' "$requirements" cmake ninja >build/requirements.txt
+}
+
+# The build requirements live in .venv too, so that a rebuild compiles only what has changed.
+pip_install_repository() {
+  local extra="$1"
+  cd "$ROOT"
+  listed build-system requires >build/requirements.txt
+  printf '%s\n' cmake ninja >>build/requirements.txt
   .venv/bin/python -m pip install --disable-pip-version-check -r build/requirements.txt
   PATH="$ROOT/.venv/bin:$PATH" .venv/bin/python -m pip install --disable-pip-version-check \
     --no-build-isolation --config-settings=build-dir=build/plugin ".$extra"
