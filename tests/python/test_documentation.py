@@ -207,6 +207,14 @@ def test_every_link_leads_somewhere(page):
     assert [link for link in links if not (path.parent / link).exists()] == []
 
 
+def test_what_is_cited_is_this_version():
+    project, citation = (
+        re.search(r'^version(?: = |: )"?([\d.]+)"?$', (ROOT / name).read_text(), re.M)[1]
+        for name in ("pyproject.toml", "CITATION.cff")
+    )
+    assert citation == project
+
+
 # --- what LAMMPS' own manual asks of a page, from the Makefile of its doc folder ---------------------
 #: what -> pattern, example
 MISTAKES = {
