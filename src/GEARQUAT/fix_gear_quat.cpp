@@ -45,7 +45,9 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace GearQuat;
 
-static const char cite_gear_quat[] =
+// LAMMPS shows the first line of each
+
+static const char cite_first[] =
     "fix gear/quat: quaternions in the equations of motion, first-order form\n\n"
     "@Article{Evans1977,\n"
     " author = {Denis J. Evans},\n"
@@ -54,7 +56,9 @@ static const char cite_gear_quat[] =
     " year = 1977,\n"
     " volume = 34,\n"
     " pages = {317--325}\n"
-    "}\n\n"
+    "}\n\n";
+
+static const char cite_second[] =
     "fix gear/quat: quaternions in the equations of motion, second-order form\n\n"
     "@Article{Rapaport1985,\n"
     " author = {Dennis C. Rapaport},\n"
@@ -65,12 +69,20 @@ static const char cite_gear_quat[] =
     " pages = {306--314}\n"
     "}\n\n";
 
+static const char cite_cases[] =
+    "fix gear/quat: both forms side by side, test cases\n\n"
+    "@Misc{PrattZaini,\n"
+    " author = {Ronald M. Pratt and Khairil Mazwan {Bin Mohamad Zaini}},\n"
+    " title = {General Algorithms for {3-D} Motion of a Non-Planar Body in a Steady-State Force Field}\n"
+    "}\n\n";
+
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), met_atoms(false), reported(false), velocities_read(true)
 {
-  if (lmp->citeme) lmp->citeme->add(cite_gear_quat);
+  if (lmp->citeme)
+    for (const char *what : {cite_first, cite_second, cite_cases}) lmp->citeme->add(what);
 
   time_integrate = 1;
   scalar_flag = vector_flag = 1;

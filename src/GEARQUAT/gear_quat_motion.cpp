@@ -284,6 +284,7 @@ void GearQuatMotion::take(const Kept &kept)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file has histories of another formulation, another "
-        "number of values or another isokinetic, or only one of the two runs has a tolerance; "
+        "number of values, another compensate or another isokinetic, or only one of the two runs "
+        "has a tolerance; "
         "poses and velocities are kept, the higher derivatives start anew");
 }

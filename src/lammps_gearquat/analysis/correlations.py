@@ -31,7 +31,6 @@ def _portions(values):
     width = max(1, HELD // (frames * max(1, int(np.prod(values.shape[2:])))))
     for begin in range(0, bodies, width):
         yield slice(begin, min(begin + width, bodies))
-        mapped.release(values)
 
 
 def _power(x):
@@ -52,7 +51,7 @@ def _origins(frames):
 def autocorrelation(values):
     """Mean of x(t) . x(t + lag), of values (F, B, k), such as velocities; units squared."""
     frames, bodies = values.shape[:2]
-    power = sum(_power(np.asarray(values[:, own], dtype=float)) for own in _portions(values))
+    power = sum(_power(mapped.columns(values, own)) for own in _portions(values))
     return _products(power, frames) / (_origins(frames) * bodies)
 
 
@@ -68,9 +67,7 @@ def _square_displacements(x):
 def mean_square_displacement(centre):
     """Mean of |x(t + lag) - x(t)|^2, (F,), of unwrapped centres (F, B, 3); length squared."""
     frames, bodies = centre.shape[:2]
-    total = sum(
-        _square_displacements(np.asarray(centre[:, own], dtype=float)) for own in _portions(centre)
-    )
+    total = sum(_square_displacements(mapped.columns(centre, own)) for own in _portions(centre))
     return np.maximum(total, 0.0) / (_origins(frames) * bodies)
 
 
@@ -110,7 +107,7 @@ def mean_square_rotation(q, bodies=None):
         axis = np.where(bodies.linear[:, None], bodies.axes[:, 2], np.nan)
     total, largest = np.zeros(frames), 0.0
     for own in _portions(q):
-        path = rotation_path(np.asarray(q[:, own]), None if axis is None else axis[own])
+        path = rotation_path(mapped.columns(q, own), None if axis is None else axis[own])
         total += _square_displacements(path)
         turns = np.linalg.norm(np.diff(path, axis=0), axis=-1)
         largest = max(largest, turns.max(initial=0.0))
@@ -131,7 +128,7 @@ def orientation_correlation(q, axis, order=1):
         raise ValueError("an axis needs a length")
     axis, frames, power = axis / length, len(q), 0.0
     for own in _portions(q):
-        turn = Rotation.from_quat(np.asarray(q[:, own]).reshape(-1, 4), scalar_first=True)
+        turn = Rotation.from_quat(mapped.columns(q, own).reshape(-1, 4), scalar_first=True)
         along = np.tile(axis[own], (frames, 1))
         u = turn.apply(along).reshape(frames, -1, 3)
         if order == 2:

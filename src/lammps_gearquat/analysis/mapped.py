@@ -2,8 +2,12 @@
 
 import mmap
 
+import numpy as np
+
 #: rows that are gone over before their pages are let go
 ROWS = 20
+#: rows of which a few columns are read before their pages are let go; each is mapped with its neighbours
+BLOCK = 500
 
 
 def release(array):
@@ -23,3 +27,12 @@ def rows(array, begin=0):
         if k % ROWS == 0:
             release(array)
     release(array)
+
+
+def columns(array, own):
+    """Columns ``own`` (a slice) of all rows of an array (F, B, ...), in memory, as floats."""
+    found = np.empty((len(array), own.stop - own.start, *array.shape[2:]))
+    for begin in range(0, len(array), BLOCK):
+        found[begin : begin + BLOCK] = array[begin : begin + BLOCK, own]
+        release(array)
+    return found
