@@ -22,7 +22,7 @@ create_atoms 1 single 5.0 6.2 5.1
 mass 1 1.0
 set atom 1*3 mol 1
 set atom 4*6 mol 2
-velocity all create 1.0 4711 loop geom
+velocity all create 1.0 4711 loop geom mom no
 pair_style zero 2.0
 pair_coeff * *
 timestep 0.01
@@ -46,7 +46,7 @@ molecule heavy molecule.two
 """
 FILES = {
     "molecule.two": "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n",
-    "bodies": "1\n1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0\n",
+    "bodies": "1\n1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0.1 0 0.2 0 0.1 0.3 0 0 0\n",
     "broken": "1\n1 3.0 0.33\n",
     "empty": "",
 }
@@ -67,6 +67,8 @@ WORDS = {
     "momentum": ("corrected", "predicted"),
     "project": ("yes", "no"),
     "reinit": ("yes", "no"),
+    "isokinetic": ("none", "total", "separate"),
+    "rescale": ("yes", "no"),
     "report": ("no", "short", "long"),
 }
 RANGE = {"second": (4, 12), "first": (3, 8)}
@@ -151,9 +153,24 @@ def take_masks(words, bodies):
     return rest
 
 
-def values_allowed(given):
-    """Whether each value belongs to its keyword, and the keywords to each other."""
-    formulation = given.get("formulation", "second")
+def keywords_agree(given, formulation, masked):
+    """Whether these keywords may be used together, their values being possible ones."""
+    constant = given.get("isokinetic", "none") != "none"
+    if constant and (formulation == "second" or masked or "tolerance" in given or "mol" in given):
+        return False
+    if "rescale" in given and not constant:
+        return False
+    if formulation == "first" and "c0" in given:
+        return False
+    if formulation == "second" and ("omega" in given or "momentum" in given):
+        return False
+    if "mol" in given and masked:
+        return False
+    return not ("infile" in given and given.get("reinit") == "yes")
+
+
+def values_allowed(given, formulation):
+    """Whether each value belongs to its keyword."""
     for key, value in given.items():
         if key in WORDS and value not in WORDS[key]:
             return False
@@ -170,11 +187,7 @@ def values_allowed(given):
             return False
     if "tolerance" in given and integer(given.get("values", "0")) > TOLERANCE_MOST:
         return False
-    if formulation == "first" and "c0" in given:
-        return False
-    if formulation == "second" and ("omega" in given or "momentum" in given):
-        return False
-    return not ("infile" in given and given.get("reinit") == "yes")
+    return True
 
 
 def is_valid(words):
@@ -190,10 +203,10 @@ def is_valid(words):
     if len(rest) % 2 or len(set(keys)) != len(keys) or any(key not in KEYWORDS for key in keys):
         return False
     given = dict(zip(keys, rest[1::2]))
-    if not values_allowed(given):
+    formulation, masked = given.get("formulation", "second"), len(rest) < len(words) - used
+    if not values_allowed(given, formulation) or not keywords_agree(given, formulation, masked):
         return False
-    masked = len(rest) < len(words) - used
-    if "mol" in given and (given["mol"] not in TEMPLATES or words[0] != "molecule" or masked):
+    if "mol" in given and (given["mol"] not in TEMPLATES or words[0] != "molecule"):
         return False
     if "infile" not in given:
         return True
@@ -202,16 +215,20 @@ def is_valid(words):
 
 
 # --- inputs ---------------------------------------------------------------------------------------
+def bodies_at_random(rng):
+    """Words of a bodystyle, mostly right ones."""
+    style = rng.choice(("single", "molecule", "molecule", "group", "custom"))
+    if style == "group":
+        groups = ("1 all", "2 left right", "1 most", "2 nobody left")
+        return [style, *rng.choice(groups).split()]
+    if style == "custom":
+        return [style, rng.choice((*CUSTOM, *CUSTOM, *APART))]
+    return [style]
+
+
 def valid(rng):
     """Words that the fix accepts, but for a few that look so."""
-    style = rng.choice(("single", "molecule", "molecule", "group", "custom"))
-    words = [style]
-    if style == "group":
-        words += rng.choice(
-            (["1", "all"], ["2", "left", "right"], ["1", "most"], ["2", "nobody", "left"])
-        )
-    elif style == "custom":
-        words.append(rng.choice((*CUSTOM, *CUSTOM, *APART)))
+    words = bodies_at_random(rng)
     formulation = rng.choice(("first", "second"))
     choices = {key: rng.choice(values) for key, values in WORDS.items()}
     choices["formulation"] = formulation
@@ -220,18 +237,22 @@ def valid(rng):
     choices["infile"], choices["mol"] = "bodies", "two"
     choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
     choices["dtmin"], choices["dtmax"] = "1e-5", rng.choice(("1e-5", "0.1", "1"))
+    if formulation == "second":
+        choices["isokinetic"] = "none"
     keys = [key for key in choices if rng.random() < 0.35]
     if formulation == "first" and "formulation" not in keys:
         keys.append("formulation")
-    wrong = {"c0"} if formulation == "first" else {"omega", "momentum"}
-    wrong |= {"mol"} if style != "molecule" else set()
+
+    constant = "isokinetic" in keys and choices["isokinetic"] != "none"
+    wrong = {"tolerance", "mol"} if constant else {"rescale"}
+    wrong |= {"c0"} if formulation == "first" else {"omega", "momentum"}
+    wrong |= {"mol"} if words[0] != "molecule" else set()
     wrong |= {"reinit"} if "infile" in keys else set()
-    wrong |= {"dtmin", "dtmax"} if "tolerance" not in keys else set()
-    wrong |= (
-        {"values"} if "tolerance" in keys and int(choices["values"]) > TOLERANCE_MOST else set()
-    )
+    wrong |= {"dtmin", "dtmax"} if "tolerance" not in set(keys) - wrong else set()
+    if "tolerance" in keys and int(choices["values"]) > TOLERANCE_MOST:
+        wrong.add("values")
     pairs = [[key, choices[key]] for key in keys if key not in wrong]
-    if ["mol", "two"] not in pairs and rng.random() < 0.3:
+    if not constant and ["mol", "two"] not in pairs and rng.random() < 0.3:
         for _ in range(rng.choice((1, 1, 2))):
             flags = [rng.choice(("on", "off")) for _ in range(3)]
             pairs.append([rng.choice(MASKS), rng.choice(("1", "*", "1*")), *flags])

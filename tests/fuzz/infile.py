@@ -20,7 +20,7 @@ ATOMS = {
     "1": np.array([[0, 0, 0], [1, 0, 0], [0, 1.2, 0.1]]),
     "2": np.array([[5, 5, 5], [6, 5, 5], [5, 6.2, 5.1]]),
 }
-STYLES = ("molecule", "group 2 left right")
+STYLES = ("molecule", "molecule formulation first", "group 2 left right")
 
 #: what a rounded tensor may be off by, and what no body has; between them either is right
 ROUNDED, REFUSED = 0.5e-3, 2e-3

@@ -5,6 +5,7 @@ from math import comb
 
 import numpy as np
 import pytest
+from fuzz import arguments
 
 from lammps_gearquat.workprecision import stability
 from pages import README, readme_script
@@ -78,6 +79,12 @@ def test_every_value_is_documented():
     for key, values in VALUES.items():
         assert documented_values(key, MANUAL) == values
         assert documented_values(key, MANUAL.replace(f"*{min(values)}*", "")) != values
+
+
+def test_the_fuzzer_breaks_every_keyword_and_value():
+    assert {*arguments.KEYWORDS, *arguments.MASKS} == documented_keywords(MANUAL)
+    for key, values in VALUES.items():
+        assert set(arguments.WORDS[key]) == values
 
 
 def test_every_default_is_a_value():
