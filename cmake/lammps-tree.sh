@@ -2,11 +2,14 @@
 #
 #   $GEARQUAT_CACHE/lammps-<version>/   sources, fetched once (or LAMMPS_SOURCE_DIR, used as it is)
 #   $GEARQUAT_CACHE/ccache/             compiled objects, shared by all checkouts
-#   $GEARQUAT_CACHE/tree-<checksum>/    the build of this checkout; build/tree points to it
+#   $GEARQUAT_CACHE/tree-<checksum>/    the build of this checkout; build/tree points to it, and
+#                                       build/tree-sanitize to the one with sanitizers
 
 TREE_VERSION="4 Feb 2025"
 TREE_DEBIAN="20250204+dfsg.1" # in Debian trixie
 TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
+# float-cast-overflow: a NaN that becomes an integer is not in `undefined`
+SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
 
 # --- sources ----------------------------------------------------------------------------------
 
@@ -84,8 +87,9 @@ need_tree_source() {
 
 # --- build ------------------------------------------------------------------------------------
 
+# configure_tree FOLDER CXX_FLAGS
 configure_tree() {
-  local build="$1" gtest="$CACHE/googletest.tar.gz" hash package options=()
+  local build="$1" flags="$2" gtest="$CACHE/googletest.tar.gz" hash package options=()
   # LAMMPS unpacks googletest from a tarball; its checksum must be the same every time
   tar -c --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -C /usr/src googletest |
     gzip -n >"$gtest.$$"
@@ -101,7 +105,7 @@ configure_tree() {
   cmake -S "$TREE_SOURCE/cmake" -B "$build" -G Ninja \
     -D CMAKE_PROJECT_lammps_INCLUDE="$ROOT/cmake/lammps-gearquat.cmake" \
     -D GEARQUAT_PRECOMPILE_HEADERS=on \
-    -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS_RELEASE=-O2 \
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS_RELEASE="$flags" \
     -D CMAKE_CXX_COMPILER_LAUNCHER=ccache -D CMAKE_CUSTOM_LINKER=default \
     -D BUILD_SHARED_LIBS=on -D BUILD_OMP=off -D FFT=KISS \
     -D BUILD_MPI=on -D MPI_CXX_COMPILER="$(command -v mpicxx.openmpi)" \
@@ -112,11 +116,13 @@ build_tree() {
   ninja -C "$1" -j "$(nproc)" lmp test_fix_timestep
 }
 
-# LAMMPS with GEARQUAT in it, Open MPI, and LAMMPS' harness, in build/tree
+# need_tree [KIND]: LAMMPS with GEARQUAT in it, Open MPI, and LAMMPS' harness, in build/tree; with KIND
+# "-sanitize" in build/tree-sanitize, compiled with AddressSanitizer and UndefinedBehaviorSanitizer
 need_tree() {
   need_tree_source
-  local build configured
-  build="$CACHE/tree-$(printf '%s\n' "$ROOT" "$TREE_SOURCE" | sha256sum | cut -c1-12)"
+  local kind="${1:-}" flags=-O2 build configured
+  [ -z "$kind" ] || flags="$SANITIZE_FLAGS"
+  build="$CACHE/tree-$(printf '%s\n' "$ROOT" "$TREE_SOURCE" | sha256sum | cut -c1-12)$kind"
   export CCACHE_DIR="$CACHE/ccache" CCACHE_BASEDIR="$CACHE" CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=1G
   # what ccache has to overlook in a precompiled header
   export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
@@ -126,12 +132,12 @@ need_tree() {
   find "$CACHE" -maxdepth 1 -name 'tree-*' -mtime +30 -exec rm -rf {} +
   exec 8>"$build/.lock"
   if have flock; then flock 8; fi
-  ln -sfn "$build" "$ROOT/build/tree"
-  configured="$( { declare -f configure_tree; echo "$TREE_PACKAGES"; cmake --version; } | sha256sum)"
+  ln -sfn "$build" "$ROOT/build/tree$kind"
+  configured="$( { declare -f configure_tree; echo "$TREE_PACKAGES $flags"; cmake --version; } | sha256sum)"
   if [ "$(cat "$build/.configured" 2>/dev/null)" != "$configured" ] || [ ! -e "$build/build.ninja" ]; then
-    do_quietly "configuring LAMMPS with GEARQUAT" configure_tree "$build"
+    do_quietly "configuring LAMMPS with GEARQUAT${kind/-/, }" configure_tree "$build" "$flags"
     echo "$configured" >"$build/.configured"
   fi
-  do_quietly "building LAMMPS with GEARQUAT" build_tree "$build"
+  do_quietly "building LAMMPS with GEARQUAT${kind/-/, }" build_tree "$build"
   exec 8>&-
 }

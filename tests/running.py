@@ -26,7 +26,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-TREE_BUILD = ROOT / "build" / "tree"
+#: the one with sanitizers if `tests/run sanitize` says so; then every test runs with that one
+TREE_BUILD = ROOT / "build" / os.environ.get("GEARQUAT_TREE", "tree")
+ONLY_TREE = TREE_BUILD.name != "tree"
+#: what UndefinedBehaviorSanitizer writes to stderr
+UNDEFINED = "runtime error: "
 EXAMPLES = ROOT / "examples"
 
 
@@ -171,10 +175,13 @@ class Lammps:
             except BaseException:
                 _end_session(process.pid)
                 raise
+        said = err.read_text(errors="replace")
+        if UNDEFINED in said:
+            pytest.fail(said, pytrace=False)
         return Result(
             returncode,
             out.read_text(errors="replace"),
-            err.read_text(errors="replace"),
+            said,
             log.read_text(errors="replace"),
             self.folder,
         )

