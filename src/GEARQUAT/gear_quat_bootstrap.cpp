@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "fix.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -119,13 +120,14 @@ bool GearQuatBootstrap::run()
   }
   if (done) {
     if (comm->me == 0)
-      utils::logmesg(lmp, "Fix gear/quat: start of order {} from {} force evaluations{}\n",
-                     scheme.order(), evaluations, reason);
+      utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
+                     fix->id, scheme.order(), evaluations, reason);
     return true;
   }
   seed_local(3);
   if (comm->me == 0)
-    utils::logmesg(lmp, "Fix gear/quat: start with known forces only (order 2), because {}\n", why);
+    utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
+                   fix->id, why);
   return false;
 }
 

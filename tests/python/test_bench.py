@@ -46,7 +46,7 @@ Total dynamically allocated memory: 50.41 Mbyte
 Current reserved memory pool size: 56.07 Mbyte
 Maximum resident set size: 91.15 Mbyte
 """
-START = "Fix gear/quat: start of order 9 from 48 force evaluations\n"
+START = "Fix gear/quat move: start of order 9 from 48 force evaluations\n"
 
 
 def log(ranks=2, start=START, modify=0.3):

@@ -38,7 +38,7 @@ def test_a_deck_without_a_run_is_refused(tmp_path):
 
 
 LOG = """\
-Fix gear/quat: start of order 7 from 24 force evaluations
+Fix gear/quat move: start of order 7 from 24 force evaluations
 Modify  | 0.0028613  | 0.0028613  | 0.0028613  |   0.0 | 23.92
 """
 

@@ -201,7 +201,7 @@ class Results:
 _LOOP = re.compile(r"^Loop time of (\S+) on (\d+) procs", re.MULTILINE)
 _SECTION = re.compile(r"^(\w+) +\|([^|]*)\|([^|]*)\|([^|]*)\|", re.MULTILINE)
 _START = re.compile(
-    r"^Fix gear/quat: start of order \d+ from (\d+) force evaluations", re.MULTILINE
+    r"^Fix gear/quat \S+: start of order \d+ from (\d+) force evaluations", re.MULTILINE
 )
 _REPORTED = re.compile(r"^Total dynamically allocated memory: (\S+) Mbyte", re.MULTILINE)
 _ALLOCATED = re.compile(r"^Current reserved memory pool size: (\S+) Mbyte", re.MULTILINE)

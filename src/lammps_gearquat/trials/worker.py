@@ -15,8 +15,8 @@ from pathlib import Path
 from .interpreter import Interpreter, Start
 from .script import DeckError
 
-_STARTED = re.compile(r"Fix gear/quat: start of order (\d+) from (\d+) force evaluations")
-_LIMITED = re.compile(r"Fix gear/quat: (start with known forces only.*)")
+_STARTED = re.compile(r"Fix gear/quat \S+: start of order (\d+) from (\d+) force evaluations")
+_LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
 SITES = "gearquat_sites"
 

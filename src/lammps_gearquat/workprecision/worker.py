@@ -104,7 +104,7 @@ def _state(lmp):
 
 def start_evaluations(text):
     """Force evaluations that the log says the start of fix gear/quat took; 0 without that line."""
-    found = re.findall(r"^Fix gear/quat: start of order \d+ from (\d+) force", text, re.MULTILINE)
+    found = re.findall(r"^Fix gear/quat \S+: start of order \d+ from (\d+) force", text, re.MULTILINE)
     return sum(map(int, found))
 
 
