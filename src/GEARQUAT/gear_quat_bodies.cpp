@@ -271,8 +271,7 @@ void GearQuatBodies::list_sites()
     domain->unmap(site.wrap, atom->image[i]);
     double arm[3], expected[3];    // of what the flags take off
     to_space(frame[site.body].axes, site.arm_body, arm);
-    for (int k = 0; k < 3; ++k)
-      expected[k] = state[site.body].center[k] + arm[k] - atom->x[i][k];
+    for (int k = 0; k < 3; ++k) expected[k] = state[site.body].center[k] + arm[k] - atom->x[i][k];
     gear_quat_add_turns_of_flags(domain, expected, site.wrap);
     sites.push_back(site);
   }

@@ -26,8 +26,9 @@ static constexpr double SHORTER = 0.49;
 
 GearQuatMotion::GearQuatMotion(LAMMPS *lmp, Fix *fix, const GearQuatArguments &args,
                                GearQuatBodies &bodies) :
-    Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme),
-    started(false), h(0.0), h_made(0.0)
+    Pointers(lmp),
+    fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme), started(false), h(0.0),
+    h_made(0.0)
 {
   if (args.control.eps > 0.0)
     tolerance.reset(new GearQuatTolerance(lmp, fix, args.scheme, args.control, bodies));

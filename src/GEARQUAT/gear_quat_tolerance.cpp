@@ -120,12 +120,11 @@ void GearQuatTolerance::shorten_first_step()
    a step
 ------------------------------------------------------------------------- */
 
-Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody,
-                                      const Load &load)
+Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody, const Load &load)
 {
   StepErrors one;
-  const Correction correction = order.correct(integrator, bodies.body[ibody].rigid, load,
-                                              bodies.history(ibody), one);
+  const Correction correction =
+      order.correct(integrator, bodies.body[ibody].rigid, load, bodies.history(ibody), one);
   if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
   errors.include(one);
   return correction;
@@ -133,7 +132,8 @@ Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody,
 
 bool GearQuatTolerance::choose()
 {
-  double here[4] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0};    // not const: STUBS
+  double here[4] = {errors.fewer, errors.same, errors.more,
+                    fresh ? 1.0 : 0.0};    // not const: STUBS
   double all[4];
   MPI_Allreduce(here, all, 4, MPI_DOUBLE, MPI_MAX, world);
   errors = StepErrors();
