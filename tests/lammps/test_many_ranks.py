@@ -13,6 +13,8 @@ import pytest
 from running import make_lmp_tree
 from scenes import flat_water_data, last_frame, one_after_the_other, water, water_data
 
+pytestmark = pytest.mark.tree  # made in a fixture of the module
+
 STEPS, RANKS = 1000, (2, 4)
 FORMULATIONS = ["first", "second"]
 CUTS = {

@@ -12,6 +12,8 @@ import pytest
 from running import EXAMPLES, make_lmp_tree
 from scenes import last_frame, one_after_the_other, restarted, water, water_data, whole_deck
 
+pytestmark = pytest.mark.tree  # made in a fixture of the module
+
 SCENES = {"case1": 0.5, "case3": 2.0, "water": 1.0}  # with their time steps
 WORDS = {
     "first-3": dict(formulation="first", values=3),
