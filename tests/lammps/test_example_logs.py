@@ -1,0 +1,100 @@
+"""The examples do what their reference logs say, judged by LAMMPS' own regression tests."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from example_logs import RANKS, copy_examples, date_of, decks, logs, name_of, needs_wheel
+from running import EXAMPLES, ROOT, tree_source
+
+CONFIGURATION = ROOT / "tests" / "lammps" / "run_tests.yaml"
+
+
+def run_tests(lmp, decks, ranks, where):
+    """run_tests.py on decks: name of each -> how many checks it passed, or why it did not.
+
+    ``ranks`` picks the logs compared with: 1 takes those of one rank, more the most there are.
+    """
+    configuration = yaml.safe_load(CONFIGURATION.read_text())
+    configuration["mpiexec"] = shlex.join(lmp.launcher[:-1]) if ranks > 1 else ""
+    configuration["mpiexec_numproc_flag"] = lmp.launcher[-1]
+    (where / "decks.txt").write_text("".join(f"{deck}\n" for deck in decks))
+    (where / "config.yaml").write_text(yaml.safe_dump(configuration))
+    tool = tree_source() / "tools" / "regression-tests" / "run_tests.py"
+    done = subprocess.run(
+        [sys.executable, str(tool), f"--lmp-bin={lmp.executable}", "--config-file=config.yaml"]
+        + ["--list-input=decks.txt"],
+        cwd=where,
+        env={**os.environ, **lmp.environment, "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    report = (where / "run.log").read_text()
+    found = {}
+    for line in (where / "progress.yaml").read_text().splitlines():
+        ((deck, told),) = yaml.safe_load(line).items()
+        after = report.partition(f"+ {deck} (")[2].partition("\nINFO:__main__:   + ")[0]
+        passed = re.search(r"all (\d+) checks passed", after)
+        ok = (
+            told["status"] == "completed" and told["failed_checks"]["status"] == "passed" and passed
+        )
+        found[deck] = int(passed[1]) if ok else f"{told}\n{after}"
+    return found
+
+
+@pytest.mark.parametrize("ranks", RANKS)
+def test_the_examples_pass_lammps_regression_tests(lmp, tmp_path, ranks):
+    copied = copy_examples(tmp_path)
+    wanted = [deck for deck in decks(copied, ranks) if needs_wheel(deck) == (lmp.name == "wheel")]
+    assert wanted and all(len(logs(deck, ranks)) == 1 for deck in wanted)
+    found = run_tests(lmp, wanted, ranks, tmp_path)
+    assert set(found) == {deck.name for deck in wanted}
+    # each deck has several columns, and two checks a column
+    assert {
+        deck: how for deck, how in found.items() if not (isinstance(how, int) and how > 8)
+    } == {}
+
+
+def test_a_wrong_reference_is_noticed(lmp_tree, tmp_path):
+    """One column of the last line, wrong by 1e-4."""
+    copied = copy_examples(tmp_path)
+    (log,) = logs(copied / "top" / "in.top", 1)
+    head, loop, tail = log.read_text().rpartition("Loop time")
+    *rows, last = head.splitlines()
+    words = last.split()
+    at = next(row for row in rows if row.lstrip().startswith("Step")).split().index("v_kerot")
+    words[at] = f"{float(words[at]) * 1.0001:.17g}"
+    log.write_text("\n".join([*rows, " ".join(words)]) + "\n" + loop + tail)
+    (told,) = run_tests(lmp_tree, [copied / "top" / "in.top"], 1, tmp_path).values()
+    assert "v_kerot" in str(told) and "failed" in str(told)
+
+
+@pytest.mark.parametrize("deck", decks(), ids=lambda deck: deck.name)
+def test_the_logs_are_those_of_the_decks(deck):
+    """LAMMPS echoes every line that it reads, up to a jump; a log says nothing of where it was made."""
+    read = [deck, *(EXAMPLES / "common").glob("in.*")]
+    text = deck.read_text()
+    if "common/in.scene" not in text:
+        read.remove(EXAMPLES / "common" / "in.scene")
+        if "common/in.motion" not in text:
+            read.remove(EXAMPLES / "common" / "in.motion")
+    for log in logs(deck):
+        told = log.read_text()
+        assert log.name.split(".")[1] == date_of(told) and name_of(deck) in log.name
+        assert str(ROOT) not in told and "/home/" not in told and "plugins from" not in told
+        lines = set(told.splitlines())
+        for path in read:
+            # a line that goes on is echoed as one
+            echoed, jump, _ = re.sub(r"&\n", "", path.read_text()).partition("jump SELF")
+            whole = echoed.splitlines()[: -1 if jump else None]
+            missing = [line for line in whole if line not in lines]
+            assert missing == [], f"{log.name}: tests/run logs"
