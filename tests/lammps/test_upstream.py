@@ -1,0 +1,122 @@
+"""The package as LAMMPS would take it: LAMMPS' own coding standard, format and lists."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+from example_logs import copy_examples
+from running import ROOT, tree_source
+
+PACKAGE = ROOT / "src" / "GEARQUAT"
+SOURCES = sorted([*PACKAGE.glob("*.h"), *PACKAGE.glob("*.cpp")])
+#: script of tools/coding_standard -> a file of the package, a change that it must find
+CHECKS = {
+    "whitespace": ("fix_gear_quat.cpp", lambda text: text + "int late; \n"),
+    "homepage": ("README", lambda text: text + "http://lammps.sandia.gov\n"),
+    "errordocs": ("fix_gear_quat.h", lambda text: text + "\n/* ERROR/WARNING messages:\n\n*/\n"),
+    "fmtlib": ("fix_gear_quat.cpp", lambda text: text + '  fmt::print("x");\n'),
+    "permissions": ("README", None),  # an executable bit
+}
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory) -> Path:
+    """What of a LAMMPS tree with GEARQUAT is ours, and LAMMPS' scripts."""
+    tree = tmp_path_factory.mktemp("lammps")
+    shutil.copytree(tree_source() / "tools" / "coding_standard", tree / "tools" / "coding_standard")
+    shutil.copytree(PACKAGE, tree / "src" / "GEARQUAT")
+    (tree / "doc" / "src").mkdir(parents=True)
+    (manual,) = (ROOT / "doc").rglob("fix_gear_quat.rst")
+    shutil.copy(manual, tree / "doc" / "src")
+    tests = tree / "unittest" / "force-styles" / "tests"
+    tests.mkdir(parents=True)
+    for yaml in (ROOT / "tests" / "lammps").glob("fix-timestep-*.yaml"):
+        shutil.copy(yaml, tests)
+    copy_examples(tree)
+    return tree
+
+
+def standard(tree, check):
+    """What one of LAMMPS' scripts complains of; empty if it is content."""
+    script = tree_source() / "tools" / "coding_standard" / f"{check}.py"
+    done = subprocess.run([sys.executable, str(script), str(tree)], capture_output=True, text=True)
+    told = done.stdout + done.stderr
+    assert done.returncode in (0, 1) and (done.returncode == 0) == (told == ""), told
+    return told
+
+
+@pytest.mark.parametrize("check", CHECKS)
+def test_lammps_coding_standard(tree, check):
+    assert standard(tree, check) == ""
+    name, change = CHECKS[check]
+    path = tree / "src" / "GEARQUAT" / name
+    text, mode = path.read_text(), path.stat().st_mode
+    try:
+        if change:
+            path.write_text(change(text))
+        else:
+            path.chmod(0o755)
+        assert name in standard(tree, check)
+    finally:
+        path.write_text(text)
+        path.chmod(mode)
+
+
+def test_a_new_style_is_tagged(tree):
+    """`versionadded:: TBD` in the manual: LAMMPS' script lists it at the next release."""
+    assert "fix_gear_quat.rst" in standard(tree, "versiontags")
+
+
+def reformatted(path):
+    """A source as clang-format would have it, by LAMMPS' rules."""
+    tool = Path(sysconfig.get_path("scripts")) / "clang-format"
+    rules = f"--style=file:{tree_source() / 'src' / '.clang-format'}"
+    return subprocess.run([tool, rules, path], capture_output=True, text=True, check=True).stdout
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)
+def test_lammps_format(path):
+    assert reformatted(path) == path.read_text()
+
+
+def test_a_wrong_format_is_noticed(tmp_path):
+    wrong = tmp_path / "x.cpp"
+    wrong.write_text("int f(int  x)\n{\n    return x;\n}\n")
+    assert reformatted(wrong) != wrong.read_text()
+
+
+# --- what is in the package ----------------------------------------------------------------------
+def named_files(text):
+    """Names in the list of the package's README."""
+    table = text.partition("What is where\n")[2]
+    return set(re.findall(r"^  (\w+)  ", table, re.M))
+
+
+def test_readme_names_every_file():
+    """A header without a .cpp belongs to the kernel, which README names as a whole."""
+    text = (PACKAGE / "README").read_text()
+    assert "gear_quat_*.h, no .cpp" in text
+    assert named_files(text) == {path.stem for path in PACKAGE.glob("*.cpp")}
+
+
+def test_the_kernel_needs_the_standard_library_only():
+    """Headers without a .cpp include each other and the standard library."""
+    kernel = {path.name for path in SOURCES if not path.with_suffix(".cpp").exists()}
+    assert len(kernel) > 10
+    for name in kernel:
+        text = (PACKAGE / name).read_text()
+        assert set(re.findall(r'#include "(.*)"', text)) <= kernel, name
+
+
+def test_style_headers_include_their_base_class_only():
+    text = (PACKAGE / "fix_gear_quat.h").read_text()
+    assert "FixStyle(gear/quat,FixGearQuat);" in text and "LMP_FIX_GEAR_QUAT_H" in text
+    ours = set(re.findall(r'#include "(.*)"', text)) - {path.name for path in SOURCES}
+    assert ours == {"fix.h"}

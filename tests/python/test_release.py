@@ -1,0 +1,36 @@
+"""A number for a release is one number."""
+
+import re
+from importlib import metadata
+
+from running import ROOT
+
+
+def numbers():
+    """Where the number of this release stands -> what it says."""
+    patterns = {
+        "pyproject.toml": r'^version = "(.*)"',
+        "CHANGELOG.md": r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$",
+        "CITATION.cff": r"^version: (.*)",
+    }
+    files = {name: ROOT / name for name in patterns if (ROOT / name).exists()}
+    return {
+        name: re.search(patterns[name], path.read_text(), re.M)[1] for name, path in files.items()
+    }
+
+
+def test_one_number():
+    found = numbers()
+    assert {"pyproject.toml", "CHANGELOG.md"} <= set(found)
+    assert set(found.values()) == {metadata.version("lammps-gearquat")}
+
+
+def test_every_command_and_keyword_is_in_the_changelog():
+    text = (ROOT / "CHANGELOG.md").read_text()
+    arguments = (ROOT / "src" / "GEARQUAT" / "gear_quat_arguments.cpp").read_text()
+    keywords = re.findall(r'"(\w+)"', re.search(r"known\s*=\s*{(.*?)}", arguments, re.S)[1])
+    commands = [path.stem for path in (ROOT / "src/lammps_gearquat/commands").glob("[a-z]*.py")]
+    first = {"formulation", "start", "project", "c0", "omega", "momentum", "infile", "reinit"}
+    words = set(re.findall(r"\w+", text))
+    assert set(keywords) - first <= words
+    assert set(commands) - {"measuring"} <= words

