@@ -345,4 +345,4 @@ def test_a_readme_without_the_block_is_refused(tmp_path):
     (tmp_path / "src" / "GEARQUAT").mkdir(parents=True)
     (tmp_path / "README.md").write_text("# Title\n")
     with pytest.raises(checkout.PublishError, match="README.md needs one"):
-        page.checkout(tmp_path)
+        checkout.find(tmp_path, page.COMMAND)

@@ -122,7 +122,9 @@ class Interpreter:
             return
         if not line.strip():
             return
-        words = script.split(self._lammps("expand", line))
+        words = script.split(self._lammps("expand", line) or "")  # None if nothing is left
+        if not words:
+            return
         name = words[0]
         handler = getattr(self, "_do_" + name, None)
         if handler:
