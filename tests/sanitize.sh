@@ -83,9 +83,10 @@ part_sanitize() {
     fi
   done
 
-  # not what the plugin's LAMMPS alone can do or refuse, nor what counts instructions
+  # not what the plugin's LAMMPS alone can do or refuse, nor what counts instructions, reads sources or compares logs
   GEARQUAT_TREE=tree-sanitize GEARQUAT_FUZZ_INPUTS="${GEARQUAT_FUZZ_INPUTS:-5000}" run_pytest sanitize tests/lammps \
     --ignore tests/lammps/test_plugin.py --ignore tests/lammps/test_effects.py \
+    --ignore tests/lammps/test_upstream.py --ignore tests/lammps/test_example_logs.py \
     --deselect tests/lammps/test_extended.py::test_the_wheel_refuses_by_name \
     --deselect tests/lammps/test_extended.py::test_particles_of_style_body_are_refused \
     --deselect tests/lammps/test_accuracy_words.py::test_jumping_forces_are_told -n 2 --dist loadfile "$@" || status=1
