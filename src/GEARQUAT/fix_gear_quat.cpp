@@ -73,7 +73,8 @@ static const char cite_cases[] =
     "fix gear/quat: both forms side by side, test cases\n\n"
     "@Misc{PrattZaini,\n"
     " author = {Ronald M. Pratt and Khairil Mazwan {Bin Mohamad Zaini}},\n"
-    " title = {General Algorithms for {3-D} Motion of a Non-Planar Body in a Steady-State Force Field}\n"
+    " title = {General Algorithms for {3-D} Motion of a Non-Planar Body in a Steady-State Force "
+    "Field}\n"
     "}\n\n";
 
 /* ---------------------------------------------------------------------- */
