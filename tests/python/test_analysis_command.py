@@ -186,7 +186,7 @@ def test_command_takes_the_table_of_the_fix(water, tmp_path):
 def test_command_converts(water, tmp_path, suffix, wrap):
     """Read again by MDAnalysis: the same molecules, whole, in the same frames."""
     path = tmp_path / f"water.{suffix}"
-    options = ["--wrap"] if wrap else []
+    options = ["--units", "real", "--timestep", "1", *(["--wrap"] if wrap else [])]
     result = run(
         water / "water.dump", "--out", tmp_path, "--convert", path, "--frames", "::2", *options
     )
@@ -235,7 +235,7 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--frames", "99:"], "no frame is left to analyse"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
         (["--near", __file__], "--near and --radius belong together"),
-        (["--convert", "poses.nonsense"], "MDAnalysis writes no such format"),
+        (["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"], "MDAnalysis writes no such format"),
         (["--body", "i_body"], "no column i_body"),
         (["--potential", "c_pe"], "no column c_pe"),
     ],

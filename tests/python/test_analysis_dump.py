@@ -226,7 +226,7 @@ def test_an_id_that_occurs_twice(write):
 @pytest.mark.parametrize(
     ("old", "new", "text"),
     [
-        ("ITEM: TIMESTEP", "ITEM: UNITS\nlj\nITEM: TIMESTEP", "units yes or time yes"),
+        ("ITEM: TIMESTEP", "ITEM: LABEL\nlj\nITEM: TIMESTEP", "no frame of a LAMMPS dump begins"),
         ("ITEM: ATOMS", "ITEM: GRID", "a dump custom or dump local is required"),
         ("ITEM: BOX BOUNDS pp pp pp", "ITEM: BOX BOUNDS", "a box that is not orthogonal or"),
         ("ITEM: TIMESTEP", "thermo", "no frame of a LAMMPS dump begins where one should"),

@@ -10,6 +10,7 @@ a second time, in double precision, in ``Timestep.data``; and it reads a frame a
 
 import re
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
 
 import MDAnalysis
@@ -39,28 +40,41 @@ class DumpError(ValueError):
     """A dump that cannot be used; the message says what is required."""
 
 
-def read_header(file, name):
-    """Header of the frame that begins here.
+@dataclass(frozen=True)
+class Header:
+    """What stands before the rows of a frame.
 
-    Returns step, number of rows, origin (3,), box (3, 3) with the edges as rows, periodic (3,),
-    ATOMS or ENTRIES, and the names of the columns.  Raises DumpError if this is not a header of nine lines.
+    ``units`` and ``time`` are None unless written (``dump_modify units yes``, which is said once in a
+    file, and ``time yes``); ``box`` (3, 3) has the edges as rows; ``kind`` is ATOMS or ENTRIES.
     """
-    lines = [file.readline() for _ in range(HEADER_LINES)]
-    if lines[0].startswith(("ITEM: UNITS", "ITEM: TIME\n")):
-        raise DumpError(
-            f"{name}: written with dump_modify units yes or time yes, which MDAnalysis does not read"
-        )
+
+    step: int
+    rows: int
+    origin: np.ndarray
+    box: np.ndarray
+    periodic: np.ndarray
+    kind: str
+    columns: list
+    units: str = None
+    time: float = None
+
+
+def read_header(file, name):
+    """Header of the frame that begins here.  Raises DumpError if none does."""
+    line, extra = file.readline(), {}
+    for item, read in (("units", str.strip), ("time", float)):
+        if line == f"ITEM: {item.upper()}\n":
+            extra[item] = read(file.readline())
+            line = file.readline()
+    lines = [line] + [file.readline() for _ in range(HEADER_LINES - 1)]
     expected = "ITEM: TIMESTEP", "ITEM: NUMBER OF", "ITEM: BOX BOUNDS"
     if not all(line.startswith(word) for line, word in zip(lines[0:5:2], expected)):
-        raise DumpError(
-            f"{name}: no frame of a LAMMPS dump begins where one should; the number of rows must be"
-            " the same in all frames"
-        )
+        raise DumpError(f"{name}: no frame of a LAMMPS dump begins where one should")
     kind, *columns = lines[8].split()[1:]
     if kind not in ("ATOMS", "ENTRIES"):
         raise DumpError(f"{name}: a dump custom or dump local is required, not 'ITEM: {kind}'")
-    origin, box, periodic = _box(lines[4], lines[5:8], name)
-    return int(lines[1]), int(lines[3]), origin, box, periodic, kind, columns
+    box = _box(lines[4], lines[5:8], name)
+    return Header(int(lines[1]), int(lines[3]), *box, kind, columns, **extra)
 
 
 def _box(title, bounds, name):
@@ -85,16 +99,21 @@ def _box(title, bounds, name):
 
 def columns_of(path):
     """Names of the columns of a dump, and whether it is a ``dump local``."""
+    if not Path(path).is_file():
+        raise DumpError(f"{path}: no such file")
+    if not Path(path).stat().st_size:
+        raise DumpError(f"{path}: the dump is empty")
     with anyopen(str(path)) as file:
-        *_, kind, columns = read_header(file, path)
-    return columns, kind == "ENTRIES"
+        header = read_header(file, path)
+    return header.columns, header.kind == "ENTRIES"
 
 
 class DumpFrames(DumpReader):
     """MDAnalysis' reader of LAMMPS dumps, a frame at once and in double precision.
 
     ``Timestep.positions`` are those of MDAnalysis (single precision, box moved to the origin);
-    they are unwrapped where the dump tells how.  ``Timestep.data`` holds besides ``step`` and ``time``
+    they are unwrapped where the dump tells how.  ``Timestep.data`` holds besides ``step`` and ``time`` (that of
+    the dump if it has one, else the step times ``dt``)
 
     * ``x`` (n, 3): positions as LAMMPS counts them, unwrapped by the dump's own columns if it has them
     * ``whole``: whether that was so, or nothing is periodic
@@ -103,14 +122,41 @@ class DumpFrames(DumpReader):
     * each of ``additional_columns`` (n,)
 
     Rows are sorted by ID.  Raises DumpError if IDs are missing, occur twice or change, if positions
-    are missing, or if the number of rows changes.
+    are missing, or if the number of rows changes.  ``unit_style`` and ``timed`` tell of the dump: LAMMPS' units
+    or None, and whether it has times.
 
     ``names`` renames columns: of a ``dump local`` those of LAMMPS are ``f_ID[1]`` and so on.
     """
 
     def __init__(self, filename, additional_columns=(), names=None, **kwargs):
-        self._names, self._ids, self._warned = names or {}, None, False
+        self._names, self._ids = names or {}, None
+        self._scan(filename)
         super().__init__(filename, additional_columns=list(additional_columns), **kwargs)
+
+    def _scan(self, filename):
+        """Where frames begin, and what the first one says."""
+        self._offsets, first = [], None
+        with anyopen(filename) as file:
+            here = file.tell()
+            while file.readline():
+                file.seek(here)
+                header = read_header(file, filename)
+                first = first or header
+                self._offsets.append(here)
+                for _ in range(header.rows):
+                    file.readline()
+                here = file.tell()
+        self._rows, self.unit_style, self.timed = first.rows, first.units, first.time is not None
+
+    @property
+    def n_atoms(self):
+        """Number of rows of a frame."""
+        return self._rows
+
+    @property
+    def n_frames(self):
+        """Number of frames."""
+        return len(self._offsets)
 
     def _columns(self, header):
         """Index of each column that is read; the kind of its positions."""
@@ -137,26 +183,26 @@ class DumpFrames(DumpReader):
         ts.frame += 1
         if ts.frame >= len(self):
             raise EOFError
-        step, rows, origin, box, periodic, _, header = read_header(self._file, self.filename)
-        if rows != self.n_atoms:
+        header = read_header(self._file, self.filename)
+        if header.rows != self.n_atoms:
             raise DumpError(
-                f"{self.filename}: {rows} rows at step {step}, {self.n_atoms} in the first frame; the"
-                " number must not change: dump a group whose atoms stay"
+                f"{self.filename}: {header.rows} rows at step {header.step}, {self.n_atoms} in the first"
+                " frame; the number must not change: dump a group whose atoms stay"
             )
-        columns, kind = self._columns(header)
+        columns, kind = self._columns(header.columns)
         # not by iteration: a file that is iterated over cannot tell where it is
-        lines = [self._file.readline() for _ in range(rows)]
+        lines = [self._file.readline() for _ in range(header.rows)]
         try:
             table = np.loadtxt(lines, usecols=list(columns.values()), ndmin=2)
         except ValueError as error:
-            raise DumpError(f"{self.filename}, step {step}: {error}") from error
-        self._fill(dict(zip(columns, table.T)), kind, (step, origin, box, periodic))
+            raise DumpError(f"{self.filename}, step {header.step}: {error}") from error
+        self._fill(dict(zip(columns, table.T)), kind, header)
         return ts
 
     def _fill(self, table, kind, frame):
         """One frame into the Timestep."""
         ts = self.ts
-        step, origin, box, periodic = frame
+        step, origin, box, periodic = frame.step, frame.origin, frame.box, frame.periodic
         order = np.argsort(table["id"], kind="stable")
         table = {name: column[order] for name, column in table.items()}
         self._check_ids(table["id"], step)
@@ -167,7 +213,8 @@ class DumpFrames(DumpReader):
         if not whole and all(name in table for name in IMAGES):
             x = x + np.column_stack([table[name] for name in IMAGES]) @ box
             whole = True
-        ts.data.update(step=step, time=step * ts.dt, x=x, whole=whole)
+        time = step * ts.dt if frame.time is None else frame.time
+        ts.data.update(step=step, time=time, x=x, whole=whole)
         ts.data.update(box=box, origin=origin, periodic=periodic)
         ts.dimensions = triclinic_box(*box)
         ts.positions = x - origin
@@ -195,14 +242,14 @@ class DumpFrames(DumpReader):
 
 
 def _names(masses, types):
-    """Names and elements (n,) for viewers, if all masses are those of elements; else T and the type."""
+    """Names (n,) for viewers, and elements if all masses are those of elements; else T and the type, and None."""
     symbols = np.array(list(MASSES))
     weights = np.array([MASSES[symbol] for symbol in symbols])
     kinds, which = np.unique(masses, return_inverse=True)
     nearest = np.abs(kinds[:, None] - weights).argmin(axis=1)
     if (np.abs(weights[nearest] - kinds) < 0.005).all():
         return (symbols[nearest][which].astype(object),) * 2
-    return np.array([f"T{kind}" for kind in types], dtype=object), np.full(len(types), "", object)
+    return np.array([f"T{kind}" for kind in types], dtype=object), None
 
 
 def _universe(reader_arguments, ids, bodies, masses, types):
@@ -217,7 +264,8 @@ def _universe(reader_arguments, ids, bodies, masses, types):
     universe.add_TopologyAttr("types", types.astype(str))
     names, elements = _names(masses, types)
     universe.add_TopologyAttr("names", names)
-    universe.add_TopologyAttr("elements", elements)
+    if elements is not None:
+        universe.add_TopologyAttr("elements", elements)
     path, arguments = reader_arguments
     universe.load_new(str(path), format=DumpFrames, **arguments)
     return universe
@@ -249,7 +297,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_st
 
     ``body`` is the column whose value is the ID of an atom's body (0: in none), such as ``i_body``;
     ``potential`` one with energies of atoms, such as ``c_energy``; ``timestep`` that of LAMMPS, so that
-    times are in its units.  Raises DumpError if a column is missing.
+    times are in its units (not needed where the dump has times).  Raises DumpError if a column is missing.
     """
     columns, local = columns_of(path)
     if local:
@@ -299,8 +347,6 @@ def open_table(path, timestep=1.0):
 def open_any(path, timestep=1.0, **options):
     """Universe of a dump of either kind, and whether it is a ``dump local`` of the fix."""
     local = columns_of(path)[1]
-    if not Path(path).is_file():
-        raise DumpError(f"{path}: no such file")
     if local:
         return open_table(path, timestep), True
     return open_dump(path, timestep=timestep, **options), False

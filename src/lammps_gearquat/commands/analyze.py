@@ -26,9 +26,16 @@ def _frames(_context, _option, text):
     show_default=True,
     help="Folder for tables and pictures.",
 )
-@click.option("--units", type=click.Choice(UNITS), help="LAMMPS' units; for energies.")
 @click.option(
-    "--timestep", type=float, default=1.0, show_default=True, help="LAMMPS' time step; for times."
+    "--units",
+    type=click.Choice(UNITS),
+    help="LAMMPS' units, unless the dump says them (dump_modify units yes); for energies and --convert.",
+)
+@click.option(
+    "--timestep",
+    type=float,
+    help="LAMMPS' time step, unless the dump has times (dump_modify time yes).  Without either, tables have"
+    " numbers of steps for times.",
 )
 @click.option("--data", type=_FILE, help="Data file with masses and molecules, if not in the dump.")
 @click.option(
@@ -55,7 +62,7 @@ def _frames(_context, _option, text):
     "--convert",
     "converted",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Also write the trajectory: .dcd, .xtc, .trr, .xyz, .pdb, ...",
+    help="Also write the trajectory, in Å and ps: .dcd, .xtc, .trr, .nc, .xyz, .pdb, ...",
 )
 @click.option("--wrap", is_flag=True, help="With --convert: bodies in the box.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes.")
@@ -73,7 +80,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
         raise click.UsageError("--near and --radius belong together")
     out.mkdir(parents=True, exist_ok=True)
     try:
-        poses = _run(dump, out, frames, options)
+        poses = _run(dump, out, frames, converted, options)
         tables.write_bodies(out / "bodies.csv", poses)
         totals = tables.write_totals(out / "totals.csv", poses)
         figures.draw_totals(out / "totals.png", poses, totals)
@@ -92,7 +99,31 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     click.echo(f"At most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}")
 
 
-def _run(dump, out, frames, options):
+def _settle(trajectory, converted, options):
+    """Units and time step, from the dump or from the options, in ``options``; what is missing is named."""
+    from ..analysis.convert import has_times
+
+    style, units, timestep = trajectory.unit_style, options["units"], options["timestep"]
+    if style and units and style != units:
+        raise ValueError(f"--units {units}: the dump says units {style}")
+    options["units"] = style or units
+    if converted and not options["units"]:
+        raise ValueError(
+            "--convert needs the units of the dump: give --units, or write the dump with dump_modify units yes"
+        )
+    if trajectory.timed and timestep is not None:
+        click.echo("The dump has times of its own; --timestep is not used.")
+    if trajectory.timed or timestep is not None:
+        return
+    if converted and has_times(converted):
+        raise ValueError(
+            f"--convert {converted} needs the times of the frames: give --timestep, or write the dump with"
+            " dump_modify time yes"
+        )
+    click.echo("Neither the dump nor --timestep tells times: numbers of steps stand for them.")
+
+
+def _run(dump, out, frames, converted, options):
     """Finished Poses or TablePoses."""
     import numpy as np
     from tqdm import tqdm
@@ -100,8 +131,10 @@ def _run(dump, out, frames, options):
     from ..analysis import Poses, TablePoses, open_any
     from ..analysis.backends import Processes
 
-    names = ("data", "atom_style", "body", "potential", "timestep")
-    universe, local = open_any(dump, **{name: options[name] for name in names})
+    names = ("data", "atom_style", "body", "potential")
+    timestep = 1.0 if options["timestep"] is None else options["timestep"]
+    universe, local = open_any(dump, timestep, **{name: options[name] for name in names})
+    _settle(universe.trajectory, converted, options)
     atoms = universe.select_atoms(options["select"])
     if not len(atoms):
         raise ValueError(f"--select {options['select']}: no such atom")
@@ -174,10 +207,12 @@ def _stay(out, poses, near, radius):
 def _convert(poses, path, wrap, frames):
     from tqdm import tqdm
 
-    from ..analysis.convert import convert
+    from ..analysis.convert import convert, remark
 
     def progress(iterator):
         return tqdm(iterator, desc="writing", unit="frame")
 
-    written = convert(poses.atoms, path, wrap, frames, progress)
-    click.echo("Written: " + ", ".join(map(str, written)))
+    written = convert(
+        poses.atoms, path, poses.units, wrap, frames, poses.results.time, progress
+    )
+    click.echo(f"Written: {', '.join(map(str, written))} ({remark(poses.units)})")
