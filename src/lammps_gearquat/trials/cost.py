@@ -18,7 +18,6 @@ from . import evaluate
 from .script import DeckError
 from .worker import TrialError
 
-REFERENCE = "formulation second values 8 compensate yes"
 CONFIRMATION = "formulation first values 6 compensate yes"
 METHODS = (
     *(f"formulation second values {n}" for n in (8, 5, 6, 10, 12)),
@@ -143,15 +142,15 @@ class Study:
 
     # --- 1. the reference -------------------------------------------------------------------------------
     def find_reference(self, end, target):
-        """(trial with REFERENCE, trial with CONFIRMATION), as fine as the budget allows.
+        """(accurate trial, trial with CONFIRMATION), as fine as the budget allows.
 
         Of the former's halvings of the step it is the one that changes least.
         """
-        steps = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1)
+        steps, accurate = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1), self.deck.accurate
         limit = self.budget.spent() + SHARE_REFERENCE * self.budget.seconds
         found, gaps, failed = [], [], 0
         while True:
-            trial = self.attempt(REFERENCE, end, steps, SAMPLES)
+            trial = self.attempt(accurate, end, steps, SAMPLES)
             if trial:
                 found.append(trial)
             failed += trial is None
@@ -162,9 +161,9 @@ class Study:
                 if gaps[-1] < 0.03 * target or stalled:
                     break
             if failed > 6:
-                raise DeckError(f"fix gear/quat cannot run this deck: {self.failures[REFERENCE]}")
+                raise DeckError(f"fix gear/quat cannot run this deck: {self.failures[accurate]}")
             # the confirmation takes somewhat more than the last trial
-            if found and self.budget.spent() + 4 * self.expected(REFERENCE, steps) > limit:
+            if found and self.budget.spent() + 4 * self.expected(accurate, steps) > limit:
                 break
             steps *= 2
         reference = found[int(np.argmin(gaps)) + 1 if gaps else 0]
@@ -278,7 +277,7 @@ def measure(deck, errors=(), time=None, budget=180.0, timings=5, norm=0, tries=(
 
     judged = [error for error in errors if error > costs.doubt_limit]
     wanted = judged or errors[:1]
-    methods = [None, *dict.fromkeys([*METHODS, *tries])]
+    methods = [None, *dict.fromkeys([*filter(deck.takes, METHODS), *tries])]
     limit = (1 - SHARE_TIMING) * budget
     middle = math.log(wanted[0] * wanted[-1]) / 2
     first = {None: max(round(end / deck.dt), FEWEST_STEPS)}

@@ -9,8 +9,6 @@ from . import evaluate
 from .cost import Budget, Study, warnings_of
 from .script import DeckError
 
-#: what the deck itself is compared with, at half its step
-ACCURATE = "formulation second values 8 compensate yes"
 #: default thresholds, in powers of ten of the size of the bodies
 THRESHOLDS = (0.1, 1.0, 3.0)
 SAMPLES = 500
@@ -49,11 +47,11 @@ def measure(
     """Horizon of a Deck.
 
     ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
-    the deck as it is, and ACCURATE.  ``steps`` are their time steps; None: the deck's own, and half
+    the deck as it is, and what is accurate there.  ``steps`` are their time steps; None: the deck's own, and half
     of that where nothing else differs.  ``every`` is the time between samples.
     """
     keywords = [None if a is None else deck.lines[0].numerics(a)]
-    keywords += [ACCURATE if b is None else deck.lines[0].numerics(b)]
+    keywords += [deck.accurate if b is None else deck.lines[0].numerics(b)]
     dt_a = steps[0] or deck.dt
     dt_b = steps[1] or (dt_a / 2 if b is None else dt_a)
     notes = list(deck.notes)

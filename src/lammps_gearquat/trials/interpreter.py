@@ -211,8 +211,9 @@ class Interpreter:
             return
         self._retire(id_)
         if script.moves_bodies(style):
-            self._pass(line, mover=script.parse_fix(words))
+            self._pass(line)
             self.movers[id_] = self.start.commands[-1]
+            self.movers[id_].mover = script.parse_fix(words)
         else:
             self._pass(line)
         self.start.fixes[id_] = style

@@ -13,6 +13,8 @@ from . import evaluate, script
 from .worker import TrialError, Worker
 
 DECK_ITSELF = "the deck's own"
+#: keywords of fix gear/quat for a trajectory to compare with; the second ones where it has to be isokinetic
+ACCURATE = tuple(f"formulation {name} values 8 compensate yes" for name in ("second", "first"))
 
 
 @dataclass
@@ -87,9 +89,11 @@ class Deck:
         start = self.scene.start
         self.lines = [command.mover for command in start.commands if command.mover]
         script.check_scene(start.fixes, start.pair_style)
+        own = [script.for_trials(line) for line in self.lines]
         translated = [script.translate(line) for line in self.lines]
+        self.own = [line for line, _ in own]
         self.base = [line for line, _ in translated]
-        self.notes = [*start.notes, *(note for _, notes in translated for note in notes)]
+        self.notes = [*start.notes, *(note for _, notes in own + translated for note in notes)]
         if len(self.scene.ids) == 0:
             raise script.DeckError("the rigid fix of the deck has no atoms")
         self.time_unit, self.length_unit = script.UNITS[self.scene.units]
@@ -105,15 +109,28 @@ class Deck:
         """The time its run takes."""
         return self.scene.start.steps * self.dt
 
+    def takes(self, keywords):
+        """Whether these keywords of fix gear/quat can go with what the deck says of its bodies."""
+        return all(line.takes(keywords) for line in self.base)
+
+    @property
+    def accurate(self):
+        """Those of ACCURATE that the deck allows."""
+        return next(filter(self.takes, ACCURATE))
+
+    def _with(self, keywords):
+        """The fix lines with these keywords of fix gear/quat; None: the deck's own."""
+        if keywords is None:
+            return self.own
+        return [line.with_numerics(keywords) for line in self.base]
+
     def fix_lines(self, keywords):
         """The fix lines that move the bodies with these keywords of fix gear/quat, as text."""
-        if keywords is None:
-            return [line.text() for line in self.lines]
-        return [line.with_numerics(keywords).text() for line in self.base]
+        return [line.text() for line in self._with(keywords)]
 
     def run(self, keywords, segments, dt, timeout=None):
         """Trial over segments of these numbers of steps.  Raises TrialError if LAMMPS does."""
-        new = {} if keywords is None else {b.id: b.with_numerics(keywords) for b in self.base}
+        new = {b.id: b for b in self._with(keywords) if keywords is not None or b not in self.lines}
         outcome = self._ask(
             "trial", timeout, scene=self.scene, lines=new, dt=dt, segments=list(segments)
         )

@@ -5,7 +5,7 @@ those of LAMMPS' manual, "Parsing rules for input scripts".
 """
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 
 class DeckError(ValueError):
@@ -103,22 +103,37 @@ def run_steps(words, now=0):
 # --- the fix that moves the bodies --------------------------------------------------------------
 RIGID = ("rigid", "rigid/nve", "rigid/small", "rigid/nve/small")
 _SUFFIX = re.compile(r"/(omp|opt|intel|gpu|kk)$")
-#: keywords of fix rigid and how many words follow each
-_RIGID_KEYWORDS = {"force": 4, "torque": 4, "langevin": 4, "temp": 3, "iso": 3, "aniso": 3}
-_RIGID_KEYWORDS |= {"x": 3, "y": 3, "z": 3, "couple": 1, "tparam": 3, "pchain": 1, "dilate": 1}
-_RIGID_KEYWORDS |= {"infile": 1, "reinit": 1, "mol": 1, "gravity": 1}
+#: keywords that may be given many times, and how many words follow each
+MASKS = ("force", "torque")
+_MASK_WORDS = 4
+#: keywords of the rigid fixes and how many words follow each
+RIGID_KEYWORDS = dict.fromkeys(MASKS, _MASK_WORDS) | {"langevin": 4}
+RIGID_KEYWORDS |= dict.fromkeys(("temp", "iso", "aniso", "x", "y", "z", "tparam"), 3)
+RIGID_KEYWORDS |= dict.fromkeys(("couple", "pchain", "dilate", "infile", "reinit", "mol"), 1)
+RIGID_KEYWORDS |= {"gravity": 1}
 #: keywords of fix gear/quat that say how bodies are integrated, not what they are
 NUMERICAL = ("formulation", "values", "passes", "compensate", "start", "c0", "omega", "momentum")
 NUMERICAL += ("project",)
 _OF_ONE_FORMULATION = ("values", "c0", "omega", "momentum")
+#: those that change the time step in a run: trials have steps of equal length
+STEPPING = ("tolerance", "dtmin", "dtmax")
+#: those that say what moves, and how it does by nature
+PHYSICAL = ("infile", "reinit", "mol", *MASKS, "isokinetic", "rescale")
+#: those that only write
+WRITING = ("report",)
+KEYWORDS = NUMERICAL + STEPPING + PHYSICAL + WRITING
 _REFUSED_KEYWORDS = {
     "langevin": "its forces are random, so there is no trajectory to compare: leave it"
     " out, or measure another run with --run N",
     "gravity": "fix gear/quat takes the forces on the atoms: leave out both this keyword and the"
     " disable of fix gravity, which is the same for point particles",
-    "force": "fix gear/quat cannot switch off components of a force",
-    "torque": "fix gear/quat cannot switch off components of a torque",
 }
+_LEFT_OUT = {
+    "mol": "no atoms are added in the trials",
+    "couple": "it acts with a barostat only",
+    "dilate": "it acts with a barostat only",
+}
+_NO_HEAT = "fix gear/quat has no thermostat or barostat"
 
 
 def base_style(style):
@@ -126,56 +141,78 @@ def base_style(style):
     return _SUFFIX.sub("", style)
 
 
+def _plain(word):
+    """A word as a script has it, in quotes if need be."""
+    return word if re.fullmatch(r"[^\s\"'#&$]+", word) else quote(word)
+
+
 @dataclass(frozen=True)
 class FixLine:
     """A fix that moves rigid bodies: ``fix ID group style bodystyle keywords``.
 
-    ``body`` is the bodystyle with its arguments; ``keywords`` maps a keyword to its arguments (for
-    force and torque, which may be repeated, to those of all of them).
+    ``body`` is the bodystyle with its arguments; ``keywords`` are pairs of a keyword and its
+    arguments, in the order of the line, for force and torque counts.
     """
 
     id: str
     group: str
     style: str
     body: tuple
-    keywords: dict = field(default_factory=dict)
+    keywords: tuple = ()
 
     def text(self):
         """The command."""
         words = ["fix", self.id, self.group, self.style, *self.body]
-        for key, values in self.keywords.items():
+        for key, values in self.keywords:
             words += [key, *values]
-        return " ".join(words)
+        return " ".join(map(_plain, words))
+
+    def only(self, names):
+        """This line with those of its keywords that are in ``names``."""
+        return replace(self, keywords=tuple(pair for pair in self.keywords if pair[0] in names))
+
+    @property
+    def isokinetic(self):
+        """Whether the kinetic energy is held constant."""
+        return dict(self.keywords).get("isokinetic", ("none",)) != ("none",)
+
+    def takes(self, text):
+        """Whether the keywords in ``text`` can go with those that say what moves."""
+        return not self.isokinetic or dict(pairs(text)).get("formulation") == ("first",)
 
     def with_numerics(self, text):
-        """This line with the keywords in ``text`` instead of all those of NUMERICAL.
+        """This line with the keywords in ``text`` instead of all those that say how to integrate.
 
-        Raises DeckError for text that is not pairs of a keyword and a value.
+        Raises DeckError for text that is not pairs of a keyword and a value, or does not fit.
         """
-        kept = {key: values for key, values in self.keywords.items() if key not in NUMERICAL}
-        return replace(self, keywords=pairs(text) | kept)
+        if not self.takes(text):
+            raise DeckError(
+                f"fix {self.id}, keyword isokinetic: it belongs to formulation first, so it cannot"
+                f" be tried with '{text}'"
+            )
+        kept = self.only(PHYSICAL)
+        return replace(kept, keywords=pairs(text) + kept.keywords)
 
     def numerics(self, text):
         """The NUMERICAL keywords of this line as text, changed by those in ``text``.
 
         What belongs to the other formulation only goes with a change of formulation.
         """
-        own = {key: values for key, values in self.keywords.items() if key in NUMERICAL}
-        new = pairs(text)
+        own, new = dict(self.only(NUMERICAL).keywords), dict(pairs(text))
         if new.get("formulation", own.get("formulation")) != own.get("formulation"):
             own = {key: own[key] for key in own if key not in _OF_ONE_FORMULATION}
         return " ".join(f"{key} {values[0]}" for key, values in (own | new).items())
 
 
 def pairs(text):
-    """Keywords of fix gear/quat in ``text``: dictionary keyword -> (value,)."""
+    """Keywords of fix gear/quat in ``text``: pairs (keyword, (value,))."""
     words = text.split()
     unknown = [word for word in words[::2] if word not in NUMERICAL]
     if len(words) % 2 or unknown:
         raise DeckError(
             f"'{text}' should be pairs of a keyword ({', '.join(NUMERICAL)}) and its value"
         )
-    return {key: (value,) for key, value in zip(words[::2], words[1::2])}
+    return tuple((key, (value,)) for key, value in zip(words[::2], words[1::2]))
 
 
 def moves_bodies(style):
@@ -186,22 +223,39 @@ def moves_bodies(style):
 def parse_fix(words):
     """FixLine of the words of a fix command for which ``moves_bodies`` holds."""
     id_, group, style, *rest = words[1:]
+    who = f"fix {id_} {style}"
     length = {"single": 1, "molecule": 1, "custom": 2}.get(rest[0] if rest else "", 0)
     if rest and rest[0] == "group" and len(rest) > 1 and rest[1].isdigit():
         length = 2 + int(rest[1])
     if not length or len(rest) < length:
-        raise DeckError(f"fix {id_} {style}: cannot make out which bodies: {' '.join(rest)}")
-    keywords, rest, body = {}, rest[length:], tuple(rest[:length])
+        raise DeckError(f"{who}: cannot make out which bodies: {' '.join(rest)}")
+    known = RIGID_KEYWORDS
+    if style == "gear/quat":
+        known = dict.fromkeys(KEYWORDS, 1) | dict.fromkeys(MASKS, _MASK_WORDS)
+    keywords, rest, body = [], rest[length:], tuple(rest[:length])
     while rest:
         key = rest[0]
-        if style != "gear/quat" and key not in _RIGID_KEYWORDS:
-            raise DeckError(f"fix {id_} {style}: unknown keyword {key}")
-        count = 1 if style == "gear/quat" else _RIGID_KEYWORDS[key]
-        if len(rest) <= count:
-            raise DeckError(f"fix {id_} {style}: keyword {key} lacks its arguments")
-        keywords[key] = (*keywords.get(key, ()), *rest[1 : count + 1])
-        rest = rest[count + 1 :]
-    return FixLine(id_, group, style, body, keywords)
+        if key not in known:
+            raise DeckError(f"{who}: unknown keyword {key}")
+        if len(rest) <= known[key]:
+            raise DeckError(f"{who}: keyword {key} lacks its arguments")
+        if key not in MASKS:  # the last one counts
+            keywords = [pair for pair in keywords if pair[0] != key]
+        keywords.append((key, tuple(rest[1 : known[key] + 1])))
+        rest = rest[known[key] + 1 :]
+    return FixLine(id_, group, style, body, tuple(keywords))
+
+
+def for_trials(line):
+    """The line of a deck as its trials run it: (FixLine, notes)."""
+    left_out = [key for key, _ in line.keywords if key in STEPPING]
+    if line.style != "gear/quat" or not left_out:
+        return line, []
+    kept = line.only([key for key in KEYWORDS if key not in STEPPING])
+    return kept, [
+        f"fix {line.id} {line.style}: {', '.join(left_out)} left out, for trials have steps of equal"
+        " length; what it costs to let the step follow the error is not measured"
+    ]
 
 
 def translate(line):
@@ -210,26 +264,30 @@ def translate(line):
     Raises DeckError for what fix gear/quat does not have.
     """
     if line.style == "gear/quat":
-        return line.with_numerics(""), []
+        return line.only(PHYSICAL), []
     style, who, notes = base_style(line.style), f"fix {line.id} {line.style}", []
     if style not in RIGID:
         raise DeckError(
-            f"{who}: fix gear/quat has no thermostat or barostat, and no other motion to compare"
-            f" with; the deck has to use one of {', '.join(RIGID)}"
+            f"{who}: {_NO_HEAT}, and no other motion to compare with; the deck has to use one of"
+            f" {', '.join(RIGID)}"
         )
-    kept = {}
-    for key, values in line.keywords.items():
-        if key in ("infile", "reinit"):
-            kept[key] = values
-        elif key in ("force", "torque") and not {"off"} & set(values):
-            notes.append(f"{who}: keyword {key}, all on, is left out")
-        elif key in _REFUSED_KEYWORDS:
+    kept, stated = [], "infile" in dict(line.keywords)
+    for key, values in line.keywords:
+        if key in _REFUSED_KEYWORDS:
             raise DeckError(f"{who}, keyword {key}: {_REFUSED_KEYWORDS[key]}")
-        elif key == "mol":
-            notes.append(f"{who}: keyword mol is left out; no atoms are added in the trials")
+        if key in ("infile", *MASKS):
+            kept.append((key, values))
+        elif key == "reinit":
+            no = values[0].lower() in ("no", "off", "false", "0")
+            if not stated:
+                kept.append((key, ("no" if no else "yes",)))
+            elif not no:
+                notes.append(f"{who}: keyword reinit is left out; bodies of an infile stay as stated")
+        elif key in _LEFT_OUT:
+            notes.append(f"{who}: keyword {key} is left out; {_LEFT_OUT[key]}")
         else:
-            raise DeckError(f"{who}, keyword {key}: fix gear/quat has no thermostat or barostat")
-    return replace(line, style="gear/quat", keywords=kept), notes
+            raise DeckError(f"{who}, keyword {key}: {_NO_HEAT}")
+    return replace(line, style="gear/quat", keywords=tuple(kept)), notes
 
 
 # --- what leaves no trajectory to compare ---------------------------------------------------------

@@ -1,0 +1,91 @@
+"""Fix lines at random: what LAMMPS accepts, the trials understand, and what they make of it LAMMPS accepts."""
+
+import random
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from fuzz import arguments
+
+from lammps_gearquat.reference.lammps_forces import _open_lammps
+from lammps_gearquat.trials import cost, measure, script
+from lammps_gearquat.trials.script import DeckError
+
+LINES = 200
+METHODS = (*measure.ACCURATE, *cost.METHODS, cost.CONFIRMATION, "start zero c0 velocity passes 1")
+#: a field for the keyword gravity
+SETUP = arguments.SETUP + "fix field all gravity 1.0 vector 0 0 -1 disable\n"
+
+
+@pytest.fixture
+def accepts(tmp_path, monkeypatch):
+    """``accepts(command)``: whether LAMMPS accepts a fix with the ID move."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in arguments.FILES.items():
+        Path(name).write_text(text)
+    lmp = _open_lammps(["-screen", "none", "-log", "none", "-nocite"])
+    lmp.commands_string(SETUP)
+
+    def accepted(command):
+        try:
+            lmp.command(command)
+        except Exception:  # the only class LAMMPS' module raises
+            return False
+        lmp.command("unfix move")
+        return True
+
+    yield accepted
+    lmp.close()
+
+
+def rigid(rng):
+    """A line of a fix of the rigid family, mostly right."""
+    style = rng.choice(script.RIGID)
+    small = "small" in style
+    bodies = ["molecule", "custom i_which"] + ([] if small else ["single", "group 2 left right"])
+    numbers = ("1", "*", "1*", "*1") + (() if small else ("2", "2*"))
+    chain = []
+    for _ in range(rng.choice((0, 1, 1, 2, 3))):
+        flags = " ".join(rng.choice(("on", "off")) for _ in range(3))
+        one = [f"reinit {rng.choice(('yes', 'no', 'on', 'off', 'true', 'false'))}", "infile bodies"]
+        one += ["couple xyz", "dilate all", "dilate left", "gravity field", "langevin 1 1 1 4711"]
+        one += ["mol two"] if small else [f"{key} {rng.choice(numbers)} {flags}" for key in script.MASKS] * 3
+        chain.append(rng.choice(one))
+    return " ".join([f"fix move all {style}", rng.choice(bodies), *chain])
+
+
+def gear(rng):
+    return f"fix move all gear/quat {arguments.quoted(arguments.valid(rng))}"
+
+
+@pytest.mark.parametrize("make", [gear, rigid])
+def test_trial_lines_are_lines_that_lammps_takes(accepts, make):
+    rng = random.Random(make.__name__)
+    seen = Counter()
+    for _ in range(LINES):
+        command = make(rng)
+        if not accepts(command):
+            seen["refused by LAMMPS"] += 1
+            continue
+        line = script.parse_fix(script.split(command))
+        assert accepts(line.text()), (command, line.text())
+        own = script.for_trials(line)[0].text()
+        assert accepts(own), (command, own)
+        try:
+            base, _ = script.translate(line)
+        except DeckError as error:
+            assert any(word in str(error) for word in ("keyword langevin", "keyword gravity")), error
+            assert make is rigid
+            seen["refused"] += 1
+            continue
+        seen["translated"] += 1
+        for method in rng.sample(METHODS, 4):
+            if base.takes(method):
+                trial = base.with_numerics(method).text()
+                assert accepts(trial), (command, trial)
+            else:
+                words = script.replace(base, keywords=script.pairs(method) + base.keywords)
+                assert base.isokinetic and not accepts(words.text()), (command, words.text())
+                seen["of the other formulation"] += 1
+    assert seen["translated"] > LINES / 2, seen
+    assert seen["of the other formulation" if make is gear else "refused"] > LINES / 20, seen
