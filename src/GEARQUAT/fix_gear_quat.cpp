@@ -413,7 +413,13 @@ void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
    restart: the global part says what the histories are, the per-atom part holds them
 ------------------------------------------------------------------------- */
 
+// a restart file of releases up to 0.2.0 begins with the formulation, 0 or 1
+
+static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
+static constexpr double FORMAT = 1;
+
 struct GlobalRestart {
+  double magic, format;
   GearQuatMotion::Kept motion;
   double extended;    // bodies have sites that are more than points
 };
@@ -421,7 +427,7 @@ struct GlobalRestart {
 void FixGearQuat::write_restart(FILE *fp)
 {
   if (comm->me != 0) return;
-  const GlobalRestart data = {motion->keep(), (double) bodies->has_extended()};
+  const GlobalRestart data = {MAGIC, FORMAT, motion->keep(), (double) bodies->has_extended()};
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
@@ -435,9 +441,24 @@ void FixGearQuat::write_restart_file(const char *file)
   write_given_bodies(lmp, fmt::format("{}.{}.gear_quat", file, id), id, *bodies, array_local);
 }
 
+/// LAMMPS does not tell the size of the block: only what every release wrote may be read at first.
+static void refuse_other_formats(LAMMPS *lmp, const Fix *fix, const char *buf)
+{
+  double head[2];
+  std::memcpy(head, buf, sizeof(head));
+  const bool older = head[0] != MAGIC;
+  if (!older && head[1] == FORMAT) return;
+  lmp->error->all(FLERR,
+                  "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
+                  "data of fix {} this one cannot read; continue with the release that wrote it, or "
+                  "let that one write a data file with write_data and start from this",
+                  older ? "an older (0.2.0 or before)" : "a newer", fix->id);
+}
+
 /// Called before the per-atom data arrive: what the constructor made of the atoms is dropped.
 void FixGearQuat::restart(char *buf)
 {
+  refuse_other_formats(lmp, this, buf);
   GlobalRestart data;
   std::memcpy(&data, buf, sizeof(data));
   bodies->clear(data.extended != 0.0);
@@ -445,17 +466,18 @@ void FixGearQuat::restart(char *buf)
   met_atoms = true;
 }
 
+/// Other fixes find their data behind these: the first number tells how many there are.
 int FixGearQuat::pack_restart(int i, double *buf)
 {
   const int n = 1 + bodies->pack_exchange(i, buf + 1);
-  buf[0] = ubuf(n).d;
+  buf[0] = n;
   return n;
 }
 
 void FixGearQuat::unpack_restart(int nlocal, int nth)
 {
   const double *data = atom->extra[nlocal];
-  for (int i = 0; i < nth; ++i) data += (int) ubuf(data[0]).i;
+  for (int i = 0; i < nth; ++i) data += (int) data[0];
   bodies->unpack_exchange(nlocal, data + 1);
 }
 

@@ -1,0 +1,80 @@
+"""A restart beside other fixes that keep data of atoms in the same file, and files of other releases.
+
+In a restart file the data of an atom are one block after another, one for each fix; to find its own, a fix
+steps over those before it by the number that stands first in each.
+"""
+
+import struct
+
+import pytest
+from scenes import restarted, water, water_data
+
+# A fix each that keeps numbers of atoms: springs, positions at the start, marks and velocities.
+KEEPERS = """
+fix spring all spring/self 0.5
+fix_modify spring energy yes
+compute msd all msd
+fix marks all property/atom d_mark
+{marks}
+fix kept all store/state 0 vx
+compute marks all reduce sum d_mark
+compute kept all reduce sumsq f_kept
+"""
+COLUMNS = ["f_spring", "c_msd[4]", "c_marks", "c_kept", "PotEng", "KinEng"]
+SHOW = f"thermo_style custom step f_spring c_msd[4] c_marks c_kept pe ke\n"
+
+
+def keeping(data, order, commands, restart=None):
+    mark = "" if restart else "variable mark atom id*id\nset group all d_mark v_mark"
+    where = {order: KEEPERS.format(marks=mark)}
+    run = f"{SHOW}thermo_modify norm no format float %.17g\nthermo 50\n{commands}"
+    deck = water(data, dt=1.0, run=run, **where)
+    return restarted(deck, restart) if restart else deck
+
+
+@pytest.mark.parametrize("order", ["before", "after"])
+@pytest.mark.parametrize("ranks", [1, 4])
+def test_other_fixes_find_their_data(lmp_tree, order, ranks):
+    data = water_data(lmp_tree.folder / "data.water")
+    file = lmp_tree.folder / "half.restart"
+    whole = lmp_tree.run(
+        keeping(data, order, f"run 50\nwrite_restart {file}\nrun 50"), ranks=ranks
+    )
+    again = lmp_tree.run(keeping(data, order, "run 50", file), ranks=ranks)
+    for result in (whole, again):
+        assert result.returncode == 0, result.output
+    for column in COLUMNS:
+        right, found = whole.thermo[-1][column], again.thermo[-1][column]
+        assert found == pytest.approx(right, rel=1e-11)
+        assert right[-1] != pytest.approx(1.01 * right[-1], rel=1e-11)
+    assert whole.thermo[-1]["f_spring"][-1] > 0.1
+
+
+def with_first_number(path, other, magic, number):
+    """The restart file `path` with another number in the fix's global block, the one after `magic`."""
+    content = path.read_bytes()
+    head = struct.pack("d", magic)
+    assert content.count(head) == 1
+    at = content.index(head)
+    at += 8 * (number > 0)
+    changed = path.with_name("changed.restart")
+    changed.write_bytes(content[:at] + struct.pack("d", other) + content[at + 8 :])
+    return changed
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize(
+    "number, other, whose", [(0, 1.0, "an older (0.2.0 or before)"), (1, 99.0, "a newer")]
+)
+def test_files_of_other_releases_are_refused(lmp_tree, ranks, number, other, whose):
+    """Files of 0.2.0 begin with the formulation, 0 or 1."""
+    data = water_data(lmp_tree.folder / "data.water")
+    file = lmp_tree.folder / "file.restart"
+    result = lmp_tree.run(water(data, run=f"run 1\nwrite_restart {file}"))
+    assert result.returncode == 0, result.output
+    file = with_first_number(file, other, float(int.from_bytes(b"gearquat", "big")), number)
+    result = lmp_tree.run(restarted(water(data, run="run 1"), file), ranks=ranks)
+    assert result.returncode != 0
+    assert len(set(result.errors)) == 1
+    assert f"written by {whose} release of GEARQUAT" in result.errors[0]
+    assert "fix move" in result.errors[0] and "write_data" in result.errors[0]
