@@ -34,11 +34,13 @@
 #include "citeme.h"
 #include "comm.h"
 #include "error.h"
+#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "output.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -80,7 +82,8 @@ static const char cite_cases[] =
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), met_atoms(false), reported(false), velocities_read(true)
+    Fix(lmp, narg, arg), met_atoms(false), reported(false), velocities_read(true),
+    vflag_of_step(0)
 {
   if (lmp->citeme)
     for (const char *what : {cite_first, cite_second, cite_cases}) lmp->citeme->add(what);
@@ -96,6 +99,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   size_array_cols = size_local_cols = GearQuatTable::COLUMNS;
   energy_global_flag = 1;
   virial_global_flag = virial_peratom_flag = 1;
+  centroidstressflag = CENTROID_AVAIL;
   thermo_virial = 1;
   dof_flag = 1;
   create_attribute = 1;
@@ -233,7 +237,7 @@ void FixGearQuat::pre_neighbor()
 
 void FixGearQuat::initial_integrate(int vflag)
 {
-  v_init(vflag);
+  vflag_of_step = vflag;
   if (!motion->has_started()) {
     // forces of the step before are still there, those of all other fixes among them
     bodies->spread_states();
@@ -258,6 +262,7 @@ void FixGearQuat::begin_step()
 void FixGearQuat::finish_step(double **f, double **torque)
 {
   bodies->gather_loads(f, torque);
+  v_init(vflag_of_step);    // here: the atoms are those that forces belong to
   if (evflag) tally_virial(f);
   motion->correct(f);
   bodies->spread_states();
@@ -272,20 +277,24 @@ void FixGearQuat::end_of_step()
   motion->choose_step();
 }
 
-/// Virial of the constraint forces m a - f, at the pose where the forces were taken.
+/// Virial of the constraint forces m a - f, at the pose where the forces were taken.  Those of a body
+/// add up to zero, so any origin serves; for the centroid form it is the mean place of its sites.
 void FixGearQuat::tally_virial(double **f)
 {
   bodies->spread_loads();
-  for (size_t n = bodies->first_arm(); n < bodies->sites.size(); ++n) {
+  std::vector<Load> centroids;
+  if (cvflag_atom) centroids = bodies->centroids();
+  for (size_t n = cvflag_atom ? 0 : bodies->first_arm(); n < bodies->sites.size(); ++n) {
     const auto &site = bodies->sites[n];
-    double arm[3], constraint[3], virial_i[6];
-    bodies->constraint_force(site, f, arm, constraint);
-    for (int k = 0; k < 3; ++k) virial_i[k] = arm[k] * constraint[k];
-    virial_i[3] = arm[0] * constraint[1];
-    virial_i[4] = arm[0] * constraint[2];
-    virial_i[5] = arm[1] * constraint[2];
+    double arm[1][3], constraint[1][3], virial_i[6], centroid[3] = {0.0, 0.0, 0.0};
+    bodies->constraint_force(site, f, arm[0], constraint[0]);
+    for (int k = 0; k < 3; ++k) virial_i[k] = arm[0][k] * constraint[0][k];
+    virial_i[3] = arm[0][0] * constraint[0][1];
+    virial_i[4] = arm[0][0] * constraint[0][2];
+    virial_i[5] = arm[0][1] * constraint[0][2];
+    if (cvflag_atom) std::copy_n(centroids[site.body].force, 3, centroid);
     int i = site.atom;
-    v_tally(1, &i, 1.0, virial_i);
+    v_tally(1, &i, 1.0, virial_i, arm, constraint, centroid);
   }
 }
 
@@ -296,7 +305,7 @@ void FixGearQuat::tally_virial(double **f)
 void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {
   if (!respa->outermost(ilevel)) return;
-  v_init(vflag);
+  vflag_of_step = vflag;
   if (!motion->has_started()) {
     GearQuatBootstrap::gather_present_loads(lmp, this, *bodies);
     motion->start(atom->f);

@@ -84,6 +84,7 @@ class FixGearQuat : public Fix {
   bool met_atoms;          // bodies were compared with the atoms in a run before
   bool reported;           // the scene, once
   bool velocities_read;    // between prediction and correction, by others
+  int vflag_of_step;       // what LAMMPS asked of the virial when the step began
 
   void begin_step();
   void finish_step(double **, double **);

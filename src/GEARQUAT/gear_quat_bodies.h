@@ -118,6 +118,8 @@ class GearQuatBodies : protected Pointers {
   size_t first_arm() const { return ncentered; }
   /// Arm from the centre of mass and constraint force m a - f of a site under the present loads.
   void constraint_force(const Site &site, double **f, double *arm_space, double *force) const;
+  /// Mean of the arms of all sites of each body, owned and ghost, in `force`.  Collective.
+  std::vector<GearQuat::Load> centroids();
 
   // what the fix forwards
 

@@ -146,6 +146,21 @@ void GearQuatBodies::constraint_force(const Site &site, double **f, double *arm_
     constraint[k] = mass * (l.force[k] / rigid.mass + tangential[k] + radial[k]) - f[site.atom][k];
 }
 
+std::vector<Load> GearQuatBodies::centroids()
+{
+  std::vector<Load> means(body.size(), Load());
+  for (const Site &site : sites) {
+    double arm[3];
+    to_space(frame[site.body].axes, site.arm_body, arm);
+    for (int k = 0; k < 3; ++k) means[site.body].force[k] += arm[k] / body[site.body].natoms;
+  }
+  load.swap(means);    // they travel as loads do
+  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
+  spread_loads();
+  load.swap(means);
+  return means;
+}
+
 double GearQuatBodies::atom_mass(int i) const
 {
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
