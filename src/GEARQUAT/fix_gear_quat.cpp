@@ -228,6 +228,7 @@ void FixGearQuat::show_bodies()
 void FixGearQuat::pre_neighbor()
 {
   bodies->update_ghosts();
+  table->forget();
   size_array_rows = bodies->number();
 }
 
@@ -257,6 +258,7 @@ void FixGearQuat::begin_step()
   motion->predict(atom->f);
   bodies->spread_states();
   bodies->place_sites(velocities_read);
+  table->forget();
 }
 
 void FixGearQuat::finish_step(double **f, double **torque)
@@ -267,6 +269,7 @@ void FixGearQuat::finish_step(double **f, double **torque)
   motion->correct(f);
   bodies->spread_states();
   bodies->place_sites(true);
+  table->forget();
   const int others = modify->n_end_of_step - (motion->changes_step() ? 1 : 0);
   if (output->next == update->ntimestep || others > 0) show_bodies();
 }

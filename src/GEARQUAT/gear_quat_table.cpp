@@ -8,7 +8,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "force.h"
-#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +18,7 @@ using namespace GearQuat;
 
 double **GearQuatTable::local()
 {
-  fill();
+  fill(mine);
   rows.resize(bodies.nowned());
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = mine.data() + i * COLUMNS;
   return rows.data();
@@ -27,16 +26,16 @@ double **GearQuatTable::local()
 
 double GearQuatTable::global(int row, int column)
 {
-  if (gathered != update->ntimestep) gather();
+  if (!gathered) gather();
   const size_t at = (size_t) row * COLUMNS + column;
   return at < all.size() ? all[at] : 0.0;
 }
 
-void GearQuatTable::fill()
+void GearQuatTable::fill(std::vector<double> &rows_here) const
 {
-  mine.resize((size_t) bodies.nowned() * COLUMNS);
+  rows_here.resize((size_t) bodies.nowned() * COLUMNS);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    fill_row(ibody, mine.data() + (size_t) ibody * COLUMNS);
+    fill_row(ibody, rows_here.data() + (size_t) ibody * COLUMNS);
 }
 
 /// A centre in the box and its image flags; also where it has flown so far that flags are no integers.
@@ -82,13 +81,14 @@ void GearQuatTable::fill_row(int ibody, double *row) const
 
 void GearQuatTable::gather()
 {
-  fill();
-  int here = mine.size();    // not const: MPI without MPI wants it so
+  std::vector<double> rows_here;    // local() has shown `mine`
+  fill(rows_here);
+  int here = rows_here.size();    // not const: MPI without MPI wants it so
   std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
   MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
   std::vector<double> met(starts.back() + counts.back());
-  MPI_Allgatherv(mine.data(), here, MPI_DOUBLE, met.data(), counts.data(), starts.data(),
+  MPI_Allgatherv(rows_here.data(), here, MPI_DOUBLE, met.data(), counts.data(), starts.data(),
                  MPI_DOUBLE, world);
 
   std::vector<size_t> order(met.size() / COLUMNS);
@@ -99,5 +99,5 @@ void GearQuatTable::gather()
   all.resize(met.size());
   for (size_t i = 0; i < order.size(); ++i)
     std::copy_n(met.data() + order[i] * COLUMNS, (int) COLUMNS, all.data() + i * COLUMNS);
-  gathered = update->ntimestep;
+  gathered = true;
 }

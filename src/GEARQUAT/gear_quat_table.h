@@ -35,10 +35,11 @@ class GearQuatTable : protected Pointers {
 
   /// Rows of owned bodies, anew at every call; the pointers stay valid until the next one.
   double **local();
-  /// A number of the global array.  Rows are gathered once a step: collective.
+  /// A number of the global array, 0 in rows without a body.  Rows are gathered when the first is
+  /// asked for after forget(): collective.
   double global(int row, int column);
-  /// Bodies have changed since: gather again.
-  void forget() { gathered = -1; }
+  /// Poses, loads or bodies have changed.
+  void forget() { gathered = false; }
   double memory_usage() const
   {
     return (mine.capacity() + all.capacity()) * sizeof(double) + rows.capacity() * sizeof(double *);
@@ -48,9 +49,9 @@ class GearQuatTable : protected Pointers {
   const GearQuatBodies &bodies;
   std::vector<double> mine, all;
   std::vector<double *> rows;
-  bigint gathered = -1;    ///< step of `all`
+  bool gathered = false;    ///< `all` is of the present poses
 
-  void fill();
+  void fill(std::vector<double> &rows_here) const;
   void wrap(const double *center, double *wrapped, double *image) const;
   void fill_row(int ibody, double *row) const;
   void gather();

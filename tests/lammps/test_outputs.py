@@ -126,3 +126,19 @@ fix mean all ave/time 1 5 5 v_one c_sum file mean.txt format ' %.17g'
     assert means != pytest.approx([np.mean(thermo["v_one"][:-1]), each[:-1].mean()], rel=1e-12)
     assert each[-1] == pytest.approx((table[:, 3] ** 2).sum(), rel=1e-12)
     assert abs(each[-1] - each[1]) > 0.001 * abs(each[1])
+
+
+@pytest.mark.parametrize("ranks", [1, 4])
+def test_rows_follow_within_a_step(lmp_tree, ranks):
+    """A variable that a fix reads while forces are evaluated leaves nothing behind for thermo."""
+    after = """
+variable push equal 0.0*f_move[1][1]
+fix push all addforce v_push 0.0 0.0
+"""
+    shown = " ".join(f"f_move[{i}][{k + 1}]" for i in (1, 14, 27) for k in range(COLUMNS))
+    show = f"thermo_style custom step {shown}\nthermo_modify format float %.17g norm no\n"
+    table, _, result = bodies_of(lmp_tree, ranks, after=after, run=f"{show}run 20")
+    thermo = result.thermo[-1]
+    array = np.array([thermo[column][-1] for column in shown.split()]).reshape(3, COLUMNS)
+    assert array == pytest.approx(table[[0, 13, 26]], rel=1e-14)
+    assert (1.01 * array[:, :IMAGE.start] != pytest.approx(table[[0, 13, 26], :IMAGE.start], rel=1e-3))
