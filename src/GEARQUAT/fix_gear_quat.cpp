@@ -82,13 +82,12 @@ static const char cite_cases[] =
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), met_atoms(false), reported(false), velocities_read(true),
-    vflag_of_step(0)
+    Fix(lmp, narg, arg), met_atoms(false), reported(false), velocities_read(true), vflag_of_step(0)
 {
   if (lmp->citeme)
     for (const char *what : {cite_first, cite_second, cite_cases}) lmp->citeme->add(what);
 
-  time_integrate = 1;
+  time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = 1;
   global_freq = 1;
   extscalar = 1;
@@ -460,11 +459,12 @@ static void refuse_other_formats(LAMMPS *lmp, const Fix *fix, const char *buf)
   std::memcpy(head, buf, sizeof(head));
   const bool older = head[0] != MAGIC;
   if (!older && head[1] == FORMAT) return;
-  lmp->error->all(FLERR,
-                  "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
-                  "data of fix {} this one cannot read; continue with the release that wrote it, or "
-                  "let that one write a data file with write_data and start from this",
-                  older ? "an older (0.2.0 or before)" : "a newer", fix->id);
+  lmp->error->all(
+      FLERR,
+      "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
+      "data of fix {} this one cannot read; continue with the release that wrote it, or "
+      "let that one write a data file with write_data and start from this",
+      older ? "an older (0.2.0 or before)" : "a newer", fix->id);
 }
 
 /// Called before the per-atom data arrive: what the constructor made of the atoms is dropped.

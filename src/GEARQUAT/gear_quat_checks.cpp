@@ -9,6 +9,7 @@
 #include "gear_quat_bodies.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "library.h"
@@ -63,6 +64,22 @@ static void refuse_other_integrators(LAMMPS *lmp, const FixGearQuat *fix,
   }
 }
 
+/// Granular walls ask one fix for the masses of its bodies, the first.  (Pair styles refuse a second.)
+static void warn_of_walls(LAMMPS *lmp, const FixGearQuat *fix)
+{
+  const Fix *first = nullptr;
+  for (const auto *other : lmp->modify->get_fix_list())
+    if (!first && other->rigid_flag) first = other;
+  if (first == fix || lmp->comm->me != 0) return;
+  for (const auto *other : lmp->modify->get_fix_list())
+    if (utils::strmatch(other->style, "^wall/gran"))
+      lmp->error->warning(FLERR,
+                          "Fix gear/quat: fix {} ({}) knows the bodies of fix {} only and damps "
+                          "contacts of those of fix {} with the masses of atoms; use one fix for "
+                          "all bodies",
+                          other->id, other->style, first->id, fix->id);
+}
+
 void LAMMPS_NS::refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatBodies &bodies)
 {
   if (lmp->update->whichflag == 2)
@@ -75,4 +92,5 @@ void LAMMPS_NS::refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuat
   bodies.refuse_atoms();
   refuse_respa_with_steps(lmp);
   refuse_other_integrators(lmp, fix, bodies);
+  warn_of_walls(lmp, fix);
 }

@@ -16,7 +16,7 @@ class LAMMPS;
 
 /// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, a box
 /// that changes, r-RESPA with different steps, atoms of a kind that cannot be followed, atoms
-/// that another fix moves too.
+/// that another fix moves too.  Warns of granular walls that do not know the masses of the bodies.
 void refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatBodies &bodies);
 
 }    // namespace LAMMPS_NS

@@ -33,7 +33,8 @@ void *GearQuatExtract::extract(const std::string &name, int &dim)
   if (name == "body") {
     dim = 1;
     body.assign(atom->nlocal + 1, -1);    // one more: no null pointer on a rank without atoms
-    for (const auto &site : bodies.sites) body[site.atom] = site.body;
+    for (const auto &site : bodies.sites)
+      if (site.atom < atom->nlocal) body[site.atom] = site.body;
     return body.data();
   }
   if (name == "masstotal") {

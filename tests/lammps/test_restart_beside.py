@@ -17,7 +17,8 @@ compute msd all msd
 fix marks all property/atom d_mark
 {marks}
 fix kept all store/state 0 vx
-compute marks all reduce sum d_mark
+variable marked atom d_mark
+compute marks all reduce sum v_marked
 compute kept all reduce sumsq f_kept
 """
 COLUMNS = ["f_spring", "c_msd[4]", "c_marks", "c_kept", "PotEng", "KinEng"]
