@@ -23,8 +23,10 @@
 #include "gear_quat_extract.h"
 #include "gear_quat_infile_out.h"
 #include "gear_quat_motion.h"
+#include "gear_quat_neighbors.h"
 #include "gear_quat_report.h"
 #include "gear_quat_respa.h"
+#include "gear_quat_rigid_words.h"
 #include "gear_quat_scene.h"
 #include "gear_quat_sums.h"
 #include "gear_quat_table.h"
@@ -82,7 +84,8 @@ static const char cite_cases[] =
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), met_atoms(false), reported(false), velocities_read(true), vflag_of_step(0)
+    Fix(lmp, narg, arg), met_atoms(false), reported(false), compared(false), velocities_read(true),
+    vflag_of_step(0)
 {
   if (lmp->citeme)
     for (const char *what : {cite_first, cite_second, cite_cases}) lmp->citeme->add(what);
@@ -111,6 +114,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   args.reset(new GearQuatArguments(lmp, narg, arg));
   bodies.reset(new GearQuatBodies(lmp, this, args->scheme));
   motion.reset(new GearQuatMotion(lmp, this, *args, *bodies));
+  neighbors.reset(new GearQuatNeighbors(lmp, this, *bodies, args->isokinetic != Isokinetic::NONE));
   respa.reset(new GearQuatRespa(lmp));
   table.reset(new GearQuatTable(lmp, *bodies));
   sums.reset(new GearQuatSums(lmp, *bodies));
@@ -166,9 +170,10 @@ int FixGearQuat::setmask()
 void FixGearQuat::init()
 {
   refuse_scene(lmp, this, *bodies);
+  neighbors->init();
   motion->init();
   velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
-  bodies->expect_forces(makes_forces(lmp, this));
+  bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
 }
 
 bool FixGearQuat::moves(int i) const
@@ -186,6 +191,7 @@ void FixGearQuat::setup_pre_neighbor()
 {
   bodies->check_whole();
   bodies->update_ghosts();
+  if (met_atoms) take_velocities(update->ntimestep, false);
   const bool take_over = args->infile.empty() && (args->reinit || !met_atoms);
   if (take_over && !bodies->atoms_match()) {
     bodies->recreate();
@@ -197,12 +203,23 @@ void FixGearQuat::setup_pre_neighbor()
     motion->forget();
   }
   motion->impose_masks();
-  met_atoms = true;
+  met_atoms = compared = true;
   size_array_rows = bodies->number();
+}
+
+/// What fixes that scale velocities or shift them gave to the atoms of bodies in the end of a step.
+void FixGearQuat::take_velocities(bigint step, bool end)
+{
+  motion->take_velocities(neighbors->take_velocities(step, end));
 }
 
 void FixGearQuat::setup(int vflag)
 {
+  if (!compared) {    // run ... pre no
+    take_velocities(update->ntimestep, true);
+    neighbors->check_all();
+  }
+  compared = false;
   bodies->spread_states();
   bodies->place_velocities();
   for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
@@ -238,6 +255,7 @@ void FixGearQuat::pre_neighbor()
 void FixGearQuat::initial_integrate(int vflag)
 {
   vflag_of_step = vflag;
+  take_velocities(update->ntimestep - 1, true);
   if (!motion->has_started()) {
     // forces of the step before are still there, those of all other fixes among them
     bodies->spread_states();
@@ -254,6 +272,7 @@ void FixGearQuat::final_integrate()
 
 void FixGearQuat::begin_step()
 {
+  neighbors->check_velocities();
   motion->predict(atom->f);
   bodies->spread_states();
   bodies->place_sites(velocities_read);
@@ -262,6 +281,7 @@ void FixGearQuat::begin_step()
 
 void FixGearQuat::finish_step(double **f, double **torque)
 {
+  neighbors->check_places();
   bodies->gather_loads(f, torque);
   v_init(vflag_of_step);    // here: the atoms are those that forces belong to
   if (evflag) tally_virial(f);
@@ -308,6 +328,7 @@ void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {
   if (!respa->outermost(ilevel)) return;
   vflag_of_step = vflag;
+  take_velocities(update->ntimestep - 1, true);
   if (!motion->has_started()) {
     GearQuatBootstrap::gather_present_loads(lmp, this, *bodies);
     motion->start(atom->f);
@@ -344,6 +365,11 @@ double FixGearQuat::compute_array(int i, int j)
 bigint FixGearQuat::dof(int tgroup)
 {
   return bodies->removed_freedoms(group->bitmask[tgroup]);
+}
+
+int FixGearQuat::modify_param(int narg, char **arg)
+{
+  return modify_like_rigid(lmp, narg, arg);
 }
 
 double FixGearQuat::memory_usage()

@@ -45,6 +45,7 @@ class FixGearQuat : public Fix {
   double compute_vector(int) override;
   double compute_array(int, int) override;
   bigint dof(int) override;
+  int modify_param(int, char **) override;
   double memory_usage() override;
 
   void grow_arrays(int) override;
@@ -76,6 +77,7 @@ class FixGearQuat : public Fix {
   std::unique_ptr<struct GearQuatArguments> args;
   std::unique_ptr<class GearQuatBodies> bodies;
   std::unique_ptr<class GearQuatMotion> motion;
+  std::unique_ptr<class GearQuatNeighbors> neighbors;
   std::unique_ptr<class GearQuatRespa> respa;
   std::unique_ptr<class GearQuatTable> table;
   std::unique_ptr<class GearQuatSums> sums;
@@ -83,9 +85,11 @@ class FixGearQuat : public Fix {
 
   bool met_atoms;          // bodies were compared with the atoms in a run before
   bool reported;           // the scene, once
+  bool compared;           // bodies with the atoms, before this run
   bool velocities_read;    // between prediction and correction, by others
   int vflag_of_step;       // what LAMMPS asked of the virial when the step began
 
+  void take_velocities(bigint step, bool end);
   void begin_step();
   void finish_step(double **, double **);
   void tally_virial(double **);

@@ -5,6 +5,8 @@
 
 #include "gear_quat_arguments.h"
 
+#include "gear_quat_rigid_words.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
@@ -45,7 +47,10 @@ GearQuatArguments::GearQuatArguments(LAMMPS *lmp, int narg, char **arg)
 int GearQuatArguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
 {
   Error *error = lmp->error;
-  if (narg <= FIRST_WORD) utils::missing_cmd_args(FLERR, "fix gear/quat", error);
+  if (narg <= FIRST_WORD)
+    error->all(FLERR,
+               "Fix gear/quat: the body style is missing, which says what makes a body: single, "
+               "molecule, group N ID1 ID2 ..., custom i_name or custom v_name");
   const std::string style = arg[FIRST_WORD];
   const int next = FIRST_WORD + 1;
 
@@ -125,7 +130,12 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
         "formulation", "values",     "passes",    "start",  "c0",         "omega",  "momentum",
         "project",     "compensate", "tolerance", "dtmin",  "dtmax",      "infile", "reinit",
         "mol",         "force",      "torque",    "report", "isokinetic", "rescale"};
-    if (!known.count(key)) error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
+    if (!known.count(key)) {
+      const std::string instead = instead_of_rigid_keyword(key);
+      if (!instead.empty())
+        error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", key, instead);
+      error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
+    }
     if (key == "force" || key == "torque") {    // may be given many times
       masks.push_back(parse_mask(lmp, narg - iarg, arg + iarg));
       iarg += MASK_WORDS - 2;
@@ -330,12 +340,14 @@ std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) cons
   Atom *atom = lmp->atom;
   std::vector<tagint> ids(atom->nlocal, 0);
   tagint twice = 0;
+  std::vector<int> used(groups.size(), 0), used_anywhere(groups.size(), 0);
   for (size_t g = 0; g < groups.size(); ++g) {
     const int bit = lmp->group->bitmask[lmp->group->find(groups[g])];
     for (int i = 0; i < atom->nlocal; ++i) {
       if (!(atom->mask[i] & bit) || !(atom->mask[i] & groupbit)) continue;
       if (ids[i] != 0) twice = atom->tag[i];
       ids[i] = (tagint) g + 1;
+      used[g] = 1;
     }
   }
   if ((twice = anywhere(lmp, twice)))
@@ -343,6 +355,15 @@ std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) cons
                     "Fix gear/quat group: atom {} is in more than one of the groups; an "
                     "atom belongs to one body at most",
                     twice);
+  MPI_Allreduce(used.data(), used_anywhere.data(), (int) groups.size(), MPI_INT, MPI_MAX,
+                lmp->world);
+  for (size_t g = 0; g < groups.size(); ++g)
+    if (!used_anywhere[g])
+      lmp->error->all(
+          FLERR,
+          "Fix gear/quat group: no atom of the fix group is in group {}, which makes no "
+          "body; leave it out",
+          groups[g]);
   return ids;
 }
 

@@ -128,23 +128,34 @@ void GearQuatBodies::refuse_atoms() const
   extended.refuse(atoms);
 }
 
-bool GearQuatBodies::atoms_match()
+GearQuatBodies::Placed GearQuatBodies::placed(const Site &site) const
 {
   const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
+  const BodyState &s = state[site.body];
+  double arm[3], spin[3];
+  Placed there;
+  to_space(frame[site.body].axes, site.arm_body, arm);
+  cross3(frame[site.body].omega_space, arm, spin);
+  for (int k = 0; k < 3; ++k) {
+    there.x[k] = s.center[k] + arm[k] - site.wrap[k];
+    there.v[k] = s.velocity[k] + spin[k];
+  }
+  there.length = box + std::sqrt(dot3(s.center, s.center) + dot3(site.wrap, site.wrap));
+  there.speed = std::sqrt(dot3(s.velocity, s.velocity)) + std::sqrt(dot3(spin, spin));
+  return there;
+}
+
+bool GearQuatBodies::atoms_match()
+{
   int moved = 0;
   for (const Site &site : sites) {
     const double *x = atom->x[site.atom], *v = atom->v[site.atom];
-    double arm[3], spin[3];
-    to_space(frame[site.body].axes, site.arm_body, arm);
-    cross3(frame[site.body].omega_space, arm, spin);
-    const BodyState &s = state[site.body];
-    const double length = box + std::sqrt(dot3(s.center, s.center) + dot3(site.wrap, site.wrap));
-    const double speed = std::sqrt(dot3(s.velocity, s.velocity)) + std::sqrt(dot3(spin, spin));
+    const Placed there = placed(site);
     for (int k = 0; k < 3; ++k) {
-      if (std::fabs(s.center[k] + arm[k] - site.wrap[k] - x[k]) > SAME * length) moved = 1;
-      if (std::fabs(s.velocity[k] + spin[k] - v[k]) > SAME * speed) moved = 1;
+      if (std::fabs(there.x[k] - x[k]) > SAME * there.length) moved = 1;
+      if (std::fabs(there.v[k] - v[k]) > SAME * there.speed) moved = 1;
     }
-    if (!extended.match(site.atom, atom_mass(site.atom), s)) moved = 1;
+    if (!extended.match(site.atom, atom_mass(site.atom), state[site.body])) moved = 1;
   }
   int any = 0;
   MPI_Allreduce(&moved, &any, 1, MPI_INT, MPI_MAX, world);

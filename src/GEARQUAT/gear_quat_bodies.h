@@ -50,6 +50,12 @@ class GearQuatBodies : protected Pointers {
     double arm_body[3];
     double wrap[3];    ///< what its image flags take from its unwrapped position
   };
+  struct Placed {    ///< where and how fast a site is by the state of its body
+    double x[3], v[3];
+    double length, speed;    ///< what rounding of x and v is relative to
+  };
+  Placed placed(const Site &site) const;
+  double atom_mass(int atom) const;
   std::vector<Site> sites;    ///< those at their centre of mass, with arms of zero, come first
 
   int nowned() const { return nown; }
@@ -190,7 +196,6 @@ class GearQuatBodies : protected Pointers {
   void take_stock(int lost, tagint example);
   template <bool POSITIONS, bool VELOCITIES> void place();
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place();
-  double atom_mass(int atom) const;
 
   GearQuatCensus census(int groupbit) const;
 

@@ -27,7 +27,8 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static const char *const SHAPES[] = {"point", "sphere", "ellipsoid", "line", "triangle", "body"};
+static const char *const SHAPES[] = {"a point", "a sphere",   "an ellipsoid",
+                                     "a line",  "a triangle", "a body"};
 
 // an atom counts as changed by the user when it is off by more than rounding, relative
 
@@ -182,7 +183,7 @@ void GearQuatExtended::refuse(const std::vector<int> &atoms) const
                found[1]);
   if (found[2])
     error->all(FLERR,
-               "Fix gear/quat: atom {} is a {}, and the LAMMPS that this plugin was compiled for "
+               "Fix gear/quat: atom {} is {}, and the LAMMPS that this plugin was compiled for "
                "lacks the headers to turn it; compile GEARQUAT for the source tree of your LAMMPS: "
                "cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
                found[2], SHAPES[what]);

@@ -154,6 +154,25 @@ class Integrator {
                                          : rates[Scheme::POSITION + i] * per_h;
   }
 
+  /// Velocities of the state into a history of the same pose; derivatives above them stay.
+  void set_velocities(const RigidBody &body, const BodyState &state, double *rows) const
+  {
+    const int width = scheme.width(), quat = scheme.quaternion(), row = scheme.first() ? 0 : 1;
+    double *rates = rows + width;
+    for (int i = 0; i < 3; ++i) rates[Scheme::POSITION + i] = h * state.velocity[i];
+    quaternion_rate(rows + quat, state.omega_body, rates + quat);
+    for (int i = 0; i < 4; ++i) rates[quat + i] *= h;
+    if (scheme.first()) {
+      for (int i = 0; i < 3; ++i) rows[Scheme::MOMENTUM + i] = body.mass * state.velocity[i];
+      copy(state.omega_body, 3, rows + Scheme::OMEGA);
+    }
+    if (!scheme.compensate) return;
+    double *carry = rows + (n + row) * width;    // of the row that has the velocities
+    std::fill(carry + (scheme.first() ? Scheme::MOMENTUM : 0),
+              carry + (scheme.first() ? Scheme::MOMENTUM + 3 : width), 0.0);
+    if (scheme.first()) std::fill_n(carry + Scheme::OMEGA, 3, 0.0);
+  }
+
   /// d(|q|^2/2)/dt as the history has it; it should vanish.
   double radial_rate(const double *rows) const
   {

@@ -133,6 +133,14 @@ void GearQuatMotion::start(double **f)
    a step
 ------------------------------------------------------------------------- */
 
+void GearQuatMotion::take_velocities(const std::vector<int> &changed)
+{
+  if (!started) return;
+  for (const int ibody : changed)
+    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state[ibody],
+                               bodies.history(ibody));
+}
+
 void GearQuatMotion::predict(double **f)
 {
   h_made = h;

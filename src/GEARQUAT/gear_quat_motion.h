@@ -45,6 +45,8 @@ class GearQuatMotion : protected Pointers {
   bool has_started() const { return started; }
   /// Make the histories from poses, velocities and present loads, which f belongs to.  Collective.
   void start(double **f);
+  /// Other fixes have given these bodies other velocities; histories that there are take them over.
+  void take_velocities(const std::vector<int> &changed);
   void predict(double **f);
   /// f: forces that the loads were gathered from.
   void correct(double **f);

@@ -8,7 +8,7 @@ from scenes import two_molecules
 ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
 
 ARGUMENTS = {
-    "": "missing argument",
+    "": "the body style is missing, which says what makes a body: single, molecule, group N ID1",
     "polygon": "Unknown fix gear/quat bodystyle: polygon (single, molecule, group or custom)",
     "group": "missing argument",
     "group 0": "number of groups is 0 and must be positive",
@@ -16,6 +16,7 @@ ARGUMENTS = {
     "group 2 left": "2 group IDs expected, 1 given",
     "group 2 left nosuch": "group ID nosuch does not exist",
     "group 2 left all": "is in more than one of the groups",
+    "group 3 left none right": "no atom of the fix group is in group none",
     "custom": "missing argument",
     "custom name": "name is neither i_name nor v_name",
     "custom i_nosuch": "requires an integer vector of that name",
@@ -26,7 +27,6 @@ ARGUMENTS = {
     "custom v_huge": "custom v_huge: the value of atom 6 is no number below 2.14748e+09",
     "custom i_far": "custom i_far: values from -2147483647 to 2147483647 are too far apart",
     "molecule sloppy yes": "Unknown fix gear/quat keyword: sloppy",
-    "molecule langevin 1 1 1 1": "Unknown fix gear/quat keyword: langevin",
     "molecule formulation": "missing argument",
     "molecule formulation third": "formulation: unknown value third (first or second)",
     "molecule formulation first formulation first": "keyword formulation is given twice",
@@ -87,6 +87,7 @@ ARGUMENTS = {
     "molecule formulation first isokinetic total force 1 on on off": "cannot be used with isokinetic",
 }
 GROUPS = """
+group none empty
 group left id 1 2 3
 group right id 4 5 6
 fix real all property/atom d_real i_far

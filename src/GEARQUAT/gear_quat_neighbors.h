@@ -1,0 +1,66 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Other fixes that change velocities, places or masses of the atoms of bodies.  One table says, by
+   style, what happens: bodies take the change over, the run ends once the change happens, or it does
+   not begin.  The manual has the same table.  What no table knows is found by samples.
+
+   The fix calls init() before every run; take_velocities() before a step, with the velocities that
+   the step before has left; check_places() after the forces, with the predicted places. */
+
+#ifndef LMP_GEAR_QUAT_NEIGHBORS_H
+#define LMP_GEAR_QUAT_NEIGHBORS_H
+
+#include "gear_quat_bodies.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixGearQuat;
+
+class GearQuatNeighbors : protected Pointers {
+ public:
+  GearQuatNeighbors(LAMMPS *lmp, const FixGearQuat *fix, GearQuatBodies &bodies, bool isokinetic);
+
+  /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
+  void init();
+  /// True if some fix may change velocities, and bodies take that over.
+  bool any_taken() const { return !taken.empty(); }
+
+  /// Bodies here whose velocities other fixes have changed in the end of that step: their states
+  /// have the new velocities, on all ranks.  A change that is no rigid motion ends the run if `end`,
+  /// and is left alone otherwise.  Collective.
+  std::vector<int> take_velocities(bigint step, bool end);
+
+  // local, and as cheap as a single site unless a fix is known to move atoms
+
+  void check_velocities();
+  void check_places();
+  /// All sites, places and velocities: nothing may have changed since the last step.
+  void check_all();
+
+ private:
+  const FixGearQuat *fix;
+  GearQuatBodies &bodies;
+  const bool isokinetic;
+  std::vector<const Fix *> taken;      ///< whose velocities bodies take over
+  std::vector<const Fix *> watched;    ///< that may move single atoms
+  size_t sample;                       ///< the site that is looked at next
+  bool told;                           ///< of a change by something unknown, once a run
+
+  tagint shared_atom(const Fix *other) const;
+  void refuse(const Fix *other, const struct Neighbor &row, tagint atom) const;
+  bool is_there(const GearQuatBodies::Site &site) const;
+  bool is_as_fast(const GearQuatBodies::Site &site) const;
+  bool gather_impulses();
+  void tell(const GearQuatBodies::Site &site, const char *what);
+  std::string names(const std::vector<const Fix *> &fixes) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
