@@ -145,6 +145,30 @@ part_valgrind() {
     -var body unrotated -var steps 20 -var every 5 -var out none
   check "water on two ranks" "$ROOT/examples/water" '^Total wall time' "${twice[@]}" "${leaks[@]}" "$tree/lmp" \
     -in in.water -log none -var forces plain -var steps 3 -var every 1 -var out none
+  # forces are looked at again, among them those of a fix that is new in this run
+  cat >"$folder/in.between" <<'EOF'
+units lj
+atom_style molecular
+atom_modify map array
+region box block -5 5 -5 5 -5 5
+create_box 1 box
+create_atoms 1 single 0 0 0
+create_atoms 1 single 1 0 0
+create_atoms 1 single 0 1.2 0.1
+mass 1 1.0
+set group all mol 1
+velocity all create 1.0 4711 loop geom
+pair_style zero 2.0
+pair_coeff * *
+fix move all gear/quat molecule
+variable f equal 0.01*step
+timestep 0.01
+run 3
+timestep 0.002
+fix pull all addforce v_f 0.0 0.0
+run 3
+EOF
+  check "forces between runs" "$folder" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.between -log none
   echo "$passed $failed 0" >"$REPORT/valgrind.count"
   [ "$failed" -eq 0 ]
 }

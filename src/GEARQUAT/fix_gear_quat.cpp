@@ -18,7 +18,6 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
-#include "gear_quat_bootstrap.h"
 #include "gear_quat_checks.h"
 #include "gear_quat_extract.h"
 #include "gear_quat_infile_out.h"
@@ -181,6 +180,11 @@ bool FixGearQuat::moves(int i) const
   return bodies->in_body(i);
 }
 
+double FixGearQuat::last_error() const
+{
+  return motion->last_error();
+}
+
 void FixGearQuat::reset_dt()
 {
   motion->follow_time_step();
@@ -256,11 +260,11 @@ void FixGearQuat::initial_integrate(int vflag)
 {
   vflag_of_step = vflag;
   take_velocities(update->ntimestep - 1, true);
-  if (!motion->has_started()) {
+  if (motion->begins_steps()) {
     // forces of the step before are still there, those of all other fixes among them
     bodies->spread_states();
     bodies->gather_loads(atom->f, atom->torque);
-    motion->start(atom->f);
+    motion->begin_steps(atom->f);
   }
   begin_step();
 }
@@ -329,9 +333,11 @@ void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
   if (!respa->outermost(ilevel)) return;
   vflag_of_step = vflag;
   take_velocities(update->ntimestep - 1, true);
-  if (!motion->has_started()) {
-    GearQuatBootstrap::gather_present_loads(lmp, this, *bodies);
-    motion->start(atom->f);
+  if (motion->begins_steps()) {
+    respa->recall();
+    bodies->spread_states();
+    bodies->gather_loads(respa->forces(), respa->torques());
+    motion->begin_steps(respa->forces());
   }
   begin_step();
 }

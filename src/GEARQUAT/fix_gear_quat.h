@@ -67,6 +67,8 @@ class FixGearQuat : public Fix {
 
   /// True if the fix moves this atom.
   bool moves(int atom) const;
+  /// The largest error of a body here in the last step, as a length.
+  double last_error() const;
 
   void write_restart_file(const char *) override;
   void set_molecule(int, tagint, int, double *, double *, double *) override;

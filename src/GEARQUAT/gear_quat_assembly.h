@@ -13,10 +13,13 @@
 #define LMP_GEAR_QUAT_ASSEMBLY_H
 
 #include "gear_quat_infile.h"
+#include "gear_quat_integrator.h"
 #include "gear_quat_mask.h"
 #include "gear_quat_rigid_body.h"
 #include "pointers.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -30,6 +33,18 @@ struct GearQuatBody {
   int from_file;         ///< mass and inertia were given, not summed
   int fresh;             ///< has come in this step: no history yet
   GearQuat::Mask off;    ///< components of the load that do not act
+
+  /// How far a rotation by a radian moves what is far out: a site, or a solid's own parts.
+  double reach() const
+  {
+    const double *i = rigid.inertia;
+    return std::max(extent, std::sqrt(std::max({i[0], i[1], i[2]}) / rigid.mass));
+  }
+  /// The error of a step as a length.
+  double length(const GearQuat::Correction &error) const
+  {
+    return std::max(error.position_error, reach() * error.angle_error);
+  }
 };
 
 class GearQuatAssembly : protected Pointers {

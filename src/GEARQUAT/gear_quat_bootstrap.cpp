@@ -83,16 +83,6 @@ void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Load 
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
 
-void GearQuatBootstrap::gather_present_loads(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies)
-{
-  GearQuatForces forces(lmp, fix);
-  bodies.spread_states();
-  forces.save();
-  forces.evaluate();
-  bodies.gather_loads(lmp->atom->f, lmp->atom->torque);
-  forces.restore();
-}
-
 /* ---------------------------------------------------------------------- */
 
 bool GearQuatBootstrap::run()

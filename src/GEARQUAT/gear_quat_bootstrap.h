@@ -37,9 +37,6 @@ class GearQuatBootstrap : protected Pointers {
   /// Returns true if all rows are known.
   bool run();
 
-  /// Loads at the present positions into the bodies, where atom->f does not hold them all.
-  static void gather_present_loads(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies);
-
  private:
   const Fix *fix;
   GearQuatBodies &bodies;

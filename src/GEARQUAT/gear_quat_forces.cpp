@@ -13,11 +13,14 @@
 #include "fix.h"
 #include "force.h"
 #include "improper.h"
+#include "info.h"
+#include "input.h"
 #include "kspace.h"
 #include "modify.h"
 #include "pair.h"
 #include "update.h"
 #include "utils.h"
+#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,9 +28,16 @@
 
 using namespace LAMMPS_NS;
 
-// pair styles that draw random numbers or keep a history of contacts
+// pair styles that draw random numbers, or keep contacts, bonds or charges from one step to the next
 
-static const char *const UNFOLLOWED_PAIRS[] = {"dpd", "gran", "brownian", "^reax", "^bpm"};
+static const char *const UNFOLLOWED_PAIRS[] = {"dpd",      "gran",  "brownian", "^dsmc",
+                                               "^reax",    "^bpm",  "^amoeba",  "^hippo",
+                                               "^tracker", "^peri", "^rheo",    "^smd"};
+
+// bond styles that break, or change with what they have met
+
+static const char *const UNFOLLOWED_BONDS[] = {"quartic",    "quartic/omp",        "bpm/rotational",
+                                               "bpm/spring", "bpm/spring/plastic", "rheo/shell"};
 
 // fixes whose post_force() is a function of positions, velocities and perhaps time
 
@@ -37,32 +47,50 @@ static const char *const FOLLOWED_FIXES[] = {
     "^spring/self",  "^viscous$",     "^wall/harmonic", "^wall/lj",  "^wall/morse",
     "^wall/colloid", "^wall/region$", "^wall/table"};
 
-static bool followed(const Fix *fix)
+// those of them that read no variables
+
+static const char *const WITHOUT_VARIABLES[] = {"^enforce2d",  "^freeze$", "^lineforce",
+                                                "^planeforce", "^spring$", "^viscous$"};
+
+// what of a variable is another one when it is evaluated once more
+
+static const char *const UNREPEATABLE[] = {"random(", "normal(", "next(", "py_", "style = python"};
+
+// step numbers for a look at forces that depend on time: multiples of everything and of nothing
+
+static constexpr bigint EVERY_TIMES = 0, AT_NO_TIMES = 1000003;
+
+template <int N> static bool among(const char *const (&styles)[N], const Fix *fix)
 {
-  return std::any_of(std::begin(FOLLOWED_FIXES), std::end(FOLLOWED_FIXES),
-                     [fix](const char *style) {
-                       return utils::strmatch(fix->style, style);
-                     });
+  return std::any_of(styles, styles + N, [fix](const char *style) {
+    return utils::strmatch(fix->style, style);
+  });
+}
+
+static std::string name(const Fix *fix)
+{
+  return std::string("fix ") + fix->id + " (" + fix->style + ")";
 }
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatForces::GearQuatForces(LAMMPS *lmp, const Fix *owner) : Pointers(lmp)
+GearQuatForces::GearQuatForces(LAMMPS *lmp, const Fix *owner) : Pointers(lmp), tallies(lmp)
 {
   look_at_styles();
   if (why.empty()) look_at_fixes(owner);
+  if (why.empty()) look_at_variables();
   if (why.empty()) look_at_time();
 }
 
 void GearQuatForces::look_at_styles()
 {
   if (lmp->kokkos) why = "the KOKKOS package is on";
-  if (!force->pair) return;
+  for (const auto *style : UNFOLLOWED_BONDS)
+    if (force->bond_match(style))
+      why = fmt::format("bonds of style {} may break or change for good", style);
   for (const auto *style : UNFOLLOWED_PAIRS)
-    if (force->pair_match(style, 0, 1))
-      why = std::string("pair style ") + force->pair_style +
-          " draws random numbers or keeps a "
-          "history of contacts";
+    if (force->pair && force->pair_match(style, 0, 1))
+      why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
 }
 
 void GearQuatForces::look_at_fixes(const Fix *owner)
@@ -72,44 +100,70 @@ void GearQuatForces::look_at_fixes(const Fix *owner)
   for (auto *fix : modify->get_fix_list()) {
     if (fix == owner) continue;
     const int mask = modify->get_fix_mask(fix);
-    const std::string name = std::string("fix ") + fix->id + " (" + fix->style + ")";
     if (fix->time_integrate)
-      why = name + " moves atoms";
+      why = name(fix) + " moves atoms";
     else if (utils::strmatch(fix->style, "^OMP"))
       pre_force.push_back(fix);
-    else if (followed(fix))
+    else if (among(FOLLOWED_FIXES, fix))
       post_force.push_back(fix);
     else if (mask & during_force)
-      why = name + " acts on forces in a way that cannot be followed";
+      why = name(fix) + " acts on forces in a way that cannot be followed";
     if (!why.empty()) return;
   }
 }
 
-/// A fix that follows a variable of time gives another force at another step.
+/// A variable that draws or counts must not be evaluated more often than without this fix.
+void GearQuatForces::look_at_variables()
+{
+  const auto reader = std::find_if(post_force.begin(), post_force.end(), [](const Fix *fix) {
+    return !among(WITHOUT_VARIABLES, fix);
+  });
+  if (reader == post_force.end()) return;
+  Info info(lmp);
+  for (int i = 0; i < input->variable->nvar; ++i) {
+    const std::string text = info.get_variable_info(i);
+    for (const auto *word : UNREPEATABLE)
+      if (text.find(word) != std::string::npos)
+        why = fmt::format("{} may read variable {}, which is another one whenever it is evaluated",
+                          name(*reader), input->variable->names[i]);
+  }
+}
+
+/// A fix that follows a variable of time, or acts every few steps, gives another force at another
+/// step.
 void GearQuatForces::look_at_time()
 {
   if (post_force.empty()) return;
   save();
-  std::vector<double> now;
-  for (const bigint shift : {0, 1000003}) {
-    clear_forces();
-    update->ntimestep += shift;
-    for (auto *fix : post_force) fix->post_force(0);
-    update->ntimestep -= shift;
-    const size_t n = 3 * (size_t) atom->nlocal;
-    std::vector<double> then;
-    if (n) then.assign(atom->f[0], atom->f[0] + n);
-    if (n && atom->torque_flag) then.insert(then.end(), atom->torque[0], atom->torque[0] + n);
-    if (shift == 0)
-      now = then;
-    else {
-      int differs = now != then;
-      int any = 0;
-      MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, world);
-      if (any) why = "an external force depends on time";
-    }
+  const std::vector<double> now = external_forces(update->ntimestep);
+  for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
+    if (!why.empty()) break;
+    int differs = now != external_forces(step), any = 0;
+    MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any && why.empty()) why = "an external force depends on time";
   }
   restore();
+}
+
+/// Forces and torques of the fixes alone at another step; reason() says if one of them reads an energy
+/// or a pressure.
+std::vector<double> GearQuatForces::external_forces(bigint step)
+{
+  const bigint present = update->ntimestep;
+  clear_forces();
+  update->ntimestep = step;
+  tallies.pretend();
+  for (auto *fix : post_force) {
+    fix->post_force(0);
+    if (why.empty() && tallies.used())
+      why = name(fix) + " depends on energies or pressures, which are known in steps only";
+  }
+  update->ntimestep = present;
+  const size_t n = 3 * (size_t) atom->nlocal;
+  std::vector<double> found;
+  if (n) found.assign(atom->f[0], atom->f[0] + n);
+  if (n && atom->torque_flag) found.insert(found.end(), atom->torque[0], atom->torque[0] + n);
+  return found;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -126,6 +180,7 @@ static void put_back(double **array, const std::vector<double> &copy)
 
 void GearQuatForces::save()
 {
+  tallies.save();
   const int n = atom->nlocal + atom->nghost;
   keep(atom->x, n, x);
   keep(atom->v, n, v);
@@ -138,6 +193,7 @@ void GearQuatForces::save()
 
 void GearQuatForces::restore()
 {
+  tallies.restore();
   put_back(atom->x, x);
   put_back(atom->v, v);
   put_back(atom->f, f);

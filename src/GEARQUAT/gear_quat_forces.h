@@ -7,12 +7,13 @@
 
    Followed: pair, bonded and kspace forces of styles that depend on positions and velocities only,
    and the post_force() of the fixes in a list (external fields, walls, springs).  Not followed, so
-   that reason() says why: anything that moves or draws by itself. */
+   that reason() says why: anything that moves or draws by itself, and what depends on the time or on
+   energies and pressures, which LAMMPS knows in steps only. */
 
 #ifndef LMP_GEAR_QUAT_FORCES_H
 #define LMP_GEAR_QUAT_FORCES_H
 
-#include "pointers.h"
+#include "gear_quat_tallies.h"
 
 #include <string>
 #include <vector>
@@ -42,10 +43,13 @@ class GearQuatForces : protected Pointers {
   std::string why;
   std::vector<Fix *> pre_force, post_force;
   std::vector<double> x, v, f, torque;
+  GearQuatTallies tallies;
 
   void look_at_styles();
   void look_at_fixes(const Fix *owner);
+  void look_at_variables();
   void look_at_time();
+  std::vector<double> external_forces(bigint step);
   void clear_forces();
   void compute_forces();
 };

@@ -5,12 +5,17 @@
 
 #include "gear_quat_motion.h"
 
+#include "fix_gear_quat.h"
 #include "gear_quat_bootstrap.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "force.h"
+#include "modify.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -22,13 +27,22 @@ using namespace GearQuat;
 
 static constexpr double SHORTER = 0.49;
 
+// Forces at a corrected pose differ from those at the predicted one by what the step has corrected:
+// at a stable step they leave a residual of a part of the last one.  One of more than OTHER_FORCES
+// times the last one is due to other forces than those of the last step, or of more than OTHER_NOISE
+// times where forces are random.  So it is not if it is rounding: of forces, relative to those on
+// single atoms, or of what a body moves in a step.
+
+static constexpr double OTHER_FORCES = 1.0, OTHER_NOISE = 10.0;
+static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-13;
+
 /* ---------------------------------------------------------------------- */
 
 GearQuatMotion::GearQuatMotion(LAMMPS *lmp, Fix *fix, const GearQuatArguments &args,
                                GearQuatBodies &bodies) :
     Pointers(lmp),
-    fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme), started(false), h(0.0),
-    h_made(0.0)
+    fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme), started(false),
+    set_up(false), h(0.0), h_made(0.0)
 {
   if (args.control.eps > 0.0)
     tolerance.reset(new GearQuatTolerance(lmp, fix, args.scheme, args.control, bodies));
@@ -51,20 +65,6 @@ void GearQuatMotion::init()
   if (tolerance) tolerance->refuse_scene();
   if (tolerance && started) tolerance->keep_step(h);
   follow_time_step();
-  if (started && std::fabs(h) < SHORTER * std::fabs(h_made) && can_start_anew()) {
-    started = false;
-    if (comm->me == 0)
-      utils::logmesg(lmp,
-                     "Fix gear/quat: the time step is less than half of that of the last steps, "
-                     "histories start anew\n");
-  }
-}
-
-/// True if a new start would be of full order, and nothing but the histories would be new.
-bool GearQuatMotion::can_start_anew() const
-{
-  return !tolerance && !isokinetic && args.start == GearQuatArguments::Start::BOOTSTRAP &&
-      GearQuatForces(lmp, fix).reason().empty();
 }
 
 const Scheme &GearQuatMotion::present_scheme() const
@@ -82,7 +82,7 @@ void GearQuatMotion::follow_time_step()
   const double step = update->dt;
   if (step == 0.0 || !std::isfinite(step)) return;
   if (integrator && step == h) return;
-  if (tolerance && started && !tolerance->owns_step()) return;    // it is put back in init()
+  if (tolerance && started && !tolerance->owns_step()) return;    // it is put back before a step
   const double ratio = step / h;
   if (integrator)
     integrator->set_step(step);
@@ -110,6 +110,90 @@ void GearQuatMotion::impose_masks()
 void GearQuatMotion::begin_run()
 {
   if (isokinetic) isokinetic->begin_run(!started);
+  set_up = true;
+}
+
+/* ----------------------------------------------------------------------
+   before the first step of a run
+------------------------------------------------------------------------- */
+
+void GearQuatMotion::begin_steps(double **f)
+{
+  set_up = false;
+  const char *reason = started ? reason_to_start_anew(f) : nullptr;
+  if (reason && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
+  if (!started || reason) start(f);
+}
+
+/// Null if the histories can go on.  Collective.
+const char *GearQuatMotion::reason_to_start_anew(double **f)
+{
+  if (std::fabs(h) < SHORTER * std::fabs(h_made) && can_start_anew())
+    return "the time step is less than half of that of the last steps";
+  return forces_changed(f) ? "forces are not those of the last step" : nullptr;
+}
+
+/// True if a new start would be of full order, and nothing but the histories would be new.
+bool GearQuatMotion::can_start_anew() const
+{
+  return !tolerance && !isokinetic && args.start == GearQuatArguments::Start::BOOTSTRAP &&
+      GearQuatForces(lmp, fix).reason().empty();
+}
+
+/// True if the present loads leave a residual that the histories cannot have left.
+bool GearQuatMotion::forces_changed(double **f)
+{
+  if (isokinetic) isokinetic->measure();
+  double here[2] = {0.0, 0.0}, largest[2];    // error of the last step, force on an atom
+  for (const auto *other : modify->get_fix_list())
+    if (const auto *same = dynamic_cast<const FixGearQuat *>(other))
+      here[0] = std::max(here[0], same->last_error());
+  for (const auto &site : bodies.sites) {
+    const double *on_atom = f[site.atom];
+    here[1] = std::max(here[1], force->ftm2v * std::sqrt(dot3(on_atom, on_atom)));
+  }
+  MPI_Allreduce(here, largest, 2, MPI_DOUBLE, MPI_MAX, world);
+
+  double here_ratio = 0.0, ratio;
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) {
+      double rows[MAX_SIZE];
+      std::copy_n(bodies.history(ibody), args.scheme.size(), rows);
+      const RigidBody &rigid = bodies.body[ibody].rigid;
+      const Load load = isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
+      const Correction found = list == &bodies.points
+          ? integrator->correct_center(rigid, load, rows)
+          : integrator->correct(rigid, load, rows);
+      const double one =
+          bodies.body[ibody].length(found) / (largest[0] + rounding(ibody, largest[1]));
+      here_ratio = std::isfinite(one) ? std::max(here_ratio, one) : 2.0 * OTHER_NOISE;
+    }
+  MPI_Allreduce(&here_ratio, &ratio, 1, MPI_DOUBLE, MPI_MAX, world);
+  return ratio > OTHER_NOISE || (ratio > OTHER_FORCES && GearQuatForces(lmp, fix).reason().empty());
+}
+
+/// Of a residual, as a length.  force: the largest one on an atom.
+double GearQuatMotion::rounding(int ibody, double force) const
+{
+  const GearQuatBody &body = bodies.body[ibody];
+  const BodyState &s = bodies.state[ibody];
+  const double step = std::fabs(h);
+  double response = 1.0 / body.rigid.mass;
+  for (const double moment : body.rigid.inertia)
+    if (moment > 0.0) response = std::max(response, body.reach() * body.reach() / moment);
+  const double noise = ROUNDING_OF_FORCES * std::sqrt((double) body.natoms) * force;
+  const double way = step * std::sqrt(dot3(s.velocity, s.velocity)) +
+      body.reach() * (1.0 + step * std::sqrt(dot3(s.omega_body, s.omega_body)));
+  return step * step * response * noise + ROUNDING_OF_MOTION * way;
+}
+
+double GearQuatMotion::last_error() const
+{
+  double largest = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    largest = std::max(largest, bodies.body[ibody].length(bodies.last[ibody]));
+  return largest;
 }
 
 void GearQuatMotion::start(double **f)
@@ -143,6 +227,7 @@ void GearQuatMotion::take_velocities(const std::vector<int> &changed)
 
 void GearQuatMotion::predict(double **f)
 {
+  if (tolerance && !tolerance->owns_step()) tolerance->put_back_begun_step(h);
   h_made = h;
   const MotionLimits limits = blowup.limits(h);
   const auto check = [&](int ibody) {

@@ -7,8 +7,9 @@
    Knows which laws hold in this run (masks, isokinetic, tolerance) and decides once a step, not once
    a body, which of them the loop over bodies has to heed.
 
-   The fix calls, every step: start(), the first time; predict(); [places sites, forces, gathers
-   loads]; correct(); and with a changing step, when all fixes have finished it, choose_step(). */
+   The fix calls, before the first step of a run: [gathers present loads] begin_steps(); every step:
+   predict(); [places sites, forces, gathers loads]; correct(); and with a changing step, when all
+   fixes have finished it, choose_step(). */
 
 #ifndef LMP_GEAR_QUAT_MOTION_H
 #define LMP_GEAR_QUAT_MOTION_H
@@ -29,8 +30,7 @@ class GearQuatMotion : protected Pointers {
 
   /// The bodies are there: masks are given to them.  Collective.
   void meet_bodies();
-  /// Before a run; ends it if something else in it stands in the way of a changing step.  Histories
-  /// of a much longer step are dropped where a full start is possible.  Collective.
+  /// Before a run; ends it if something else in it stands in the way of a changing step.  Collective.
   void init();
   /// LAMMPS' time step may have changed; histories keep their polynomials.
   void follow_time_step();
@@ -43,10 +43,15 @@ class GearQuatMotion : protected Pointers {
 
   /// True once bodies have histories.
   bool has_started() const { return started; }
-  /// Make the histories from poses, velocities and present loads, which f belongs to.  Collective.
-  void start(double **f);
   /// Other fixes have given these bodies other velocities; histories that there are take them over.
   void take_velocities(const std::vector<int> &changed);
+  /// True before the first step of a run that LAMMPS has set up: begin_steps() has to be called.
+  bool begins_steps() const { return set_up; }
+  /// Loads are the present ones of all fixes, f what they were gathered from.  Histories are made from
+  /// them, unless there are some that agree with them.  Collective.
+  void begin_steps(double **f);
+  /// The largest error that the last step reported here, as a length.
+  double last_error() const;
   void predict(double **f);
   /// f: forces that the loads were gathered from.
   void correct(double **f);
@@ -86,12 +91,17 @@ class GearQuatMotion : protected Pointers {
   std::unique_ptr<GearQuat::Integrator> integrator;
 
   bool started;     ///< histories are those of the step h
+  bool set_up;      ///< LAMMPS has evaluated forces for a run, no step of it has begun
   double h;         ///< step of the histories
   double h_made;    ///< step that they were made with
 
   const GearQuat::Scheme &present_scheme() const;
   void make_integrator(double step);
+  void start(double **f);
+  const char *reason_to_start_anew(double **f);
   bool can_start_anew() const;
+  bool forces_changed(double **f);
+  double rounding(int ibody, double force) const;
   template <bool MASKED> void correct_bodies(double **f);
   template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody);
   void correct_together(double **f);

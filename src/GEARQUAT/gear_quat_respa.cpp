@@ -6,10 +6,13 @@
 #include "gear_quat_respa.h"
 
 #include "atom.h"
+#include "fix.h"
 #include "library.h"
 #include "memory.h"
+#include "modify.h"
 
 #include <algorithm>
+#include <vector>
 
 using namespace LAMMPS_NS;
 
@@ -23,7 +26,12 @@ GearQuatRespa::~GearQuatRespa()
 
 bool GearQuatRespa::outermost(int level) const
 {
-  return level == *(const int *) lammps_extract_global(lmp, "respa_levels") - 1;
+  return level == levels() - 1;
+}
+
+int GearQuatRespa::levels() const
+{
+  return *(const int *) lammps_extract_global(lmp, "respa_levels");
 }
 
 /// Atoms may have been exchanged since the step began.
@@ -48,6 +56,23 @@ void GearQuatRespa::add(int level)
   if (!torque) return;
   for (int i = 0; i < atom->nlocal; ++i)
     for (int k = 0; k < 3; ++k) torque[i][k] += atom->torque[i][k];
+}
+
+/// LAMMPS keeps them in a fix of its own, that packs for each atom 3 numbers a level: forces, then
+/// torques.
+void GearQuatRespa::recall()
+{
+  begin();
+  Fix *store = modify->get_fix_by_id("RESPA");
+  const int n = levels();
+  std::vector<double> kept((torque ? 6 : 3) * (size_t) n);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store->pack_exchange(i, kept.data());
+    for (int j = 0; j < 3 * n; ++j) {
+      f[i][j % 3] += kept[j];
+      if (torque) torque[i][j % 3] += kept[3 * n + j];
+    }
+  }
 }
 
 double GearQuatRespa::memory_usage() const

@@ -20,6 +20,8 @@ class GearQuatRespa : protected Pointers {
 
   /// True for the level that begins and ends a step.
   bool outermost(int level) const;
+  /// Before a step: the sum over the levels of what each has found last, all fixes included.
+  void recall();
   /// The forces, and torques where atoms have some, of one level; level 0 begins a sum.
   void add(int level);
 
@@ -31,6 +33,7 @@ class GearQuatRespa : protected Pointers {
   double **f, **torque;
   int nmax;
 
+  int levels() const;
   void begin();
 };
 

@@ -92,9 +92,7 @@ void GearQuatTolerance::shorten_first_step()
   const double ratio = std::min(1.0, control.allowed(largest, present.values()));
   const double size = std::max(control.shortest, ratio * std::fabs(update->dt));
   if (size >= std::fabs(update->dt)) return;
-  for (auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
-    if (other == fix) break;
-    if (!other->time_integrate) continue;
+  if (const Fix *other = integrated_before()) {
     if (comm->me == 0)
       error->warning(
           FLERR,
@@ -103,17 +101,30 @@ void GearQuatTolerance::shorten_first_step()
           largest, control.eps, other->id, other->style, size);
     return;
   }
-
-  // this step has begun: time so far was made of steps before it
-
-  const bigint before = update->ntimestep - 1;
-  update->atime += (before - update->atimestep) * update->dt;
-  update->atimestep = before;
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
                    std::copysign(size, update->dt), update->dt);
-  next_step = std::copysign(size, update->dt);
-  set_step(next_step);
+  set_begun_step(std::copysign(size, update->dt));
+}
+
+/// A fix that has begun this step before this fix does, null for none.
+const Fix *GearQuatTolerance::integrated_before() const
+{
+  for (const auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
+    if (other == fix) break;
+    if (other->time_integrate) return other;
+  }
+  return nullptr;
+}
+
+/// Time so far was made of the steps before the one that has begun.
+void GearQuatTolerance::set_begun_step(double step)
+{
+  const bigint before = update->ntimestep - 1;
+  update->atime += (before - update->atimestep) * update->dt;
+  update->atimestep = before;
+  next_step = step;
+  set_step(step);
 }
 
 /* ----------------------------------------------------------------------
@@ -201,10 +212,27 @@ void GearQuatTolerance::keep_step(double step)
 {
   next_step = step;
   if (update->dt == step) return;
+  tell_of_step(step);
+  change_step();
+}
+
+void GearQuatTolerance::put_back_begun_step(double step)
+{
+  if (const Fix *other = integrated_before())
+    error->all(
+        FLERR,
+        "Fix gear/quat tolerance: the time step was changed before a run with pre no, and fix "
+        "{} ({}) has begun the first step with it; leave out pre no",
+        other->id, other->style);
+  tell_of_step(step);
+  set_begun_step(step);
+}
+
+void GearQuatTolerance::tell_of_step(double step) const
+{
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n",
                    step, update->dt);
-  change_step();
 }
 
 bool GearQuatTolerance::owns_step() const

@@ -59,6 +59,9 @@ class GearQuatTolerance : protected Pointers {
   void change_step();
   /// The timestep command gives the first step only: `step` is put back.
   void keep_step(double step);
+  /// The same in a run that LAMMPS has not set up, so that a step has begun with another one already.
+  /// Ends the run if other atoms have moved with that.
+  void put_back_begun_step(double step);
   /// True while update->dt is what this control has made it.
   bool owns_step() const;
 
@@ -81,6 +84,9 @@ class GearQuatTolerance : protected Pointers {
   void set_values(int values);
   void change_values(int values);
   void set_step(double step);
+  void set_begun_step(double step);
+  void tell_of_step(double step) const;
+  const Fix *integrated_before() const;
 };
 
 }    // namespace LAMMPS_NS

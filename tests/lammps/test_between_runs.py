@@ -1,0 +1,221 @@
+"""What is changed between two runs, and what a look at the forces may not disturb."""
+
+import numpy as np
+import pytest
+from scenes import (
+    last_frame,
+    one_after_the_other,
+    restarted,
+    two_molecules,
+    water,
+    water_data,
+)
+
+ANEW = "forces are not those of the last step, histories start anew"
+FALLBACK = "start with known forces only (order 2), because"
+SPRING = "fix spring all spring/self 1.0\nfix_modify spring energy yes"
+
+CHANGES = {
+    "pair_coeff": "pair_coeff 1 1 0.2 3.166",
+    "pair_style": "pair_style lj/charmm/coul/charmm 3.0 4.2\npair_coeff 1 1 0.1553 3.166\n"
+    "pair_coeff 2 2 0.0 1.0\npair_coeff 1 2 0.0 1.0",
+    "charge": "set type 1 charge -0.84\nset type 2 charge 0.42",
+    "a new field": "fix add all addforce 0.5 0.0 0.0",
+    "a field less": "unfix spring",
+    "deleted neighbors": "group gone molecule 5\ndelete_atoms group gone compress no",
+    "excluded neighbors": "group a molecule 1\ngroup b molecule 2:27\nneigh_modify exclude group a b",
+    "box": "change_box all z final 0 10.2 units box",
+}
+FIXES = {
+    "second": "",
+    "first": "formulation first",
+    "isokinetic": "formulation first isokinetic total",
+    "masks": "force 1*5 on off off torque 3* off off on",
+    "zero": "start zero",
+    "tolerance": "tolerance 1.0e-8",
+}
+
+
+@pytest.fixture
+def data(lmp_tree):
+    return water_data(lmp_tree.folder / "data.water", shift=1.65)
+
+
+def deck(data, fix="", between="", run="run 60\n{}\nrun 20", after=SPRING, **settings):
+    return water(
+        data,
+        f"gear/quat molecule {fix}",
+        **{"dt": 0.5, "thermo": 20, "after": after, "run": run.format(between)} | settings,
+    )
+
+
+def anew(fix):
+    return f"\nunfix move\nfix move all gear/quat molecule {fix}\nfix_modify move energy yes"
+
+
+def energies(result, run=-1):
+    return np.array(result.thermo[run]["TotEng"])
+
+
+@pytest.mark.parametrize("fix", FIXES)
+def test_forces_changed_between_runs(lmp_tree, data, fix):
+    """From then on all is as if the fix had been defined at that point."""
+    changes = CHANGES if fix == "second" else {"pair_coeff": CHANGES["pair_coeff"]}
+    words = FIXES[fix]
+    decks = [
+        deck(data, words, change + end) for change in changes.values() for end in ("", anew(words))
+    ]
+    result = lmp_tree.run(one_after_the_other(decks))
+    assert result.returncode == 0, result.output
+    assert result.stdout.count(ANEW) == len(changes)
+    for n, name in enumerate(changes):
+        kept, fresh = energies(result, 4 * n + 1), energies(result, 4 * n + 3)
+        assert kept == pytest.approx(fresh, abs=1e-8), name
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_forces_changed_with_a_restart(lmp_tree, data, ranks):
+    def after_restart(coefficient, name="move"):
+        coefficients = (
+            "pair_style lj/charmm/coul/charmm 2.7 3.9\n"
+            f"pair_coeff 1 1 {coefficient} 3.166\npair_coeff 2 2 0.0 1.0\npair_coeff 1 2 0.0 1.0\n"
+        )
+        text = restarted(deck(data, run="run 20", after=""), "half")
+        text = text.replace("neighbor ", coefficients + "neighbor ", 1)
+        return text.replace("fix move", f"fix {name}").replace("fix_modify move", f"fix_modify {name}")
+
+    first = lmp_tree.run(deck(data, run="run 60\nwrite_restart half\nrun 20", after=""), ranks=ranks)
+    assert first.returncode == 0, first.output
+    decks = [after_restart("0.2"), after_restart("0.2", "another"), after_restart("0.1553")]
+    result = lmp_tree.run(one_after_the_other(decks), ranks=ranks)
+    assert result.returncode == 0, result.output
+    assert result.stdout.count(ANEW) == 1
+    assert energies(result, 0) == pytest.approx(energies(result, 1), abs=1e-8)
+    assert energies(result, 2)[-1] == pytest.approx(energies(first)[-1], abs=1e-9)
+
+
+UNCHANGED = {
+    **FIXES,
+    "the paper's": "formulation first values 5 passes 1 momentum predicted project no start zero",
+    "few values": "values 4",
+    "compensated": "values 10 compensate yes",
+}
+SURROUNDINGS = {
+    "long steps": dict(dt=2.0),
+    "cut off": dict(dt=2.0, pair=("lj/charmm/coul/charmm 2.7", "lj/cut/coul/cut")),
+    "pppm": dict(
+        dt=2.0,
+        pair=(
+            "lj/charmm/coul/charmm 2.7 3.9",
+            "lj/charmm/coul/long 2.7 3.9 4.2\nkspace_style pppm 1e-4",
+        ),
+    ),
+    "langevin": dict(fix="values 5", after="fix l all langevin 300 300 100 4711"),
+    "respa": dict(before="run_style respa 2 1 pair 2"),
+    "field of time": dict(
+        after="variable f equal cos(0.1*time)\nfix a all addforce v_f 0.0 0.0"
+    ),
+}
+
+
+def test_unchanged_runs_go_on(lmp_tree, data):
+    """Not one of 15 runs in each of these scenes starts anew."""
+    decks = []
+    for settings in [{"fix": fix} for fix in UNCHANGED.values()] + list(SURROUNDINGS.values()):
+        settings = dict(settings)
+        old, new = settings.pop("pair", ("", ""))
+        decks.append(deck(data, run="run 7\n" * 15, **settings).replace(old, new))
+    result = lmp_tree.run(one_after_the_other(decks))
+    assert result.returncode == 0, result.output
+    assert len(result.thermo) == 15 * len(decks)
+    assert "anew" not in result.stdout
+
+
+# --- the time step between runs ------------------------------------------------------------------
+
+
+def test_a_time_step_that_a_run_is_not_set_up_for(lmp_tree, data):
+    """With pre no too, the step of tolerance is the fix's."""
+    columns = "time f_move[9] f_move[14]"
+    text = deck(data, "tolerance 1e-9", run="run 60\n{}\nrun 40 pre no").replace(
+        "step temp", f"step {columns} temp"
+    )
+    plain, other = lmp_tree.run(text), lmp_tree.run(text.replace("\nrun 40", "\ntimestep 8.0\nrun 40"))
+    assert plain.returncode == other.returncode == 0, other.output
+    assert "goes on with a time step of" in other.stdout
+    assert other.thermo[-1]["f_move[14]"][-1] < 100
+    for column in ("Time", "TotEng"):
+        assert other.thermo[-1][column] == plain.thermo[-1][column]
+    early = text.replace("fix move all", "group none empty\nfix early none nve\nfix move all")
+    result = lmp_tree.run(early.replace("\nrun 40", "\ntimestep 8.0\nrun 40"))
+    assert any("fix early (nve) has begun the first step" in error for error in result.errors)
+
+
+# --- first forces --------------------------------------------------------------------------------
+
+
+def test_first_forces_with_respa(lmp_tree, data):
+    """A fix that the start cannot follow acts from the first step on, with levels as without."""
+    mean = "fix mean all aveforce 0.1 NULL NULL"
+    ends = {}
+    for style in ("verlet", "respa 2 1 pair 2"):
+        text = deck(data, after=mean, run="run 1", steps=1, before=f"run_style {style}", dt=2.0, dump="d")
+        result = lmp_tree.run(text)
+        assert result.returncode == 0, result.output
+        assert FALLBACK + " fix mean (aveforce)" in result.stdout
+        ends[style] = last_frame(lmp_tree.folder / "d")
+    one, two = ends.values()
+    assert np.abs(one - two).max() < 1e-12
+
+
+# --- a look at forces disturbs nothing --------------------------------------------------------------
+
+OF_TALLIES = {
+    "pe": "variable f equal 1e-3*pe",
+    "virial": "compute p all pressure NULL virial\nvariable f equal 1e-6*c_p[1]",
+    "pe/atom": "compute e all pe/atom\nvariable f atom 1e-3*c_e",
+    "stress/atom": "compute s all stress/atom NULL\nvariable f atom 1e-6*c_s[1]",
+}
+
+
+@pytest.mark.parametrize("name", OF_TALLIES)
+def test_a_field_of_energy_or_pressure(lmp_tree, data, name):
+    """Known in steps only, so the start has order 2; LAMMPS' own demands on such a field are met."""
+    field = OF_TALLIES[name] + "\nfix a all addforce v_f 0.0 0.0"
+    result = lmp_tree.run(one_after_the_other(deck(data, run="run 5", **{place: field}, **rest)
+        for place, rest in (("before", {"after": ""}), ("after", {}))))
+    assert result.returncode == 0, result.output
+    assert result.stdout.count(f"{FALLBACK} fix a (addforce) depends on energies or pressures") == 2
+
+
+def test_a_field_of_every_few_steps_is_not_followed(lmp_tree, data):
+    field = "fix a all addforce 0.1 0.0 0.0 every 10"
+    result = lmp_tree.run(deck(data, run="run 5", after=field))
+    assert FALLBACK + " an external force depends on time" in result.stdout
+
+
+def test_random_numbers_are_not_drawn(lmp_tree, data):
+    """A random force is that of the same script without a look at forces."""
+    field = "variable f equal random(-1,1,4711)\nfix a all addforce v_f 0.0 0.0\nvariable x equal f_a[1]"
+    rows = []
+    for start in ("bootstrap", "zero"):
+        text = deck(data, f"start {start}", run="run 5", after=field, thermo=1)
+        result = lmp_tree.run(text.replace("step temp", "step v_f temp"))
+        assert result.returncode == 0, result.output
+        rows.append(result.thermo[0]["v_f"])
+    assert rows[0] == rows[1] and len(set(rows[0])) == 6
+
+
+def test_bonds_that_break_are_not_followed(lmp_tree):
+    """A node of the start further out would break them for good."""
+    bonds = (
+        "bond_style quartic\nbond_coeff 1 1200 -0.55 0.25 1.3 34.6878\nspecial_bonds lj 1 1 1\n"
+        "create_bonds single/bond 1 1 4"
+    )
+    text = two_molecules(before=bonds, after="run 1").replace(
+        "create_box 1 box", "create_box 1 box bond/types 1 extra/bond/per/atom 1"
+    ).replace("pair_style zero 2.0\npair_coeff * *", "pair_style lj/cut 2.0\npair_coeff * * 0.0 1.0")
+    text = text.replace("5.0 5.0 5.0", "2.0 0.0 0.0", 1)
+    result = lmp_tree.run(text)
+    assert result.returncode == 0, result.output
+    assert FALLBACK + " bonds of style quartic may break" in result.stdout
