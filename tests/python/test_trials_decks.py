@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from clumps import FIX, FOR_GEAR
 
 from lammps_gearquat import divergence as dv
 from lammps_gearquat.commands.cost import cost as cost_command
@@ -17,80 +18,6 @@ from lammps_gearquat.trials import cost, horizon, report, script
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
 from lammps_gearquat.trials.worker import TrialError
-
-# Three bodies of three sites in free space, in the style of LAMMPS' own examples of fix rigid, with
-# what such decks are made of: an include, a loop, an if, outputs, no atom map, more runs than one.
-DECK = """
-variable style index rigid
-variable soft index 0
-units lj
-atom_style atomic
-boundary f f f
-region box block -30 30 -30 30 -30 30
-create_box 1 box
-include in.sites
-mass 1 1.0
-pair_style lj/cut &
-  100.0   # never cut
-pair_coeff 1 1 1.0 1.0
-variable k loop 3
-label next
-  group clump$k id $(3*v_k-2):$(3*v_k)
-  neigh_modify exclude group clump$k clump$k
-next k
-jump SELF next
-velocity all create 0.5 4711 loop geom
-if "${soft} > 0 && a != b" then &
-  "fix 0 all nve" "timestep 0.0001" "run 10" "unfix 0" &
-else 'print "no soft start # here"'
-fix 1 all ${style} group 3 clump1 clump2 clump3
-fix average all ave/time 1 10 10 c_thermo_temp file average.txt
-fix_modify 1 virial yes
-compute kinetic all erotate/rigid 1
-dump 1 all atom 10 dump.clumps
-restart 100 clumps.restart
-thermo_style custom step temp f_1 c_kinetic
-thermo 10
-{extra}
-timestep 0.004
-run 0
-run 500
-run 1000000
-"""
-SITES = """
-create_atoms 1 single 0.0 0.0 0.0
-create_atoms 1 single 1.0 0.1 0.0
-create_atoms 1 single 0.3 0.9 0.2
-create_atoms 1 single 0.1 0.2 1.8
-create_atoms 1 single 1.0 0.4 2.1
-create_atoms 1 single 0.2 1.2 2.3
-create_atoms 1 single 2.6 0.3 0.4
-create_atoms 1 single 3.1 1.2 0.6
-create_atoms 1 single 2.8 0.5 1.5
-"""
-
-
-#: changes that let fix gear/quat stand in the deck
-FOR_GEAR = {"atom_style atomic": "atom_style atomic\natom_modify map yes", " c_kinetic": ""}
-FOR_GEAR |= {"compute kinetic all erotate/rigid 1": ""}
-FIX = "fix 1 all ${style} group 3 clump1 clump2 clump3"
-
-
-@pytest.fixture
-def make_deck(tmp_path):
-    """``make_deck(extra="", old=new …)``: path of the deck, with commands before its run."""
-
-    def make(extra="", **changes):
-        text = DECK.replace("{extra}", extra)
-        for old, new in changes.items():
-            assert old in text
-            text = text.replace(old, new)
-        (tmp_path / "in.sites").write_text(SITES)
-        (tmp_path / "in.clumps").write_text(text)
-        return tmp_path / "in.clumps"
-
-    return make
-
 
 @pytest.fixture
 def refused(make_deck):
@@ -251,7 +178,7 @@ def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
         ({"extra": "variable a equal ${none}"}, "illegal variable none"),
         ({"extra": "include in.nowhere"}, "cannot read in.nowhere"),
         ({"extra": "jump SELF nowhere"}, "label nowhere was not found"),
-        ({"extra": "quit"}, "quits before"),
+        ({"extra": "quit"}, "any run of this deck before it quits"),
         ({"extra": "unfix 1"}, "no fix that moves rigid bodies is in use at any run"),
         ({"extra": "fix 2 all deform 1 x scale 1.1"}, "fix 2 deform: it changes the box"),
         ({FIX: FIX + " langevin 1 1 1 48"}, "keyword langevin: its forces are random"),

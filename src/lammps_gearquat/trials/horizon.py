@@ -69,7 +69,7 @@ def measure(
         notes.append(f"the second step is {dt_b:g}, a fraction of the time between samples")
     if progress is not None:
         progress.reset(total=segments * (round(interval / dt_a) + inner))
-        deck.worker.on_steps = progress.update
+        deck.worker.on_news = progress.update
     trials = (
         deck.run(keywords[0], [round(interval / dt_a)] * segments, dt_a),
         deck.run(keywords[1], [inner] * segments, dt_b),

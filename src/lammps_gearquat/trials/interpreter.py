@@ -1,11 +1,12 @@
 """The flow of commands of an input script, followed up to the run that moves its rigid bodies.
 
 Only what decides which command comes next is done here: include, jump, label, next, if, run.
-Everything else, variables among it, is LAMMPS' own: every command is passed on to ``lammps`` as it
-stands.  What only writes or prints is left out.  The commands passed on are kept, so that they can
-be replayed without any control flow.
+Everything else, variables among it, is LAMMPS' own: every command is passed on to ``lammps`` with its
+variables substituted.  What only writes or prints is left out, but for the restart and data files that a
+deck reads again.  The commands passed on are kept, so that they can be replayed without any control flow.
 """
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from . import script
 from .script import DeckError
 
 #: commands that only write, print or time
-SILENT = set("""dump dump_modify undump restart write_data write_restart write_dump write_coeff
+SILENT = set("""dump dump_modify undump restart write_dump write_coeff
     thermo thermo_style thermo_modify log echo info print timer bond_write angle_write dihedral_write
     pair_write processors balance""".split())
 SILENT_FIXES = ("ave/", "print", "vector", "halt", "balance")
@@ -55,23 +56,36 @@ class Start:
     notes: list = field(default_factory=list)
 
 
+#: how the text of a deck speaks of a variable
+_NAMES = re.compile(r"\bvariable\s+(\w+)|\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
+
+
 class _Reached(Exception):
     """The run has been reached."""
+
+
+class _Quit(Exception):
+    """The deck has ended itself."""
 
 
 class Interpreter:
     """Follows one deck.  ``lammps`` needs the methods command, expand and has_id.
 
-    ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies.
+    ``folder`` is for files that the deck writes; ``say`` is told of what takes time.
+
+    ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies;
+    ``variables`` are the names of variables that LAMMPS was given.
     """
 
-    def __init__(self, lammps, without=(), which=1):
-        self.lammps = lammps
-        self.without = set(without)
+    def __init__(self, lammps, folder, without=(), which=1, variables=(), say=print):
+        self.lammps, self.folder, self.say = lammps, Path(folder), say
+        self.without, self.variables = set(without), set(variables)
         self.which, self.runs = which, 0
+        self.names = set()  # of variables, in the files read so far
         self.start = Start()
         self.movers = {}  # ID -> Command
-        self.silenced = set()  # IDs of fixes and computes that were left out
+        self.silenced = set()  # fixes and computes that were left out, as f_ID and c_ID
+        self.written = set()  # names of files
         self.seen = set()
         self.files = []
         self.label = None
@@ -79,19 +93,34 @@ class Interpreter:
 
     def follow(self, path):
         """Start of the deck ``path``, relative to the present folder.  Raises DeckError."""
+        quits = ""
         try:
             self._file(path)
         except _Reached:
-            unknown = self.without - self.seen
-            if unknown:
-                raise DeckError(f"--without: no fix {', '.join(sorted(unknown))} in the deck")
+            self._check_options()
             return self.start
+        except _Quit:
+            quits = " before it quits"
+        self._check_options()
         if self.runs:
-            raise DeckError(f"the deck moves rigid bodies in {self.runs} run(s) only")
+            raise DeckError(
+                f"--run {self.which}: the deck moves rigid bodies in {self.runs} run(s) only{quits}"
+            )
         raise DeckError(
-            "no fix that moves rigid bodies is in use at any run of this deck:"
-            f" it needs fix gear/quat or one of fix {', '.join(script.RIGID)}, and a run"
+            f"no fix that moves rigid bodies is in use at any run of this deck{quits}: it needs fix"
+            f" gear/quat or one of fix {', '.join(script.RIGID)}, and a run of one step or more"
         )
+
+    def _check_options(self):
+        """Refuse options that name what the deck does not have."""
+        fixes, variables = sorted(self.without - self.seen), sorted(self.variables - self.names)
+        if fixes:
+            raise DeckError(f"--without: no fix {', '.join(fixes)} in the deck up to its run")
+        if variables:
+            known = ", ".join(sorted(self.names)) or "none"
+            raise DeckError(
+                f"--var: no variable {', '.join(variables)} in the deck up to its run; it has {known}"
+            )
 
     # --- which command comes next -----------------------------------------------------------------
     def _file(self, path):
@@ -110,7 +139,12 @@ class Interpreter:
             text = Path(path).read_text(encoding="utf-8", errors="replace")
         except OSError as error:
             raise DeckError(f"cannot read {path}: {error.strerror}") from error
-        return str(path), iter(script.logical_lines(text))
+        path = str(Path(path).absolute())  # the deck may go to another folder
+        lines = script.logical_lines(text)
+        for line in lines:
+            found = _NAMES.findall(script.strip_comment(line))
+            self.names |= {name for names in found for name in names if name}
+        return path, iter(lines)
 
     def execute(self, line):
         """Follow or pass on one command."""
@@ -120,9 +154,10 @@ class Interpreter:
             if words[:1] == ["label"] and words[1:2] == [self.label]:
                 self.label = None
             return
-        if not line.strip():
+        if (line.split() or [""])[0] in SILENT:  # whatever it would print
             return
-        words = script.split(self._lammps("expand", line) or "")  # None if nothing is left
+        line = self._lammps("expand", line) if line.strip() else None
+        words = script.split(line or "")  # None if nothing is left
         if not words:
             return
         name = words[0]
@@ -134,12 +169,13 @@ class Interpreter:
         elif name not in SILENT:
             self._pass(line)
 
-    def _lammps(self, method, line):
+    def _lammps(self, method, line, shown=None):
+        """What LAMMPS makes of a line; ``shown`` is what is said of it if LAMMPS refuses."""
         try:
             return getattr(self.lammps, method)(line)
         except Exception as error:  # the only class LAMMPS' module raises
-            text = " ".join(line.split())
-            raise DeckError(f"LAMMPS refuses the command\n  {text}\n  {error}") from error
+            text, said = " ".join((shown or line).split()), str(error).split("\nLast input line")[0]
+            raise DeckError(f"LAMMPS refuses the command\n  {text}\n  {said}") from error
 
     def _pass(self, line, **facts):
         self._lammps("command", line)
@@ -172,11 +208,11 @@ class Interpreter:
     def _holds(self, condition):
         self.lammps.command(f"variable {MARK} string 0")
         test = f'if {script.quote(condition)} then "variable {MARK} string 1"'
-        self._lammps("command", test)
+        self._lammps("command", test, shown=f"if {condition}")
         return self.lammps.expand(f"${{{MARK}}}") == "1"
 
     def _do_quit(self, words, line):
-        raise DeckError("the deck quits before a run that moves rigid bodies")
+        raise _Quit
 
     def _do_shell(self, words, line):
         """Run programs once; only what changes this process is kept for the replay."""
@@ -191,13 +227,27 @@ class Interpreter:
             self._retire(id_)
         self.silenced.clear()
         self.start.fixes.clear()
+        self.start.pair_style = []
         self._pass(line)
 
-    def _do_read_data(self, words, line):
+    def _do_create_box(self, words, line):
         self.start.box = len(self.start.commands)
         self._pass(line)
 
-    _do_create_box = _do_read_restart = _do_read_data
+    def _do_read_data(self, words, line):
+        """Also a restart file, whether it was there or has been written by this deck."""
+        own = self.folder / script.file_name(words[1])
+        self._do_create_box(words, script.with_file(line, own) if own in self.written else line)
+
+    _do_read_restart = _do_read_data
+
+    def _do_write_data(self, words, line):
+        """Not where the deck has it, but where it is found again."""
+        own = self.folder / script.file_name(words[1])
+        self.written.add(own)
+        self._pass(script.with_file(line, own))
+
+    _do_write_restart = _do_write_data
 
     def _do_pair_style(self, words, line):
         self.start.pair_style = words[1:]
@@ -207,7 +257,7 @@ class Interpreter:
         id_, style = words[1], words[3] if len(words) > 3 else ""
         if id_ in self.without or style.startswith(SILENT_FIXES):
             self.seen.add(id_)
-            self.silenced.add(id_)
+            self.silenced.add("f_" + id_)
             return
         self._retire(id_)
         if script.moves_bodies(style):
@@ -225,13 +275,15 @@ class Interpreter:
             mover.mover = None
 
     def _do_compute(self, words, line):
-        if words[3:4] and words[3] in SILENT_COMPUTES:
-            self.silenced.add(words[1])
+        """One that is made from what was left out is left out as well."""
+        used = {word.partition("[")[0] for word in words[3:]}
+        if set(words[3:4]) & set(SILENT_COMPUTES) or used & self.silenced:
+            self.silenced.add("c_" + words[1])
         else:
             self._pass(line)
 
     def _do_fix_modify(self, words, line):
-        if words[1] in self.silenced:
+        if "f_" + words[1] in self.silenced:
             return
         self._pass(line, modifies=words[1] if words[1] in self.movers else "")
         if words[1] in self.movers and "bodyforces" in words:
@@ -240,25 +292,26 @@ class Interpreter:
             )
 
     def _do_unfix(self, words, line):
-        if words[1] in self.silenced:
-            self.silenced.discard(words[1])
+        if "f_" + words[1] in self.silenced:
+            self.silenced.discard("f_" + words[1])
             return
         self._retire(words[1])
         self.start.fixes.pop(words[1], None)
         self._pass(line)
 
     def _do_compute_modify(self, words, line):
-        if words[1] not in self.silenced:
+        if "c_" + words[1] not in self.silenced:
             self._pass(line)
 
     def _do_uncompute(self, words, line):
-        if words[1] in self.silenced:
-            self.silenced.discard(words[1])
+        if "c_" + words[1] in self.silenced:
+            self.silenced.discard("c_" + words[1])
         else:
             self._pass(line)
 
     def _do_velocity(self, words, line):
-        if "rigid" in words[2:]:
+        """Some depend on the fix: on its bodies, or on the degrees of freedom it takes off by now."""
+        if "rigid" in words[2:] or words[2] in ("create", "scale"):
             self._use_movers()
         self._pass(line)
 
@@ -281,15 +334,12 @@ class Interpreter:
         self._pass(line)
 
     def _do_run(self, words, line):
-        if not self.movers:
-            self._pass(line)
-            return
-        steps = script.run_steps(words, self.lammps.extract_global("ntimestep"))
-        if steps <= 0:  # run 0 changes nothing
-            return
-        self.runs += 1
-        if self.runs == self.which:
+        steps = script.run_steps(words, self.lammps.extract_global("ntimestep")) if self.movers else 0
+        # run 0 moves nothing, but bodies take over the velocities of their atoms
+        self.runs += steps > 0
+        if steps > 0 and self.runs == self.which:
             self.start.steps = steps
             raise _Reached
         self._use_movers()
+        self.say(f"running what comes before: {' '.join(words)}")
         self._pass(line)

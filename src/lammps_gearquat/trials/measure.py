@@ -52,14 +52,14 @@ class Deck:
     """An input script, followed up to the run that moves its bodies; use it in a with statement.
 
     ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to
-    leave out; ``which`` counts the runs that move bodies.  Raises DeckError for decks that cannot
-    be used.
+    leave out; ``which`` counts the runs that move bodies; ``say`` is called with a line of text
+    when the deck takes time to come there.  Raises DeckError for decks that cannot be used.
     """
 
-    def __init__(self, path, variables=(), without=(), which=1):
+    def __init__(self, path, variables=(), without=(), which=1, say=None):
         self.path = Path(path).resolve()
         self.variables = [tuple(map(str, variable)) for variable in variables]
-        self.without, self.which = tuple(without), which
+        self.without, self.which, self.say = tuple(without), which, say
 
     def __enter__(self):
         self._folder = tempfile.TemporaryDirectory(prefix="gearquat-")
@@ -82,10 +82,12 @@ class Deck:
         )
 
     def _follow(self):
+        self.worker.on_news = self.say
         try:
             self.scene = self._ask("follow", without=self.without, which=self.which)
         except TrialError as error:
             raise script.DeckError(f"LAMMPS cannot run the deck: {error}") from error
+        self.worker.on_news = None
         start = self.scene.start
         self.lines = [command.mover for command in start.commands if command.mover]
         script.check_scene(start.fixes, start.pair_style)

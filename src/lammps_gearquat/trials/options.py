@@ -42,7 +42,10 @@ def open_deck(path, variables, without, which):
     """The Deck of these options; to be used in a with statement."""
     from .measure import Deck
 
-    return Deck(path, variables, without, which)
+    def say(text):
+        click.echo(f"{path.name}: {text}", err=True)
+
+    return Deck(path, variables, without, which, say)
 
 
 def failing_clearly(command):

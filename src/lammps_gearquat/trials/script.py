@@ -76,6 +76,17 @@ def branches(words):
     return found
 
 
+def file_name(word):
+    """A file of a deck as one name without folders; * and % stay."""
+    return word.replace("/", "_")
+
+
+def with_file(line, path):
+    """A command whose first argument is a file, with another file."""
+    command = re.match(rf"(\s*\S+\s+)(?:{_QUOTED}|\S+)(.*)", line, re.DOTALL)
+    return f"{command[1]}{quote(str(path))}{command[2]}"
+
+
 # --- the run ------------------------------------------------------------------------------------
 def run_steps(words, now=0):
     """Number of steps of a run command at time step ``now``."""

@@ -117,12 +117,14 @@ def _sites(lammps):
 
 
 def follow(deck, variables, without, which, log, tell):
-    """Scene of a deck."""
+    """Scene of a deck.  ``tell`` is called with a line of text before what takes time."""
     import numpy as np
 
     lammps = _open(deck, variables, log)
     try:
-        start = Interpreter(lammps, without, which).follow(deck.name)
+        names = [name for name, *_ in variables]
+        interpreter = Interpreter(lammps, Path(log).parent, without, which, names, tell)
+        start = interpreter.follow(deck.name)
         movers = [command.mover for command in start.commands if command.mover]
         lammps.command(f"compute {SITES} all property/atom id xu yu zu")
         ids, positions = _sites(lammps)
@@ -238,7 +240,7 @@ def _serve(connection, output):
         except (EOFError, KeyboardInterrupt):
             return
         try:
-            answer = functions[name](**arguments, tell=lambda n: connection.send(("done", n)))
+            answer = functions[name](**arguments, tell=lambda n: connection.send((n,)))
         except DeckError as error:
             answer = error
         except Exception as error:  # LAMMPS' module raises no class of its own
@@ -253,7 +255,7 @@ class Worker:
     def __init__(self, folder):
         self.output = str(Path(folder) / "output")
         self.process = None
-        self.on_steps = None  # called with the number of steps done since its last call
+        self.on_news = None  # called with what a function tells while it is at work
 
     def __enter__(self):
         return self
@@ -274,8 +276,9 @@ class Worker:
         if not self.process:
             context = multiprocessing.get_context("spawn")
             self.connection, other = context.Pipe()
-            self.process = context.Process(target=_serve, args=(other, self.output), daemon=True)
-            self.process.start()
+            process = context.Process(target=_serve, args=(other, self.output), daemon=True)
+            process.start()
+            self.process = process
             other.close()
         try:
             self.connection.send((name, arguments))
@@ -299,8 +302,8 @@ class Worker:
             answer = self.connection.recv()
             if not isinstance(answer, tuple):
                 return answer
-            if self.on_steps:
-                self.on_steps(answer[1])
+            if self.on_news:
+                self.on_news(answer[0])
 
     def _last_words(self):
         path = Path(self.output)

