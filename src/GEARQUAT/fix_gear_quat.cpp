@@ -194,6 +194,7 @@ void FixGearQuat::reset_dt()
 void FixGearQuat::setup_pre_neighbor()
 {
   bodies->check_whole();
+  bodies->choose_large();
   bodies->update_ghosts();
   if (met_atoms) take_velocities(update->ntimestep, false);
   const bool take_over = args->infile.empty() && (args->reinit || !met_atoms);
@@ -224,6 +225,7 @@ void FixGearQuat::setup(int vflag)
     neighbors->check_all();
   }
   compared = false;
+  readers_every = periods_of_readers(lmp, this);
   bodies->spread_states();
   bodies->place_velocities();
   for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
@@ -293,8 +295,18 @@ void FixGearQuat::finish_step(double **f, double **torque)
   bodies->spread_states();
   bodies->place_sites(true);
   table->forget();
-  const int others = modify->n_end_of_step - (motion->changes_step() ? 1 : 0);
-  if (output->next == update->ntimestep || others > 0) show_bodies();
+  if (!read_at_end()) return;
+  comm->forward_comm();    // ghost atoms are where the forces were taken
+  show_bodies();
+}
+
+/// True if output or another fix may read atoms or bodies when this step is done.
+bool FixGearQuat::read_at_end() const
+{
+  if (output->next == update->ntimestep) return true;
+  for (const int period : readers_every)
+    if (update->ntimestep % period == 0) return true;
+  return false;
 }
 
 /// With tolerance only: all fixes have finished the step.

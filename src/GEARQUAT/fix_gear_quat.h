@@ -21,6 +21,7 @@ FixStyle(gear/quat,FixGearQuat);
 #include "fix.h"
 
 #include <memory>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -85,16 +86,18 @@ class FixGearQuat : public Fix {
   std::unique_ptr<class GearQuatSums> sums;
   std::unique_ptr<class GearQuatExtract> extracts;
 
-  bool met_atoms;          // bodies were compared with the atoms in a run before
-  bool reported;           // the scene, once
-  bool compared;           // bodies with the atoms, before this run
-  bool velocities_read;    // between prediction and correction, by others
-  int vflag_of_step;       // what LAMMPS asked of the virial when the step began
+  bool met_atoms;                    // bodies were compared with the atoms in a run before
+  bool reported;                     // the scene, once
+  bool compared;                     // bodies with the atoms, before this run
+  bool velocities_read;              // between prediction and correction, by others
+  int vflag_of_step;                 // what LAMMPS asked of the virial when the step began
+  std::vector<int> readers_every;    // of other fixes, at the end of a step
 
   void take_velocities(bigint step, bool end);
   void begin_step();
   void finish_step(double **, double **);
   void tally_virial(double **);
+  bool read_at_end() const;
   void show_bodies();
 };
 

@@ -32,6 +32,7 @@ struct GearQuatBody {
   double extent;         ///< largest distance of a site from the owner atom
   int from_file;         ///< mass and inertia were given, not summed
   int fresh;             ///< has come in this step: no history yet
+  int large;             ///< on several ranks: not all of its sites can see their owner atom
   GearQuat::Mask off;    ///< components of the load that do not act
 
   /// How far a rotation by a radian moves what is far out: a site, or a solid's own parts.

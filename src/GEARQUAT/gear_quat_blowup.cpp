@@ -6,6 +6,7 @@
 #include "gear_quat_blowup.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
@@ -44,7 +45,8 @@ MotionLimits GearQuatBlowup::limits(double h) const
 
 void GearQuatBlowup::check_loads(double h, double **f) const
 {
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) check_load(ibody, h, f);
+  for (const auto *list : {&bodies.points, &bodies.tops, &bodies.fresh})
+    for (const int ibody : *list) check_load(ibody, h, f);
 }
 
 void GearQuatBlowup::check_load(int ibody, double h, double **f) const
@@ -59,18 +61,47 @@ void GearQuatBlowup::stop(int ibody, const BodyState &s, double h, double **f) c
   const tagint id = bodies.body[ibody].id;
   const double time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
   std::string molecule;
-  for (const auto &site : bodies.sites)
-    if (site.body == ibody && atom->molecule_flag && atom->molecule[site.atom] != id)
+  int bad = -1;    // a site on which the force is no number
+  for (const auto &site : bodies.sites) {
+    if (site.body != ibody) continue;
+    if (atom->molecule_flag && atom->molecule[site.atom] != id)
       molecule = fmt::format(" (molecule {})", atom->molecule[site.atom]);
+    if (!std::isfinite(length(f[site.atom]))) bad = site.atom;
+  }
+  const Meeting met = nearest(ibody, bad);
   const std::string change = scheme.trial
       ? fmt::format("a smaller tolerance, or a dtmax shorter than {:g},", std::fabs(h))
       : fmt::format("a smaller time step than {:g} or fewer values than {},", std::fabs(h),
                     scheme.values());
-  error->one(FLERR,
-             "Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. Use {} or begin with "
-             "atoms further apart",
-             update->ntimestep, time, id, molecule, what_happened(ibody, s, h), where(ibody, f),
-             change);
+  const std::string text =
+      fmt::format("Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. Use {} or begin "
+                  "with atoms further apart",
+                  update->ntimestep, time, id, molecule, what_happened(ibody, s, h),
+                  where(ibody, bad, met), change);
+  if (bodies.is_large(ibody)) error->all(FLERR, agree(text, ibody, bad, met));
+  error->one(FLERR, text);
+}
+
+/// All ranks see a large body go astray, each with its own sites: the text of the one that sees most.
+std::string GearQuatBlowup::agree(const std::string &text, int ibody, int bad,
+                                  const Meeting &met) const
+{
+  const bool any = std::any_of(bodies.sites.begin(), bodies.sites.end(), [&](const auto &site) {
+    return site.body == ibody;
+  });
+  struct {
+    double distance2;
+    int rank;
+  } here = {NONE, comm->me}, best;
+  if (any) here.distance2 = std::min(met.distance2, std::numeric_limits<double>::max());
+  if (bad >= 0) here.distance2 = -1.0;
+  MPI_Allreduce(&here, &best, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  int size = (int) text.size();
+  MPI_Bcast(&size, 1, MPI_INT, best.rank, world);
+  std::string said = text;
+  said.resize(size);
+  MPI_Bcast(&said[0], size, MPI_CHAR, best.rank, world);
+  return said;
 }
 
 /// What is beyond the limits, the first thing in the order of cause and effect.
@@ -90,12 +121,8 @@ std::string GearQuatBlowup::what_happened(int ibody, const BodyState &s, double 
 }
 
 /// A site on which the force is no number, or else the one that is nearest to another atom.
-std::string GearQuatBlowup::where(int ibody, double **f) const
+std::string GearQuatBlowup::where(int ibody, int bad, const Meeting &met) const
 {
-  int bad = -1;
-  for (const auto &site : bodies.sites)
-    if (site.body == ibody && !std::isfinite(length(f[site.atom]))) bad = site.atom;
-  const Meeting met = nearest(ibody, bad);
   if (met.other < 0)
     return bad < 0 ? std::string()
                    : fmt::format("; the force on its atom {} is no number", atom->tag[bad]);
@@ -108,14 +135,27 @@ std::string GearQuatBlowup::where(int ibody, double **f) const
 GearQuatBlowup::Meeting GearQuatBlowup::nearest(int ibody, int only) const
 {
   Meeting found = {-1, -1, NONE};
+  std::vector<int> others;    // along x: only those are looked at that may be nearer
+  for (int j = 0; j < atom->nlocal + atom->nghost; ++j)
+    if (bodies.id_of(j) != bodies.body[ibody].id && std::isfinite(atom->x[j][0]))
+      others.push_back(j);
+  std::sort(others.begin(), others.end(), [this](int i, int j) {
+    return atom->x[i][0] < atom->x[j][0];
+  });
+
   for (const auto &site : bodies.sites) {
     if (site.body != ibody || (only >= 0 && site.atom != only)) continue;
     const double *x = atom->x[site.atom];
-    for (int j = 0; j < atom->nlocal + atom->nghost; ++j) {
-      if (bodies.id_of(j) == bodies.body[ibody].id) continue;
+    const auto look = [&](int j) {    // false: this atom and those beyond are too far away
       const double *y = atom->x[j], d[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
       if (dot3(d, d) < found.distance2) found = {site.atom, j, dot3(d, d)};
-    }
+      return d[0] * d[0] < found.distance2;
+    };
+    const auto middle = std::partition_point(others.begin(), others.end(), [&](int j) {
+      return atom->x[j][0] < x[0];
+    });
+    for (auto j = middle; j != others.end() && look(*j);) ++j;
+    for (auto j = middle; j != others.begin() && look(*(j - 1));) --j;
   }
   return found;
 }

@@ -30,8 +30,9 @@ class GearQuatBlowup : protected Pointers {
   void check_loads(double h, double **f) const;
   /// The same of one body.
   void check_load(int ibody, double h, double **f) const;
-  /// Ends the run on all ranks, from the one that owns the body: says step, time, body, its site
-  /// nearest to another atom (or one on which the force is no number), and what to change.
+  /// Ends the run on all ranks, from the one that owns the body (of a large one, from all of them
+  /// together): says step, time, body, its site nearest to another atom (or one on which the force is
+  /// no number), and what to change.
   /// Atoms are where the load was taken; s: what came of it, beyond the limits.
   [[noreturn]] void stop(int ibody, const GearQuat::BodyState &s, double h, double **f) const;
 
@@ -45,7 +46,8 @@ class GearQuatBlowup : protected Pointers {
   };
   Meeting nearest(int ibody, int site) const;
   std::string what_happened(int ibody, const GearQuat::BodyState &s, double h) const;
-  std::string where(int ibody, double **f) const;
+  std::string where(int ibody, int bad, const Meeting &met) const;
+  std::string agree(const std::string &text, int ibody, int bad, const Meeting &met) const;
 };
 
 }    // namespace LAMMPS_NS

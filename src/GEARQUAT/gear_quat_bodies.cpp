@@ -27,10 +27,10 @@ static constexpr double SAME = 1.0e-11;
 /* ---------------------------------------------------------------------- */
 
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nbodies(0), natoms(0),
-    strangers(0), told(false), ncentered(0), wrapped(false), any_ghosts(false), any_forces(true),
-    nmax(0), body_id(nullptr), owner_tag(nullptr), owned(nullptr), site_body(nullptr),
-    forward(Forward::STATES), labels(nullptr)
+    Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nmove(0), nbodies(0),
+    natoms(0), nlarge(0), strangers(0), told(false), ncentered(0), wrapped(false),
+    any_ghosts(false), any_forces(true), nmax(0), body_id(nullptr), owner_tag(nullptr),
+    owned(nullptr), site_body(nullptr), forward(Forward::STATES), labels(nullptr)
 {
   grow_arrays(atom->nmax);
   clear();
@@ -51,13 +51,9 @@ GearQuatBodies::~GearQuatBodies()
 void GearQuatBodies::clear(bool with_extended)
 {
   nown = 0;
-  body.clear();
-  state.clear();
-  load.clear();
-  last.clear();
+  drop_ghosts();
   sites.clear();
   frame.clear();
-  rows.clear();
   owner_atom.clear();
   extended.reset(with_extended, nmax);
   for (int i = 0; i < nmax; ++i) set_arrays(i);
@@ -118,6 +114,7 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
 void GearQuatBodies::recreate()
 {
   create(std::vector<tagint>(body_id, body_id + atom->nlocal), GivenBodies());
+  choose_large();
 }
 
 void GearQuatBodies::refuse_atoms() const
@@ -196,6 +193,9 @@ void GearQuatBodies::drop_ghosts()
   state.resize(nown);
   load.resize(nown);
   last.resize(nown);
+  rows.resize((size_t) nown * scheme.size(), 0.0);
+  large.clear();
+  nmove = nown;
 }
 
 int GearQuatBodies::add_owned(int atom)
@@ -203,7 +203,6 @@ int GearQuatBodies::add_owned(int atom)
   drop_ghosts();
   const int ibody = nown++;
   drop_ghosts();
-  rows.resize((size_t) nown * scheme.size(), 0.0);
   owner_atom.push_back(atom);
   owned[atom] = ibody;
   return ibody;
@@ -225,36 +224,41 @@ void GearQuatBodies::remove_owned(int ibody)
   }
   drop_ghosts();
   owner_atom.resize(nown);
-  rows.resize((size_t) nown * scheme.size());
 }
 
 void GearQuatBodies::update_ghosts()
 {
-  drop_ghosts();
-  if (comm->nprocs > 1) {
-    for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; ++i) owned[i] = -1;
-    forward = Forward::GHOSTS;
-    comm->forward_comm(fix);
-    load.resize(body.size());
-  }
-  list_bodies();
-  frame.resize(state.size());
-  for (size_t ibody = 0; ibody < state.size(); ++ibody) update_frame(ibody);
-  list_sites();
+  do {
+    drop_ghosts();
+    share_large();
+    if (comm->nprocs > 1) {
+      for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; ++i) owned[i] = -1;
+      forward = Forward::GHOSTS;
+      comm->forward_comm(fix);
+      load.resize(body.size());
+    }
+    list_bodies();
+    frame.resize(state.size());
+    for (size_t ibody = 0; ibody < state.size(); ++ibody) update_frame(ibody);
+    list_sites();
+  } while (!take_stock());
 }
 
 void GearQuatBodies::list_bodies()
 {
   for (auto *list : {&tops, &points, &fresh, &ghost_tops}) list->clear();
-  for (int ibody = 0; ibody < (int) body.size(); ++ibody) {
+  const auto list = [this](int ibody) {
     const bool rotates = body[ibody].rigid.rotational_freedoms() > 0;
-    if (ibody >= nown) {
+    if (ibody >= nmove) {
       if (rotates) ghost_tops.push_back(ibody);
     } else if (body[ibody].fresh)
       fresh.push_back(ibody);
     else
       (rotates ? tops : points).push_back(ibody);
-  }
+  };
+  for (int ibody = 0; ibody < (int) body.size(); ++ibody)
+    if (!is_large(ibody)) list(ibody);
+  for (const Large &one : large) list(one.body);
 }
 
 void GearQuatBodies::take_in_fresh()
@@ -265,19 +269,17 @@ void GearQuatBodies::take_in_fresh()
 
 void GearQuatBodies::list_sites()
 {
-  int lost = 0;
-  tagint example = 0;
+  unseen.clear();
   sites.clear();
   extended.sites.clear();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (body_id[i] == 0) continue;
-    const int owner = atom->map(owner_tag[i]);
-    if (owner < 0 || owned[owner] < 0) {
-      ++lost;
-      example = body_id[i];
+    const int mine = body_of(i);
+    if (mine < 0) {
+      unseen.push_back(owner_tag[i]);
       continue;
     }
-    Site site = {i, owned[owner], {}, {}};
+    Site site = {i, mine, {}, {}};
     for (int k = 0; k < 3; ++k) site.arm_body[k] = site_body[i][k];
     domain->unmap(site.wrap, atom->image[i]);
     double arm[3], expected[3];    // of what the flags take off
@@ -295,7 +297,6 @@ void GearQuatBodies::list_sites()
   });
   if (extended.has_records())
     for (const Site &site : sites) extended.list(site.atom, site.body);
-  take_stock(lost, example);
 }
 
 /// On a single rank ghosts are images of own atoms, on several they are told.
@@ -304,28 +305,25 @@ tagint GearQuatBodies::id_of(int i) const
   return body_id[atom->map(atom->tag[i])];
 }
 
-/// Count what all ranks have.  lost: atoms here that do not find their body, one of them `example`.
-void GearQuatBodies::take_stock(int lost, tagint example)
+/// Count what all ranks have.  False if some bodies have become large: all is to be done again.
+bool GearQuatBodies::take_stock()
 {
-  bigint here[6] = {nown, 0, (bigint) sites.size() + lost, lost, strangers, 0}, all[6];
-  for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
-  for (const Site &site : sites) here[5] += site.body >= nown;
-  MPI_Allreduce(here, all, 6, MPI_LMP_BIGINT, MPI_SUM, world);
+  const bigint lost = (bigint) unseen.size();
+  bigint here[7] = {nown, 0, (bigint) sites.size() + lost, lost, strangers, 0, 0}, all[7];
+  for (int ibody = 0; ibody < nown; ++ibody) {
+    here[1] += body[ibody].natoms;
+    here[6] += is_large(ibody);
+  }
+  for (const Site &site : sites) here[5] += site.body >= nmove;
+  MPI_Allreduce(here, all, 7, MPI_LMP_BIGINT, MPI_SUM, world);
   nbodies = all[0];
   natoms = all[1];
   any_ghosts = all[5] > 0;
+  nlarge = all[6];
   if (all[1] != all[2] || all[3] > 0) check_whole();
   if (all[3] > 0) {
-    double extent = 0.0, largest;
-    tagint any;
-    for (const auto &one : body) extent = std::max(extent, one.extent);
-    MPI_Allreduce(&example, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-    MPI_Allreduce(&extent, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
-    error->all(FLERR,
-               "Fix gear/quat: body {} spans more than the ghost cutoff: an atom has lost sight of "
-               "its body's owner atom; use comm_modify cutoff with more than the largest distance "
-               "of an atom from its owner, {}",
-               any, largest);
+    promote();
+    return false;
   }
   if (all[4] > 0 && !told) {
     told = true;
@@ -335,6 +333,7 @@ void GearQuatBodies::take_stock(int lost, tagint example)
                      "defined; they belong to no body and this fix does not move them",
                      all[4]);
   }
+  return true;
 }
 
 GearQuatCensus GearQuatBodies::census(int groupbit) const
@@ -416,6 +415,7 @@ double GearQuatBodies::memory_usage() const
       body.capacity() * sizeof(GearQuatBody) + state.capacity() * sizeof(BodyState) +
       load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
       frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
+      large.capacity() * sizeof(Large) + (parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
       extended.memory_usage();
 }

@@ -7,8 +7,12 @@
 
    A body belongs to the rank that owns its owner atom and migrates with it.  Owned bodies come
    first, then ghost bodies: copies of pose and velocities for atoms whose owner atom is a ghost
-   here.  Only owned bodies have a history.  Centres of mass are unwrapped; atoms are placed with
-   their own image flags, so that bodies need none.
+   here.  Centres of mass are unwrapped; atoms are placed with their own image flags, so that bodies
+   need none.
+
+   A body that reaches further than ghost atoms are seen is large: every rank has it, with its
+   history, and moves it as its owner does; its loads are summed over all ranks.  Of all other
+   bodies only the owner has the history.
 
    The fix calls, every step:
      [predict owned states] -> spread_states() -> place_sites() -> [forces] -> gather_loads()
@@ -32,14 +36,15 @@ class GearQuatBodies : protected Pointers {
   GearQuatBodies(LAMMPS *lmp, Fix *fix, const GearQuat::Scheme &scheme);
   ~GearQuatBodies() override;
 
-  // one entry per owned body; state and load have ghosts behind
+  // owned bodies, then large ones of other ranks, then (not in `last`) ghosts
 
   std::vector<GearQuatBody> body;
   std::vector<GearQuat::BodyState> state;
   std::vector<GearQuat::Load> load;
-  std::vector<GearQuat::Correction> last;    ///< owned bodies: what the last corrector told
+  std::vector<GearQuat::Correction> last;    ///< what the last corrector told
 
-  // owned bodies by what they need in a step; valid until atoms are exchanged
+  // bodies that this rank moves by what they need in a step, large ones last and in the same order
+  // on all ranks; valid until atoms are exchanged
 
   std::vector<int> tops;      ///< rotate
   std::vector<int> points;    ///< have no moments of inertia: their orientation stays
@@ -59,6 +64,12 @@ class GearQuatBodies : protected Pointers {
   std::vector<Site> sites;    ///< those at their centre of mass, with arms of zero, come first
 
   int nowned() const { return nown; }
+  /// Bodies that this rank moves: owned ones and copies of large ones of other ranks.
+  int nmoved() const { return nmove; }
+  /// True if every rank has this body.
+  bool is_large(int ibody) const { return !large.empty() && body[ibody].large; }
+  /// On all ranks.
+  bigint number_of_large() const { return nlarge; }
   /// What moves an owned body, of the load it met.
   GearQuat::Load acting(int ibody) const
   {
@@ -86,8 +97,10 @@ class GearQuatBodies : protected Pointers {
   void clear(bool extended = false);
   /// Ends the run if an atom of a body is of a kind that cannot be followed.
   void refuse_atoms() const;
-  /// Find the body of every atom after atoms were exchanged, created or removed.  Ends the run if a
-  /// body has lost some of its atoms, or sight of them.
+  /// Before a run: bodies that reach further than ghost atoms are seen are large.
+  void choose_large();
+  /// Find the body of every atom after atoms were exchanged, created or removed; one that not all of
+  /// its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
   void update_ghosts();
   /// True if masses, positions and velocities of all atoms are those of their bodies.
   bool atoms_match();
@@ -148,25 +161,34 @@ class GearQuatBodies : protected Pointers {
   GearQuat::Scheme scheme;
   GearQuatExtended extended;
 
-  int nown;                       ///< owned bodies
+  int nown, nmove;                ///< owned bodies; with copies of large ones
   bigint nbodies, natoms;         ///< on all ranks: bodies, and atoms in them
+  bigint nlarge;                  ///< on all ranks
   int strangers;                  ///< atoms created since the fix was defined, in no body
   bool told;                      ///< of them, once
-  std::vector<double> rows;       ///< histories of owned bodies
+  std::vector<double> rows;       ///< histories of moved bodies
   std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
+
+  struct Large {
+    tagint owner;    ///< atom ID of the owner atom
+    int body;
+  };
+  std::vector<Large> large;    ///< sorted: the same order on all ranks; empty on a single one
+  std::vector<double> parts, sums;    ///< their loads: of the atoms here, and of all
 
   struct Frame {       ///< what placing a site needs, derived from the state
     double axes[9];    ///< rotation matrix space -> body
     double omega_space[3];
   };
-  std::vector<Frame> frame;    ///< owned and ghost bodies
+  std::vector<Frame> frame;    ///< all bodies here
 
   // what the step leaves out, decided when atoms were exchanged
 
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
+  std::vector<tagint> unseen;     ///< owner atoms that sites here do not see
   size_t ncentered;               ///< sites at their centre of mass
   bool wrapped;       ///< a site is in another periodic image than its unwrapped position
-  bool any_ghosts;    ///< a site, on any rank, has its body on another one
+  bool any_ghosts;    ///< a site, on any rank, has its body on another one, which is not large
   bool any_forces;
 
   int nmax;
@@ -179,7 +201,7 @@ class GearQuatBodies : protected Pointers {
   static constexpr int SITE_SIZE = 6;
   static constexpr int STATE_SIZE = sizeof(GearQuat::BodyState) / sizeof(double);
   static constexpr int LOAD_SIZE = sizeof(GearQuat::Load) / sizeof(double);
-  static constexpr int BODY_SIZE = 10 + STATE_SIZE;
+  static constexpr int BODY_SIZE = 11 + STATE_SIZE;
   static constexpr int LAST_SIZE = sizeof(GearQuat::Correction) / sizeof(double);
 
   enum class Forward { GHOSTS, STATES, LOADS, LABELS };
@@ -193,12 +215,22 @@ class GearQuatBodies : protected Pointers {
   void update_frames();
   void list_bodies();
   void list_sites();
-  void take_stock(int lost, tagint example);
+  int body_of(int atom) const;
+  bool take_stock();
+  void share_large();
+  void promote();
+  void count_large();
+  void sum_loads();
+  void sum_large_loads();
   template <bool POSITIONS, bool VELOCITIES> void place();
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place();
 
   GearQuatCensus census(int groupbit) const;
 
+  /// True if ghosts of its owner atom stand for this body.
+  bool has_ghosts(int ibody) const { return ibody >= 0 && !is_large(ibody); }
+  int pack_moved(int ibody, double *buf) const;
+  int unpack_moved(int ibody, const double *buf, int size);
   static int pack_body(const GearQuatBody &body, const GearQuat::BodyState &state, double *buf);
   static int unpack_body(const double *buf, GearQuatBody &body, GearQuat::BodyState &state);
 };

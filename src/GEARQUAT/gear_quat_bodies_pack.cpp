@@ -28,14 +28,10 @@ int GearQuatBodies::pack_exchange(int i, double *buf)
   const int ibody = owned[i];
   buf[m++] = ubuf(ibody < 0 ? 0 : scheme.size()).d;
   if (ibody < 0) return m;
-  m += pack_body(body[ibody], state[ibody], buf + m);
-  std::memcpy(buf + m, &last[ibody], sizeof(Correction));
-  m += LAST_SIZE;
-  std::copy_n(history(ibody), scheme.size(), buf + m);
-  return m + scheme.size();
+  return m + pack_moved(ibody, buf + m);
 }
 
-/// A history of another scheme, met in a restart file, is passed over.
+/// In a restart file a history may be of another scheme.
 int GearQuatBodies::unpack_exchange(int i, const double *buf)
 {
   int m = 0;
@@ -47,8 +43,22 @@ int GearQuatBodies::unpack_exchange(int i, const double *buf)
   m += extended.unpack(i, buf + m);
   const int size = (int) ubuf(buf[m++]).i;
   if (size == 0) return m;
-  const int ibody = add_owned(i);
-  m += unpack_body(buf + m, body[ibody], state[ibody]);
+  return m + unpack_moved(add_owned(i), buf + m, size);
+}
+
+int GearQuatBodies::pack_moved(int ibody, double *buf) const
+{
+  int m = pack_body(body[ibody], state[ibody], buf);
+  std::memcpy(buf + m, &last[ibody], sizeof(Correction));
+  m += LAST_SIZE;
+  std::copy_n(history(ibody), scheme.size(), buf + m);
+  return m + scheme.size();
+}
+
+/// size: of the history, which is passed over if it is of another scheme.
+int GearQuatBodies::unpack_moved(int ibody, const double *buf, int size)
+{
+  int m = unpack_body(buf, body[ibody], state[ibody]);
   std::memcpy(&last[ibody], buf + m, sizeof(Correction));
   m += LAST_SIZE;
   if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
@@ -62,6 +72,7 @@ int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, 
   buf[m++] = ubuf(body.natoms).d;
   buf[m++] = ubuf(body.from_file).d;
   buf[m++] = ubuf(body.fresh).d;
+  buf[m++] = ubuf(body.large).d;
   buf[m++] = ubuf(body.off).d;
   buf[m++] = body.extent;
   buf[m++] = body.rigid.mass;
@@ -77,6 +88,7 @@ int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState
   body.natoms = (tagint) ubuf(buf[m++]).i;
   body.from_file = (int) ubuf(buf[m++]).i;
   body.fresh = (int) ubuf(buf[m++]).i;
+  body.large = (int) ubuf(buf[m++]).i;
   body.off = (Mask) ubuf(buf[m++]).i;
   body.extent = buf[m++];
   body.rigid.mass = buf[m++];
@@ -117,12 +129,14 @@ int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
     const int ibody = owned[list[i]];
     if (forward == Forward::GHOSTS) {
       buf[m++] = ubuf(body_id[list[i]]).d;
-      buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
-      if (ibody >= 0) m += pack_body(body[ibody], state[ibody], buf + m);
-    } else if (ibody >= 0 && forward == Forward::STATES) {
+      buf[m++] = ubuf(has_ghosts(ibody) ? 1 : 0).d;
+      if (has_ghosts(ibody)) m += pack_body(body[ibody], state[ibody], buf + m);
+    } else if (!has_ghosts(ibody)) {
+      continue;
+    } else if (forward == Forward::STATES) {
       std::memcpy(buf + m, &state[ibody], sizeof(BodyState));
       m += STATE_SIZE;
-    } else if (ibody >= 0) {
+    } else {
       std::memcpy(buf + m, &load[ibody], sizeof(Load));
       m += LOAD_SIZE;
     }
@@ -171,7 +185,7 @@ void GearQuatBodies::unpack_reverse(int n, const int *list, const double *buf)
   int m = 0;
   for (int i = 0; i < n; ++i) {
     const int ibody = owned[list[i]];
-    if (ibody < 0) continue;
+    if (!has_ghosts(ibody)) continue;
     for (int k = 0; k < 3; ++k) load[ibody].force[k] += buf[m++];
     for (int k = 0; k < 3; ++k) load[ibody].torque_space[k] += buf[m++];
   }

@@ -25,6 +25,13 @@ void GearQuatBodies::spread_states()
   update_frames();
 }
 
+/// What the atoms of all ranks have added to the loads of bodies that this rank moves.
+void GearQuatBodies::sum_loads()
+{
+  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
+  if (!large.empty()) sum_large_loads();
+}
+
 void GearQuatBodies::spread_loads()
 {
   if (!any_ghosts) return;
@@ -116,10 +123,10 @@ void GearQuatBodies::gather_loads(double **f, double **torque)
     }
   }
   if (!extended.sites.empty()) extended.add_torques(torque, load);
-  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
+  sum_loads();
 
   const double ftm2v = force->ftm2v;
-  for (int ibody = 0; ibody < nown; ++ibody)
+  for (int ibody = 0; ibody < nmove; ++ibody)
     for (int k = 0; k < 3; ++k) {
       load[ibody].force[k] *= ftm2v;
       load[ibody].torque_space[k] *= ftm2v;
@@ -155,7 +162,7 @@ std::vector<Load> GearQuatBodies::centroids()
     for (int k = 0; k < 3; ++k) means[site.body].force[k] += arm[k] / body[site.body].natoms;
   }
   load.swap(means);    // they travel as loads do
-  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
+  sum_loads();
   spread_loads();
   load.swap(means);
   return means;

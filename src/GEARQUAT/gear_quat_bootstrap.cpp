@@ -66,7 +66,7 @@ void GearQuatBootstrap::zero()
 void GearQuatBootstrap::seed_local(int terms)
 {
   measure(0);
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     seed_body(bodies, ibody, acting(ibody), scheme, h, terms);
   if (isokinetic) {
     const double heat[2] = {0.0, h * isokinetic->power()};
@@ -92,8 +92,8 @@ bool GearQuatBootstrap::run()
   bool done = false;
   if (why.empty()) {
     const std::vector<BodyState> states(bodies.state.begin(),
-                                        bodies.state.begin() + bodies.nowned());
-    const std::vector<Load> loads(bodies.load.begin(), bodies.load.begin() + bodies.nowned());
+                                        bodies.state.begin() + bodies.nmoved());
+    const std::vector<Load> loads(bodies.load.begin(), bodies.load.begin() + bodies.nmoved());
     forces.save();
     double spacing = first_spacing();
     for (int n = 0; n < MAX_HALVINGS && !done; ++n, spacing *= 0.5) {
@@ -148,8 +148,8 @@ double GearQuatBootstrap::length(const GearQuatBody &body) const
 bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
 {
   measure(0);
-  work.resize(bodies.nowned());
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+  work.resize(bodies.nmoved());
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     collocation.begin(
         local_series(bodies.body[ibody].rigid, bodies.state[ibody], acting(ibody), spacing),
         work[ibody]);
@@ -176,7 +176,7 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
     reason = "forces vary too much within a few steps";
     return false;
   }
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     seed(scheme, bodies.body[ibody].rigid, collocation.series(work[ibody]), spacing, h,
          bodies.history(ibody));
   if (isokinetic) {
@@ -191,7 +191,7 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
 double GearQuatBootstrap::truncation() const
 {
   double here = 0.0, all;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     here = std::max(here, collocation.truncation(length(bodies.body[ibody]), work[ibody]));
   MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
@@ -215,7 +215,7 @@ bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, bool first
 /// Forces at one node; change: grows to what they change.  False as in sweep().
 bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, double &change)
 {
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     bodies.state[ibody] = collocation.state_at(node, work[ibody], spacing);
   bodies.spread_states();
   bodies.place_sites(true);
@@ -224,7 +224,7 @@ bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, 
   ++evaluations;
   bodies.gather_loads(atom->f, atom->torque);
   measure(node);
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const GearQuatBody &body = bodies.body[ibody];
     change = std::max(change,
                       collocation.set_load(node, body.rigid, bodies.state[ibody], acting(ibody),

@@ -92,7 +92,7 @@ KineticSums GearQuatIsokinetic::of_pending() const
 
 void GearQuatIsokinetic::correct(const Integrator &integrator)
 {
-  const int n = bodies.nowned();
+  const int n = bodies.nmoved();
   pending.resize(n);
   for (int ibody = 0; ibody < n; ++ibody)
     pending[ibody] = integrator.begin(bodies.load[ibody], bodies.history(ibody));

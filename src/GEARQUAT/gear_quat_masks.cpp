@@ -6,14 +6,13 @@
 #include "gear_quat_masks.h"
 
 #include "gear_quat_bodies.h"
+#include "gear_quat_gather.h"
 
-#include "comm.h"
 #include "domain.h"
 #include "error.h"
 
 #include <algorithm>
 #include <cstdlib>
-#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -25,13 +24,7 @@ std::vector<tagint> all_ids(LAMMPS *lmp, const GearQuatBodies &bodies)
 {
   std::vector<tagint> mine;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) mine.push_back(bodies.body[ibody].id);
-  int here = (int) mine.size();    // not const: MPI without MPI wants it so
-  std::vector<int> counts(lmp->comm->nprocs), starts(lmp->comm->nprocs, 0);
-  MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, lmp->world);
-  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
-  std::vector<tagint> ids(starts.back() + counts.back());
-  MPI_Allgatherv(mine.data(), here, MPI_LMP_TAGINT, ids.data(), counts.data(), starts.data(),
-                 MPI_LMP_TAGINT, lmp->world);
+  std::vector<tagint> ids = gear_quat_gather(mine, MPI_LMP_TAGINT, lmp->world);
   std::sort(ids.begin(), ids.end());
   return ids;
 }
@@ -89,7 +82,7 @@ GearQuatMasks::GearQuatMasks(LAMMPS *lmp, const std::vector<GearQuatMaskWords> &
 bool GearQuatMasks::impose(GearQuatBodies &bodies) const
 {
   int changed = 0, any_changed;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     GearQuatBody &body = bodies.body[ibody];
     const auto found = off.find(body.id);
     const Mask wanted = found == off.end() ? 0 : found->second;

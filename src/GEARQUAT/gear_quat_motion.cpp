@@ -89,7 +89,7 @@ void GearQuatMotion::follow_time_step()
   else
     make_integrator(step);
   if (started && ratio != 1.0) {
-    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
       integrator->rescale(bodies.history(ibody), ratio);
     if (isokinetic) isokinetic->rescale_step(ratio);
   }
@@ -300,8 +300,9 @@ void GearQuatMotion::correct_together(double **f)
 {
   isokinetic->correct(*integrator);
   const MotionLimits limits = blowup.limits(h);
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list)
+      if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
 }
 
 /// Bodies that came in this step: their histories begin with what is known of them.

@@ -174,7 +174,7 @@ std::vector<int> GearQuatNeighbors::take_velocities(bigint step, bool end)
   if (acted.empty() || !gather_impulses()) return changed;
 
   const auto before = bodies.state;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const RigidBody &rigid = bodies.body[ibody].rigid;
     const Load &impulse = bodies.load[ibody];
     BodyState &state = bodies.state[ibody];

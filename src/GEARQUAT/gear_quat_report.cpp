@@ -80,10 +80,13 @@ static Effect images(const Domain *domain)
 
 static Effect ghost_bodies(const GearQuatScene &scene, int ranks)
 {
-  const std::string reason = ranks == 1 ? "one rank"
+  std::string reason = ranks == 1 ? "one rank"
       : scene.ghosts ? fmt::format("{} sites have their body on another rank", scene.ghosts)
                      : "every site is on the rank of its body";
-  return {"ghost bodies", scene.ghosts > 0, reason, NOTHING};
+  if (scene.large)
+    reason +=
+        fmt::format("; {} bodies reach further than ghost atoms, all ranks have them", scene.large);
+  return {"ghost bodies", scene.ghosts > 0 || scene.large > 0, reason, NOTHING};
 }
 
 static Effect compensation(const GearQuatArguments &args, const GearQuatScene &scene)

@@ -53,6 +53,17 @@ bool LAMMPS_NS::makes_forces(LAMMPS *lmp, const Fix *owner)
   return false;
 }
 
+std::vector<int> LAMMPS_NS::periods_of_readers(LAMMPS *lmp, const Fix *owner)
+{
+  std::vector<int> periods;
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && other->nevery > 0 &&
+        (lmp->modify->get_fix_mask(other) & FixConst::END_OF_STEP) &&
+        std::find(periods.begin(), periods.end(), other->nevery) == periods.end())
+      periods.push_back(other->nevery);
+  return periods;
+}
+
 /* ---------------------------------------------------------------------- */
 
 static GearQuatScene::Top top_of(const RigidBody &rigid, int dimension)
@@ -98,6 +109,7 @@ GearQuatScene::GearQuatScene(LAMMPS *lmp, const GearQuatBodies &store)
   arms = all[ARMS];
   extended = all[EXTENDED];
   ghosts = all[GHOSTS];
+  large = store.number_of_large();
   freedoms = all[FREEDOMS];
   for (int top = 0; top < TOPS; ++top) bodies += tops[top] = all[KINDS + top];
   farthest = largest[0];

@@ -12,6 +12,7 @@
 #include "lmptype.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -26,6 +27,9 @@ std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
 /// Whether anything may make a force: styles other than "zero", fixes that act around the forces.
 bool makes_forces(LAMMPS *lmp, const Fix *owner);
 
+/// Every how many steps other fixes may read the atoms at the end of a step; each number once.
+std::vector<int> periods_of_readers(LAMMPS *lmp, const Fix *owner);
+
 /// The same on all ranks.
 struct GearQuatScene {
   /// Bodies by their principal moments; two are equal that differ by less than 1e-7 of the largest.
@@ -38,6 +42,7 @@ struct GearQuatScene {
   bigint arms = 0;                            ///< sites away from the centre of mass
   bigint extended = 0;                        ///< sites that are more than points
   bigint ghosts = 0;                          ///< sites whose body another rank owns
+  bigint large = 0;                           ///< bodies that every rank has
   double farthest = 0.0;                      ///< largest coordinate of a centre of mass, unwrapped
 
   /// Collective; bodies: after their ghosts were updated.

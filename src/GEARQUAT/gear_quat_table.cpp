@@ -5,7 +5,8 @@
 
 #include "gear_quat_table.h"
 
-#include "comm.h"
+#include "gear_quat_gather.h"
+
 #include "domain.h"
 #include "force.h"
 
@@ -83,13 +84,7 @@ void GearQuatTable::gather()
 {
   std::vector<double> rows_here;    // local() has shown `mine`
   fill(rows_here);
-  int here = rows_here.size();    // not const: MPI without MPI wants it so
-  std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
-  MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
-  std::vector<double> met(starts.back() + counts.back());
-  MPI_Allgatherv(rows_here.data(), here, MPI_DOUBLE, met.data(), counts.data(), starts.data(),
-                 MPI_DOUBLE, world);
+  const std::vector<double> met = gear_quat_gather(rows_here, MPI_DOUBLE, world);
 
   std::vector<size_t> order(met.size() / COLUMNS);
   std::iota(order.begin(), order.end(), 0);

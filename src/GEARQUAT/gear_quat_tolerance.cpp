@@ -73,7 +73,7 @@ void GearQuatTolerance::begin(bool full)
   kept = Memory();
   next_step = update->dt;
   set_values(full ? control.most : control.fewest);
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     double *rows = bodies.history(ibody);
     double *above = rows + present.values() * present.width();
     if (full && present.carries()) {    // the row above the most is the trial row; carries are zero
@@ -86,7 +86,7 @@ void GearQuatTolerance::begin(bool full)
 void GearQuatTolerance::shorten_first_step()
 {
   double here = 0.0, largest;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     here = std::max(here, order.error(bodies.history(ibody)));
   MPI_Allreduce(&here, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
   const double ratio = std::min(1.0, control.allowed(largest, present.values()));
@@ -202,7 +202,7 @@ void GearQuatTolerance::change_values(int values)
 {
   while (present.values() != values) {
     const bool more = values > present.values();
-    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
       more ? order.add_row(bodies.history(ibody)) : order.drop_row(bodies.history(ibody));
     set_values(present.values() + (more ? 1 : -1));
   }

@@ -241,13 +241,6 @@ def test_no_atom_map(lmp):
     assert_refused(lmp.run(deck), "requires an atom map, see atom_modify")
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
-def test_body_longer_than_the_ghost_cutoff(lmp, ranks):
-    apart = "set atom 1*3 x -5 y -5 z -5"
-    result = lmp.run(two_molecules("single", before=apart), ranks=ranks)
-    assert_refused(result, "body 1 spans more than the ghost cutoff")
-
-
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize(
     "words", ["molecule", "single", "group 2 left right", "custom v_half", "custom i_which"]
@@ -258,7 +251,6 @@ variable half atom (id>3)*5-2
 fix which all property/atom i_which
 set group left i_which -7
 set group right i_which 4
-comm_modify cutoff 12
 """
     result = lmp.run(two_molecules(words, before=before), ranks=ranks)
     assert result.returncode == 0, result.output

@@ -142,3 +142,49 @@ fix push all addforce v_push 0.0 0.0
     array = np.array([thermo[column][-1] for column in shown.split()]).reshape(3, COLUMNS)
     assert array == pytest.approx(table[[0, 13, 26]], rel=1e-14)
     assert (1.01 * array[:, :IMAGE.start] != pytest.approx(table[[0, 13, 26], :IMAGE.start], rel=1e-3))
+
+
+# what computes sum over neighbors, ghost atoms among them: pairs, bonds, two groups, and one between outputs
+NEIGHBORS = """
+group oxygen type 1
+group hydrogen type 2
+compute pairs all pair/local eng
+compute pair_sum all reduce sum c_pairs inputs local
+compute groups oxygen group/group hydrogen pair yes
+compute distances all pair/local dist
+compute distance all reduce ave c_distances inputs local
+variable energy equal c_pair_sum
+variable force equal c_groups[1]
+variable distance equal c_distance
+fix energy all ave/time 7 1 7 v_energy v_force v_distance file {name}.between format " %.17g"
+dump places all custom 7 {name}.places id type x y z
+dump_modify places sort id format float %.17g
+thermo_style custom step v_energy v_force v_distance
+"""
+
+
+def test_other_atoms_see_a_body_where_it_is(lmp_tree):
+    """Ghost atoms are at the corrected pose when output or another fix reads them, on any number of ranks.
+
+    In every seventh step the energy is that of the atoms as they are dumped.
+    """
+    data = water_data(lmp_tree.folder / "data.water")
+    tables = {}
+    for ranks in (1, 4):
+        name = f"with{ranks}"
+        deck = water(data, dt=2.0, steps=21, after=NEIGHBORS.format(name=name))
+        result = lmp_tree.run(
+            deck.replace("thermo_style custom step temp pe ke etotal press", ""), ranks=ranks
+        )
+        assert result.returncode == 0, result.output
+        tables[ranks] = np.loadtxt(lmp_tree.folder / f"{name}.between")[1:]
+        thermo = result.thermo[-1]
+        last = [thermo[f"v_{key}"][-1] for key in ("energy", "force", "distance")]
+        assert last == tables[ranks][-1, 1:].tolist()
+    assert tables[4] == pytest.approx(tables[1], rel=1e-12, abs=0)
+    again = water(data, "nve", thermo=1, dump="again", run="rerun with1.places dump x y z")
+    result = lmp_tree.run(again)
+    assert result.returncode == 0, result.output
+    energies = result.thermo[-1]["PotEng"]
+    assert energies[1:] == pytest.approx(tables[1][:, 1], rel=1e-12, abs=0)
+    assert max(energies) > 1.01 * min(energies)

@@ -1,0 +1,123 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Body store, large bodies: those whose sites cannot all see their owner atom.
+
+   Whenever atoms were exchanged the owners give such bodies to all ranks, with their histories.
+   From then on every rank predicts and corrects them, from the same loads and so to the same bits:
+   the one message of a step is the sum of the loads. */
+
+#include "gear_quat_bodies.h"
+
+#include "gear_quat_gather.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/// How far away a ghost atom may be; with comm_modify mode multi only some atoms are seen so far.
+static double ghost_cutoff(const Comm *comm, const Domain *domain)
+{
+  const double *cut = comm->cutghost;    // in a triclinic box along its reciprocal axes
+  return domain->triclinic ? cut[2] / domain->h_inv[2] : cut[2];
+}
+
+void GearQuatBodies::choose_large()
+{
+  const double cutoff = ghost_cutoff(comm, domain);
+  for (int ibody = 0; ibody < nown; ++ibody) {
+    GearQuatBody &one = body[ibody];
+    one.large = comm->nprocs > 1 && (one.large || one.extent > cutoff);
+  }
+  count_large();
+}
+
+void GearQuatBodies::count_large()
+{
+  bigint here = 0;
+  for (int ibody = 0; ibody < nown; ++ibody) here += body[ibody].large;
+  MPI_Allreduce(&here, &nlarge, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+}
+
+/// A site does not see its owner atom, though that is there: from here on its body is large.
+void GearQuatBodies::promote()
+{
+  std::sort(unseen.begin(), unseen.end());
+  unseen.erase(std::unique(unseen.begin(), unseen.end()), unseen.end());
+  std::vector<tagint> all = gear_quat_gather(unseen, MPI_LMP_TAGINT, world);
+  std::sort(all.begin(), all.end());
+  for (int ibody = 0; ibody < nown; ++ibody)
+    if (std::binary_search(all.begin(), all.end(), atom->tag[owner_atom[ibody]]))
+      body[ibody].large = 1;
+  count_large();
+}
+
+/// Large bodies of other ranks, behind the owned ones.
+void GearQuatBodies::share_large()
+{
+  if (nlarge == 0) return;
+  const int size = 2 + BODY_SIZE + LAST_SIZE + scheme.size();
+  std::vector<double> mine;
+  for (int ibody = 0; ibody < nown; ++ibody) {
+    if (!body[ibody].large) continue;
+    const tagint owner = atom->tag[owner_atom[ibody]];
+    large.push_back({owner, ibody});
+    mine.resize(mine.size() + size);
+    double *buf = &mine[mine.size() - size];
+    buf[0] = ubuf(comm->me).d;
+    buf[1] = ubuf(owner).d;
+    pack_moved(ibody, buf + 2);
+  }
+  const std::vector<double> all = gear_quat_gather(mine, MPI_DOUBLE, world);
+  for (size_t m = 0; m < all.size(); m += size) {
+    if ((int) ubuf(all[m]).i == comm->me) continue;
+    const int ibody = nmove++;
+    body.emplace_back();
+    state.emplace_back();
+    last.emplace_back();
+    rows.resize((size_t) nmove * scheme.size());
+    unpack_moved(ibody, &all[m + 2], scheme.size());
+    large.push_back({(tagint) ubuf(all[m + 1]).i, ibody});
+  }
+  load.resize(nmove);
+  std::sort(large.begin(), large.end(), [](const Large &a, const Large &b) {
+    return a.owner < b.owner;
+  });
+}
+
+/// The body of an owned atom, -1 if that is not to be seen from here.
+int GearQuatBodies::body_of(int i) const
+{
+  const auto before = [](const Large &one, tagint tag) {
+    return one.owner < tag;
+  };
+  const auto found = std::lower_bound(large.begin(), large.end(), owner_tag[i], before);
+  if (found != large.end() && found->owner == owner_tag[i]) return found->body;
+  const int owner = atom->map(owner_tag[i]);
+  return owner < 0 ? -1 : owned[owner];
+}
+
+void GearQuatBodies::sum_large_loads()
+{
+  parts.resize(large.size() * LOAD_SIZE);
+  sums.resize(parts.size());
+  double *part = parts.data();
+  for (const Large &one : large) {
+    part = std::copy_n(load[one.body].force, 3, part);
+    part = std::copy_n(load[one.body].torque_space, 3, part);
+  }
+  MPI_Allreduce(parts.data(), sums.data(), (int) parts.size(), MPI_DOUBLE, MPI_SUM, world);
+  const double *sum = sums.data();
+  for (const Large &one : large) {
+    std::copy_n(sum, 3, load[one.body].force);
+    std::copy_n(sum + 3, 3, load[one.body].torque_space);
+    sum += LOAD_SIZE;
+  }
+}

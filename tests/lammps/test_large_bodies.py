@@ -1,0 +1,291 @@
+"""Bodies of any size on several ranks: wider than ghost atoms are seen, beside small ones.
+
+A slab of 288 atoms lies across the boundaries of a box, among some hundred rigid trimers; ghost atoms are
+seen 2.8 away, the slab reaches 8 from its owner atom. All stream through the box, so that the owner changes
+its rank too. Forces are smooth and the runs short: what differs between ranks is rounding.
+"""
+
+import re
+
+import numpy as np
+import pytest
+from running import make_lmp_tree
+from scenes import last_frame, one_after_the_other, restarted
+
+BOX, STEPS, DT = 20.0, 200, 0.002
+CELLS, SPACING = (12, 12, 2), 1.1
+
+DECK = """
+units lj
+atom_style full
+newton {newton}
+processors {processors}
+comm_style {comm}
+read_data {data}
+pair_style lj/charmm/coul/charmm 1.8 2.5
+pair_coeff * * 1.0 1.0
+neighbor 0.3 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+atom_modify sort 0 0.0
+timestep {dt}
+{before}
+fix move all {fix}
+fix_modify move energy yes
+{after}
+thermo_style custom step ke etotal press
+thermo_modify norm no format float %.17g
+thermo {steps}
+write_dump all custom {name}.begin id proc modify sort id
+{run}
+write_dump all custom {name}.end id xu yu zu vx vy vz proc modify sort id format float %.17g
+"""
+
+
+def rotation(rng):
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return turn * np.linalg.det(turn)
+
+
+def slab_data(path, height=BOX, cells=CELLS, trimers=True):
+    """A slab (molecule 1) and trimers in the lower 20 of a box that may be higher."""
+    rng = np.random.default_rng(20251123)
+    box = np.array([BOX, BOX, height])
+    slab = (np.array(list(np.ndindex(*cells))) - (np.array(cells) - 1) / 2) * SPACING
+    slab = slab @ rotation(rng).T + [0.3 * BOX, 0.42 * BOX, 0.5 * BOX]
+    trimer = np.array([[0, 0, 0], [0.9, 0, 0], [0.2, 0.8, 0]])
+    trimer -= trimer.mean(axis=0)
+    molecules = [slab]
+    for cell in np.ndindex(5, 5, 5) if trimers else ():
+        atoms = (np.array(cell) + 0.5) * 4.0 + trimer @ rotation(rng).T
+        apart = atoms[:, None] - slab
+        apart -= BOX * np.round(apart / BOX)
+        if np.linalg.norm(apart, axis=-1).min() > 1.2:
+            molecules.append(atoms)
+    rows, velocities = [], []
+    for number, atoms in enumerate(molecules, 1):
+        stream = np.array([9.0, 7.0, 0.0 if height > BOX else 5.0])
+        velocity = stream + rng.normal(size=3) * (0.2 if number == 1 else 1.0)
+        spin = rng.normal(size=3) * (0.1 if number == 1 else 1.0)
+        for x, v in zip(atoms, velocity + np.cross(spin, atoms - atoms.mean(axis=0))):
+            image = np.floor(x / box).astype(int)
+            words = [*(x - image * box), *image]
+            rows.append(f"{len(rows) + 1} {number} 1 0 " + " ".join(f"{w:.17g}" for w in words))
+            velocities.append(f"{len(rows)} " + " ".join(f"{w:.17g}" for w in v))
+    lines = ["slab and trimers", "", f"{len(rows)} atoms", "1 atom types", ""]
+    lines += [f"0 {length} {axis}lo {axis}hi" for length, axis in zip(box, "xyz")]
+    lines += ["", "Masses", "", "1 1", "", "Atoms # full", "", *rows]
+    path.write_text("\n".join([*lines, "", "Velocities", "", *velocities, ""]))
+    return path
+
+
+def deck(data, name, fix="", before="", after="", steps=STEPS, run="run {steps}", **settings):
+    known = dict(newton="on", processors="* * *", comm="brick", dt=DT) | settings
+    return DECK.format(
+        data=data,
+        name=name,
+        fix=f"gear/quat molecule {fix}",
+        before=before,
+        after=after,
+        steps=steps,
+        run=run.format(steps=steps),
+        **known,
+    )
+
+
+def difference(one, other):
+    """Largest difference of positions, on the scale of the box, and of velocities, of the fastest atom."""
+    moved = np.abs(one - other)
+    return max(moved[:, 1:4].max() / BOX, moved[:, 4:7].max() / np.abs(one[:, 4:7]).max())
+
+
+# what a run does beside the plain one, and the run (ranks, way) that it has to repeat
+WAYS = {
+    "plain": (dict(), (1, "plain")),
+    "newton off": (dict(newton="off"), (1, "plain")),
+    "tiled": (dict(comm="tiled", after="fix cut all balance 10 1.0 rcb"), (1, "plain")),
+    "shifted": (dict(after="fix cut all balance 10 1.0 shift xyz 10 1.0"), (1, "plain")),
+    "respa": (dict(before="run_style respa 2 1"), (1, "plain")),
+    "wide": (dict(before="comm_modify cutoff 9.8"), (1, "plain")),
+    "first": (dict(fix="formulation first compensate yes"), (1, "first")),
+    "isokinetic": (dict(fix="formulation first isokinetic separate"), (1, "isokinetic")),
+    "masks": (dict(fix="force 1 off on on torque 1* on off on"), (1, "masks")),
+    "timestep": (dict(run="run 100\ntimestep 0.0015\nrun 100"), (1, "timestep")),
+    # rounding decides over the last digits of every step: on as many ranks, of small bodies alone
+    "tolerance": (dict(fix="tolerance 1e-9 dtmax 0.004"), (4, "wide tolerance")),
+    "wide tolerance": (
+        dict(fix="tolerance 1e-9 dtmax 0.004", before="comm_modify cutoff 9.8"),
+        (4, "wide tolerance"),
+    ),
+}
+RANKS = {
+    1: ["plain", "first", "isokinetic", "masks", "timestep"],
+    2: ["plain", "tiled", "isokinetic"],
+    4: list(WAYS),
+}
+
+
+@pytest.fixture(scope="module")
+def ends(tmp_path_factory):
+    """(ranks, way) -> the last frame, and (ranks, way, "log") -> what the log says."""
+    lmp = make_lmp_tree(tmp_path_factory.mktemp("slab"))
+    data = slab_data(lmp.folder / "data.slab")
+    found = {}
+    for ranks, ways in RANKS.items():
+        names = [f"{ranks}-{way.replace(' ', '-')}" for way in ways]
+        decks = [deck(data, name, **WAYS[way][0]) for name, way in zip(names, ways)]
+        result = lmp.run(one_after_the_other(decks), ranks=ranks, timeout=300)
+        assert result.returncode == 0, result.output
+        logs = result.log.split("rigid bodies with")[1:]
+        for name, way, log in zip(names, ways, logs):
+            found[ranks, way] = last_frame(lmp.folder / f"{name}.end")
+            found[ranks, way, "begin"] = last_frame(lmp.folder / f"{name}.begin")
+            found[ranks, way, "log"] = log
+    return found
+
+
+def ghosts(log):
+    return float(re.findall(r"Nghost: +(\S+) ave", log)[-1])
+
+
+@pytest.mark.tree
+@pytest.mark.parametrize("ranks, way", [(n, way) for n in (2, 4) for way in RANKS[n]])
+def test_the_trajectory_is_that_of_one_rank(ends, ranks, way):
+    assert difference(ends[WAYS[way][1]], ends[ranks, way]) < 1e-12
+    large = "1 bodies reach further than ghost atoms" in ends[ranks, way, "log"]
+    assert large == ("wide" not in way)
+
+
+@pytest.mark.tree
+def test_the_scene_tells(ends):
+    """Ranks change, also that of the owner, and no ghosts of the whole slab are there."""
+    begin, end = ends[4, "plain", "begin"], ends[4, "plain"]
+    slab = end[: np.prod(CELLS), 1:4]
+    middle = np.linalg.norm(slab - slab.mean(axis=0), axis=1) < 1.0
+    assert (begin[: len(slab), 1] != end[: len(slab), 7])[middle].all()
+    assert set(end[:, 7]) == {0, 1, 2, 3}
+    assert ghosts(ends[4, "plain", "log"]) < 0.5 * ghosts(ends[4, "wide", "log"])
+    assert int(re.findall(r"Neighbor list builds = (\d+)", ends[4, "plain", "log"])[-1]) > 10
+    assert difference(ends[1, "plain"], ends[1, "first"]) < 1e-6  # two ways to follow one motion
+    for way in ("isokinetic", "masks", "timestep"):
+        assert difference(ends[1, "plain"], ends[1, way]) > 1e-5
+
+
+def test_single_and_group(lmp):
+    """With the slab on two ranks. In the tree two more are empty; MPICH does not wait but spins, so it has two."""
+    ranks, grid = (4, "1 1 4") if lmp.name == "tree" else (2, "2 1 1")
+    data = slab_data(lmp.folder / "data.slab", height=60.0)
+    words = {"single": "single", "group": "group 2 slab rest", "molecule": "molecule"}
+    ends = {}
+    for n, processors in ((1, "1 1 1"), (ranks, grid)):
+        decks = []
+        for name, style in words.items():
+            text = deck(data, name, processors=processors, steps=60)
+            groups = "group slab molecule 1\ngroup rest subtract all slab\n"
+            text = text.replace("fix move all", f"{groups}fix move all")
+            decks.append(text.replace("gear/quat molecule", f"gear/quat {style}"))
+        result = lmp.run(one_after_the_other(decks), ranks=n)
+        assert result.returncode == 0, result.output
+        for name in words:
+            end = last_frame(lmp.folder / f"{name}.end")
+            assert len(set(end[:, 7])) == min(n, 2)
+            assert n == 1 or difference(ends[name], end) < 1e-12
+            ends[name] = end
+    assert difference(ends["group"], ends["molecule"]) > 1e-4
+
+
+def test_restarts_on_any_number_of_ranks(lmp_tree):
+    """On as many ranks the same to the last bit; on others to rounding."""
+    data = slab_data(lmp_tree.folder / "data.slab")
+    halves = f"run {STEPS // 2}\nwrite_restart {{name}}.restart\nrun {STEPS // 2}"
+    ends = {}
+
+    def runs(ranks, *decks):
+        result = lmp_tree.run(one_after_the_other(decks), ranks=ranks)
+        assert result.returncode == 0, result.output
+
+    for ranks in (1, 2, 4):
+        runs(ranks, deck(data, f"whole{ranks}", run=halves.format(name=f"whole{ranks}")))
+    for ranks in (1, 2, 4):
+        names = {before: f"{before}-{ranks}" for before in (1, 2, 4)}
+        runs(
+            ranks,
+            *(
+                restarted(deck(data, names[n], steps=STEPS // 2), f"whole{n}.restart")
+                for n in names
+            ),
+        )
+        for n, name in names.items():
+            ends[n, ranks] = last_frame(lmp_tree.folder / f"{name}.end")
+    for n, ranks in ends:
+        whole = last_frame(lmp_tree.folder / f"whole{n}.end")
+        assert difference(whole, ends[n, ranks]) < 1e-12
+        if n == ranks:
+            assert (whole == ends[n, ranks]).all()
+
+
+def test_a_body_that_loses_sight_of_its_owner_becomes_large(lmp_tree):
+    """In mode multi ghosts of type 1 are seen 1.4 away, though the longest ghost cutoff is 2.8."""
+    data = slab_data(lmp_tree.folder / "data.slab", cells=(4, 4, 2))
+    data.write_text(data.read_text().replace("1 atom types", "2 atom types").replace("1 1\n", "1 1\n2 1\n"))
+    ends = {}
+    for ranks in (1, 4):
+        text = deck(data, f"multi{ranks}", before="comm_modify mode multi")
+        text = text.replace("neighbor 0.3 bin", "neighbor 0.3 multi")
+        text = re.sub(
+            "pair_style .*\npair_coeff .*",
+            "pair_style lj/cut 1.1\npair_modify shift yes\npair_coeff * * 1 0.98\npair_coeff 2 2 1 1 2.5",
+            text,
+        )
+        result = lmp_tree.run(text, ranks=ranks)
+        assert result.returncode == 0, result.output
+        ends[ranks] = last_frame(lmp_tree.folder / f"multi{ranks}.end")
+    assert "1 bodies reach further than ghost atoms" in result.log
+    assert difference(ends[1], ends[4]) < 1e-12
+
+
+def test_a_large_body_goes_astray(lmp_tree):
+    """All ranks see it and say so once, with the site that is nearest to another atom, wherever that is."""
+    data = slab_data(lmp_tree.folder / "data.slab")
+    said = []
+    for ranks in (1, 4):
+        throw = "group slab molecule 1\nvelocity slab set 20000 NULL NULL"
+        result = lmp_tree.run(deck(data, "astray", before=throw), ranks=ranks)
+        assert result.returncode != 0
+        said += result.errors
+    assert len(said) == 2
+    assert "blow-up in step 1, time 0.002: body 1 moves by 40" in said[0]
+    assert re.search(r"its atom \d+ is 1\.\d+ away from atom \d+", said[0])
+    assert said[0].partition(" (src")[0] == said[1].partition(" (src")[0]
+
+
+ROD = """
+9 atoms
+
+Coords
+
+""" + "\n".join(f"{k} {k - 5} 0 0" for k in range(1, 10)) + """
+
+Types
+
+""" + "\n".join(f"{k} 1" for k in range(1, 10)) + "\n"
+
+
+def test_large_bodies_are_inserted(lmp_tree):
+    """Rods of nine atoms come during the run, longer than ghost atoms are seen."""
+    data = slab_data(lmp_tree.folder / "data.slab", trimers=False)
+    (lmp_tree.folder / "rod.mol").write_text("rod\n" + ROD)
+    insert = (
+        "region top block 3 17 3 17 3 17\n"
+        "fix rain all deposit 3 0 30 4711 region top near 2.0 attempt 1000 mol rod rigid move "
+        "vx 8 9 vy 6 7"
+    )
+    ends = {}
+    for ranks in (1, 2, 4):
+        name = f"rain{ranks}"
+        text = deck(data, name, fix="mol rod", before="molecule rod rod.mol", after=insert)
+        result = lmp_tree.run(text, ranks=ranks)
+        assert result.returncode == 0, result.output
+        ends[ranks] = last_frame(lmp_tree.folder / f"{name}.end")
+    assert len(ends[1]) == np.prod(CELLS) + 27
+    for ranks in (2, 4):
+        assert difference(ends[1], ends[ranks]) < 1e-12
