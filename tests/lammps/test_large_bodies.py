@@ -32,7 +32,9 @@ timestep {dt}
 fix move all {fix}
 fix_modify move energy yes
 {after}
-thermo_style custom step ke etotal press
+compute stress all centroid/stress/atom NULL fix
+compute sum all reduce sum c_stress[*]
+thermo_style custom step ke etotal press f_move c_sum[*]
 thermo_modify norm no format float %.17g
 thermo {steps}
 write_dump all custom {name}.begin id proc modify sort id
@@ -109,16 +111,18 @@ WAYS = {
     "first": (dict(fix="formulation first compensate yes"), (1, "first")),
     "isokinetic": (dict(fix="formulation first isokinetic separate"), (1, "isokinetic")),
     "masks": (dict(fix="force 1 off on on torque 1* on off on"), (1, "masks")),
-    "timestep": (dict(run="run 100\ntimestep 0.0015\nrun 100"), (1, "timestep")),
+    "cooled": (dict(after="fix cool all temp/berendsen 100 10 0.1"), (1, "cooled")),
     # rounding decides over the last digits of every step: on as many ranks, of small bodies alone
     "tolerance": (dict(fix="tolerance 1e-9 dtmax 0.004"), (4, "wide tolerance")),
     "wide tolerance": (
         dict(fix="tolerance 1e-9 dtmax 0.004", before="comm_modify cutoff 9.8"),
         (4, "wide tolerance"),
     ),
+    # the last, for it has two runs
+    "timestep": (dict(run="run 100\ntimestep 0.0015\nrun 100"), (1, "timestep")),
 }
 RANKS = {
-    1: ["plain", "first", "isokinetic", "masks", "timestep"],
+    1: ["plain", "first", "isokinetic", "masks", "cooled", "timestep"],
     2: ["plain", "tiled", "isokinetic"],
     4: list(WAYS),
 }
@@ -126,7 +130,7 @@ RANKS = {
 
 @pytest.fixture(scope="module")
 def ends(tmp_path_factory):
-    """(ranks, way) -> the last frame, and (ranks, way, "log") -> what the log says."""
+    """(ranks, way) -> the last frame; (ranks, way, "begin"), "log" and "thermo" -> what else it left."""
     lmp = make_lmp_tree(tmp_path_factory.mktemp("slab"))
     data = slab_data(lmp.folder / "data.slab")
     found = {}
@@ -140,6 +144,8 @@ def ends(tmp_path_factory):
             found[ranks, way] = last_frame(lmp.folder / f"{name}.end")
             found[ranks, way, "begin"] = last_frame(lmp.folder / f"{name}.begin")
             found[ranks, way, "log"] = log
+        for way, table in zip(ways, result.thermo):
+            found[ranks, way, "thermo"] = np.array([values[-1] for values in table.values()])
     return found
 
 
@@ -151,6 +157,8 @@ def ghosts(log):
 @pytest.mark.parametrize("ranks, way", [(n, way) for n in (2, 4) for way in RANKS[n]])
 def test_the_trajectory_is_that_of_one_rank(ends, ranks, way):
     assert difference(ends[WAYS[way][1]], ends[ranks, way]) < 1e-12
+    one, many = ends[*WAYS[way][1], "thermo"], ends[ranks, way, "thermo"]
+    assert np.abs(one - many).max() < 1e-10 * np.abs(one).max()
     large = "1 bodies reach further than ghost atoms" in ends[ranks, way, "log"]
     assert large == ("wide" not in way)
 
@@ -166,12 +174,12 @@ def test_the_scene_tells(ends):
     assert ghosts(ends[4, "plain", "log"]) < 0.5 * ghosts(ends[4, "wide", "log"])
     assert int(re.findall(r"Neighbor list builds = (\d+)", ends[4, "plain", "log"])[-1]) > 10
     assert difference(ends[1, "plain"], ends[1, "first"]) < 1e-6  # two ways to follow one motion
-    for way in ("isokinetic", "masks", "timestep"):
+    for way in ("isokinetic", "masks", "cooled", "timestep"):
         assert difference(ends[1, "plain"], ends[1, way]) > 1e-5
 
 
 def test_single_and_group(lmp):
-    """With the slab on two ranks. In the tree two more are empty; MPICH does not wait but spins, so it has two."""
+    """With the slab on two ranks; in the tree two more are empty (MPICH does not wait, it spins)."""
     ranks, grid = (4, "1 1 4") if lmp.name == "tree" else (2, "2 1 1")
     data = slab_data(lmp.folder / "data.slab", height=60.0)
     words = {"single": "single", "group": "group 2 slab rest", "molecule": "molecule"}
