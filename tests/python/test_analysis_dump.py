@@ -214,6 +214,24 @@ def test_more_atoms_in_the_middle(write):
         Poses(universe.atoms).run()
 
 
+@pytest.mark.parametrize("lost", [1, 30, 400, 1780, 1890])
+def test_a_last_frame_that_is_cut_off(write, lost):
+    """As a run leaves it that is killed while it writes, in the rows or in the header."""
+    path = write(MOTION, TIMES)
+    text = path.read_text()
+    path.write_text(text[:-lost])
+    trajectory = open_dump(path).trajectory
+    assert trajectory.cut_off and len(trajectory) == 2 and len(list(trajectory)) == 2
+    assert not open_dump(write(MOTION, TIMES)).trajectory.cut_off
+
+
+def test_binary_files(write):
+    path = write(MOTION, TIMES)
+    path.write_bytes(b"\xff\xfe\x00" + path.read_bytes())
+    with pytest.raises(DumpError, match="a dump of text is required, and this is a binary file"):
+        open_any(path)
+
+
 def test_an_id_that_occurs_twice(write):
     def change(time, rows):
         rows[1, 0] = 1

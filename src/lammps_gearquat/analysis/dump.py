@@ -103,8 +103,11 @@ def columns_of(path):
         raise DumpError(f"{path}: no such file")
     if not Path(path).stat().st_size:
         raise DumpError(f"{path}: the dump is empty")
-    with anyopen(str(path)) as file:
-        header = read_header(file, path)
+    try:
+        with anyopen(str(path)) as file:
+            header = read_header(file, path)
+    except UnicodeDecodeError:
+        raise DumpError(f"{path}: a dump of text is required, and this is a binary file") from None
     return header.columns, header.kind == "ENTRIES"
 
 
@@ -122,8 +125,8 @@ class DumpFrames(DumpReader):
     * each of ``additional_columns`` (n,)
 
     Rows are sorted by ID.  Raises DumpError if IDs are missing, occur twice or change, if positions
-    are missing, or if the number of rows changes.  ``unit_style`` and ``timed`` tell of the dump: LAMMPS' units
-    or None, and whether it has times.
+    are missing, or if the number of rows changes.  ``unit_style``, ``timed`` and ``cut_off`` tell of the dump: LAMMPS'
+    units or None, whether it has times, and whether its last frame is not whole; that one is left out.
 
     ``names`` renames columns: of a ``dump local`` those of LAMMPS are ``f_ID[1]`` and so on.
     """
@@ -134,17 +137,25 @@ class DumpFrames(DumpReader):
         super().__init__(filename, additional_columns=list(additional_columns), **kwargs)
 
     def _scan(self, filename):
-        """Where frames begin, and what the first one says."""
-        self._offsets, first = [], None
+        """Where whole frames begin, and what the first one says."""
+        self._offsets, first, self.cut_off = [], None, False
         with anyopen(filename) as file:
             here = file.tell()
             while file.readline():
                 file.seek(here)
-                header = read_header(file, filename)
+                try:
+                    header = read_header(file, filename)
+                    end = [file.readline() for _ in range(header.rows)][-1:] or ["\n"]
+                    self.cut_off = not end[0].endswith("\n")
+                except (ValueError, IndexError):
+                    # the end of a run that was killed, or no dump
+                    if first is None or file.readline():
+                        raise
+                    self.cut_off = True
+                if self.cut_off and first:
+                    break
                 first = first or header
                 self._offsets.append(here)
-                for _ in range(header.rows):
-                    file.readline()
                 here = file.tell()
         self._rows, self.unit_style, self.timed = first.rows, first.units, first.time is not None
 

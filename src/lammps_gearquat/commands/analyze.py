@@ -107,6 +107,8 @@ def _settle(trajectory, converted, options):
     if style and units and style != units:
         raise ValueError(f"--units {units}: the dump says units {style}")
     options["units"] = style or units
+    if trajectory.cut_off:
+        click.echo("The last frame of the dump is not whole, and is left out.")
     if converted and not options["units"]:
         raise ValueError(
             "--convert needs the units of the dump: give --units, or write the dump with dump_modify units yes"
