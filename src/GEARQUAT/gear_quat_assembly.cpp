@@ -31,7 +31,22 @@ std::vector<GearQuatAssembly::PlacedSite> GearQuatAssembly::place_sites(std::vec
 
 std::vector<GearQuatAssembly::OwnedBody> GearQuatAssembly::make_bodies(std::vector<Site> &sites)
 {
-  return meet<OwnedBody>(sites);
+  auto made = meet<OwnedBody>(sites);
+  warn_of_clumps();
+  return made;
+}
+
+/// Two plates may be a body; two halves of a molecule at both faces of the box are none.
+void GearQuatAssembly::warn_of_clumps() const
+{
+  tagint here = in_clumps, any;
+  MPI_Allreduce(&here, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (any && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
+                   "they belong together, the image flags of its atoms do not: unwrap them in the "
+                   "data file, or use set image before this fix",
+                   any);
 }
 
 /* ----------------------------------------------------------------------
@@ -98,6 +113,9 @@ void GearQuatAssembly::reply(const Site *sites, int n, OwnedBody *replies, int *
   double axes[9];
   int owner;
   replies[count] = make_body(sites, n, axes, owner);
+  std::vector<const double *> positions;
+  for (int i = 0; i < n; ++i) positions.push_back(sites[i].x);
+  if (gear_quat_in_clumps(domain, positions)) in_clumps = sites[0].id;
   ranks[count++] = sites[owner].rank;
 }
 

@@ -81,7 +81,9 @@ class GearQuatAssembly : protected Pointers {
   const GivenBodies &given;
   enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS };
   tagint faulty[FAULTS] = {};    ///< a body met on this rank with each fault, 0 for none
-  std::vector<tagint> found;     ///< given bodies met on this rank
+  tagint in_clumps =
+      0;    ///< a body met on this rank whose sites are half a period apart, 0 for none
+  std::vector<tagint> found;    ///< given bodies met on this rank
 
   OwnedBody make_body(const Site *sites, int n, double axes[9], int &owner);
 
@@ -97,6 +99,7 @@ class GearQuatAssembly : protected Pointers {
   void check_place(const Site *sites, int n, const OwnedBody &owned);
   void check_moments(const OwnedBody &owned);
   void report_faults();
+  void warn_of_clumps() const;
 
   template <typename Reply> std::vector<Reply> meet(std::vector<Site> &sites);
   template <typename Reply>

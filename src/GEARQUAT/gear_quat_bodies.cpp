@@ -19,11 +19,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// atoms count as moved by the user when they are off by more than rounding of coordinates and
-// velocities, relative to box and body
-
-static constexpr double SAME = 1.0e-11;
-
 /* ---------------------------------------------------------------------- */
 
 GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
@@ -56,6 +51,7 @@ void GearQuatBodies::clear(bool with_extended)
   frame.clear();
   owner_atom.clear();
   extended.reset(with_extended, nmax);
+  box.clear();
   for (int i = 0; i < nmax; ++i) set_arrays(i);
 }
 
@@ -68,6 +64,7 @@ void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &g
   MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   nbodies = all[0];
   natoms = all[1];
+  box.assign(domain->h, domain->h + 6);
 }
 
 void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
@@ -123,64 +120,6 @@ void GearQuatBodies::refuse_atoms() const
   for (int i = 0; i < atom->nlocal; ++i)
     if (in_body(i)) atoms.push_back(i);
   extended.refuse(atoms);
-}
-
-GearQuatBodies::Placed GearQuatBodies::placed(const Site &site) const
-{
-  const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
-  const BodyState &s = state[site.body];
-  double arm[3], spin[3];
-  Placed there;
-  to_space(frame[site.body].axes, site.arm_body, arm);
-  cross3(frame[site.body].omega_space, arm, spin);
-  for (int k = 0; k < 3; ++k) {
-    there.x[k] = s.center[k] + arm[k] - site.wrap[k];
-    there.v[k] = s.velocity[k] + spin[k];
-  }
-  there.length = box + std::sqrt(dot3(s.center, s.center) + dot3(site.wrap, site.wrap));
-  there.speed = std::sqrt(dot3(s.velocity, s.velocity)) + std::sqrt(dot3(spin, spin));
-  return there;
-}
-
-bool GearQuatBodies::atoms_match()
-{
-  int moved = 0;
-  for (const Site &site : sites) {
-    const double *x = atom->x[site.atom], *v = atom->v[site.atom];
-    const Placed there = placed(site);
-    for (int k = 0; k < 3; ++k) {
-      if (std::fabs(there.x[k] - x[k]) > SAME * there.length) moved = 1;
-      if (std::fabs(there.v[k] - v[k]) > SAME * there.speed) moved = 1;
-    }
-    if (!extended.match(site.atom, atom_mass(site.atom), state[site.body])) moved = 1;
-  }
-  int any = 0;
-  MPI_Allreduce(&moved, &any, 1, MPI_INT, MPI_MAX, world);
-  return !any && !census(0).mass_changed;
-}
-
-void GearQuatBodies::check_whole()
-{
-  int renumbered = 0, any;
-  for (int ibody = 0; ibody < nown; ++ibody)
-    if (owner_tag[owner_atom[ibody]] != atom->tag[owner_atom[ibody]]) renumbered = 1;
-  MPI_Allreduce(&renumbered, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any)
-    error->all(FLERR,
-               "Fix gear/quat: atom IDs were changed since the fix was defined; define it "
-               "after reset_atoms id or delete_atoms compress yes");
-  const GearQuatCensus found = census(0);
-  if (!found.broken) return;
-  const std::string had = found.had
-      ? fmt::format("{} of its {} atoms", found.left, found.had)
-      : fmt::format("{} of its atoms, not the one that owned it,", found.left);
-  error->all(FLERR, "Fix gear/quat: body {} has {} left; a body must be removed as a whole",
-             found.broken, had);
-}
-
-bigint GearQuatBodies::removed_freedoms(int groupbit)
-{
-  return census(groupbit).removed_freedoms;
 }
 
 /* ----------------------------------------------------------------------
@@ -334,29 +273,6 @@ bool GearQuatBodies::take_stock()
                      all[4]);
   }
   return true;
-}
-
-GearQuatCensus GearQuatBodies::census(int groupbit) const
-{
-  std::vector<GearQuatSiteCount> sites;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_id[i] == 0) continue;
-    GearQuatSiteCount site = GearQuatSiteCount();
-    site.owner = owner_tag[i];
-    site.id = body_id[i];
-    site.in_group = (atom->mask[i] & groupbit) ? 1 : 0;
-    site.mass = atom_mass(i);
-    site.own_freedoms = extended.freedoms(i);
-    if (owned[i] >= 0) {
-      const GearQuatBody &mine = body[owned[i]];
-      site.natoms = mine.natoms;
-      site.body_mass = mine.from_file ? 0.0 : mine.rigid.mass;
-      site.freedoms = domain->dimension == 2 ? 2 + (mine.rigid.inertia[2] > 0.0)
-                                             : 3 + mine.rigid.rotational_freedoms();
-    }
-    sites.push_back(site);
-  }
-  return GearQuatCensus(lmp, sites);
 }
 
 void GearQuatBodies::expect_forces(bool any)

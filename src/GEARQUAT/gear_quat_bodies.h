@@ -102,7 +102,8 @@ class GearQuatBodies : protected Pointers {
   /// Find the body of every atom after atoms were exchanged, created or removed; one that not all of
   /// its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
   void update_ghosts();
-  /// True if masses, positions and velocities of all atoms are those of their bodies.
+  /// True if masses, positions and velocities of all atoms are those of their bodies.  Ends the run if
+  /// image flags or another box have torn a body.
   bool atoms_match();
   /// Ends the run if a body has lost some of its atoms; needs no ghosts.
   void check_whole();
@@ -164,6 +165,7 @@ class GearQuatBodies : protected Pointers {
   int nown, nmove;                ///< owned bodies; with copies of large ones
   bigint nbodies, natoms;         ///< on all ranks: bodies, and atoms in them
   bigint nlarge;                  ///< on all ranks
+  std::vector<double> box;        ///< shape of the box that the bodies were last seen in; may be empty
   int strangers;                  ///< atoms created since the fix was defined, in no body
   bool told;                      ///< of them, once
   std::vector<double> rows;       ///< histories of moved bodies
@@ -226,6 +228,10 @@ class GearQuatBodies : protected Pointers {
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place();
 
   GearQuatCensus census(int groupbit) const;
+  std::vector<GearQuatSiteCount> count_sites(int groupbit) const;
+  GearQuatCensus compare_sites() const;
+  void describe(const Site &site, GearQuatSiteCount &count) const;
+  void refuse_tears(const GearQuatCensus &found) const;
 
   /// True if ghosts of its owner atom stand for this body.
   bool has_ghosts(int ibody) const { return ibody >= 0 && !is_large(ibody); }

@@ -5,6 +5,9 @@
 
 #include "gear_quat_census.h"
 
+#include "gear_quat_images.h"
+#include "gear_quat_rigid_body.h"
+
 #include "comm.h"
 #include "domain.h"
 #include "lammps.h"
@@ -13,12 +16,17 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 static constexpr int IRREGULAR = 0;
-static constexpr double SAME_MASS = 1.0e-11;    // relative; sums run in another order
+static constexpr double SAME_MASS = 1.0e-11;      // relative; sums run in another order
+static constexpr double SAME_MOMENTS = 1.0e-9;    // relative; arms have the rounding of positions
+static constexpr double ROUNDING = 1.0e-13;       // of positions
 
-GearQuatCensus::GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &sites) :
-    dimension(lmp->domain->dimension)
+GearQuatCensus::GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &sites,
+                               const double *box) :
+    domain(lmp->domain),
+    box_before(box)
 {
   const int n = (int) sites.size();
   std::vector<int> ranks;
@@ -33,6 +41,8 @@ GearQuatCensus::GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &site
   MPI_Comm world = lmp->world;
   MPI_Allreduce(&here.removed_freedoms, &removed_freedoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&here.mass_changed, &mass_changed, 1, MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(&here.torn, &torn, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  MPI_Allreduce(&here.cut, &cut, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   MPI_Allreduce(&here.broken, &broken, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (here.broken != broken) here.left = here.had = 0;
   MPI_Allreduce(&here.left, &left, 1, MPI_LMP_TAGINT, MPI_MAX, world);
@@ -60,7 +70,9 @@ void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
   tagint natoms = 0;
   int freedoms = 0, own_freedoms = 0, in_group = 0;
   double mass = 0.0, body_mass = 0.0;
+  const GearQuatSiteCount *owner = nullptr;
   for (int i = 0; i < n; ++i) {
+    if (sites[i].natoms > 0) owner = sites + i;
     natoms += sites[i].natoms;
     freedoms += sites[i].freedoms;
     own_freedoms += sites[i].own_freedoms;
@@ -74,5 +86,49 @@ void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
     had = natoms;
   }
   if (body_mass > 0.0 && std::fabs(mass - body_mass) > SAME_MASS * body_mass) mass_changed = 1;
-  if (in_group == n) removed_freedoms += (bigint) dimension * n + own_freedoms - freedoms;
+  if (owner && body_mass > 0.0 && !same_masses(sites, n, *owner)) mass_changed = 1;
+  if (owner) look_for_tears(sites, n, *owner);
+  if (in_group == n) removed_freedoms += (bigint) domain->dimension * n + own_freedoms - freedoms;
+}
+
+/// Centre and principal moments tell whether masses went from one atom of the body to another.
+bool GearQuatCensus::same_masses(const GearQuatSiteCount *sites, int n,
+                                 const GearQuatSiteCount &owner) const
+{
+  double first[3] = {}, second[6] = {};
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < 3; ++k) first[k] += sites[i].first[k];
+    for (int k = 0; k < 6; ++k) second[k] += sites[i].second[k];
+  }
+  const double *moments = owner.body_moments, *x = owner.found;
+  const double trace = second[0] + second[1] + second[2];
+  const double size = std::sqrt(trace / owner.body_mass);
+  const double rounding =
+      ROUNDING * (domain->xprd + domain->yprd + domain->zprd + std::sqrt(dot3(x, x)));
+  const double limit = owner.body_mass * (SAME_MOMENTS * size + rounding);
+  for (int k = 0; k < 3; ++k) {
+    const double vanishing = moments[k] > 0.0 ? 0.0 : 2.0 * LINEAR_FRACTION * trace;
+    if (std::fabs(first[k]) > limit) return false;
+    if (std::fabs(second[k] - moments[k]) > limit * size + vanishing) return false;
+    if (std::fabs(second[3 + k]) > limit * size) return false;
+  }
+  return true;
+}
+
+/// Between two looks a body may have been moved, turned or even deformed by the user, but its atoms are
+/// not whole periods apart that were together; nor did the parts at two faces of the box move with them.
+void GearQuatCensus::look_for_tears(const GearQuatSiteCount *sites, int n,
+                                    const GearQuatSiteCount &owner)
+{
+  for (int i = 0; i < n; ++i) {
+    double before[3], now[3], change[3];
+    for (int k = 0; k < 3; ++k) {
+      before[k] = sites[i].expected[k] - owner.expected[k];
+      now[k] = sites[i].found[k] - owner.found[k];
+      change[k] = now[k] - before[k];
+    }
+    const double further = std::sqrt(dot3(now, now)) - std::sqrt(dot3(before, before));
+    if (gear_quat_whole_periods_away(domain, change, further)) torn = owner.id;
+    if (box_before && gear_quat_moved_with_faces(domain, box_before, change)) cut = owner.id;
+  }
 }

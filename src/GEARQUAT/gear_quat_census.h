@@ -15,6 +15,7 @@
 
 namespace LAMMPS_NS {
 
+class Domain;
 class LAMMPS;
 
 /// One atom of a body.
@@ -26,6 +27,13 @@ struct GearQuatSiteCount {
   int in_group;        ///< 1 if the atom is in the group that is asked about
   double mass;
   double body_mass;    ///< 0 unless this atom is the owner and masses have to add up to it
+
+  // zero unless places and masses are compared with those that the body has
+
+  double body_moments[3];    ///< principal moments; of the owner
+  double first[3];           ///< mass times the arm, body frame
+  double second[6];          ///< what it adds to xx, yy, zz, xy, xz, yz of the inertia, body frame
+  double found[3], expected[3];    ///< unwrapped positions: of the atom, and where the body has it
 };
 
 /// The same on all ranks.
@@ -33,16 +41,24 @@ struct GearQuatCensus {
   bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
   tagint broken = 0;              ///< a body that has lost atoms, 0 for none
   tagint left = 0, had = 0;       ///< its atoms now and before
-  int mass_changed = 0;           ///< 1 if a body's mass is not the sum of its atoms' any more
+  int mass_changed =
+      0;    ///< 1 if mass, centre or inertia of a body are not those of its atoms any more
+  tagint torn =
+      0;             ///< a body whose atoms are whole periods further apart than before, 0 for none
+  tagint cut = 0;    ///< one that another box has torn at the faces of the box, 0 for none
 
-  /// Collective; sites: those of this rank's atoms.
-  GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &sites);
+  /// Collective; sites: those of this rank's atoms.  box: shape of the box before, as Domain::h, null
+  /// if it is not known or not asked for.
+  GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &sites, const double *box = nullptr);
 
  private:
-  int dimension;
+  const Domain *domain;
+  const double *box_before;
 
   static int count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *census);
   void count_body(const GearQuatSiteCount *sites, int n);
+  bool same_masses(const GearQuatSiteCount *sites, int n, const GearQuatSiteCount &owner) const;
+  void look_for_tears(const GearQuatSiteCount *sites, int n, const GearQuatSiteCount &owner);
 };
 
 }    // namespace LAMMPS_NS

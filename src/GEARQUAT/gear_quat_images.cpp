@@ -7,28 +7,116 @@
 
 #include "domain.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
+
+// a place that is further away by less than this part of a period has not changed by a period
+
+static constexpr double PART = 0.25;
+
+// coordinates count as the same that differ by this part of the box
+
+static constexpr double SAME = 1.0e-9;
+
+/// In units of the periods.
+static void to_periods(const Domain *domain, const double *way, double *periods)
+{
+  const double *to_box = domain->h_inv;
+  periods[0] = to_box[0] * way[0] + to_box[5] * way[1] + to_box[4] * way[2];
+  periods[1] = to_box[1] * way[1] + to_box[3] * way[2];
+  periods[2] = to_box[2] * way[2];
+}
+
+/// The way that leads through so many periods of a box.
+static void through(const double *box, const double *periods, double *way)
+{
+  way[0] = box[0] * periods[0] + box[5] * periods[1] + box[4] * periods[2];
+  way[1] = box[1] * periods[1] + box[3] * periods[2];
+  way[2] = box[2] * periods[2];
+}
+
+static bool is_periodic(const Domain *domain, int direction)
+{
+  return (direction == 0       ? domain->xperiodic
+              : direction == 1 ? domain->yperiodic
+                               : domain->zperiodic) != 0;
+}
+
+/* ---------------------------------------------------------------------- */
 
 void LAMMPS_NS::gear_quat_add_turns_of_flags(const Domain *domain, const double *expected,
                                              double *unwrapped)
 {
   const double range = (double) IMGMASK + 1.0;    // so many boxes, then flags begin again
-  const double *to_box = domain->h_inv, *box = domain->h;
-  const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};
   const double away[3] = {expected[0] - unwrapped[0], expected[1] - unwrapped[1],
                           expected[2] - unwrapped[2]};
-  const double boxes[3] = {to_box[0] * away[0] + to_box[5] * away[1] + to_box[4] * away[2],
-                           to_box[1] * away[1] + to_box[3] * away[2], to_box[2] * away[2]};
+  double boxes[3];
+  to_periods(domain, away, boxes);
   double lost[3];
   bool any = false;
   for (int k = 0; k < 3; ++k) {
-    lost[k] = periodic[k] ? range * std::round(boxes[k] / range) : 0.0;
+    lost[k] = is_periodic(domain, k) ? range * std::round(boxes[k] / range) : 0.0;
     any = any || lost[k] != 0.0;
   }
   if (!any) return;
-  unwrapped[0] += box[0] * lost[0] + box[5] * lost[1] + box[4] * lost[2];
-  unwrapped[1] += box[1] * lost[1] + box[3] * lost[2];
-  unwrapped[2] += box[2] * lost[2];
+  double way[3];
+  through(domain->h, lost, way);
+  for (int k = 0; k < 3; ++k) unwrapped[k] += way[k];
+}
+
+bool LAMMPS_NS::gear_quat_whole_periods_away(const Domain *domain, const double *change,
+                                             double further)
+{
+  double periods[3];
+  to_periods(domain, change, periods);
+  for (int k = 0; k < 3; ++k)
+    if (is_periodic(domain, k) && std::round(periods[k]) != 0.0 && further > PART * domain->h[k])
+      return true;
+  return false;
+}
+
+bool LAMMPS_NS::gear_quat_moved_with_faces(const Domain *domain, const double *box_before,
+                                           const double *change)
+{
+  double box_change[6];
+  bool changed = false;
+  const double same = SAME * (domain->h[0] + domain->h[1] + domain->h[2]);
+  for (int k = 0; k < 6; ++k) {
+    box_change[k] = domain->h[k] - box_before[k];
+    changed = changed || std::fabs(box_change[k]) > same;
+  }
+  if (!changed) return false;
+  for (int code = 0; code < 27; ++code) {    // all combinations of -1, 0 and 1
+    double images[3] = {code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
+    for (int k = 0; k < 3; ++k)
+      if (!is_periodic(domain, k)) images[k] = 0.0;
+    double way[3], longest = 0.0, off = 0.0;
+    through(box_change, images, way);
+    for (int k = 0; k < 3; ++k) {
+      longest = std::max(longest, std::fabs(way[k]));
+      off = std::max(off, std::fabs(way[k] - change[k]));
+    }
+    if (longest > same && off < same) return true;
+  }
+  return false;
+}
+
+bool LAMMPS_NS::gear_quat_in_clumps(const Domain *domain,
+                                    const std::vector<const double *> &positions)
+{
+  std::vector<double> along(positions.size());
+  for (int k = 0; k < 3; ++k) {
+    if (!is_periodic(domain, k)) continue;
+    for (size_t i = 0; i < positions.size(); ++i) {
+      double periods[3];
+      to_periods(domain, positions[i], periods);
+      along[i] = periods[k];
+    }
+    std::sort(along.begin(), along.end());
+    for (size_t i = 1; i < along.size(); ++i)
+      if (along[i] - along[i - 1] > 0.5) return true;
+  }
+  return false;
 }

@@ -219,3 +219,117 @@ def test_bonds_that_break_are_not_followed(lmp_tree):
     result = lmp_tree.run(text)
     assert result.returncode == 0, result.output
     assert FALLBACK + " bonds of style quartic may break" in result.stdout
+
+
+# --- masses and image flags between runs --------------------------------------------------------------
+
+SWAPS = {
+    "center": "set atom 1 mass 3.0\nset atom 2 mass 1.0",
+    # about the center nothing changes but the moments
+    "moments": "set atom 1 mass 1.0\nset atom 2*3 mass 2.0",
+}
+ROD = """
+units lj
+atom_style {style}
+atom_modify map array
+region box block -10 10 -10 10 -10 10
+create_box 1 box
+create_atoms 1 single 0 0 0
+create_atoms 1 single 1 0 0
+create_atoms 1 single -1 0 0
+{masses}
+velocity all create 1.0 4711 loop geom
+pair_style zero 2.0
+pair_coeff * *
+fix move all gear/quat single
+thermo_style custom step f_move[1] f_move[2] f_move[1][1]
+thermo_modify norm no format float %.17g
+run 1
+{swap}
+run 1
+"""
+
+
+@pytest.mark.parametrize("swap", SWAPS)
+@pytest.mark.parametrize("extended", [False, True])
+def test_masses_that_go_from_atom_to_atom(lmp_tree, swap, extended):
+    """The sum stays; the body is that of the present masses, as if the fix had been defined then."""
+    style = "sphere" if extended else "hybrid molecular sphere"
+    masses = "set atom 1*3 diameter {} mass 1.0\nset atom 1 mass 3.0".format(0.5 if extended else 0.0)
+    if swap == "center":
+        masses = masses.replace("atom 1 mass 3.0", "atom 2 mass 3.0")
+    again = "unfix move\nfix move all gear/quat single"
+    decks = [
+        ROD.format(style=style, masses=masses, swap=SWAPS[swap] + "\n" + more) for more in ("", again)
+    ]
+    result = lmp_tree.run(one_after_the_other(decks))
+    assert result.returncode == 0, result.output
+    assert result.stdout.count("atoms were changed since the last run") == 1
+    _, kept, _, fresh = result.thermo
+    for column in kept:
+        assert kept[column] == pytest.approx(fresh[column], rel=1e-9, abs=1e-12)
+
+
+TORN = "some atoms of body 1 are whole periods of the box away"
+CUT = "the box was changed while body 1 lies across its faces"
+ACROSS = "displace_atoms all move 9.5 0 0\nfix move all"
+
+
+def across(after, tilt=False, before="", fix="molecule"):
+    """The first of two molecules lies across the face of the box."""
+    text = two_molecules(fix, before=before, after=after).replace("fix move all", ACROSS)
+    if tilt:
+        text = text.replace("block -10 10 -10 10 -10 10", "prism -10 10 -10 10 -10 10 3 2 1")
+        text = text.replace("all move 9.5", "all move 12.0")
+    return text
+
+
+TEARS = {
+    "set atom 2 image 0 0 0": TORN,
+    "set group all image 3 -2 1": TORN,
+    "change_box all x delta -0.5 0.5 units box": CUT,
+}
+WHOLE = [
+    "change_box all x delta -0.5 0.5 remap units box",
+    "displace_atoms all move 12 0 0",
+    "displace_atoms all rotate 0 0 0 0 0 1 170",
+]
+
+
+@pytest.mark.parametrize("tilt, ranks", [(False, 1), (True, 1), (True, 2)])
+def test_torn_bodies(lmp_tree, tilt, ranks):
+    for change, said in TEARS.items():
+        result = lmp_tree.run(across(f"run 2\n{change}\nrun 2", tilt), ranks=ranks)
+        assert any(said in error for error in result.errors), (change, result.output)
+    decks = [across(f"run 2\n{change}\nrun 2", tilt) for change in WHOLE]
+    result = lmp_tree.run(one_after_the_other(decks), ranks=ranks)
+    assert result.returncode == 0, result.output
+    assert result.stdout.count("atoms were changed since the last run") == len(WHOLE)
+
+
+def test_clumps_are_warned_of(lmp_tree):
+    said = "WARNING: Fix gear/quat: parts of body 1 are more than half of a periodic box apart"
+    whole = lmp_tree.run(across("run 2"))
+    assert whole.returncode == 0 and said not in whole.output
+    flags = "set group all image 0 0 0\nfix move all"
+    torn = lmp_tree.run(across("run 2").replace("fix move all", flags))
+    assert said in torn.output
+    # what mends it may come after the fix as well
+    mended = lmp_tree.run(across("set atom 2 image 1 0 0\nrun 2").replace("fix move all", flags))
+    assert mended.returncode == 0, mended.output
+    # what lies in a box without periods is no matter of flags
+    open_box = two_molecules("single", boundary="f f f")
+    assert said not in lmp_tree.run(open_box).output
+
+
+def test_rerun_without_image_flags(lmp_tree):
+    """Atoms keep the flags that they had at the end, and in the first frame they are not yet there."""
+    dump = (
+        "velocity all set 10 0 0\ndump d all custom 1 frames id x y z {}vx vy vz\nrun 5\nundump d\n"
+    )
+    read = "rerun frames dump x y z {}vx vy vz box no"
+    for flags, said in (("ix iy iz ", False), ("", True)):
+        text = across(dump.format(flags) + read.format(flags)).replace("move 9.5", "move 8.7")
+        result = lmp_tree.run(text)
+        assert any(TORN in error for error in result.errors) == said, result.output
+        assert (result.returncode == 0) != said
