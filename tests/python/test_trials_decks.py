@@ -179,7 +179,7 @@ def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
         ({"extra": "include in.nowhere"}, "cannot read in.nowhere"),
         ({"extra": "jump SELF nowhere"}, "label nowhere was not found"),
         ({"extra": "quit"}, "any run of this deck before it quits"),
-        ({"extra": "unfix 1"}, "no fix that moves rigid bodies is in use at any run"),
+        ({"extra": "thermo_style one\nunfix 1"}, "no fix that moves rigid bodies is in use at any run"),
         ({"extra": "fix 2 all deform 1 x scale 1.1"}, "fix 2 deform: it changes the box"),
         ({FIX: FIX + " langevin 1 1 1 48"}, "keyword langevin: its forces are random"),
         ({FIX: FIX.replace("${style}", "rigid/nvt") + " temp 1 1 1"}, "rigid/nvt.*no thermostat"),

@@ -106,6 +106,19 @@ FLOWS = {
         'run 30\nvariable e equal ke\nprint "$(v_e) ${e} $(f_average) $(c_kinetic)"\nrun 50 pre no',
         2,
     ),
+    "a temperature of its own, and lost atoms": (
+        """
+        unfix average
+        compute_modify thermo_temp extra/dof 100
+        compute mine all temp
+        variable e equal 2*c_kinetic
+        thermo_style custom step temp c_kinetic v_e
+        thermo_modify format line "%d %g %g %g" lost ignore temp mine
+        run 30
+        run 50
+        """,
+        2,
+    ),
     "line ends and quotes": ("suffix omp\nrun \t '50' # steps & \r\n more", 1),
 }
 TAIL = """

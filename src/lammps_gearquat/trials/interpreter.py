@@ -15,7 +15,7 @@ from .script import DeckError
 
 #: commands that only write, print or time
 SILENT = set("""dump dump_modify undump restart write_dump write_coeff
-    thermo thermo_style thermo_modify log echo info print timer bond_write angle_write dihedral_write
+    thermo log echo info print timer bond_write angle_write dihedral_write
     pair_write processors balance""".split())
 SILENT_FIXES = ("ave/", "print", "vector", "halt", "balance")
 SILENT_COMPUTES = ("ke/rigid", "erotate/rigid", "rigid/local")
@@ -45,7 +45,7 @@ class Start:
 
     ``commands`` lead there; those with a ``mover`` define the fixes that move bodies now;
     ``steps`` is the length of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the
-    command that makes the box.
+    command that makes the box; ``lost`` is what thermo_modify says of lost atoms and bonds.
     """
 
     commands: list = field(default_factory=list)
@@ -53,6 +53,7 @@ class Start:
     fixes: dict = field(default_factory=dict)
     pair_style: list = field(default_factory=list)
     box: int = 0
+    lost: list = field(default_factory=list)
     notes: list = field(default_factory=list)
 
 
@@ -281,6 +282,18 @@ class Interpreter:
             self.silenced.add("c_" + words[1])
         else:
             self._pass(line)
+
+    def _do_thermo_style(self, words, line):
+        """Without what was left out, and without variables, which may be made from it."""
+        left_out = [w for w in words if w.startswith("v_") or w.partition("[")[0] in self.silenced]
+        self._pass(" ".join(word for word in words if word not in left_out))
+
+    def _do_thermo_modify(self, words, line):
+        """What a run may end by: lost atoms, and temperatures of less than no degrees of freedom."""
+        for before, key, value in zip(words, words[1:], words[2:]):
+            if key in ("temp", "press", "lost", "lost/bond") and before not in ("format", "colname"):
+                self._pass(f"thermo_modify {key} {value}")
+                self.start.lost += [key, value] if key.startswith("lost") else []
 
     def _do_fix_modify(self, words, line):
         if "f_" + words[1] in self.silenced:

