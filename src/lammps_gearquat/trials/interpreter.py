@@ -284,9 +284,10 @@ class Interpreter:
             self._pass(line)
 
     def _do_thermo_style(self, words, line):
-        """Without what was left out, and without variables, which may be made from it."""
-        left_out = [w for w in words if w.startswith("v_") or w.partition("[")[0] in self.silenced]
-        self._pass(" ".join(word for word in words if word not in left_out))
+        """Without what was left out or is of a fix that another takes the place of, and without variables."""
+        gone = self.silenced | {"f_" + id_ for id_ in self.movers}
+        kept = [w for w in words if w[:2] != "v_" and w.partition("[")[0] not in gone]
+        self._pass(" ".join(kept))
 
     def _do_thermo_modify(self, words, line):
         """What a run may end by: lost atoms, and temperatures of less than no degrees of freedom."""
