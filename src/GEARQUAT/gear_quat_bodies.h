@@ -235,6 +235,7 @@ class GearQuatBodies : protected Pointers {
 
   /// True if ghosts of its owner atom stand for this body.
   bool has_ghosts(int ibody) const { return ibody >= 0 && !is_large(ibody); }
+  int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + scheme.size(); }
   int pack_moved(int ibody, double *buf) const;
   int unpack_moved(int ibody, const double *buf, int size);
   static int pack_body(const GearQuatBody &body, const GearQuat::BodyState &state, double *buf);

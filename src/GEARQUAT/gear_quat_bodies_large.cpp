@@ -63,7 +63,7 @@ void GearQuatBodies::promote()
 void GearQuatBodies::share_large()
 {
   if (nlarge == 0) return;
-  const int size = 2 + BODY_SIZE + LAST_SIZE + scheme.size();
+  const int size = 2 + moved_size();
   std::vector<double> mine;
   for (int ibody = 0; ibody < nown; ++ibody) {
     if (!body[ibody].large) continue;
@@ -82,11 +82,11 @@ void GearQuatBodies::share_large()
     body.emplace_back();
     state.emplace_back();
     last.emplace_back();
+    load.emplace_back();
     rows.resize((size_t) nmove * scheme.size());
     unpack_moved(ibody, &all[m + 2], scheme.size());
     large.push_back({(tagint) ubuf(all[m + 1]).i, ibody});
   }
-  load.resize(nmove);
   std::sort(large.begin(), large.end(), [](const Large &a, const Large &b) {
     return a.owner < b.owner;
   });

@@ -51,6 +51,8 @@ int GearQuatBodies::pack_moved(int ibody, double *buf) const
   int m = pack_body(body[ibody], state[ibody], buf);
   std::memcpy(buf + m, &last[ibody], sizeof(Correction));
   m += LAST_SIZE;
+  std::memcpy(buf + m, &load[ibody], sizeof(Load));
+  m += LOAD_SIZE;
   std::copy_n(history(ibody), scheme.size(), buf + m);
   return m + scheme.size();
 }
@@ -61,6 +63,8 @@ int GearQuatBodies::unpack_moved(int ibody, const double *buf, int size)
   int m = unpack_body(buf, body[ibody], state[ibody]);
   std::memcpy(&last[ibody], buf + m, sizeof(Correction));
   m += LAST_SIZE;
+  std::memcpy(&load[ibody], buf + m, sizeof(Load));
+  m += LOAD_SIZE;
   if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
   return m + size;
 }
@@ -101,12 +105,12 @@ int GearQuatBodies::packed_size(int i) const
 {
   if (body_id[i] == 0) return 1;
   const int site = SITE_SIZE + extended.packed_size(i);
-  return owned[i] < 0 ? site : site + BODY_SIZE + LAST_SIZE + scheme.size();
+  return owned[i] < 0 ? site : site + moved_size();
 }
 
 int GearQuatBodies::max_exchange() const
 {
-  return SITE_SIZE + GearQuatExtended::RECORD_SIZE + BODY_SIZE + LAST_SIZE + scheme.size();
+  return SITE_SIZE + GearQuatExtended::RECORD_SIZE + moved_size();
 }
 
 int GearQuatBodies::max_forward() const

@@ -154,16 +154,29 @@ class Integrator {
                                          : rates[Scheme::POSITION + i] * per_h;
   }
 
-  /// Velocities of the state into a history of the same pose; derivatives above them stay.
-  void set_velocities(const RigidBody &body, const BodyState &state, double *rows) const
+  /// Velocities of the state into a history of the same pose, and with them the accelerations that
+  /// depend on velocities, those of the rotation; other derivatives stay.  load: at this pose.
+  void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
+                      double *rows) const
   {
     const int width = scheme.width(), quat = scheme.quaternion(), row = scheme.first() ? 0 : 1;
-    double *rates = rows + width;
+    double *rates = rows + width, *qddot = rates + width + quat;
+    double a[9], torque_body[3], omegadot_body[3], qdot[4];
+    rotation_matrix(state.q, scheme.norm2(state.q), a);
+    to_body(a, load.torque_space, torque_body);
+    angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
+    quaternion_rate(rows + quat, state.omega_body, qdot);
+    quaternion_acceleration(rows + quat, qdot, omegadot_body, qddot);
     for (int i = 0; i < 3; ++i) rates[Scheme::POSITION + i] = h * state.velocity[i];
-    quaternion_rate(rows + quat, state.omega_body, rates + quat);
-    for (int i = 0; i < 4; ++i) rates[quat + i] *= h;
+    for (int i = 0; i < 4; ++i) {
+      rates[quat + i] = h * qdot[i];
+      qddot[i] *= 0.5 * h * h;
+    }
     if (scheme.first()) {
-      for (int i = 0; i < 3; ++i) rows[Scheme::MOMENTUM + i] = body.mass * state.velocity[i];
+      for (int i = 0; i < 3; ++i) {
+        rows[Scheme::MOMENTUM + i] = body.mass * state.velocity[i];
+        rates[Scheme::OMEGA + i] = h * omegadot_body[i];
+      }
       copy(state.omega_body, 3, rows + Scheme::OMEGA);
     }
     if (!scheme.compensate) return;

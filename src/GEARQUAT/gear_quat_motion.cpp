@@ -222,7 +222,7 @@ void GearQuatMotion::take_velocities(const std::vector<int> &changed)
   if (!started) return;
   for (const int ibody : changed)
     integrator->set_velocities(bodies.body[ibody].rigid, bodies.state[ibody],
-                               bodies.history(ibody));
+                               bodies.acting(ibody), bodies.history(ibody));
 }
 
 void GearQuatMotion::predict(double **f)

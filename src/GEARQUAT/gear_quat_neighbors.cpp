@@ -171,9 +171,11 @@ std::vector<int> GearQuatNeighbors::take_velocities(bigint step, bool end)
   std::vector<const Fix *> acted;
   for (const auto *one : taken)
     if (one->nevery > 0 && step % one->nevery == 0) acted.push_back(one);
-  if (acted.empty() || !gather_impulses()) return changed;
-
+  if (acted.empty()) return changed;
   const auto before = bodies.state;
+  const auto loads = bodies.load;    // of the last step: accelerations of bodies follow from them
+  if (!gather_impulses()) return changed;
+
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const RigidBody &rigid = bodies.body[ibody].rigid;
     const Load &impulse = bodies.load[ibody];
@@ -190,6 +192,7 @@ std::vector<int> GearQuatNeighbors::take_velocities(bigint step, bool end)
     }
     changed.push_back(ibody);
   }
+  bodies.load = loads;
   bodies.spread_states();
 
   tagint torn = 0, any;
