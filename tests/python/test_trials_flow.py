@@ -193,7 +193,8 @@ def test_earlier_runs_are_announced(make_deck, tmp_path):
     path = make_deck()
     with Deck(path, [("soft", "1")], say=(said := []).append):
         pass
-    assert said == ["running what comes before: run 10", "running what comes before: run 0"]
+    said_of = "comes before the trials and is executed first"
+    assert said == [f"'run {steps}' {said_of}" for steps in (10, 0)]
     arguments = ["--time", "0.04", "--var", "soft", "1", "--out", str(tmp_path / "out")]
     result = CliRunner().invoke(horizon, [str(path), *arguments])
-    assert result.exit_code == 0 and "in.clumps: running what comes before: run 10" in result.output
+    assert result.exit_code == 0 and f"in.clumps: 'run 10' {said_of}" in result.output

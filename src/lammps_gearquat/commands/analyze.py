@@ -175,11 +175,11 @@ def _correlate(out, poses):
         return tqdm(functions, desc="correlating", unit="function")
 
     if len(poses.results.time) < 3:
-        return click.echo("Fewer than three frames: no correlations.")
+        return click.echo("There are fewer than three frames, so there are no correlations.")
     try:
         found, turn = correlations.all_correlations(poses, progress)
     except ValueError as error:
-        return click.echo(f"No correlations: {error}")
+        return click.echo(f"There are no correlations: {error}.")
     if turn > np.pi / 2:
         click.echo(
             f"A body turned by {turn:.2g} radians from one frame to the next: the mean-square rotation is"
@@ -217,4 +217,4 @@ def _convert(poses, path, wrap, frames):
     written = convert(
         poses.atoms, path, poses.units, wrap, frames, poses.results.time, progress
     )
-    click.echo(f"Written: {', '.join(map(str, written))} ({remark(poses.units)})")
+    click.echo(f"The trajectory is in {' and '.join(map(str, written))}.  {remark(poses.units)}.")

@@ -266,7 +266,7 @@ def measure(deck, errors=(), time=None, budget=180.0, timings=5, norm=0, tries=(
     at, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
     end = asked * (at + 1) / SAMPLES
     if reason:
-        notes.append(f"measured to t = {end:g} of {deck.end:g}: {reason} allows no more")
+        notes.append(f"the trials end at t = {end:g}, not at {deck.end:g}, for {reason} allows no more")
     if cut:
         notes.append(cut)
     costs = Costs(end, float(doubt[at]), reference, confirmation, norm, notes=notes)
@@ -290,7 +290,7 @@ def measure(deck, errors=(), time=None, budget=180.0, timings=5, norm=0, tries=(
             first["gear"] = near[0].steps
         costs.trials += [(trial, against(study.errors)(trial)) for trial, _ in found]
         if not found and keywords in study.failures:
-            costs.notes.append(f"no trial of {keywords}: {study.failures[keywords]}")
+            costs.notes.append(f"no trial of {keywords} came to its end: {study.failures[keywords]}")
     study.repeat(worth_timing(costs, wanted), budget)
     fill_rows(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
@@ -303,8 +303,8 @@ def known_until(time, doubt, errors):
     notes = []
     for error in errors:
         known = np.flatnonzero(MARGIN * np.maximum.accumulate(doubt) < error)
-        until = f"until t = {time[known[-1]]:g}" if len(known) else f"not even at t = {time[0]:g}"
-        notes.append(f"the trajectory is known well enough for an error of {error:g} {until}")
+        until = f"only until t = {time[known[-1]]:g}" if len(known) else f"not even until t = {time[0]:g}"
+        notes.append(f"the trajectory is known well enough to judge an error of {error:g} {until}")
     return notes
 
 
@@ -333,12 +333,12 @@ def cut_to(time, doubt, errors):
             if good[-1] == last:
                 return last, ""
             return int(good[-1]), (
-                f"measured to t = {time[good[-1]]:g} of {time[-1]:g}: later the two best trials"
+                f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, for later the two best ones"
                 f" differ by more than {error / MARGIN:.2g}, so an error of {error:g} cannot be judged"
             )
     return max(int(SHORTEST * len(time)) - 1, 0), (
         f"the two best trials differ by {doubt[int(SHORTEST * len(time)) - 1]:.2g} already at a"
-        " tenth of the time: no error asked for can be judged in this scene"
+        " tenth of the time, so no error asked for can be judged in this scene"
     )
 
 

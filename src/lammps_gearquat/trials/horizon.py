@@ -59,14 +59,15 @@ def measure(
         time = affordable(deck, dt_a, dt_b)
         if time < deck.end:
             notes.append(
-                f"run to t = {time:g} of {deck.end:g} to stay within {BUDGET:g} s (--time)"
+                f"the runs end at t = {time:g}, not at {deck.end:g}, to stay within {BUDGET:g} s; --time sets"
+                " another end"
             )
     segments, interval = sampling(time, every, dt_a)
     inner = max(round(interval / dt_b), 1)
     if abs(inner * dt_b / interval - 1) > 1e-9:
         inner = int(np.ceil(interval / dt_b))
         dt_b = interval / inner
-        notes.append(f"the second step is {dt_b:g}, a fraction of the time between samples")
+        notes.append(f"the second step is {dt_b:g}, so that a sample ends with a step")
     if progress is not None:
         progress.reset(total=segments * (round(interval / dt_a) + inner))
         deck.worker.on_news = progress.update

@@ -355,5 +355,5 @@ class Interpreter:
             self.start.steps = steps
             raise _Reached
         self._use_movers()
-        self.say(f"running what comes before: {' '.join(words)}")
+        self.say(f"'{' '.join(words)}' comes before the trials and is executed first")
         self._pass(line)

@@ -203,7 +203,7 @@ def horizon_text(deck, horizon):
     ]
     growth = horizon.growth
     if growth is None:
-        lines.append(f"No Lyapunov time: {horizon.no_growth}.")
+        lines.append(f"There is no Lyapunov time, for {horizon.no_growth}.")
     else:
         spread = growth.lyapunov_time * growth.error / growth.rate
         lines.append(
