@@ -170,6 +170,7 @@ void FixGearQuat::init()
 {
   refuse_scene(lmp, this, *bodies);
   neighbors->init();
+  if (!reported) stated = read_stated(lmp, args->mol);
   motion->init();
   velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
   bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
@@ -197,7 +198,11 @@ void FixGearQuat::setup_pre_neighbor()
   bodies->choose_large();
   bodies->update_ghosts();
   if (met_atoms) take_velocities(update->ntimestep, false);
-  const bool take_over = args->infile.empty() && (args->reinit || !met_atoms);
+  const bool from_atoms = args->infile.empty() &&
+      std::none_of(stated.begin(), stated.end(), [](const GearQuatStated &one) {
+                            return one.differs;
+                          });
+  const bool take_over = from_atoms && (args->reinit || !met_atoms);
   if (take_over && !bodies->atoms_match()) {
     bodies->recreate();
     bodies->update_ghosts();
@@ -220,16 +225,12 @@ void FixGearQuat::take_velocities(bigint step, bool end)
 
 void FixGearQuat::setup(int vflag)
 {
-  if (!compared) {    // run ... pre no
-    take_velocities(update->ntimestep, true);
-    neighbors->check_all();
-  }
-  compared = false;
   readers_every = periods_of_readers(lmp, this);
   bodies->spread_states();
   bodies->place_velocities();
   for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
   v_init(vflag);
+  if (!reported) neighbors->check_gravity();
   bodies->gather_loads(atom->f, atom->torque);
   motion->begin_run();
   if (evflag) tally_virial(atom->f);
@@ -278,7 +279,11 @@ void FixGearQuat::final_integrate()
 
 void FixGearQuat::begin_step()
 {
-  neighbors->check_velocities();
+  if (update->ntimestep == update->firststep + 1 && !compared)    // run ... pre no
+    neighbors->check_all();
+  else
+    neighbors->check_velocities();
+  compared = false;
   motion->predict(atom->f);
   bodies->spread_states();
   bodies->place_sites(velocities_read);
@@ -417,12 +422,13 @@ void FixGearQuat::set_arrays(int i)
 }
 
 /// Another fix has inserted a molecule of the template, on all ranks together.
-void FixGearQuat::set_molecule(int first, tagint /*before*/, int /*which*/, double * /*center*/,
-                               double * /*velocity*/, double * /*quat*/)
+void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *center,
+                               double *velocity, double *quat)
 {
   for (int i = first; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit) bodies->note_stranger(-1);
-  add_molecule(lmp, *bodies, first);
+  const bool known = which >= 0 && which < (int) stated.size();
+  add_molecule(lmp, *bodies, first, known ? &stated[which] : nullptr, {center, velocity, quat});
 }
 
 void *FixGearQuat::extract(const char *name, int &dim)

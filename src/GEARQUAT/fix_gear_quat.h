@@ -86,6 +86,8 @@ class FixGearQuat : public Fix {
   std::unique_ptr<class GearQuatSums> sums;
   std::unique_ptr<class GearQuatExtract> extracts;
 
+  std::vector<struct GearQuatStated> stated;    // by molecules of the template
+
   bool met_atoms;                    // bodies were compared with the atoms in a run before
   bool reported;                     // the scene, once
   bool compared;                     // bodies with the atoms, before this run

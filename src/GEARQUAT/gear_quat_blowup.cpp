@@ -5,6 +5,8 @@
 
 #include "gear_quat_blowup.h"
 
+#include "gear_quat_spins.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -73,11 +75,11 @@ void GearQuatBlowup::stop(int ibody, const BodyState &s, double h, double **f) c
       ? fmt::format("a smaller tolerance, or a dtmax shorter than {:g},", std::fabs(h))
       : fmt::format("a smaller time step than {:g} or fewer values than {},", std::fabs(h),
                     scheme.values());
-  const std::string text =
-      fmt::format("Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. Use {} or begin "
-                  "with atoms further apart",
-                  update->ntimestep, time, id, molecule, what_happened(ibody, s, h),
-                  where(ibody, bad, met), change);
+  const std::string text = fmt::format(
+      "Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. Use {}{} or "
+      "begin with atoms further apart",
+      update->ntimestep, time, id, molecule, what_happened(ibody, s, h), where(ibody, bad, met),
+      change, advice_on_spin(bodies.body[ibody].rigid, s.omega_body));
   if (bodies.is_large(ibody)) error->all(FLERR, agree(text, ibody, bad, met));
   error->one(FLERR, text);
 }

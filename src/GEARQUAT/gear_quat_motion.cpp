@@ -7,6 +7,7 @@
 
 #include "fix_gear_quat.h"
 #include "gear_quat_bootstrap.h"
+#include "gear_quat_spins.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -109,6 +110,7 @@ void GearQuatMotion::impose_masks()
 
 void GearQuatMotion::begin_run()
 {
+  if (!started && !tolerance) check_spins(lmp, bodies, args.scheme, h);
   if (isokinetic) isokinetic->begin_run(!started);
   set_up = true;
 }

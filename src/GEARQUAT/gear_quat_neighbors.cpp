@@ -36,6 +36,8 @@ struct Neighbor {
 static constexpr char GROUP[] = "give it a group without atoms of bodies";
 static constexpr char THERMOSTAT[] =
     "use fix temp/csvr or temp/berendsen, whose change bodies take over, or fix langevin";
+static constexpr char CONSTRAINTS[] =
+    "take the bonds and angles of bodies out of it: bodies are rigid already";
 static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall/harmonic";
 
 /// The first row that matches counts.  doc/src/fix_gear_quat.rst has the same table.
@@ -62,8 +64,9 @@ static const Neighbor NEIGHBORS[] = {
     {"^tmd$", Neighbor::REFUSED, Neighbor::SHARED, "use fix spring or fix spring/self"},
     {"^recenter", Neighbor::REFUSED, Neighbor::ALWAYS,
      "use fix momentum, and subtract the center of mass in the analysis"},
-    {"^(shake|rattle|ilves)", Neighbor::REFUSED, Neighbor::CONSTRAINED,
-     "take the bonds and angles of bodies out of it: bodies are rigid already"},
+    {"^shake", Neighbor::REFUSED, Neighbor::CONSTRAINED, CONSTRAINTS},
+    {"^rattle", Neighbor::REFUSED, Neighbor::CONSTRAINED, CONSTRAINTS},
+    {"^ilves", Neighbor::REFUSED, Neighbor::CONSTRAINED, CONSTRAINTS},
     {"^atom/swap", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
     {"^mol/swap", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
     {"^neighbor/swap", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
@@ -159,6 +162,46 @@ void GearQuatNeighbors::refuse(const Fix *other, const Neighbor &row, tagint sha
              "Fix gear/quat: fix {} ({}) changes single atoms of bodies, among them atom {}, and "
              "bodies do not follow; {}",
              other->id, other->style, shared, row.instead);
+}
+
+/// The rigid fixes want it disabled, and apply it themselves to bodies whose mass a file states.
+void GearQuatNeighbors::check_gravity()
+{
+  if (!utils::strmatch(update->integrate_style, "^verlet")) return;
+  const size_t n = 3 * (size_t) atom->nlocal;
+  for (auto *other : modify->get_fix_by_style("^gravity")) {
+    if (!shared_atom(other)) continue;
+    std::vector<double> forces;
+    if (n) forces.assign(atom->f[0], atom->f[0] + n);
+    if (n) std::fill_n(atom->f[0], n, 0.0);
+    other->post_force(0);
+    bodies.gather_loads(atom->f, atom->torque);
+    int here[2] = {0, 0}, any[2];    // atoms that feel it, bodies that should feel more or less
+    for (const auto &site : bodies.sites) {
+      const double *f = atom->f[site.atom];
+      if (dot3(f, f) == 0.0) continue;
+      here[0] = 1;
+      if (site.body >= bodies.nmoved()) continue;
+      const double factor =
+          force->ftm2v * bodies.body[site.body].rigid.mass / bodies.atom_mass(site.atom);
+      double off[3];
+      for (int k = 0; k < 3; ++k) off[k] = factor * f[k] - bodies.load[site.body].force[k];
+      if (dot3(off, off) > RIGID * RIGID * factor * factor * dot3(f, f)) here[1] = 1;
+    }
+    if (n) std::copy(forces.begin(), forces.end(), atom->f[0]);
+    MPI_Allreduce(here, any, 2, MPI_INT, MPI_MAX, world);
+    if (comm->me != 0) continue;
+    if (!any[0])
+      error->warning(FLERR,
+                     "Fix gear/quat: fix {} (gravity) exerts no force on bodies; if it has the "
+                     "keyword disable, as fix rigid/small wants it, leave that out",
+                     other->id);
+    else if (any[1])
+      error->warning(FLERR,
+                     "Fix gear/quat: fix {} (gravity) pulls at the masses of atoms, and these are "
+                     "not those of the bodies; use fix addforce instead",
+                     other->id);
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -31,6 +31,10 @@ class GearQuatNeighbors : protected Pointers {
   /// True if some fix may change velocities, and bodies take that over.
   bool any_taken() const { return !taken.empty(); }
 
+  /// Rank 0 warns of fix gravity that bodies do not feel, or feel by masses that are not theirs.  In
+  /// setup(), before loads are gathered.  Collective.
+  void check_gravity();
+
   /// Bodies here whose velocities other fixes have changed in the end of that step: their states
   /// have the new velocities, on all ranks.  A change that is no rigid motion ends the run if `end`,
   /// and is left alone otherwise.  Collective.
@@ -40,7 +44,7 @@ class GearQuatNeighbors : protected Pointers {
 
   void check_velocities();
   void check_places();
-  /// All sites, places and velocities: nothing may have changed since the last step.
+  /// All sites, places and velocities, where a run begins without any comparison.
   void check_all();
 
  private:

@@ -10,6 +10,8 @@
 #include "gear_quat_bodies.h"
 
 #include "atom.h"
+#include "domain.h"
+#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -23,6 +25,8 @@ using namespace LAMMPS_NS;
 // label of an atom: that of its body, or one of these
 
 static constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
+
+static constexpr double WORTH = 0.01;    // share of pairs that is worth a line of the script
 
 static constexpr int MOST_GROUPS = 8 * sizeof(int);    // a bit of the mask each
 
@@ -108,19 +112,27 @@ void GearQuatSurroundings::propose(const std::vector<double> &label)
     return fmt::format("{} of {} pairs in the neighbor lists ({:.0f} %)", some, pairs,
                        100.0 * (double) some / (double) pairs);
   };
-  if (still_pairs > 0) {
+  const auto worth = [this](bigint some) {
+    return (double) some >= WORTH * (double) pairs && some > 0;
+  };
+  const char *kspace = force->kspace
+      ? " (LAMMPS then warns of exclusions with a kspace style, whose "
+        "share in that energy stays: a constant, too)"
+      : "";
+  if (worth(still_pairs)) {
     text.push_back(
         share(still_pairs) +
         fmt::format(" are among {} atoms that no fix moves; without them, and the constant "
-                    "they add to the energy:",
-                    still));
+                    "they add to the energy{}:",
+                    still, kspace));
     text.push_back("  " + exclude_still(label));
   }
-  if (own_pairs > 0) {
+  if (worth(own_pairs) && !meets_itself()) {
     text.push_back(
         share(own_pairs) +
-        " are within bodies and do not move them; without them, and the constant they add "
-        "to the energy:");
+        fmt::format(" are within bodies and do not move them; without them, and the constant they "
+                    "add to the energy{}:",
+                    kspace));
     text.push_back("  " + exclude_own());
   }
   if (unused > 0 && args.bodystyle == GearQuatArguments::BodyStyle::GROUP) {
@@ -131,6 +143,19 @@ void GearQuatSurroundings::propose(const std::vector<double> &label)
     text.push_back(fmt::format("  group bodies union {}; fix {} bodies gear/quat ...",
                                utils::join_words(args.groups, " "), fix->id));
   }
+}
+
+/// True if a body may be so large that it meets its own periodic image: that moves it.
+bool GearQuatSurroundings::meets_itself() const
+{
+  double extent = 0.0, largest;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    extent = std::max(extent, bodies.body[ibody].extent);
+  MPI_Allreduce(&extent, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  for (int k = 0; k < 3; ++k)
+    if (domain->periodicity[k] && domain->prd[k] < 2.0 * largest + neighbor->cutneighmax)
+      return true;
+  return false;
 }
 
 /// An existing group of atoms that nothing moves, the largest, or one to be made.

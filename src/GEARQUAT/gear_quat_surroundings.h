@@ -47,6 +47,7 @@ class GearQuatSurroundings : protected Pointers {
   void propose(const std::vector<double> &label);
   std::string exclude_still(const std::vector<double> &label) const;
   std::string exclude_own() const;
+  bool meets_itself() const;
 };
 
 }    // namespace LAMMPS_NS

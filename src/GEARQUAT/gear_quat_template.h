@@ -4,13 +4,14 @@
 ------------------------------------------------------------------------- */
 
 /* Bodies that come while the fix exists: molecules of a template, inserted by another fix (deposit,
-   pour).  The body is made from its atoms, as at the start, so that nothing of the template itself
-   has to be known. */
+   pour).  The body is made from its atoms, as at the start, unless the template states a mass, a
+   center or a tensor of inertia that are not those of its atoms. */
 
 #ifndef LMP_GEAR_QUAT_TEMPLATE_H
 #define LMP_GEAR_QUAT_TEMPLATE_H
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -18,14 +19,33 @@ class GearQuatBodies;
 class LAMMPS;
 class Molecule;
 
+/// What a molecule of a template states of itself, in the frame of the template.
+struct GearQuatStated {
+  bool differs;    ///< from what its atoms add up to; if not, the atoms are what counts
+  double mass;
+  double center[3];    ///< of mass, from the geometric center
+  double inertia[9];
+};
+
+/// Where an inserted molecule is: geometric center, velocity, rotation (scalar part first).
+struct GearQuatInsertion {
+  const double *center, *velocity, *quat;
+};
+
 /// The molecules of a template as LAMMPS' inserting fixes compare them; null for an empty ID.  A
 /// template that does not exist ends the run.
 Molecule **find_template(LAMMPS *lmp, const std::string &template_id);
 
+/// What the molecules of a template state, one entry each; none for an empty ID.  Ends the run, naming
+/// the template, if no body can be so.  Rank 0 tells of what differs from the atoms, or, in a plugin
+/// for a LAMMPS without the header, that it cannot be read.
+std::vector<GearQuatStated> read_stated(LAMMPS *lmp, const std::string &template_id);
+
 /// One body of the atoms that were just created on all ranks, from index `first` on; its ID is the
 /// smallest molecule ID of its atoms.  It is fresh: its history begins with the forces of this step.
 /// Collective.
-void add_molecule(LAMMPS *lmp, GearQuatBodies &bodies, int first);
+void add_molecule(LAMMPS *lmp, GearQuatBodies &bodies, int first, const GearQuatStated *stated,
+                  const GearQuatInsertion &insertion);
 
 }    // namespace LAMMPS_NS
 

@@ -17,7 +17,7 @@ from .judge import judge, lost
 
 SAMPLES = 2000
 #: LAMMPS' word for coordinates and energies that are not finite any more, and the fix's own
-NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up")
+NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up", "values can follow")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,259 @@
+"""Fixes beside ours that change velocities, places or masses of the atoms of bodies: one table."""
+
+import re
+
+import numpy as np
+import pytest
+from running import ROOT
+from scenes import last_frame, one_after_the_other, two_molecules, water, water_data
+
+SOURCE = ROOT / "src/GEARQUAT/gear_quat_neighbors.cpp"
+MANUAL = ROOT / "doc/src/fix_gear_quat.rst"
+
+COLUMNS = "step temp pe ke etotal econserve f_move[1] f_move[2]"
+
+
+def molecules(lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=200, thermo=None, run=None):
+    """27 molecules whose sites attract each other, smoothly cut off: the energy is kept."""
+    data = water_data(lmp.folder / "data.water", shift=1.65)
+    deck = water(data, fix=fix, dt=dt, steps=steps, after=after, thermo=thermo, run=run or "run {steps}")
+    deck = re.sub("pair_style.*", "pair_style lj/gromacs 3.0 4.0", deck)
+    deck = re.sub("pair_coeff 1 1.*", "pair_coeff * * 0.1 2.2", deck)
+    deck = re.sub("pair_coeff (2 2|1 2).*\n", "", deck)
+    if fix.startswith("gear/quat"):
+        deck = deck.replace("thermo_style custom step temp pe ke etotal press", f"thermo_style custom {COLUMNS}")
+    return deck
+
+
+# --- the table -----------------------------------------------------------------------------------
+def rows_of_the_code():
+    """Pattern -> what happens, and whether whatever the group."""
+    found = re.findall(r'\{"(\^[^"]+)", Neighbor::(\w+),\s*Neighbor::(\w+),', SOURCE.read_text())
+    return {pattern: (what, where) for pattern, what, where in found}
+
+
+def rows_of_the_manual():
+    """Styles of a row -> its second column."""
+    text = MANUAL.read_text()
+    table = text.split(".. neighbors: begin")[1].split(".. neighbors: end")[0]
+    rows = re.findall(r"\* - (.*?)\n\s+- (.*?)(?=\n\s+\* -|\Z)", table, re.S)
+    return {tuple(re.findall(r"\*([a-z_/]+)\*", styles)): " ".join(text.split()) for styles, text in rows}
+
+
+def test_manual_and_code_have_the_same_table():
+    words = {"TAKEN": "taken over", "WATCHED": "warned of", "REFUSED": "refused"}
+    told = {}
+    for styles, text in rows_of_the_manual().items():
+        for style in styles:
+            assert style not in told
+            told[style] = text
+    code = rows_of_the_code()
+    assert len(code) > 25
+    for style, text in told.items():
+        first = next((what for pattern, (what, _) in code.items() if re.search(pattern, style)), None)
+        assert first is not None, f"{style} is in the manual only"
+        assert text.startswith(words[first]), style
+    for pattern in code:
+        assert any(re.search(pattern, style) for style in told), f"{pattern} is not in the manual"
+
+
+# --- taken over ----------------------------------------------------------------------------------
+TAKEN = {
+    "rescale": "temp/rescale 1 300 300 1 1.0",
+    "rescale every 7": "temp/rescale 7 300 300 1 1.0",
+    "berendsen": "temp/berendsen 300 300 50",
+    "csvr": "temp/csvr 300 300 50 4711",
+}
+
+
+def energies(table):
+    return {key: np.array(value) for key, value in table.items()}
+
+
+@pytest.mark.parametrize("formulation", ["first", "second compensate yes", "second"])
+def test_thermostats_by_scaling_reach_the_bodies(lmp_wheel, formulation):
+    """Bodies have the temperature that thermo shows, and what the thermostat takes is what they lose."""
+    fix = f"gear/quat molecule report no formulation {formulation}"
+    decks = [molecules(lmp_wheel, f"fix bath all {words}", fix, dt=0.25, thermo=40, steps=800) for words in TAKEN.values()]
+    result = lmp_wheel.run(one_after_the_other(decks))
+    assert result.returncode == 0, result.output
+    for table in map(energies, result.thermo):
+        bodies = table["f_move[1]"] + table["f_move[2]"]
+        late = slice(len(bodies) // 2, None)
+        assert bodies[late] == pytest.approx(table["KinEng"][late], rel=0.02)  # but for the last scaling
+        assert 200 < table["Temp"][late].mean() < 420  # without: 1200
+        taken = table["TotEng"][0] - table["TotEng"][-1]
+        assert taken > 100
+        assert abs(table["Econserve"] - table["Econserve"][0]).max() < 0.005 * taken
+
+
+def test_momentum_reaches_the_bodies(lmp_wheel):
+    """And on several ranks the same; bodies that are taken over are what their atoms are."""
+    ends = []
+    for ranks in (1, 4):
+        velocity = "velocity all set 0.001 0.0 -0.002 sum yes"
+        after = f"{velocity}\nfix still all momentum 10 linear 1 1 0 angular"
+        deck = molecules(lmp_wheel, after, steps=95)
+        deck += "\nvariable px equal vcm(all,x)\nvariable pz equal vcm(all,z)\n"
+        deck += "thermo_style custom step v_px v_pz f_move[1][4]\nrun 0"
+        result = lmp_wheel.run(deck, ranks=ranks)
+        assert result.returncode == 0, result.output
+        end = {key: value[-1] for key, value in result.thermo[-1].items()}
+        assert abs(end["v_px"]) < 1e-15 and end["v_pz"] == pytest.approx(-0.002, abs=1e-4)
+        ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
+    assert ends[1] == pytest.approx(ends[0], abs=1e-9)
+
+
+def test_heat_is_what_it_says(lmp_wheel):
+    """One part in a thousand of the heat is seen."""
+    result = lmp_wheel.run(molecules(lmp_wheel, "fix in all heat 1 0.1", dt=0.25, thermo=200, steps=400))
+    assert result.returncode == 0, result.output
+    plain = lmp_wheel.run(molecules(lmp_wheel, "", dt=0.25, thermo=200, steps=400))
+    gained = result.thermo[0]["TotEng"][-1] - plain.thermo[0]["TotEng"][-1]
+    assert gained == pytest.approx(0.1 * 0.25 * 400, rel=1e-3)
+
+
+def test_the_last_scaling_of_a_run_is_not_lost_or_taken_twice(lmp_wheel):
+    """run n + run n = run 2n, with a restart or pre no between."""
+    bath = "fix bath all temp/berendsen 300 300 50"
+    fix = "gear/quat molecule report no"
+    ends = []
+    for run in ("run 40", "run 20\nrun 20", "run 20\nrun 20 pre no post no"):
+        result = lmp_wheel.run(molecules(lmp_wheel, bath, fix, steps=40, run=run))
+        assert result.returncode == 0, result.output
+        assert "anew" not in result.output and "WARNING: Fix" not in result.output
+        ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
+    for end in ends[1:]:
+        assert end == pytest.approx(ends[0], abs=1e-10)
+
+
+@pytest.mark.parametrize("ranks", [1, 4])
+def test_a_scaling_that_tears_bodies_ends_the_run(lmp_wheel, ranks):
+    group = "group oxygen type 1\nfix bath oxygen temp/rescale 1 300 300 1 1.0"
+    result = lmp_wheel.run(molecules(lmp_wheel, group, steps=20), ranks=ranks)
+    assert result.returncode != 0
+    assert "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 are not" in result.errors[0]
+    assert len(set(result.errors)) == 1
+
+
+# --- refused -------------------------------------------------------------------------------------
+REFUSED = {
+    "temp/csld 300 300 100 4711": "use fix temp/csvr or temp/berendsen",
+    "ehex 1 0.1": "use fix heat without a region",
+    "thermal/conductivity 10 x 20": "give it a group without atoms of bodies",
+    "viscosity 10 x z 20": "give it a group without atoms of bodies",
+    "oneway 1 half +x": "give it a group without atoms of bodies",
+    "atom/swap 10 5 4711 300 types 1 2": "give it a group without atoms of bodies",
+    "recenter INIT INIT INIT": "cannot be used with fix other (recenter)",
+    "langevin 300 300 100 4711 gjf vhalf": "leave out its keyword gjf",
+}
+NEEDS = "region half block 0 5 INF INF INF INF\n"
+
+
+@pytest.mark.parametrize("words", REFUSED)
+def test_refused_before_step_0(lmp_wheel, words):
+    after = f"{NEEDS}fix other all {words}"
+    result = lmp_wheel.run(molecules(lmp_wheel, after, steps=5), ranks=4)
+    assert result.returncode != 0 and not result.thermo, result.output
+    assert len(set(result.errors)) == 1
+    assert REFUSED[words] in " ".join(result.output.split())
+    assert words.split()[0] in result.errors[0]
+
+
+def test_a_group_without_bodies_is_not_refused(lmp_wheel):
+    decks = []
+    for words in REFUSED:
+        if "recenter" in words or "gjf" in words:
+            continue
+        after = f"{NEEDS}group free id 1:3\ngroup bound subtract all free\nfix nve free nve\nfix other free {words}"
+        deck = molecules(lmp_wheel, after, steps=1).replace("fix move all", "group some id 4:81\nfix move some")
+        decks.append(deck)
+    result = lmp_wheel.run(one_after_the_other(decks))
+    assert "Fix gear/quat" not in " ".join(result.errors), result.output
+
+
+def test_constraints_on_atoms_of_bodies(lmp_tree):
+    """fix shake beside bodies is right, on their own atoms it is refused."""
+    # two diatomics with bonds, one of them a body
+    deck = """
+units lj
+atom_style molecular
+atom_modify map array
+region box block -5 5 -5 5 -5 5
+create_box 1 box bond/types 1 extra/bond/per/atom 1 extra/special/per/atom 2
+create_atoms 1 single 0.0 0.0 0.0
+create_atoms 1 single 1.0 0.0 0.0
+create_atoms 1 single 0.0 2.0 0.0
+create_atoms 1 single 1.0 2.0 0.0
+mass 1 1.0
+set atom 1*2 mol 1
+set atom 3*4 mol 2
+bond_style harmonic
+bond_coeff 1 100.0 1.0
+pair_style zero 2.0
+pair_coeff * *
+create_bonds single/bond 1 1 2
+create_bonds single/bond 1 3 4
+group body id 1 2
+group free id 3 4
+fix move body gear/quat molecule report no
+{shake}
+fix nve free nve
+run 1
+"""
+    right = lmp_tree.run(deck.format(shake="fix hold free shake 1e-6 20 0 b 1"))
+    assert right.returncode == 0, right.output
+    wrong = lmp_tree.run(deck.format(shake="fix hold all shake 1e-6 20 0 b 1"))
+    assert "take the bonds and angles of bodies out of it" in wrong.errors[0]
+
+
+def test_isokinetic_and_a_thermostat(lmp_wheel):
+    fix = "gear/quat molecule report no formulation first isokinetic total"
+    result = lmp_wheel.run(molecules(lmp_wheel, "fix bath all temp/csvr 300 300 100 4711", fix))
+    assert "isokinetic keeps the kinetic energy, which fix bath (temp/csvr) changes" in result.errors[0]
+    result = lmp_wheel.run(molecules(lmp_wheel, "fix still all momentum 5 linear 1 1 1", fix, steps=20))
+    assert result.returncode == 0, result.output
+
+
+# --- watched, and what no table knows ------------------------------------------------------------
+def test_reflecting_walls(lmp):
+    """A warning before the run, and the end of it in the step that moves an atom of a body."""
+    fix = "fix wall all wall/reflect xlo -9.0 xhi {}\nvelocity all set 1.0 0 0\nrun {}"
+    far = lmp.run(two_molecules(after=fix.format(9.0, 50), boundary="f p p"))
+    assert far.returncode == 0, far.output
+    assert "fix wall (wall/reflect) moves single atoms" in " ".join(far.output.split())
+    near = lmp.run(two_molecules(after=fix.format(6.2, 50), boundary="f p p"), ranks=2)
+    assert near.returncode != 0
+    assert "fix wall (wall/reflect) has moved atom 5 of body 2 in step" in near.errors[0]
+
+
+def test_a_change_that_no_table_knows_is_told(lmp_wheel):
+    """Velocities changed behind the fix, by a command before a run that prepares nothing."""
+    after = "run 5\nvelocity all set 1.0 2.0 3.0\nrun 5 pre no"
+    result = lmp_wheel.run(two_molecules(after=after))
+    assert result.returncode == 0, result.output
+    words = " ".join(result.output.split())
+    assert "the velocity of atom 1 of body 1 was changed before step 6 by something else" in words
+    quiet = lmp_wheel.run(two_molecules(after="fix t all langevin 1 1 1 4711\nrun 5\nrun 5 pre no"))
+    assert "something else" not in quiet.output and quiet.returncode == 0
+
+
+def test_gravity_that_is_disabled(lmp_wheel):
+    """As rigid/small wants it: bodies would float."""
+    warning = "fix pull (gravity) exerts no force on bodies; if it has the keyword disable"
+    for words, told in (("", False), (" disable", True)):
+        after = f"fix pull all gravity 1.0 vector 0 0 -1{words}\nrun 3"
+        result = lmp_wheel.run(two_molecules(after=after))
+        assert result.returncode == 0, result.output
+        assert (warning in " ".join(result.output.split())) == told
+
+
+def test_gravity_on_masses_that_are_not_the_bodies(lmp_tree):
+    (lmp_tree.folder / "bodies").write_text("1\n1 {} 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0\n")
+    text = (lmp_tree.folder / "bodies").read_text()
+    for mass, told in ((3.0, False), (3.1, True)):
+        (lmp_tree.folder / "bodies").write_text(text.format(mass))
+        after = "fix pull all gravity 1.0 vector 0 0 -1\nrun 1"
+        result = lmp_tree.run(two_molecules("molecule infile bodies", after=after))
+        assert result.returncode == 0, result.output
+        assert ("pulls at the masses of atoms" in result.output) == told
