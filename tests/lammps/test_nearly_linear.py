@@ -29,7 +29,9 @@ run {steps}
 """
 
 
-def carbon_dioxide(bend, spin, tumble=0.002, fix="gear/quat molecule report no", dt=1.0, steps=200, n=1, mass=O):
+def carbon_dioxide(
+    bend, spin, tumble=0.002, fix="gear/quat molecule report no", dt=1.0, steps=200, n=1, mass=O
+):
     total = 2 * mass + C
     sites = np.array([[-LENGTH, 0, 0], [0, bend, 0], [LENGTH, 0, 0]])
     arms = sites - np.array([mass, C, mass]) @ sites / total
@@ -39,7 +41,9 @@ def carbon_dioxide(bend, spin, tumble=0.002, fix="gear/quat molecule report no",
             tag, v = 3 * molecule + k + 1, np.cross([spin if molecule == 0 else 0, 0, tumble], arm)
             y = site[1] + 3.0 * (molecule - n // 2)
             lines.append(f"create_atoms {1 + (k == 1)} single {site[0]} {y:.17g} {site[2]}")
-            lines.append(f"set atom {tag} vx {v[0]:.17g} vy {v[1]:.17g} vz {v[2]:.17g} mol {molecule + 1}")
+            lines.append(
+                f"set atom {tag} vx {v[0]:.17g} vy {v[1]:.17g} vz {v[2]:.17g} mol {molecule + 1}"
+            )
     return DECK.format(O=mass, C=C, atoms="\n".join(lines), fix=fix, dt=dt, steps=steps)
 
 
@@ -57,7 +61,9 @@ def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
             " ".join(result.errors[0].split()),
         )
         omega, moment, largest, radians, step = map(float, told.groups())
-        assert moment == pytest.approx(smallest, rel=1e-4) and largest == pytest.approx(43.06, rel=1e-3)
+        assert moment == pytest.approx(smallest, rel=1e-4) and largest == pytest.approx(
+            43.06, rel=1e-3
+        )
         assert omega == pytest.approx(2.7, rel=1e-3) and radians == pytest.approx(omega)
     result = lmp_wheel.run(carbon_dioxide(bend, 2.7, dt=step, steps=2000))
     assert result.returncode == 0, result.output  # at the step that the message names
@@ -65,7 +71,9 @@ def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
 
 def test_what_is_followed_is_not_refused(lmp_wheel):
     """The fastest of these spins ends in a thousand steps; a hundred more than are flown are right."""
-    decks = [carbon_dioxide(bend, spin, steps=100) for bend in (0.02, 0.002) for spin in (0.1, 0.2, 0.3)]
+    decks = [
+        carbon_dioxide(bend, spin, steps=100) for bend in (0.02, 0.002) for spin in (0.1, 0.2, 0.3)
+    ]
     result = lmp_wheel.run(one_after_the_other(decks))
     assert result.returncode == 0, result.output
     for table in result.thermo:
@@ -93,10 +101,14 @@ def test_an_infile_makes_it_linear(lmp_wheel):
 def test_the_blow_up_names_the_moment(lmp_wheel):
     """A torque that spins it up in the run."""
     deck = carbon_dioxide(0.02, 0.0).replace(
-        "run 200", "group carbon type 2\nvariable push atom 1.0*step\nfix push carbon addforce 0 0 v_push\nrun 1000"
+        "run 200",
+        "group carbon type 2\nvariable push atom 1.0*step\nfix push carbon addforce 0 0 v_push\nrun 1000",
     )
     result = lmp_wheel.run(deck)
     assert result.returncode != 0
     words = " ".join(result.output.split())
     assert "blow-up in step" in words
-    assert "turns about the axis of its smallest moment of inertia, 0.0034932, the largest being 43.06" in words
+    assert (
+        "turns about the axis of its smallest moment of inertia, 0.0034932, the largest being 43.06"
+        in words
+    )

@@ -13,15 +13,21 @@ MANUAL = ROOT / "doc/src/fix_gear_quat.rst"
 COLUMNS = "step temp pe ke etotal econserve f_move[1] f_move[2]"
 
 
-def molecules(lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=200, thermo=None, run=None):
+def molecules(
+    lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=200, thermo=None, run=None
+):
     """27 molecules whose sites attract each other, smoothly cut off: the energy is kept."""
     data = water_data(lmp.folder / "data.water", shift=1.65)
-    deck = water(data, fix=fix, dt=dt, steps=steps, after=after, thermo=thermo, run=run or "run {steps}")
+    deck = water(
+        data, fix=fix, dt=dt, steps=steps, after=after, thermo=thermo, run=run or "run {steps}"
+    )
     deck = re.sub("pair_style.*", "pair_style lj/gromacs 3.0 4.0", deck)
     deck = re.sub("pair_coeff 1 1.*", "pair_coeff * * 0.1 2.2", deck)
     deck = re.sub("pair_coeff (2 2|1 2).*\n", "", deck)
     if fix.startswith("gear/quat"):
-        deck = deck.replace("thermo_style custom step temp pe ke etotal press", f"thermo_style custom {COLUMNS}")
+        deck = deck.replace(
+            "thermo_style custom step temp pe ke etotal press", f"thermo_style custom {COLUMNS}"
+        )
     return deck
 
 
@@ -37,7 +43,10 @@ def rows_of_the_manual():
     text = MANUAL.read_text()
     table = text.split(".. neighbors: begin")[1].split(".. neighbors: end")[0]
     rows = re.findall(r"\* - (.*?)\n\s+- (.*?)(?=\n\s+\* -|\Z)", table, re.S)
-    return {tuple(re.findall(r"\*([a-z_/]+)\*", styles)): " ".join(text.split()) for styles, text in rows}
+    return {
+        tuple(re.findall(r"\*([a-z_/]+)\*", styles)): " ".join(text.split())
+        for styles, text in rows
+    }
 
 
 def test_manual_and_code_have_the_same_table():
@@ -50,7 +59,9 @@ def test_manual_and_code_have_the_same_table():
     code = rows_of_the_code()
     assert len(code) > 25
     for style, text in told.items():
-        first = next((what for pattern, (what, _) in code.items() if re.search(pattern, style)), None)
+        first = next(
+            (what for pattern, (what, _) in code.items() if re.search(pattern, style)), None
+        )
         assert first is not None, f"{style} is in the manual only"
         assert text.startswith(words[first]), style
     for pattern in code:
@@ -74,13 +85,18 @@ def energies(table):
 def test_thermostats_by_scaling_reach_the_bodies(lmp_wheel, formulation):
     """Bodies have the temperature that thermo shows, and what the thermostat takes is what they lose."""
     fix = f"gear/quat molecule report no formulation {formulation}"
-    decks = [molecules(lmp_wheel, f"fix bath all {words}", fix, dt=0.25, thermo=40, steps=800) for words in TAKEN.values()]
+    decks = [
+        molecules(lmp_wheel, f"fix bath all {words}", fix, dt=0.25, thermo=40, steps=800)
+        for words in TAKEN.values()
+    ]
     result = lmp_wheel.run(one_after_the_other(decks))
     assert result.returncode == 0, result.output
     for table in map(energies, result.thermo):
         bodies = table["f_move[1]"] + table["f_move[2]"]
         late = slice(len(bodies) // 2, None)
-        assert bodies[late] == pytest.approx(table["KinEng"][late], rel=0.02)  # but for the last scaling
+        assert bodies[late] == pytest.approx(
+            table["KinEng"][late], rel=0.02
+        )  # but for the last scaling
         assert 200 < table["Temp"][late].mean() < 420  # without: 1200
         taken = table["TotEng"][0] - table["TotEng"][-1]
         assert taken > 100
@@ -106,7 +122,9 @@ def test_momentum_reaches_the_bodies(lmp_wheel):
 
 def test_heat_is_what_it_says(lmp_wheel):
     """One part in a thousand of the heat is seen."""
-    result = lmp_wheel.run(molecules(lmp_wheel, "fix in all heat 1 0.1", dt=0.25, thermo=200, steps=400))
+    result = lmp_wheel.run(
+        molecules(lmp_wheel, "fix in all heat 1 0.1", dt=0.25, thermo=200, steps=400)
+    )
     assert result.returncode == 0, result.output
     plain = lmp_wheel.run(molecules(lmp_wheel, "", dt=0.25, thermo=200, steps=400))
     gained = result.thermo[0]["TotEng"][-1] - plain.thermo[0]["TotEng"][-1]
@@ -132,7 +150,10 @@ def test_a_scaling_that_tears_bodies_ends_the_run(lmp_wheel, ranks):
     group = "group oxygen type 1\nfix bath oxygen temp/rescale 1 300 300 1 1.0"
     result = lmp_wheel.run(molecules(lmp_wheel, group, steps=20), ranks=ranks)
     assert result.returncode != 0
-    assert "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 are not" in result.errors[0]
+    assert (
+        "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 are not"
+        in result.errors[0]
+    )
     assert len(set(result.errors)) == 1
 
 
@@ -166,7 +187,9 @@ def test_a_group_without_bodies_is_not_refused(lmp_wheel):
         if "recenter" in words or "gjf" in words:
             continue
         after = f"{NEEDS}group free id 1:3\ngroup bound subtract all free\nfix nve free nve\nfix other free {words}"
-        deck = molecules(lmp_wheel, after, steps=1).replace("fix move all", "group some id 4:81\nfix move some")
+        deck = molecules(lmp_wheel, after, steps=1).replace(
+            "fix move all", "group some id 4:81\nfix move some"
+        )
         decks.append(deck)
     result = lmp_wheel.run(one_after_the_other(decks))
     assert "Fix gear/quat" not in " ".join(result.errors), result.output
@@ -210,8 +233,13 @@ run 1
 def test_isokinetic_and_a_thermostat(lmp_wheel):
     fix = "gear/quat molecule report no formulation first isokinetic total"
     result = lmp_wheel.run(molecules(lmp_wheel, "fix bath all temp/csvr 300 300 100 4711", fix))
-    assert "isokinetic keeps the kinetic energy, which fix bath (temp/csvr) changes" in result.errors[0]
-    result = lmp_wheel.run(molecules(lmp_wheel, "fix still all momentum 5 linear 1 1 1", fix, steps=20))
+    assert (
+        "isokinetic keeps the kinetic energy, which fix bath (temp/csvr) changes"
+        in result.errors[0]
+    )
+    result = lmp_wheel.run(
+        molecules(lmp_wheel, "fix still all momentum 5 linear 1 1 1", fix, steps=20)
+    )
     assert result.returncode == 0, result.output
 
 
