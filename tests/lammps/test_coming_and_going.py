@@ -1,5 +1,7 @@
 """Bodies that are removed or inserted while the fix exists, and what velocity does to bodies."""
 
+import re
+
 import numpy as np
 import pytest
 from scenes import last_frame, two_molecules, water, water_data
@@ -325,6 +327,64 @@ def test_wrong_templates(lmp, words, message):
     result = run_water(lmp, commands, 2, f"gear/quat {words}", TEMPLATE)
     assert result.returncode != 0
     assert any(message in error for error in result.errors)
+
+
+STATED = {
+    "mass": "4.5 mass",
+    "all": "4.5 mass\n0.1 0.25 0.05 com\n2.0 1.5 3.0 0.1 0.05 -0.1 inertia",
+}
+
+
+def inserted(lmp, header, fix, dt, steps):
+    """Velocities of the atoms of one molecule, `steps` after it came, in a constant field."""
+    (lmp.folder / "molecule.spce").write_text(SPCE.replace("3 atoms", f"3 atoms\n{header}"))
+    commands = (
+        "region here block 1 2 1 2 1 2\n"
+        "fix in all deposit 1 0 1 4711 region here near 0.5 mol spce rigid move "
+        "vx 0.3 0.3 vy -0.2 -0.2 vz 0.4 0.4"
+    )
+    deck = FIELD.format(atoms="", words="", dt=dt, commands=commands, steps=steps + 1)
+    deck = deck.replace("fix move all gear/quat molecule mol spce", f"fix move all {fix} mol spce")
+    deck = re.sub("(?m)^variable f.*\n", "", deck).replace("v_fx v_fy v_fz", "0.5 -0.3 0.7")
+    result = lmp.run(deck.replace("dump poses all custom 1 ", f"dump poses all custom {steps + 1} "))
+    return result, lambda: last_frame(lmp.folder / "poses.dump")[:, 1:]
+
+
+@pytest.mark.parametrize("header", STATED)
+def test_a_template_that_states_its_mass(lmp_tree, header):
+    """Centre and inertia too, turned as it is inserted: as rigid/small at a step ten times smaller."""
+    result, frame = inserted(lmp_tree, STATED[header], "gear/quat molecule", 0.005, 200)
+    assert result.returncode == 0, result.output
+    assert "template spce states mass, center of mass or inertia other than" in result.output
+    mine = frame()
+    result, frame = inserted(lmp_tree, STATED[header], "rigid/nve/small molecule", 0.0005, 2000)
+    assert result.returncode == 0, result.output
+    assert mine == pytest.approx(frame(), abs=2e-3)
+    result, frame = inserted(lmp_tree, "", "gear/quat molecule", 0.005, 200)
+    assert "template spce states" not in result.output
+    assert abs(mine - frame()).max() > 0.05  # what the atoms add up to moves otherwise
+
+
+@pytest.mark.parametrize(
+    "header, message",
+    {
+        "-1.0 mass": "mass",  # LAMMPS' own
+        "1 1 3 0 0 0 inertia": "states a principal moment that is more than the sum of the two",
+        "5 5 5 6 0 0 inertia": "states a negative principal moment",
+        "9 0 0 com": "states a center of mass that is far away from all its atoms",
+    }.items(),
+)
+def test_a_template_that_no_body_is(lmp_tree, header, message):
+    result, _ = inserted(lmp_tree, header, "gear/quat molecule", 0.005, 5)
+    assert result.returncode != 0 and message in result.errors[0]
+    assert not result.thermo
+
+
+def test_a_plugin_without_the_header_says_so(lmp_wheel):
+    result, _ = inserted(lmp_wheel, STATED["mass"], "gear/quat molecule", 0.005, 5)
+    assert result.returncode == 0, result.output
+    words = " ".join(result.output.split())
+    assert "mass, com and inertia in the header of molecule template spce" in words
 
 
 # --- velocity ------------------------------------------------------------------------------------
