@@ -26,6 +26,7 @@
 #include "gear_quat_integrator.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace GearQuat {
 
@@ -33,7 +34,8 @@ namespace GearQuat {
 /// second-order form grow by themselves (tests/unit/test_step_control.cpp).
 constexpr int VARIABLE_MOST = 10;
 
-/// Local errors (length or radians, whichever is larger) with one value fewer, the present number,
+/// Local errors (lengths: of the position, or of the orientation times the reach of the body, whichever
+/// is larger) with one value fewer, the present number,
 /// one more.
 struct StepErrors {
   double fewer = 0.0, same = 0.0, more = 0.0;
@@ -58,9 +60,10 @@ class VariableOrder {
     more = adams_moulton(n).value() * factorial;
   }
 
-  /// Integrator::correct(), and the errors of the step that ends with it.
-  Correction correct(const Integrator &integrator, const RigidBody &body, const Load &load,
-                     double *rows, StepErrors &errors) const
+  /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a rotation by
+  /// a radian moves what is far out on the body.
+  Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
+                     const Load &load, double *rows, StepErrors &errors) const
   {
     const double *last = rows + (n - 1) * scheme.width();
     double *trial = rows + scheme.trial_row();
@@ -72,12 +75,15 @@ class VariableOrder {
       change[i] = found - trial[i];
       trial[i] = found;
     }
-    errors = {fewer * size(last), same * size(trial), more * size(change)};
+    errors = {fewer * size(last, reach), same * size(trial, reach), more * size(change, reach)};
     return correction;
   }
 
   /// Error of a step from the rows alone.
-  double error(const double *rows) const { return same * size(rows + scheme.trial_row()); }
+  double error(const double *rows, double reach) const
+  {
+    return same * size(rows + scheme.trial_row(), reach);
+  }
 
   /// One value more.  After the call the rows are those of n + 1 values; their trial row is zero
   /// until the next step.
@@ -108,10 +114,10 @@ class VariableOrder {
   int n;
   double fewer, same, more;    ///< gamma_(k-1) k! / the part of a_k that is measured
 
-  double size(const double *row) const
+  double size(const double *row, double reach) const
   {
     const double *x = row + Scheme::POSITION, *q = row + scheme.quaternion();
-    return std::max(std::sqrt(dot3(x, x)), 2.0 * std::sqrt(dot4(q, q)));
+    return std::max(std::sqrt(dot3(x, x)), 2.0 * reach * std::sqrt(dot4(q, q)));
   }
 };
 
@@ -133,26 +139,29 @@ class StepControl {
   };
 
   /// step, values: of the step that made these errors.  steady: steps made with that number.
-  Next next(const StepErrors &errors, double step, int values, int steady) const
+  /// farthest: the step is not longer, whatever the errors are.  Numbers of values are compared by
+  /// what they allow as far as a step may grow.
+  Next next(const StepErrors &errors, double step, int values, int steady,
+            double farthest = std::numeric_limits<double>::infinity()) const
   {
     Next choice = {step, values, false};
-    double ratio = allowed(errors.same, values);
-    const double same = ratio;
+    const double same = std::min(GROWTH, allowed(errors.same, values));
+    double ratio = same;
     if (values > fewest) {
-      const double fewer = allowed(FEWER * errors.fewer, values - 1);
+      const double fewer = std::min(GROWTH, allowed(FEWER * errors.fewer, values - 1));
       if (fewer > same) {
         ratio = fewer;
         choice.values = values - 1;
       }
     }
     if (values < most && steady > values) {
-      const double more = allowed(MORE * errors.more, values + 1);
+      const double more = std::min(GROWTH, allowed(MORE * errors.more, values + 1));
       if (more > ratio) {
         ratio = more;
         choice.values = values + 1;
       }
     }
-    double size = std::fabs(step) * std::min(GROWTH, std::max(SHRINK, ratio));
+    double size = std::min(farthest, std::fabs(step) * std::max(SHRINK, ratio));
     choice.held = size < shortest;
     size = std::max(size, shortest);
     if (longest > 0.0) size = std::min(size, longest);

@@ -10,6 +10,7 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "output.h"
 #include "pair.h"
 #include "update.h"
@@ -21,6 +22,11 @@
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
+
+// no step moves a site by more than this part of the neighbor skin: a force that begins on the way is
+// met before the body is deep in it
+
+static constexpr double PART_OF_SKIN = 0.25;
 
 static Scheme with_trial_row(Scheme scheme)
 {
@@ -85,12 +91,14 @@ void GearQuatTolerance::begin(bool full)
 
 void GearQuatTolerance::shorten_first_step()
 {
-  double here = 0.0, largest;
+  double here[2] = {0.0, largest_speed()}, all[2];
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    here = std::max(here, order.error(bodies.history(ibody)));
-  MPI_Allreduce(&here, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+    here[0] = std::max(here[0], order.error(bodies.history(ibody), bodies.body[ibody].reach()));
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  const double largest = all[0];
   const double ratio = std::min(1.0, control.allowed(largest, present.values()));
-  const double size = std::max(control.shortest, ratio * std::fabs(update->dt));
+  const double size =
+      std::max(control.shortest, std::min(ratio * std::fabs(update->dt), farthest_step(all[1])));
   if (size >= std::fabs(update->dt)) return;
   if (const Fix *other = integrated_before()) {
     if (comm->me == 0)
@@ -134,19 +142,41 @@ void GearQuatTolerance::set_begun_step(double step)
 Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody, const Load &load)
 {
   StepErrors one;
+  const GearQuatBody &body = bodies.body[ibody];
   const Correction correction =
-      order.correct(integrator, bodies.body[ibody].rigid, load, bodies.history(ibody), one);
+      order.correct(integrator, body.rigid, body.reach(), load, bodies.history(ibody), one);
   if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
   errors.include(one);
   return correction;
 }
 
+/// No site on this rank is faster.
+double GearQuatTolerance::largest_speed() const
+{
+  double largest = 0.0;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const BodyState &s = bodies.state[ibody];
+    const double speed = std::sqrt(dot3(s.velocity, s.velocity)) +
+        bodies.body[ibody].reach() * std::sqrt(dot3(s.omega_body, s.omega_body));
+    largest = std::max(largest, speed);
+  }
+  return largest;
+}
+
+/// Where nothing moves nothing is known of what a longer step would do.
+double GearQuatTolerance::farthest_step(double speed) const
+{
+  if (speed == 0.0) return std::fabs(update->dt);
+  return neighbor->skin > 0.0 ? PART_OF_SKIN * neighbor->skin / speed
+                              : std::numeric_limits<double>::infinity();
+}
+
 bool GearQuatTolerance::choose()
 {
-  double here[4] = {errors.fewer, errors.same, errors.more,
-                    fresh ? 1.0 : 0.0};    // not const: STUBS
-  double all[4];
-  MPI_Allreduce(here, all, 4, MPI_DOUBLE, MPI_MAX, world);
+  double here[5] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0,
+                    largest_speed()};    // not const: STUBS
+  double all[5];
+  MPI_Allreduce(here, all, 5, MPI_DOUBLE, MPI_MAX, world);
   errors = StepErrors();
   fresh = false;
   if (std::isinf(all[1]))
@@ -165,7 +195,8 @@ bool GearQuatTolerance::choose()
   kept.values_sum += values;
   kept.largest = std::max(kept.largest, all[1] / control.eps);
 
-  auto next = control.next({all[0], all[1], all[2]}, step, values, (int) kept.steady);
+  auto next = control.next({all[0], all[1], all[2]}, step, values, (int) kept.steady,
+                           farthest_step(all[4]));
   if (all[3] != 0.0) next.values = control.fewest;    // rows above are zero in a fresh history
   if (next.held) {
     kept.held += 1.0;

@@ -87,6 +87,8 @@ class GearQuatTolerance : protected Pointers {
   void set_begun_step(double step);
   void tell_of_step(double step) const;
   const Fix *integrated_before() const;
+  double largest_speed() const;
+  double farthest_step(double speed) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 from running import EXAMPLES
-from scenes import one_after_the_other, two_molecules, whole_deck
+from scenes import UNITS, one_after_the_other, two_molecules, water, water_data, whole_deck
 
 COLUMNS = " ".join(f"f_move[{k}]" for k in range(9, 16))
 NEXT, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST, HELD = (f"f_move[{k}]" for k in range(9, 16))
@@ -231,3 +231,93 @@ def test_case_1_for_long(lmp_tree, formulation):
     assert 2500 / evaluations > 50000 / 1e6
     assert sampled < 1e-10 and every_step < 1e-9
     assert sampled > 0
+
+
+# Two molecules that meet out of free flight; from 6 on their forces fade away smoothly.
+MEETING = """
+units lj
+atom_style full
+atom_modify map array
+region box block -30 30 -10 10 -10 10
+create_box 1 box
+create_atoms 1 single -15.0 0.0 0.0
+create_atoms 1 single -14.0 0.0 0.0
+create_atoms 1 single -15.0 1.2 0.1
+create_atoms 1 single 15.0 0.3 0.2
+create_atoms 1 single 16.0 0.3 0.2
+create_atoms 1 single 15.0 1.5 0.3
+mass 1 1.0
+set atom 1*3 mol 1
+set atom 4*6 mol 2
+group left id 1:3
+group right id 4:6
+velocity left set 2.0 0 0
+velocity right set -2.0 0 0
+pair_style {pair}
+pair_coeff * * 1.0 1.0
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+timestep 0.005
+fix move all gear/quat molecule tolerance {eps}
+fix_modify move energy yes
+thermo_style custom step time dt pe etotal f_move[9] f_move[12] f_move[14]
+thermo_modify norm no format float %.17g
+thermo 1
+variable now equal time
+fix stop all halt 1 v_now >= 12.5 error continue
+run 100000
+"""
+
+
+def test_a_collision_out_of_free_flight(lmp_tree):
+    """The step has not grown beyond what forces that begin on the way allow, nor has N fallen."""
+    smooth = "lj/charmm/coul/charmm 4.0 6.0"
+    eps = [1e-8, 1e-10, 1e-13]
+    decks = [MEETING.format(eps=e, pair=smooth) for e in eps]
+    decks += [MEETING.format(eps=e, pair="lj/cut 2.5") for e in eps]
+    runs, _ = table(lmp_tree, one_after_the_other(decks))
+    for e, run in zip(eps, runs):
+        energy, steps = run["TotEng"], np.diff(run["Time"])
+        assert run["PotEng"].min() < -1 and run["Time"][-1] >= 12.5  # they have met
+        # force times eps in each step, and the bend of the force where it begins
+        assert np.abs(energy - energy[0]).max() < 50 * e * len(steps) + 1e-6
+        assert 2.0 * steps.max() < 0.25 * 0.3 * 1.001  # a quarter of the skin
+        assert run["f_move[12]"].min() >= 8
+    for run in runs[3:]:  # a force and an energy that jump cost what they jump by
+        assert run["Time"][-1] >= 12.5
+        assert abs(run["TotEng"][-1] - run["TotEng"][0]) < 0.02
+
+
+def test_no_bodies_yet(lmp_tree):
+    """The step does not grow while there is nothing that says how far it may."""
+    (lmp_tree.folder / "molecule.two").write_text(
+        "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
+    )
+    text = MEETING.format(eps=1e-8, pair="lj/cut 2.5")
+    start, end = text.index("create_atoms"), text.index("mass 1")
+    text = text[:start] + text[end:]
+    begin, finish = text.index("set atom"), text.index("pair_style")
+    text = text[:begin] + "molecule two molecule.two\n" + text[finish:]
+    text = text.replace("gear/quat molecule", "gear/quat molecule mol two").replace(
+        "run 100000",
+        "run 100\nregion in block -5 5 -5 5 -5 5\nfix in all deposit 3 0 200 4711 region in near 2.5 mol two "
+        "rigid move vx 1 1\nrun 700",
+    )
+    (empty, run), _ = table(lmp_tree, text)
+    assert np.diff(empty["Time"]) == pytest.approx([0.005] * 100, rel=1e-9)
+    assert 0.005 < np.diff(run["Time"]).max() < 0.25 * 0.3 * 1.001  # they come with a speed of 1
+
+
+def test_eps_is_a_length(lmp_tree):
+    """The same error and so the same steps in all systems of units."""
+    times = {}
+    for units in ("real", "metal", "si", "cgs", "nano"):
+        scale = UNITS[units]
+        data = water_data(lmp_tree.folder / f"data.{units}", units=units)
+        fix = f"gear/quat molecule tolerance {1e-7 * scale['length']:g}"
+        deck = water(data, fix, dt=0.5, steps=60, units=units, run="run 60", dump=f"d.{units}")
+        (run,), _ = table(lmp_tree, deck.replace("step temp", "step time f_move[12] temp"))
+        times[units] = run["Time"][-1] / scale["time"]
+        assert run["f_move[12]"][-1] > 4
+    assert times["real"] > 30.0
+    for units, time in times.items():
+        assert time == pytest.approx(times["real"], rel=1e-3), times
