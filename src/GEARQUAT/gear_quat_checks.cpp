@@ -10,7 +10,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "library.h"
 #include "modify.h"
@@ -33,6 +32,17 @@ static void refuse_respa_with_steps(LAMMPS *lmp)
                       "Fix gear/quat requires run_style respa to have the same step at all levels "
                       "(loop factors of 1); levels 1 and {} have {} and {}",
                       level + 1, steps[0], steps[level]);
+}
+
+/// A box that follows its atoms moves no atom; one that a fix changes does.
+static void refuse_box_changes(LAMMPS *lmp)
+{
+  for (const auto *other : lmp->modify->get_fix_list())
+    if (other->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE))
+      lmp->error->all(FLERR,
+                      "Fix gear/quat requires a box that does not change size or shape, and fix {} "
+                      "({}) changes it",
+                      other->id, other->style);
 }
 
 static void refuse_other_integrators(LAMMPS *lmp, const FixGearQuat *fix,
@@ -87,8 +97,7 @@ void LAMMPS_NS::refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuat
   if (lmp->update->dt == 0.0 || !std::isfinite(lmp->update->dt))
     lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}",
                     lmp->update->dt);
-  if (lmp->domain->box_change_size || lmp->domain->box_change_shape)
-    lmp->error->all(FLERR, "Fix gear/quat requires a box that does not change size or shape");
+  refuse_box_changes(lmp);
   bodies.refuse_atoms();
   refuse_respa_with_steps(lmp);
   refuse_other_integrators(lmp, fix, bodies);
