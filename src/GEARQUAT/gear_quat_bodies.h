@@ -105,7 +105,7 @@ class GearQuatBodies : protected Pointers {
   /// True if masses, positions and velocities of all atoms are those of their bodies.  Ends the run if
   /// image flags or another box have torn a body.
   bool atoms_match();
-  /// Ends the run if a body has lost some of its atoms; needs no ghosts.
+  /// Ends the run if a body has lost some of its atoms, and follows changed atom IDs; needs no ghosts.
   void check_whole();
   /// Degrees of freedom that rigidity takes from the atoms of a group.
   bigint removed_freedoms(int groupbit);
@@ -210,6 +210,7 @@ class GearQuatBodies : protected Pointers {
   Forward forward;    ///< what forward communication carries
   double *labels;     ///< of all atoms, while these are sent
 
+  void follow_atom_ids();
   void drop_ghosts();
   int add_owned(int atom);
   void remove_owned(int ibody);

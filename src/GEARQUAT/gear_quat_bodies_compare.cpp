@@ -7,12 +7,15 @@
 
 #include "gear_quat_bodies.h"
 
+#include "gear_quat_gather.h"
+
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -116,21 +119,33 @@ void GearQuatBodies::refuse_tears(const GearQuatCensus &found) const
 
 void GearQuatBodies::check_whole()
 {
-  int renumbered = 0, any;
-  for (int ibody = 0; ibody < nown; ++ibody)
-    if (owner_tag[owner_atom[ibody]] != atom->tag[owner_atom[ibody]]) renumbered = 1;
-  MPI_Allreduce(&renumbered, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any)
-    error->all(FLERR,
-               "Fix gear/quat: atom IDs were changed since the fix was defined; define it "
-               "after reset_atoms id or delete_atoms compress yes");
   const GearQuatCensus found = census(0);
-  if (!found.broken) return;
-  const std::string had = found.had
-      ? fmt::format("{} of its {} atoms", found.left, found.had)
-      : fmt::format("{} of its atoms, not the one that owned it,", found.left);
-  error->all(FLERR, "Fix gear/quat: body {} has {} left; a body must be removed as a whole",
-             found.broken, had);
+  if (found.broken) {
+    const std::string had = found.had
+        ? fmt::format("{} of its {} atoms", found.left, found.had)
+        : fmt::format("{} of its atoms, not the one that owned it,", found.left);
+    error->all(FLERR, "Fix gear/quat: body {} has {} left; a body must be removed as a whole",
+               found.broken, had);
+  }
+  follow_atom_ids();
+}
+
+/// Owners may have got other atom IDs (reset_atoms id, delete_atoms compress yes): told to their sites.
+void GearQuatBodies::follow_atom_ids()
+{
+  std::vector<tagint> changed;    // before and now
+  for (int ibody = 0; ibody < nown; ++ibody) {
+    const int owner = owner_atom[ibody];
+    if (owner_tag[owner] != atom->tag[owner])
+      changed.insert(changed.end(), {owner_tag[owner], atom->tag[owner]});
+  }
+  const std::vector<tagint> all = gear_quat_gather(changed, MPI_LMP_TAGINT, world);
+  std::unordered_map<tagint, tagint> now;
+  for (size_t n = 0; n < all.size(); n += 2) now[all[n]] = all[n + 1];
+  for (int i = 0; i < atom->nlocal && !now.empty(); ++i) {
+    const auto found = now.find(owner_tag[i]);
+    if (in_body(i) && found != now.end()) owner_tag[i] = found->second;
+  }
 }
 
 bigint GearQuatBodies::removed_freedoms(int groupbit)

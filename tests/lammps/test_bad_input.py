@@ -168,12 +168,6 @@ SCENES = {
         "a box that does not change size or shape",
         "molecule",
     ),
-    "renumbered": (
-        "",
-        "group one id 1 2 3\nrun 1\ndelete_atoms group one mol yes\nreset_atoms id\nrun 1",
-        "atom IDs were changed since the fix was defined",
-        "molecule",
-    ),
     "part of a body": (
         "",
         "group lost id 2\nrun 1\ndelete_atoms group lost compress no\nrun 1",

@@ -164,6 +164,57 @@ def test_molecules_deleted_between_runs(lmp, ranks):
     assert len(bodies(lmp)[-1]) == N - 3
 
 
+# Dumbbells of an atomic system; body 3 goes.
+DUMBBELLS = """
+units lj
+atom_style atomic
+atom_modify map array
+lattice sc 0.125
+region box block 0 4 0 4 0 4
+create_box 1 box
+create_atoms 1 box
+fix ids all property/atom i_body
+variable body atom ceil(id/2)
+set group all i_body v_body
+mass 1 1.0
+velocity all create 3.0 4711 loop geom
+pair_style lj/cut 2.5
+pair_coeff * * 1.0 1.0
+timestep 0.002
+fix move all gear/quat custom i_body
+variable three atom i_body==3
+group three variable three
+thermo_style custom step {columns}
+thermo_modify format float %.17g lost error
+compute_modify thermo_temp dynamic/dof yes
+run 100
+{change}
+run 100
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_bodies_go_on_when_atoms_get_other_ids(lmp_tree, ranks):
+    """delete_atoms as it is by default gives new IDs in an atomic system, reset_atoms in all systems."""
+    columns = " ".join(f"f_move[{row}][{k}]" for row in (1, 2, 3, 4) for k in (1, 2, 3, 16, 28))
+    changes = [
+        "delete_atoms group three compress no",
+        "delete_atoms group three",
+        "delete_atoms group three compress no\nreset_atoms id",
+        "delete_atoms group three\nwrite_restart renumbered",
+    ]
+    ends = []
+    for change in changes:
+        deck = DUMBBELLS.format(columns=columns, change=change)
+        result = lmp_tree.run(deck, ranks=ranks)
+        assert result.returncode == 0, result.output
+        assert "bodies start" not in result.output
+        ends.append([result.thermo[-1][column][-1] for column in columns.split()])
+    for end in ends[1:]:
+        assert end == pytest.approx(ends[0], rel=1e-12)
+        assert ends[0][4::5] == [1, 2, 4, 5]
+
+
 def test_all_bodies_may_go(lmp_tree):
     after = "run 2\ndelete_atoms group all compress no\nrun 2"
     assert lmp_tree.run(two_molecules(after=after), ranks=2).returncode == 0
