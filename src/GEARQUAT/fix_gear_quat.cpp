@@ -97,6 +97,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   array_flag = local_flag = 1;
   extarray = 0;
   local_freq = 1;
+  size_array_rows = 0;
   size_array_cols = size_local_cols = GearQuatTable::COLUMNS;
   energy_global_flag = 1;
   virial_global_flag = virial_peratom_flag = 1;
@@ -131,7 +132,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   if (bodies->number() == 0 && args->mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
   motion->meet_bodies();
-  size_array_rows = bodies->number();
+  count_rows();
+  size_array_rows_variable = !args->mol.empty();    // rows may be asked for before they are there
 
   // only now that nothing can fail: LAMMPS would go on calling a fix that does not exist
   extlist = new int[size_vector]{1, 1};
@@ -214,7 +216,7 @@ void FixGearQuat::setup_pre_neighbor()
   }
   motion->impose_masks();
   met_atoms = compared = true;
-  size_array_rows = bodies->number();
+  count_rows();
 }
 
 /// What fixes that scale velocities or shift them gave to the atoms of bodies in the end of a step.
@@ -240,6 +242,12 @@ void FixGearQuat::setup(int vflag)
   reported = true;
 }
 
+/// A row, once there, stays: what has asked for it goes on doing so when its body is gone.
+void FixGearQuat::count_rows()
+{
+  size_array_rows = std::max(size_array_rows, (int) bodies->number());
+}
+
 /// Local data have to be there whenever something may read them.
 void FixGearQuat::show_bodies()
 {
@@ -252,7 +260,7 @@ void FixGearQuat::pre_neighbor()
 {
   bodies->update_ghosts();
   table->forget();
-  size_array_rows = bodies->number();
+  count_rows();
 }
 
 /* ----------------------------------------------------------------------

@@ -100,6 +100,7 @@ class FixGearQuat : public Fix {
   void finish_step(double **, double **);
   void tally_virial(double **);
   bool read_at_end() const;
+  void count_rows();
   void show_bodies();
 };
 

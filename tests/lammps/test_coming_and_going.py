@@ -127,6 +127,31 @@ run 11
     close(dumped, last_frame(lmp_tree.folder / "poses.dump"), 1e-6)
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_rows_of_bodies_that_are_gone_read_as_zeros(lmp_tree, ranks):
+    """In thermo, in variables, in averages and in sums over a column."""
+    evaporate = EVAPORATE.format(members="molecule 5 17", molecule="yes")
+    commands = """
+variable id equal f_move[27][28]
+variable ids equal sum(f_move[28])
+fix mean all ave/time 1 1 20 f_move[28] mode vector file mean
+thermo_style custom step f_move[27][28] v_id v_ids
+thermo 1
+run {steps}
+variable second equal f_move[27][28]
+thermo_style custom step v_second
+run 0
+"""
+    result = run_water(lmp_tree, evaporate + commands, ranks)
+    assert result.returncode == 0, result.output
+    thermo = result.thermo[0]
+    assert thermo["f_move[27][28]"] == thermo["v_id"] == [27] * 5 + [0] * 16
+    everyone = N * (N + 1) // 2
+    assert thermo["v_ids"][4] == everyone and thermo["v_ids"][-1] == everyone - 5 - 17
+    assert result.thermo[1]["v_second"] == [0]
+    assert (lmp_tree.folder / "mean").read_text().split()[-4:] == ["26", "0", "27", "0"]
+
+
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 @pytest.mark.parametrize("atom", [OXYGEN, OXYGEN + 1, OXYGEN + 2])
 def test_a_broken_body_is_noticed_in_a_run(lmp_tree, ranks, atom):
@@ -468,3 +493,29 @@ def test_velocities_given_between_runs(lmp_tree):
             1e-12,
         )
         assert np.abs(v - given).max() > 1e-3  # and the rest is gone
+
+
+EMPTY = """
+units real
+atom_style full
+atom_modify map array
+region box block 0 13 0 13 0 13
+create_box 2 box
+mass * 10.0
+pair_style zero 4.0
+pair_coeff * *
+molecule spce molecule.spce
+fix move all gear/quat molecule mol spce
+variable id equal f_move[1][28]
+thermo_style custom step v_id f_move[2][28]
+thermo 1
+"""
+
+
+def test_rows_may_be_asked_for_before_a_body_is_there(lmp_tree):
+    """An empty box into which a molecule comes."""
+    (lmp_tree.folder / "molecule.spce").write_text(SPCE)
+    result = lmp_tree.run(EMPTY + INSERT.format(count=1) + "thermo_modify lost ignore\nrun 3\n")
+    assert result.returncode == 0, result.output
+    assert result.thermo[-1]["v_id"] == [0, 1, 1, 1]
+    assert result.thermo[-1]["f_move[2][28]"] == [0, 0, 0, 0]
