@@ -25,6 +25,7 @@
 #include "gear_quat_neighbors.h"
 #include "gear_quat_report.h"
 #include "gear_quat_respa.h"
+#include "gear_quat_restart.h"
 #include "gear_quat_rigid_words.h"
 #include "gear_quat_scene.h"
 #include "gear_quat_sums.h"
@@ -115,6 +116,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   bodies.reset(new GearQuatBodies(lmp, this, args->scheme));
   motion.reset(new GearQuatMotion(lmp, this, *args, *bodies));
   neighbors.reset(new GearQuatNeighbors(lmp, this, *bodies, args->isokinetic != Isokinetic::NONE));
+  restarts.reset(new GearQuatRestart(lmp, this, *bodies, *motion));
   respa.reset(new GearQuatRespa(lmp));
   table.reset(new GearQuatTable(lmp, *bodies));
   sums.reset(new GearQuatSums(lmp, *bodies));
@@ -125,10 +127,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   comm_forward = bodies->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
 
-  GivenBodies given;
-  if (!args->infile.empty()) given = read_given_bodies(lmp, args->infile);
-  bodies->create(args->body_ids(lmp, groupbit), given);
-
+  create_bodies();
   if (bodies->number() == 0 && args->mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
   motion->meet_bodies();
@@ -146,6 +145,13 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
                    bodies->number_of_sites());
 }
 
+void FixGearQuat::create_bodies()
+{
+  GivenBodies given;
+  if (!args->infile.empty()) given = read_given_bodies(lmp, args->infile);
+  bodies->create(args->body_ids(lmp, groupbit), given);
+}
+
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::~FixGearQuat()
@@ -158,8 +164,10 @@ FixGearQuat::~FixGearQuat()
 
 /* ---------------------------------------------------------------------- */
 
+/// LAMMPS asks for it when a new fix has got its restart data, on all ranks.
 int FixGearQuat::setmask()
 {
+  resume();
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR | INITIAL_INTEGRATE_RESPA |
       FINAL_INTEGRATE_RESPA | (motion->changes_step() ? END_OF_STEP : 0);
 }
@@ -479,27 +487,12 @@ void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   restart: the global part says what the histories are, the per-atom part holds them
+   restart
 ------------------------------------------------------------------------- */
-
-// a restart file of releases up to 0.2.0 begins with the formulation, 0 or 1
-
-static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
-static constexpr double FORMAT = 1;
-
-struct GlobalRestart {
-  double magic, format;
-  GearQuatMotion::Kept motion;
-  double extended;    // bodies have sites that are more than points
-};
 
 void FixGearQuat::write_restart(FILE *fp)
 {
-  if (comm->me != 0) return;
-  const GlobalRestart data = {MAGIC, FORMAT, motion->keep(), (double) bodies->has_extended()};
-  const int size = sizeof(data);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&data, size, 1, fp);
+  if (comm->me == 0) restarts->write(fp);
 }
 
 /// All bodies in the format of keyword infile, beside the binary restart file.
@@ -510,53 +503,41 @@ void FixGearQuat::write_restart_file(const char *file)
   write_given_bodies(lmp, fmt::format("{}.{}.gear_quat", file, id), id, *bodies, array_local);
 }
 
-/// LAMMPS does not tell the size of the block: only what every release wrote may be read at first.
-static void refuse_other_formats(LAMMPS *lmp, const Fix *fix, const char *buf)
-{
-  double head[2];
-  std::memcpy(head, buf, sizeof(head));
-  const bool older = head[0] != MAGIC;
-  if (!older && head[1] == FORMAT) return;
-  lmp->error->all(
-      FLERR,
-      "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
-      "data of fix {} this one cannot read; continue with the release that wrote it, or "
-      "let that one write a data file with write_data and start from this",
-      older ? "an older (0.2.0 or before)" : "a newer", fix->id);
-}
-
-/// Called before the per-atom data arrive: what the constructor made of the atoms is dropped.
 void FixGearQuat::restart(char *buf)
 {
-  refuse_other_formats(lmp, this, buf);
-  GlobalRestart data;
-  std::memcpy(&data, buf, sizeof(data));
-  bodies->clear(data.extended != 0.0);
-  motion->take(data.motion);
-  met_atoms = true;
+  restarts->read(buf);
 }
 
-/// Other fixes find their data behind these: the first number tells how many there are.
+/// The bodies of a restart file go on, if they are those of the command.
+void FixGearQuat::resume()
+{
+  if (!restarts->was_read()) return;
+  const bool others_come = !args->mol.empty();    // also from outside of the group
+  met_atoms = restarts->resume(others_come ? groupbit : 0);
+  if (met_atoms) return;
+  create_bodies();
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: the bodies of this command consist of other atoms than those of "
+                   "the restart file; they begin anew from their atoms");
+}
+
 int FixGearQuat::pack_restart(int i, double *buf)
 {
-  const int n = 1 + bodies->pack_exchange(i, buf + 1);
-  buf[0] = n;
-  return n;
+  return restarts->pack(i, buf);
 }
 
-void FixGearQuat::unpack_restart(int nlocal, int nth)
+void FixGearQuat::unpack_restart(int /*nlocal*/, int nth)
 {
-  const double *data = atom->extra[nlocal];
-  for (int i = 0; i < nth; ++i) data += (int) data[0];
-  bodies->unpack_exchange(nlocal, data + 1);
+  restarts->note_place(nth);
 }
 
 int FixGearQuat::size_restart(int i)
 {
-  return 1 + bodies->packed_size(i);
+  return restarts->size(i);
 }
 
 int FixGearQuat::maxsize_restart()
 {
-  return 1 + bodies->max_exchange();
+  return restarts->max_size();
 }

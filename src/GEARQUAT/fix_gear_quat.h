@@ -81,6 +81,7 @@ class FixGearQuat : public Fix {
   std::unique_ptr<class GearQuatBodies> bodies;
   std::unique_ptr<class GearQuatMotion> motion;
   std::unique_ptr<class GearQuatNeighbors> neighbors;
+  std::unique_ptr<class GearQuatRestart> restarts;
   std::unique_ptr<class GearQuatRespa> respa;
   std::unique_ptr<class GearQuatTable> table;
   std::unique_ptr<class GearQuatSums> sums;
@@ -96,6 +97,8 @@ class FixGearQuat : public Fix {
   std::vector<int> readers_every;    // of other fixes, at the end of a step
 
   void take_velocities(bigint step, bool end);
+  void create_bodies();
+  void resume();
   void begin_step();
   void finish_step(double **, double **);
   void tally_virial(double **);

@@ -59,6 +59,11 @@ void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &g
 {
   clear();
   add(ids, given);
+  count();
+}
+
+void GearQuatBodies::count()
+{
   bigint here[2] = {nown, 0}, all[2];
   for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
   MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);

@@ -93,8 +93,11 @@ class GearQuatBodies : protected Pointers {
   void add(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Build the same bodies anew from the atoms' present masses, positions and velocities.
   void recreate();
-  /// Forget all bodies.  extended: a restart file is about to state bodies with such atoms.
-  void clear(bool extended = false);
+  /// Bodies as a restart file has them, in place of those that the command has just made of the same
+  /// atoms; the command numbers them and may leave some out.  False, and no bodies are left, if they
+  /// differ otherwise.  packed: of every owned atom, or null; extended: with such atoms; group: atoms
+  /// outside of it are in what bodies the file says, 0 for none.
+  bool resume(const std::vector<const double *> &packed, bool extended, int group);
   /// Ends the run if an atom of a body is of a kind that cannot be followed.
   void refuse_atoms() const;
   /// Before a run: bodies that reach further than ghost atoms are seen are large.
@@ -147,7 +150,7 @@ class GearQuatBodies : protected Pointers {
   void copy_arrays(int from, int to, int delflag);
   void set_arrays(int atom);
   int packed_size(int atom) const;
-  int pack_exchange(int atom, double *buf);
+  int pack_exchange(int atom, double *buf) const;
   int unpack_exchange(int atom, const double *buf);
   int pack_forward(int n, const int *list, double *buf);
   void unpack_forward(int n, int first, const double *buf);
@@ -162,13 +165,13 @@ class GearQuatBodies : protected Pointers {
   GearQuat::Scheme scheme;
   GearQuatExtended extended;
 
-  int nown, nmove;                ///< owned bodies; with copies of large ones
-  bigint nbodies, natoms;         ///< on all ranks: bodies, and atoms in them
-  bigint nlarge;                  ///< on all ranks
-  std::vector<double> box;        ///< shape of the box that the bodies were last seen in; may be empty
-  int strangers;                  ///< atoms created since the fix was defined, in no body
-  bool told;                      ///< of them, once
-  std::vector<double> rows;       ///< histories of moved bodies
+  int nown, nmove;             ///< owned bodies; with copies of large ones
+  bigint nbodies, natoms;      ///< on all ranks: bodies, and atoms in them
+  bigint nlarge;               ///< on all ranks
+  std::vector<double> box;     ///< shape of the box that the bodies were last seen in; may be empty
+  int strangers;               ///< atoms created since the fix was defined, in no body
+  bool told;                   ///< of them, once
+  std::vector<double> rows;    ///< histories of moved bodies
   std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
 
   struct Large {
@@ -210,6 +213,8 @@ class GearQuatBodies : protected Pointers {
   Forward forward;    ///< what forward communication carries
   double *labels;     ///< of all atoms, while these are sent
 
+  void clear(bool extended = false);
+  void count();
   void follow_atom_ids();
   void drop_ghosts();
   int add_owned(int atom);

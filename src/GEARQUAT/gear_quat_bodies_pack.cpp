@@ -7,6 +7,8 @@
 
 #include "gear_quat_bodies.h"
 
+#include "atom.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -17,7 +19,7 @@ using namespace GearQuat;
    one atom, with its body if it owns one, as doubles: exchange between ranks and restart files
 ------------------------------------------------------------------------- */
 
-int GearQuatBodies::pack_exchange(int i, double *buf)
+int GearQuatBodies::pack_exchange(int i, double *buf) const
 {
   int m = 0;
   buf[m++] = ubuf(body_id[i]).d;
@@ -67,6 +69,33 @@ int GearQuatBodies::unpack_moved(int ibody, const double *buf, int size)
   m += LOAD_SIZE;
   if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
   return m + size;
+}
+
+bool GearQuatBodies::resume(const std::vector<const double *> &packed, bool with_extended,
+                            int group)
+{
+  const std::vector<tagint> ids(body_id, body_id + atom->nlocal);    // as the command has them
+  const bigint expected = nbodies;
+  clear(with_extended);
+  bool differ = false;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (packed[i]) unpack_exchange(i, packed[i]);
+    if (group && !(atom->mask[i] & group)) continue;
+    if (body_id[i] == 0 && ids[i] != 0) differ = true;
+    body_id[i] = ids[i];
+    if (owned[i] >= 0) body[owned[i]].id = ids[i];
+  }
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (body_id[i] != 0) continue;    // left out, or in no body
+    if (owned[i] >= 0) remove_owned(owned[i]);
+    set_arrays(i);
+  }
+  count();
+  int here = differ, any;
+  MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
+  const bool same = !any && !census(0).broken && (group || nbodies == expected);
+  if (!same) clear();
+  return same;
 }
 
 int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, double *buf)

@@ -71,7 +71,9 @@ void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
   int freedoms = 0, own_freedoms = 0, in_group = 0;
   double mass = 0.0, body_mass = 0.0;
   const GearQuatSiteCount *owner = nullptr;
+  bool mixed = false;
   for (int i = 0; i < n; ++i) {
+    if (sites[i].id != sites[0].id) mixed = true;
     if (sites[i].natoms > 0) owner = sites + i;
     natoms += sites[i].natoms;
     freedoms += sites[i].freedoms;
@@ -80,7 +82,7 @@ void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
     mass += sites[i].mass;
     body_mass += sites[i].body_mass;
   }
-  if (n != natoms) {
+  if (n != natoms || mixed) {
     broken = sites[0].id;
     left = n;
     had = natoms;

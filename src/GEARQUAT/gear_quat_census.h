@@ -39,8 +39,8 @@ struct GearQuatSiteCount {
 /// The same on all ranks.
 struct GearQuatCensus {
   bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
-  tagint broken = 0;              ///< a body that has lost atoms, 0 for none
-  tagint left = 0, had = 0;       ///< its atoms now and before
+  tagint broken = 0;           ///< a body that has lost atoms, or that several IDs name; 0 for none
+  tagint left = 0, had = 0;    ///< its atoms now and before
   int mass_changed =
       0;    ///< 1 if mass, centre or inertia of a body are not those of its atoms any more
   tagint torn =

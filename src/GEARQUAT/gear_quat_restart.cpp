@@ -1,0 +1,95 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_restart.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix.h"
+
+#include <cstring>
+#include <unordered_map>
+
+using namespace LAMMPS_NS;
+
+// files of releases up to 0.2.0 begin with the formulation, 0 or 1
+
+static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
+static constexpr double FORMAT = 1;
+
+GearQuatRestart::GearQuatRestart(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
+                                 GearQuatMotion &motion) :
+    Pointers(lmp),
+    fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)
+{
+}
+
+void GearQuatRestart::write(FILE *fp) const
+{
+  const Block data = {MAGIC, FORMAT, (double) bodies.has_extended(), (double) atom->natoms,
+                      motion.keep()};
+  const int size = sizeof(data);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&data, size, 1, fp);
+}
+
+/// LAMMPS does not tell the size of the block: only what every release wrote is read at first.
+void GearQuatRestart::read(const char *buf)
+{
+  double head[2];
+  std::memcpy(head, buf, sizeof(head));
+  const bool older = head[0] != MAGIC;
+  if (older || head[1] != FORMAT)
+    error->all(FLERR,
+               "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
+               "data of fix {} this one cannot read; continue with the release that wrote it, or "
+               "let that one write a data file with write_data and start from this",
+               older ? "an older (0.2.0 or before)" : "a newer", fix->id);
+  std::memcpy(&block, buf, sizeof(block));
+  waiting = true;
+}
+
+/// Other fixes step over these data: the first number tells how many there are.
+int GearQuatRestart::pack(int i, double *buf) const
+{
+  const int n = HEAD + bodies.pack_exchange(i, buf + HEAD);
+  buf[0] = n;
+  buf[1] = ubuf(atom->tag[i]).d;
+  return n;
+}
+
+/// The data of each atom here, null where there are none.  Rows stay where LAMMPS has read them: if
+/// atoms were deleted since, those that took their places have theirs behind the rows of all atoms.
+std::vector<const double *> GearQuatRestart::packed_atoms() const
+{
+  std::unordered_map<tagint, int> without;
+  for (int i = 0; i < atom->nlocal; ++i) without[atom->tag[i]] = i;
+  std::vector<const double *> packed(atom->nlocal, nullptr);
+  const auto look = [&](int row) {
+    const double *data = atom->extra[row];
+    for (int i = 0; i < place; ++i) data += (int) data[0];
+    const auto found = without.find((tagint) ubuf(data[1]).i);
+    if (found == without.end()) return;
+    packed[found->second] = data + HEAD;
+    without.erase(found);
+  };
+
+  for (int i = 0; i < atom->nlocal; ++i) look(i);
+  bigint here = (bigint) without.size(), all;
+  MPI_Allreduce(&here, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  const bigint deleted = (bigint) block.natoms - atom->natoms;
+  if (all > deleted) return packed;    // not only deleted: there may be no such rows
+  for (int i = atom->nlocal; !without.empty() && i < atom->nlocal + deleted && i < atom->nmax; ++i)
+    look(i);
+  return packed;
+}
+
+bool GearQuatRestart::resume(int group)
+{
+  waiting = false;
+  const bool same = bodies.resume(packed_atoms(), block.extended != 0.0, group);
+  if (same) motion.take(block.motion);
+  return same;
+}

@@ -1,0 +1,128 @@
+"""The bodies of a restart file and those of the command that reads it: the same ones go on, others begin anew."""
+
+"""The bodies of a restart file and those of the command that reads it: the same ones go on, others begin anew."""
+
+import numpy as np
+import pytest
+from scenes import last_frame, restarted, water, water_data
+
+STEPS = 40
+WARNING = "the bodies of this command consist of other atoms than those of the restart file"
+START = "start of order"
+
+
+class Halves:
+    """Water that writes a restart file `half` in the middle, and decks that go on from it."""
+
+    def __init__(self, lmp, spacing):
+        self.lmp = lmp
+        self.data = water_data(lmp.folder / "data.water", spacing=spacing)
+
+    def frame(self, deck, dump, ranks):
+        result = self.lmp.run(deck, ranks=ranks)
+        assert result.returncode == 0, result.output
+        return last_frame(self.lmp.folder / dump)[:, :7], result.output
+
+    def write(self, fix="gear/quat molecule", ranks=1, before="", between=""):
+        run = f"run {STEPS}\nwrite_restart half\n{between}\nrun {STEPS}"
+        deck = water(self.data, fix, dt=1.0, before=before, run=run, dump="whole", steps=STEPS)
+        return self.frame(deck, "whole", ranks)[0]
+
+    def read(self, fix="gear/quat molecule", ranks=1, before="", name="move", group="all"):
+        deck = restarted(water(self.data, fix, dt=1.0, steps=STEPS, before=before, dump="rest"), "half")
+        deck = deck.replace("fix move all", f"fix {name} {group}")
+        return self.frame(deck.replace("fix_modify move", f"fix_modify {name}"), "rest", ranks)
+
+
+@pytest.fixture
+def halves(lmp_tree):
+    return Halves(lmp_tree, 3.3)
+
+
+def close(a, b, tolerance=1e-11):
+    assert a.shape == b.shape
+    scale = np.abs(b).max(axis=0)
+    assert (np.abs(a - b) < tolerance * scale).all()
+    assert (np.abs(1.01 * a - b).max(axis=0) > 1e-3 * scale).all()
+
+
+# bodies of two molecules each; the first 13 molecules; the same, and an atom of the next
+OTHERS = """
+variable pair atom ceil(mol/2)
+fix pairs all property/atom i_pair
+set group all i_pair v_pair
+group few id <= 39
+group cut id <= 40
+comm_modify cutoff 9.8
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize(
+    "fix, group",
+    [("gear/quat single", "all"), ("gear/quat custom i_pair", "all"), ("gear/quat molecule", "cut")],
+)
+def test_other_bodies_begin_anew(halves, fix, group, ranks):
+    """As if there were no fix of that ID in the file."""
+    halves.write()
+    found, said = halves.read(fix, ranks, OTHERS, group=group)
+    right, silent = halves.read(fix, ranks, OTHERS, name="other", group=group)
+    assert WARNING in said and WARNING not in silent and START in said
+    close(found, right)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_smaller_group_moves_its_bodies_only(halves, ranks):
+    """They go on with their histories; the others stay where they are."""
+    halves.write()
+    found, said = halves.read("gear/quat molecule", ranks, OTHERS, group="few")
+    assert WARNING not in said and START not in said
+    before, _ = halves.read("gear/quat molecule", ranks, OTHERS + "timestep 1e-30\n", group="few")
+    assert (found[39:] == before[39:]).all()
+    assert (np.abs(found[:39, 1:4] - before[:39, 1:4]).max(axis=1) > 1e-4).all()
+
+
+# molecule 5 goes; all get other numbers once molecule 1 goes
+NUMBERED = """
+variable number atom mol+10
+fix numbers all property/atom i_number
+{set}
+"""
+GO = "group gone molecule {}\ndelete_atoms group gone compress no\n"
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("gone", [5, 1])
+@pytest.mark.parametrize("style", ["molecule", "custom i_number"])
+def test_bodies_that_are_left_go_on(lmp_tree, style, gone, ranks):
+    """As if the others had been removed between two runs; they are too far apart to notice it."""
+    halves = Halves(lmp_tree, 8.0)
+    mark = NUMBERED.format(set="set group all i_number v_number")
+    whole = halves.write(f"gear/quat {style}", before=mark, between=GO.format(gone))
+    found, said = halves.read(f"gear/quat {style}", ranks, NUMBERED.format(set="") + GO.format(gone))
+    assert WARNING not in said and START not in said
+    close(found, whole)
+
+
+def test_a_mask_counts_the_bodies_of_the_command(halves):
+    """Body 2 of those that are left is held at its velocity."""
+    halves.write()
+    free, _ = halves.read("gear/quat molecule", before=GO.format(1))
+    held, said = halves.read("gear/quat molecule force 2 off off off", before=GO.format(1))
+    assert WARNING not in said and "turn off other components" in said
+    mass = np.array([15.9994, 1.008, 1.008]) / 18.0154
+    def velocities(frame):
+        return np.einsum("i,bij->bj", mass, frame[:, 4:7].reshape(-1, 3, 3))
+
+    start, _ = halves.read("gear/quat molecule force * off off off", before=GO.format(1))
+    same = np.abs(velocities(held) - velocities(start)).max(axis=1) < 1e-12
+    assert list(np.flatnonzero(same)) == [1]
+    assert np.abs(velocities(free) - velocities(start)).max(axis=1).min() > 1e-9
+
+
+def test_bodies_of_another_style_that_are_the_same_go_on(halves):
+    mark = NUMBERED.format(set="set group all i_number v_number")
+    whole = halves.write("gear/quat molecule", before=mark)
+    found, said = halves.read("gear/quat custom i_number", before=NUMBERED.format(set=""))
+    assert WARNING not in said and START not in said
+    close(found, whole)
