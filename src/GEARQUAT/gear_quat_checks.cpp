@@ -7,11 +7,11 @@
 
 #include "fix_gear_quat.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_respa.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
-#include "library.h"
 #include "modify.h"
 #include "update.h"
 #include "utils.h"
@@ -23,10 +23,8 @@ using namespace LAMMPS_NS;
 /// One force evaluation a step: all levels of r-RESPA have to have the same step.
 static void refuse_respa_with_steps(LAMMPS *lmp)
 {
-  if (!utils::strmatch(lmp->update->integrate_style, "^respa")) return;
-  const auto *levels = (int *) lammps_extract_global(lmp, "respa_levels");
-  const auto *steps = (double *) lammps_extract_global(lmp, "respa_dt");
-  for (int level = 1; level < *levels; ++level)
+  const std::vector<double> steps = GearQuatRespa::steps(lmp);
+  for (size_t level = 1; level < steps.size(); ++level)
     if (steps[level] != steps[0])
       lmp->error->all(FLERR,
                       "Fix gear/quat requires run_style respa to have the same step at all levels "
@@ -50,8 +48,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const FixGearQuat *fix,
 {
   for (auto *other : lmp->modify->get_fix_list()) {
     if (other == fix || !other->time_integrate) continue;
-    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other
-                                                                   : nullptr;
+    const auto *same = dynamic_cast<const FixGearQuat *>(other);
     int dim;
     const int *its_body =
         utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")

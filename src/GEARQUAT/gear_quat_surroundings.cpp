@@ -49,8 +49,7 @@ std::vector<double> GearQuatSurroundings::labels()
   std::vector<double> label(atom->nlocal + atom->nghost, STILL);
   for (auto *other : modify->get_fix_list()) {
     if (!other->time_integrate || other == fix) continue;
-    const auto *same = utils::strmatch(other->style, "^gear/quat") ? (FixGearQuat *) other
-                                                                   : nullptr;
+    const auto *same = dynamic_cast<const FixGearQuat *>(other);
     for (int i = 0; i < atom->nlocal; ++i)
       if ((atom->mask[i] & other->groupbit) && (!same || same->moves(i)))
         label[i] = MOVED_BY_OTHERS;
