@@ -358,7 +358,8 @@ def rigid_examples():
 
 
 @pytest.mark.parametrize(
-    "name", ["", ".small", ".nve", ".early", ".atomfile", ".property", ".infile", ".small.infile"]
+    "name",
+    ["", *".small .nve .early .atomfile .atomvar .property .infile .small.infile .molecule".split()],
 )
 def test_examples_of_fix_rigid_run(rigid_examples, name):
     with Deck(rigid_examples / "rigid" / f"in.rigid{name}") as deck:

@@ -5,11 +5,12 @@ import re
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from clumps import FIX
+from clumps import FIX, SITES
 
 from lammps_gearquat.commands.cost import cost
 from lammps_gearquat.commands.horizon import horizon
 from lammps_gearquat.trials.measure import Deck
+from lammps_gearquat.trials.script import DeckError
 
 RUNS = "run 0\nrun 500\nrun 1000000"
 AGAIN = FIX.replace("${style}", "rigid/nve")
@@ -187,6 +188,20 @@ def test_variables_may_be_used_and_never_set(make_deck):
     path = make_deck(**{"timestep 0.004": "timestep ${dt}", "run 1000000": "run $(v_later)"})
     with Deck(path, [("dt", "0.001"), ("later", "5")]) as deck:
         assert deck.dt == 0.001
+
+
+@pytest.mark.parametrize("hope", ["", "include in.more", "# rigid"])
+def test_a_deck_without_rigid_bodies_is_not_run_to_its_end(make_deck, hope):
+    """Unless they could come from another file."""
+    changes = {FIX: "fix 1 all nve", "variable style index rigid": "", " f_1 c_kinetic": ""}
+    changes |= {"fix_modify 1 virial yes": ""}
+    changes |= {"compute kinetic all erotate/rigid 1": "", "include in.sites": SITES}
+    path = make_deck(hope, **changes, **{"run 1000000": ""})
+    (path.parent / "in.more").write_text("")
+    with pytest.raises(DeckError, match="no fix that moves rigid bodies is in use at any run"):
+        with Deck(path, [("soft", "2")], say=(said := []).append):
+            pass
+    assert bool(said) == hope.startswith("include")
 
 
 def test_earlier_runs_are_announced(make_deck, tmp_path):

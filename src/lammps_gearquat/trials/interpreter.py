@@ -61,6 +61,10 @@ class Start:
 _NAMES = re.compile(r"\bvariable\s+(\w+)|\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
 
 
+#: without any of these words a deck cannot define a fix that moves rigid bodies
+_HOPE = re.compile(r"rigid|gear/quat|\binclude\b|\bjump\s+(?!SELF)")
+
+
 class _Reached(Exception):
     """The run has been reached."""
 
@@ -75,12 +79,13 @@ class Interpreter:
     ``folder`` is for files that the deck writes; ``say`` is told of what takes time.
 
     ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies;
-    ``variables`` are the names of variables that LAMMPS was given.
+    ``variables`` are those that LAMMPS was given, tuples (name, value, ...).
     """
 
     def __init__(self, lammps, folder, without=(), which=1, variables=(), say=print):
         self.lammps, self.folder, self.say = lammps, Path(folder), say
-        self.without, self.variables = set(without), set(variables)
+        self.without, self.variables = set(without), {name for name, *_ in variables}
+        self.hope = any(_HOPE.search(value) for _, *values in variables for value in values)
         self.which, self.runs = which, 0
         self.names = set()  # of variables, in the files read so far
         self.start = Start()
@@ -107,7 +112,10 @@ class Interpreter:
             raise DeckError(
                 f"--run {self.which}: the deck moves rigid bodies in {self.runs} run(s) only{quits}"
             )
-        raise DeckError(
+        raise self._no_movers(quits)
+
+    def _no_movers(self, quits=""):
+        return DeckError(
             f"no fix that moves rigid bodies is in use at any run of this deck{quits}: it needs fix"
             f" gear/quat or one of fix {', '.join(script.RIGID)}, and a run of one step or more"
         )
@@ -143,8 +151,9 @@ class Interpreter:
         path = str(Path(path).absolute())  # the deck may go to another folder
         lines = script.logical_lines(text)
         for line in lines:
-            found = _NAMES.findall(script.strip_comment(line))
-            self.names |= {name for names in found for name in names if name}
+            command = script.strip_comment(line)
+            self.names |= {name for names in _NAMES.findall(command) for name in names if name}
+            self.hope = self.hope or bool(_HOPE.search(command))
         return path, iter(lines)
 
     def execute(self, line):
@@ -349,6 +358,8 @@ class Interpreter:
 
     def _do_run(self, words, line):
         steps = script.run_steps(words, self.lammps.extract_global("ntimestep")) if self.movers else 0
+        if not self.hope:
+            raise self._no_movers()
         # run 0 moves nothing, but bodies take over the velocities of their atoms
         self.runs += steps > 0
         if steps > 0 and self.runs == self.which:

@@ -122,8 +122,7 @@ def follow(deck, variables, without, which, log, tell):
 
     lammps = _open(deck, variables, log)
     try:
-        names = [name for name, *_ in variables]
-        interpreter = Interpreter(lammps, Path(log).parent, without, which, names, tell)
+        interpreter = Interpreter(lammps, Path(log).parent, without, which, variables, tell)
         start = interpreter.follow(deck.name)
         movers = [command.mover for command in start.commands if command.mover]
         lammps.command(f"compute {SITES} all property/atom id xu yu zu")
