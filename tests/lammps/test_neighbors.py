@@ -285,3 +285,60 @@ def test_gravity_on_masses_that_are_not_the_bodies(lmp_tree):
         result = lmp_tree.run(two_molecules("molecule infile bodies", after=after))
         assert result.returncode == 0, result.output
         assert ("pulls at the masses of atoms" in result.output) == told
+
+
+SRD = """
+units lj
+atom_style sphere
+atom_modify map array first big
+dimension 2
+fix molprop all property/atom mol ghost yes
+region box block 0 8 0 8 -0.5 0.5
+create_box 2 box
+{atoms}
+set type 1 mass 1.0
+group big type 1
+region plane block INF INF INF INF -0.001 0.001
+lattice sq 85.0
+create_atoms 2 region plane
+set type 2 mass 0.1
+group small type 2
+velocity small create 1.0 593849 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0
+pair_coeff 2 2 0.0 1.0 0.0
+pair_coeff 1 2 0.0 1.0 0.5
+delete_atoms overlap 0.5 small big
+pair_coeff 1 2 0.0 1.0 0.0
+neighbor 0.3 multi
+neigh_modify delay 0 every 1 check yes include big
+comm_modify mode multi group big vel yes
+timestep 0.001
+fix move big {fix}
+fix heat small srd 20 big 1.0 0.25 49894 shift yes 54979 search 0.2 collision slip inside ignore overlap yes
+fix flat all enforce2d
+compute big big temp/sphere
+thermo_style custom step temp
+thermo_modify temp big
+thermo 20
+run 3000
+"""
+
+
+def test_few_values_suit_srd(lmp_wheel):
+    """Collisions are forces of a single step: a long history makes them heat, a short one does not."""
+    places = [(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]
+    lines = []
+    for n, (x, y) in enumerate(places):
+        lines += [f"create_atoms 1 single {x} {y} 0", f"create_atoms 1 single {x + 1} {y} 0"]
+        lines.append(f"set atom {2 * n + 1}*{2 * n + 2} mol {n + 1} diameter 1.0")
+    fixes = [
+        "gear/quat molecule " + words for words in ("values 4", "formulation first values 3", "")
+    ]
+    fixes.append("rigid/small molecule")
+    decks = [SRD.format(atoms="\n".join(lines), fix=fix) for fix in fixes]
+    result = lmp_wheel.run(one_after_the_other(decks))
+    assert result.returncode == 0, result.output
+    second, first, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
+    assert [second, first] == pytest.approx([rigid, rigid], rel=0.25)
+    assert many > 2 * rigid  # the default

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from scenes import last_frame, two_molecules, whole_deck
+from scenes import last_frame, two_molecules, water, water_data, whole_deck
 
 TITLE = re.compile(r"^Fix gear/quat (\S+): (\d+) bodies of (.+) sites, (\d+) degrees of freedom$")
 ROW = re.compile(r"^  (\S.{19}) (on |off)  (\S.*)$")
@@ -307,3 +307,47 @@ def test_a_lone_site_is_a_point_to_the_last_bit(lmp_tree):
     result = lmp_tree.run(deck)
     assert result.returncode == 0, result.output
     assert list(last_frame(lmp_tree.folder / "mixed.dump")[0, 1:4]) == [0.1, 0.3, 0.7]
+
+
+# --- what is worth it ----------------------------------------------------------------------------
+def kspace(data, exclude=""):
+    deck = water(data, "gear/quat molecule", dt=0.5, steps=40, before=exclude)
+    deck = deck.replace("check yes exclude molecule/intra all", "check yes")
+    deck = re.sub("pair_style.*", "pair_style coul/long 4.0\nkspace_style ewald 1.0e-10", deck)
+    return re.sub("pair_coeff 1 1.*\npair_coeff.*\npair_coeff.*", "pair_coeff * *", deck)
+
+
+def test_exclusions_with_kspace_change_a_constant(lmp_tree):
+    """And the report says that LAMMPS will warn; the motion is the same."""
+    data = water_data(lmp_tree.folder / "data.water", shift=1.65)
+    ends = []
+    for exclude in ("", "neigh_modify exclude molecule/intra all"):
+        result = lmp_tree.run(kspace(data, exclude))
+        text = "\n".join(report(result))
+        assert ("LAMMPS then warns of exclusions with a kspace style" in text) == (not exclude)
+        assert ("exclusions used with KSpace" in result.output) == bool(exclude)
+        ends.append((result.thermo[-1], last_frame(lmp_tree.folder / "poses.dump")))
+    (table, frame), (excluded, excluded_frame) = ends
+    assert excluded_frame == pytest.approx(frame, abs=1e-9)
+    shift = [a - b for a, b in zip(table["PotEng"], excluded["PotEng"])]
+    assert abs(shift[0]) > 1.0 and shift[1] == pytest.approx(shift[0], abs=1e-8)
+
+
+def test_what_is_not_worth_a_line(lmp_tree):
+    """A body among many atoms that move: less than 1 % of all pairs are its own."""
+    data = water_data(lmp_tree.folder / "data.water", shift=1.65)
+    deck = water(data, "gear/quat molecule", steps=1).replace("exclude molecule/intra all", "")
+    few = deck.replace(
+        "fix move all",
+        "group one molecule 1\ngroup rest subtract all one\nfix nve rest nve\nfix move one",
+    )
+    assert counted(report(lmp_tree.run(few))) == {}
+    assert list(counted(report(lmp_tree.run(deck)))) == ["within"]
+
+
+def test_a_body_that_meets_its_own_image(lmp_tree):
+    """Forces between a body and its image move it: no advice to leave them out."""
+    near = two_molecules(after="run 0").replace("-10 10 -10 10 -10 10", "-4 8 -4 8 -4 8")
+    assert list(counted(report(lmp_tree.run(near)))) == ["within"]
+    box = near.replace("pair_style zero 2.0", "pair_style zero 10.0")
+    assert counted(report(lmp_tree.run(box))) == {}
