@@ -115,7 +115,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   args.reset(new GearQuatArguments(lmp, narg, arg));
   bodies.reset(new GearQuatBodies(lmp, this, args->scheme));
   motion.reset(new GearQuatMotion(lmp, this, *args, *bodies));
-  neighbors.reset(new GearQuatNeighbors(lmp, this, *bodies, args->isokinetic != Isokinetic::NONE));
+  neighbors.reset(new GearQuatNeighbors(lmp, this, *bodies, *args));
   restarts.reset(new GearQuatRestart(lmp, this, *bodies, *motion));
   respa.reset(new GearQuatRespa(lmp));
   table.reset(new GearQuatTable(lmp, *bodies));

@@ -6,6 +6,7 @@
 #include "gear_quat_neighbors.h"
 
 #include "fix_gear_quat.h"
+#include "gear_quat_arguments.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -86,9 +87,9 @@ static constexpr double SAME = 1.0e-11, RIGID = 1.0e-6;
 /* ---------------------------------------------------------------------- */
 
 GearQuatNeighbors::GearQuatNeighbors(LAMMPS *lmp, const FixGearQuat *fix, GearQuatBodies &bodies,
-                                     bool isokinetic) :
+                                     const GearQuatArguments &args) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), isokinetic(isokinetic), sample(0), told(false)
+    fix(fix), bodies(bodies), args(args), sample(0), told_noise(false), told(false)
 {
 }
 
@@ -103,6 +104,7 @@ void GearQuatNeighbors::init()
   told = false;
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
+    tell_noise(other);
     const Neighbor *row = nullptr;
     for (const auto &one : NEIGHBORS)
       if (!row && utils::strmatch(other->style, one.style)) row = &one;
@@ -119,13 +121,31 @@ void GearQuatNeighbors::init()
                        other->id, other->style, row->instead);
     } else {
       taken.push_back(other);
-      if (atom && isokinetic && !utils::strmatch(other->style, "^momentum"))
+      if (atom && args.isokinetic != Isokinetic::NONE &&
+          !utils::strmatch(other->style, "^momentum"))
         error->all(FLERR,
                    "Fix gear/quat isokinetic keeps the kinetic energy, which fix {} ({}) changes; "
                    "leave out one of the two",
                    other->id, other->style);
     }
   }
+}
+
+/// Random forces have no derivatives, and those of collisions last a single step.
+void GearQuatNeighbors::tell_noise(const Fix *other)
+{
+  const bool collides = utils::strmatch(other->style, "^srd");
+  if (told_noise || (!collides && !utils::strmatch(other->style, "^langevin"))) return;
+  const bool first = args.scheme.first();
+  const int most = first ? (collides ? 3 : 4) : (collides ? 4 : 6);
+  if (args.scheme.values() <= most || (!collides && !shared_atom(other))) return;
+  told_noise = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: forces of fix {} ({}) are random, and {} values make heat of "
+                   "them; use values {}{}",
+                   other->id, other->style, args.scheme.values(), most,
+                   most > (first ? 3 : 4) ? " or fewer" : "");
 }
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.

@@ -21,10 +21,12 @@
 namespace LAMMPS_NS {
 
 class FixGearQuat;
+struct GearQuatArguments;
 
 class GearQuatNeighbors : protected Pointers {
  public:
-  GearQuatNeighbors(LAMMPS *lmp, const FixGearQuat *fix, GearQuatBodies &bodies, bool isokinetic);
+  GearQuatNeighbors(LAMMPS *lmp, const FixGearQuat *fix, GearQuatBodies &bodies,
+                    const GearQuatArguments &args);
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
@@ -50,12 +52,14 @@ class GearQuatNeighbors : protected Pointers {
  private:
   const FixGearQuat *fix;
   GearQuatBodies &bodies;
-  const bool isokinetic;
+  const GearQuatArguments &args;
   std::vector<const Fix *> taken;      ///< whose velocities bodies take over
   std::vector<const Fix *> watched;    ///< that may move single atoms
   size_t sample;                       ///< the site that is looked at next
+  bool told_noise;                     ///< of random forces, once
   bool told;                           ///< of a change by something unknown, once a run
 
+  void tell_noise(const Fix *other);
   tagint shared_atom(const Fix *other) const;
   void refuse(const Fix *other, const struct Neighbor &row, tagint atom) const;
   bool is_there(const GearQuatBodies::Site &site) const;

@@ -341,4 +341,7 @@ def test_few_values_suit_srd(lmp_wheel):
     assert result.returncode == 0, result.output
     second, first, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
     assert [second, first] == pytest.approx([rigid, rigid], rel=0.25)
-    assert many > 2 * rigid  # the default
+    assert many > 2 * rigid  # the default, which the log warns of
+    words = " ".join(result.output.split())
+    told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4"
+    assert words.count("are random, and") == 1 and told in words

@@ -1,0 +1,78 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* gear_quat_flight.h: what a flight on trial loses is what a long one loses, and little more. */
+
+#include "drive.h"
+#include "gear_quat_flight.h"
+
+#include <gtest/gtest.h>
+
+using namespace Drive;
+
+namespace {
+
+const RigidBody CARBON_DIOXIDE = {43.98, {43.06, 43.057, 0.0035}};    // bent by 0.02 Angstrom
+
+BodyState spinning(double omega)
+{
+  return {{0, 0, 0}, {0, 0, 0, 1}, {0.1, 0, 0}, {0.0, 0.002, omega}};
+}
+
+Scheme of_values(Formulation formulation, int n)
+{
+  Scheme scheme;
+  scheme.formulation = formulation;
+  scheme.rows = n;
+  scheme.passes = 2;
+  return scheme;
+}
+
+/// Radians in a step of the slowest spin that is lost, to 1 %.
+double limit(const Scheme &scheme, double h)
+{
+  double slow = 0.0, fast = 4.0;
+  while (fast - slow > 0.01 * fast) {
+    const double middle = 0.5 * (slow + fast);
+    (survives_flight(scheme, CARBON_DIOXIDE, spinning(middle / h), h) ? slow : fast) = middle;
+  }
+  return fast;
+}
+
+}    // namespace
+
+TEST(Flight, MoreValuesFollowSlowerSpins)
+{
+  for (const Formulation formulation : {Formulation::FIRST, Formulation::SECOND}) {
+    double last = 4.0;
+    for (int n = 5; n <= (formulation == Formulation::FIRST ? 8 : 12); ++n) {
+      const double now = limit(of_values(formulation, n), 1.0);
+      EXPECT_LT(now, 1.02 * last) << n;
+      EXPECT_GT(now, FLIGHT_SLOW) << n;    // what is not flown is never lost
+      EXPECT_NEAR(limit(of_values(formulation, n), -0.5), now, 0.02 * now);
+      last = now;
+    }
+  }
+}
+
+TEST(Flight, EightValuesFollowAlmostHalfARadian)
+{
+  const Scheme scheme = of_values(Formulation::SECOND, 8);
+  const double lost = limit(scheme, 1.0);
+  EXPECT_GT(lost, 0.4);
+  EXPECT_LT(lost, 0.55);
+}
+
+TEST(Flight, TheLongestStepIsOneThatIsFollowed)
+{
+  const Scheme scheme = of_values(Formulation::SECOND, 8);
+  for (const double omega : {0.6, 2.7, 100.0}) {
+    const BodyState state = spinning(omega);
+    const double step = longest_step(scheme, CARBON_DIOXIDE, state, 1.0);
+    EXPECT_TRUE(survives_flight(scheme, CARBON_DIOXIDE, state, step));
+    EXPECT_FALSE(survives_flight(scheme, CARBON_DIOXIDE, state, 1.0));
+    EXPECT_GT(step * omega, 0.15);
+  }
+}
