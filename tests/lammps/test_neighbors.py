@@ -109,7 +109,7 @@ def test_momentum_reaches_the_bodies(lmp_wheel):
     for ranks in (1, 4):
         velocity = "velocity all set 0.001 0.0 -0.002 sum yes"
         after = f"{velocity}\nfix still all momentum 10 linear 1 1 0 angular"
-        deck = molecules(lmp_wheel, after, steps=95)
+        deck = molecules(lmp_wheel, after, steps=35)
         deck += "\nvariable px equal vcm(all,x)\nvariable pz equal vcm(all,z)\n"
         deck += "thermo_style custom step v_px v_pz f_move[1][4]\nrun 0"
         result = lmp_wheel.run(deck, ranks=ranks)
