@@ -23,7 +23,7 @@ WORDS = {
     "second-4": dict(formulation="second", values=4),
     "second-8": dict(formulation="second", values=8),
     "second-12": dict(formulation="second", values=12),
-    "second-8-compensated": dict(formulation="second", values=8, passes=1, compensate="yes"),
+    "second-8-compensated": dict(formulation="second", values=8, passes=2, compensate="yes"),
 }
 RANKS = [(1, 1), (2, 2), (1, 2), (2, 1), (4, 2)]
 STEPS, PERIOD, HALF = 120, 40, 60
