@@ -426,7 +426,7 @@ def test_degrees_of_freedom(lmp_tree):
     assert temperature != pytest.approx(2 * energy / (4 * 6 - 1), rel=1e-3)
 
 
-@pytest.mark.parametrize("name, word", [("ellipsoids", "ellipsoid"), ("triangles", "triangle")])
+@pytest.mark.parametrize("name, word", [("ellipsoids", "an ellipsoid"), ("triangles", "a triangle")])
 def test_the_wheel_refuses_by_name(lmp_wheel, name, word):
     style, dimension, omega, atoms = BODIES[name]
     made, masses = moving(style, atoms, omega)
@@ -434,7 +434,7 @@ def test_the_wheel_refuses_by_name(lmp_wheel, name, word):
     text = "\n".join(row for row in text.split("\n") if not row.startswith("compute"))
     result = lmp_wheel.run(text)
     assert result.returncode != 0
-    assert f"atom 3 is a {word}" in " ".join(result.errors).replace("an ell", "a ell")
+    assert f"atom 3 is {word}," in " ".join(result.errors)
     assert "-D LAMMPS_SOURCE_DIR=/path/to/lammps" in result.errors[0]
 
 
