@@ -3,8 +3,9 @@
 #   $GEARQUAT_CACHE/lammps-<version>/   sources, fetched once (or LAMMPS_SOURCE_DIR, used as it is;
 #                                       for the newest release LAMMPS_NEWEST_SOURCE_DIR)
 #   $GEARQUAT_CACHE/ccache/             compiled objects, shared by all checkouts
-#   $GEARQUAT_CACHE/tree-<checksum>/    the build of this checkout; build/tree points to it, and
-#                                       build/tree-sanitize to the one with sanitizers
+#   $GEARQUAT_CACHE/tree-<checksum>/    the build of this checkout; build/tree points to it,
+#                                       build/tree-sanitize to the one with sanitizers, and
+#                                       build/tree-foreign to the one with more packages
 
 # choose_release oldest|newest: which LAMMPS all that follows is about.
 # TREE_DEBIAN is its version in Debian's TREE_SUITE, TREE_NAME the folder of its build in build.
@@ -23,6 +24,8 @@ choose_release() {
 choose_release oldest
 
 TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
+# and what LAMMPS' own decks of rigid bodies, and the styles that are tried beside the fix, are made of
+FOREIGN_PACKAGES="$TREE_PACKAGES GRANULAR SRD MC BODY POEMS MISC LATBOLTZ DRUDE DPD-SMOOTH EXTRA-FIX EXTRA-COMPUTE EXTRA-MOLECULE"
 # float-cast-overflow: a NaN that becomes an integer is not in `undefined`
 SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
 
@@ -75,11 +78,42 @@ fetch_tree_from_debian() {
     return 1
   fi
   mkdir all
-  # only what a build needs
-  tar -xf "$archive" -C all \
-    --exclude='doc/src/*' --exclude='examples/PACKAGES/*' --exclude='bench/*' --exclude='potentials/*'
+  # only what a build needs, and decks
+  tar -xf "$archive" -C all --exclude='doc/src/*' --exclude='potentials/*' --exclude='log.*'
   # some of Debian's archives have one folder at their top, some have none
   [ -e all/cmake/CMakeLists.txt ] && mv all tree || mv all/* tree
+  keep_decks tree
+}
+
+# keep_decks TREE: of the packages' examples and of bench only folders with a deck of rigid bodies stay
+keep_decks() {
+  local tree="$1" deck
+  cd "$tree"
+  mkdir kept
+  grep -rlE --include='in.*' '^\s*fix\s+\S+\s+\S+\s+(rigid|poems)' examples/PACKAGES bench |
+    while read -r deck; do cp -r --parents "$(dirname "$deck")" kept; done
+  rm -rf examples/PACKAGES bench
+  mkdir -p kept/examples/PACKAGES kept/bench
+  mv kept/examples/PACKAGES examples
+  mv kept/bench .
+  rm -rf kept
+  touch .decks
+}
+
+# need_decks: the decks of all packages, for a LAMMPS that was fetched without them
+need_decks() {
+  need_tree_source
+  [ -n "${!TREE_GIVEN:-}" ] || [ -e "$TREE_SOURCE/.decks" ] && return
+  exec 7>"$CACHE/.lock"
+  if have flock; then flock 7; fi
+  local folder="$CACHE/fetch"
+  do_quietly "fetching the decks of LAMMPS $TREE_VERSION from Debian" fetch_tree_from_debian "$folder"
+  rm -rf "$TREE_SOURCE/examples/PACKAGES" "$TREE_SOURCE/bench"
+  mv "$folder/tree/examples/PACKAGES" "$TREE_SOURCE/examples"
+  mv "$folder/tree/bench" "$TREE_SOURCE"
+  touch "$TREE_SOURCE/.decks"
+  rm -rf "$folder"
+  exec 7>&-
 }
 
 # sets TREE_SOURCE, fetching LAMMPS if it is not there
@@ -107,14 +141,14 @@ need_tree_source() {
 
 # --- build ------------------------------------------------------------------------------------
 
-# configure_tree FOLDER CXX_FLAGS
+# configure_tree FOLDER CXX_FLAGS PACKAGES
 configure_tree() {
-  local build="$1" flags="$2" gtest="$CACHE/googletest.tar.gz" hash package options=()
+  local build="$1" flags="$2" packages="$3" gtest="$CACHE/googletest.tar.gz" hash package options=()
   # LAMMPS unpacks googletest from a tarball; its checksum must be the same every time
   tar -c --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -C /usr/src googletest |
     gzip -n >"$gtest.$$"
   mv "$gtest.$$" "$gtest"
-  for package in $TREE_PACKAGES; do options+=(-D "PKG_$package=on"); done
+  for package in $packages; do options+=(-D "PKG_$package=on"); done
   for package in JPEG PNG GZIP FFMPEG CURL; do options+=(-D "WITH_$package=off"); done
   hash=GTEST_MD5 # newer LAMMPS takes SHA256
   grep -q GTEST_SHA256 "$TREE_SOURCE/unittest/CMakeLists.txt" && hash=GTEST_SHA256
@@ -137,11 +171,15 @@ build_tree() {
 }
 
 # need_tree [KIND]: LAMMPS with GEARQUAT in it, Open MPI, and LAMMPS' harness, in build/TREE_NAME; with KIND
-# "-sanitize" in build/TREE_NAME-sanitize, compiled with AddressSanitizer and UndefinedBehaviorSanitizer
+# "-sanitize" in build/TREE_NAME-sanitize, compiled with AddressSanitizer and UndefinedBehaviorSanitizer;
+# with "-foreign" in build/TREE_NAME-foreign, with more packages
 need_tree() {
   need_tree_source
-  local kind="${1:-}" flags=-O2 build configured
-  [ -z "$kind" ] || flags="$SANITIZE_FLAGS"
+  local kind="${1:-}" flags=-O2 packages="$TREE_PACKAGES" build configured
+  case "$kind" in
+    -sanitize) flags="$SANITIZE_FLAGS" ;;
+    -foreign) packages="$FOREIGN_PACKAGES" ;;
+  esac
   build="$CACHE/tree-$(printf '%s\n' "$ROOT" "$TREE_SOURCE" | sha256sum | cut -c1-12)$kind"
   export CCACHE_DIR="$CACHE/ccache" CCACHE_BASEDIR="$CACHE" CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=1G
   # what ccache has to overlook in a precompiled header
@@ -153,9 +191,9 @@ need_tree() {
   exec 8>"$build/.lock"
   if have flock; then flock 8; fi
   ln -sfn "$build" "$ROOT/build/$TREE_NAME$kind"
-  configured="$( { declare -f configure_tree; echo "$TREE_PACKAGES $flags"; cmake --version; } | sha256sum)"
+  configured="$( { declare -f configure_tree; echo "$packages $flags"; cmake --version; } | sha256sum)"
   if [ "$(cat "$build/.configured" 2>/dev/null)" != "$configured" ] || [ ! -e "$build/build.ninja" ]; then
-    do_quietly "configuring LAMMPS $TREE_VERSION with GEARQUAT${kind/-/, }" configure_tree "$build" "$flags"
+    do_quietly "configuring LAMMPS $TREE_VERSION with GEARQUAT${kind/-/, }" configure_tree "$build" "$flags" "$packages"
     echo "$configured" >"$build/.configured"
   fi
   do_quietly "building LAMMPS $TREE_VERSION with GEARQUAT${kind/-/, }" build_tree "$build"

