@@ -46,6 +46,8 @@ GearQuatBodies::~GearQuatBodies()
 void GearQuatBodies::clear(bool with_extended)
 {
   nown = 0;
+  large.clear();
+  kept.clear();
   drop_ghosts();
   sites.clear();
   frame.clear();
@@ -133,6 +135,7 @@ void GearQuatBodies::refuse_atoms() const
 
 void GearQuatBodies::drop_ghosts()
 {
+  if (!large.empty()) keep_large();
   body.resize(nown);
   state.resize(nown);
   load.resize(nown);
@@ -265,6 +268,7 @@ bool GearQuatBodies::take_stock()
   any_ghosts = all[5] > 0;
   nlarge = all[6];
   if (all[1] != all[2] || all[3] > 0) check_whole();
+  if (nlarge != (bigint) large.size()) return false;    // one was removed
   if (all[3] > 0) {
     promote();
     return false;
@@ -336,7 +340,8 @@ double GearQuatBodies::memory_usage() const
       body.capacity() * sizeof(GearQuatBody) + state.capacity() * sizeof(BodyState) +
       load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
       frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
-      large.capacity() * sizeof(Large) + (parts.capacity() + sums.capacity()) * sizeof(double) +
+      large.capacity() * sizeof(Large) +
+      (kept.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
       extended.memory_usage();
 }

@@ -179,6 +179,7 @@ class GearQuatBodies : protected Pointers {
     int body;
   };
   std::vector<Large> large;    ///< sorted: the same order on all ranks; empty on a single one
+  std::vector<double> kept;    ///< all of them, packed, while atoms are exchanged
   std::vector<double> parts, sums;    ///< their loads: of the atoms here, and of all
 
   struct Frame {       ///< what placing a site needs, derived from the state
@@ -225,6 +226,8 @@ class GearQuatBodies : protected Pointers {
   void list_sites();
   int body_of(int atom) const;
   bool take_stock();
+  void keep_large();
+  void gather_large();
   void share_large();
   void promote();
   void count_large();
@@ -242,6 +245,8 @@ class GearQuatBodies : protected Pointers {
   /// True if ghosts of its owner atom stand for this body.
   bool has_ghosts(int ibody) const { return ibody >= 0 && !is_large(ibody); }
   int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + scheme.size(); }
+  /// of a large body: atom ID of its owner atom, and what an owner has
+  int large_size() const { return 1 + moved_size(); }
   int pack_moved(int ibody, double *buf) const;
   int unpack_moved(int ibody, const double *buf, int size);
   static int pack_body(const GearQuatBody &body, const GearQuat::BodyState &state, double *buf);

@@ -5,9 +5,10 @@
 
 /* Body store, large bodies: those whose sites cannot all see their owner atom.
 
-   Whenever atoms were exchanged the owners give such bodies to all ranks, with their histories.
-   From then on every rank predicts and corrects them, from the same loads and so to the same bits:
-   the one message of a step is the sum of the loads. */
+   Before a run, and when they become more or fewer, their owners give them to all ranks, with their
+   histories.  From then on every rank predicts and corrects them, from the same loads and so to the
+   same bits, and keeps them while atoms are exchanged: the one message of a step is the sum of the
+   loads. */
 
 #include "gear_quat_bodies.h"
 
@@ -31,6 +32,8 @@ static double ghost_cutoff(const Comm *comm, const Domain *domain)
 
 void GearQuatBodies::choose_large()
 {
+  drop_ghosts();
+  kept.clear();
   const double cutoff = ghost_cutoff(comm, domain);
   for (int ibody = 0; ibody < nown; ++ibody) {
     GearQuatBody &one = body[ibody];
@@ -59,33 +62,51 @@ void GearQuatBodies::promote()
   count_large();
 }
 
-/// Large bodies of other ranks, behind the owned ones.
-void GearQuatBodies::share_large()
+/// Before atoms are exchanged: the owner may be another rank afterwards.
+void GearQuatBodies::keep_large()
 {
-  if (nlarge == 0) return;
-  const int size = 2 + moved_size();
+  kept.resize(large.size() * large_size());
+  double *buf = kept.data();
+  for (const Large &one : large) {
+    buf[0] = ubuf(one.owner).d;
+    pack_moved(one.body, buf + 1);
+    buf += large_size();
+  }
+}
+
+/// The same from their owners.  Collective.
+void GearQuatBodies::gather_large()
+{
   std::vector<double> mine;
   for (int ibody = 0; ibody < nown; ++ibody) {
     if (!body[ibody].large) continue;
-    const tagint owner = atom->tag[owner_atom[ibody]];
-    large.push_back({owner, ibody});
-    mine.resize(mine.size() + size);
-    double *buf = &mine[mine.size() - size];
-    buf[0] = ubuf(comm->me).d;
-    buf[1] = ubuf(owner).d;
-    pack_moved(ibody, buf + 2);
+    mine.resize(mine.size() + large_size());
+    double *buf = &mine[mine.size() - large_size()];
+    buf[0] = ubuf(atom->tag[owner_atom[ibody]]).d;
+    pack_moved(ibody, buf + 1);
   }
-  const std::vector<double> all = gear_quat_gather(mine, MPI_DOUBLE, world);
-  for (size_t m = 0; m < all.size(); m += size) {
-    if ((int) ubuf(all[m]).i == comm->me) continue;
-    const int ibody = nmove++;
-    body.emplace_back();
-    state.emplace_back();
-    last.emplace_back();
-    load.emplace_back();
-    rows.resize((size_t) nmove * scheme.size());
-    unpack_moved(ibody, &all[m + 2], scheme.size());
-    large.push_back({(tagint) ubuf(all[m + 1]).i, ibody});
+  kept = gear_quat_gather(mine, MPI_DOUBLE, world);
+}
+
+/// Large bodies of other ranks, behind the owned ones.
+void GearQuatBodies::share_large()
+{
+  const int size = large_size();
+  if ((bigint) kept.size() != nlarge * size) gather_large();
+  for (size_t m = 0; m < kept.size(); m += size) {
+    const tagint tag = (tagint) ubuf(kept[m]).i;
+    const int owner = atom->map(tag);
+    int ibody = owner >= 0 && owner < atom->nlocal ? owned[owner] : -1;
+    if (ibody < 0) {
+      ibody = nmove++;
+      body.emplace_back();
+      state.emplace_back();
+      last.emplace_back();
+      load.emplace_back();
+      rows.resize((size_t) nmove * scheme.size());
+      unpack_moved(ibody, &kept[m + 1], scheme.size());
+    }
+    large.push_back({tag, ibody});
   }
   std::sort(large.begin(), large.end(), [](const Large &a, const Large &b) {
     return a.owner < b.owner;

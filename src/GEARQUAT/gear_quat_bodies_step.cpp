@@ -109,18 +109,15 @@ void GearQuatBodies::gather_loads(double **f, double **torque)
   if (!any_forces) return;
   for (auto &one : load) one = Load();
   const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
-  for (; site != arms; ++site)
-    for (int k = 0; k < 3; ++k) load[site->body].force[k] += f[site->atom][k];
+  for (; site != arms; ++site) add3(f[site->atom], load[site->body].force);
   for (; site != end; ++site) {
     const double *force = f[site->atom];
     Load &sum = load[site->body];
     double arm[3], moment[3];
     to_space(frame[site->body].axes, site->arm_body, arm);
     cross3(arm, force, moment);
-    for (int k = 0; k < 3; ++k) {
-      sum.force[k] += force[k];
-      sum.torque_space[k] += moment[k];
-    }
+    add3(force, sum.force);
+    add3(moment, sum.torque_space);
   }
   if (!extended.sites.empty()) extended.add_torques(torque, load);
   sum_loads();

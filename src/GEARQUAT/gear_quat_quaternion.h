@@ -35,6 +35,14 @@ inline void cross3(const double *a, const double *b, double *out)
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/// sum += a, with no loop: most LAMMPS are built with -O2, which leaves loops alone.
+inline void add3(const double *a, double *sum)
+{
+  sum[0] += a[0];
+  sum[1] += a[1];
+  sum[2] += a[2];
+}
+
 /// out = W(q) a, the matrix of Eqs. 5 and 6; it is the quaternion product q a.
 inline void w_times(const double *q, const double *a, double *out)
 {
@@ -101,14 +109,17 @@ inline void rotation_matrix(const double *q, double norm2, double a[9])
 /// e_body = A e_space, Eq. 10.
 inline void to_body(const double a[9], const double *space, double *body)
 {
-  for (int i = 0; i < 3; ++i)
-    body[i] = a[3 * i] * space[0] + a[3 * i + 1] * space[1] + a[3 * i + 2] * space[2];
+  body[0] = a[0] * space[0] + a[1] * space[1] + a[2] * space[2];
+  body[1] = a[3] * space[0] + a[4] * space[1] + a[5] * space[2];
+  body[2] = a[6] * space[0] + a[7] * space[1] + a[8] * space[2];
 }
 
 /// e_space = A^T e_body, Eq. 9.
 inline void to_space(const double a[9], const double *body, double *space)
 {
-  for (int i = 0; i < 3; ++i) space[i] = a[i] * body[0] + a[3 + i] * body[1] + a[6 + i] * body[2];
+  space[0] = a[0] * body[0] + a[3] * body[1] + a[6] * body[2];
+  space[1] = a[1] * body[0] + a[4] * body[1] + a[7] * body[2];
+  space[2] = a[2] * body[0] + a[5] * body[1] + a[8] * body[2];
 }
 
 /// The unit quaternion of a proper rotation matrix A (space -> body, row-major).

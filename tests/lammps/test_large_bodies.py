@@ -297,3 +297,22 @@ def test_large_bodies_are_inserted(lmp_tree):
     assert len(ends[1]) == np.prod(CELLS) + 27
     for ranks in (2, 4):
         assert difference(ends[1], ends[ranks]) < 1e-12
+
+
+def test_a_large_body_is_removed(lmp_tree):
+    """The slab evaporates halfway; the trimers go on, and no rank keeps a copy."""
+    data = slab_data(lmp_tree.folder / "data.slab")
+    remove = f"""
+group slab molecule 1
+region box block EDGE EDGE EDGE EDGE EDGE EDGE
+fix remove slab evaporate {STEPS // 2} 1 box 4711 molecule yes
+compute_modify thermo_temp dynamic/dof yes
+"""
+    ends = {}
+    for ranks in (1, 4):
+        text = deck(data, f"removed{ranks}", after=remove)
+        result = lmp_tree.run(text, ranks=ranks)
+        assert result.returncode == 0, result.output
+        ends[ranks] = last_frame(lmp_tree.folder / f"removed{ranks}.end")
+    assert ends[1][0, 0] == np.prod(CELLS) + 1
+    assert difference(ends[1], ends[4]) < 1e-12
