@@ -237,7 +237,10 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--frames", "99:"], "no frame is left to analyse"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
         (["--near", __file__], "--near and --radius belong together"),
-        (["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"], "MDAnalysis writes no such format"),
+        (
+            ["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"],
+            "MDAnalysis writes no such format",
+        ),
         (["--body", "i_body"], "no column i_body"),
         (["--potential", "c_pe"], "no column c_pe"),
     ],

@@ -211,7 +211,9 @@ def made(path, times, scale=1.0):
         return found
 
     path.write_text(
-        "".join(f"ITEM: TIME\n{time!r}\n" + dumps.frame(k, rows(0.0)) for k, time in enumerate(times))
+        "".join(
+            f"ITEM: TIME\n{time!r}\n" + dumps.frame(k, rows(0.0)) for k, time in enumerate(times)
+        )
     )
     return open_dump(path).atoms
 
@@ -247,7 +249,9 @@ def test_sizes_that_xtc_and_pdb_do_not_hold(tmp_path):
 
 def test_steps_beyond_32_bits(tmp_path):
     path = tmp_path / "x.dump"
-    path.write_text("".join(dumps.frame(3 * 10**9 + k, dumps.Motion([3]).rows(0.0)) for k in range(2)))
+    path.write_text(
+        "".join(dumps.frame(3 * 10**9 + k, dumps.Motion([3]).rows(0.0)) for k in range(2))
+    )
     found = written(open_dump(path, timestep=2.0).atoms, tmp_path / "x.trr", "metal")
     assert found.trajectory[0].time == pytest.approx(6e9)
 
@@ -268,7 +272,9 @@ def test_the_header_may_say_units_once_or_more(tmp_path):
     path.write_text(one + two + one.replace("0.5", "2.5"))
     poses = Poses(open_dump(path).atoms).run()
     assert poses.results.time.tolist() == [0.5, 1.5, 2.5]
-    assert poses.results.centre[:2, 0] == pytest.approx(motion.centre + motion.velocity * [[0.5], [1.5]])
+    assert poses.results.centre[:2, 0] == pytest.approx(
+        motion.centre + motion.velocity * [[0.5], [1.5]]
+    )
     path.write_text("")
     with pytest.raises(DumpError, match="x.dump: the dump is empty"):
         open_dump(path)

@@ -42,7 +42,12 @@ def pasted(lmp_wheel):
     def run(page):
         text = "\n".join(command_blocks(page))
         shell = ["bash", "-euo", "pipefail", "-c", text]
-        options = {"env": environment, "cwd": lmp_wheel.folder, "capture_output": True, "text": True}
+        options = {
+            "env": environment,
+            "cwd": lmp_wheel.folder,
+            "capture_output": True,
+            "text": True,
+        }
         said = subprocess.run(shell, timeout=200, **options)
         assert said.returncode == 0, said.stdout + said.stderr
         return said.stdout

@@ -19,6 +19,7 @@ from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
 from lammps_gearquat.trials.worker import TrialError
 
+
 @pytest.fixture
 def refused(make_deck):
     """``refused(extra, …)``: what is said about such a deck."""
@@ -168,6 +169,7 @@ def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
 
 # --- refusals -----------------------------------------------------------------------------------------
 
+
 @pytest.mark.parametrize(
     "change, said",
     [
@@ -303,7 +305,12 @@ def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
     out = tmp_path / "out"
     arguments = [str(examples / "case2" / "in.case2"), "--var", "choices", "paper"]
     arguments += ["--time", "500", "--every", "1", "--out", str(out)]
-    arguments += ["--a", "formulation first values 5 momentum predicted", "--b", "formulation second"]
+    arguments += [
+        "--a",
+        "formulation first values 5 momentum predicted",
+        "--b",
+        "formulation second",
+    ]
     arguments += [word for level in thresholds for word in ("--threshold", str(level))]
     result = CliRunner().invoke(horizon_command, arguments)
     assert result.exit_code == 0, result.output
@@ -359,7 +366,10 @@ def rigid_examples():
 
 @pytest.mark.parametrize(
     "name",
-    ["", *".small .nve .early .atomfile .atomvar .property .infile .small.infile .molecule".split()],
+    [
+        "",
+        *".small .nve .early .atomfile .atomvar .property .infile .small.infile .molecule".split(),
+    ],
 )
 def test_examples_of_fix_rigid_run(rigid_examples, name):
     with Deck(rigid_examples / "rigid" / f"in.rigid{name}") as deck:

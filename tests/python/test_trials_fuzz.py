@@ -1,4 +1,4 @@
-"""Fix lines at random: what LAMMPS accepts, the trials understand, and what they make of it LAMMPS accepts."""
+"""Fix lines at random: the trials understand what LAMMPS takes, and LAMMPS takes what they make of it."""
 
 import random
 from collections import Counter
@@ -49,7 +49,11 @@ def rigid(rng):
         flags = " ".join(rng.choice(("on", "off")) for _ in range(3))
         one = [f"reinit {rng.choice(('yes', 'no', 'on', 'off', 'true', 'false'))}", "infile bodies"]
         one += ["couple xyz", "dilate all", "dilate left", "gravity field", "langevin 1 1 1 4711"]
-        one += ["mol two"] if small else [f"{key} {rng.choice(numbers)} {flags}" for key in script.MASKS] * 3
+        one += (
+            ["mol two"]
+            if small
+            else [f"{key} {rng.choice(numbers)} {flags}" for key in script.MASKS] * 3
+        )
         chain.append(rng.choice(one))
     return " ".join([f"fix move all {style}", rng.choice(bodies), *chain])
 
@@ -74,7 +78,9 @@ def test_trial_lines_are_lines_that_lammps_takes(accepts, make):
         try:
             base, _ = script.translate(line)
         except DeckError as error:
-            assert any(word in str(error) for word in ("keyword langevin", "keyword gravity")), error
+            assert any(
+                word in str(error) for word in ("keyword langevin", "keyword gravity")
+            ), error
             assert make is rigid
             seen["refused"] += 1
             continue

@@ -1,7 +1,7 @@
 """Trajectories for other viewers: VMD, OVITO, PyMOL and whatever else reads what MDAnalysis writes.
 
-MDAnalysis counts in Å and ps and knows what each format counts in; LAMMPS' units are brought to the former.
-Units *lj* have no lengths and times of their own: 1 sigma becomes 1 Å and 1 tau 1 ps, and what is written says so.
+MDAnalysis counts in Å and ps and knows what each format counts in; LAMMPS' units are brought to the
+former.  Units *lj* have no such scale: 1 sigma becomes 1 Å and 1 tau 1 ps, and what is written says so.
 """
 
 import warnings
@@ -53,16 +53,16 @@ def has_times(path):
 
 
 def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=None):
-    """Write ``atoms`` in all frames to ``path``; its suffix names the format (dcd, xtc, trr, xyz, pdb, ...).
+    """Write ``atoms`` in all frames to ``path``; its suffix names the format (dcd, xtc, pdb, ...).
 
-    ``atoms`` of a dump, in LAMMPS' ``units``.  Bodies are whole.  ``wrap`` puts their centres into the box;
-    otherwise they go on beyond it as far as the dump tells.  Along periodic directions the origin is the corner of
-    the box.  ``frames``: a slice; ``times`` (F,): of these frames, if known; ``progress``: wraps the iterator, such as
-    tqdm.  Formats that hold only positions get a file of the first frame beside them: PDB, or XYZ where
-    coordinates do not fit into PDB's columns.
+    ``atoms`` of a dump, in LAMMPS' ``units``.  Bodies are whole.  ``wrap`` puts their centres into the
+    box; otherwise they go on beyond it as far as the dump tells.  Along periodic directions the origin
+    is the corner of the box.  ``frames``: a slice; ``times`` (F,): of these frames, if known;
+    ``progress``: wraps the iterator, such as tqdm.  Formats that hold only positions get a file of the
+    first frame beside them: PDB, or XYZ where coordinates do not fit into PDB's columns.
 
-    Returns the files written.  Raises ValueError for a format that MDAnalysis does not write, and for frames
-    that it cannot hold.
+    Returns the files written.  Raises ValueError for a format that MDAnalysis does not write, and for
+    frames that it cannot hold.
     """
     path, trajectory = Path(path), atoms.universe.trajectory
     length, time = ANGSTROM_AND_PS[units]
@@ -132,8 +132,8 @@ def _spacing(times, path):
     even = times[0] + dt * np.arange(len(times))
     if dt == 0.0 or np.abs(times - even).max() > UNEVEN * abs(dt):
         raise ValueError(
-            f"{path}: this format has one distance of time for all frames, and these are not evenly spaced: xtc and"
-            " trr keep the time of each"
+            f"{path}: this format has one distance of time for all frames, and these are not evenly"
+            " spaced: xtc and trr keep the time of each"
         )
     # the first time is istart / nsavc distances
     start = times[0] / dt

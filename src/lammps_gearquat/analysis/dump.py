@@ -115,8 +115,8 @@ class DumpFrames(DumpReader):
     """MDAnalysis' reader of LAMMPS dumps, a frame at once and in double precision.
 
     ``Timestep.positions`` are those of MDAnalysis (single precision, box moved to the origin);
-    they are unwrapped where the dump tells how.  ``Timestep.data`` holds besides ``step`` and ``time`` (that of
-    the dump if it has one, else the step times ``dt``)
+    they are unwrapped where the dump tells how.  ``Timestep.data`` holds besides ``step`` and ``time``
+    (that of the dump if it has one, else the step times ``dt``)
 
     * ``x`` (n, 3): positions as LAMMPS counts them, unwrapped by the dump's own columns if it has them
     * ``whole``: whether that was so, or nothing is periodic
@@ -125,8 +125,9 @@ class DumpFrames(DumpReader):
     * each of ``additional_columns`` (n,)
 
     Rows are sorted by ID.  Raises DumpError if IDs are missing, occur twice or change, if positions
-    are missing, or if the number of rows changes.  ``unit_style``, ``timed`` and ``cut_off`` tell of the dump: LAMMPS'
-    units or None, whether it has times, and whether its last frame is not whole; that one is left out.
+    are missing, or if the number of rows changes.  ``unit_style``, ``timed`` and ``cut_off`` tell of
+    the dump: LAMMPS' units or None, whether it has times, and whether its last frame is not whole; that
+    one is left out.
 
     ``names`` renames columns: of a ``dump local`` those of LAMMPS are ``f_ID[1]`` and so on.
     """
@@ -253,7 +254,7 @@ class DumpFrames(DumpReader):
 
 
 def _names(masses, types):
-    """Names (n,) for viewers, and elements if all masses are those of elements; else T and the type, and None."""
+    """Names and elements (n,) for viewers, if all masses are those of elements; else T1 ... and None."""
     symbols = np.array(list(MASSES))
     weights = np.array([MASSES[symbol] for symbol in symbols])
     kinds, which = np.unique(masses, return_inverse=True)

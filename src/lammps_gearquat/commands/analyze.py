@@ -111,7 +111,8 @@ def _settle(trajectory, converted, options):
         click.echo("The last frame of the dump is not whole, and is left out.")
     if converted and not options["units"]:
         raise ValueError(
-            "--convert needs the units of the dump: give --units, or write the dump with dump_modify units yes"
+            "--convert needs the units of the dump: give --units, or write the dump with dump_modify"
+            " units yes"
         )
     if trajectory.timed and timestep is not None:
         click.echo("The dump has times of its own; --timestep is not used.")
@@ -214,7 +215,5 @@ def _convert(poses, path, wrap, frames):
     def progress(iterator):
         return tqdm(iterator, desc="writing", unit="frame")
 
-    written = convert(
-        poses.atoms, path, poses.units, wrap, frames, poses.results.time, progress
-    )
+    written = convert(poses.atoms, path, poses.units, wrap, frames, poses.results.time, progress)
     click.echo(f"The trajectory is in {' and '.join(map(str, written))}.  {remark(poses.units)}.")

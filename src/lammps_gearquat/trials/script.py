@@ -293,7 +293,9 @@ def translate(line):
             if not stated:
                 kept.append((key, ("no" if no else "yes",)))
             elif not no:
-                notes.append(f"{who}: keyword reinit is left out; bodies of an infile stay as stated")
+                notes.append(
+                    f"{who}: keyword reinit is left out; bodies of an infile stay as stated"
+                )
         elif key in _LEFT_OUT:
             notes.append(f"{who}: keyword {key} is left out; {_LEFT_OUT[key]}")
         else:
