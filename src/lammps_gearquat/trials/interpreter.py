@@ -311,9 +311,10 @@ class Interpreter:
         if "f_" + words[1] in self.silenced:
             return
         self._pass(line, modifies=words[1] if words[1] in self.movers else "")
-        if words[1] in self.movers and "bodyforces" in words:
+        if words[1] in self.movers and "early" in words:
             self.start.notes.append(
-                f"fix_modify {words[1]} bodyforces is left out: fix gear/quat takes all forces"
+                f"fix_modify {words[1]} bodyforces early is left out: fix gear/quat takes all forces,"
+                " also of fixes that come after it"
             )
 
     def _do_unfix(self, words, line):
