@@ -46,7 +46,9 @@ def test_boxes_that_follow_the_atoms(lmp_tree, data, boundary):
 
 def test_a_restart_in_such_a_box(lmp_tree, data):
     halves = f"run {STEPS // 2}\nwrite_restart half\nrun {STEPS // 2}"
-    whole = frame(lmp_tree, cluster("s s m", "gear/quat molecule", 0.1, STEPS, "whole", halves), "whole")
+    whole = frame(
+        lmp_tree, cluster("s s m", "gear/quat molecule", 0.1, STEPS, "whole", halves), "whole"
+    )
     rest = cluster("s s m", "gear/quat molecule", 0.1, STEPS // 2, "rest")
     again = frame(lmp_tree, restarted(rest, "half"), "rest", ranks=2)
     assert difference(whole, again) < 1e-11

