@@ -89,7 +89,7 @@ def processes_of_session(session: int) -> list[int]:
     return members
 
 
-def _end_session(session: int) -> None:
+def end_session(session: int) -> None:
     """Ends a program and all it started: ``mpirun`` and ``lmp`` leave children in other groups."""
     for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
         for process in processes_of_session(session):
@@ -166,14 +166,14 @@ class Lammps:
                     meanwhile(process.pid)
                 returncode = process.wait(timeout)
             except subprocess.TimeoutExpired:
-                _end_session(process.pid)
+                end_session(process.pid)
                 process.wait()
                 text = out.read_text(errors="replace") + err.read_text(errors="replace")
                 raise TimeoutError(
                     f"{' '.join(command)}: still running after {timeout} s\n{text}"
                 ) from None
             except BaseException:
-                _end_session(process.pid)
+                end_session(process.pid)
                 raise
         said = err.read_text(errors="replace")
         if UNDEFINED in said:

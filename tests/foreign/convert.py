@@ -51,6 +51,14 @@ def uses_rigid(text):
     return any(line.rigid for line in lines_of(text))
 
 
+def has_random_forces(text):
+    """Whether a pair style draws random numbers."""
+    return any(
+        line.words[0] == "pair_style" and re.search(r"(^|/)\w*dpd", " ".join(line.words[1:]))
+        for line in lines_of(text)
+    )
+
+
 def converted(line, more=""):
     """The command with gear/quat in place of the rigid style, all other words kept."""
     words = line.words[4:]

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from running import Result
+from running import Result, end_session
 
 from . import convert
 
@@ -21,6 +21,8 @@ FIRST, STEPS, WHOLE = 100, 10, 60
 LONG = 2000
 #: in units of the error of the reference, which is found by halving its step
 WITHIN = 4.0
+#: the error of a reference that can tell, in units of how far atoms move
+TELLS = 0.05
 
 #: why a deck is refused: message of the fix, name, and where the manual says so
 REASONS = (
@@ -33,7 +35,7 @@ REASONS = (
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
     (r"does not change size or shape", "box that changes", r"must not change its\s+size or shape"),
     (
-        r"is in (both )?groups?|in two groups|more than one",
+        r"is in (?:both )?groups?|in two groups|more than one",
         "bodies that share atoms (poems)",
         r"An atom may be in one of them at most",
     ),
@@ -42,10 +44,11 @@ REASONS = (
         "another fix moves the same atoms",
         r"No other fix that integrates time",
     ),
+    (r"fix hmc does not point to fix rigid", "fix hmc", r"fix hmc"),
     (
-        r"changes single atoms of bodies",
-        "another fix changes single atoms of bodies",
-        r"changes single atoms|single atoms of bodies",
+        r"fix \S+ \((\S+)\) changes single atoms of bodies",
+        "a fix that moves single atoms of bodies",
+        r"\*STYLE\*",
     ),
     (
         r"plugin was compiled for lacks the headers",
@@ -64,33 +67,38 @@ class Program:
     executable: Path
     environment: dict = field(default_factory=dict)
 
-    def run(self, text, folder, timeout=300.0):
+    def run(self, text, folder, timeout=150.0):
         (folder / "in.foreign").write_text(text)
         log = folder / "log.foreign"
         log.unlink(missing_ok=True)
         command = [str(self.executable), "-in", "in.foreign", "-log", str(log), "-nocite"]
         environment = {**os.environ, "OMP_NUM_THREADS": "1", **self.environment}
         environment.pop("LAMMPS_PLUGIN_PATH", None)
-        try:
-            done = subprocess.run(
+        out, err = folder / "out.foreign", folder / "err.foreign"
+        with out.open("w") as stdout, err.open("w") as stderr:
+            process = subprocess.Popen(
                 command,
                 cwd=folder,
                 env=environment,
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=timeout,
+                stdin=subprocess.DEVNULL,
+                stdout=stdout,
+                stderr=stderr,
                 start_new_session=True,
             )
-        except subprocess.TimeoutExpired:
-            return Result(-1, "", "ERROR: still running after the time allowed", "", folder)
+            try:
+                code = process.wait(timeout)
+            except subprocess.TimeoutExpired:
+                end_session(process.pid)  # the wheel's lmp leaves a child
+                return Result(-1, "", f"ERROR: still running after {timeout} s\n", "", folder)
         said = log.read_text(errors="replace") if log.exists() else ""
-        return Result(done.returncode, done.stdout, done.stderr, said, folder)
+        texts = [path.read_text(errors="replace") for path in (out, err)]
+        return Result(code, *texts, said, folder)
 
 
 @dataclass
 class Verdict:
-    """``result``: agrees, refused, or NEITHER; per rigid fix of the deck."""
+    """Per rigid fix of a deck; ``result``: agrees, refused, NEITHER; runs, if nothing can be compared;
+    LAMMPS ends, if the deck as it is does not run here."""
 
     deck: str
     line: str
@@ -170,10 +178,11 @@ class Deck:
 
     def _reason(self, message):
         """Name of the reason for a message of the fix, if the manual has it."""
-        if "gear/quat" not in message:
-            return ""
         for pattern, name, manual in REASONS:
-            if re.search(pattern, message) and re.search(manual, self.manual):
+            found = re.search(pattern, message)
+            if found and found.groups() and found[1]:  # the manual has to name the very style
+                manual = manual.replace("STYLE", re.escape(found[1]))
+            if found and re.search(manual, self.manual):
                 return name
         return ""
 
@@ -186,6 +195,7 @@ class Deck:
             verdict.program = self.program.name
         if own:
             for verdict in found:
+                verdict.result, verdict.reason = "LAMMPS ends", own.partition(":")[0]
                 verdict.notes.append(f"the deck itself: {own}")
             return found
         ours = set(range(len(rigid)))
@@ -258,7 +268,13 @@ class Deck:
         verdict.notes.append(
             f"{len(fine)} atoms moved by {moved[0]:.1e}; apart {ours[0]:.1e} {ours[1]:.1e}, error of the reference {error[0]:.1e} {error[1]:.1e}"
         )
-        if moved[0] > 0 and (ours <= allowed).all():
+        if not error[0] < TELLS * moved[0]:
+            chance = convert.has_random_forces(self.text)
+            verdict.result = "runs" if chance else "NEITHER"
+            verdict.reason = (
+                "random forces leave nothing to compare" if chance else "reference too coarse"
+            )
+        elif (ours <= allowed).all():
             verdict.result = "agrees"
 
 
