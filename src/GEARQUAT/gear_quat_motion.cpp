@@ -110,7 +110,7 @@ void GearQuatMotion::impose_masks()
 
 void GearQuatMotion::begin_run()
 {
-  if (!started && !tolerance) check_spins(lmp, bodies, args.scheme, h);
+  if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, h);
   if (isokinetic) isokinetic->begin_run(!started);
   set_up = true;
 }
@@ -223,8 +223,8 @@ void GearQuatMotion::take_velocities(const std::vector<int> &changed)
 {
   if (!started) return;
   for (const int ibody : changed)
-    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state[ibody],
-                               bodies.acting(ibody), bodies.history(ibody));
+    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state[ibody], bodies.acting(ibody),
+                               bodies.history(ibody));
 }
 
 void GearQuatMotion::predict(double **f)

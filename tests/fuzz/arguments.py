@@ -125,9 +125,9 @@ def bodystyle(words):
         if any(name not in GROUPS for name in names):
             return None
         atoms = [atom for name in names for atom in GROUPS[name]]
-        if not atoms or len(atoms) != len(set(atoms)):
+        if not all(GROUPS[name] for name in names) or len(atoms) != len(set(atoms)):
             return None
-        return 2 + count, sum(1 for name in names if GROUPS[name])
+        return 2 + count, count
     return None
 
 
@@ -208,10 +208,7 @@ def is_valid(words):
         return False
     if "mol" in given and (given["mol"] not in TEMPLATES or words[0] != "molecule"):
         return False
-    if "infile" not in given:
-        return True
-    # which states body 1
-    return given["infile"] in INFILES and not (words[0] == "group" and not GROUPS[words[2]])
+    return "infile" not in given or given["infile"] in INFILES
 
 
 # --- inputs ---------------------------------------------------------------------------------------

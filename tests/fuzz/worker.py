@@ -114,7 +114,7 @@ def try_infile(scene, rng, alone={}):
             scene.lmp.command("run 1 post no")
             scene.put_back()
         except Exception as error:
-            if "blow-up" not in str(error):
+            if "blow-up" not in str(error) and "values can follow" not in str(error):
                 wrong = f"accepted, and then: {error}"
             scene.renew()
     yield right, not refusal, wrong

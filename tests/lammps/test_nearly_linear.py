@@ -112,3 +112,11 @@ def test_the_blow_up_names_the_moment(lmp_wheel):
         "turns about the axis of its smallest moment of inertia, 0.0034932, the largest being 43.06"
         in words
     )
+
+
+def test_a_run_of_no_steps_is_not_refused(lmp_wheel):
+    """It serves to see energies, or to scale velocities: then the next one may be right."""
+    deck = carbon_dioxide(0.02, 2.7, steps=0) + "velocity all scale 1.0\nrun 20\n"
+    result = lmp_wheel.run(deck)
+    assert result.returncode == 0, result.output
+    assert len(result.thermo) == 2
