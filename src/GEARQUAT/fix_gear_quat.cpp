@@ -108,11 +108,11 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   create_attribute = 1;
   restart_global = restart_peratom = restart_file = 1;
 
+  args.reset(new GearQuatArguments(lmp, narg, arg));
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
   if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
 
-  args.reset(new GearQuatArguments(lmp, narg, arg));
   bodies.reset(new GearQuatBodies(lmp, this, args->scheme));
   motion.reset(new GearQuatMotion(lmp, this, *args, *bodies));
   neighbors.reset(new GearQuatNeighbors(lmp, this, *bodies, *args));
