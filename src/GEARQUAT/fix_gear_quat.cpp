@@ -191,6 +191,11 @@ bool FixGearQuat::moves(int i) const
   return bodies->in_body(i);
 }
 
+bool FixGearQuat::bootstraps() const
+{
+  return motion->bootstraps();
+}
+
 double FixGearQuat::last_error() const
 {
   return motion->last_error();
@@ -279,13 +284,24 @@ void FixGearQuat::initial_integrate(int vflag)
 {
   vflag_of_step = vflag;
   take_velocities(update->ntimestep - 1, true);
-  if (motion->begins_steps()) {
-    // forces of the step before are still there, those of all other fixes among them
-    bodies->spread_states();
-    bodies->gather_loads(atom->f, atom->torque);
-    motion->begin_steps(atom->f);
-  }
+  // forces of the step before are still there, those of all other fixes among them
+  if (motion->begins_steps()) begin_steps(atom->f, atom->torque);
   begin_step();
+}
+
+/// The first fix gear/quat in the list does so for all of them: their bodies act on each other.
+void FixGearQuat::begin_steps(double **f, double **torque)
+{
+  std::vector<GearQuatMotion *> all;
+  for (auto *other : modify->get_fix_list()) {
+    auto *same = dynamic_cast<FixGearQuat *>(other);
+    if (!same) continue;
+    same->take_velocities(update->ntimestep - 1, true);
+    same->bodies->spread_states();
+    same->bodies->gather_loads(f, torque);
+    all.push_back(same->motion.get());
+  }
+  GearQuatMotion::begin_steps(all, f);
 }
 
 void FixGearQuat::final_integrate()
@@ -368,9 +384,7 @@ void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
   take_velocities(update->ntimestep - 1, true);
   if (motion->begins_steps()) {
     respa->recall();
-    bodies->spread_states();
-    bodies->gather_loads(respa->forces(), respa->torques());
-    motion->begin_steps(respa->forces());
+    begin_steps(respa->forces(), respa->torques());
   }
   begin_step();
 }

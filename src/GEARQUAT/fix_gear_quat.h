@@ -68,6 +68,8 @@ class FixGearQuat : public Fix {
 
   /// True if the fix moves this atom.
   bool moves(int atom) const;
+  /// True if its start finds all derivatives, as far as it can.
+  bool bootstraps() const;
   /// The largest error of a body here in the last step, as a length.
   double last_error() const;
 
@@ -99,6 +101,7 @@ class FixGearQuat : public Fix {
   void take_velocities(bigint step, bool end);
   void create_bodies();
   void resume();
+  void begin_steps(double **, double **);
   void begin_step();
   void finish_step(double **, double **);
   void tally_virial(double **);

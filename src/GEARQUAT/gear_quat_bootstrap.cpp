@@ -34,44 +34,55 @@ static constexpr int JUMPING = 3;
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatBootstrap::GearQuatBootstrap(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
-                                     GearQuatIsokinetic *isokinetic, const Scheme &scheme,
-                                     double h) :
-    Pointers(lmp),
-    fix(fix), bodies(bodies), isokinetic(isokinetic), scheme(scheme), h(h),
-    collocation(scheme.values()), evaluations(0), jumps(0),
-    power(collocation.number_of_nodes(), 0.0)
+void GearQuatParty::measure()
 {
+  if (isokinetic) isokinetic->measure();
 }
 
-/// States and loads are those of a node: what the constraint makes of them.
-void GearQuatBootstrap::measure(int node)
+Load GearQuatParty::acting(int ibody) const
 {
-  if (!isokinetic) return;
-  isokinetic->measure();
-  power[collocation.pairs() + node] = isokinetic->power();
+  return isokinetic ? isokinetic->acting(ibody) : bodies->acting(ibody);
 }
 
-/// What moves a body, after measure().
-Load GearQuatBootstrap::acting(int ibody) const
+void GearQuatParty::seed_local(int terms, double h)
 {
-  return isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
-}
-
-void GearQuatBootstrap::zero()
-{
-  seed_local(2);
-}
-
-void GearQuatBootstrap::seed_local(int terms)
-{
-  measure(0);
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    seed_body(bodies, ibody, acting(ibody), scheme, h, terms);
+  measure();
+  for (int ibody = 0; ibody < bodies->nmoved(); ++ibody)
+    GearQuatBootstrap::seed_body(*bodies, ibody, acting(ibody), scheme, h, terms);
   if (isokinetic) {
     const double heat[2] = {0.0, h * isokinetic->power()};
     isokinetic->seed_heat(heat, 2, h, h);
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+static int most_values(const std::vector<GearQuatParty> &parties)
+{
+  int most = 0;
+  for (const auto &party : parties) most = std::max(most, party.scheme.values());
+  return most;
+}
+
+GearQuatBootstrap::GearQuatBootstrap(LAMMPS *lmp, const std::vector<GearQuatParty> &parties,
+                                     double h) :
+    Pointers(lmp),
+    parties(parties), h(h), collocation(most_values(parties)), evaluations(0), jumps(0)
+{
+  for (auto &party : this->parties) party.power.assign(collocation.number_of_nodes(), 0.0);
+}
+
+void GearQuatBootstrap::measure(int node)
+{
+  for (auto &party : parties) {
+    party.measure();
+    if (party.isokinetic) party.power[collocation.pairs() + node] = party.isokinetic->power();
+  }
+}
+
+void GearQuatBootstrap::zero(GearQuatParty party, double h)
+{
+  party.seed_local(2, h);
 }
 
 void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Load &acting,
@@ -87,38 +98,81 @@ void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Load 
 
 bool GearQuatBootstrap::run()
 {
-  GearQuatForces forces(lmp, fix);
+  std::vector<const Fix *> owners;
+  std::string orders;
+  for (const auto &party : parties) {
+    owners.push_back(party.fix);
+    const std::string order = std::to_string(party.scheme.order());
+    if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
+  }
+  GearQuatForces forces(lmp, owners);
   std::string why = forces.reason();
-  bool done = false;
   if (why.empty()) {
-    const std::vector<BodyState> states(bodies.state.begin(),
-                                        bodies.state.begin() + bodies.nmoved());
-    const std::vector<Load> loads(bodies.load.begin(), bodies.load.begin() + bodies.nmoved());
-    forces.save();
-    double spacing = first_spacing();
-    for (int n = 0; n < MAX_HALVINGS && !done; ++n, spacing *= 0.5) {
-      std::copy(states.begin(), states.end(), bodies.state.begin());
-      std::copy(loads.begin(), loads.end(), bodies.load.begin());
-      done = collocate(forces, spacing);
+    if (search(forces)) {
+      if (comm->me == 0)
+        utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
+                       names(), orders, evaluations, reason);
+      return true;
     }
     why = reason;
-    forces.restore();
-    std::copy(states.begin(), states.end(), bodies.state.begin());
-    std::copy(loads.begin(), loads.end(), bodies.load.begin());
-    bodies.spread_states();
-    bodies.place_extended();
   }
-  if (done) {
-    if (comm->me == 0)
-      utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
-                     fix->id, scheme.order(), evaluations, reason);
-    return true;
-  }
-  seed_local(3);
-  if (comm->me == 0)
+  for (auto &party : parties) {
+    if (!party.needed) continue;
+    party.seed_local(3, h);
+    const int values = party.scheme.values();
+    const int most = forces.most_values_with_noise([&party](int i) {
+      return party.bodies->in_body(i);
+    });
+    if (comm->me != 0) continue;
     utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
-                   fix->id, why);
+                   party.fix->id, why);
+    if (most > 0 && values > most)
+      utils::logmesg(
+          lmp,
+          "Fix gear/quat {}: random forces heat bodies with many values; values {} suits "
+          "them, not {}\n",
+          party.fix->id, most == 4 ? "4" : fmt::format("4 to {}", most), values);
+  }
   return false;
+}
+
+std::string GearQuatBootstrap::names() const
+{
+  std::vector<std::string> ids;
+  for (const auto &party : parties) ids.emplace_back(party.fix->id);
+  return utils::join_words(ids, " and ");
+}
+
+/// Spacing after spacing; after the call atoms, states and loads are as before.
+bool GearQuatBootstrap::search(GearQuatForces &forces)
+{
+  std::vector<std::vector<BodyState>> states;
+  std::vector<std::vector<Load>> loads;
+  for (const auto &party : parties) {
+    const int n = party.bodies->nmoved();
+    states.emplace_back(party.bodies->state.begin(), party.bodies->state.begin() + n);
+    loads.emplace_back(party.bodies->load.begin(), party.bodies->load.begin() + n);
+  }
+  const auto put_back = [&]() {
+    for (size_t p = 0; p < parties.size(); ++p) {
+      std::copy(states[p].begin(), states[p].end(), parties[p].bodies->state.begin());
+      std::copy(loads[p].begin(), loads[p].end(), parties[p].bodies->load.begin());
+    }
+  };
+  forces.save();
+  bool done = false;
+  double spacing = first_spacing();
+  for (int n = 0; n < MAX_HALVINGS && !done; ++n, spacing *= 0.5) {
+    put_back();
+    done = collocate(forces, spacing);
+  }
+  forces.restore();
+  put_back();
+  for (auto &party : parties) {
+    party.bodies->spread_states();
+    party.bodies->place_extended();
+  }
+  return done;
 }
 
 /// Node spacing: the step, or as much of it as keeps every site within half the skin.
@@ -127,7 +181,10 @@ double GearQuatBootstrap::first_spacing() const
   const double span = collocation.pairs() * std::fabs(h);
   double fastest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!bodies.in_body(i)) continue;
+    if (std::none_of(parties.begin(), parties.end(), [i](const GearQuatParty &party) {
+          return party.bodies->in_body(i);
+        }))
+      continue;
     double v2 = 0.0;
     for (int k = 0; k < 3; ++k) v2 += atom->v[i][k] * atom->v[i][k];
     fastest = std::max(fastest, v2);
@@ -148,11 +205,14 @@ double GearQuatBootstrap::length(const GearQuatBody &body) const
 bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
 {
   measure(0);
-  work.resize(bodies.nmoved());
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    collocation.begin(
-        local_series(bodies.body[ibody].rigid, bodies.state[ibody], acting(ibody), spacing),
-        work[ibody]);
+  for (auto &party : parties) {
+    const GearQuatBodies &bodies = *party.bodies;
+    party.work.resize(bodies.nmoved());
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+      collocation.begin(
+          local_series(bodies.body[ibody].rigid, bodies.state[ibody], party.acting(ibody), spacing),
+          party.work[ibody]);
+  }
 
   double change = 0.0;
   bool found = false, stuck = false;
@@ -176,23 +236,32 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
     reason = "forces vary too much within a few steps";
     return false;
   }
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    seed(scheme, bodies.body[ibody].rigid, collocation.series(work[ibody]), spacing, h,
-         bodies.history(ibody));
-  if (isokinetic) {
-    std::vector<double> heat(power.size() + 1);
-    collocation.integrate(power.data(), spacing, heat.data());
-    isokinetic->seed_heat(heat.data(), (int) heat.size(), spacing, h);
-  }
+  seed_all(spacing);
   return true;
+}
+
+void GearQuatBootstrap::seed_all(double spacing)
+{
+  for (auto &party : parties) {
+    GearQuatBodies &bodies = *party.bodies;
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+      seed(party.scheme, bodies.body[ibody].rigid, collocation.series(party.work[ibody]), spacing,
+           h, bodies.history(ibody));
+    if (!party.isokinetic) continue;
+    std::vector<double> heat(party.power.size() + 1);
+    collocation.integrate(party.power.data(), spacing, heat.data());
+    party.isokinetic->seed_heat(heat.data(), (int) heat.size(), spacing, h);
+  }
 }
 
 /// Largest of all bodies.
 double GearQuatBootstrap::truncation() const
 {
   double here = 0.0, all;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    here = std::max(here, collocation.truncation(length(bodies.body[ibody]), work[ibody]));
+  for (const auto &party : parties)
+    for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody)
+      here = std::max(here,
+                      collocation.truncation(length(party.bodies->body[ibody]), party.work[ibody]));
   MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
 }
@@ -206,7 +275,8 @@ bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, bool first
     for (const int node : {-pair, pair})
       if (!visit(forces, node, spacing, here)) return false;
     if (first && pair < collocation.pairs())
-      for (auto &one : work) collocation.foretell(pair, one);
+      for (auto &party : parties)
+        for (auto &one : party.work) collocation.foretell(pair, one);
   }
   MPI_Allreduce(&here, &change, 1, MPI_DOUBLE, MPI_MAX, world);
   return true;
@@ -215,20 +285,25 @@ bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, bool first
 /// Forces at one node; change: grows to what they change.  False as in sweep().
 bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, double &change)
 {
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    bodies.state[ibody] = collocation.state_at(node, work[ibody], spacing);
-  bodies.spread_states();
-  bodies.place_sites(true);
+  for (auto &party : parties) {
+    GearQuatBodies &bodies = *party.bodies;
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+      bodies.state[ibody] = collocation.state_at(node, party.work[ibody], spacing);
+    bodies.spread_states();
+    bodies.place_sites(true);
+  }
   if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
   forces.evaluate();
   ++evaluations;
-  bodies.gather_loads(atom->f, atom->torque);
+  for (auto &party : parties) party.bodies->gather_loads(atom->f, atom->torque);
   measure(node);
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const GearQuatBody &body = bodies.body[ibody];
-    change = std::max(change,
-                      collocation.set_load(node, body.rigid, bodies.state[ibody], acting(ibody),
-                                           spacing, length(body), work[ibody]));
-  }
+  for (auto &party : parties)
+    for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody) {
+      const GearQuatBody &body = party.bodies->body[ibody];
+      change = std::max(change,
+                        collocation.set_load(node, body.rigid, party.bodies->state[ibody],
+                                             party.acting(ibody), spacing, length(body),
+                                             party.work[ibody]));
+    }
   return true;
 }

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Start-up of all bodies inside LAMMPS: the loop over nodes and bodies around the kernel's
+/* Start-up of all bodies inside LAMMPS, those of several fixes together: the loop over nodes and bodies around the kernel's
    collocation (gear_quat_startup.h), with LAMMPS' own forces at every node. */
 
 #ifndef LMP_GEAR_QUAT_BOOTSTRAP_H
@@ -19,15 +19,32 @@
 
 namespace LAMMPS_NS {
 
+/// The bodies of one fix.
+struct GearQuatParty {
+  const Fix *fix;
+  GearQuatBodies *bodies;            ///< states and loads are those of the start
+  GearQuatIsokinetic *isokinetic;    ///< null without such a constraint
+  GearQuat::Scheme scheme;
+  bool needed;    ///< false if there are histories, to be kept where not all rows can be found
+
+  std::vector<GearQuat::Collocation::Workspace> work;
+  std::vector<double> power;    ///< of all forces at the nodes, where a constraint takes it
+
+  /// States and loads are those of a node: what the constraint makes of them.
+  void measure();
+  /// What moves a body, after measure().
+  GearQuat::Load acting(int ibody) const;
+  /// Histories of all bodies from what states and loads determine.
+  void seed_local(int terms, double h);
+};
+
 class GearQuatBootstrap : protected Pointers {
  public:
-  /// bodies: states and loads of owned bodies are those of the start.  isokinetic: null without such
-  /// a constraint.  h: the step of the histories.
-  GearQuatBootstrap(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
-                    GearQuatIsokinetic *isokinetic, const GearQuat::Scheme &scheme, double h);
+  /// parties: all that start together, with one set of nodes.  h: the step of the histories.
+  GearQuatBootstrap(LAMMPS *lmp, const std::vector<GearQuatParty> &parties, double h);
 
   /// The paper's start: every second and higher derivative is zero.
-  void zero();
+  static void zero(GearQuatParty party, double h);
   /// History of one body from what its state and the load that acts on it determine.  terms: 2, or
   /// 3 for the load too.
   static void seed_body(GearQuatBodies &bodies, int ibody, const GearQuat::Load &acting,
@@ -38,27 +55,22 @@ class GearQuatBootstrap : protected Pointers {
   bool run();
 
  private:
-  const Fix *fix;
-  GearQuatBodies &bodies;
-  GearQuatIsokinetic *isokinetic;
-  GearQuat::Scheme scheme;
+  std::vector<GearQuatParty> parties;
   double h;
 
   GearQuat::Collocation collocation;
-  std::vector<GearQuat::Collocation::Workspace> work;
   int evaluations;       ///< of the forces, so far
   int jumps;             ///< spacings at which forces seemed to jump
   std::string reason;    ///< why the last spacing failed, or what is to be said about it
 
-  std::vector<double> power;    ///< of all forces at the nodes, where a constraint takes it
-
-  void seed_local(int terms);
   void measure(int node);
-  GearQuat::Load acting(int ibody) const;
+  std::string names() const;
   double first_spacing() const;
   double length(const GearQuatBody &body) const;
   double truncation() const;
+  bool search(GearQuatForces &forces);
   bool collocate(GearQuatForces &forces, double spacing);
+  void seed_all(double spacing);
   bool visit(GearQuatForces &forces, int node, double spacing, double &change);
   bool sweep(GearQuatForces &forces, double spacing, bool first, double &change);
 };

@@ -32,6 +32,13 @@ static const char *const UNFOLLOWED_PAIRS[] = {"dpd",      "gran",  "brownian", 
                                                "^reax",    "^bpm",  "^amoeba",  "^hippo",
                                                "^tracker", "^peri", "^rheo",    "^smd"};
 
+// random forces, and the most values that leave bodies at their temperature; collisions last one step
+
+static const char *const RANDOM_PAIRS[] = {"dpd", "brownian", "^dsmc"};
+static const char *const RANDOM_FIXES[] = {"langevin", "brownian", "^gle", "^gld", "^ttm"};
+static const char *const COLLISIONS[] = {"^srd"};
+static constexpr int MOST_WITH_NOISE = 6, MOST_WITH_COLLISIONS = 4;
+
 // bond styles that break, or change with what they have met
 
 static const char *const UNFOLLOWED_BONDS[] = {"quartic",    "quartic/omp",        "bpm/rotational",
@@ -72,12 +79,30 @@ static std::string name(const Fix *fix)
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatForces::GearQuatForces(LAMMPS *lmp, const Fix *owner) : Pointers(lmp), tallies(lmp)
+GearQuatForces::GearQuatForces(LAMMPS *lmp, const std::vector<const Fix *> &owners) :
+    Pointers(lmp), tallies(lmp)
 {
   look_at_styles();
-  if (why.empty()) look_at_fixes(owner);
+  if (why.empty()) look_at_fixes(owners);
   if (why.empty()) look_at_variables();
   if (why.empty()) look_at_time();
+}
+
+int GearQuatForces::most_values_with_noise(const std::function<bool(int)> &in_body) const
+{
+  int most = 0;
+  for (const auto *style : RANDOM_PAIRS)
+    if (force->pair && force->pair_match(style, 0, 1)) most = MOST_WITH_NOISE;
+  for (const auto *fix : modify->get_fix_list()) {
+    if (among(COLLISIONS, fix)) return MOST_WITH_COLLISIONS;
+    if (!among(RANDOM_FIXES, fix)) continue;
+    int here = 0, any;
+    for (int i = 0; i < atom->nlocal; ++i)
+      if ((atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
+    MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any) most = MOST_WITH_NOISE;
+  }
+  return most;
 }
 
 void GearQuatForces::look_at_styles()
@@ -91,12 +116,12 @@ void GearQuatForces::look_at_styles()
       why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
 }
 
-void GearQuatForces::look_at_fixes(const Fix *owner)
+void GearQuatForces::look_at_fixes(const std::vector<const Fix *> &owners)
 {
   const int during_force =
       FixConst::PRE_FORCE | FixConst::PRE_REVERSE | FixConst::POST_FORCE | FixConst::POST_INTEGRATE;
   for (auto *fix : modify->get_fix_list()) {
-    if (fix == owner) continue;
+    if (std::find(owners.begin(), owners.end(), fix) != owners.end()) continue;
     const int mask = modify->get_fix_mask(fix);
     if (fix->time_integrate)
       why = name(fix) + " moves atoms";

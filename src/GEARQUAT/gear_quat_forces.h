@@ -15,6 +15,7 @@
 
 #include "gear_quat_tallies.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,15 @@ class Fix;
 
 class GearQuatForces : protected Pointers {
  public:
-  /// Looks at the scene.  owner: the fix that asks, itself not evaluated.  Collective.
-  GearQuatForces(LAMMPS *lmp, const Fix *owner);
+  /// Looks at the scene.  owners: the fixes that ask, themselves not evaluated.  Collective.
+  GearQuatForces(LAMMPS *lmp, const std::vector<const Fix *> &owners);
 
   /// Empty if forces can be followed, else what stands in the way.
   const std::string &reason() const { return why; }
+
+  /// More values than these carry on the noise of random forces on the atoms that `in_body` tells; 0 if
+  /// there are none.  Collective.
+  int most_values_with_noise(const std::function<bool(int)> &in_body) const;
 
   /// Keep positions, velocities, forces and torques of all atoms, ghosts too.
   void save();
@@ -46,7 +51,7 @@ class GearQuatForces : protected Pointers {
   GearQuatTallies tallies;
 
   void look_at_styles();
-  void look_at_fixes(const Fix *owner);
+  void look_at_fixes(const std::vector<const Fix *> &owners);
   void look_at_variables();
   void look_at_time();
   std::vector<double> external_forces(bigint step);

@@ -6,7 +6,6 @@
 #include "gear_quat_motion.h"
 
 #include "fix_gear_quat.h"
-#include "gear_quat_bootstrap.h"
 #include "gear_quat_spins.h"
 
 #include "atom.h"
@@ -119,13 +118,41 @@ void GearQuatMotion::begin_run()
    before the first step of a run
 ------------------------------------------------------------------------- */
 
-void GearQuatMotion::begin_steps(double **f)
+void GearQuatMotion::begin_steps(const std::vector<GearQuatMotion *> &all, double **f)
 {
-  set_up = false;
-  const char *reason = started ? reason_to_start_anew(f) : nullptr;
-  if (reason && comm->me == 0)
-    utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
-  if (!started || reason) start(f);
+  std::vector<GearQuatMotion *> full;
+  std::vector<bool> needed;
+  for (auto *one : all) {
+    one->set_up = false;
+    const bool needs = one->has_to_start(f);
+    if (one->bootstraps()) {
+      full.push_back(one);
+      needed.push_back(needs);
+    } else if (needs) {
+      GearQuatBootstrap::zero(one->party(true), one->h);
+      one->begin(false);
+    }
+  }
+  if (std::none_of(needed.begin(), needed.end(), [](bool one) {
+        return one;
+      }))
+    return;
+
+  // histories that could go on are made anew where this makes the start of the others full
+
+  const bool some_go_on = !std::all_of(needed.begin(), needed.end(), [](bool one) {
+    return one;
+  });
+  const bool together = !some_go_on ||
+      GearQuatForces(full[0]->lmp, full[0]->starting_together()).reason().empty();
+  std::vector<GearQuatParty> parties;
+  for (size_t n = 0; n < full.size(); ++n)
+    if (needed[n] || together) parties.push_back(full[n]->party(needed[n]));
+  const bool found = GearQuatBootstrap(full[0]->lmp, parties, full[0]->h).run();
+  for (size_t n = 0; n < full.size(); ++n)
+    if (needed[n] || (together && found)) full[n]->begin(found);
+  for (auto *one : full)
+    if (found && one->tolerance) one->tolerance->shorten_first_step();
 }
 
 /// Null if the histories can go on.  Collective.
@@ -140,7 +167,7 @@ const char *GearQuatMotion::reason_to_start_anew(double **f)
 bool GearQuatMotion::can_start_anew() const
 {
   return !tolerance && !isokinetic && args.start == GearQuatArguments::Start::BOOTSTRAP &&
-      GearQuatForces(lmp, fix).reason().empty();
+      GearQuatForces(lmp, starting_together()).reason().empty();
 }
 
 /// True if the present loads leave a residual that the histories cannot have left.
@@ -172,7 +199,8 @@ bool GearQuatMotion::forces_changed(double **f)
       here_ratio = std::isfinite(one) ? std::max(here_ratio, one) : 2.0 * OTHER_NOISE;
     }
   MPI_Allreduce(&here_ratio, &ratio, 1, MPI_DOUBLE, MPI_MAX, world);
-  return ratio > OTHER_NOISE || (ratio > OTHER_FORCES && GearQuatForces(lmp, fix).reason().empty());
+  return ratio > OTHER_NOISE ||
+      (ratio > OTHER_FORCES && GearQuatForces(lmp, starting_together()).reason().empty());
 }
 
 /// Of a residual, as a length.  force: the largest one on an atom.
@@ -198,21 +226,46 @@ double GearQuatMotion::last_error() const
   return largest;
 }
 
-void GearQuatMotion::start(double **f)
+/// True if histories are to be made; rank 0 says why they are made anew.
+bool GearQuatMotion::has_to_start(double **f)
 {
-  blowup.check_loads(h, f);
-  GearQuatBootstrap bootstrap(lmp, fix, bodies, isokinetic.get(),
-                              tolerance ? tolerance->scheme_of_start() : args.scheme, h);
-  bool full = false;
-  if (args.start == GearQuatArguments::Start::ZERO)
-    bootstrap.zero();
-  else
-    full = bootstrap.run();
+  const char *reason = started ? reason_to_start_anew(f) : nullptr;
+  if (reason && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
+  const bool needs = !started || reason;
+  if (needs) blowup.check_loads(h, f);
+  return needs;
+}
+
+GearQuatParty GearQuatMotion::party(bool needed)
+{
+  return {fix,
+          &bodies,
+          isokinetic.get(),
+          tolerance ? tolerance->scheme_of_start() : args.scheme,
+          needed,
+          {},
+          {}};
+}
+
+/// Histories are made, full: to the last row.
+void GearQuatMotion::begin(bool full)
+{
   started = true;
   if (!tolerance) return;
   tolerance->begin(full);
   make_integrator(h);
-  if (full) tolerance->shorten_first_step();
+}
+
+/// This fix, and those that a full start finds derivatives for.
+std::vector<const Fix *> GearQuatMotion::starting_together() const
+{
+  std::vector<const Fix *> found;
+  for (const auto *other : modify->get_fix_list()) {
+    const auto *same = dynamic_cast<const FixGearQuat *>(other);
+    if (same && (same->bootstraps() || other == fix)) found.push_back(other);
+  }
+  return found;
 }
 
 /* ----------------------------------------------------------------------

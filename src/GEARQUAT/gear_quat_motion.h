@@ -16,6 +16,7 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_blowup.h"
+#include "gear_quat_bootstrap.h"
 #include "gear_quat_isokinetic.h"
 #include "gear_quat_tolerance.h"
 
@@ -48,8 +49,11 @@ class GearQuatMotion : protected Pointers {
   /// True before the first step of a run that LAMMPS has set up: begin_steps() has to be called.
   bool begins_steps() const { return set_up; }
   /// Loads are the present ones of all fixes, f what they were gathered from.  Histories are made from
-  /// them, unless there are some that agree with them.  Collective.
-  void begin_steps(double **f);
+  /// them, unless there are some that agree with them.  all: of all fixes gear/quat; those that need a
+  /// start make all others begin anew with them, where a full start is possible.  Collective.
+  static void begin_steps(const std::vector<GearQuatMotion *> &all, double **f);
+  /// True if a start finds all derivatives, as far as it can.
+  bool bootstraps() const { return args.start == GearQuatArguments::Start::BOOTSTRAP; }
   /// The largest error that the last step reported here, as a length.
   double last_error() const;
   void predict(double **f);
@@ -97,7 +101,10 @@ class GearQuatMotion : protected Pointers {
 
   const GearQuat::Scheme &present_scheme() const;
   void make_integrator(double step);
-  void start(double **f);
+  bool has_to_start(double **f);
+  GearQuatParty party(bool needed);
+  void begin(bool full);
+  std::vector<const Fix *> starting_together() const;
   const char *reason_to_start_anew(double **f);
   bool can_start_anew() const;
   bool forces_changed(double **f);

@@ -100,7 +100,13 @@ void GearQuatTolerance::shorten_first_step()
   const double size =
       std::max(control.shortest, std::min(ratio * std::fabs(update->dt), farthest_step(all[1])));
   if (size >= std::fabs(update->dt)) return;
-  if (const Fix *other = integrated_before()) {
+  const Fix *first = fix;    // gear/quat, which starts histories for all before it begins the step
+  for (const auto *other : modify->get_fix_list())
+    if (utils::strmatch(other->style, "^gear/quat")) {
+      first = other;
+      break;
+    }
+  if (const Fix *other = integrated_before(first)) {
     if (comm->me == 0)
       error->warning(
           FLERR,
@@ -115,11 +121,11 @@ void GearQuatTolerance::shorten_first_step()
   set_begun_step(std::copysign(size, update->dt));
 }
 
-/// A fix that has begun this step before this fix does, null for none.
-const Fix *GearQuatTolerance::integrated_before() const
+/// A fix that has begun this step when `begins` begins it, null for none.
+const Fix *GearQuatTolerance::integrated_before(const Fix *begins) const
 {
   for (const auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
-    if (other == fix) break;
+    if (other == begins) break;
     if (other->time_integrate) return other;
   }
   return nullptr;
@@ -249,7 +255,7 @@ void GearQuatTolerance::keep_step(double step)
 
 void GearQuatTolerance::put_back_begun_step(double step)
 {
-  if (const Fix *other = integrated_before())
+  if (const Fix *other = integrated_before(fix))
     error->all(
         FLERR,
         "Fix gear/quat tolerance: the time step was changed before a run with pre no, and fix "

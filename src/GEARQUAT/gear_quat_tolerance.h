@@ -86,7 +86,7 @@ class GearQuatTolerance : protected Pointers {
   void set_step(double step);
   void set_begun_step(double step);
   void tell_of_step(double step) const;
-  const Fix *integrated_before() const;
+  const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
   double farthest_step(double speed) const;
 };

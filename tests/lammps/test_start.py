@@ -111,6 +111,7 @@ def test_what_cannot_be_followed_is_said(lmp_tree, name, ranks):
     result, _ = field(lmp_tree, "d", 10, 0.01, after=NOT_FOLLOWED[name], ranks=ranks)
     assert result.stdout.count(FALLBACK) == 1
     assert {"langevin": "fix l (langevin)", "time": "depends on time"}[name] in result.stdout
+    assert ("values 4 to 6 suits them, not 8" in result.stdout) == (name == "langevin")
 
 
 def test_flexible_neighbours_are_not_followed(lmp_tree):
@@ -217,3 +218,61 @@ run 1
     result = lmp_tree.run(two_molecules(f"molecule start {start}", after=after))
     assert (FALLBACK in result.stdout) == (start == "bootstrap"), result.output
     assert "blow-up in step 1, time 0.01: body 1 meets a force that is not" in result.output
+
+
+# --- several fixes -------------------------------------------------------------------------------
+
+TWO = "group left molecule 1\ngroup right molecule 2\nfix other left gear/quat molecule {}\n"
+
+
+def two_fixes(lmp, dump, steps, dt, first, second, after="", ranks=1):
+    deck = FIELD.replace("fix move all", "fix move right").format(
+        dump=dump, steps=steps, dt=dt, fix=second, before=TWO.format(first), after=after, skin=2.0,
+        every=steps, columns="",
+    )
+    result = lmp.run(deck, ranks=ranks)
+    assert result.returncode == 0, result.output
+    return result, last_frame(lmp.folder / dump)[:, 1:4]
+
+
+PAIRS = {
+    "alike": ("", "", "order 9"),
+    "of two formulations": ("formulation first", "values 8", "order 7 and 9"),
+    "of other numbers": ("values 9", "values 7", "order 9 and 7"),
+}
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_two_fixes_start_together(lmp_tree, name):
+    """With full order, and where both are alike as one fix with all bodies does."""
+    first, second, orders = PAIRS[name]
+    runs = {}
+    for n in (25, 50, 400):
+        result, runs[n] = two_fixes(lmp_tree, f"n{n}", n, 2.0 / n, first, second)
+        assert FALLBACK not in result.stdout
+        assert f"Fix gear/quat other and move: start of {orders} from" in result.stdout
+    errors = [np.abs(runs[n] - runs[400]).max() for n in (25, 50)]
+    assert np.log2(errors[0] / errors[1]) > 4.5
+    if name == "alike":
+        _, one = field(lmp_tree, "one", 50, 0.04)
+        assert np.abs(one - runs[50]).max() < 1e-12
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
+    """Both begin anew, with full order; where forces cannot be followed the other one goes on."""
+    again = "run 10\nunfix move\nfix move right gear/quat molecule\n"
+    result, _ = two_fixes(lmp_tree, "d", 10, 0.02, "", "", "timestep 0.02\n" + again, ranks)
+    said = "Fix gear/quat other and move: start of order 9 from"
+    assert result.stdout.count(said) == 2 and FALLBACK not in result.stdout
+    noise = "fix noise all langevin 0.1 0.1 10.0 4711\ntimestep 0.02\n"
+    result, _ = two_fixes(lmp_tree, "d", 10, 0.02, "values 5", "values 5", noise + again, ranks)
+    assert result.stdout.count(FALLBACK) == 3
+    assert result.stdout.count(f"Fix gear/quat other: {FALLBACK}") == 1
+
+
+def test_tolerance_beside_another_fix(lmp_tree):
+    """The first step is made shorter before either has begun it."""
+    result, _ = two_fixes(lmp_tree, "d", 10, 0.5, "", "tolerance 1e-9")
+    assert "first step" in result.stdout and "WARNING" not in result.output
+    assert "start of order 9 and 11 from" in result.stdout
