@@ -94,10 +94,11 @@ class GearQuatBodies : protected Pointers {
   /// Build the same bodies anew from the atoms' present masses, positions and velocities.
   void recreate();
   /// Bodies as a restart file has them, in place of those that the command has just made of the same
-  /// atoms; the command numbers them and may leave some out.  False, and no bodies are left, if they
+  /// atoms; the command numbers them and may leave some out.  NONE, and no bodies are left, if they
   /// differ otherwise.  packed: of every owned atom, or null; extended: with such atoms; group: atoms
   /// outside of it are in what bodies the file says, 0 for none.
-  bool resume(const std::vector<const double *> &packed, bool extended, int group);
+  enum class Resumed { ALL, FEWER, NONE };
+  Resumed resume(const std::vector<const double *> &packed, bool extended, int group);
   /// Ends the run if an atom of a body is of a kind that cannot be followed.
   void refuse_atoms() const;
   /// Before a run: bodies that reach further than ghost atoms are seen are large.

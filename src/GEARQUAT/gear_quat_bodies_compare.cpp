@@ -124,7 +124,9 @@ void GearQuatBodies::check_whole()
     const std::string had = found.had
         ? fmt::format("{} of its {} atoms", found.left, found.had)
         : fmt::format("{} of its atoms, not the one that owned it,", found.left);
-    error->all(FLERR, "Fix gear/quat: body {} has {} left; a body must be removed as a whole",
+    error->all(FLERR,
+               "Fix gear/quat: body {} has {} left; a body must be removed as a whole, and no atom "
+               "of it may leave the box through a face that is not periodic",
                found.broken, had);
   }
   follow_atom_ids();

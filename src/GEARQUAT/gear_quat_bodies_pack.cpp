@@ -71,17 +71,18 @@ int GearQuatBodies::unpack_moved(int ibody, const double *buf, int size)
   return m + size;
 }
 
-bool GearQuatBodies::resume(const std::vector<const double *> &packed, bool with_extended,
-                            int group)
+GearQuatBodies::Resumed GearQuatBodies::resume(const std::vector<const double *> &packed,
+                                               bool with_extended, int group)
 {
   const std::vector<tagint> ids(body_id, body_id + atom->nlocal);    // as the command has them
   const bigint expected = nbodies;
   clear(with_extended);
-  bool differ = false;
+  int here[2] = {0, 0}, any[2];    // atoms that are in a body only here, only in the file
   for (int i = 0; i < atom->nlocal; ++i) {
     if (packed[i]) unpack_exchange(i, packed[i]);
     if (group && !(atom->mask[i] & group)) continue;
-    if (body_id[i] == 0 && ids[i] != 0) differ = true;
+    if (body_id[i] == 0 && ids[i] != 0) here[0] = 1;
+    if (body_id[i] != 0 && ids[i] == 0) here[1] = 1;
     body_id[i] = ids[i];
     if (owned[i] >= 0) body[owned[i]].id = ids[i];
   }
@@ -91,11 +92,11 @@ bool GearQuatBodies::resume(const std::vector<const double *> &packed, bool with
     set_arrays(i);
   }
   count();
-  int here = differ, any;
-  MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
-  const bool same = !any && !census(0).broken && (group || nbodies == expected);
-  if (!same) clear();
-  return same;
+  MPI_Allreduce(here, any, 2, MPI_INT, MPI_MAX, world);
+  if (!any[0] && !census(0).broken && (group || nbodies == expected))
+    return any[1] ? Resumed::FEWER : Resumed::ALL;
+  clear();
+  return Resumed::NONE;
 }
 
 int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, double *buf)

@@ -109,7 +109,10 @@ bool GearQuatBootstrap::run()
   std::string why = forces.reason();
   if (why.empty()) {
     if (search(forces)) {
-      if (comm->me == 0)
+      const bool any = std::any_of(parties.begin(), parties.end(), [](const auto &party) {
+        return party.bodies->number() > 0;
+      });
+      if (comm->me == 0 && any)
         utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
                        names(), orders, evaluations, reason);
       return true;

@@ -160,7 +160,18 @@ const char *GearQuatMotion::reason_to_start_anew(double **f)
 {
   if (std::fabs(h) < SHORTER * std::fabs(h_made) && can_start_anew())
     return "the time step is less than half of that of the last steps";
+  if (!movers.empty() && movers != present_movers() && can_start_anew())
+    return "other fixes move atoms than in the last steps";
   return forces_changed(f) ? "forces are not those of the last step" : nullptr;
+}
+
+/// The other fixes that move atoms: forces have derivatives that such motion makes.
+std::string GearQuatMotion::present_movers() const
+{
+  std::string ids = "of this run:";
+  for (const auto *other : modify->get_fix_list())
+    if (other != fix && other->time_integrate) ids += std::string(" ") + other->id;
+  return ids;
 }
 
 /// True if a new start would be of full order, and nothing but the histories would be new.
@@ -233,6 +244,7 @@ bool GearQuatMotion::has_to_start(double **f)
   if (reason && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
   const bool needs = !started || reason;
+  movers = present_movers();
   if (needs) blowup.check_loads(h, f);
   return needs;
 }

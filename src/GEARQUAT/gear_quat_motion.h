@@ -21,6 +21,7 @@
 #include "gear_quat_tolerance.h"
 
 #include <memory>
+#include <string>
 
 namespace LAMMPS_NS {
 
@@ -98,6 +99,7 @@ class GearQuatMotion : protected Pointers {
   bool set_up;      ///< LAMMPS has evaluated forces for a run, no step of it has begun
   double h;         ///< step of the histories
   double h_made;    ///< step that they were made with
+  std::string movers;    ///< IDs of the other fixes that moved atoms in the last steps
 
   const GearQuat::Scheme &present_scheme() const;
   void make_integrator(double step);
@@ -107,6 +109,7 @@ class GearQuatMotion : protected Pointers {
   std::vector<const Fix *> starting_together() const;
   const char *reason_to_start_anew(double **f);
   bool can_start_anew() const;
+  std::string present_movers() const;
   bool forces_changed(double **f);
   double rounding(int ibody, double force) const;
   template <bool MASKED> void correct_bodies(double **f);

@@ -6,8 +6,10 @@
 #include "gear_quat_restart.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
 #include "fix.h"
+#include "utils.h"
 
 #include <cstring>
 #include <unordered_map>
@@ -89,7 +91,17 @@ std::vector<const double *> GearQuatRestart::packed_atoms() const
 bool GearQuatRestart::resume(int group)
 {
   waiting = false;
-  const bool same = bodies.resume(packed_atoms(), block.extended != 0.0, group);
-  if (same) motion.take(block.motion);
-  return same;
+  using Resumed = GearQuatBodies::Resumed;
+  const Resumed found = bodies.resume(packed_atoms(), block.extended != 0.0, group);
+  if (found == Resumed::NONE) return false;
+  motion.take(block.motion);
+  if (found == Resumed::FEWER && motion.has_started()) {
+    motion.forget();    // forces have derivatives that the motion of the others made
+    if (comm->me == 0)
+      utils::logmesg(lmp,
+                     "Fix gear/quat {}: some bodies of the restart file are in no body of this "
+                     "command, histories start anew\n",
+                     fix->id);
+  }
+  return true;
 }

@@ -271,6 +271,14 @@ def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
     assert result.stdout.count(f"Fix gear/quat other: {FALLBACK}") == 1
 
 
+def test_a_fix_that_goes(lmp_tree):
+    """Its bodies stop, which the derivatives of the forces on the others do not know."""
+    after = "timestep 0.02\nfix_modify move energy yes\nthermo 10\nrun 20\nunfix other\nrun 20\n"
+    result, _ = two_fixes(lmp_tree, "d", 10, 0.02, "", "", after)
+    assert "Fix gear/quat move: other fixes move atoms than in the last steps" in result.stdout
+    assert result.stdout.count("start of order 9 from") == 2
+
+
 def test_tolerance_beside_another_fix(lmp_tree):
     """The first step is made shorter before either has begun it."""
     result, _ = two_fixes(lmp_tree, "d", 10, 0.5, "", "tolerance 1e-9")
