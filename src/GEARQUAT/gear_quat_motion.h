@@ -95,10 +95,10 @@ class GearQuatMotion : protected Pointers {
   std::unique_ptr<GearQuatTolerance> tolerance;      ///< null: the step is LAMMPS' own
   std::unique_ptr<GearQuat::Integrator> integrator;
 
-  bool started;     ///< histories are those of the step h
-  bool set_up;      ///< LAMMPS has evaluated forces for a run, no step of it has begun
-  double h;         ///< step of the histories
-  double h_made;    ///< step that they were made with
+  bool started;          ///< histories are those of the step h
+  bool set_up;           ///< LAMMPS has evaluated forces for a run, no step of it has begun
+  double h;              ///< step of the histories
+  double h_made;         ///< step that they were made with
   std::string movers;    ///< IDs of the other fixes that moved atoms in the last steps
 
   const GearQuat::Scheme &present_scheme() const;

@@ -17,31 +17,38 @@ from .scenes import write_molecules
 
 INSTALL = "sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
 HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
-#: what is done for output alone
-OUTPUT = re.compile(r"LAMMPS_NS::FixGearQuat::show_bodies\(")
+#: what the fix does for output, and once a step however many bodies there are
+FIX = re.compile(r"LAMMPS_NS::FixGearQuat::")
+ASIDE = re.compile(
+    r"FixGearQuat::show_bodies\(|Comm\w+::forward_comm\(int\)|GearQuatNeighbors::(check|take)_\w+\("
+)
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")
 
 
 @dataclass(frozen=True)
 class Profile:
-    """Instructions of one part: ``own`` by function, ``called`` by function with all it calls."""
+    """Instructions of one part: ``own`` by function; ``called`` by caller and function with all it calls."""
 
     own: Counter
     called: Counter
 
     @property
     def fix(self):
-        """In the fix, without what it does for output."""
-        return self.inclusive(HOOKS) - self.inclusive(OUTPUT)
+        """In the fix, without what it does for output and once a step."""
+        return self.inclusive(HOOKS) - self.inclusive(ASIDE, FIX)
 
     @property
     def forces(self):
         """In the pair style."""
         return self.inclusive(FORCES)
 
-    def inclusive(self, pattern):
-        """With all they call, of functions that match."""
-        return sum(count for name, count in self.called.items() if pattern.search(name))
+    def inclusive(self, pattern, by=re.compile("")):
+        """With all they call, of functions that match and are called by one that matches ``by``."""
+        return sum(
+            count
+            for (caller, name), count in self.called.items()
+            if pattern.search(name) and by.search(caller)
+        )
 
     def of(self, pattern):
         """Own instructions of functions that match a pattern."""
@@ -58,7 +65,7 @@ def parse(text):
         elif line.startswith("cfn="):
             callee = line[4:]
         elif callee and re.match(r"[+\-*\d]", line):
-            called[callee] += int(line.split()[-1])
+            called[function, callee] += int(line.split()[-1])
             callee = None
         elif function and re.match(r"[+\-*\d]", line):
             own[function] += int(line.split()[-1])
