@@ -151,11 +151,10 @@ def run_all(runs, folder, lmp=None, workers=2, progress=None):
 
 
 def _finite_until(log):
-    """Time of the last sample that a log holds."""
+    """Time of the last sample that a log holds; 0 if the run was refused before the first one."""
     rows = (line.split() for line in Path(log).read_text(encoding="utf-8").splitlines())
-    return max(
-        float(row[1]) for row in rows if len(row) == len(series.COLUMNS) and row[0].isdigit()
-    )
+    samples = (row for row in rows if len(row) == len(series.COLUMNS) and row[0].isdigit())
+    return max((float(row[1]) for row in samples), default=0.0)
 
 
 def read_drift(run, folder):

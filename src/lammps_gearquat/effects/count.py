@@ -17,10 +17,10 @@ from .scenes import write_molecules
 
 INSTALL = "sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
 HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
-#: what the fix does for output, and once a step however many bodies there are
+#: what the fix does for output, before the first step, and once a step however many bodies there are
 FIX = re.compile(r"LAMMPS_NS::FixGearQuat::")
 ASIDE = re.compile(
-    r"FixGearQuat::show_bodies\(|Comm\w+::forward_comm\(int\)|GearQuatNeighbors::(check|take)_\w+\("
+    r"FixGearQuat::(show_bodies|begin_steps)\(|Comm\w+::forward_comm\(int\)|GearQuatNeighbors::(check|take)_\w+\("
 )
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")
 
@@ -34,7 +34,7 @@ class Profile:
 
     @property
     def fix(self):
-        """In the fix, without what it does for output and once a step."""
+        """In the fix, without what is no work of a step on a body."""
         return self.inclusive(HOOKS) - self.inclusive(ASIDE, FIX)
 
     @property
