@@ -21,6 +21,8 @@ FIRST, STEPS, WHOLE = 100, 10, 60
 LONG = 2000
 #: in units of the error of the reference, which is found by halving its step
 WITHIN = 4.0
+#: seconds that a deck may take with its own fix, and with fix gear/quat in place of it
+PATIENCE, PATIENCE_OURS = 15.0, 60.0
 #: the error of a reference that can tell, in units of how far atoms move
 TELLS = 0.05
 
@@ -44,6 +46,7 @@ REASONS = (
         "another fix moves the same atoms",
         r"No other fix that integrates time",
     ),
+    (r"bodystyle: file ", "bodies listed in a file (poems)", r"`fix poems` with `file` \| not there"),
     (r"fix hmc does not point to fix rigid", "fix hmc", r"fix hmc"),
     (
         r"fix \S+ \((\S+)\) changes single atoms of bodies",
@@ -58,6 +61,14 @@ REASONS = (
     (r"minimiz", "energy minimization", r"refuses\s+:doc:`energy minimization"),
 )
 
+#: why a deck does not run here as it is: message of LAMMPS, and what the page says
+CANNOT = (
+    (r"still running", f"takes longer than {PATIENCE:g} s here with its own fix"),
+    (r"[Cc]annot open|No such file|not found", "a file of it is not in Debian's source"),
+    (r"Unrecognized|Unknown", "a style of it is in no package that is built here"),
+    (r"", "LAMMPS ends it with an error"),
+)
+
 
 @dataclass
 class Program:
@@ -67,7 +78,7 @@ class Program:
     executable: Path
     environment: dict = field(default_factory=dict)
 
-    def run(self, text, folder, timeout=150.0):
+    def run(self, text, folder, timeout):
         (folder / "in.foreign").write_text(text)
         log = folder / "log.foreign"
         log.unlink(missing_ok=True)
@@ -97,8 +108,8 @@ class Program:
 
 @dataclass
 class Verdict:
-    """Per rigid fix of a deck; ``result``: agrees, refused, NEITHER; runs, if nothing can be compared;
-    LAMMPS ends, if the deck as it is does not run here."""
+    """Per rigid fix of a deck; ``result``: agrees, refused, NEITHER; "runs", if the deck runs with our
+    fix and nothing can be compared; "not run", if the deck as it is does not run here."""
 
     deck: str
     line: str
@@ -173,8 +184,8 @@ class Deck:
         self.text = _copy(source / path, self.folder)
         self.programs, self.manual = programs, manual
 
-    def _run(self, text):
-        return self.program.run(text, self.folder)
+    def _run(self, text, patience=PATIENCE_OURS):
+        return self.program.run(text, self.folder, patience)
 
     def _reason(self, message):
         """Name of the reason for a message of the fix, if the manual has it."""
@@ -186,19 +197,26 @@ class Deck:
                 return name
         return ""
 
+    def left_out(self, reason=""):
+        """A Verdict for each rigid fix of the deck, before anything is run."""
+        rigid = convert.rigid_lines(self.text)
+        return [
+            Verdict(self.name, " ".join(line.words[3:]), "not run", reason) for line in rigid
+        ]
+
     def verdicts(self):
         """A Verdict for each rigid fix of the deck."""
-        rigid = convert.rigid_lines(self.text)
-        found = [Verdict(self.name, " ".join(line.words[3:])) for line in rigid]
+        found = self.left_out()
         own = self._choose()
         for verdict in found:
-            verdict.program = self.program.name
+            verdict.program, verdict.result = self.program.name, "NEITHER"
         if own:
             for verdict in found:
-                verdict.result, verdict.reason = "LAMMPS ends", own.partition(":")[0]
+                verdict.result = "not run"
+                verdict.reason = next(name for pattern, name in CANNOT if re.search(pattern, own))
                 verdict.notes.append(f"the deck itself: {own}")
             return found
-        ours = set(range(len(rigid)))
+        ours = set(range(len(found)))
         while ours:
             error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, ours)))
             if "atom map" in error or "atom_modify map" in error:
@@ -229,12 +247,13 @@ class Deck:
 
     def _choose(self):
         """Sets ``program``; returns the error of the deck as it is, "" if it runs."""
-        error = ""
+        errors = []
         for self.program, self.earlier in itertools.product(self.programs, (WHOLE, LONG)):
-            error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, set())))
-            if not error:
+            text = convert.whole(self.text, WHOLE, self.earlier, set())
+            errors.append(_error(self._run(text, PATIENCE)))
+            if not errors[-1]:
                 return ""
-        return error
+        return errors[0]  # of the LAMMPS that has more packages
 
     def _compare(self, number, verdict):
         if convert.segment(self.text, number) is None:
@@ -247,9 +266,13 @@ class Deck:
             )
             if _error(result):
                 verdict.notes.append(f"{method}, step/{divide}: {_error(result)}")
-                if method == "gear":
+                if "Resetting timestep size is not allowed" in _error(result):
+                    verdict.result, verdict.reason = "runs", "another fix forbids a smaller step"
+                elif method == "gear":
                     verdict.reason = self._reason(_error(result))
                     verdict.result = "refused" if verdict.reason else "NEITHER"
+                elif "still running" in _error(result):
+                    verdict.result, verdict.reason = "runs", "the reference takes too long here"
                 return
             ends[method, divide] = _state(self.folder / "end")
             begin = _state(self.folder / "begin")

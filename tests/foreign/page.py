@@ -12,6 +12,7 @@ from running import ROOT
 from . import decks, neighbors, scene
 
 COMMAND = "tests/run foreign --all --publish"
+VERDICTS = ("agrees", "refused", "runs", "not run", "NEITHER")
 RELEASES = {"oldest": "4 Feb 2025", "newest": "4 Jul 2026"}
 RESULTS = ("same", "acts", "warned", "refused", "LAMMPS refuses", "DIFFERS")
 
@@ -21,6 +22,7 @@ TEXT = """# LAMMPS as judge
 
 LAMMPS' own input scripts, styles and unit tests, none of them written for this fix, run with it.
 {where}
+{left_out}
 
 ## Decks
 
@@ -30,7 +32,11 @@ shortened. The whole deck has to run. Then it is followed with its own fix for u
 from there for {steps} steps with either fix; fixes that draw random numbers, insert or remove atoms,
 or act once in so many steps are left out of these. A deck *agrees* if positions and velocities of
 all atoms are within {within:g} times the error of fix rigid at a quarter of the deck's step, which is
-known from an eighth of it. It is *refused* if the message gives a reason that the manual has. The
+known from an eighth of it. It is *refused* if the message gives a reason that the manual has. It
+*runs* if the whole deck runs with `gear/quat`, and cannot be compared for the reason that is given.
+It is *not run* if nothing is known: this machine did not run the deck with its own fix, or there was
+no time for it.
+*NEITHER* is what remains: the fix is wrong, or the comparison does not suit the deck. The
 last column is the error of `gear/quat` at the deck's own step, in units of the error of the deck's
 own fix at the same step.
 
@@ -38,9 +44,9 @@ own fix at the same step.
 
 ## Neighbors
 
-Every fix and compute style that `lmp -h` lists is put beside the fix, as far as it runs in a scene
-of {molecules} molecules and {free} free atoms: before and after it in the script, on several ranks, with a
-restart in the middle. Positions, velocities and all outputs of the neighbor have to be the same to
+Every fix and compute style that `lmp -h` lists for a LAMMPS of the table is put beside the fix, as far as it runs in a scene
+of {molecules} molecules and {free} free atoms: before and after it in the script, on the ranks of the
+table, with a restart in the middle. Positions, velocities and all outputs of the neighbor have to be the same to
 {same:g} in all of these; with a neighbor that does nothing to atoms they are those without it; and
 all have to agree with `fix rigid/nve/small` at small steps (*same*, *acts*). A neighbor that bodies
 cannot follow has to be *refused* or *warned* of, by name. *LAMMPS refuses* where the neighbor asks
@@ -68,18 +74,17 @@ styles themselves are among the neighbors above.
 
 def neighbors_table(tried):
     """``tried``: LAMMPS' name -> (ranks, what try_neighbors returned)."""
-    results = ("same", "acts", "warned", "refused", "LAMMPS refuses", "DIFFERS")
     lines = [
         "| LAMMPS | ranks | styles | scenes | runs | of them with a restart | "
-        + " | ".join(results)
+        + " | ".join(RESULTS)
         + " |",
-        "|---" * (6 + len(results)) + "|",
+        "|---" * (6 + len(RESULTS)) + "|",
     ]
     for name, (ranks, (outcomes, _, runs, restarts)) in tried.items():
         counts = Counter(outcome.result for outcome in outcomes)
         styles = len({(outcome.kind, outcome.style) for outcome in outcomes})
         cells = [name, ", ".join(map(str, ranks)), styles, len(outcomes), runs, restarts]
-        cells += [counts[result] for result in results]
+        cells += [counts[result] for result in RESULTS]
         lines.append("| " + " | ".join(map(str, cells)) + " |")
     return lines
 
@@ -87,7 +92,7 @@ def neighbors_table(tried):
 def by_result(outcomes):
     """Lines with all styles of each result."""
     lines = []
-    for result in ("same", "acts", "warned", "refused", "LAMMPS refuses", "DIFFERS"):
+    for result in RESULTS:
         for kind in ("fix", "compute"):
             found = sorted({o.style for o in outcomes if o.result == result and o.kind == kind})
             if found:
@@ -120,14 +125,15 @@ def reasons_table(reasons):
 
 def decks_table(verdicts):
     """Lines: counts by release, then each deck with both releases side by side."""
-    lines = []
+    lines = [
+        f"| LAMMPS | decks | rigid fixes | {' | '.join(VERDICTS)} |",
+        "|---" * (3 + len(VERDICTS)) + "|",
+    ]
     for release, found in verdicts.items():
-        files = len({v.deck for v in found})
-        counts = sorted(decks.counted(found).items())
-        lines.append(
-            f"* {RELEASES[release]}: {files} decks with {len(found)} rigid fixes: "
-            + ", ".join(f"{number} {what}" for what, number in counts)
-        )
+        counts = Counter(v.result for v in found)
+        cells = [RELEASES[release], len({v.deck for v in found}), len(found)]
+        cells += [counts[result] for result in VERDICTS]
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
     rows = {}
     for release, found in verdicts.items():
         for v in found:
@@ -155,7 +161,7 @@ def decks_table(verdicts):
 
 
 def commit():
-    """What was tested: the commit of this checkout, and whether it is changed."""
+    """What was tested: the last commit that changed the sources, and whether they are changed since."""
 
     def git(*words):
         return subprocess.run(
@@ -163,11 +169,17 @@ def commit():
         ).stdout.strip()
 
     changed = " with changes" if git("status", "--porcelain", "--", "src") else ""
-    return f"{git('rev-parse', '--short', 'HEAD')}{changed}"
+    return f"{git('log', '-1', '--format=%h', '--', 'src')}{changed}"
 
 
 def page(tried, verdicts, units):
     """Text of doc/foreign.md; arguments as in __main__."""
+    left_out = [
+        name
+        for name, found in (("decks", verdicts), ("neighbors", tried), ("unit tests", units))
+        if not found
+    ]
+    tried, verdicts, units = tried or {}, verdicts or {}, units or ([], {})
     every = [outcome for _, (outcomes, *_) in tried.values() for outcome in outcomes]
     reasons = {}
     for _, (_, found, *_) in tried.values():
@@ -177,6 +189,7 @@ def page(tried, verdicts, units):
         command=COMMAND,
         where=f"Commit {commit()}, {system()}, {processor()} ({len(os.sched_getaffinity(0))} cores),"
         f" Python {platform.python_version()}, {datetime.date.today():%d %b %Y}.",
+        left_out=f"Not run for this page: {', '.join(left_out)}." if left_out else "",
         first=decks.FIRST,
         steps=decks.STEPS,
         within=decks.WITHIN,
@@ -188,7 +201,7 @@ def page(tried, verdicts, units):
         excused="\n".join(not_kept(every)) or "nothing.",
         reasons="\n".join(reasons_table(reasons)),
         oldest=RELEASES["oldest"],
-        units=", ".join(f"{number} {what}" for what, number in sorted(counts.items())),
+        units=", ".join(f"{number} {what}" for what, number in sorted(counts.items())) or "none was run",
         others=len(units[1]),
         unit_reasons="\n".join(reasons_table(units[1])),
     )
