@@ -35,7 +35,11 @@ REASONS = (
     ),
     (r"keyword gravity of the rigid fixes", "keyword gravity", r"no keywords [^.]*\*gravity\*"),
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
-    (r"does not change size or shape", "box that changes", r"must not change its\s+size or shape"),
+    (
+        r"does not change size or shape",
+        "box that changes",
+        r"No fix may change the size or shape of the box",
+    ),
     (
         r"is in (?:both )?groups?|in two groups|more than one",
         "bodies that share atoms (poems)",
