@@ -18,6 +18,7 @@ TRIED = {
         "run 1",
         "",
     ),
+    "fix poems": ("", "file bodies.dat", "", "Unknown fix gear/quat bodystyle: file"),
     "infile": "test_infile_out.py",
     "reinit": ("", "molecule reinit no", "run 1\nrun 1", ""),
     "mol": "test_coming_and_going.py",
