@@ -160,13 +160,17 @@ def main():
                 say(f"   LAMMPS {RELEASES[release]} could not be had")
                 continue
             programs = programs_for(folder) if words.all else programs_for(Path())
-            verdicts[release] = try_decks(report, source_of(folder), programs, release, only, words.minutes)
+            verdicts[release] = try_decks(
+                report, source_of(folder), programs, release, only, words.minutes
+            )
     print(report.passed, report.failed, 0)  # for tests/run
     if words.all and not words.only:
         for name, found in (("neighbors", tried), ("decks", verdicts), ("units", units)):
             if found:
                 (SCRATCH / f"{name}.pickle").write_bytes(pickle.dumps(found))
-    if words.publish:
+    if words.publish and report.failed:
+        say("not published: something differs")
+    elif words.publish:
         write_page(
             ROOT, "foreign", page(*(saved(name) for name in ("neighbors", "decks", "units")))
         )

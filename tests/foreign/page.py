@@ -11,7 +11,7 @@ from running import ROOT
 
 from . import decks, neighbors, scene
 
-COMMAND = "tests/run foreign --all --part page --publish"
+COMMAND = "tests/run foreign --all --publish"
 VERDICTS = ("agrees", "refused", "runs", "not run", "NEITHER")
 RELEASES = {"oldest": "4 Feb 2025", "newest": "4 Jul 2026"}
 RESULTS = ("same", "acts", "warned", "refused", "LAMMPS refuses", "DIFFERS")

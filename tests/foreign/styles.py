@@ -414,7 +414,7 @@ _OUTSIDE = "needs another program or library"
 _DATA = "needs a table, coefficients or topology of a certain material"
 _ALIAS = "an old name"
 _HYBRID = "needs bond styles of hybrid; reads energies only"
-_DECKS = "LAMMPS' own decks have it, which are run as well"
+_DECKS = "only LAMMPS' own decks have it, as far as those were run"
 NOT_TRIED = {
     "fix": (
         (r".*/(omp|kk|gpu|intel|opt)", "a variant of another package, with the same contract"),
@@ -434,7 +434,7 @@ NOT_TRIED = {
         (r"(.*/)?drude(/.*)?|srd|wall/srd|pour", _DECKS),
         (r"adapt/fep", "fix adapt by another name"),
         (r"pair|tune/kspace", "reads a certain pair or kspace style, no atoms"),
-        (r"enforce2d", "needs a 2d scene; LAMMPS' own decks have it, which are run as well"),
+        (r"enforce2d", "needs a 2d scene; only LAMMPS' own decks have it, as far as those were run"),
         (r"filter/corotate", "needs r-RESPA, and refuses rigid bodies itself"),
         (
             r"bocs|.*/uef|npt/cauchy",
