@@ -70,6 +70,7 @@ void GearQuatBlowup::stop(int ibody, const BodyState &s, double h, double **f) c
       molecule = fmt::format(" (molecule {})", atom->molecule[site.atom]);
     if (!std::isfinite(length(f[site.atom]))) bad = site.atom;
   }
+  if (bodies.is_large(ibody)) bodies.tell_ids_to_ghosts();
   const Meeting met = nearest(ibody, bad);
   const std::string change = scheme.trial
       ? fmt::format("a smaller tolerance, or a dtmax shorter than {:g},", std::fabs(h))

@@ -17,7 +17,7 @@ namespace LAMMPS_NS {
 
 class GearQuatBlowup : protected Pointers {
  public:
-  GearQuatBlowup(LAMMPS *lmp, const GearQuatBodies &bodies, const GearQuat::Scheme &scheme) :
+  GearQuatBlowup(LAMMPS *lmp, GearQuatBodies &bodies, const GearQuat::Scheme &scheme) :
       Pointers(lmp), bodies(bodies), scheme(scheme)
   {
   }
@@ -37,7 +37,7 @@ class GearQuatBlowup : protected Pointers {
   [[noreturn]] void stop(int ibody, const GearQuat::BodyState &s, double h, double **f) const;
 
  private:
-  const GearQuatBodies &bodies;
+  GearQuatBodies &bodies;
   const GearQuat::Scheme &scheme;
 
   struct Meeting {

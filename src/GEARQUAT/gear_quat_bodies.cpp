@@ -61,7 +61,6 @@ void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &g
 {
   clear();
   add(ids, given);
-  count();
 }
 
 void GearQuatBodies::count()
@@ -113,6 +112,7 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
     body[ibody] = one.body;
     state[ibody] = one.state;
   }
+  count();
 }
 
 void GearQuatBodies::recreate()
@@ -180,15 +180,21 @@ void GearQuatBodies::update_ghosts()
     share_large();
     if (comm->nprocs > 1) {
       for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; ++i) owned[i] = -1;
-      forward = Forward::GHOSTS;
-      comm->forward_comm(fix);
-      load.resize(body.size());
+      if (nlarge < nbodies) tell_ghosts();
     }
     list_bodies();
     frame.resize(state.size());
     for (size_t ibody = 0; ibody < state.size(); ++ibody) update_frame(ibody);
     list_sites();
   } while (!take_stock());
+}
+
+/// The IDs of their bodies for ghost atoms, and the bodies that are not large for ghosts of owner atoms.
+void GearQuatBodies::tell_ghosts()
+{
+  forward = Forward::GHOSTS;
+  comm->forward_comm(fix);
+  load.resize(body.size());
 }
 
 void GearQuatBodies::list_bodies()

@@ -106,6 +106,11 @@ class GearQuatBodies : protected Pointers {
   /// Find the body of every atom after atoms were exchanged, created or removed; one that not all of
   /// its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
   void update_ghosts();
+  /// Where all bodies are large ghost atoms are told their bodies' IDs by this alone.  Collective.
+  void tell_ids_to_ghosts()
+  {
+    if (nlarge == nbodies) tell_ghosts();
+  }
   /// True if masses, positions and velocities of all atoms are those of their bodies.  Ends the run if
   /// image flags or another box have torn a body.
   bool atoms_match();
@@ -219,6 +224,7 @@ class GearQuatBodies : protected Pointers {
   void count();
   void follow_atom_ids();
   void drop_ghosts();
+  void tell_ghosts();
   int add_owned(int atom);
   void remove_owned(int ibody);
   void update_frame(int ibody);
