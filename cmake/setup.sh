@@ -1,4 +1,4 @@
-# Sourced by examples/run and tests/run: system packages, .venv, this repository in it.
+# Sourced by benchmarks/run and tests/run: system packages, .venv, this repository in it.
 # ROOT is the repository. Nothing here runs by itself.
 
 CACHE="$(realpath -m "${GEARQUAT_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/gearquat}")"
@@ -89,8 +89,7 @@ fingerprint() {
   (
     cd "$ROOT"
     .venv/bin/python -V
-    find CMakeLists.txt pyproject.toml cmake src examples -type f \
-      -not -path 'examples/results/*' -not -path '*/__pycache__/*' -not -name 'log.lammps' -not -name 'out.*' -print0 |
+    find CMakeLists.txt pyproject.toml cmake src -type f -not -path '*/__pycache__/*' -print0 |
       LC_ALL=C sort -z | xargs -0 sha256sum
   ) | sha256sum | cut -d' ' -f1
 }
@@ -132,20 +131,19 @@ pip_install_repository() {
     --no-build-isolation --config-settings=build-dir=build/plugin ".$extra"
 }
 
-# install_repository [EXTRA]: this repository, with the optional dependencies of EXTRA, in .venv
+# install_repository EXTRA: this repository, with the optional dependencies of EXTRA, in .venv
 install_repository() {
-  local extra="${1:-}" stamp="$ROOT/.venv/.installed" print
+  local extra="$1" stamp="$ROOT/.venv/.installed" print
   mkdir -p "$ROOT/build"
   exec 9>"$ROOT/build/.lock"
   if have flock; then flock 9; fi
   make_venv
-  # what has once been asked for stays
-  [ -z "$extra" ] && extra="$(sed -n 2p "$stamp" 2>/dev/null || true)"
+  # the tests need what the benchmarks need
+  [ "$(sed -n 2p "$stamp" 2>/dev/null || true)" = test ] && extra=test
   print="$(fingerprint)"
   if [ "$(cat "$stamp" 2>/dev/null)" != "$(printf '%s\n%s' "$print" "$extra")" ]; then
     rm -f "$stamp"
-    do_quietly "installing lammps-gearquat${extra:+ with its ${extra} tools} into .venv" \
-      pip_install_repository "${extra:+[$extra]}"
+    do_quietly "installing lammps-gearquat[$extra] into .venv" pip_install_repository "[$extra]"
     printf '%s\n%s\n' "$print" "$extra" >"$stamp"
   fi
   exec 9>&-

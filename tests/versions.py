@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from lammps_gearquat.checkout import system, write_block
+from benchmarks.engine.checkout import system, write_block
 
 from running import ROOT, make_lmp_wheel
 

@@ -15,7 +15,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from lammps_gearquat.checkout import write_page
+from benchmarks.engine.checkout import write_page
 from running import MPI_ENVIRONMENT, OPEN_MPI_ENVIRONMENT, ROOT
 
 from . import decks, engine, neighbors, scene, selfcheck, yamls

@@ -6,7 +6,7 @@ import platform
 import subprocess
 from collections import Counter
 
-from lammps_gearquat.checkout import processor, system
+from benchmarks.engine.checkout import processor, system
 from running import ROOT
 
 from . import decks, neighbors, scene

@@ -1,8 +1,8 @@
-"""`gearquat effects` counts: an effect that is off takes no instruction of a body's step."""
+"""`benchmarks/run effects` counts: an effect that is off takes no instruction of a body's step."""
 
 import pytest
 
-from lammps_gearquat.effects import count, page, plan, runs
+from benchmarks.studies.effects import count, page, plan, runs
 
 
 @pytest.fixture(scope="module")

@@ -6,13 +6,13 @@ import clumps
 import pytest
 from synthetic import made_up
 
-from lammps_gearquat import series
-from lammps_gearquat.cases import runs as cases
+from benchmarks.engine import series
+from benchmarks.studies.cases import runs as cases
 
 
 @pytest.fixture
 def results():
-    """Results of ``gearquat cases`` as the paper tells them."""
+    """Results of ``benchmarks/run cases`` as the paper tells them."""
     found = cases.Results()
     for run in cases.planned_runs():
         found.add(run, made_up(run), seconds=1.0)

@@ -11,8 +11,8 @@ from math import comb
 
 import numpy as np
 
-from lammps_gearquat.reference import paper_problem
-from lammps_gearquat.reference import quaternion as qt
+from benchmarks.reference import paper_problem
+from benchmarks.reference import quaternion as qt
 
 FIRST = np.array([251 / 720, 1, 11 / 12, 1 / 3, 1 / 24])  # Table 1
 SECOND = np.array([3 / 16, 251 / 360, 1, 11 / 18, 1 / 6, 1 / 60])  # Table 2

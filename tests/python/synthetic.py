@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lammps_gearquat.series import Series
+from benchmarks.engine.series import Series
 
 
 def make(time, centre, potential=None, translation=None, rotation=None, error=None):
@@ -33,7 +33,7 @@ PARTS = {1: 1000.0, 2: 270.0, 3: 800.0}
 
 
 def made_up(run):
-    """Series of a run of ``gearquat cases`` as the paper tells it."""
+    """Series of a run of ``benchmarks/run cases`` as the paper tells it."""
     time = np.arange(run.end + 1.0)
     centre = np.zeros((len(time), 3))
     centre[:, 0] = 90.0

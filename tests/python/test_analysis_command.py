@@ -14,8 +14,8 @@ from scipy.spatial.transform import Rotation
 from lammps_gearquat.analysis import Poses, TablePoses, open_dump, open_table
 from lammps_gearquat.analysis.poses import KINETIC_TO_ENERGY
 from lammps_gearquat.cli import main
-from lammps_gearquat.reference import paper_problem, reference_state
-from lammps_gearquat.reference import quaternion as qt
+from benchmarks.reference import paper_problem, reference_state
+from benchmarks.reference import quaternion as qt
 
 BODIES = paper_problem(1, dtype=np.float64).bodies
 SITES = BODIES.sites_body
@@ -132,7 +132,7 @@ def test_bodies_without_images_are_followed_as_with_them(water):
 
 def test_units_are_those_of_lammps():
     """The factors are what LAMMPS itself uses."""
-    from lammps_gearquat.reference.lammps_forces import _open_lammps
+    from benchmarks.reference.lammps_forces import _open_lammps
 
     lmp = _open_lammps(["-screen", "none", "-log", "none"])
     try:

@@ -1,4 +1,4 @@
-"""``gearquat bench``: reading logs, statistics, verdicts from made-up numbers, a small run."""
+"""``benchmarks/run bench``: reading logs, statistics, verdicts from made-up numbers, a small run."""
 
 import csv
 import re
@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat.bench import decks as bench_decks
-from lammps_gearquat.bench import figures as bench_figures
-from lammps_gearquat.bench import judge
-from lammps_gearquat.bench import page as bench_page
-from lammps_gearquat.bench import runs as bench
-from lammps_gearquat.cases import page as cases
-from lammps_gearquat.bench.runs import FIRST, FROZEN, NVE_SMALL, SECOND, SMALL
-from lammps_gearquat.checkout import END, PublishError
-from lammps_gearquat.commands.bench import bench as command
-from lammps_gearquat.lammps_runner import LammpsError
+from benchmarks.studies.bench import decks as bench_decks
+from benchmarks.studies.bench import figures as bench_figures
+from benchmarks.studies.bench import judge
+from benchmarks.studies.bench import page as bench_page
+from benchmarks.studies.bench import runs as bench
+from benchmarks.studies.cases import page as cases
+from benchmarks.studies.bench.runs import FIRST, FROZEN, NVE_SMALL, SECOND, SMALL
+from benchmarks.engine.checkout import END, PublishError
+from benchmarks.commands.bench import bench as command
+from benchmarks.engine.lammps_runner import LammpsError
 
 PLAN = bench.Plan(
     rounds=3,

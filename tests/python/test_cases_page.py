@@ -1,16 +1,16 @@
-"""What `gearquat cases --publish` writes into a checkout, and what is committed of it."""
+"""What `benchmarks/run cases --publish` writes into a checkout, and what is committed of it."""
 
 import re
 
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat import cli
-from lammps_gearquat.cases import accuracy, claims
-from lammps_gearquat.cases import page
-from lammps_gearquat.cases import runs as cases
-from lammps_gearquat.checkout import END, PublishError, find
-from lammps_gearquat.cases.claims import REPRODUCED
+from benchmarks.__main__ import main
+from benchmarks.studies.cases import accuracy, claims
+from benchmarks.studies.cases import page
+from benchmarks.studies.cases import runs as cases
+from benchmarks.engine.checkout import END, PublishError, find
+from benchmarks.studies.cases.claims import REPRODUCED
 from running import ROOT
 
 FRAME = f"# Title\n\n{page.BEGIN}\nold numbers\n{END}\n\nThe rest.\n"
@@ -87,7 +87,7 @@ def test_a_readme_without_its_markers_is_refused(folder, text):
 
 def test_another_folder_is_refused_before_anything_runs(tmp_path):
     arguments = ["cases", "--publish", str(tmp_path), "--out", str(tmp_path / "out")]
-    result = CliRunner().invoke(cli.main, arguments)
+    result = CliRunner().invoke(main, arguments)
     assert result.exit_code != 0 and "is not a checkout of GEARQUAT" in result.output
     assert not (tmp_path / "out").exists()
 

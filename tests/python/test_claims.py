@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from synthetic import PARTS, made_up
 
-from lammps_gearquat.cases import claims, figures
-from lammps_gearquat.cases import runs as cases
-from lammps_gearquat.cases import tables
-from lammps_gearquat.cases.claims import EXPLAINED, NOT, REPRODUCED
+from benchmarks.studies.cases import claims, figures
+from benchmarks.studies.cases import runs as cases
+from benchmarks.studies.cases import tables
+from benchmarks.studies.cases.claims import EXPLAINED, NOT, REPRODUCED
 
 
 def spoil(results, change, **chosen):

@@ -7,7 +7,7 @@ import pytest
 from synthetic import line, make
 
 from lammps_gearquat import divergence as dv
-from lammps_gearquat import series
+from benchmarks.engine import series
 
 
 def test_parting_time_is_the_first_sample_beyond_the_threshold():

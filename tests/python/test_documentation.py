@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from fuzz import arguments
 
-from lammps_gearquat.workprecision import stability
+from benchmarks.studies.workprecision import stability
 from pages import README, readme_script
 from running import ROOT
 

@@ -1,4 +1,4 @@
-"""``gearquat drift``: slopes and their uncertainty, verdicts from made-up numbers, a small run."""
+"""``benchmarks/run drift``: slopes and their uncertainty, verdicts from made-up numbers, a small run."""
 
 import csv
 from dataclasses import replace
@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat import series
-from lammps_gearquat.commands.drift import drift as command
-from lammps_gearquat.drift import figures as drift_figures
-from lammps_gearquat.drift import judge, page
-from lammps_gearquat.drift import runs as drift
-from lammps_gearquat.lammps_runner import LammpsError
+from benchmarks.engine import series
+from benchmarks.commands.drift import drift as command
+from benchmarks.studies.drift import figures as drift_figures
+from benchmarks.studies.drift import judge, page
+from benchmarks.studies.drift import runs as drift
+from benchmarks.engine.lammps_runner import LammpsError
 
 TIME = np.arange(2001.0)
 

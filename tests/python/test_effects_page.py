@@ -1,13 +1,13 @@
-"""`gearquat effects`: reading of profiles, texts and refusals; the counts are in tests/lammps."""
+"""`benchmarks/run effects`: reading of profiles, texts and refusals; the counts are in tests/lammps."""
 
 from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat.cli import main
-from lammps_gearquat.effects import count, figures, page, plan, runs
-from lammps_gearquat.lammps_runner import LammpsError
+from benchmarks.__main__ import main
+from benchmarks.studies.effects import count, figures, page, plan, runs
+from benchmarks.engine.lammps_runner import LammpsError
 
 PART = """\
 # callgrind format

@@ -1,4 +1,4 @@
-"""``gearquat hard``: the list of cases, their folders and data files, table, page, pictures, command."""
+"""``benchmarks/run hard``: the list of cases, their folders and data files, table, page, pictures, command."""
 
 import csv
 import runpy
@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat.checkout import END, PublishError
-from lammps_gearquat.commands.hard import hard as command
-from lammps_gearquat.hard import figures, page
-from lammps_gearquat.hard.case import Case, Curve, Finding, Panel, at_most
-from lammps_gearquat.hard.cases import CASES
-from lammps_gearquat.hard.runs import tables
-from lammps_gearquat.cases.page import BEGIN
+from benchmarks.engine.checkout import END, PublishError
+from benchmarks.commands.hard import hard as command
+from benchmarks.studies.hard import figures, page
+from benchmarks.studies.hard.case import Case, Curve, Finding, Panel, at_most
+from benchmarks.studies.hard.cases import CASES
+from benchmarks.studies.hard.runs import tables
+from benchmarks.studies.cases.page import BEGIN
 
 
 def made_up(measured=1e-12):
@@ -108,7 +108,7 @@ def test_pictures_and_publishing(out, tmp_path):
 def test_command(tmp_path, monkeypatch):
     out = tmp_path / "out"
     (out / "logs").mkdir(parents=True)
-    monkeypatch.setattr("lammps_gearquat.hard.cases.CASES", (CASE,))
+    monkeypatch.setattr("benchmarks.studies.hard.cases.CASES", (CASE,))
     result = CliRunner().invoke(command, ["--only", "poles", "--out", str(out)])
     assert result.exit_code == 0, result.output
     assert "met    an error: 1.0e-12 (t = 5); asked: ≤ 1e-12" in result.output

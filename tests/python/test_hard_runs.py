@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lammps_gearquat.hard import (
+from benchmarks.studies.hard import (
     boundaries,
     cutoff,
     encounter,
@@ -18,8 +18,8 @@ from lammps_gearquat.hard import (
     poles,
     tumbling,
 )
-from lammps_gearquat.hard.runs import Runs
-from lammps_gearquat.hard.sites import Sites
+from benchmarks.studies.hard.runs import Runs
+from benchmarks.studies.hard.sites import Sites
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""``gearquat isokinetic``: statistics, verdicts from made-up numbers, a small run."""
+"""``benchmarks/run isokinetic``: statistics, verdicts from made-up numbers, a small run."""
 
 import csv
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat.commands.isokinetic import isokinetic as command
-from lammps_gearquat.isokinetic import figures, judge, page, runs
+from benchmarks.commands.isokinetic import isokinetic as command
+from benchmarks.studies.isokinetic import figures, judge, page, runs
 
 PLAN = runs.Plan(drift_steps=1000, dts=(0.1, 0.2, 0.4), water_steps=400, every=10, blocks=5)
 
@@ -105,7 +105,7 @@ def test_page_tables_and_publication(tmp_path):
     checkout = tmp_path / "checkout"
     (checkout / "src" / "GEARQUAT").mkdir(parents=True)
     (checkout / "README.md").write_text(
-        "<!-- begin: written by `gearquat cases --publish` -->\n<!-- end -->\n"
+        "<!-- begin: written by `benchmarks/run cases --publish` -->\n<!-- end -->\n"
     )
     page.publish(checkout, out, results)
     published = (checkout / "doc" / page.PAGE).read_text()

@@ -5,9 +5,9 @@ import pytest
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat import checkout
-from lammps_gearquat.pictures import figures, film, page, scenes
-from lammps_gearquat.pictures.view import Camera, sphere_image
+from benchmarks.engine import checkout
+from benchmarks.studies.pictures import figures, film, page, scenes
+from benchmarks.studies.pictures.view import Camera, sphere_image
 
 
 def test_camera_looks_along_its_direction():

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from mp_scene import Scene
 
-from lammps_gearquat.reference import FreeField, Problem, State, bodies_from_sites, paper_problem
-from lammps_gearquat.reference import quaternion as qt
-from lammps_gearquat.reference.equations import principal_axes
+from benchmarks.reference import FreeField, Problem, State, bodies_from_sites, paper_problem
+from benchmarks.reference import quaternion as qt
+from benchmarks.reference.equations import principal_axes
 
 LONG = np.longdouble
 MARGIN = 4e-18  # of the size of a result: some 40 roundings of a long double

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from lammps_gearquat.reference import FreeField, Problem, State, paper_problem
-from lammps_gearquat.reference import quaternion as qt
-from lammps_gearquat.reference.free_top import FreeTop, exact_state
-from lammps_gearquat.reference.integrators import integrate
+from benchmarks.reference import FreeField, Problem, State, paper_problem
+from benchmarks.reference import quaternion as qt
+from benchmarks.reference.free_top import FreeTop, exact_state
+from benchmarks.reference.integrators import integrate
 
 LONG = np.longdouble
 OMEGAS = [  # about the largest and the smallest moment, either way; near a pure spin; slow

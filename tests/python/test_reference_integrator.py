@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from mp_scene import DIGITS, Scene
 
-from lammps_gearquat.reference import State, integrators, paper_problem
-from lammps_gearquat.reference.integrators import GraggBulirschStoer, NotReached, integrate
+from benchmarks.reference import State, integrators, paper_problem
+from benchmarks.reference.integrators import GraggBulirschStoer, NotReached, integrate
 
 LONG = np.longdouble
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lammps_gearquat.reference import FreeField, paper_problem, reference_state
-from lammps_gearquat.reference.integrators import integrate
-from lammps_gearquat.reference.lammps_forces import DeckError, LammpsForces, deck_problem
+from benchmarks.reference import FreeField, paper_problem, reference_state
+from benchmarks.reference.integrators import integrate
+from benchmarks.reference.lammps_forces import DeckError, LammpsForces, deck_problem
 
 BOX, CUT = np.array([9.0, 10.0, 11.0]), 4.0
 CHARGE, EPSILON, SIGMA = (-0.8, 0.4), 0.5, 1.2

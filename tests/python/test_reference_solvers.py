@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lammps_gearquat.reference import Problem, State, paper_problem, reference_state
-from lammps_gearquat.reference import quaternion as qt
-from lammps_gearquat.reference.solvers import solve, state_errors, work_precision
+from benchmarks.reference import Problem, State, paper_problem, reference_state
+from benchmarks.reference import quaternion as qt
+from benchmarks.reference.solvers import solve, state_errors, work_precision
 
 LONG = np.longdouble
 

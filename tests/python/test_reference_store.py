@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lammps_gearquat.reference import (
+from benchmarks.reference import (
     FreeField,
     Problem,
     State,

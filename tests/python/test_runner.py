@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from lammps_gearquat.lammps_runner import Job, LammpsError, find_lmp, run, run_many
+from benchmarks.engine.lammps_runner import Job, LammpsError, find_lmp, run, run_many
 
 PROGRAM = """#!/bin/sh
 # stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script

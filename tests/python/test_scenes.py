@@ -5,7 +5,7 @@ import runpy
 import numpy as np
 import pytest
 
-from lammps_gearquat import decks
+from benchmarks.engine import decks
 
 MOTIONS = ("first", "second", "rigid")
 METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from fuzz import arguments
 
-from lammps_gearquat.reference.lammps_forces import _open_lammps
+from benchmarks.reference.lammps_forces import _open_lammps
 from lammps_gearquat.trials import cost, measure, script
 from lammps_gearquat.trials.script import DeckError
 

@@ -1,4 +1,4 @@
-"""Fitted orders, prices, verdicts and texts of ``gearquat workprecision``, from made-up numbers."""
+"""Fitted orders, prices, verdicts and texts of ``benchmarks/run workprecision``, from made-up numbers."""
 
 import math
 from dataclasses import replace
@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat import checkout
-from lammps_gearquat.workprecision import evaluate, figures, judge, measure, page, plan, results
-from lammps_gearquat.workprecision import stability, tables
-from lammps_gearquat.workprecision.evaluate import MET, MISSED, cost_of, fitted_order
+from benchmarks.engine import checkout
+from benchmarks.studies.workprecision import evaluate, figures, judge, measure, page, plan, results
+from benchmarks.studies.workprecision import stability, tables
+from benchmarks.studies.workprecision.evaluate import MET, MISSED, cost_of, fitted_order
 
 STEPS = 0.5 / 2.0 ** np.arange(0, 8, 0.5)
 

@@ -1,4 +1,4 @@
-"""``gearquat workprecision`` in real LAMMPS: one run, its errors, a small command."""
+"""``benchmarks/run workprecision`` in real LAMMPS: one run, its errors, a small command."""
 
 import csv
 import math
@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat import decks
-from lammps_gearquat.cases import accuracy
-from lammps_gearquat.commands.workprecision import SCENES, workprecision
-from lammps_gearquat.workprecision import conduct, measure, plan, worker
-from lammps_gearquat.workprecision.references import reference_of
+from benchmarks.engine import decks
+from benchmarks.studies.cases import accuracy
+from benchmarks.commands.workprecision import SCENES, workprecision
+from benchmarks.studies.workprecision import conduct, measure, plan, worker
+from benchmarks.studies.workprecision.references import reference_of
 
 SCENE = plan.case1(quick=True)
 

@@ -1,0 +1,1 @@
+"""The commands of ``benchmarks/run``: options and messages; the work is done elsewhere."""

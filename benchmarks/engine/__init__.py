@@ -1,0 +1,1 @@
+"""What all studies share: running LAMMPS, reading what it wrote, writing pages."""

@@ -1,0 +1,60 @@
+"""Reference solutions of rigid-body motion, independent of the fix, to judge errors of 1e-12.
+
+Nothing here shares code with the fix or the scene generator.  Everything works in NumPy's long
+double.  What there is, and how it is used::
+
+    from benchmarks.reference import (
+        Cage, FreeField, State, Problem, paper_problem, bodies_from_sites,
+        reference_state, reference_states,
+    )
+    from benchmarks.reference.lammps_forces import LammpsForces, deck_problem, DeckError
+    from benchmarks.reference.solvers import state_errors, work_precision
+
+    problem = paper_problem(1, "consistent")         # the cage; or case 3, or "unrotated"
+    problem = deck_problem("in.water", {"dt": 0.5})  # any script; every molecule a rigid body
+    top = problem.with_field(FreeField())            # the same bodies and start, no forces
+
+    # State in long double: exact without forces, else by extrapolation
+    end = reference_state(problem, 200.0, folder=cache)
+    end.centre, end.velocity, end.q, end.omega_body  # (B, 3) (B, 3) (B, 4) (B, 3)
+    end.double                                       # the same as float64
+    a, b = reference_states(problem, [100.0, 200.0]) # several times, one integration
+    # forces that jump: no error estimate helps; judge it by another fixed step
+    end = reference_state(problem, 20.0, fixed_step=0.01)
+
+    # sites (S, 3), unwrapped, to compare with a dump; their atom IDs in a deck_problem
+    problem.site_positions(end), problem.field.ids
+
+    # centre (B,), angle (B,), energy (one number)
+    errors = state_errors(problem, end, other_state)
+    points = work_precision(problem, 200.0, end, "DOP853", tolerances)  # or "LSODA"
+    points[0].evaluations, points[0].errors
+
+State of a body: centre of mass and velocity in space axes; q in the paper's order (vector part
+first, scalar last; A(q) of Eq. 8 turns space into body axes); omega_body along the principal axes,
+radians per unit of time.  Units are those of the field.  Which principal axis is which, and its
+direction, differ between problems made in different ways: compare q within one problem, sites
+between two.  A reference is made once and kept in memory; with ``folder`` also on disk, under a
+name made of the problem's content.
+
+Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
+lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
+(Gragg-Bulirsch-Stoer); free_top.py (exact); store.py (cache); solvers.py (errors; SciPy).
+"""
+
+from .equations import Problem, RigidBodies, State, bodies_from_sites
+from .fields import Cage, FreeField
+from .paper import paper_problem
+from .store import reference_state, reference_states
+
+__all__ = [
+    "Cage",
+    "FreeField",
+    "Problem",
+    "RigidBodies",
+    "State",
+    "bodies_from_sites",
+    "paper_problem",
+    "reference_state",
+    "reference_states",
+]

@@ -1,0 +1,141 @@
+"""Instructions of the steps of many scenes, counted by callgrind in one run of LAMMPS.
+
+Instructions are counted inside ``Verlet::run`` alone, and every set-up of a run begins a new part
+of the profile: the second run of a scene is its steps and nothing else.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchmarks.engine.lammps_runner import LammpsError
+from .scenes import write_molecules
+
+INSTALL = "sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
+HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
+#: what the fix does for output, before the first step, and once a step however many bodies there are
+FIX = re.compile(r"LAMMPS_NS::FixGearQuat::")
+ASIDE = re.compile(
+    r"FixGearQuat::(show_bodies|begin_steps)\(|Comm\w+::forward_comm\(int\)|GearQuatNeighbors::(check|take)_\w+\("
+)
+FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Instructions of one part: ``own`` by function; ``called`` by caller and function with all it calls."""
+
+    own: Counter
+    called: Counter
+
+    @property
+    def fix(self):
+        """In the fix, without what is no work of a step on a body."""
+        return self.inclusive(HOOKS) - self.inclusive(ASIDE, FIX)
+
+    @property
+    def forces(self):
+        """In the pair style."""
+        return self.inclusive(FORCES)
+
+    def inclusive(self, pattern, by=re.compile("")):
+        """With all they call, of functions that match and are called by one that matches ``by``."""
+        return sum(
+            count
+            for (caller, name), count in self.called.items()
+            if pattern.search(name) and by.search(caller)
+        )
+
+    def of(self, pattern):
+        """Own instructions of functions that match a pattern."""
+        return sum(count for name, count in self.own.items() if re.search(pattern, name))
+
+
+def parse(text):
+    """Profile of one part, as callgrind writes it without compression of names."""
+    own, called = Counter(), Counter()
+    function = callee = None
+    for line in text.splitlines():
+        if line.startswith("fn="):
+            function = line[3:]
+        elif line.startswith("cfn="):
+            callee = line[4:]
+        elif callee and re.match(r"[+\-*\d]", line):
+            called[function, callee] += int(line.split()[-1])
+            callee = None
+        elif function and re.match(r"[+\-*\d]", line):
+            own[function] += int(line.split()[-1])
+    return Profile(own, called)
+
+
+def find_valgrind():
+    """The program, or an error with the line that installs it."""
+    found = shutil.which("valgrind")
+    if not found:
+        raise LammpsError(
+            f"valgrind, which counts instructions, is missing; install it by\n  {INSTALL}"
+        )
+    return found
+
+
+def command_line(lmp, deck):
+    """What counts the instructions of a deck."""
+    return [
+        find_valgrind(),
+        "--tool=callgrind",
+        "--trace-children=yes",
+        "--toggle-collect=LAMMPS_NS::Verlet::run(int)",
+        "--dump-before=LAMMPS_NS::FixGearQuat::setup(int)",
+        "--compress-strings=no",
+        "--compress-pos=no",
+        "--callgrind-out-file=callgrind.%p",
+        *(lmp, "-in", deck.name, "-log", "log.count", "-nocite"),
+    ]
+
+
+def _parts(folder):
+    """Files of the process that has stepped, in the order of the parts."""
+    files = list(folder.glob("callgrind.*"))
+    number = {file: [int(n) for n in file.name.split(".")[1:]] for file in files}
+    several = {n[0] for n in number.values() if len(n) > 1}
+    if len(several) != 1:
+        raise LammpsError(
+            "callgrind saw no FixGearQuat::setup(int): the LAMMPS program has no names of functions "
+            f"(it was stripped), or no fix gear/quat; see {folder}"
+        )
+    of_it = [file for file in files if number[file][0] in several]
+    return sorted(of_it, key=lambda file: (len(number[file]) == 1, number[file]))
+
+
+def count(folder, scenes, sides, steps, lmp):
+    """Profiles of ``steps`` steps: (scene, side) -> Profile.  ``folder`` gets deck, log, profiles."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("callgrind.*"):
+        old.unlink()
+    write_molecules(folder)
+    keys = [(scene, side) for scene in scenes for side in sides]
+    deck = folder / "in.count"
+    text = "clear\n".join(scene.deck(side, steps) for scene, side in keys)
+    deck.write_text(text, encoding="utf-8")
+    done = subprocess.run(
+        command_line(lmp, deck),
+        cwd=folder,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        errors="replace",
+    )
+    if done.returncode != 0:
+        tail = "\n".join((done.stdout + done.stderr).splitlines()[-15:])
+        raise LammpsError(f"counting instructions: exit code {done.returncode}\n{tail}")
+    parts = _parts(folder)
+    if len(parts) != 2 * len(keys) + 1:
+        raise LammpsError(f"{len(parts)} parts of the profile for {len(keys)} scenes; see {folder}")
+    profiles = [parse(file.read_text(encoding="utf-8")) for file in parts[2::2]]
+    return dict(zip(keys, profiles))
