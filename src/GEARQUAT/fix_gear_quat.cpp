@@ -99,7 +99,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   extarray = 0;
   local_freq = 1;
   size_array_rows = 0;
-  size_array_cols = size_local_cols = GearQuatTable::COLUMNS;
+  size_array_cols = size_local_cols = BodyTable::COLUMNS;
   energy_global_flag = 1;
   virial_global_flag = virial_peratom_flag = 1;
   centroidstressflag = CENTROID_AVAIL;
@@ -108,21 +108,21 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   create_attribute = 1;
   restart_global = restart_peratom = restart_file = 1;
 
-  args.reset(new GearQuatArguments(lmp, narg, arg));
+  args.reset(new Arguments(lmp, narg, arg));
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
   if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
 
-  bodies.reset(new GearQuatBodies(lmp, this, args->scheme));
-  motion.reset(new GearQuatMotion(lmp, this, *args, *bodies));
-  neighbors.reset(new GearQuatNeighbors(lmp, this, *bodies, *args));
-  restarts.reset(new GearQuatRestart(lmp, this, *bodies, *motion));
-  respa.reset(new GearQuatRespa(lmp));
-  table.reset(new GearQuatTable(lmp, *bodies));
-  sums.reset(new GearQuatSums(lmp, *bodies));
-  size_vector = GearQuatSums::ELEMENTS + motion->elements();
+  bodies.reset(new Bodies(lmp, this, args->scheme));
+  motion.reset(new Motion(lmp, this, *args, *bodies));
+  neighbors.reset(new Neighbors(lmp, this, *bodies, *args));
+  restarts.reset(new Restart(lmp, this, *bodies, *motion));
+  respa.reset(new RespaForces(lmp));
+  table.reset(new BodyTable(lmp, *bodies));
+  sums.reset(new Sums(lmp, *bodies));
+  size_vector = Sums::ELEMENTS + motion->elements();
   find_template(lmp, args->mol);    // it has to exist
-  extracts.reset(new GearQuatExtract(lmp, *bodies, args->mol));
+  extracts.reset(new Extract(lmp, *bodies, args->mol));
   maxexchange = bodies->max_exchange();
   comm_forward = bodies->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
@@ -136,8 +136,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
   // only now that nothing can fail: LAMMPS would go on calling a fix that does not exist
   extlist = new int[size_vector]{1, 1};
-  for (int n = 0; n < motion->elements(); ++n)
-    extlist[GearQuatSums::ELEMENTS + n] = motion->extensive(n);
+  for (int n = 0; n < motion->elements(); ++n) extlist[Sums::ELEMENTS + n] = motion->extensive(n);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
@@ -214,7 +213,7 @@ void FixGearQuat::setup_pre_neighbor()
   bodies->update_ghosts();
   if (met_atoms) take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() &&
-      std::none_of(stated.begin(), stated.end(), [](const GearQuatStated &one) {
+      std::none_of(stated.begin(), stated.end(), [](const StatedMolecule &one) {
                             return one.differs;
                           });
   const bool take_over = from_atoms && (args->reinit || !met_atoms);
@@ -292,7 +291,7 @@ void FixGearQuat::initial_integrate(int vflag)
 /// The first fix gear/quat in the list does so for all of them: their bodies act on each other.
 void FixGearQuat::begin_steps(double **f, double **torque)
 {
-  std::vector<GearQuatMotion *> all;
+  std::vector<Motion *> all;
   for (auto *other : modify->get_fix_list()) {
     auto *same = dynamic_cast<FixGearQuat *>(other);
     if (!same) continue;
@@ -301,7 +300,7 @@ void FixGearQuat::begin_steps(double **f, double **torque)
     same->bodies->gather_loads(f, torque);
     all.push_back(same->motion.get());
   }
-  GearQuatMotion::begin_steps(all, f);
+  Motion::begin_steps(all, f);
 }
 
 void FixGearQuat::final_integrate()
@@ -406,7 +405,7 @@ double FixGearQuat::compute_scalar()
 
 double FixGearQuat::compute_vector(int n)
 {
-  if (n >= GearQuatSums::ELEMENTS) return motion->element(n - GearQuatSums::ELEMENTS);
+  if (n >= Sums::ELEMENTS) return motion->element(n - Sums::ELEMENTS);
   return sums->element(n, motion->present_integrator());
 }
 

@@ -19,13 +19,27 @@ FixStyle(gear/quat,FixGearQuat);
 #define LMP_FIX_GEAR_QUAT_H
 
 #include "fix.h"
+#include "gear_quat_peer.h"
 
 #include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
 
-class FixGearQuat : public Fix {
+namespace GearQuat {
+  class Bodies;
+  class BodyTable;
+  class Extract;
+  class Motion;
+  class Neighbors;
+  class RespaForces;
+  class Restart;
+  class Sums;
+  struct Arguments;
+  struct StatedMolecule;
+}    // namespace GearQuat
+
+class FixGearQuat : public Fix, public GearQuat::Peer {
  public:
   FixGearQuat(class LAMMPS *, int, char **);
   ~FixGearQuat() override;
@@ -66,30 +80,27 @@ class FixGearQuat : public Fix {
   int size_restart(int) override;
   int maxsize_restart() override;
 
-  /// True if the fix moves this atom.
-  bool moves(int atom) const;
-  /// True if its start finds all derivatives, as far as it can.
-  bool bootstraps() const;
-  /// The largest error of a body here in the last step, as a length.
-  double last_error() const;
-
   void write_restart_file(const char *) override;
   void set_molecule(int, tagint, int, double *, double *, double *) override;
   void *extract(const char *, int &) override;
 
+  bool moves(int) const override;
+  bool bootstraps() const override;
+  double last_error() const override;
+
  private:
   // in the order in which they depend on each other; a constructor that ends in an error frees them
-  std::unique_ptr<struct GearQuatArguments> args;
-  std::unique_ptr<class GearQuatBodies> bodies;
-  std::unique_ptr<class GearQuatMotion> motion;
-  std::unique_ptr<class GearQuatNeighbors> neighbors;
-  std::unique_ptr<class GearQuatRestart> restarts;
-  std::unique_ptr<class GearQuatRespa> respa;
-  std::unique_ptr<class GearQuatTable> table;
-  std::unique_ptr<class GearQuatSums> sums;
-  std::unique_ptr<class GearQuatExtract> extracts;
+  std::unique_ptr<GearQuat::Arguments> args;
+  std::unique_ptr<GearQuat::Bodies> bodies;
+  std::unique_ptr<GearQuat::Motion> motion;
+  std::unique_ptr<GearQuat::Neighbors> neighbors;
+  std::unique_ptr<GearQuat::Restart> restarts;
+  std::unique_ptr<GearQuat::RespaForces> respa;
+  std::unique_ptr<GearQuat::BodyTable> table;
+  std::unique_ptr<GearQuat::Sums> sums;
+  std::unique_ptr<GearQuat::Extract> extracts;
 
-  std::vector<struct GearQuatStated> stated;    // by molecules of the template
+  std::vector<GearQuat::StatedMolecule> stated;    // by molecules of the template
 
   bool met_atoms;                    // bodies were compared with the atoms in a run before
   bool reported;                     // the scene, once

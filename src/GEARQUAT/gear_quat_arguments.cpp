@@ -22,8 +22,7 @@
 #include <set>
 
 using namespace LAMMPS_NS;
-using GearQuat::Formulation;
-using GearQuat::Isokinetic;
+using namespace GearQuat;
 
 // what is used unless the user says otherwise; measured, see doc/decisions.md
 
@@ -37,14 +36,14 @@ static constexpr int MASK_WORDS = 5;    // force M xflag yflag zflag
 
 static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
 
-GearQuatArguments::GearQuatArguments(LAMMPS *lmp, int narg, char **arg)
+Arguments::Arguments(LAMMPS *lmp, int narg, char **arg)
 {
   const int used = parse_bodystyle(lmp, narg, arg);
   parse_keywords(lmp, narg - used, arg + used);
 }
 
 /// Returns the number of words used so far.
-int GearQuatArguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
+int Arguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
 {
   Error *error = lmp->error;
   if (narg <= FIRST_WORD)
@@ -99,9 +98,9 @@ static Isokinetic isokinetic_of(const std::string &value, Error *error)
   return found->second;
 }
 
-static GearQuatArguments::Report report_of(const std::string &value, Error *error)
+static Arguments::Report report_of(const std::string &value, Error *error)
 {
-  using Report = GearQuatArguments::Report;
+  using Report = Arguments::Report;
   const std::map<std::string, Report> words = {
       {"no", Report::NO}, {"short", Report::SHORT}, {"long", Report::LONG}};
   const auto found = words.find(value);
@@ -110,7 +109,7 @@ static GearQuatArguments::Report report_of(const std::string &value, Error *erro
   return found->second;
 }
 
-void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
+void Arguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 {
   Error *error = lmp->error;
   std::set<std::string> seen;
@@ -186,11 +185,11 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
       infile = value;
   }
 
-  const int fewest = scheme.first() ? GearQuat::FIRST_FEWEST : GearQuat::SECOND_FEWEST;
-  const int most = scheme.first() ? GearQuat::FIRST_MOST : GearQuat::SECOND_MOST;
+  const int fewest = scheme.first() ? FIRST_FEWEST : SECOND_FEWEST;
+  const int most = scheme.first() ? FIRST_MOST : SECOND_MOST;
   const bool tolerance = seen.count("tolerance");
   if (!seen.count("values"))
-    scheme.rows = tolerance ? std::min(most, GearQuat::VARIABLE_MOST)
+    scheme.rows = tolerance ? std::min(most, VARIABLE_MOST)
         : scheme.first()    ? FIRST_VALUES
                             : SECOND_VALUES;
   if (!seen.count("passes")) scheme.passes = PASSES;
@@ -230,21 +229,21 @@ void GearQuatArguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
   }
 }
 
-void GearQuatArguments::check_control(LAMMPS *lmp, int fewest)
+void Arguments::check_control(LAMMPS *lmp, int fewest)
 {
   control.fewest = fewest;
   control.most = scheme.rows;
-  if (control.most > GearQuat::VARIABLE_MOST)
+  if (control.most > VARIABLE_MOST)
     lmp->error->all(FLERR,
                     "Fix gear/quat tolerance: {} values are more than {}, the largest number with "
                     "which a step may shrink",
-                    control.most, GearQuat::VARIABLE_MOST);
+                    control.most, VARIABLE_MOST);
   if (control.longest > 0.0 && control.shortest > control.longest)
     lmp->error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                     control.longest);
 }
 
-void GearQuatArguments::check_isokinetic(LAMMPS *lmp, bool rescale_given) const
+void Arguments::check_isokinetic(LAMMPS *lmp, bool rescale_given) const
 {
   Error *error = lmp->error;
   if (isokinetic == Isokinetic::NONE) {
@@ -271,11 +270,11 @@ void GearQuatArguments::check_isokinetic(LAMMPS *lmp, bool rescale_given) const
 }
 
 /// arg: the keyword and what follows.
-GearQuatMaskWords GearQuatArguments::parse_mask(LAMMPS *lmp, int narg, char **arg)
+MaskWords Arguments::parse_mask(LAMMPS *lmp, int narg, char **arg)
 {
   const std::string key = arg[0];
   if (narg < MASK_WORDS) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, lmp->error);
-  GearQuatMaskWords words = {key == "torque", arg[1], {}};
+  MaskWords words = {key == "torque", arg[1], {}};
   for (int k = 0; k < 3; ++k) {
     const std::string flag = arg[2 + k];
     if (flag != "on" && flag != "off")
@@ -290,7 +289,7 @@ GearQuatMaskWords GearQuatArguments::parse_mask(LAMMPS *lmp, int narg, char **ar
    atoms to bodies
 ------------------------------------------------------------------------- */
 
-std::vector<tagint> GearQuatArguments::body_ids(LAMMPS *lmp, int groupbit) const
+std::vector<tagint> Arguments::body_ids(LAMMPS *lmp, int groupbit) const
 {
   switch (bodystyle) {
     case BodyStyle::MOLECULE:
@@ -315,7 +314,7 @@ static tagint anywhere(LAMMPS *lmp, tagint tag)
   return all;
 }
 
-std::vector<tagint> GearQuatArguments::molecule_ids(LAMMPS *lmp, int groupbit) const
+std::vector<tagint> Arguments::molecule_ids(LAMMPS *lmp, int groupbit) const
 {
   Atom *atom = lmp->atom;
   if (!atom->molecule_flag)
@@ -335,7 +334,7 @@ std::vector<tagint> GearQuatArguments::molecule_ids(LAMMPS *lmp, int groupbit) c
   return ids;
 }
 
-std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) const
+std::vector<tagint> Arguments::group_ids(LAMMPS *lmp, int groupbit) const
 {
   Atom *atom = lmp->atom;
   std::vector<tagint> ids(atom->nlocal, 0);
@@ -371,7 +370,7 @@ std::vector<tagint> GearQuatArguments::group_ids(LAMMPS *lmp, int groupbit) cons
 static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
 
 /// Bodies are numbered from the smallest value in the group, as fix rigid numbers them.
-std::vector<tagint> GearQuatArguments::custom_ids(LAMMPS *lmp, int groupbit) const
+std::vector<tagint> Arguments::custom_ids(LAMMPS *lmp, int groupbit) const
 {
   Atom *atom = lmp->atom;
   Error *error = lmp->error;

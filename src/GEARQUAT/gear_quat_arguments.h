@@ -16,10 +16,12 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-
 class LAMMPS;
+}    // namespace LAMMPS_NS
 
-struct GearQuatArguments {
+namespace LAMMPS_NS::GearQuat {
+
+struct Arguments {
   enum class BodyStyle { SINGLE, MOLECULE, GROUP, CUSTOM };
   enum class Start { BOOTSTRAP, ZERO };
   enum class Report { NO, SHORT, LONG };
@@ -28,20 +30,20 @@ struct GearQuatArguments {
   std::vector<std::string> groups;    ///< group: one per body
   std::string custom;                 ///< custom: i_name or v_name
 
-  GearQuat::Scheme scheme;
-  GearQuat::StepControl control;    ///< eps 0: the step is LAMMPS' own
+  Scheme scheme;
+  StepControl control;    ///< eps 0: the step is LAMMPS' own
   Start start = Start::BOOTSTRAP;
   bool reinit = true;
   Report report = Report::SHORT;
   std::string infile;
   std::string mol;    ///< template of bodies to come
-  std::vector<GearQuatMaskWords> masks;
-  GearQuat::Isokinetic isokinetic = GearQuat::Isokinetic::NONE;
+  std::vector<MaskWords> masks;
+  Isokinetic isokinetic = Isokinetic::NONE;
   bool rescale = true;
 
   /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
   /// names the word and what is required.
-  GearQuatArguments(LAMMPS *lmp, int narg, char **arg);
+  Arguments(LAMMPS *lmp, int narg, char **arg);
 
   /// Body of every owned atom, 0 for atoms in none; faults name the atom.  Collective.
   std::vector<tagint> body_ids(LAMMPS *lmp, int groupbit) const;
@@ -51,12 +53,12 @@ struct GearQuatArguments {
   void parse_keywords(LAMMPS *lmp, int narg, char **arg);
   void check_control(LAMMPS *lmp, int fewest);
   void check_isokinetic(LAMMPS *lmp, bool rescale_given) const;
-  static GearQuatMaskWords parse_mask(LAMMPS *lmp, int narg, char **arg);
+  static MaskWords parse_mask(LAMMPS *lmp, int narg, char **arg);
   std::vector<tagint> molecule_ids(LAMMPS *lmp, int groupbit) const;
   std::vector<tagint> group_ids(LAMMPS *lmp, int groupbit) const;
   std::vector<tagint> custom_ids(LAMMPS *lmp, int groupbit) const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -22,14 +22,14 @@ static constexpr int IRREGULAR = 0;
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
 static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
 
-std::vector<GearQuatAssembly::PlacedSite> GearQuatAssembly::place_sites(std::vector<Site> &sites)
+std::vector<Assembly::PlacedSite> Assembly::place_sites(std::vector<Site> &sites)
 {
   auto placed = meet<PlacedSite>(sites);
   report_faults();
   return placed;
 }
 
-std::vector<GearQuatAssembly::OwnedBody> GearQuatAssembly::make_bodies(std::vector<Site> &sites)
+std::vector<Assembly::OwnedBody> Assembly::make_bodies(std::vector<Site> &sites)
 {
   auto made = meet<OwnedBody>(sites);
   warn_of_clumps();
@@ -37,7 +37,7 @@ std::vector<GearQuatAssembly::OwnedBody> GearQuatAssembly::make_bodies(std::vect
 }
 
 /// Two plates may be a body; two halves of a molecule at both faces of the box are none.
-void GearQuatAssembly::warn_of_clumps() const
+void Assembly::warn_of_clumps() const
 {
   tagint here = in_clumps, any;
   MPI_Allreduce(&here, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
@@ -53,7 +53,7 @@ void GearQuatAssembly::warn_of_clumps() const
    rendezvous: every site to the rank that its body's ID names, replies back
 ------------------------------------------------------------------------- */
 
-template <typename Reply> std::vector<Reply> GearQuatAssembly::meet(std::vector<Site> &sites)
+template <typename Reply> std::vector<Reply> Assembly::meet(std::vector<Site> &sites)
 {
   std::vector<int> ranks;
   ranks.reserve(sites.size() + 1);
@@ -70,9 +70,9 @@ template <typename Reply> std::vector<Reply> GearQuatAssembly::meet(std::vector<
 }
 
 template <typename Reply>
-int GearQuatAssembly::callback(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
+int Assembly::callback(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
 {
-  auto *assembly = (GearQuatAssembly *) self;
+  auto *assembly = (Assembly *) self;
   auto *sites = (Site *) in;
   std::sort(sites, sites + n, [](const Site &a, const Site &b) {
     return a.id != b.id ? a.id < b.id : a.tag < b.tag;
@@ -83,7 +83,7 @@ int GearQuatAssembly::callback(int n, char *in, int &flag, int *&ranks, char *&o
   int count = 0;
   for (int first = 0, last; first < n; first = last) {
     for (last = first; last < n && sites[last].id == sites[first].id; ++last)
-      gear_quat_add_turns_of_flags(assembly->domain, sites[first].x, sites[last].x);
+      undo_image_flag_overflow(assembly->domain, sites[first].x, sites[last].x);
     assembly->reply(sites + first, last - first, replies, ranks, count);
   }
   out = (char *) replies;
@@ -91,7 +91,7 @@ int GearQuatAssembly::callback(int n, char *in, int &flag, int *&ranks, char *&o
   return count;
 }
 
-void GearQuatAssembly::reply(const Site *sites, int n, PlacedSite *replies, int *ranks, int &count)
+void Assembly::reply(const Site *sites, int n, PlacedSite *replies, int *ranks, int &count)
 {
   double axes[9];
   int owner;
@@ -108,14 +108,14 @@ void GearQuatAssembly::reply(const Site *sites, int n, PlacedSite *replies, int 
   }
 }
 
-void GearQuatAssembly::reply(const Site *sites, int n, OwnedBody *replies, int *ranks, int &count)
+void Assembly::reply(const Site *sites, int n, OwnedBody *replies, int *ranks, int &count)
 {
   double axes[9];
   int owner;
   replies[count] = make_body(sites, n, axes, owner);
   std::vector<const double *> positions;
   for (int i = 0; i < n; ++i) positions.push_back(sites[i].x);
-  if (gear_quat_in_clumps(domain, positions)) in_clumps = sites[0].id;
+  if (lies_in_clumps(domain, positions)) in_clumps = sites[0].id;
   ranks[count++] = sites[owner].rank;
 }
 
@@ -123,8 +123,7 @@ void GearQuatAssembly::reply(const Site *sites, int n, OwnedBody *replies, int *
    one body from its sites, sorted by atom ID
 ------------------------------------------------------------------------- */
 
-GearQuatAssembly::OwnedBody GearQuatAssembly::make_body(const Site *sites, int n, double axes[9],
-                                                        int &owner)
+Assembly::OwnedBody Assembly::make_body(const Site *sites, int n, double axes[9], int &owner)
 {
   // owner: the site nearest to the middle of the body's bounding box needs the fewest ghosts
 
@@ -174,9 +173,8 @@ GearQuatAssembly::OwnedBody GearQuatAssembly::make_body(const Site *sites, int n
   return owned;
 }
 
-/// Mass, centre, inertia and momenta as sums over the sites.
-GearQuatAssembly::Momenta GearQuatAssembly::average(const Site *sites, int n,
-                                                    OwnedBody &owned) const
+/// Mass, center, inertia and momenta as sums over the sites.
+Assembly::Momenta Assembly::average(const Site *sites, int n, OwnedBody &owned) const
 {
   Momenta momenta = Momenta();
   double mass = 0.0, center[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
@@ -190,7 +188,7 @@ GearQuatAssembly::Momenta GearQuatAssembly::average(const Site *sites, int n,
   owned.body.rigid.mass = mass;
   if (!(mass > 0.0)) return momenta;
 
-  for (int k = 0; k < 3; ++k) {    // a lone site is at its centre, without rounding
+  for (int k = 0; k < 3; ++k) {    // a lone site is at its center, without rounding
     owned.state.center[k] = n == 1 ? sites[0].x[k] : center[k] / mass;
     owned.state.velocity[k] = n == 1 ? sites[0].v[k] : velocity[k] / mass;
   }
@@ -215,8 +213,7 @@ GearQuatAssembly::Momenta GearQuatAssembly::average(const Site *sites, int n,
   return momenta;
 }
 
-GearQuatAssembly::Momenta GearQuatAssembly::take_given(const GivenBody &given_body,
-                                                       OwnedBody &owned) const
+Assembly::Momenta Assembly::take_given(const GivenBody &given_body, OwnedBody &owned) const
 {
   const double *i = given_body.inertia;
   const double *l = given_body.angular_momentum_space;
@@ -233,8 +230,8 @@ GearQuatAssembly::Momenta GearQuatAssembly::take_given(const GivenBody &given_bo
 }
 
 /// Principal frame, orientation and angular velocity.
-void GearQuatAssembly::find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
-                                  OwnedBody &owned)
+void Assembly::find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
+                          OwnedBody &owned)
 {
   double *moments = owned.body.rigid.inertia;
   principal_axes(momenta.inertia_space, moments, axes);
@@ -256,8 +253,7 @@ void GearQuatAssembly::find_frame(const Momenta &momenta, const Site *sites, int
 
 /// Senses that belong to the body, not to its orientation at the start: the first and the third
 /// axis point to the side of the heaviest site that is on a side at all, of equals the first.
-void GearQuatAssembly::orient_axes(const Site *sites, int n, const double *center,
-                                   double axes[9]) const
+void Assembly::orient_axes(const Site *sites, int n, const double *center, double axes[9]) const
 {
   std::vector<const Site *> order(n);
   for (int i = 0; i < n; ++i) order[i] = sites + i;
@@ -295,7 +291,7 @@ void GearQuatAssembly::orient_axes(const Site *sites, int n, const double *cente
    what no body can be
 ------------------------------------------------------------------------- */
 
-/// In the order of GearQuatAssembly's faults; the first that is met is told.
+/// In the order of Assembly's faults; the first that is met is told.
 static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
     "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
@@ -306,8 +302,8 @@ static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
     "position and its image flags right?"};
 
-/// A given centre may lie outside of the body, but not by half a box: image flags belong to it.
-void GearQuatAssembly::check_place(const Site *sites, int n, const OwnedBody &owned)
+/// A given center may lie outside of the body, but not by half a box: image flags belong to it.
+void Assembly::check_place(const Site *sites, int n, const OwnedBody &owned)
 {
   const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
   const double far = owned.body.extent + 0.5 * longest;
@@ -320,7 +316,7 @@ void GearQuatAssembly::check_place(const Site *sites, int n, const OwnedBody &ow
 }
 
 /// Of sums over masses all this holds by itself, up to rounding.
-void GearQuatAssembly::check_moments(const OwnedBody &owned)
+void Assembly::check_moments(const OwnedBody &owned)
 {
   const double *moments = owned.body.rigid.inertia;
   const double largest = std::max({moments[0], moments[1], moments[2]});
@@ -335,7 +331,7 @@ void GearQuatAssembly::check_moments(const OwnedBody &owned)
     faulty[UNBALANCED] = owned.body.id;
 }
 
-void GearQuatAssembly::report_faults()
+void Assembly::report_faults()
 {
   tagint any[FAULTS];
   MPI_Allreduce(faulty, any, FAULTS, MPI_LMP_TAGINT, MPI_MAX, world);

@@ -22,18 +22,18 @@
 #include <cmath>
 #include <vector>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
 /// What a body is; travels with its owner atom.
-struct GearQuatBody {
-  GearQuat::RigidBody rigid;
-  tagint id;             ///< the user's: molecule ID, group number or custom value
-  tagint natoms;         ///< sites
-  double extent;         ///< largest distance of a site from the owner atom
-  int from_file;         ///< mass and inertia were given, not summed
-  int fresh;             ///< has come in this step: no history yet
-  int large;             ///< on several ranks: not all of its sites can see their owner atom
-  GearQuat::Mask off;    ///< components of the load that do not act
+struct Body {
+  RigidBody rigid;
+  tagint id;        ///< the user's: molecule ID, group number or custom value
+  tagint natoms;    ///< sites
+  double extent;    ///< largest distance of a site from the owner atom
+  int from_file;    ///< mass and inertia were given, not summed
+  int fresh;        ///< has come in this step: no history yet
+  int large;        ///< on several ranks: not all of its sites can see their owner atom
+  Mask off;         ///< components of the load that do not act
 
   /// How far a rotation by a radian moves what is far out: a site, or a solid's own parts.
   double reach() const
@@ -42,34 +42,34 @@ struct GearQuatBody {
     return std::max(extent, std::sqrt(std::max({i[0], i[1], i[2]}) / rigid.mass));
   }
   /// The error of a step as a length.
-  double length(const GearQuat::Correction &error) const
+  double length(const Correction &error) const
   {
     return std::max(error.position_error, reach() * error.angle_error);
   }
 };
 
-class GearQuatAssembly : protected Pointers {
+class Assembly : protected Pointers {
  public:
   struct Site {
     int rank, local;    ///< where the site came from
     tagint id, tag;     ///< body and atom
     double mass;
     double x[3], v[3];                                     ///< unwrapped
-    double own_inertia_space[9], own_momentum_space[3];    ///< of the site about its own centre
+    double own_inertia_space[9], own_momentum_space[3];    ///< of the site about its own center
   };
   struct PlacedSite {
     int local;
     tagint owner;           ///< atom ID of the body's owner
-    double site_body[3];    ///< from the centre of mass, principal frame
+    double site_body[3];    ///< from the center of mass, principal frame
     double q_body[4];       ///< orientation of the body
   };
   struct OwnedBody {
     int local;    ///< index of the owner atom
-    GearQuatBody body;
-    GearQuat::BodyState state;
+    Body body;
+    BodyState state;
   };
 
-  GearQuatAssembly(LAMMPS *lmp, const GivenBodies &given) : Pointers(lmp), given(given) {}
+  Assembly(LAMMPS *lmp, const GivenBodies &given) : Pointers(lmp), given(given) {}
 
   /// Both are collective and return what belongs to this rank's atoms; two meetings, each of which
   /// makes the bodies, so that not every site has to carry its whole body back.  Massless bodies, and
@@ -108,6 +108,6 @@ class GearQuatAssembly : protected Pointers {
   void reply(const Site *sites, int n, OwnedBody *replies, int *ranks, int &count);
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

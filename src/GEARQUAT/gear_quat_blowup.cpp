@@ -34,7 +34,7 @@ static double length(const double *a)
 
 /* ---------------------------------------------------------------------- */
 
-MotionLimits GearQuatBlowup::limits(double h) const
+MotionLimits Blowup::limits(double h) const
 {
   double longest = 0.0;
   for (int k = 0; k < 3; ++k) {
@@ -45,20 +45,20 @@ MotionLimits GearQuatBlowup::limits(double h) const
   return MotionLimits(h, longest);
 }
 
-void GearQuatBlowup::check_loads(double h, double **f) const
+void Blowup::check_loads(double h, double **f) const
 {
   for (const auto *list : {&bodies.points, &bodies.tops, &bodies.fresh})
     for (const int ibody : *list) check_load(ibody, h, f);
 }
 
-void GearQuatBlowup::check_load(int ibody, double h, double **f) const
+void Blowup::check_load(int ibody, double h, double **f) const
 {
   const BodyState after =
       kicked(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody], h);
   if (!limits(h).keep_velocities(after)) stop(ibody, after, h, f);
 }
 
-void GearQuatBlowup::stop(int ibody, const BodyState &s, double h, double **f) const
+void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
 {
   const tagint id = bodies.body[ibody].id;
   const double time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
@@ -86,8 +86,7 @@ void GearQuatBlowup::stop(int ibody, const BodyState &s, double h, double **f) c
 }
 
 /// All ranks see a large body go astray, each with its own sites: the text of the one that sees most.
-std::string GearQuatBlowup::agree(const std::string &text, int ibody, int bad,
-                                  const Meeting &met) const
+std::string Blowup::agree(const std::string &text, int ibody, int bad, const Meeting &met) const
 {
   const bool any = std::any_of(bodies.sites.begin(), bodies.sites.end(), [&](const auto &site) {
     return site.body == ibody;
@@ -108,7 +107,7 @@ std::string GearQuatBlowup::agree(const std::string &text, int ibody, int bad,
 }
 
 /// What is beyond the limits, the first thing in the order of cause and effect.
-std::string GearQuatBlowup::what_happened(int ibody, const BodyState &s, double h) const
+std::string Blowup::what_happened(int ibody, const BodyState &s, double h) const
 {
   const Load &l = bodies.load[ibody];
   const double push = length(l.force) / force->ftm2v, twist = length(l.torque_space) / force->ftm2v;
@@ -124,7 +123,7 @@ std::string GearQuatBlowup::what_happened(int ibody, const BodyState &s, double 
 }
 
 /// A site on which the force is no number, or else the one that is nearest to another atom.
-std::string GearQuatBlowup::where(int ibody, int bad, const Meeting &met) const
+std::string Blowup::where(int ibody, int bad, const Meeting &met) const
 {
   if (met.other < 0)
     return bad < 0 ? std::string()
@@ -135,7 +134,7 @@ std::string GearQuatBlowup::where(int ibody, int bad, const Meeting &met) const
 }
 
 /// Of the sites here, or of the one asked for, the nearest to an atom that is not of this body.
-GearQuatBlowup::Meeting GearQuatBlowup::nearest(int ibody, int only) const
+Blowup::Meeting Blowup::nearest(int ibody, int only) const
 {
   Meeting found = {-1, -1, NONE};
   std::vector<int> others;    // along x: only those are looked at that may be nearer

@@ -13,17 +13,17 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_limits.h"
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatBlowup : protected Pointers {
+class Blowup : protected Pointers {
  public:
-  GearQuatBlowup(LAMMPS *lmp, GearQuatBodies &bodies, const GearQuat::Scheme &scheme) :
+  Blowup(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme) :
       Pointers(lmp), bodies(bodies), scheme(scheme)
   {
   }
 
   /// For a step h in the present box, which is none where it follows the atoms.
-  GearQuat::MotionLimits limits(double h) const;
+  MotionLimits limits(double h) const;
 
   /// Ends the run if the present loads would make an owned body go astray within a step h.  Atoms are
   /// where the loads were taken; f: forces on them.
@@ -34,22 +34,22 @@ class GearQuatBlowup : protected Pointers {
   /// together): says step, time, body, its site nearest to another atom (or one on which the force is
   /// no number), and what to change.
   /// Atoms are where the load was taken; s: what came of it, beyond the limits.
-  [[noreturn]] void stop(int ibody, const GearQuat::BodyState &s, double h, double **f) const;
+  [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
 
  private:
-  GearQuatBodies &bodies;
-  const GearQuat::Scheme &scheme;
+  Bodies &bodies;
+  const Scheme &scheme;
 
   struct Meeting {
     int site, other;    ///< atoms; -1 for none
     double distance2;
   };
   Meeting nearest(int ibody, int site) const;
-  std::string what_happened(int ibody, const GearQuat::BodyState &s, double h) const;
+  std::string what_happened(int ibody, const BodyState &s, double h) const;
   std::string where(int ibody, int bad, const Meeting &met) const;
   std::string agree(const std::string &text, int ibody, int bad, const Meeting &met) const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -21,7 +21,7 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
+Bodies::Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
     Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nmove(0), nbodies(0),
     natoms(0), nlarge(0), strangers(0), told(false), ncentered(0), wrapped(false),
     any_ghosts(false), any_forces(true), nmax(0), body_id(nullptr), owner_tag(nullptr),
@@ -31,7 +31,7 @@ GearQuatBodies::GearQuatBodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
   clear();
 }
 
-GearQuatBodies::~GearQuatBodies()
+Bodies::~Bodies()
 {
   memory->destroy(body_id);
   memory->destroy(owner_tag);
@@ -43,7 +43,7 @@ GearQuatBodies::~GearQuatBodies()
    life cycle
 ------------------------------------------------------------------------- */
 
-void GearQuatBodies::clear(bool with_extended)
+void Bodies::clear(bool with_extended)
 {
   nown = 0;
   large.clear();
@@ -57,13 +57,13 @@ void GearQuatBodies::clear(bool with_extended)
   for (int i = 0; i < nmax; ++i) set_arrays(i);
 }
 
-void GearQuatBodies::create(const std::vector<tagint> &ids, const GivenBodies &given)
+void Bodies::create(const std::vector<tagint> &ids, const GivenBodies &given)
 {
   clear();
   add(ids, given);
 }
 
-void GearQuatBodies::count()
+void Bodies::count()
 {
   bigint here[2] = {nown, 0}, all[2];
   for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
@@ -73,7 +73,7 @@ void GearQuatBodies::count()
   box.assign(domain->h, domain->h + 6);
 }
 
-void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
+void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
 {
   std::vector<int> atoms;
   for (int i = 0; i < atom->nlocal; ++i)
@@ -82,9 +82,9 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
   const bool any_extended = extended.any(atoms);
   if (any_extended && !extended.has_records()) extended.reset(true, nmax);
 
-  std::vector<GearQuatAssembly::Site> sites;
+  std::vector<Assembly::Site> sites;
   for (const int i : atoms) {
-    GearQuatAssembly::Site site = GearQuatAssembly::Site();
+    Assembly::Site site = Assembly::Site();
     site.rank = comm->me;
     site.local = i;
     site.id = ids[i];
@@ -97,7 +97,7 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
     sites.push_back(site);
   }
 
-  GearQuatAssembly assembly(lmp, given);
+  Assembly assembly(lmp, given);
   const auto placed = assembly.place_sites(sites);
   const auto made = assembly.make_bodies(sites);
 
@@ -115,13 +115,13 @@ void GearQuatBodies::add(const std::vector<tagint> &ids, const GivenBodies &give
   count();
 }
 
-void GearQuatBodies::recreate()
+void Bodies::recreate()
 {
   create(std::vector<tagint>(body_id, body_id + atom->nlocal), GivenBodies());
   choose_large();
 }
 
-void GearQuatBodies::refuse_atoms() const
+void Bodies::refuse_atoms() const
 {
   std::vector<int> atoms;
   for (int i = 0; i < atom->nlocal; ++i)
@@ -133,7 +133,7 @@ void GearQuatBodies::refuse_atoms() const
    ownership
 ------------------------------------------------------------------------- */
 
-void GearQuatBodies::drop_ghosts()
+void Bodies::drop_ghosts()
 {
   if (!large.empty()) keep_large();
   body.resize(nown);
@@ -145,7 +145,7 @@ void GearQuatBodies::drop_ghosts()
   nmove = nown;
 }
 
-int GearQuatBodies::add_owned(int atom)
+int Bodies::add_owned(int atom)
 {
   drop_ghosts();
   const int ibody = nown++;
@@ -155,7 +155,7 @@ int GearQuatBodies::add_owned(int atom)
   return ibody;
 }
 
-void GearQuatBodies::remove_owned(int ibody)
+void Bodies::remove_owned(int ibody)
 {
   drop_ghosts();
   owned[owner_atom[ibody]] = -1;
@@ -173,7 +173,7 @@ void GearQuatBodies::remove_owned(int ibody)
   owner_atom.resize(nown);
 }
 
-void GearQuatBodies::update_ghosts()
+void Bodies::update_ghosts()
 {
   do {
     drop_ghosts();
@@ -190,14 +190,14 @@ void GearQuatBodies::update_ghosts()
 }
 
 /// The IDs of their bodies for ghost atoms, and the bodies that are not large for ghosts of owner atoms.
-void GearQuatBodies::tell_ghosts()
+void Bodies::tell_ghosts()
 {
   forward = Forward::GHOSTS;
   comm->forward_comm(fix);
   load.resize(body.size());
 }
 
-void GearQuatBodies::list_bodies()
+void Bodies::list_bodies()
 {
   for (auto *list : {&tops, &points, &fresh, &ghost_tops}) list->clear();
   const auto list = [this](int ibody) {
@@ -214,13 +214,13 @@ void GearQuatBodies::list_bodies()
   for (const Large &one : large) list(one.body);
 }
 
-void GearQuatBodies::take_in_fresh()
+void Bodies::take_in_fresh()
 {
   for (const int ibody : fresh) body[ibody].fresh = 0;
   if (!fresh.empty()) list_bodies();
 }
 
-void GearQuatBodies::list_sites()
+void Bodies::list_sites()
 {
   unseen.clear();
   sites.clear();
@@ -238,7 +238,7 @@ void GearQuatBodies::list_sites()
     double arm[3], expected[3];    // of what the flags take off
     to_space(frame[site.body].axes, site.arm_body, arm);
     for (int k = 0; k < 3; ++k) expected[k] = state[site.body].center[k] + arm[k] - atom->x[i][k];
-    gear_quat_add_turns_of_flags(domain, expected, site.wrap);
+    undo_image_flag_overflow(domain, expected, site.wrap);
     sites.push_back(site);
   }
   const auto centered = [](const Site &site) {
@@ -253,13 +253,13 @@ void GearQuatBodies::list_sites()
 }
 
 /// On a single rank ghosts are images of own atoms, on several they are told.
-tagint GearQuatBodies::id_of(int i) const
+tagint Bodies::id_of(int i) const
 {
   return body_id[atom->map(atom->tag[i])];
 }
 
 /// Count what all ranks have.  False if some bodies have become large: all is to be done again.
-bool GearQuatBodies::take_stock()
+bool Bodies::take_stock()
 {
   const bigint lost = (bigint) unseen.size();
   bigint here[7] = {nown, 0, (bigint) sites.size() + lost, lost, strangers, 0, 0}, all[7];
@@ -290,13 +290,13 @@ bool GearQuatBodies::take_stock()
   return true;
 }
 
-void GearQuatBodies::expect_forces(bool any)
+void Bodies::expect_forces(bool any)
 {
   any_forces = any;
   if (!any) std::fill(load.begin(), load.end(), Load());
 }
 
-void GearQuatBodies::spread_labels(std::vector<double> &label)
+void Bodies::spread_labels(std::vector<double> &label)
 {
   labels = label.data();
   forward = Forward::LABELS;
@@ -308,7 +308,7 @@ void GearQuatBodies::spread_labels(std::vector<double> &label)
    per-atom arrays
 ------------------------------------------------------------------------- */
 
-void GearQuatBodies::grow_arrays(int n)
+void Bodies::grow_arrays(int n)
 {
   const int old = nmax;
   nmax = n;
@@ -320,7 +320,7 @@ void GearQuatBodies::grow_arrays(int n)
   for (int i = old; i < nmax; ++i) set_arrays(i);
 }
 
-void GearQuatBodies::set_arrays(int i)
+void Bodies::set_arrays(int i)
 {
   body_id[i] = owner_tag[i] = 0;
   owned[i] = -1;
@@ -328,7 +328,7 @@ void GearQuatBodies::set_arrays(int i)
   extended.set(i);
 }
 
-void GearQuatBodies::copy_arrays(int from, int to, int delflag)
+void Bodies::copy_arrays(int from, int to, int delflag)
 {
   if (delflag && owned[to] >= 0) remove_owned(owned[to]);
   body_id[to] = body_id[from];
@@ -339,14 +339,13 @@ void GearQuatBodies::copy_arrays(int from, int to, int delflag)
   if (owned[to] >= 0) owner_atom[owned[to]] = to;
 }
 
-double GearQuatBodies::memory_usage() const
+double Bodies::memory_usage() const
 {
   const double per_atom = 2 * sizeof(tagint) + sizeof(int) + 3 * sizeof(double);
-  return nmax * per_atom + rows.capacity() * sizeof(double) +
-      body.capacity() * sizeof(GearQuatBody) + state.capacity() * sizeof(BodyState) +
-      load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
-      frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
-      large.capacity() * sizeof(Large) +
+  return nmax * per_atom + rows.capacity() * sizeof(double) + body.capacity() * sizeof(Body) +
+      state.capacity() * sizeof(BodyState) + load.capacity() * sizeof(Load) +
+      last.capacity() * sizeof(Correction) + frame.capacity() * sizeof(Frame) +
+      sites.capacity() * sizeof(Site) + large.capacity() * sizeof(Large) +
       (kept.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
       extended.memory_usage();

@@ -7,7 +7,7 @@
 
    A body belongs to the rank that owns its owner atom and migrates with it.  Owned bodies come
    first, then ghost bodies: copies of pose and velocities for atoms whose owner atom is a ghost
-   here.  Centres of mass are unwrapped; atoms are placed with their own image flags, so that bodies
+   here.  Centers of mass are unwrapped; atoms are placed with their own image flags, so that bodies
    need none.
 
    A body that reaches further than ghost atoms are seen is large: every rank has it, with its
@@ -28,20 +28,22 @@
 #include "gear_quat_integrator.h"
 
 namespace LAMMPS_NS {
-
 class Fix;
+}    // namespace LAMMPS_NS
 
-class GearQuatBodies : protected Pointers {
+namespace LAMMPS_NS::GearQuat {
+
+class Bodies : protected Pointers {
  public:
-  GearQuatBodies(LAMMPS *lmp, Fix *fix, const GearQuat::Scheme &scheme);
-  ~GearQuatBodies() override;
+  Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme);
+  ~Bodies() override;
 
   // owned bodies, then large ones of other ranks, then (not in `last`) ghosts
 
-  std::vector<GearQuatBody> body;
-  std::vector<GearQuat::BodyState> state;
-  std::vector<GearQuat::Load> load;
-  std::vector<GearQuat::Correction> last;    ///< what the last corrector told
+  std::vector<Body> body;
+  std::vector<BodyState> state;
+  std::vector<Load> load;
+  std::vector<Correction> last;    ///< what the last corrector told
 
   // bodies that this rank moves by what they need in a step, large ones last and in the same order
   // on all ranks; valid until atoms are exchanged
@@ -61,7 +63,7 @@ class GearQuatBodies : protected Pointers {
   };
   Placed placed(const Site &site) const;
   double atom_mass(int atom) const;
-  std::vector<Site> sites;    ///< those at their centre of mass, with arms of zero, come first
+  std::vector<Site> sites;    ///< those at their center of mass, with arms of zero, come first
 
   int nowned() const { return nown; }
   /// Bodies that this rank moves: owned ones and copies of large ones of other ranks.
@@ -71,10 +73,7 @@ class GearQuatBodies : protected Pointers {
   /// On all ranks.
   bigint number_of_large() const { return nlarge; }
   /// What moves an owned body, of the load it met.
-  GearQuat::Load acting(int ibody) const
-  {
-    return GearQuat::acting_load(load[ibody], body[ibody].off);
-  }
+  Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * scheme.size(); }
   bool in_body(int atom) const { return body_id[atom] != 0; }
@@ -143,12 +142,12 @@ class GearQuatBodies : protected Pointers {
   /// torque: of the atoms themselves, used where they are more than points.
   void gather_loads(double **f, double **torque);
   void spread_loads();
-  /// Index of the first site that is not at its centre of mass.
+  /// Index of the first site that is not at its center of mass.
   size_t first_arm() const { return ncentered; }
-  /// Arm from the centre of mass and constraint force m a - f of a site under the present loads.
+  /// Arm from the center of mass and constraint force m a - f of a site under the present loads.
   void constraint_force(const Site &site, double **f, double *arm_space, double *force) const;
   /// Mean of the arms of all sites of each body, owned and ghost, in `force`.  Collective.
-  std::vector<GearQuat::Load> centroids();
+  std::vector<Load> centroids();
 
   // what the fix forwards
 
@@ -168,8 +167,8 @@ class GearQuatBodies : protected Pointers {
 
  private:
   Fix *fix;
-  GearQuat::Scheme scheme;
-  GearQuatExtended extended;
+  Scheme scheme;
+  Extended extended;
 
   int nown, nmove;             ///< owned bodies; with copies of large ones
   bigint nbodies, natoms;      ///< on all ranks: bodies, and atoms in them
@@ -198,7 +197,7 @@ class GearQuatBodies : protected Pointers {
 
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
   std::vector<tagint> unseen;     ///< owner atoms that sites here do not see
-  size_t ncentered;               ///< sites at their centre of mass
+  size_t ncentered;               ///< sites at their center of mass
   bool wrapped;       ///< a site is in another periodic image than its unwrapped position
   bool any_ghosts;    ///< a site, on any rank, has its body on another one, which is not large
   bool any_forces;
@@ -207,14 +206,14 @@ class GearQuatBodies : protected Pointers {
   tagint *body_id;       ///< per atom: the user's ID of its body, 0 for none
   tagint *owner_tag;     ///< per atom: atom ID of the owner of its body
   int *owned;            ///< per atom, ghosts too: the body it owns, or -1
-  double **site_body;    ///< per atom: from the centre of mass, principal frame
+  double **site_body;    ///< per atom: from the center of mass, principal frame
 
   /// packed: IDs of body and owner, arm, size of history; behind the arm what `extended` has
   static constexpr int SITE_SIZE = 6;
-  static constexpr int STATE_SIZE = sizeof(GearQuat::BodyState) / sizeof(double);
-  static constexpr int LOAD_SIZE = sizeof(GearQuat::Load) / sizeof(double);
+  static constexpr int STATE_SIZE = sizeof(BodyState) / sizeof(double);
+  static constexpr int LOAD_SIZE = sizeof(Load) / sizeof(double);
   static constexpr int BODY_SIZE = 11 + STATE_SIZE;
-  static constexpr int LAST_SIZE = sizeof(GearQuat::Correction) / sizeof(double);
+  static constexpr int LAST_SIZE = sizeof(Correction) / sizeof(double);
 
   enum class Forward { GHOSTS, STATES, LOADS, LABELS };
   Forward forward;    ///< what forward communication carries
@@ -243,11 +242,11 @@ class GearQuatBodies : protected Pointers {
   template <bool POSITIONS, bool VELOCITIES> void place();
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place();
 
-  GearQuatCensus census(int groupbit) const;
-  std::vector<GearQuatSiteCount> count_sites(int groupbit) const;
-  GearQuatCensus compare_sites() const;
-  void describe(const Site &site, GearQuatSiteCount &count) const;
-  void refuse_tears(const GearQuatCensus &found) const;
+  Census census(int groupbit) const;
+  std::vector<SiteCount> count_sites(int groupbit) const;
+  Census compare_sites() const;
+  void describe(const Site &site, SiteCount &count) const;
+  void refuse_tears(const Census &found) const;
 
   /// True if ghosts of its owner atom stand for this body.
   bool has_ghosts(int ibody) const { return ibody >= 0 && !is_large(ibody); }
@@ -256,10 +255,10 @@ class GearQuatBodies : protected Pointers {
   int large_size() const { return 1 + moved_size(); }
   int pack_moved(int ibody, double *buf) const;
   int unpack_moved(int ibody, const double *buf, int size);
-  static int pack_body(const GearQuatBody &body, const GearQuat::BodyState &state, double *buf);
-  static int unpack_body(const double *buf, GearQuatBody &body, GearQuat::BodyState &state);
+  static int pack_body(const Body &body, const BodyState &state, double *buf);
+  static int unpack_body(const double *buf, Body &body, BodyState &state);
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

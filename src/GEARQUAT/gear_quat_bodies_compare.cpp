@@ -27,7 +27,7 @@ static constexpr double SAME = 1.0e-11;
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatBodies::Placed GearQuatBodies::placed(const Site &site) const
+Bodies::Placed Bodies::placed(const Site &site) const
 {
   const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
   const BodyState &s = state[site.body];
@@ -44,7 +44,7 @@ GearQuatBodies::Placed GearQuatBodies::placed(const Site &site) const
   return there;
 }
 
-bool GearQuatBodies::atoms_match()
+bool Bodies::atoms_match()
 {
   int moved = 0;
   for (const Site &site : sites) {
@@ -58,25 +58,25 @@ bool GearQuatBodies::atoms_match()
   }
   int any = 0;
   MPI_Allreduce(&moved, &any, 1, MPI_INT, MPI_MAX, world);
-  const GearQuatCensus found = compare_sites();
+  const Census found = compare_sites();
   if (any) refuse_tears(found);
   box.assign(domain->h, domain->h + 6);
   return !any && !found.mass_changed;
 }
 
 /// A census with places and masses.
-GearQuatCensus GearQuatBodies::compare_sites() const
+Census Bodies::compare_sites() const
 {
-  std::vector<GearQuatSiteCount> counts = count_sites(0);
-  std::vector<GearQuatSiteCount *> of_atom(atom->nlocal, nullptr);
+  std::vector<SiteCount> counts = count_sites(0);
+  std::vector<SiteCount *> of_atom(atom->nlocal, nullptr);
   size_t n = 0;
   for (int i = 0; i < atom->nlocal; ++i)
     if (body_id[i] != 0) of_atom[i] = &counts[n++];
   for (const Site &site : sites) describe(site, *of_atom[site.atom]);
-  return GearQuatCensus(lmp, counts, box.empty() ? nullptr : box.data());
+  return Census(lmp, counts, box.empty() ? nullptr : box.data());
 }
 
-void GearQuatBodies::describe(const Site &site, GearQuatSiteCount &count) const
+void Bodies::describe(const Site &site, SiteCount &count) const
 {
   const double *arm = site.arm_body, *axes = frame[site.body].axes;
   const double mass = atom_mass(site.atom), r2 = dot3(arm, arm);
@@ -100,7 +100,7 @@ void GearQuatBodies::describe(const Site &site, GearQuatSiteCount &count) const
   for (int k = 0; k < 6; ++k) count.second[k] = own[order[k]];
 }
 
-void GearQuatBodies::refuse_tears(const GearQuatCensus &found) const
+void Bodies::refuse_tears(const Census &found) const
 {
   if (found.torn)
     error->all(
@@ -117,9 +117,9 @@ void GearQuatBodies::refuse_tears(const GearQuatCensus &found) const
         found.cut);
 }
 
-void GearQuatBodies::check_whole()
+void Bodies::check_whole()
 {
-  const GearQuatCensus found = census(0);
+  const Census found = census(0);
   if (found.broken) {
     const std::string had = found.had
         ? fmt::format("{} of its {} atoms", found.left, found.had)
@@ -133,7 +133,7 @@ void GearQuatBodies::check_whole()
 }
 
 /// Owners may have got other atom IDs (reset_atoms id, delete_atoms compress yes): told to their sites.
-void GearQuatBodies::follow_atom_ids()
+void Bodies::follow_atom_ids()
 {
   std::vector<tagint> changed;    // before and now
   for (int ibody = 0; ibody < nown; ++ibody) {
@@ -141,7 +141,7 @@ void GearQuatBodies::follow_atom_ids()
     if (owner_tag[owner] != atom->tag[owner])
       changed.insert(changed.end(), {owner_tag[owner], atom->tag[owner]});
   }
-  const std::vector<tagint> all = gear_quat_gather(changed, MPI_LMP_TAGINT, world);
+  const std::vector<tagint> all = gather_all(changed, MPI_LMP_TAGINT, world);
   std::unordered_map<tagint, tagint> now;
   for (size_t n = 0; n < all.size(); n += 2) now[all[n]] = all[n + 1];
   for (int i = 0; i < atom->nlocal && !now.empty(); ++i) {
@@ -150,31 +150,31 @@ void GearQuatBodies::follow_atom_ids()
   }
 }
 
-bigint GearQuatBodies::removed_freedoms(int groupbit)
+bigint Bodies::removed_freedoms(int groupbit)
 {
   return census(groupbit).removed_freedoms;
 }
 
-GearQuatCensus GearQuatBodies::census(int groupbit) const
+Census Bodies::census(int groupbit) const
 {
-  std::vector<GearQuatSiteCount> counts = count_sites(groupbit);
-  return GearQuatCensus(lmp, counts);
+  std::vector<SiteCount> counts = count_sites(groupbit);
+  return Census(lmp, counts);
 }
 
 /// In the order of the atoms.
-std::vector<GearQuatSiteCount> GearQuatBodies::count_sites(int groupbit) const
+std::vector<SiteCount> Bodies::count_sites(int groupbit) const
 {
-  std::vector<GearQuatSiteCount> sites;
+  std::vector<SiteCount> sites;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (body_id[i] == 0) continue;
-    GearQuatSiteCount site = GearQuatSiteCount();
+    SiteCount site = SiteCount();
     site.owner = owner_tag[i];
     site.id = body_id[i];
     site.in_group = (atom->mask[i] & groupbit) ? 1 : 0;
     site.mass = atom_mass(i);
     site.own_freedoms = extended.freedoms(i);
     if (owned[i] >= 0) {
-      const GearQuatBody &mine = body[owned[i]];
+      const Body &mine = body[owned[i]];
       site.natoms = mine.natoms;
       site.body_mass = mine.from_file ? 0.0 : mine.rigid.mass;
       site.freedoms = domain->dimension == 2 ? 2 + (mine.rigid.inertia[2] > 0.0)

@@ -30,19 +30,19 @@ static double ghost_cutoff(const Comm *comm, const Domain *domain)
   return domain->triclinic ? cut[2] / domain->h_inv[2] : cut[2];
 }
 
-void GearQuatBodies::choose_large()
+void Bodies::choose_large()
 {
   drop_ghosts();
   kept.clear();
   const double cutoff = ghost_cutoff(comm, domain);
   for (int ibody = 0; ibody < nown; ++ibody) {
-    GearQuatBody &one = body[ibody];
+    Body &one = body[ibody];
     one.large = comm->nprocs > 1 && (one.large || one.extent > cutoff);
   }
   count_large();
 }
 
-void GearQuatBodies::count_large()
+void Bodies::count_large()
 {
   bigint here = 0;
   for (int ibody = 0; ibody < nown; ++ibody) here += body[ibody].large;
@@ -50,11 +50,11 @@ void GearQuatBodies::count_large()
 }
 
 /// A site does not see its owner atom, though that is there: from here on its body is large.
-void GearQuatBodies::promote()
+void Bodies::promote()
 {
   std::sort(unseen.begin(), unseen.end());
   unseen.erase(std::unique(unseen.begin(), unseen.end()), unseen.end());
-  std::vector<tagint> all = gear_quat_gather(unseen, MPI_LMP_TAGINT, world);
+  std::vector<tagint> all = gather_all(unseen, MPI_LMP_TAGINT, world);
   std::sort(all.begin(), all.end());
   for (int ibody = 0; ibody < nown; ++ibody)
     if (std::binary_search(all.begin(), all.end(), atom->tag[owner_atom[ibody]]))
@@ -63,7 +63,7 @@ void GearQuatBodies::promote()
 }
 
 /// Before atoms are exchanged: the owner may be another rank afterwards.
-void GearQuatBodies::keep_large()
+void Bodies::keep_large()
 {
   kept.resize(large.size() * large_size());
   double *buf = kept.data();
@@ -75,7 +75,7 @@ void GearQuatBodies::keep_large()
 }
 
 /// The same from their owners.  Collective.
-void GearQuatBodies::gather_large()
+void Bodies::gather_large()
 {
   std::vector<double> mine;
   for (int ibody = 0; ibody < nown; ++ibody) {
@@ -85,11 +85,11 @@ void GearQuatBodies::gather_large()
     buf[0] = ubuf(atom->tag[owner_atom[ibody]]).d;
     pack_moved(ibody, buf + 1);
   }
-  kept = gear_quat_gather(mine, MPI_DOUBLE, world);
+  kept = gather_all(mine, MPI_DOUBLE, world);
 }
 
 /// Large bodies of other ranks, behind the owned ones.
-void GearQuatBodies::share_large()
+void Bodies::share_large()
 {
   const int size = large_size();
   if ((bigint) kept.size() != nlarge * size) gather_large();
@@ -114,7 +114,7 @@ void GearQuatBodies::share_large()
 }
 
 /// The body of an owned atom, -1 if that is not to be seen from here.
-int GearQuatBodies::body_of(int i) const
+int Bodies::body_of(int i) const
 {
   const auto before = [](const Large &one, tagint tag) {
     return one.owner < tag;
@@ -125,7 +125,7 @@ int GearQuatBodies::body_of(int i) const
   return owner < 0 ? -1 : owned[owner];
 }
 
-void GearQuatBodies::sum_large_loads()
+void Bodies::sum_large_loads()
 {
   parts.resize(large.size() * LOAD_SIZE);
   sums.resize(parts.size());

@@ -19,7 +19,7 @@ using namespace GearQuat;
    one atom, with its body if it owns one, as doubles: exchange between ranks and restart files
 ------------------------------------------------------------------------- */
 
-int GearQuatBodies::pack_exchange(int i, double *buf) const
+int Bodies::pack_exchange(int i, double *buf) const
 {
   int m = 0;
   buf[m++] = ubuf(body_id[i]).d;
@@ -34,7 +34,7 @@ int GearQuatBodies::pack_exchange(int i, double *buf) const
 }
 
 /// In a restart file a history may be of another scheme.
-int GearQuatBodies::unpack_exchange(int i, const double *buf)
+int Bodies::unpack_exchange(int i, const double *buf)
 {
   int m = 0;
   set_arrays(i);
@@ -48,7 +48,7 @@ int GearQuatBodies::unpack_exchange(int i, const double *buf)
   return m + unpack_moved(add_owned(i), buf + m, size);
 }
 
-int GearQuatBodies::pack_moved(int ibody, double *buf) const
+int Bodies::pack_moved(int ibody, double *buf) const
 {
   int m = pack_body(body[ibody], state[ibody], buf);
   std::memcpy(buf + m, &last[ibody], sizeof(Correction));
@@ -60,7 +60,7 @@ int GearQuatBodies::pack_moved(int ibody, double *buf) const
 }
 
 /// size: of the history, which is passed over if it is of another scheme.
-int GearQuatBodies::unpack_moved(int ibody, const double *buf, int size)
+int Bodies::unpack_moved(int ibody, const double *buf, int size)
 {
   int m = unpack_body(buf, body[ibody], state[ibody]);
   std::memcpy(&last[ibody], buf + m, sizeof(Correction));
@@ -71,8 +71,8 @@ int GearQuatBodies::unpack_moved(int ibody, const double *buf, int size)
   return m + size;
 }
 
-GearQuatBodies::Resumed GearQuatBodies::resume(const std::vector<const double *> &packed,
-                                               bool with_extended, int group)
+Bodies::Resumed Bodies::resume(const std::vector<const double *> &packed, bool with_extended,
+                               int group)
 {
   const std::vector<tagint> ids(body_id, body_id + atom->nlocal);    // as the command has them
   const bigint expected = nbodies;
@@ -99,7 +99,7 @@ GearQuatBodies::Resumed GearQuatBodies::resume(const std::vector<const double *>
   return Resumed::NONE;
 }
 
-int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, double *buf)
+int Bodies::pack_body(const Body &body, const BodyState &state, double *buf)
 {
   int m = 0;
   buf[m++] = ubuf(body.id).d;
@@ -115,7 +115,7 @@ int GearQuatBodies::pack_body(const GearQuatBody &body, const BodyState &state, 
   return BODY_SIZE;
 }
 
-int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState &state)
+int Bodies::unpack_body(const double *buf, Body &body, BodyState &state)
 {
   int m = 0;
   body.id = (tagint) ubuf(buf[m++]).i;
@@ -131,19 +131,19 @@ int GearQuatBodies::unpack_body(const double *buf, GearQuatBody &body, BodyState
   return BODY_SIZE;
 }
 
-int GearQuatBodies::packed_size(int i) const
+int Bodies::packed_size(int i) const
 {
   if (body_id[i] == 0) return 1;
   const int site = SITE_SIZE + extended.packed_size(i);
   return owned[i] < 0 ? site : site + moved_size();
 }
 
-int GearQuatBodies::max_exchange() const
+int Bodies::max_exchange() const
 {
-  return SITE_SIZE + GearQuatExtended::RECORD_SIZE + moved_size();
+  return SITE_SIZE + Extended::RECORD_SIZE + moved_size();
 }
 
-int GearQuatBodies::max_forward() const
+int Bodies::max_forward() const
 {
   return 2 + BODY_SIZE;
 }
@@ -152,7 +152,7 @@ int GearQuatBodies::max_forward() const
    ghost bodies: from owner atoms to their ghosts and back
 ------------------------------------------------------------------------- */
 
-int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
+int Bodies::pack_forward(int n, const int *list, double *buf)
 {
   int m = 0;
   if (forward == Forward::LABELS) {
@@ -178,7 +178,7 @@ int GearQuatBodies::pack_forward(int n, const int *list, double *buf)
   return m;
 }
 
-void GearQuatBodies::unpack_forward(int n, int first, const double *buf)
+void Bodies::unpack_forward(int n, int first, const double *buf)
 {
   int m = 0;
   if (forward == Forward::LABELS) {
@@ -203,7 +203,7 @@ void GearQuatBodies::unpack_forward(int n, int first, const double *buf)
   }
 }
 
-int GearQuatBodies::pack_reverse(int n, int first, double *buf)
+int Bodies::pack_reverse(int n, int first, double *buf)
 {
   int m = 0;
   for (int i = first; i < first + n; ++i) {
@@ -214,7 +214,7 @@ int GearQuatBodies::pack_reverse(int n, int first, double *buf)
   return m;
 }
 
-void GearQuatBodies::unpack_reverse(int n, const int *list, const double *buf)
+void Bodies::unpack_reverse(int n, const int *list, const double *buf)
 {
   int m = 0;
   for (int i = 0; i < n; ++i) {

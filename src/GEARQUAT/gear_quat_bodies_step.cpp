@@ -16,7 +16,7 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-void GearQuatBodies::spread_states()
+void Bodies::spread_states()
 {
   if (any_ghosts) {
     forward = Forward::STATES;
@@ -26,33 +26,33 @@ void GearQuatBodies::spread_states()
 }
 
 /// What the atoms of all ranks have added to the loads of bodies that this rank moves.
-void GearQuatBodies::sum_loads()
+void Bodies::sum_loads()
 {
   if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
   if (!large.empty()) sum_large_loads();
 }
 
-void GearQuatBodies::spread_loads()
+void Bodies::spread_loads()
 {
   if (!any_ghosts) return;
   forward = Forward::LOADS;
   comm->forward_comm(fix, LOAD_SIZE);
 }
 
-void GearQuatBodies::update_frame(int ibody)
+void Bodies::update_frame(int ibody)
 {
   const BodyState &s = state[ibody];
   rotation_matrix(s.q, scheme.norm2(s.q), frame[ibody].axes);
   to_space(frame[ibody].axes, s.omega_body, frame[ibody].omega_space);
 }
 
-void GearQuatBodies::update_frames()
+void Bodies::update_frames()
 {
   for (const int ibody : tops) update_frame(ibody);
   for (const int ibody : ghost_tops) update_frame(ibody);
 }
 
-template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void GearQuatBodies::place()
+template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Bodies::place()
 {
   const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
   for (; site != arms; ++site) {
@@ -82,29 +82,29 @@ template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void GearQuatBodies::pl
   }
 }
 
-template <bool POSITIONS, bool VELOCITIES> void GearQuatBodies::place()
+template <bool POSITIONS, bool VELOCITIES> void Bodies::place()
 {
   wrapped ? place<POSITIONS, VELOCITIES, true>() : place<POSITIONS, VELOCITIES, false>();
 }
 
-void GearQuatBodies::place_sites(bool velocities)
+void Bodies::place_sites(bool velocities)
 {
   velocities ? place<true, true>() : place<true, false>();
   if (!extended.sites.empty()) extended.place(state, true, velocities);
 }
 
-void GearQuatBodies::place_velocities()
+void Bodies::place_velocities()
 {
   place<false, true>();
   if (!extended.sites.empty()) extended.place(state, false, true);
 }
 
-void GearQuatBodies::place_extended()
+void Bodies::place_extended()
 {
   if (!extended.sites.empty()) extended.place(state, true, true);
 }
 
-void GearQuatBodies::gather_loads(double **f, double **torque)
+void Bodies::gather_loads(double **f, double **torque)
 {
   if (!any_forces) return;
   for (auto &one : load) one = Load();
@@ -130,8 +130,8 @@ void GearQuatBodies::gather_loads(double **f, double **torque)
     }
 }
 
-void GearQuatBodies::constraint_force(const Site &site, double **f, double *arm_space,
-                                      double *constraint) const
+void Bodies::constraint_force(const Site &site, double **f, double *arm_space,
+                              double *constraint) const
 {
   const Frame &fr = frame[site.body];
   const Load &l = load[site.body];
@@ -150,7 +150,7 @@ void GearQuatBodies::constraint_force(const Site &site, double **f, double *arm_
     constraint[k] = mass * (l.force[k] / rigid.mass + tangential[k] + radial[k]) - f[site.atom][k];
 }
 
-std::vector<Load> GearQuatBodies::centroids()
+std::vector<Load> Bodies::centroids()
 {
   std::vector<Load> means(body.size(), Load());
   for (const Site &site : sites) {
@@ -165,7 +165,7 @@ std::vector<Load> GearQuatBodies::centroids()
   return means;
 }
 
-double GearQuatBodies::atom_mass(int i) const
+double Bodies::atom_mass(int i) const
 {
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
 }

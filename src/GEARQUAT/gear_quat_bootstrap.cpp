@@ -34,21 +34,21 @@ static constexpr int JUMPING = 3;
 
 /* ---------------------------------------------------------------------- */
 
-void GearQuatParty::measure()
+void Party::measure()
 {
   if (isokinetic) isokinetic->measure();
 }
 
-Load GearQuatParty::acting(int ibody) const
+Load Party::acting(int ibody) const
 {
   return isokinetic ? isokinetic->acting(ibody) : bodies->acting(ibody);
 }
 
-void GearQuatParty::seed_local(int terms, double h)
+void Party::seed_local(int terms, double h)
 {
   measure();
   for (int ibody = 0; ibody < bodies->nmoved(); ++ibody)
-    GearQuatBootstrap::seed_body(*bodies, ibody, acting(ibody), scheme, h, terms);
+    Bootstrap::seed_body(*bodies, ibody, acting(ibody), scheme, h, terms);
   if (isokinetic) {
     const double heat[2] = {0.0, h * isokinetic->power()};
     isokinetic->seed_heat(heat, 2, h, h);
@@ -57,22 +57,21 @@ void GearQuatParty::seed_local(int terms, double h)
 
 /* ---------------------------------------------------------------------- */
 
-static int most_values(const std::vector<GearQuatParty> &parties)
+static int most_values(const std::vector<Party> &parties)
 {
   int most = 0;
   for (const auto &party : parties) most = std::max(most, party.scheme.values());
   return most;
 }
 
-GearQuatBootstrap::GearQuatBootstrap(LAMMPS *lmp, const std::vector<GearQuatParty> &parties,
-                                     double h) :
-    Pointers(lmp),
-    parties(parties), h(h), collocation(most_values(parties)), evaluations(0), jumps(0)
+Bootstrap::Bootstrap(LAMMPS *lmp, const std::vector<Party> &parties, double h) :
+    Pointers(lmp), parties(parties), h(h), collocation(most_values(parties)), evaluations(0),
+    jumps(0)
 {
   for (auto &party : this->parties) party.power.assign(collocation.number_of_nodes(), 0.0);
 }
 
-void GearQuatBootstrap::measure(int node)
+void Bootstrap::measure(int node)
 {
   for (auto &party : parties) {
     party.measure();
@@ -80,13 +79,13 @@ void GearQuatBootstrap::measure(int node)
   }
 }
 
-void GearQuatBootstrap::zero(GearQuatParty party, double h)
+void Bootstrap::zero(Party party, double h)
 {
   party.seed_local(2, h);
 }
 
-void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Load &acting,
-                                  const Scheme &scheme, double h, int terms)
+void Bootstrap::seed_body(Bodies &bodies, int ibody, const Load &acting, const Scheme &scheme,
+                          double h, int terms)
 {
   const RigidBody &rigid = bodies.body[ibody].rigid;
   auto series = local_series(rigid, bodies.state[ibody], acting, h);
@@ -96,7 +95,7 @@ void GearQuatBootstrap::seed_body(GearQuatBodies &bodies, int ibody, const Load 
 
 /* ---------------------------------------------------------------------- */
 
-bool GearQuatBootstrap::run()
+bool Bootstrap::run()
 {
   std::vector<const Fix *> owners;
   std::string orders;
@@ -105,7 +104,7 @@ bool GearQuatBootstrap::run()
     const std::string order = std::to_string(party.scheme.order());
     if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
   }
-  GearQuatForces forces(lmp, owners);
+  Forces forces(lmp, owners);
   std::string why = forces.reason();
   if (why.empty()) {
     if (search(forces)) {
@@ -139,7 +138,7 @@ bool GearQuatBootstrap::run()
   return false;
 }
 
-std::string GearQuatBootstrap::names() const
+std::string Bootstrap::names() const
 {
   std::vector<std::string> ids;
   for (const auto &party : parties) ids.emplace_back(party.fix->id);
@@ -147,7 +146,7 @@ std::string GearQuatBootstrap::names() const
 }
 
 /// Spacing after spacing; after the call atoms, states and loads are as before.
-bool GearQuatBootstrap::search(GearQuatForces &forces)
+bool Bootstrap::search(Forces &forces)
 {
   std::vector<std::vector<BodyState>> states;
   std::vector<std::vector<Load>> loads;
@@ -179,12 +178,12 @@ bool GearQuatBootstrap::search(GearQuatForces &forces)
 }
 
 /// Node spacing: the step, or as much of it as keeps every site within half the skin.
-double GearQuatBootstrap::first_spacing() const
+double Bootstrap::first_spacing() const
 {
   const double span = collocation.pairs() * std::fabs(h);
   double fastest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (std::none_of(parties.begin(), parties.end(), [i](const GearQuatParty &party) {
+    if (std::none_of(parties.begin(), parties.end(), [i](const Party &party) {
           return party.bodies->in_body(i);
         }))
       continue;
@@ -199,17 +198,17 @@ double GearQuatBootstrap::first_spacing() const
 }
 
 /// Size of a body, in units of which its motion is judged.
-double GearQuatBootstrap::length(const GearQuatBody &body) const
+double Bootstrap::length(const Body &body) const
 {
   return body.extent > 0.0 ? body.extent : neighbor->skin;
 }
 
 /// False, with a reason, if the nodes are too far apart.
-bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
+bool Bootstrap::collocate(Forces &forces, double spacing)
 {
   measure(0);
   for (auto &party : parties) {
-    const GearQuatBodies &bodies = *party.bodies;
+    const Bodies &bodies = *party.bodies;
     party.work.resize(bodies.nmoved());
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
       collocation.begin(
@@ -243,10 +242,10 @@ bool GearQuatBootstrap::collocate(GearQuatForces &forces, double spacing)
   return true;
 }
 
-void GearQuatBootstrap::seed_all(double spacing)
+void Bootstrap::seed_all(double spacing)
 {
   for (auto &party : parties) {
-    GearQuatBodies &bodies = *party.bodies;
+    Bodies &bodies = *party.bodies;
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
       seed(party.scheme, bodies.body[ibody].rigid, collocation.series(party.work[ibody]), spacing,
            h, bodies.history(ibody));
@@ -258,7 +257,7 @@ void GearQuatBootstrap::seed_all(double spacing)
 }
 
 /// Largest of all bodies.
-double GearQuatBootstrap::truncation() const
+double Bootstrap::truncation() const
 {
   double here = 0.0, all;
   for (const auto &party : parties)
@@ -271,7 +270,7 @@ double GearQuatBootstrap::truncation() const
 
 /// Forces at all nodes once, outwards.  False, with nothing evaluated there, if a site would leave
 /// the skin.
-bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, bool first, double &change)
+bool Bootstrap::sweep(Forces &forces, double spacing, bool first, double &change)
 {
   double here = 0.0;
   for (int pair = 1; pair <= collocation.pairs(); ++pair) {
@@ -286,10 +285,10 @@ bool GearQuatBootstrap::sweep(GearQuatForces &forces, double spacing, bool first
 }
 
 /// Forces at one node; change: grows to what they change.  False as in sweep().
-bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, double &change)
+bool Bootstrap::visit(Forces &forces, int node, double spacing, double &change)
 {
   for (auto &party : parties) {
-    GearQuatBodies &bodies = *party.bodies;
+    Bodies &bodies = *party.bodies;
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
       bodies.state[ibody] = collocation.state_at(node, party.work[ibody], spacing);
     bodies.spread_states();
@@ -302,7 +301,7 @@ bool GearQuatBootstrap::visit(GearQuatForces &forces, int node, double spacing, 
   measure(node);
   for (auto &party : parties)
     for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody) {
-      const GearQuatBody &body = party.bodies->body[ibody];
+      const Body &body = party.bodies->body[ibody];
       change = std::max(change,
                         collocation.set_load(node, body.rigid, party.bodies->state[ibody],
                                              party.acting(ibody), spacing, length(body),

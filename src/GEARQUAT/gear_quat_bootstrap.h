@@ -17,48 +17,48 @@
 #include <string>
 #include <vector>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
 /// The bodies of one fix.
-struct GearQuatParty {
+struct Party {
   const Fix *fix;
-  GearQuatBodies *bodies;            ///< states and loads are those of the start
-  GearQuatIsokinetic *isokinetic;    ///< null without such a constraint
-  GearQuat::Scheme scheme;
+  Bodies *bodies;                      ///< states and loads are those of the start
+  IsokineticConstraint *isokinetic;    ///< null without such a constraint
+  Scheme scheme;
   bool needed;    ///< false if there are histories, to be kept where not all rows can be found
 
-  std::vector<GearQuat::Collocation::Workspace> work;
+  std::vector<Collocation::Workspace> work;
   std::vector<double> power;    ///< of all forces at the nodes, where a constraint takes it
 
   /// States and loads are those of a node: what the constraint makes of them.
   void measure();
   /// What moves a body, after measure().
-  GearQuat::Load acting(int ibody) const;
+  Load acting(int ibody) const;
   /// Histories of all bodies from what states and loads determine.
   void seed_local(int terms, double h);
 };
 
-class GearQuatBootstrap : protected Pointers {
+class Bootstrap : protected Pointers {
  public:
   /// parties: all that start together, with one set of nodes.  h: the step of the histories.
-  GearQuatBootstrap(LAMMPS *lmp, const std::vector<GearQuatParty> &parties, double h);
+  Bootstrap(LAMMPS *lmp, const std::vector<Party> &parties, double h);
 
   /// The paper's start: every second and higher derivative is zero.
-  static void zero(GearQuatParty party, double h);
+  static void zero(Party party, double h);
   /// History of one body from what its state and the load that acts on it determine.  terms: 2, or
   /// 3 for the load too.
-  static void seed_body(GearQuatBodies &bodies, int ibody, const GearQuat::Load &acting,
-                        const GearQuat::Scheme &scheme, double h, int terms);
+  static void seed_body(Bodies &bodies, int ibody, const Load &acting, const Scheme &scheme,
+                        double h, int terms);
   /// Derivatives consistent with the trajectory; where forces cannot be followed, those that the
   /// present loads determine, and a message on rank 0.  After the call atoms are as before.
   /// Returns true if all rows are known.
   bool run();
 
  private:
-  std::vector<GearQuatParty> parties;
+  std::vector<Party> parties;
   double h;
 
-  GearQuat::Collocation collocation;
+  Collocation collocation;
   int evaluations;       ///< of the forces, so far
   int jumps;             ///< spacings at which forces seemed to jump
   std::string reason;    ///< why the last spacing failed, or what is to be said about it
@@ -66,15 +66,15 @@ class GearQuatBootstrap : protected Pointers {
   void measure(int node);
   std::string names() const;
   double first_spacing() const;
-  double length(const GearQuatBody &body) const;
+  double length(const Body &body) const;
   double truncation() const;
-  bool search(GearQuatForces &forces);
-  bool collocate(GearQuatForces &forces, double spacing);
+  bool search(Forces &forces);
+  bool collocate(Forces &forces, double spacing);
   void seed_all(double spacing);
-  bool visit(GearQuatForces &forces, int node, double spacing, double &change);
-  bool sweep(GearQuatForces &forces, double spacing, bool first, double &change);
+  bool visit(Forces &forces, int node, double spacing, double &change);
+  bool sweep(Forces &forces, double spacing, bool first, double &change);
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

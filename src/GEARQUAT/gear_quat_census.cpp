@@ -23,10 +23,8 @@ static constexpr double SAME_MASS = 1.0e-11;      // relative; sums run in anoth
 static constexpr double SAME_MOMENTS = 1.0e-9;    // relative; arms have the rounding of positions
 static constexpr double ROUNDING = 1.0e-13;       // of positions
 
-GearQuatCensus::GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &sites,
-                               const double *box) :
-    domain(lmp->domain),
-    box_before(box)
+Census::Census(LAMMPS *lmp, std::vector<SiteCount> &sites, const double *box) :
+    domain(lmp->domain), box_before(box)
 {
   const int n = (int) sites.size();
   std::vector<int> ranks;
@@ -34,10 +32,10 @@ GearQuatCensus::GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &site
   sites.emplace_back();    // no null pointers on a rank without sites
   ranks.push_back(0);
   char *unused = nullptr;
-  lmp->comm->rendezvous(IRREGULAR, n, (char *) sites.data(), sizeof(GearQuatSiteCount), 0,
-                        ranks.data(), count_sites, 0, unused, sizeof(GearQuatSiteCount), this);
+  lmp->comm->rendezvous(IRREGULAR, n, (char *) sites.data(), sizeof(SiteCount), 0, ranks.data(),
+                        count_sites, 0, unused, sizeof(SiteCount), this);
 
-  GearQuatCensus here = *this;
+  Census here = *this;
   MPI_Comm world = lmp->world;
   MPI_Allreduce(&here.removed_freedoms, &removed_freedoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&here.mass_changed, &mass_changed, 1, MPI_INT, MPI_MAX, world);
@@ -49,15 +47,15 @@ GearQuatCensus::GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &site
   MPI_Allreduce(&here.had, &had, 1, MPI_LMP_TAGINT, MPI_MAX, world);
 }
 
-int GearQuatCensus::count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *census)
+int Census::count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *census)
 {
-  auto *sites = (GearQuatSiteCount *) in;
-  std::sort(sites, sites + n, [](const GearQuatSiteCount &a, const GearQuatSiteCount &b) {
+  auto *sites = (SiteCount *) in;
+  std::sort(sites, sites + n, [](const SiteCount &a, const SiteCount &b) {
     return a.owner < b.owner;
   });
   for (int first = 0, last; first < n; first = last) {
     for (last = first; last < n && sites[last].owner == sites[first].owner;) ++last;
-    ((GearQuatCensus *) census)->count_body(sites + first, last - first);
+    ((Census *) census)->count_body(sites + first, last - first);
   }
   flag = 0;    // no reply
   ranks = nullptr;
@@ -65,12 +63,12 @@ int GearQuatCensus::count_sites(int n, char *in, int &flag, int *&ranks, char *&
   return 0;
 }
 
-void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
+void Census::count_body(const SiteCount *sites, int n)
 {
   tagint natoms = 0;
   int freedoms = 0, own_freedoms = 0, in_group = 0;
   double mass = 0.0, body_mass = 0.0;
-  const GearQuatSiteCount *owner = nullptr;
+  const SiteCount *owner = nullptr;
   bool mixed = false;
   for (int i = 0; i < n; ++i) {
     if (sites[i].id != sites[0].id) mixed = true;
@@ -93,9 +91,8 @@ void GearQuatCensus::count_body(const GearQuatSiteCount *sites, int n)
   if (in_group == n) removed_freedoms += (bigint) domain->dimension * n + own_freedoms - freedoms;
 }
 
-/// Centre and principal moments tell whether masses went from one atom of the body to another.
-bool GearQuatCensus::same_masses(const GearQuatSiteCount *sites, int n,
-                                 const GearQuatSiteCount &owner) const
+/// Center and principal moments tell whether masses went from one atom of the body to another.
+bool Census::same_masses(const SiteCount *sites, int n, const SiteCount &owner) const
 {
   double first[3] = {}, second[6] = {};
   for (int i = 0; i < n; ++i) {
@@ -119,8 +116,7 @@ bool GearQuatCensus::same_masses(const GearQuatSiteCount *sites, int n,
 
 /// Between two looks a body may have been moved, turned or even deformed by the user, but its atoms are
 /// not whole periods apart that were together; nor did the parts at two faces of the box move with them.
-void GearQuatCensus::look_for_tears(const GearQuatSiteCount *sites, int n,
-                                    const GearQuatSiteCount &owner)
+void Census::look_for_tears(const SiteCount *sites, int n, const SiteCount &owner)
 {
   for (int i = 0; i < n; ++i) {
     double before[3], now[3], change[3];
@@ -130,7 +126,7 @@ void GearQuatCensus::look_for_tears(const GearQuatSiteCount *sites, int n,
       change[k] = now[k] - before[k];
     }
     const double further = std::sqrt(dot3(now, now)) - std::sqrt(dot3(before, before));
-    if (gear_quat_whole_periods_away(domain, change, further)) torn = owner.id;
-    if (box_before && gear_quat_moved_with_faces(domain, box_before, change)) cut = owner.id;
+    if (whole_periods_away(domain, change, further)) torn = owner.id;
+    if (box_before && moved_with_faces(domain, box_before, change)) cut = owner.id;
   }
 }

@@ -14,12 +14,14 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-
 class Domain;
 class LAMMPS;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
 
 /// One atom of a body.
-struct GearQuatSiteCount {
+struct SiteCount {
   tagint owner, id;    ///< atom ID of the body's owner, the user's ID of the body
   tagint natoms;       ///< of the body, 0 unless this atom is its owner
   int freedoms;        ///< of the body, translation and rotation; 0 unless this atom is its owner
@@ -37,30 +39,30 @@ struct GearQuatSiteCount {
 };
 
 /// The same on all ranks.
-struct GearQuatCensus {
+struct Census {
   bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
   tagint broken = 0;           ///< a body that has lost atoms, or that several IDs name; 0 for none
   tagint left = 0, had = 0;    ///< its atoms now and before
   int mass_changed =
-      0;    ///< 1 if mass, centre or inertia of a body are not those of its atoms any more
+      0;    ///< 1 if mass, center or inertia of a body are not those of its atoms any more
   tagint torn =
       0;             ///< a body whose atoms are whole periods further apart than before, 0 for none
   tagint cut = 0;    ///< one that another box has torn at the faces of the box, 0 for none
 
   /// Collective; sites: those of this rank's atoms.  box: shape of the box before, as Domain::h, null
   /// if it is not known or not asked for.
-  GearQuatCensus(LAMMPS *lmp, std::vector<GearQuatSiteCount> &sites, const double *box = nullptr);
+  Census(LAMMPS *lmp, std::vector<SiteCount> &sites, const double *box = nullptr);
 
  private:
   const Domain *domain;
   const double *box_before;
 
   static int count_sites(int n, char *in, int &flag, int *&ranks, char *&out, void *census);
-  void count_body(const GearQuatSiteCount *sites, int n);
-  bool same_masses(const GearQuatSiteCount *sites, int n, const GearQuatSiteCount &owner) const;
-  void look_for_tears(const GearQuatSiteCount *sites, int n, const GearQuatSiteCount &owner);
+  void count_body(const SiteCount *sites, int n);
+  bool same_masses(const SiteCount *sites, int n, const SiteCount &owner) const;
+  void look_for_tears(const SiteCount *sites, int n, const SiteCount &owner);
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

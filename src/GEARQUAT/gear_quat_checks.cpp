@@ -5,13 +5,14 @@
 
 #include "gear_quat_checks.h"
 
-#include "fix_gear_quat.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_peer.h"
 #include "gear_quat_respa.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix.h"
 #include "modify.h"
 #include "update.h"
 #include "utils.h"
@@ -19,11 +20,12 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 /// One force evaluation a step: all levels of r-RESPA have to have the same step.
 static void refuse_respa_with_steps(LAMMPS *lmp)
 {
-  const std::vector<double> steps = GearQuatRespa::steps(lmp);
+  const std::vector<double> steps = RespaForces::steps(lmp);
   for (size_t level = 1; level < steps.size(); ++level)
     if (steps[level] != steps[0])
       lmp->error->all(FLERR,
@@ -43,12 +45,11 @@ static void refuse_box_changes(LAMMPS *lmp)
                       other->id, other->style);
 }
 
-static void refuse_other_integrators(LAMMPS *lmp, const FixGearQuat *fix,
-                                     const GearQuatBodies &bodies)
+static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Bodies &bodies)
 {
   for (auto *other : lmp->modify->get_fix_list()) {
     if (other == fix || !other->time_integrate) continue;
-    const auto *same = dynamic_cast<const FixGearQuat *>(other);
+    const auto *same = dynamic_cast<const Peer *>(other);
     int dim;
     const int *its_body =
         utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
@@ -72,7 +73,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const FixGearQuat *fix,
 }
 
 /// Granular walls ask one fix for the masses of its bodies, the first.  (Pair styles refuse a second.)
-static void warn_of_walls(LAMMPS *lmp, const FixGearQuat *fix)
+static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
 {
   const Fix *first = nullptr;
   for (const auto *other : lmp->modify->get_fix_list())
@@ -87,7 +88,7 @@ static void warn_of_walls(LAMMPS *lmp, const FixGearQuat *fix)
                           other->id, other->style, first->id, fix->id);
 }
 
-void LAMMPS_NS::refuse_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatBodies &bodies)
+void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Bodies &bodies)
 {
   if (lmp->update->whichflag == 2)
     lmp->error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");

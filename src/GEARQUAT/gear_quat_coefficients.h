@@ -20,7 +20,7 @@
 
 #include <vector>
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 /// An exact coefficient, in lowest terms; the tests check the fractions themselves.
 struct Fraction {
@@ -115,6 +115,6 @@ inline Fraction second_order_error_weight(int values)
   return adams_moulton(values - 1) * Fraction(2);
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

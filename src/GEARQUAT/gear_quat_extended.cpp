@@ -34,8 +34,7 @@ static const char *const SHAPES[] = {"a point", "a sphere",   "an ellipsoid",
 
 static constexpr double SAME = 1.0e-11;
 
-GearQuatExtended::GearQuatExtended(LAMMPS *lmp, const Scheme &scheme) :
-    Pointers(lmp), scheme(scheme)
+Extended::Extended(LAMMPS *lmp, const Scheme &scheme) : Pointers(lmp), scheme(scheme)
 {
   find_atom_styles();
 }
@@ -44,7 +43,7 @@ GearQuatExtended::GearQuatExtended(LAMMPS *lmp, const Scheme &scheme) :
    what an atom is: lines and triangles have a radius too, so spheres are asked for last
 ------------------------------------------------------------------------- */
 
-int GearQuatExtended::shape_of(int i) const
+int Extended::shape_of(int i) const
 {
   if (atom->ellipsoid && atom->ellipsoid[i] >= 0) return ELLIPSOID;
   if (atom->line && atom->line[i] >= 0) return LINE;
@@ -54,12 +53,12 @@ int GearQuatExtended::shape_of(int i) const
   return POINT;
 }
 
-int GearQuatExtended::has_dipole(int i) const
+int Extended::has_dipole(int i) const
 {
   return atom->mu && atom->mu[i][3] > 0.0;
 }
 
-GearQuatExtended::Own GearQuatExtended::own(int i, double mass) const
+Extended::Own Extended::own(int i, double mass) const
 {
   Own mine = {shape_of(i), has_dipole(i), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
   if (mine.shape == SPHERE)
@@ -70,7 +69,7 @@ GearQuatExtended::Own GearQuatExtended::own(int i, double mass) const
 }
 
 /// Angular momentum of the atom itself as the atom style has it.
-void GearQuatExtended::rate(int i, const Own &mine, double *momentum_space) const
+void Extended::rate(int i, const Own &mine, double *momentum_space) const
 {
   std::fill_n(momentum_space, 3, 0.0);
   if (mine.shape == ELLIPSOID || mine.shape == TRIANGLE) {
@@ -100,14 +99,14 @@ static void to_lammps(const double *q, double *wxyz)
   for (int k = 0; k < 4; ++k) wxyz[(k + 1) % 4] = q[k];
 }
 
-void GearQuatExtended::find_atom_styles()
+void Extended::find_atom_styles()
 {
   ellipsoids = dynamic_cast<AtomVecEllipsoid *>(atom->style_match("ellipsoid"));
   lines = dynamic_cast<AtomVecLine *>(atom->style_match("line"));
   triangles = dynamic_cast<AtomVecTri *>(atom->style_match("tri"));
 }
 
-void GearQuatExtended::read_bonus(int i, double mass, Own &mine) const
+void Extended::read_bonus(int i, double mass, Own &mine) const
 {
   if (mine.shape == ELLIPSOID) {
     const auto &bonus = ellipsoids->bonus[atom->ellipsoid[i]];
@@ -124,7 +123,7 @@ void GearQuatExtended::read_bonus(int i, double mass, Own &mine) const
   }
 }
 
-void GearQuatExtended::write_bonus(int i, int shape, const double *q) const
+void Extended::write_bonus(int i, int shape, const double *q) const
 {
   if (shape == ELLIPSOID)
     to_lammps(q, ellipsoids->bonus[atom->ellipsoid[i]].quat);
@@ -136,9 +135,9 @@ void GearQuatExtended::write_bonus(int i, int shape, const double *q) const
 
 #else
 
-void GearQuatExtended::find_atom_styles() {}
-void GearQuatExtended::read_bonus(int, double, Own &) const {}
-void GearQuatExtended::write_bonus(int, int, const double *) const {}
+void Extended::find_atom_styles() {}
+void Extended::read_bonus(int, double, Own &) const {}
+void Extended::write_bonus(int, int, const double *) const {}
 
 #endif
 
@@ -153,7 +152,7 @@ template <class A> static int has_superellipsoids(const A *, long)
   return 0;
 }
 
-void GearQuatExtended::refuse(const std::vector<int> &atoms) const
+void Extended::refuse(const std::vector<int> &atoms) const
 {
   const bool superellipsoids = has_superellipsoids(atom, 0) != 0;
   tagint here[3] = {0, 0, 0}, found[3];    // of style body, superellipsoids, without header
@@ -193,7 +192,7 @@ void GearQuatExtended::refuse(const std::vector<int> &atoms) const
    bodies are made
 ------------------------------------------------------------------------- */
 
-bool GearQuatExtended::any(const std::vector<int> &atoms) const
+bool Extended::any(const std::vector<int> &atoms) const
 {
   int here = 0, all;
   for (const int i : atoms)
@@ -202,7 +201,7 @@ bool GearQuatExtended::any(const std::vector<int> &atoms) const
   return all;
 }
 
-void GearQuatExtended::reset(bool keep, int nmax)
+void Extended::reset(bool keep, int nmax)
 {
   kept = keep;
   sites.clear();
@@ -210,8 +209,8 @@ void GearQuatExtended::reset(bool keep, int nmax)
   grow(nmax);
 }
 
-void GearQuatExtended::own_momenta(int i, double mass, double *inertia_space,
-                                   double *angular_momentum_space) const
+void Extended::own_momenta(int i, double mass, double *inertia_space,
+                           double *angular_momentum_space) const
 {
   const Own mine = own(i, mass);
   double a[9];
@@ -221,7 +220,7 @@ void GearQuatExtended::own_momenta(int i, double mass, double *inertia_space,
   rate(i, mine, angular_momentum_space);
 }
 
-void GearQuatExtended::attach(int i, double mass, const double *q_body)
+void Extended::attach(int i, double mass, const double *q_body)
 {
   const Own mine = own(i, mass);
   Record &record = records[i];
@@ -237,7 +236,7 @@ void GearQuatExtended::attach(int i, double mass, const double *q_body)
   }
 }
 
-int GearQuatExtended::freedoms(int i) const
+int Extended::freedoms(int i) const
 {
   if (!kept || records[i].shape == POINT) return 0;
   return domain->dimension == 2 ? 1 : 3;
@@ -247,13 +246,12 @@ int GearQuatExtended::freedoms(int i) const
    bodies move
 ------------------------------------------------------------------------- */
 
-void GearQuatExtended::list(int i, int body)
+void Extended::list(int i, int body)
 {
   if (records[i].shape != POINT || records[i].dipole) sites.push_back({i, body});
 }
 
-GearQuatExtended::Pose GearQuatExtended::pose(const Record &record, int i,
-                                              const BodyState &state) const
+Extended::Pose Extended::pose(const Record &record, int i, const BodyState &state) const
 {
   Pose made;
   double a[9], own[9];
@@ -272,8 +270,7 @@ GearQuatExtended::Pose GearQuatExtended::pose(const Record &record, int i,
   return made;
 }
 
-void GearQuatExtended::place(const std::vector<BodyState> &states, bool orientations,
-                             bool rates) const
+void Extended::place(const std::vector<BodyState> &states, bool orientations, bool rates) const
 {
   for (const Site &site : sites) {
     const int i = site.atom;
@@ -290,7 +287,7 @@ void GearQuatExtended::place(const std::vector<BodyState> &states, bool orientat
   }
 }
 
-void GearQuatExtended::add_torques(double **torque, std::vector<Load> &loads) const
+void Extended::add_torques(double **torque, std::vector<Load> &loads) const
 {
   if (!torque) return;
   const int first = domain->dimension == 2 ? 2 : 0;
@@ -309,7 +306,7 @@ static bool same(const double *a, const double *b, int n)
   return difference <= SAME * largest;
 }
 
-bool GearQuatExtended::match(int i, double mass, const BodyState &state) const
+bool Extended::match(int i, double mass, const BodyState &state) const
 {
   const Own mine = own(i, mass);
   const Record record = kept ? records[i] : Record();
@@ -330,28 +327,28 @@ bool GearQuatExtended::match(int i, double mass, const BodyState &state) const
    per-atom records
 ------------------------------------------------------------------------- */
 
-void GearQuatExtended::grow(int nmax)
+void Extended::grow(int nmax)
 {
   if (kept) records.resize(nmax);
 }
 
-void GearQuatExtended::set(int i)
+void Extended::set(int i)
 {
   if (kept) records[i] = Record();
 }
 
-void GearQuatExtended::copy(int from, int to)
+void Extended::copy(int from, int to)
 {
   if (kept) records[to] = records[from];
 }
 
-int GearQuatExtended::packed_size(int i) const
+int Extended::packed_size(int i) const
 {
   if (!kept) return 0;
   return records[i].shape == POINT && !records[i].dipole ? 1 : RECORD_SIZE;
 }
 
-int GearQuatExtended::pack(int i, double *buf) const
+int Extended::pack(int i, double *buf) const
 {
   if (!kept) return 0;
   const Record &record = records[i];
@@ -363,7 +360,7 @@ int GearQuatExtended::pack(int i, double *buf) const
   return RECORD_SIZE;
 }
 
-int GearQuatExtended::unpack(int i, const double *buf)
+int Extended::unpack(int i, const double *buf)
 {
   if (!kept) return 0;
   Record &record = records[i];
@@ -377,7 +374,7 @@ int GearQuatExtended::unpack(int i, const double *buf)
   return RECORD_SIZE;
 }
 
-double GearQuatExtended::memory_usage() const
+double Extended::memory_usage() const
 {
   return records.capacity() * sizeof(Record) + sites.capacity() * sizeof(Site);
 }

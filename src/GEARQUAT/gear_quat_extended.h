@@ -23,10 +23,16 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class AtomVecEllipsoid;
+class AtomVecLine;
+class AtomVecTri;
+}    // namespace LAMMPS_NS
 
-class GearQuatExtended : protected Pointers {
+namespace LAMMPS_NS::GearQuat {
+
+class Extended : protected Pointers {
  public:
-  GearQuatExtended(LAMMPS *lmp, const GearQuat::Scheme &scheme);
+  Extended(LAMMPS *lmp, const Scheme &scheme);
 
   /// Ends the run on all ranks, naming an atom, if one of `atoms` (local indices) cannot be moved.
   void refuse(const std::vector<int> &atoms) const;
@@ -57,10 +63,10 @@ class GearQuatExtended : protected Pointers {
   /// Lists the atom if it is more than a point.
   void list(int atom, int body);
   /// Orientations and dipoles, and rates (angular velocities or momenta) if they are wanted.
-  void place(const std::vector<GearQuat::BodyState> &states, bool orientations, bool rates) const;
-  void add_torques(double **torque, std::vector<GearQuat::Load> &loads) const;
+  void place(const std::vector<BodyState> &states, bool orientations, bool rates) const;
+  void add_torques(double **torque, std::vector<Load> &loads) const;
   /// True if sizes, orientations, dipoles and rates of these atoms are those of their bodies.
-  bool match(int atom, double mass, const GearQuat::BodyState &state) const;
+  bool match(int atom, double mass, const BodyState &state) const;
 
   // per-atom records
 
@@ -94,24 +100,24 @@ class GearQuatExtended : protected Pointers {
     double q[4], mu[3], omega[3], momentum[3];
   };
 
-  GearQuat::Scheme scheme;
+  Scheme scheme;
   bool kept = false;
   std::vector<Record> records;
 
-  class AtomVecEllipsoid *ellipsoids = nullptr;    ///< what the atom style is made of
-  class AtomVecLine *lines = nullptr;
-  class AtomVecTri *triangles = nullptr;
+  AtomVecEllipsoid *ellipsoids = nullptr;    ///< what the atom style is made of
+  AtomVecLine *lines = nullptr;
+  AtomVecTri *triangles = nullptr;
 
   void find_atom_styles();
   int shape_of(int atom) const;
   int has_dipole(int atom) const;
   Own own(int atom, double mass) const;
   void rate(int atom, const Own &mine, double *momentum_space) const;
-  Pose pose(const Record &record, int atom, const GearQuat::BodyState &state) const;
+  Pose pose(const Record &record, int atom, const BodyState &state) const;
   void read_bonus(int atom, double mass, Own &mine) const;
   void write_bonus(int atom, int shape, const double *q) const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -15,7 +15,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-void *GearQuatExtract::extract(const std::string &name, int &dim)
+void *Extract::extract(const std::string &name, int &dim)
 {
   dim = 0;
   nbody = (int) bodies.body.size();
@@ -56,7 +56,7 @@ void *GearQuatExtract::extract(const std::string &name, int &dim)
   return nullptr;
 }
 
-double GearQuatExtract::energy(bool rotational) const
+double Extract::energy(bool rotational) const
 {
   double here = 0.0, all;
   for (int i = 0; i < bodies.nowned(); ++i)

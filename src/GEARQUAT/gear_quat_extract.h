@@ -13,12 +13,12 @@
 
 #include <string>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatExtract : protected Pointers {
+class Extract : protected Pointers {
  public:
   /// template_id: that of keyword mol, or empty.
-  GearQuatExtract(LAMMPS *lmp, const GearQuatBodies &bodies, const std::string &template_id) :
+  Extract(LAMMPS *lmp, const Bodies &bodies, const std::string &template_id) :
       Pointers(lmp), bodies(bodies), template_id(template_id)
   {
   }
@@ -35,7 +35,7 @@ class GearQuatExtract : protected Pointers {
   void *extract(const std::string &name, int &dim);
 
  private:
-  const GearQuatBodies &bodies;
+  const Bodies &bodies;
   std::string template_id;
 
   std::vector<int> body;
@@ -47,6 +47,6 @@ class GearQuatExtract : protected Pointers {
   double energy(bool rotational) const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -15,7 +15,7 @@
 #include <limits>
 #include <vector>
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 constexpr int FLIGHT_STEPS = 100;
 
@@ -54,6 +54,6 @@ inline double longest_step(const Scheme &scheme, const RigidBody &body, const Bo
   return h / parts;
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

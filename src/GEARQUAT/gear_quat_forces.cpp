@@ -25,6 +25,7 @@
 #include <limits>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 // pair styles that draw random numbers, or keep contacts, bonds or charges from one step to the next
 
@@ -79,8 +80,7 @@ static std::string name(const Fix *fix)
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatForces::GearQuatForces(LAMMPS *lmp, const std::vector<const Fix *> &owners) :
-    Pointers(lmp), tallies(lmp)
+Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(lmp), tallies(lmp)
 {
   look_at_styles();
   if (why.empty()) look_at_fixes(owners);
@@ -88,7 +88,7 @@ GearQuatForces::GearQuatForces(LAMMPS *lmp, const std::vector<const Fix *> &owne
   if (why.empty()) look_at_time();
 }
 
-int GearQuatForces::most_values_with_noise(const std::function<bool(int)> &in_body) const
+int Forces::most_values_with_noise(const std::function<bool(int)> &in_body) const
 {
   int most = 0;
   for (const auto *style : RANDOM_PAIRS)
@@ -105,7 +105,7 @@ int GearQuatForces::most_values_with_noise(const std::function<bool(int)> &in_bo
   return most;
 }
 
-void GearQuatForces::look_at_styles()
+void Forces::look_at_styles()
 {
   if (lmp->kokkos) why = "the KOKKOS package is on";
   for (const auto *style : UNFOLLOWED_BONDS)
@@ -116,7 +116,7 @@ void GearQuatForces::look_at_styles()
       why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
 }
 
-void GearQuatForces::look_at_fixes(const std::vector<const Fix *> &owners)
+void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
 {
   const int during_force =
       FixConst::PRE_FORCE | FixConst::PRE_REVERSE | FixConst::POST_FORCE | FixConst::POST_INTEGRATE;
@@ -136,7 +136,7 @@ void GearQuatForces::look_at_fixes(const std::vector<const Fix *> &owners)
 }
 
 /// A variable that draws or counts must not be evaluated more often than without this fix.
-void GearQuatForces::look_at_variables()
+void Forces::look_at_variables()
 {
   const auto reader = std::find_if(post_force.begin(), post_force.end(), [](const Fix *fix) {
     return !among(WITHOUT_VARIABLES, fix);
@@ -156,7 +156,7 @@ void GearQuatForces::look_at_variables()
 
 /// A fix that follows a variable of time, or acts every few steps, gives another force at another
 /// step.
-void GearQuatForces::look_at_time()
+void Forces::look_at_time()
 {
   if (post_force.empty()) return;
   save();
@@ -172,7 +172,7 @@ void GearQuatForces::look_at_time()
 
 /// Forces and torques of the fixes alone at another step; reason() says if one of them reads an energy
 /// or a pressure.
-std::vector<double> GearQuatForces::external_forces(bigint step)
+std::vector<double> Forces::external_forces(bigint step)
 {
   const bigint present = update->ntimestep;
   clear_forces();
@@ -203,7 +203,7 @@ static void put_back(double **array, const std::vector<double> &copy)
   if (!copy.empty()) std::copy(copy.begin(), copy.end(), array[0]);
 }
 
-void GearQuatForces::save()
+void Forces::save()
 {
   tallies.save();
   const int n = atom->nlocal + atom->nghost;
@@ -216,7 +216,7 @@ void GearQuatForces::save()
   }
 }
 
-void GearQuatForces::restore()
+void Forces::restore()
 {
   tallies.restore();
   put_back(atom->x, x);
@@ -225,7 +225,7 @@ void GearQuatForces::restore()
   if (atom->torque_flag) put_back(atom->torque, torque);
 }
 
-double GearQuatForces::largest_displacement() const
+double Forces::largest_displacement() const
 {
   double largest = 0.0, all;
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -237,7 +237,7 @@ double GearQuatForces::largest_displacement() const
   return std::sqrt(all);
 }
 
-void GearQuatForces::evaluate()
+void Forces::evaluate()
 {
   comm->forward_comm();
   clear_forces();
@@ -248,7 +248,7 @@ void GearQuatForces::evaluate()
   for (auto *fix : post_force) fix->post_force(0);
 }
 
-void GearQuatForces::clear_forces()
+void Forces::clear_forces()
 {
   const size_t n = 3 * (size_t) (atom->nlocal + (force->newton ? atom->nghost : 0));
   if (n == 0) return;
@@ -257,7 +257,7 @@ void GearQuatForces::clear_forces()
 }
 
 /// Without energies and virials: what thermo prints of the step stays as it is.
-void GearQuatForces::compute_forces()
+void Forces::compute_forces()
 {
   if (force->pair && force->pair->compute_flag) force->pair->compute(0, 0);
   if (atom->molecular != Atom::ATOMIC) {

@@ -20,13 +20,15 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-
 class Fix;
+}    // namespace LAMMPS_NS
 
-class GearQuatForces : protected Pointers {
+namespace LAMMPS_NS::GearQuat {
+
+class Forces : protected Pointers {
  public:
   /// Looks at the scene.  owners: the fixes that ask, themselves not evaluated.  Collective.
-  GearQuatForces(LAMMPS *lmp, const std::vector<const Fix *> &owners);
+  Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners);
 
   /// Empty if forces can be followed, else what stands in the way.
   const std::string &reason() const { return why; }
@@ -48,7 +50,7 @@ class GearQuatForces : protected Pointers {
   std::string why;
   std::vector<Fix *> pre_force, post_force;
   std::vector<double> x, v, f, torque;
-  GearQuatTallies tallies;
+  Tallies tallies;
 
   void look_at_styles();
   void look_at_fixes(const std::vector<const Fix *> &owners);
@@ -59,6 +61,6 @@ class GearQuatForces : protected Pointers {
   void compute_forces();
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -10,11 +10,11 @@
 #include <numeric>
 #include <vector>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
 /// What all ranks have, in their order, on every one of them.  Collective.
 template <typename T>
-std::vector<T> gear_quat_gather(std::vector<T> &mine, MPI_Datatype type, MPI_Comm world)
+std::vector<T> gather_all(std::vector<T> &mine, MPI_Datatype type, MPI_Comm world)
 {
   int here = (int) mine.size(), ranks;    // not const: MPI without MPI wants it so
   MPI_Comm_size(world, &ranks);
@@ -26,6 +26,6 @@ std::vector<T> gear_quat_gather(std::vector<T> &mine, MPI_Datatype type, MPI_Com
   return all;
 }
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -18,7 +18,7 @@
 
 #include "gear_quat_rigid_body.h"
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 enum class Isokinetic { NONE, TOTAL, SEPARATE };
 
@@ -31,7 +31,7 @@ struct KineticSums {
 
   double power() const { return force_power + torque_power; }
 
-  /// torque_body: about the centre of mass.
+  /// torque_body: about the center of mass.
   void add(const RigidBody &body, const double *force, const double *torque_body,
            const double *velocity, const double *omega_body)
   {
@@ -98,6 +98,6 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
   return damped;
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

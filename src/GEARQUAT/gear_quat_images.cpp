@@ -11,6 +11,7 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 // a place that is further away by less than this part of a period has not changed by a period
 
@@ -46,8 +47,8 @@ static bool is_periodic(const Domain *domain, int direction)
 
 /* ---------------------------------------------------------------------- */
 
-void LAMMPS_NS::gear_quat_add_turns_of_flags(const Domain *domain, const double *expected,
-                                             double *unwrapped)
+void GearQuat::undo_image_flag_overflow(const Domain *domain, const double *expected,
+                                        double *unwrapped)
 {
   const double range = (double) IMGMASK + 1.0;    // so many boxes, then flags begin again
   const double away[3] = {expected[0] - unwrapped[0], expected[1] - unwrapped[1],
@@ -66,8 +67,7 @@ void LAMMPS_NS::gear_quat_add_turns_of_flags(const Domain *domain, const double 
   for (int k = 0; k < 3; ++k) unwrapped[k] += way[k];
 }
 
-bool LAMMPS_NS::gear_quat_whole_periods_away(const Domain *domain, const double *change,
-                                             double further)
+bool GearQuat::whole_periods_away(const Domain *domain, const double *change, double further)
 {
   double periods[3];
   to_periods(domain, change, periods);
@@ -77,8 +77,8 @@ bool LAMMPS_NS::gear_quat_whole_periods_away(const Domain *domain, const double 
   return false;
 }
 
-bool LAMMPS_NS::gear_quat_moved_with_faces(const Domain *domain, const double *box_before,
-                                           const double *change)
+bool GearQuat::moved_with_faces(const Domain *domain, const double *box_before,
+                                const double *change)
 {
   double box_change[6];
   bool changed = false;
@@ -103,8 +103,7 @@ bool LAMMPS_NS::gear_quat_moved_with_faces(const Domain *domain, const double *b
   return false;
 }
 
-bool LAMMPS_NS::gear_quat_in_clumps(const Domain *domain,
-                                    const std::vector<const double *> &positions)
+bool GearQuat::lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions)
 {
   std::vector<double> along(positions.size());
   for (int k = 0; k < 3; ++k) {

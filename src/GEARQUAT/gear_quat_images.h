@@ -12,25 +12,26 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-
 class Domain;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
 
 /// Add to `unwrapped` (3) the turns of the image flags that bring it nearest to `expected` (3).
 /// It is not touched where the flags have not turned over.
-void gear_quat_add_turns_of_flags(const Domain *domain, const double *expected, double *unwrapped);
+void undo_image_flag_overflow(const Domain *domain, const double *expected, double *unwrapped);
 
 /// True if the place of an atom beside another one has changed by whole periods, to a place that is
 /// `further` away from it.
-bool gear_quat_whole_periods_away(const Domain *domain, const double *change, double further);
+bool whole_periods_away(const Domain *domain, const double *change, double further);
 
 /// True if that place has changed by what another box makes of atoms in different images.
 /// box_before: as Domain::h.
-bool gear_quat_moved_with_faces(const Domain *domain, const double *box_before,
-                                const double *change);
+bool moved_with_faces(const Domain *domain, const double *box_before, const double *change);
 
 /// True if atoms at these unwrapped positions leave more than half of a period empty between them.
-bool gear_quat_in_clumps(const Domain *domain, const std::vector<const double *> &positions);
+bool lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions);
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -19,6 +19,7 @@
 #include <vector>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 static constexpr int COLUMNS = 20;
 
@@ -131,7 +132,7 @@ std::vector<Line> parse_file(const std::string &filename)
 
 }    // namespace
 
-GivenBodies LAMMPS_NS::read_given_bodies(LAMMPS *lmp, const std::string &filename)
+GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename)
 {
   std::vector<Line> lines;
   std::string fault;

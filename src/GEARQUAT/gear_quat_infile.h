@@ -6,7 +6,7 @@
 /* Bodies stated in a file, in the format of fix rigid's infile keyword:
      N
      ID mass x y z ixx iyy izz ixy ixz iyz vx vy vz lx ly lz ix iy iz      (N lines)
-   The inertia tensor and the angular momentum are in the space frame, the centre of mass is in the
+   The inertia tensor and the angular momentum are in the space frame, the center of mass is in the
    box and ix iy iz are its image flags.  Lines may end in a # comment; empty lines are ignored. */
 
 #ifndef LMP_GEAR_QUAT_INFILE_H
@@ -18,8 +18,10 @@
 #include <string>
 
 namespace LAMMPS_NS {
-
 class LAMMPS;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
 
 struct GivenBody {
   double mass;
@@ -36,6 +38,6 @@ using GivenBodies = std::map<tagint, GivenBody>;
 /// message that names file and line.
 GivenBodies read_given_bodies(LAMMPS *lmp, const std::string &filename);
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -31,15 +31,15 @@ struct Line {
   double mass, center[3], inertia_space[6], velocity[3], angular_momentum_space[3];
 };
 
-Line line_of(const GearQuatBody &body, const BodyState &state, const double *row)
+Line line_of(const Body &body, const BodyState &state, const double *row)
 {
   Line line = Line();
   line.id = body.id;
   line.mass = body.rigid.mass;
-  std::copy_n(row + GearQuatTable::CENTER, 3, line.center);
-  std::copy_n(row + GearQuatTable::VELOCITY, 3, line.velocity);
-  std::copy_n(row + GearQuatTable::ANGULAR_MOMENTUM, 3, line.angular_momentum_space);
-  for (int k = 0; k < 3; ++k) line.image[k] = (int) row[GearQuatTable::IMAGE + k];
+  std::copy_n(row + BodyTable::CENTER, 3, line.center);
+  std::copy_n(row + BodyTable::VELOCITY, 3, line.velocity);
+  std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, line.angular_momentum_space);
+  for (int k = 0; k < 3; ++k) line.image[k] = (int) row[BodyTable::IMAGE + k];
 
   // A^T I A, the rows of A being the principal axes; xx yy zz xy xz yz
 
@@ -84,9 +84,8 @@ void print(FILE *file, const Line &line)
 
 }    // namespace
 
-void LAMMPS_NS::write_given_bodies(LAMMPS *lmp, const std::string &filename,
-                                   const std::string &fix_id, const GearQuatBodies &bodies,
-                                   double **rows)
+void GearQuat::write_given_bodies(LAMMPS *lmp, const std::string &filename,
+                                  const std::string &fix_id, const Bodies &bodies, double **rows)
 {
   std::vector<Line> mine;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)

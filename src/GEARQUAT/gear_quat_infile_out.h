@@ -11,17 +11,20 @@
 #include <string>
 
 namespace LAMMPS_NS {
-
-class GearQuatBodies;
 class LAMMPS;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class Bodies;
 
 /// Write all bodies, sorted by ID, with all digits; a file that cannot be written ends the run.
 /// A file of this name is whole at any time: it is written under another name and then renamed.
-/// rows: those of GearQuatTable for this rank's owned bodies.  fix_id: for the comment on line 1.
+/// rows: those of BodyTable for this rank's owned bodies.  fix_id: for the comment on line 1.
 /// Collective.
 void write_given_bodies(LAMMPS *lmp, const std::string &filename, const std::string &fix_id,
-                        const GearQuatBodies &bodies, double **rows);
+                        const Bodies &bodies, double **rows);
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

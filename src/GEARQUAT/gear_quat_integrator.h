@@ -24,7 +24,7 @@
 #include "gear_quat_nordsieck.h"
 #include "gear_quat_rigid_body.h"
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 enum class Formulation { FIRST, SECOND };
 
@@ -73,7 +73,7 @@ constexpr int MAX_SIZE = (FIRST_MOST + 2) * Scheme::FIRST_WIDTH >
 /// What the corrector tells of a step.
 struct Correction {
   double work;              ///< of the load along the way from the predicted to the corrected pose
-  double position_error;    ///< estimated local error of the centre of mass, length
+  double position_error;    ///< estimated local error of the center of mass, length
   double angle_error;       ///< estimated local error of the orientation, radians
 };
 
@@ -283,7 +283,7 @@ class Integrator {
 
  private:
   static constexpr int FIRST_CENTER = 6,
-                       SECOND_CENTER = 3;    // columns of the centre, the first ones
+                       SECOND_CENTER = 3;    // columns of the center, the first ones
 
   template <int CARRIES> using First = Nordsieck<Scheme::FIRST_WIDTH, CARRIES>;
   template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
@@ -448,6 +448,6 @@ class Integrator {
   }
 };
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

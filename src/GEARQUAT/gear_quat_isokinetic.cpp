@@ -19,14 +19,14 @@ static constexpr double NOTHING = 1.0e-24;
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatIsokinetic::GearQuatIsokinetic(LAMMPS *lmp, GearQuatBodies &bodies, const Scheme &scheme,
-                                       Isokinetic mode, bool rescale) :
+IsokineticConstraint::IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme,
+                                           Isokinetic mode, bool rescale) :
     Pointers(lmp),
     bodies(bodies), scheme(scheme), mode(mode), rescale(rescale), counted(0), heat{}
 {
 }
 
-KineticSums GearQuatIsokinetic::over_all(const KineticSums &here) const
+KineticSums IsokineticConstraint::over_all(const KineticSums &here) const
 {
   static constexpr int N = sizeof(KineticSums) / sizeof(double);
   KineticSums all;
@@ -34,7 +34,7 @@ KineticSums GearQuatIsokinetic::over_all(const KineticSums &here) const
   return all;
 }
 
-void GearQuatIsokinetic::measure()
+void IsokineticConstraint::measure()
 {
   KineticSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
@@ -43,7 +43,7 @@ void GearQuatIsokinetic::measure()
   alpha = multipliers(mode, sums);
 }
 
-void GearQuatIsokinetic::begin_run(bool afresh)
+void IsokineticConstraint::begin_run(bool afresh)
 {
   measure();
   refuse_rest();
@@ -53,7 +53,7 @@ void GearQuatIsokinetic::begin_run(bool afresh)
 }
 
 /// Without kinetic energy there is no multiplier.
-void GearQuatIsokinetic::refuse_rest() const
+void IsokineticConstraint::refuse_rest() const
 {
   int turn_here = 0, turn;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
@@ -79,7 +79,7 @@ void GearQuatIsokinetic::refuse_rest() const
 ------------------------------------------------------------------------- */
 
 /// With the torques at the predicted pose and the velocities of now.
-KineticSums GearQuatIsokinetic::of_pending() const
+KineticSums IsokineticConstraint::of_pending() const
 {
   KineticSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
@@ -90,7 +90,7 @@ KineticSums GearQuatIsokinetic::of_pending() const
   return over_all(here);
 }
 
-void GearQuatIsokinetic::correct(const Integrator &integrator)
+void IsokineticConstraint::correct(const Integrator &integrator)
 {
   const int n = bodies.nmoved();
   pending.resize(n);
@@ -130,7 +130,7 @@ void GearQuatIsokinetic::correct(const Integrator &integrator)
    heat
 ------------------------------------------------------------------------- */
 
-void GearQuatIsokinetic::seed_heat(const double *series, int terms, double series_step, double h)
+void IsokineticConstraint::seed_heat(const double *series, int terms, double series_step, double h)
 {
   double power = 1.0;
   for (int j = 1; j < scheme.values(); ++j) {
@@ -139,12 +139,12 @@ void GearQuatIsokinetic::seed_heat(const double *series, int terms, double serie
   }
 }
 
-void GearQuatIsokinetic::rescale_step(double ratio)
+void IsokineticConstraint::rescale_step(double ratio)
 {
   Nordsieck<1>::rescale(heat, scheme.values(), ratio);
 }
 
-double GearQuatIsokinetic::element(int n) const
+double IsokineticConstraint::element(int n) const
 {
   if (n == HEAT) return heat[0] * force->mvv2e;
   return n == ALPHA_TRANSLATION ? alpha.translation : alpha.rotation;
@@ -154,14 +154,14 @@ double GearQuatIsokinetic::element(int n) const
    restart
 ------------------------------------------------------------------------- */
 
-GearQuatIsokinetic::Kept GearQuatIsokinetic::keep() const
+IsokineticConstraint::Kept IsokineticConstraint::keep() const
 {
   Kept kept = {(double) mode, (double) counted, target, {}};
   std::copy_n(heat, MAX_VALUES, kept.heat);
   return kept;
 }
 
-bool GearQuatIsokinetic::take(const Kept &kept)
+bool IsokineticConstraint::take(const Kept &kept)
 {
   if (kept.mode != (double) mode) return false;
   counted = (bigint) kept.bodies;

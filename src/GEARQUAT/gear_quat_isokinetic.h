@@ -15,16 +15,16 @@
 
 #include "gear_quat_bodies.h"
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatIsokinetic : protected Pointers {
+class IsokineticConstraint : protected Pointers {
  public:
-  /// Elements of the fix's vector behind those of GearQuatSums.
+  /// Elements of the fix's vector behind those of Sums.
   enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS };
 
   /// rescale: after each step momenta are scaled to the kinetic energy at the start.
-  GearQuatIsokinetic(LAMMPS *lmp, GearQuatBodies &bodies, const GearQuat::Scheme &scheme,
-                     GearQuat::Isokinetic mode, bool rescale);
+  IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, Isokinetic mode,
+                       bool rescale);
 
   // all collective
 
@@ -34,15 +34,14 @@ class GearQuatIsokinetic : protected Pointers {
   /// Multipliers of the present states and loads.
   void measure();
   /// One step: correct the predicted histories and states.
-  void correct(const GearQuat::Integrator &integrator);
+  void correct(const Integrator &integrator);
 
   // after measure()
 
   /// What moves an owned body.
-  GearQuat::Load acting(int ibody) const
+  Load acting(int ibody) const
   {
-    return GearQuat::damped_load(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody],
-                                 alpha);
+    return damped_load(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody], alpha);
   }
   /// Of all forces and torques.
   double power() const { return sums.power(); }
@@ -56,30 +55,30 @@ class GearQuatIsokinetic : protected Pointers {
   /// What a restart file holds, the same on all ranks.
   struct Kept {
     double mode, bodies;
-    GearQuat::KineticSums target;
-    double heat[GearQuat::MAX_VALUES];
+    KineticSums target;
+    double heat[MAX_VALUES];
   };
   Kept keep() const;
   /// False if the file is of another kind of constraint.
   bool take(const Kept &kept);
 
  private:
-  GearQuatBodies &bodies;
-  GearQuat::Scheme scheme;
-  GearQuat::Isokinetic mode;
+  Bodies &bodies;
+  Scheme scheme;
+  Isokinetic mode;
   bool rescale;
 
-  GearQuat::KineticSums sums, target;
-  GearQuat::Multipliers alpha;
-  bigint counted;                       ///< bodies that the target belongs to
-  double heat[GearQuat::MAX_VALUES];    ///< Nordsieck history
-  std::vector<GearQuat::Integrator::Pending> pending;
+  KineticSums sums, target;
+  Multipliers alpha;
+  bigint counted;             ///< bodies that the target belongs to
+  double heat[MAX_VALUES];    ///< Nordsieck history
+  std::vector<Integrator::Pending> pending;
 
   void refuse_rest() const;
-  GearQuat::KineticSums over_all(const GearQuat::KineticSums &here) const;
-  GearQuat::KineticSums of_pending() const;
+  KineticSums over_all(const KineticSums &here) const;
+  KineticSums of_pending() const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

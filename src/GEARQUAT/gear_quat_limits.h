@@ -15,7 +15,7 @@
 
 #include "gear_quat_rigid_body.h"
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 struct MotionLimits {
   static constexpr double TURN = 3.14159265358979323846;    ///< radians in a step
@@ -58,6 +58,6 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
   return s;
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

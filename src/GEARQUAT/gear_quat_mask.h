@@ -14,7 +14,7 @@
 
 #include "gear_quat_rigid_body.h"
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 /// A bit for each component that is off; 0: everything acts.
 using Mask = int;
@@ -53,6 +53,6 @@ inline double work_between(const Load &met, const BodyState &before, const BodyS
   return dot3(met.force, dx) + dot3(torque_body, angle_body);
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -20,11 +20,11 @@ using namespace GearQuat;
 namespace {
 
 /// IDs of all bodies, sorted, on all ranks.
-std::vector<tagint> all_ids(LAMMPS *lmp, const GearQuatBodies &bodies)
+std::vector<tagint> all_ids(LAMMPS *lmp, const Bodies &bodies)
 {
   std::vector<tagint> mine;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) mine.push_back(bodies.body[ibody].id);
-  std::vector<tagint> ids = gear_quat_gather(mine, MPI_LMP_TAGINT, lmp->world);
+  std::vector<tagint> ids = gather_all(mine, MPI_LMP_TAGINT, lmp->world);
   std::sort(ids.begin(), ids.end());
   return ids;
 }
@@ -48,9 +48,7 @@ bool parse_range(const std::string &text, tagint number, tagint &first, tagint &
 
 }    // namespace
 
-GearQuatMasks::GearQuatMasks(LAMMPS *lmp, const std::vector<GearQuatMaskWords> &words,
-                             const GearQuatBodies &bodies) :
-    Pointers(lmp)
+Masks::Masks(LAMMPS *lmp, const std::vector<MaskWords> &words, const Bodies &bodies) : Pointers(lmp)
 {
   if (words.empty()) return;
   const std::vector<tagint> ids = all_ids(lmp, bodies);
@@ -79,11 +77,11 @@ GearQuatMasks::GearQuatMasks(LAMMPS *lmp, const std::vector<GearQuatMaskWords> &
   for (auto it = off.begin(); it != off.end();) it = it->second ? std::next(it) : off.erase(it);
 }
 
-bool GearQuatMasks::impose(GearQuatBodies &bodies) const
+bool Masks::impose(Bodies &bodies) const
 {
   int changed = 0, any_changed;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    GearQuatBody &body = bodies.body[ibody];
+    Body &body = bodies.body[ibody];
     const auto found = off.find(body.id);
     const Mask wanted = found == off.end() ? 0 : found->second;
     if (body.off != wanted) changed = 1;

@@ -16,34 +16,33 @@
 #include <string>
 #include <vector>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatBodies;
+class Bodies;
 
 /// One keyword with its words.
-struct GearQuatMaskWords {
+struct MaskWords {
   bool torque;          ///< or force
   std::string range;    ///< of bodies, counted from 1 in the order of their IDs
   bool on[3];
 };
 
-class GearQuatMasks : protected Pointers {
+class Masks : protected Pointers {
  public:
   /// Which bodies the words mean; later words replace earlier ones.  A range that is none, or has
   /// bodies that do not exist, ends the run, and so does motion out of the plane in two dimensions.
   /// Collective.
-  GearQuatMasks(LAMMPS *lmp, const std::vector<GearQuatMaskWords> &words,
-                const GearQuatBodies &bodies);
+  Masks(LAMMPS *lmp, const std::vector<MaskWords> &words, const Bodies &bodies);
 
   /// True if some body, on any rank, has something that does not act.
   bool any() const { return !off.empty(); }
   /// Give all bodies their masks.  True if one had another; collective.
-  bool impose(GearQuatBodies &bodies) const;
+  bool impose(Bodies &bodies) const;
 
  private:
-  std::map<tagint, GearQuat::Mask> off;    ///< bodies with masks only
+  std::map<tagint, Mask> off;    ///< bodies with masks only
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

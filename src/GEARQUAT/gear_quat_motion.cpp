@@ -5,12 +5,13 @@
 
 #include "gear_quat_motion.h"
 
-#include "fix_gear_quat.h"
+#include "gear_quat_peer.h"
 #include "gear_quat_spins.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix.h"
 #include "force.h"
 #include "modify.h"
 #include "update.h"
@@ -38,46 +39,44 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatMotion::GearQuatMotion(LAMMPS *lmp, Fix *fix, const GearQuatArguments &args,
-                               GearQuatBodies &bodies) :
-    Pointers(lmp),
-    fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme), started(false),
-    set_up(false), h(0.0), h_made(0.0)
+Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
+    Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme),
+    started(false), set_up(false), h(0.0), h_made(0.0)
 {
   if (args.control.eps > 0.0)
-    tolerance.reset(new GearQuatTolerance(lmp, fix, args.scheme, args.control, bodies));
+    tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, bodies));
   if (args.isokinetic != Isokinetic::NONE)    // not with tolerance
     isokinetic.reset(
-        new GearQuatIsokinetic(lmp, bodies, args.scheme, args.isokinetic, args.rescale));
+        new IsokineticConstraint(lmp, bodies, args.scheme, args.isokinetic, args.rescale));
 }
 
-void GearQuatMotion::meet_bodies()
+void Motion::meet_bodies()
 {
-  masks.reset(new GearQuatMasks(lmp, args.masks, bodies));
+  masks.reset(new Masks(lmp, args.masks, bodies));
 }
 
 /* ----------------------------------------------------------------------
    before a run
 ------------------------------------------------------------------------- */
 
-void GearQuatMotion::init()
+void Motion::init()
 {
   if (tolerance) tolerance->refuse_scene();
   if (tolerance && started) tolerance->keep_step(h);
   follow_time_step();
 }
 
-const Scheme &GearQuatMotion::present_scheme() const
+const Scheme &Motion::present_scheme() const
 {
   return tolerance ? tolerance->scheme() : args.scheme;
 }
 
-void GearQuatMotion::make_integrator(double step)
+void Motion::make_integrator(double step)
 {
   integrator.reset(new Integrator(present_scheme(), step));
 }
 
-void GearQuatMotion::follow_time_step()
+void Motion::follow_time_step()
 {
   const double step = update->dt;
   if (step == 0.0 || !std::isfinite(step)) return;
@@ -96,7 +95,7 @@ void GearQuatMotion::follow_time_step()
   h = step;
 }
 
-void GearQuatMotion::impose_masks()
+void Motion::impose_masks()
 {
   if (!masks->impose(bodies) || !started) return;    // only those of a restart file can be others
   started = false;
@@ -107,7 +106,7 @@ void GearQuatMotion::impose_masks()
                    "higher derivatives start anew");
 }
 
-void GearQuatMotion::begin_run()
+void Motion::begin_run()
 {
   if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, h);
   if (isokinetic) isokinetic->begin_run(!started);
@@ -118,9 +117,9 @@ void GearQuatMotion::begin_run()
    before the first step of a run
 ------------------------------------------------------------------------- */
 
-void GearQuatMotion::begin_steps(const std::vector<GearQuatMotion *> &all, double **f)
+void Motion::begin_steps(const std::vector<Motion *> &all, double **f)
 {
-  std::vector<GearQuatMotion *> full;
+  std::vector<Motion *> full;
   std::vector<bool> needed;
   for (auto *one : all) {
     one->set_up = false;
@@ -129,7 +128,7 @@ void GearQuatMotion::begin_steps(const std::vector<GearQuatMotion *> &all, doubl
       full.push_back(one);
       needed.push_back(needs);
     } else if (needs) {
-      GearQuatBootstrap::zero(one->party(true), one->h);
+      Bootstrap::zero(one->party(true), one->h);
       one->begin(false);
     }
   }
@@ -144,11 +143,11 @@ void GearQuatMotion::begin_steps(const std::vector<GearQuatMotion *> &all, doubl
     return one;
   });
   const bool together = !some_go_on ||
-      GearQuatForces(full[0]->lmp, full[0]->starting_together()).reason().empty();
-  std::vector<GearQuatParty> parties;
+      Forces(full[0]->lmp, full[0]->starting_together()).reason().empty();
+  std::vector<Party> parties;
   for (size_t n = 0; n < full.size(); ++n)
     if (needed[n] || together) parties.push_back(full[n]->party(needed[n]));
-  const bool found = GearQuatBootstrap(full[0]->lmp, parties, full[0]->h).run();
+  const bool found = Bootstrap(full[0]->lmp, parties, full[0]->h).run();
   for (size_t n = 0; n < full.size(); ++n)
     if (needed[n] || (together && found)) full[n]->begin(found);
   for (auto *one : full)
@@ -156,7 +155,7 @@ void GearQuatMotion::begin_steps(const std::vector<GearQuatMotion *> &all, doubl
 }
 
 /// Null if the histories can go on.  Collective.
-const char *GearQuatMotion::reason_to_start_anew(double **f)
+const char *Motion::reason_to_start_anew(double **f)
 {
   if (std::fabs(h) < SHORTER * std::fabs(h_made) && can_start_anew())
     return "the time step is less than half of that of the last steps";
@@ -166,7 +165,7 @@ const char *GearQuatMotion::reason_to_start_anew(double **f)
 }
 
 /// The other fixes that move atoms: forces have derivatives that such motion makes.
-std::string GearQuatMotion::present_movers() const
+std::string Motion::present_movers() const
 {
   std::string ids = "of this run:";
   for (const auto *other : modify->get_fix_list())
@@ -175,19 +174,19 @@ std::string GearQuatMotion::present_movers() const
 }
 
 /// True if a new start would be of full order, and nothing but the histories would be new.
-bool GearQuatMotion::can_start_anew() const
+bool Motion::can_start_anew() const
 {
-  return !tolerance && !isokinetic && args.start == GearQuatArguments::Start::BOOTSTRAP &&
-      GearQuatForces(lmp, starting_together()).reason().empty();
+  return !tolerance && !isokinetic && args.start == Arguments::Start::BOOTSTRAP &&
+      Forces(lmp, starting_together()).reason().empty();
 }
 
 /// True if the present loads leave a residual that the histories cannot have left.
-bool GearQuatMotion::forces_changed(double **f)
+bool Motion::forces_changed(double **f)
 {
   if (isokinetic) isokinetic->measure();
   double here[2] = {0.0, 0.0}, largest[2];    // error of the last step, force on an atom
   for (const auto *other : modify->get_fix_list())
-    if (const auto *same = dynamic_cast<const FixGearQuat *>(other))
+    if (const auto *same = dynamic_cast<const Peer *>(other))
       here[0] = std::max(here[0], same->last_error());
   for (const auto &site : bodies.sites) {
     const double *on_atom = f[site.atom];
@@ -211,13 +210,13 @@ bool GearQuatMotion::forces_changed(double **f)
     }
   MPI_Allreduce(&here_ratio, &ratio, 1, MPI_DOUBLE, MPI_MAX, world);
   return ratio > OTHER_NOISE ||
-      (ratio > OTHER_FORCES && GearQuatForces(lmp, starting_together()).reason().empty());
+      (ratio > OTHER_FORCES && Forces(lmp, starting_together()).reason().empty());
 }
 
 /// Of a residual, as a length.  force: the largest one on an atom.
-double GearQuatMotion::rounding(int ibody, double force) const
+double Motion::rounding(int ibody, double force) const
 {
-  const GearQuatBody &body = bodies.body[ibody];
+  const Body &body = bodies.body[ibody];
   const BodyState &s = bodies.state[ibody];
   const double step = std::fabs(h);
   double response = 1.0 / body.rigid.mass;
@@ -229,7 +228,7 @@ double GearQuatMotion::rounding(int ibody, double force) const
   return step * step * response * noise + ROUNDING_OF_MOTION * way;
 }
 
-double GearQuatMotion::last_error() const
+double Motion::last_error() const
 {
   double largest = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
@@ -238,7 +237,7 @@ double GearQuatMotion::last_error() const
 }
 
 /// True if histories are to be made; rank 0 says why they are made anew.
-bool GearQuatMotion::has_to_start(double **f)
+bool Motion::has_to_start(double **f)
 {
   const char *reason = started ? reason_to_start_anew(f) : nullptr;
   if (reason && comm->me == 0)
@@ -249,7 +248,7 @@ bool GearQuatMotion::has_to_start(double **f)
   return needs;
 }
 
-GearQuatParty GearQuatMotion::party(bool needed)
+Party Motion::party(bool needed)
 {
   return {fix,
           &bodies,
@@ -261,7 +260,7 @@ GearQuatParty GearQuatMotion::party(bool needed)
 }
 
 /// Histories are made, full: to the last row.
-void GearQuatMotion::begin(bool full)
+void Motion::begin(bool full)
 {
   started = true;
   if (!tolerance) return;
@@ -270,11 +269,11 @@ void GearQuatMotion::begin(bool full)
 }
 
 /// This fix, and those that a full start finds derivatives for.
-std::vector<const Fix *> GearQuatMotion::starting_together() const
+std::vector<const Fix *> Motion::starting_together() const
 {
   std::vector<const Fix *> found;
   for (const auto *other : modify->get_fix_list()) {
-    const auto *same = dynamic_cast<const FixGearQuat *>(other);
+    const auto *same = dynamic_cast<const Peer *>(other);
     if (same && (same->bootstraps() || other == fix)) found.push_back(other);
   }
   return found;
@@ -284,7 +283,7 @@ std::vector<const Fix *> GearQuatMotion::starting_together() const
    a step
 ------------------------------------------------------------------------- */
 
-void GearQuatMotion::take_velocities(const std::vector<int> &changed)
+void Motion::take_velocities(const std::vector<int> &changed)
 {
   if (!started) return;
   for (const int ibody : changed)
@@ -292,7 +291,7 @@ void GearQuatMotion::take_velocities(const std::vector<int> &changed)
                                bodies.history(ibody));
 }
 
-void GearQuatMotion::predict(double **f)
+void Motion::predict(double **f)
 {
   if (tolerance && !tolerance->owns_step()) tolerance->put_back_begun_step(h);
   h_made = h;
@@ -315,7 +314,7 @@ void GearQuatMotion::predict(double **f)
   }
 }
 
-void GearQuatMotion::correct(double **f)
+void Motion::correct(double **f)
 {
   if (isokinetic)
     correct_together(f);
@@ -324,7 +323,7 @@ void GearQuatMotion::correct(double **f)
 }
 
 /// MASKED: some components of the loads do not act.
-template <bool MASKED> void GearQuatMotion::correct_bodies(double **f)
+template <bool MASKED> void Motion::correct_bodies(double **f)
 {
   const MotionLimits limits = blowup.limits(h);
   const auto correct_all = [&](auto changing) {
@@ -342,7 +341,7 @@ template <bool MASKED> void GearQuatMotion::correct_bodies(double **f)
 }
 
 /// POINT: without moments of inertia.  CHANGING: the time step follows the error.
-template <bool MASKED, bool POINT, bool CHANGING> void GearQuatMotion::correct_body(int ibody)
+template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int ibody)
 {
   double *rows = bodies.history(ibody);
   const RigidBody &rigid = bodies.body[ibody].rigid;
@@ -363,7 +362,7 @@ template <bool MASKED, bool POINT, bool CHANGING> void GearQuatMotion::correct_b
 }
 
 /// Under a constraint of all of them.
-void GearQuatMotion::correct_together(double **f)
+void Motion::correct_together(double **f)
 {
   isokinetic->correct(*integrator);
   const MotionLimits limits = blowup.limits(h);
@@ -373,18 +372,18 @@ void GearQuatMotion::correct_together(double **f)
 }
 
 /// Bodies that came in this step: their histories begin with what is known of them.
-void GearQuatMotion::begin_fresh(double **f)
+void Motion::begin_fresh(double **f)
 {
-  const int known = args.start == GearQuatArguments::Start::ZERO ? 2 : 3;
+  const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
     blowup.check_load(ibody, h, f);
-    GearQuatBootstrap::seed_body(bodies, ibody, bodies.acting(ibody), present_scheme(), h, known);
+    Bootstrap::seed_body(bodies, ibody, bodies.acting(ibody), present_scheme(), h, known);
     if (tolerance) tolerance->note_fresh();
   }
   bodies.take_in_fresh();
 }
 
-void GearQuatMotion::choose_step()
+void Motion::choose_step()
 {
   if (tolerance->choose()) make_integrator(h);
   tolerance->change_step();
@@ -394,23 +393,23 @@ void GearQuatMotion::choose_step()
    outputs
 ------------------------------------------------------------------------- */
 
-int GearQuatMotion::elements() const
+int Motion::elements() const
 {
-  if (tolerance) return GearQuatTolerance::ELEMENTS;
-  return isokinetic ? GearQuatIsokinetic::ELEMENTS : 0;
+  if (tolerance) return Tolerance::ELEMENTS;
+  return isokinetic ? IsokineticConstraint::ELEMENTS : 0;
 }
 
-double GearQuatMotion::element(int n) const
+double Motion::element(int n) const
 {
   return tolerance ? tolerance->element(n) : isokinetic->element(n);
 }
 
-int GearQuatMotion::extensive(int n) const
+int Motion::extensive(int n) const
 {
-  return isokinetic && n == GearQuatIsokinetic::HEAT ? 1 : 0;
+  return isokinetic && n == IsokineticConstraint::HEAT ? 1 : 0;
 }
 
-const Integrator *GearQuatMotion::present_integrator() const
+const Integrator *Motion::present_integrator() const
 {
   return started ? integrator.get() : nullptr;
 }
@@ -419,7 +418,7 @@ const Integrator *GearQuatMotion::present_integrator() const
    restart
 ------------------------------------------------------------------------- */
 
-GearQuatMotion::Kept GearQuatMotion::keep() const
+Motion::Kept Motion::keep() const
 {
   const Scheme &scheme = args.scheme;
   return {(double) scheme.first(),
@@ -428,11 +427,11 @@ GearQuatMotion::Kept GearQuatMotion::keep() const
           (double) started,
           h,
           (double) scheme.trial,
-          tolerance ? tolerance->memory() : GearQuatTolerance::Memory(),
-          isokinetic ? isokinetic->keep() : GearQuatIsokinetic::Kept()};
+          tolerance ? tolerance->memory() : Tolerance::Memory(),
+          isokinetic ? isokinetic->keep() : IsokineticConstraint::Kept()};
 }
 
-void GearQuatMotion::take(const Kept &kept)
+void Motion::take(const Kept &kept)
 {
   const Kept mine = keep();
   const bool same = kept.formulation == mine.formulation && kept.values == mine.values &&

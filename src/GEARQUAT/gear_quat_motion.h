@@ -23,12 +23,12 @@
 #include <memory>
 #include <string>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatMotion : protected Pointers {
+class Motion : protected Pointers {
  public:
   /// bodies: empty, with histories of args.scheme.
-  GearQuatMotion(LAMMPS *lmp, Fix *fix, const GearQuatArguments &args, GearQuatBodies &bodies);
+  Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies);
 
   /// The bodies are there: masks are given to them.  Collective.
   void meet_bodies();
@@ -52,9 +52,9 @@ class GearQuatMotion : protected Pointers {
   /// Loads are the present ones of all fixes, f what they were gathered from.  Histories are made from
   /// them, unless there are some that agree with them.  all: of all fixes gear/quat; those that need a
   /// start make all others begin anew with them, where a full start is possible.  Collective.
-  static void begin_steps(const std::vector<GearQuatMotion *> &all, double **f);
+  static void begin_steps(const std::vector<Motion *> &all, double **f);
   /// True if a start finds all derivatives, as far as it can.
-  bool bootstraps() const { return args.start == GearQuatArguments::Start::BOOTSTRAP; }
+  bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
   /// The largest error that the last step reported here, as a length.
   double last_error() const;
   void predict(double **f);
@@ -65,20 +65,20 @@ class GearQuatMotion : protected Pointers {
   /// With tolerance only, when all fixes have finished the step.  Collective.
   void choose_step();
 
-  // elements of the fix's vector behind those of GearQuatSums
+  // elements of the fix's vector behind those of Sums
 
   int elements() const;
   double element(int n) const;
   /// 1 if an element grows with the number of bodies.
   int extensive(int n) const;
   /// Null before the start.
-  const GearQuat::Integrator *present_integrator() const;
+  const Integrator *present_integrator() const;
 
   /// What a restart file holds beside the histories.
   struct Kept {
     double formulation, values, compensate, started, h, variable;
-    GearQuatTolerance::Memory tolerance;
-    GearQuatIsokinetic::Kept isokinetic;
+    Tolerance::Memory tolerance;
+    IsokineticConstraint::Kept isokinetic;
   };
   Kept keep() const;
   /// The histories of the file are about to arrive; where they are of another kind than this
@@ -87,13 +87,13 @@ class GearQuatMotion : protected Pointers {
 
  private:
   Fix *fix;
-  const GearQuatArguments &args;
-  GearQuatBodies &bodies;
-  GearQuatBlowup blowup;
-  std::unique_ptr<GearQuatMasks> masks;
-  std::unique_ptr<GearQuatIsokinetic> isokinetic;    ///< null without
-  std::unique_ptr<GearQuatTolerance> tolerance;      ///< null: the step is LAMMPS' own
-  std::unique_ptr<GearQuat::Integrator> integrator;
+  const Arguments &args;
+  Bodies &bodies;
+  Blowup blowup;
+  std::unique_ptr<Masks> masks;
+  std::unique_ptr<IsokineticConstraint> isokinetic;    ///< null without
+  std::unique_ptr<Tolerance> tolerance;                ///< null: the step is LAMMPS' own
+  std::unique_ptr<Integrator> integrator;
 
   bool started;          ///< histories are those of the step h
   bool set_up;           ///< LAMMPS has evaluated forces for a run, no step of it has begun
@@ -101,10 +101,10 @@ class GearQuatMotion : protected Pointers {
   double h_made;         ///< step that they were made with
   std::string movers;    ///< IDs of the other fixes that moved atoms in the last steps
 
-  const GearQuat::Scheme &present_scheme() const;
+  const Scheme &present_scheme() const;
   void make_integrator(double step);
   bool has_to_start(double **f);
-  GearQuatParty party(bool needed);
+  Party party(bool needed);
   void begin(bool full);
   std::vector<const Fix *> starting_together() const;
   const char *reason_to_start_anew(double **f);
@@ -118,6 +118,6 @@ class GearQuatMotion : protected Pointers {
   void begin_fresh(double **f);
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -5,12 +5,12 @@
 
 #include "gear_quat_neighbors.h"
 
-#include "fix_gear_quat.h"
 #include "gear_quat_arguments.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix.h"
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
@@ -22,17 +22,17 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
 /// A row of the table.
-struct Neighbor {
+struct NeighborRule {
   const char *style;    ///< pattern
   enum { TAKEN, WATCHED, REFUSED } what;
   enum { SHARED, ALWAYS, CONSTRAINED, GJF } where;    ///< the case that is meant
   const char *instead;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 static constexpr char GROUP[] = "give it a group without atoms of bodies";
 static constexpr char THERMOSTAT[] =
@@ -42,42 +42,42 @@ static constexpr char CONSTRAINTS[] =
 static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall/harmonic";
 
 /// The first row that matches counts.  doc/src/fix_gear_quat.rst has the same table.
-static const Neighbor NEIGHBORS[] = {
-    {"^momentum", Neighbor::TAKEN, Neighbor::SHARED, ""},
-    {"^temp/rescale$", Neighbor::TAKEN, Neighbor::SHARED, ""},
-    {"^temp/berendsen", Neighbor::TAKEN, Neighbor::SHARED, ""},
-    {"^temp/csvr", Neighbor::TAKEN, Neighbor::SHARED, ""},
-    {"^heat$", Neighbor::TAKEN, Neighbor::SHARED, ""},
-    {"^wall/reflect", Neighbor::WATCHED, Neighbor::SHARED, WALL},
-    {"^wall/piston$", Neighbor::WATCHED, Neighbor::SHARED, WALL},
-    {"^temp/csld", Neighbor::REFUSED, Neighbor::SHARED, THERMOSTAT},
-    {"^temp/rescale/eff", Neighbor::REFUSED, Neighbor::SHARED, THERMOSTAT},
-    {"^lambda_thermostat", Neighbor::REFUSED, Neighbor::SHARED, THERMOSTAT},
-    {"^langevin", Neighbor::REFUSED, Neighbor::GJF, "leave out its keyword gjf"},
-    {"^ehex", Neighbor::REFUSED, Neighbor::SHARED, "use fix heat without a region"},
-    {"^thermal/conductivity", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^viscosity", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^oneway", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^shardlow", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^lb/momentum", Neighbor::REFUSED, Neighbor::SHARED, "use fix momentum"},
-    {"^wall/flow", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^smd/setvel", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^tmd$", Neighbor::REFUSED, Neighbor::SHARED, "use fix spring or fix spring/self"},
-    {"^recenter", Neighbor::REFUSED, Neighbor::ALWAYS,
+static const NeighborRule NEIGHBORS[] = {
+    {"^momentum", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
+    {"^temp/rescale$", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
+    {"^temp/berendsen", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
+    {"^temp/csvr", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
+    {"^heat$", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
+    {"^wall/reflect", NeighborRule::WATCHED, NeighborRule::SHARED, WALL},
+    {"^wall/piston$", NeighborRule::WATCHED, NeighborRule::SHARED, WALL},
+    {"^temp/csld", NeighborRule::REFUSED, NeighborRule::SHARED, THERMOSTAT},
+    {"^temp/rescale/eff", NeighborRule::REFUSED, NeighborRule::SHARED, THERMOSTAT},
+    {"^lambda_thermostat", NeighborRule::REFUSED, NeighborRule::SHARED, THERMOSTAT},
+    {"^langevin", NeighborRule::REFUSED, NeighborRule::GJF, "leave out its keyword gjf"},
+    {"^ehex", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix heat without a region"},
+    {"^thermal/conductivity", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^viscosity", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^oneway", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^shardlow", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^lb/momentum", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix momentum"},
+    {"^wall/flow", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^smd/setvel", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^tmd$", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix spring or fix spring/self"},
+    {"^recenter", NeighborRule::REFUSED, NeighborRule::ALWAYS,
      "use fix momentum, and subtract the center of mass in the analysis"},
-    {"^shake", Neighbor::REFUSED, Neighbor::CONSTRAINED, CONSTRAINTS},
-    {"^rattle", Neighbor::REFUSED, Neighbor::CONSTRAINED, CONSTRAINTS},
-    {"^ilves", Neighbor::REFUSED, Neighbor::CONSTRAINED, CONSTRAINTS},
-    {"^atom/swap", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^mol/swap", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^neighbor/swap", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^sgcmc", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^gcmc", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^charge/regulation", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^gemc", Neighbor::REFUSED, Neighbor::ALWAYS, "unfix one of the two"},
-    {"^hmc", Neighbor::REFUSED, Neighbor::ALWAYS, "use fix rigid/small with fix hmc"},
-    {"^pimd", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
-    {"^ipi", Neighbor::REFUSED, Neighbor::ALWAYS, "unfix one of the two"},
+    {"^shake", NeighborRule::REFUSED, NeighborRule::CONSTRAINED, CONSTRAINTS},
+    {"^rattle", NeighborRule::REFUSED, NeighborRule::CONSTRAINED, CONSTRAINTS},
+    {"^ilves", NeighborRule::REFUSED, NeighborRule::CONSTRAINED, CONSTRAINTS},
+    {"^atom/swap", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^mol/swap", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^neighbor/swap", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^sgcmc", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^gcmc", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^charge/regulation", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^gemc", NeighborRule::REFUSED, NeighborRule::ALWAYS, "unfix one of the two"},
+    {"^hmc", NeighborRule::REFUSED, NeighborRule::ALWAYS, "use fix rigid/small with fix hmc"},
+    {"^pimd", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
+    {"^ipi", NeighborRule::REFUSED, NeighborRule::ALWAYS, "unfix one of the two"},
 };
 
 // relative to the velocities of a site: rounding, and what a rigid motion may be off by
@@ -86,10 +86,8 @@ static constexpr double SAME = 1.0e-11, RIGID = 1.0e-6;
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatNeighbors::GearQuatNeighbors(LAMMPS *lmp, const FixGearQuat *fix, GearQuatBodies &bodies,
-                                     const GearQuatArguments &args) :
-    Pointers(lmp),
-    fix(fix), bodies(bodies), args(args), sample(0), told_noise(false), told(false)
+Neighbors::Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args) :
+    Pointers(lmp), fix(fix), bodies(bodies), args(args), sample(0), told_noise(false), told(false)
 {
 }
 
@@ -97,7 +95,7 @@ GearQuatNeighbors::GearQuatNeighbors(LAMMPS *lmp, const FixGearQuat *fix, GearQu
    before a run
 ------------------------------------------------------------------------- */
 
-void GearQuatNeighbors::init()
+void Neighbors::init()
 {
   taken.clear();
   watched.clear();
@@ -105,14 +103,14 @@ void GearQuatNeighbors::init()
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
     tell_noise(other);
-    const Neighbor *row = nullptr;
+    const NeighborRule *row = nullptr;
     for (const auto &one : NEIGHBORS)
       if (!row && utils::strmatch(other->style, one.style)) row = &one;
     if (!row) continue;
     const tagint atom = shared_atom(other);
-    if (row->what == Neighbor::REFUSED) {
+    if (row->what == NeighborRule::REFUSED) {
       refuse(other, *row, atom);
-    } else if (row->what == Neighbor::WATCHED) {
+    } else if (row->what == NeighborRule::WATCHED) {
       watched.push_back(other);
       if (atom && comm->me == 0)
         error->warning(FLERR,
@@ -132,7 +130,7 @@ void GearQuatNeighbors::init()
 }
 
 /// Random forces have no derivatives, and those of collisions last a single step.
-void GearQuatNeighbors::tell_noise(const Fix *other)
+void Neighbors::tell_noise(const Fix *other)
 {
   const bool collides = utils::strmatch(other->style, "^srd");
   if (told_noise || (!collides && !utils::strmatch(other->style, "^langevin"))) return;
@@ -149,7 +147,7 @@ void GearQuatNeighbors::tell_noise(const Fix *other)
 }
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
-tagint GearQuatNeighbors::shared_atom(const Fix *other) const
+tagint Neighbors::shared_atom(const Fix *other) const
 {
   tagint shared = 0, any;
   for (int i = 0; i < atom->nlocal; ++i)
@@ -159,21 +157,21 @@ tagint GearQuatNeighbors::shared_atom(const Fix *other) const
   return any;
 }
 
-void GearQuatNeighbors::refuse(const Fix *other, const Neighbor &row, tagint shared) const
+void Neighbors::refuse(const Fix *other, const NeighborRule &row, tagint shared) const
 {
   switch (row.where) {
-    case Neighbor::SHARED:
+    case NeighborRule::SHARED:
       if (shared) break;
       return;
-    case Neighbor::ALWAYS:
+    case NeighborRule::ALWAYS:
       error->all(FLERR,
                  "Fix gear/quat cannot be used with fix {} ({}): bodies do not follow it; {}",
                  other->id, other->style, row.instead);
       return;
-    case Neighbor::CONSTRAINED:
+    case NeighborRule::CONSTRAINED:
       if (shared && const_cast<Fix *>(other)->dof(fix->igroup) > 0) break;
       return;
-    case Neighbor::GJF:
+    case NeighborRule::GJF:
       if (shared && (modify->get_fix_mask(const_cast<Fix *>(other)) & FixConst::INITIAL_INTEGRATE))
         break;
       return;
@@ -185,7 +183,7 @@ void GearQuatNeighbors::refuse(const Fix *other, const Neighbor &row, tagint sha
 }
 
 /// The rigid fixes want it disabled, and apply it themselves to bodies whose mass a file states.
-void GearQuatNeighbors::check_gravity()
+void Neighbors::check_gravity()
 {
   if (!utils::strmatch(update->integrate_style, "^verlet")) return;
   const size_t n = 3 * (size_t) atom->nlocal;
@@ -228,7 +226,7 @@ void GearQuatNeighbors::check_gravity()
    velocities that bodies take over
 ------------------------------------------------------------------------- */
 
-std::vector<int> GearQuatNeighbors::take_velocities(bigint step, bool end)
+std::vector<int> Neighbors::take_velocities(bigint step, bool end)
 {
   std::vector<int> changed;
   std::vector<const Fix *> acted;
@@ -260,7 +258,7 @@ std::vector<int> GearQuatNeighbors::take_velocities(bigint step, bool end)
 
   tagint torn = 0, any;
   for (const auto &site : bodies.sites) {
-    const GearQuatBodies::Placed placed = bodies.placed(site);
+    const Bodies::Placed placed = bodies.placed(site);
     double off[3];
     for (int k = 0; k < 3; ++k) off[k] = atom->v[site.atom][k] - placed.v[k];
     if (!(std::sqrt(dot3(off, off)) <= RIGID * placed.speed)) torn = bodies.body[site.body].id;
@@ -280,7 +278,7 @@ std::vector<int> GearQuatNeighbors::take_velocities(bigint step, bool end)
 
 /// Momentum and angular momentum that atoms have more than their bodies, as loads.  Collective;
 /// false if nowhere any.
-bool GearQuatNeighbors::gather_impulses()
+bool Neighbors::gather_impulses()
 {
   int differs = 0, any;
   for (const auto &site : bodies.sites)
@@ -294,7 +292,7 @@ bool GearQuatNeighbors::gather_impulses()
   std::fill_n(impulse[0], 3 * ((size_t) atom->nlocal + 1), 0.0);
   std::fill_n(twist[0], 3 * ((size_t) atom->nlocal + 1), 0.0);
   for (const auto &site : bodies.sites) {
-    const GearQuatBodies::Placed placed = bodies.placed(site);
+    const Bodies::Placed placed = bodies.placed(site);
     const double mass = bodies.atom_mass(site.atom) / force->ftm2v;
     for (int k = 0; k < 3; ++k)
       impulse[site.atom][k] = mass * (atom->v[site.atom][k] - placed.v[k]);
@@ -309,30 +307,30 @@ bool GearQuatNeighbors::gather_impulses()
    changes that bodies do not follow
 ------------------------------------------------------------------------- */
 
-bool GearQuatNeighbors::is_there(const GearQuatBodies::Site &site) const
+bool Neighbors::is_there(const Bodies::Site &site) const
 {
-  const GearQuatBodies::Placed placed = bodies.placed(site);
+  const Bodies::Placed placed = bodies.placed(site);
   for (int k = 0; k < 3; ++k)
     if (!(std::fabs(atom->x[site.atom][k] - placed.x[k]) <= SAME * placed.length)) return false;
   return true;
 }
 
-bool GearQuatNeighbors::is_as_fast(const GearQuatBodies::Site &site) const
+bool Neighbors::is_as_fast(const Bodies::Site &site) const
 {
-  const GearQuatBodies::Placed placed = bodies.placed(site);
+  const Bodies::Placed placed = bodies.placed(site);
   for (int k = 0; k < 3; ++k)
     if (!(std::fabs(atom->v[site.atom][k] - placed.v[k]) <= SAME * placed.speed)) return false;
   return true;
 }
 
-void GearQuatNeighbors::check_velocities()
+void Neighbors::check_velocities()
 {
   if (told || bodies.sites.empty()) return;
   const auto &site = bodies.sites[++sample % bodies.sites.size()];
   if (!is_as_fast(site)) tell(site, "velocity");
 }
 
-void GearQuatNeighbors::check_places()
+void Neighbors::check_places()
 {
   if (!watched.empty()) {
     for (const auto &site : bodies.sites)
@@ -350,7 +348,7 @@ void GearQuatNeighbors::check_places()
   if (!is_there(site)) tell(site, "place");
 }
 
-void GearQuatNeighbors::check_all()
+void Neighbors::check_all()
 {
   for (const auto &site : bodies.sites) {
     if (told) return;
@@ -361,7 +359,7 @@ void GearQuatNeighbors::check_all()
   }
 }
 
-void GearQuatNeighbors::tell(const GearQuatBodies::Site &site, const char *what)
+void Neighbors::tell(const Bodies::Site &site, const char *what)
 {
   told = true;
   std::vector<const Fix *> others;
@@ -374,7 +372,7 @@ void GearQuatNeighbors::tell(const GearQuatBodies::Site &site, const char *what)
                  others.empty() ? "none" : names(others));
 }
 
-std::string GearQuatNeighbors::names(const std::vector<const Fix *> &fixes) const
+std::string Neighbors::names(const std::vector<const Fix *> &fixes) const
 {
   std::vector<std::string> words;
   for (const auto *one : fixes) words.push_back(fmt::format("fix {} ({})", one->id, one->style));

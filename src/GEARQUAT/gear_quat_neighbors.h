@@ -19,14 +19,17 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Fix;
+}    // namespace LAMMPS_NS
 
-class FixGearQuat;
-struct GearQuatArguments;
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatNeighbors : protected Pointers {
+struct Arguments;
+struct NeighborRule;
+
+class Neighbors : protected Pointers {
  public:
-  GearQuatNeighbors(LAMMPS *lmp, const FixGearQuat *fix, GearQuatBodies &bodies,
-                    const GearQuatArguments &args);
+  Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args);
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
@@ -50,9 +53,9 @@ class GearQuatNeighbors : protected Pointers {
   void check_all();
 
  private:
-  const FixGearQuat *fix;
-  GearQuatBodies &bodies;
-  const GearQuatArguments &args;
+  const Fix *fix;
+  Bodies &bodies;
+  const Arguments &args;
   std::vector<const Fix *> taken;      ///< whose velocities bodies take over
   std::vector<const Fix *> watched;    ///< that may move single atoms
   size_t sample;                       ///< the site that is looked at next
@@ -61,14 +64,14 @@ class GearQuatNeighbors : protected Pointers {
 
   void tell_noise(const Fix *other);
   tagint shared_atom(const Fix *other) const;
-  void refuse(const Fix *other, const struct Neighbor &row, tagint atom) const;
-  bool is_there(const GearQuatBodies::Site &site) const;
-  bool is_as_fast(const GearQuatBodies::Site &site) const;
+  void refuse(const Fix *other, const NeighborRule &row, tagint atom) const;
+  bool is_there(const Bodies::Site &site) const;
+  bool is_as_fast(const Bodies::Site &site) const;
   bool gather_impulses();
-  void tell(const GearQuatBodies::Site &site, const char *what);
+  void tell(const Bodies::Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -16,7 +16,7 @@
 
 #include <cmath>
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   static double *carry_of(double *rows, int n, int row) { return rows + (n + row) * WIDTH; }
@@ -135,6 +135,6 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   }
 };
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -16,7 +16,7 @@
 
 #include <cmath>
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 inline double dot3(const double *a, const double *b)
 {
@@ -159,6 +159,6 @@ inline void project_rate(const double *q, double *rate)
   for (int i = 0; i < 4; ++i) rate[i] -= radial * q[i];
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

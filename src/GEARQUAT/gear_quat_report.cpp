@@ -5,7 +5,6 @@
 
 #include "gear_quat_report.h"
 
-#include "fix_gear_quat.h"
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
 #include "gear_quat_scene.h"
@@ -13,6 +12,7 @@
 
 #include "comm.h"
 #include "domain.h"
+#include "fix.h"
 #include "utils.h"
 
 #include <limits>
@@ -20,6 +20,7 @@
 #include <vector>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 /// A row of the report.  omits: what is left out while the effect is off or in part, with a bound.
 struct Effect {
@@ -33,30 +34,30 @@ static constexpr char NOTHING[] = "nothing: the trajectory is the same to the la
 
 /* ---------------------------------------------------------------------- */
 
-static std::string listed(const GearQuatScene &scene)
+static std::string listed(const Scene &scene)
 {
   static const char *const TOPS[] = {"points",         "linear",          "spherical tops",
                                      "symmetric tops", "asymmetric tops", "in a plane"};
   std::vector<std::string> parts;
-  for (int top = 0; top < GearQuatScene::TOPS; ++top)
+  for (int top = 0; top < Scene::TOPS; ++top)
     if (scene.tops[top]) parts.push_back(fmt::format("{}: {}", TOPS[top], scene.tops[top]));
   return utils::join_words(parts, ", ");
 }
 
-static Effect rotation(const GearQuatScene &scene)
+static Effect rotation(const Scene &scene)
 {
-  const bool on = scene.tops[GearQuatScene::POINT] < scene.bodies;
+  const bool on = scene.tops[Scene::POINT] < scene.bodies;
   std::string omits;
-  if (scene.tops[GearQuatScene::POINT] || scene.tops[GearQuatScene::LINEAR])
+  if (scene.tops[Scene::POINT] || scene.tops[Scene::LINEAR])
     omits =
         fmt::format("rotation about axes whose moment of inertia is below {:g} of the largest of "
                     "the body; of the energy of an equally fast one about that axis, less than "
                     "this",
-                    GearQuat::LINEAR_FRACTION);
+                    LINEAR_FRACTION);
   return {"rotation", on, listed(scene), omits};
 }
 
-static Effect torques(const GearQuatScene &scene, bool forces)
+static Effect torques(const Scene &scene, bool forces)
 {
   const bool on = scene.arms > 0 && forces;
   return {"torques of forces", on,
@@ -78,7 +79,7 @@ static Effect images(const Domain *domain)
           NOTHING};
 }
 
-static Effect ghost_bodies(const GearQuatScene &scene, int ranks)
+static Effect ghost_bodies(const Scene &scene, int ranks)
 {
   std::string reason = ranks == 1 ? "one rank"
       : scene.ghosts ? fmt::format("{} sites have their body on another rank", scene.ghosts)
@@ -89,7 +90,7 @@ static Effect ghost_bodies(const GearQuatScene &scene, int ranks)
   return {"ghost bodies", scene.ghosts > 0 || scene.large > 0, reason, NOTHING};
 }
 
-static Effect compensation(const GearQuatArguments &args, const GearQuatScene &scene)
+static Effect compensation(const Arguments &args, const Scene &scene)
 {
   const double rounding = 0.5 * std::numeric_limits<double>::epsilon() * scene.farthest;
   return {"compensated sums", args.scheme.compensate,
@@ -98,8 +99,8 @@ static Effect compensation(const GearQuatArguments &args, const GearQuatScene &s
 }
 
 /// Every effect is one row; another one is another line.
-static std::vector<Effect> effects(LAMMPS *lmp, const FixGearQuat *fix,
-                                   const GearQuatArguments &args, const GearQuatScene &scene)
+static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments &args,
+                                   const Scene &scene)
 {
   const std::string reader = reader_of_predicted_velocities(lmp, fix);
   const auto because = [](bool on, const std::string &yes, const std::string &no) {
@@ -117,9 +118,8 @@ static std::vector<Effect> effects(LAMMPS *lmp, const FixGearQuat *fix,
       {"masks", !args.masks.empty(),
        because(!args.masks.empty(), "keywords force and torque", "no keyword force or torque"),
        NOTHING},
-      {"isokinetic", args.isokinetic != GearQuat::Isokinetic::NONE,
-       because(args.isokinetic != GearQuat::Isokinetic::NONE, "keyword isokinetic",
-               "isokinetic none"),
+      {"isokinetic", args.isokinetic != Isokinetic::NONE,
+       because(args.isokinetic != Isokinetic::NONE, "keyword isokinetic", "isokinetic none"),
        NOTHING},
       {"virial", fix->thermo_virial != 0,
        because(fix->thermo_virial, "in steps that ask for pressure or stress",
@@ -136,12 +136,11 @@ static std::vector<Effect> effects(LAMMPS *lmp, const FixGearQuat *fix,
 
 /* ---------------------------------------------------------------------- */
 
-void LAMMPS_NS::report_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatArguments &args,
-                             GearQuatBodies &bodies)
+void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies)
 {
-  if (args.report == GearQuatArguments::Report::NO) return;
-  const GearQuatScene scene(lmp, bodies);
-  const GearQuatSurroundings surroundings(lmp, fix, args, bodies);
+  if (args.report == Arguments::Report::NO) return;
+  const Scene scene(lmp, bodies);
+  const Surroundings surroundings(lmp, fix, args, bodies);
   const auto rows = effects(lmp, fix, args, scene);
   if (lmp->comm->me != 0) return;
 
@@ -152,7 +151,7 @@ void LAMMPS_NS::report_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuat
                                  fix->id, scene.bodies, sites, scene.freedoms);
   for (const auto &row : rows) {
     text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);
-    if (args.report == GearQuatArguments::Report::LONG && (!row.on || row.name == rows[0].name) &&
+    if (args.report == Arguments::Report::LONG && (!row.on || row.name == rows[0].name) &&
         !row.omits.empty())
       text += fmt::format("  {:<20}      leaves out {}\n", "", row.omits);
   }

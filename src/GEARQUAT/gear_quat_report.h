@@ -10,17 +10,19 @@
 #define LMP_GEAR_QUAT_REPORT_H
 
 namespace LAMMPS_NS {
-
-class FixGearQuat;
-class GearQuatBodies;
+class Fix;
 class LAMMPS;
-struct GearQuatArguments;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class Bodies;
+struct Arguments;
 
 /// Writes the report to screen and log on rank 0, as long as args.report wants it.  Collective; to be
 /// called in setup(), when neighbor lists are built and bodies have their ghosts.
-void report_scene(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatArguments &args,
-                  GearQuatBodies &bodies);
+void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies);
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -20,26 +20,27 @@
 #include <algorithm>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
-GearQuatRespa::GearQuatRespa(LAMMPS *lmp) : Pointers(lmp), f(nullptr), torque(nullptr), nmax(0) {}
+RespaForces::RespaForces(LAMMPS *lmp) : Pointers(lmp), f(nullptr), torque(nullptr), nmax(0) {}
 
-GearQuatRespa::~GearQuatRespa()
+RespaForces::~RespaForces()
 {
   memory->destroy(f);
   memory->destroy(torque);
 }
 
-bool GearQuatRespa::outermost(int level) const
+bool RespaForces::outermost(int level) const
 {
   return level == levels() - 1;
 }
 
-int GearQuatRespa::levels() const
+int RespaForces::levels() const
 {
   return (int) steps(lmp).size();
 }
 
-std::vector<double> GearQuatRespa::steps(LAMMPS *lmp)
+std::vector<double> RespaForces::steps(LAMMPS *lmp)
 {
 #if __has_include("respa.h")
   const auto *integrate = dynamic_cast<Respa *>(lmp->update->integrate);
@@ -54,7 +55,7 @@ std::vector<double> GearQuatRespa::steps(LAMMPS *lmp)
 }
 
 /// Atoms may have been exchanged since the step began.
-void GearQuatRespa::begin()
+void RespaForces::begin()
 {
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
@@ -67,7 +68,7 @@ void GearQuatRespa::begin()
   if (torque) std::fill_n(torque[0], 3 * (size_t) nmax, 0.0);
 }
 
-void GearQuatRespa::add(int level)
+void RespaForces::add(int level)
 {
   if (level == 0) begin();
   for (int i = 0; i < atom->nlocal; ++i)
@@ -79,7 +80,7 @@ void GearQuatRespa::add(int level)
 
 /// LAMMPS keeps them in a fix of its own, that packs for each atom 3 numbers a level: forces, then
 /// torques.
-void GearQuatRespa::recall()
+void RespaForces::recall()
 {
   begin();
   Fix *store = modify->get_fix_by_id("RESPA");
@@ -94,7 +95,7 @@ void GearQuatRespa::recall()
   }
 }
 
-double GearQuatRespa::memory_usage() const
+double RespaForces::memory_usage() const
 {
   return (torque ? 6.0 : 3.0) * nmax * sizeof(double);
 }

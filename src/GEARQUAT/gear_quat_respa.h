@@ -13,12 +13,12 @@
 
 #include <vector>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatRespa : protected Pointers {
+class RespaForces : protected Pointers {
  public:
-  GearQuatRespa(LAMMPS *lmp);
-  ~GearQuatRespa() override;
+  RespaForces(LAMMPS *lmp);
+  ~RespaForces() override;
 
   /// The time steps of all levels, the innermost first; none without r-RESPA.
   static std::vector<double> steps(LAMMPS *lmp);
@@ -41,6 +41,6 @@ class GearQuatRespa : protected Pointers {
   void begin();
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -15,20 +15,19 @@
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 // files of releases up to 0.2.0 begin with the formulation, 0 or 1
 
 static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
 static constexpr double FORMAT = 1;
 
-GearQuatRestart::GearQuatRestart(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies,
-                                 GearQuatMotion &motion) :
-    Pointers(lmp),
-    fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)
+Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
+    Pointers(lmp), fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)
 {
 }
 
-void GearQuatRestart::write(FILE *fp) const
+void Restart::write(FILE *fp) const
 {
   const Block data = {MAGIC, FORMAT, (double) bodies.has_extended(), (double) atom->natoms,
                       motion.keep()};
@@ -38,7 +37,7 @@ void GearQuatRestart::write(FILE *fp) const
 }
 
 /// LAMMPS does not tell the size of the block: only what every release wrote is read at first.
-void GearQuatRestart::read(const char *buf)
+void Restart::read(const char *buf)
 {
   double head[2];
   std::memcpy(head, buf, sizeof(head));
@@ -54,7 +53,7 @@ void GearQuatRestart::read(const char *buf)
 }
 
 /// Other fixes step over these data: the first number tells how many there are.
-int GearQuatRestart::pack(int i, double *buf) const
+int Restart::pack(int i, double *buf) const
 {
   const int n = HEAD + bodies.pack_exchange(i, buf + HEAD);
   buf[0] = n;
@@ -64,7 +63,7 @@ int GearQuatRestart::pack(int i, double *buf) const
 
 /// The data of each atom here, null where there are none.  Rows stay where LAMMPS has read them: if
 /// atoms were deleted since, those that took their places have theirs behind the rows of all atoms.
-std::vector<const double *> GearQuatRestart::packed_atoms() const
+std::vector<const double *> Restart::packed_atoms() const
 {
   std::unordered_map<tagint, int> without;
   for (int i = 0; i < atom->nlocal; ++i) without[atom->tag[i]] = i;
@@ -88,10 +87,10 @@ std::vector<const double *> GearQuatRestart::packed_atoms() const
   return packed;
 }
 
-bool GearQuatRestart::resume(int group)
+bool Restart::resume(int group)
 {
   waiting = false;
-  using Resumed = GearQuatBodies::Resumed;
+  using Resumed = Bodies::Resumed;
   const Resumed found = bodies.resume(packed_atoms(), block.extended != 0.0, group);
   if (found == Resumed::NONE) return false;
   motion.take(block.motion);

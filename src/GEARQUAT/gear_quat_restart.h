@@ -15,11 +15,11 @@
 
 #include <cstdio>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatRestart : protected Pointers {
+class Restart : protected Pointers {
  public:
-  GearQuatRestart(LAMMPS *lmp, const Fix *fix, GearQuatBodies &bodies, GearQuatMotion &motion);
+  Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion);
 
   void write(FILE *fp) const;
   /// Ends the run if another release wrote this with other contents.
@@ -38,14 +38,14 @@ class GearQuatRestart : protected Pointers {
 
  private:
   const Fix *fix;
-  GearQuatBodies &bodies;
-  GearQuatMotion &motion;
+  Bodies &bodies;
+  Motion &motion;
 
   struct Block {
     double magic, format;
     double extended;    ///< bodies have sites that are more than points
     double natoms;      ///< in the file
-    GearQuatMotion::Kept motion;
+    Motion::Kept motion;
   };
   Block block;
   bool waiting;    ///< for resume()
@@ -56,6 +56,6 @@ class GearQuatRestart : protected Pointers {
   std::vector<const double *> packed_atoms() const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <utility>
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 /// A moment of inertia below this fraction of the largest counts as zero, as fix rigid counts it.
 constexpr double LINEAR_FRACTION = 1.0e-7;
@@ -32,13 +32,13 @@ struct RigidBody {
 
 /// Where a body is and how it moves: the 13 numbers that place and move its sites.
 struct BodyState {
-  double center[3];        ///< centre of mass, unwrapped
+  double center[3];        ///< center of mass, unwrapped
   double q[4];             ///< orientation, scalar part last
-  double velocity[3];      ///< of the centre of mass
+  double velocity[3];      ///< of the center of mass
   double omega_body[3];    ///< angular velocity along the principal axes
 };
 
-/// Total force and torque about the centre of mass, in mass * length / time^2 (* length).
+/// Total force and torque about the center of mass, in mass * length / time^2 (* length).
 struct Load {
   double force[3];
   double torque_space[3];
@@ -135,6 +135,6 @@ inline void drop_vanishing_moments(double moments[3])
     if (moments[i] < LINEAR_FRACTION * largest || moments[i] <= 0.0) moments[i] = 0.0;
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

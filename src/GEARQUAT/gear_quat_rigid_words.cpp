@@ -13,6 +13,7 @@
 #include <vector>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 struct RigidWords {
   std::vector<std::string> keywords;
@@ -35,14 +36,14 @@ static const std::vector<RigidWords> RIGID_WORDS = {
     {{"bodyforces"}, "forces are always summed late, in the end of the step"},
 };
 
-std::string LAMMPS_NS::instead_of_rigid_keyword(const std::string &keyword)
+std::string GearQuat::instead_of_rigid_keyword(const std::string &keyword)
 {
   for (const auto &row : RIGID_WORDS)
     if (std::count(row.keywords.begin(), row.keywords.end(), keyword)) return row.instead;
   return "";
 }
 
-int LAMMPS_NS::modify_like_rigid(LAMMPS *lmp, int narg, char **arg)
+int GearQuat::modify_like_rigid(LAMMPS *lmp, int narg, char **arg)
 {
   const std::string word = arg[0];
   if (word == "temp" || word == "press")

@@ -11,8 +11,10 @@
 #include <string>
 
 namespace LAMMPS_NS {
-
 class LAMMPS;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
 
 /// What to write instead of a keyword of fix rigid and its kin; empty for any other word.
 std::string instead_of_rigid_keyword(const std::string &keyword);
@@ -21,6 +23,6 @@ std::string instead_of_rigid_keyword(const std::string &keyword);
 /// on all ranks where this fix cannot do what they ask for.
 int modify_like_rigid(LAMMPS *lmp, int narg, char **arg);
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

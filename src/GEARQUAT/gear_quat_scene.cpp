@@ -27,7 +27,7 @@ static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR 
     PRE_FORCE | PRE_REVERSE | POST_FORCE | POST_INTEGRATE_RESPA | PRE_FORCE_RESPA |
     POST_FORCE_RESPA;
 
-std::string LAMMPS_NS::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner)
+std::string GearQuat::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner)
 {
   if (lmp->comm->ghost_velocity) return "velocities are sent to ghost atoms";
   for (auto *other : lmp->modify->get_fix_list())
@@ -36,7 +36,7 @@ std::string LAMMPS_NS::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *ow
   return "";
 }
 
-bool LAMMPS_NS::makes_forces(LAMMPS *lmp, const Fix *owner)
+bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
 {
   constexpr int AROUND_FORCES = PRE_FORCE | PRE_REVERSE | POST_FORCE | FINAL_INTEGRATE |
       PRE_FORCE_RESPA | POST_FORCE_RESPA | FINAL_INTEGRATE_RESPA;
@@ -53,7 +53,7 @@ bool LAMMPS_NS::makes_forces(LAMMPS *lmp, const Fix *owner)
   return false;
 }
 
-std::vector<int> LAMMPS_NS::periods_of_readers(LAMMPS *lmp, const Fix *owner)
+std::vector<int> GearQuat::periods_of_readers(LAMMPS *lmp, const Fix *owner)
 {
   std::vector<int> periods;
   for (auto *other : lmp->modify->get_fix_list())
@@ -66,28 +66,28 @@ std::vector<int> LAMMPS_NS::periods_of_readers(LAMMPS *lmp, const Fix *owner)
 
 /* ---------------------------------------------------------------------- */
 
-static GearQuatScene::Top top_of(const RigidBody &rigid, int dimension)
+static Scene::Top top_of(const RigidBody &rigid, int dimension)
 {
   double i[3];
   std::copy_n(rigid.inertia, 3, i);
   std::sort(i, i + 3);
-  if (i[2] <= 0.0) return GearQuatScene::POINT;
-  if (dimension == 2) return GearQuatScene::PLANAR;
-  if (i[0] <= 0.0) return GearQuatScene::LINEAR;
+  if (i[2] <= 0.0) return Scene::POINT;
+  if (dimension == 2) return Scene::PLANAR;
+  if (i[0] <= 0.0) return Scene::LINEAR;
   const bool low = i[1] - i[0] < LINEAR_FRACTION * i[2],
              high = i[2] - i[1] < LINEAR_FRACTION * i[2];
-  if (low && high) return GearQuatScene::SPHERICAL;
-  return low || high ? GearQuatScene::SYMMETRIC : GearQuatScene::ASYMMETRIC;
+  if (low && high) return Scene::SPHERICAL;
+  return low || high ? Scene::SYMMETRIC : Scene::ASYMMETRIC;
 }
 
-GearQuatScene::GearQuatScene(LAMMPS *lmp, const GearQuatBodies &store)
+Scene::Scene(LAMMPS *lmp, const Bodies &store)
 {
   enum { SITES, ARMS, EXTENDED, GHOSTS, FREEDOMS, KINDS, COUNTS = KINDS + TOPS };
   bigint here[COUNTS] = {}, all[COUNTS];
   double largest_here[3] = {0.0, -(double) MAXTAGINT, 0.0}, largest[3];
 
   for (int ibody = 0; ibody < store.nowned(); ++ibody) {
-    const GearQuatBody &one = store.body[ibody];
+    const Body &one = store.body[ibody];
     ++here[KINDS + top_of(one.rigid, lmp->domain->dimension)];
     here[FREEDOMS] += lmp->domain->dimension == 2 ? 2 + (one.rigid.inertia[2] > 0.0)
                                                   : 3 + one.rigid.rotational_freedoms();

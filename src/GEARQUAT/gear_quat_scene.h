@@ -15,11 +15,13 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-
 class Fix;
-class FixGearQuat;
-class GearQuatBodies;
 class LAMMPS;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class Bodies;
 
 /// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that asks.
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
@@ -31,7 +33,7 @@ bool makes_forces(LAMMPS *lmp, const Fix *owner);
 std::vector<int> periods_of_readers(LAMMPS *lmp, const Fix *owner);
 
 /// The same on all ranks.
-struct GearQuatScene {
+struct Scene {
   /// Bodies by their principal moments; two are equal that differ by less than 1e-7 of the largest.
   enum Top { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
 
@@ -39,16 +41,16 @@ struct GearQuatScene {
   bigint freedoms = 0;                        ///< of all bodies, translation and rotation
   bigint tops[TOPS] = {};                     ///< bodies of each kind
   bigint fewest_sites = 0, most_sites = 0;    ///< of a body
-  bigint arms = 0;                            ///< sites away from the centre of mass
+  bigint arms = 0;                            ///< sites away from the center of mass
   bigint extended = 0;                        ///< sites that are more than points
   bigint ghosts = 0;                          ///< sites whose body another rank owns
   bigint large = 0;                           ///< bodies that every rank has
-  double farthest = 0.0;                      ///< largest coordinate of a centre of mass, unwrapped
+  double farthest = 0.0;                      ///< largest coordinate of a center of mass, unwrapped
 
   /// Collective; bodies: after their ghosts were updated.
-  GearQuatScene(LAMMPS *lmp, const GearQuatBodies &bodies);
+  Scene(LAMMPS *lmp, const Bodies &bodies);
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Sites of finite size: own moments of inertia about their centre, in their own frame, and the
+/* Sites of finite size: own moments of inertia about their center, in their own frame, and the
    orientation of that frame.  Quaternions and frames: see gear_quat_quaternion.h, with `own` for the
    frame of the site. */
 
@@ -12,7 +12,7 @@
 
 #include "gear_quat_quaternion.h"
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 /// A solid sphere.
 inline void sphere_moments(double mass, double radius, double moments[3])
@@ -36,7 +36,7 @@ inline void line_moments(double mass, double length, double moments[3])
   moments[1] = moments[2] = mass * length * length / 12.0;
 }
 
-/// A thin triangle with these corners about its centre, along axes that are principal.
+/// A thin triangle with these corners about its center, along axes that are principal.
 inline void triangle_moments(double mass, const double *c1, const double *c2, const double *c3,
                              double moments[3])
 {
@@ -91,6 +91,6 @@ inline double angle_about_z(const double *q)
   return q[3] < 0.0 ? 2.0 * std::atan2(-q[2], -q[3]) : 2.0 * std::atan2(q[2], q[3]);
 }
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

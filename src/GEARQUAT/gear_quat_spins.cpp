@@ -56,8 +56,7 @@ bool is_lost(const Scheme &scheme, const RigidBody &body, const BodyState &state
 
 }    // namespace
 
-void LAMMPS_NS::check_spins(LAMMPS *lmp, const GearQuatBodies &bodies, const Scheme &scheme,
-                            double h)
+void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, double h)
 {
   double energy[2] = {0.0, 0.0}, all_energy[2];    // twice the kinetic one, degrees of freedom
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
@@ -75,7 +74,7 @@ void LAMMPS_NS::check_spins(LAMMPS *lmp, const GearQuatBodies &bodies, const Sch
   tagint id[2] = {MAXTAGINT, MAXTAGINT}, all_id[2];
   Lost lost[2] = {}, all_lost[2];
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const GearQuatBody &body = bodies.body[ibody];
+    const Body &body = bodies.body[ibody];
     int smallest, largest;
     if (body.id < id[0] && is_lost(scheme, body.rigid, bodies.state[ibody], h, lost[0]))
       id[0] = body.id;
@@ -115,7 +114,7 @@ void LAMMPS_NS::check_spins(LAMMPS *lmp, const GearQuatBodies &bodies, const Sch
                              "an angular velocity of"));
 }
 
-std::string LAMMPS_NS::advice_on_spin(const RigidBody &body, const double *omega_body)
+std::string GearQuat::advice_on_spin(const RigidBody &body, const double *omega_body)
 {
   int smallest, largest;
   if (!thin(body, smallest, largest)) return "";

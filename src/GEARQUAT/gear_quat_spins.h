@@ -14,19 +14,21 @@
 #include <string>
 
 namespace LAMMPS_NS {
-
-class GearQuatBodies;
 class LAMMPS;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class Bodies;
 
 /// Ends the run on all ranks if a body turns faster than can be followed at a step h.  Rank 0 warns of
 /// a nearly linear one that will, once it has its share of the kinetic energy.  Collective.
-void check_spins(LAMMPS *lmp, const GearQuatBodies &bodies, const GearQuat::Scheme &scheme,
-                 double h);
+void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, double h);
 
 /// What to do about a body that is lost while it turns so, if it is nearly linear and turns about
 /// its axis; else empty.
-std::string advice_on_spin(const GearQuat::RigidBody &body, const double *omega_body);
+std::string advice_on_spin(const RigidBody &body, const double *omega_body);
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -29,7 +29,7 @@
 #include <cstdlib>
 #include <limits>
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 /// Taylor series of one body's x (columns 0-2) and q (columns 3-6) in units of a step.
 struct TaylorSeries {
@@ -298,6 +298,6 @@ class Collocation {
   }
 };
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -28,7 +28,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace GearQuat {
+namespace LAMMPS_NS::GearQuat {
 
 /// Largest values with which a shrinking step is stable: from 11 on the rescaled rows of the
 /// second-order form grow by themselves (tests/unit/test_step_control.cpp).
@@ -176,6 +176,6 @@ class StepControl {
   }
 };
 
-}    // namespace GearQuat
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -20,7 +20,7 @@ static constexpr double NORM_ROUNDING = 1.0e-15;
 
 /* ---------------------------------------------------------------------- */
 
-double GearQuatSums::energy_correction() const
+double Sums::energy_correction() const
 {
   double here[2] = {0.0, 0.0}, all[2];
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
@@ -36,7 +36,7 @@ double GearQuatSums::energy_correction() const
 }
 
 /// What a body adds to an element of the global vector, or offers for the largest.
-double GearQuatSums::of_body(int n, int ibody, const Integrator *integrator) const
+double Sums::of_body(int n, int ibody, const Integrator *integrator) const
 {
   const RigidBody &rigid = bodies.body[ibody].rigid;
   const BodyState &s = bodies.state[ibody];
@@ -61,7 +61,7 @@ double GearQuatSums::of_body(int n, int ibody, const Integrator *integrator) con
   }
 }
 
-double GearQuatSums::element(int n, const Integrator *integrator) const
+double Sums::element(int n, const Integrator *integrator) const
 {
   const bool largest = n == NORM || n == RADIAL || n == MAX_POSITION || n == MAX_ANGLE;
   double here = 0.0, all;

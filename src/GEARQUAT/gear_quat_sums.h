@@ -10,9 +10,9 @@
 
 #include "gear_quat_bodies.h"
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatSums : protected Pointers {
+class Sums : protected Pointers {
  public:
   /// Elements of the vector, as the manual lists them.
   enum {
@@ -27,20 +27,20 @@ class GearQuatSums : protected Pointers {
     ELEMENTS
   };
 
-  GearQuatSums(LAMMPS *lmp, const GearQuatBodies &bodies) : Pointers(lmp), bodies(bodies) {}
+  Sums(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
 
   /// Energy that takes thermo's potential energy from the predicted to the corrected pose; zero if
-  /// it is less than rounding of the centres alone can make of the loads.
+  /// it is less than rounding of the centers alone can make of the loads.
   double energy_correction() const;
   /// An element; integrator: null as long as there are no histories.
-  double element(int n, const GearQuat::Integrator *integrator) const;
+  double element(int n, const Integrator *integrator) const;
 
  private:
-  const GearQuatBodies &bodies;
+  const Bodies &bodies;
 
-  double of_body(int n, int ibody, const GearQuat::Integrator *integrator) const;
+  double of_body(int n, int ibody, const Integrator *integrator) const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

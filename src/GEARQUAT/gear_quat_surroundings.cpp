@@ -5,12 +5,13 @@
 
 #include "gear_quat_surroundings.h"
 
-#include "fix_gear_quat.h"
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_peer.h"
 
 #include "atom.h"
 #include "domain.h"
+#include "fix.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
@@ -21,6 +22,7 @@
 #include <algorithm>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 // label of an atom: that of its body, or one of these
 
@@ -32,10 +34,8 @@ static constexpr int MOST_GROUPS = 8 * sizeof(int);    // a bit of the mask each
 
 /* ---------------------------------------------------------------------- */
 
-GearQuatSurroundings::GearQuatSurroundings(LAMMPS *lmp, const FixGearQuat *fix,
-                                           const GearQuatArguments &args, GearQuatBodies &bodies) :
-    Pointers(lmp),
-    fix(fix), args(args), bodies(bodies)
+Surroundings::Surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies) :
+    Pointers(lmp), fix(fix), args(args), bodies(bodies)
 {
   const auto label = labels();
   count_pairs(label);
@@ -44,12 +44,12 @@ GearQuatSurroundings::GearQuatSurroundings(LAMMPS *lmp, const FixGearQuat *fix,
 }
 
 /// What moves an atom, for owned and ghost atoms; the ID of the body is positive.
-std::vector<double> GearQuatSurroundings::labels()
+std::vector<double> Surroundings::labels()
 {
   std::vector<double> label(atom->nlocal + atom->nghost, STILL);
   for (auto *other : modify->get_fix_list()) {
     if (!other->time_integrate || other == fix) continue;
-    const auto *same = dynamic_cast<const FixGearQuat *>(other);
+    const auto *same = dynamic_cast<const Peer *>(other);
     for (int i = 0; i < atom->nlocal; ++i)
       if ((atom->mask[i] & other->groupbit) && (!same || same->moves(i)))
         label[i] = MOVED_BY_OTHERS;
@@ -61,7 +61,7 @@ std::vector<double> GearQuatSurroundings::labels()
 }
 
 /// In the lists that pair styles run over in every step.
-void GearQuatSurroundings::count_pairs(const std::vector<double> &label)
+void Surroundings::count_pairs(const std::vector<double> &label)
 {
   bigint here[3] = {0, 0, 0}, all[3];
   for (int which = 0; which < neighbor->nlist; ++which) {
@@ -86,7 +86,7 @@ void GearQuatSurroundings::count_pairs(const std::vector<double> &label)
   own_pairs = all[2];
 }
 
-void GearQuatSurroundings::count_atoms(const std::vector<double> &label)
+void Surroundings::count_atoms(const std::vector<double> &label)
 {
   bigint here[3] = {0, 0, 0}, all[3];
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -105,7 +105,7 @@ void GearQuatSurroundings::count_atoms(const std::vector<double> &label)
    sentences and lines for the input script
 ------------------------------------------------------------------------- */
 
-void GearQuatSurroundings::propose(const std::vector<double> &label)
+void Surroundings::propose(const std::vector<double> &label)
 {
   const auto share = [this](bigint some) {
     return fmt::format("{} of {} pairs in the neighbor lists ({:.0f} %)", some, pairs,
@@ -134,7 +134,7 @@ void GearQuatSurroundings::propose(const std::vector<double> &label)
                     kspace));
     text.push_back("  " + exclude_own());
   }
-  if (unused > 0 && args.bodystyle == GearQuatArguments::BodyStyle::GROUP) {
+  if (unused > 0 && args.bodystyle == Arguments::BodyStyle::GROUP) {
     text.push_back(fmt::format("{} atoms of group {} are in no body, {} of them moved by no fix; a "
                                "group of the bodies alone:",
                                unused, group->names[fix->igroup],
@@ -145,7 +145,7 @@ void GearQuatSurroundings::propose(const std::vector<double> &label)
 }
 
 /// True if a body may be so large that it meets its own periodic image: that moves it.
-bool GearQuatSurroundings::meets_itself() const
+bool Surroundings::meets_itself() const
 {
   double extent = 0.0, largest;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
@@ -158,7 +158,7 @@ bool GearQuatSurroundings::meets_itself() const
 }
 
 /// An existing group of atoms that nothing moves, the largest, or one to be made.
-std::string GearQuatSurroundings::exclude_still(const std::vector<double> &label) const
+std::string Surroundings::exclude_still(const std::vector<double> &label) const
 {
   std::string best;
   bigint most = 0;
@@ -184,15 +184,15 @@ std::string GearQuatSurroundings::exclude_still(const std::vector<double> &label
                      utils::join_words(moving, " "));
 }
 
-std::string GearQuatSurroundings::exclude_own() const
+std::string Surroundings::exclude_own() const
 {
   const std::string name = group->names[fix->igroup];
   switch (args.bodystyle) {
-    case GearQuatArguments::BodyStyle::MOLECULE:
+    case Arguments::BodyStyle::MOLECULE:
       return "neigh_modify exclude molecule/intra " + name;
-    case GearQuatArguments::BodyStyle::SINGLE:
+    case Arguments::BodyStyle::SINGLE:
       return fmt::format("neigh_modify exclude group {0} {0}", name);
-    case GearQuatArguments::BodyStyle::GROUP: {
+    case Arguments::BodyStyle::GROUP: {
       std::string line = "neigh_modify";
       for (const auto &body : args.groups) line += fmt::format(" exclude group {0} {0}", body);
       return line;

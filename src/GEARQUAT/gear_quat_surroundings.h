@@ -16,25 +16,27 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Fix;
+}    // namespace LAMMPS_NS
 
-class FixGearQuat;
-class GearQuatBodies;
-struct GearQuatArguments;
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatSurroundings : protected Pointers {
+class Bodies;
+struct Arguments;
+
+class Surroundings : protected Pointers {
  public:
   /// Collective; to be made after neighbor lists were built.
-  GearQuatSurroundings(LAMMPS *lmp, const FixGearQuat *fix, const GearQuatArguments &args,
-                       GearQuatBodies &bodies);
+  Surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies);
 
   /// What was found, a sentence each, below it the line of the input script that mends it; nothing
   /// where there is nothing to mend.  The same on all ranks.
   const std::vector<std::string> &lines() const { return text; }
 
  private:
-  const FixGearQuat *fix;
-  const GearQuatArguments &args;
-  GearQuatBodies &bodies;
+  const Fix *fix;
+  const Arguments &args;
+  Bodies &bodies;
   std::vector<std::string> text;
 
   bigint pairs = 0, still_pairs = 0, own_pairs = 0;    ///< entries of neighbor lists
@@ -50,6 +52,6 @@ class GearQuatSurroundings : protected Pointers {
   bool meets_itself() const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -17,7 +17,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-double **GearQuatTable::local()
+double **BodyTable::local()
 {
   fill(mine);
   rows.resize(bodies.nowned());
@@ -25,22 +25,22 @@ double **GearQuatTable::local()
   return rows.data();
 }
 
-double GearQuatTable::global(int row, int column)
+double BodyTable::global(int row, int column)
 {
   if (!gathered) gather();
   const size_t at = (size_t) row * COLUMNS + column;
   return at < all.size() ? all[at] : 0.0;
 }
 
-void GearQuatTable::fill(std::vector<double> &rows_here) const
+void BodyTable::fill(std::vector<double> &rows_here) const
 {
   rows_here.resize((size_t) bodies.nowned() * COLUMNS);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     fill_row(ibody, rows_here.data() + (size_t) ibody * COLUMNS);
 }
 
-/// A centre in the box and its image flags; also where it has flown so far that flags are no integers.
-void GearQuatTable::wrap(const double *center, double *wrapped, double *image) const
+/// A center in the box and its image flags; also where it has flown so far that flags are no integers.
+void BodyTable::wrap(const double *center, double *wrapped, double *image) const
 {
   const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};
   const bool tilted = domain->triclinic;
@@ -55,9 +55,9 @@ void GearQuatTable::wrap(const double *center, double *wrapped, double *image) c
 }
 
 /// Quaternions have the scalar first, as everywhere in LAMMPS.
-void GearQuatTable::fill_row(int ibody, double *row) const
+void BodyTable::fill_row(int ibody, double *row) const
 {
-  const GearQuatBody &body = bodies.body[ibody];
+  const Body &body = bodies.body[ibody];
   const BodyState &s = bodies.state[ibody];
   const Load &l = bodies.load[ibody];
 
@@ -80,11 +80,11 @@ void GearQuatTable::fill_row(int ibody, double *row) const
   row[ID] = double(body.id);
 }
 
-void GearQuatTable::gather()
+void BodyTable::gather()
 {
   std::vector<double> rows_here;    // local() has shown `mine`
   fill(rows_here);
-  const std::vector<double> met = gear_quat_gather(rows_here, MPI_DOUBLE, world);
+  const std::vector<double> met = gather_all(rows_here, MPI_DOUBLE, world);
 
   std::vector<size_t> order(met.size() / COLUMNS);
   std::iota(order.begin(), order.end(), 0);

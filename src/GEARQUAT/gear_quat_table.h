@@ -11,9 +11,9 @@
 
 #include "gear_quat_bodies.h"
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatTable : protected Pointers {
+class BodyTable : protected Pointers {
  public:
   /// Columns, counted from 0; the first fifteen are those of fix rigid.
   enum {
@@ -31,7 +31,7 @@ class GearQuatTable : protected Pointers {
     COLUMNS = 28
   };
 
-  GearQuatTable(LAMMPS *lmp, const GearQuatBodies &bodies) : Pointers(lmp), bodies(bodies) {}
+  BodyTable(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
 
   /// Rows of owned bodies, anew at every call; the pointers stay valid until the next one.
   double **local();
@@ -46,7 +46,7 @@ class GearQuatTable : protected Pointers {
   }
 
  private:
-  const GearQuatBodies &bodies;
+  const Bodies &bodies;
   std::vector<double> mine, all;
   std::vector<double *> rows;
   bool gathered = false;    ///< `all` is of the present poses
@@ -57,6 +57,6 @@ class GearQuatTable : protected Pointers {
   void gather();
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

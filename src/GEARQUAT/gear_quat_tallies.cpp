@@ -12,6 +12,7 @@
 #include <algorithm>
 
 using namespace LAMMPS_NS;
+using namespace GearQuat;
 
 static constexpr bigint NEVER = -1;
 
@@ -29,7 +30,7 @@ static std::vector<bigint *> steps_of_tally(Update *update)
 
 /* ---------------------------------------------------------------------- */
 
-void GearQuatTallies::save()
+void Tallies::save()
 {
   notes.clear();
   for (auto *one : modify->get_compute_list()) {
@@ -44,12 +45,12 @@ void GearQuatTallies::save()
   modify->clearstep_compute();
 }
 
-void GearQuatTallies::pretend()
+void Tallies::pretend()
 {
   for (auto *step : steps_of_tally(update)) *step = update->ntimestep;
 }
 
-bool GearQuatTallies::used() const
+bool Tallies::used() const
 {
   const auto &computes = modify->get_compute_list();
   return std::any_of(computes.begin(), computes.end(), [](const Compute *one) {
@@ -57,7 +58,7 @@ bool GearQuatTallies::used() const
   });
 }
 
-void GearQuatTallies::restore()
+void Tallies::restore()
 {
   size_t which = 0;
   for (auto *one : modify->get_compute_list()) {

@@ -15,11 +15,11 @@
 
 #include <vector>
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatTallies : protected Pointers {
+class Tallies : protected Pointers {
  public:
-  explicit GearQuatTallies(LAMMPS *lmp) : Pointers(lmp) {}
+  explicit Tallies(LAMMPS *lmp) : Pointers(lmp) {}
 
   /// Keep the notes, and forget that computes were evaluated.
   void save();
@@ -40,6 +40,6 @@ class GearQuatTallies : protected Pointers {
   bigint tallied[4];
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -27,7 +27,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-Molecule **LAMMPS_NS::find_template(LAMMPS *lmp, const std::string &template_id)
+Molecule **GearQuat::find_template(LAMMPS *lmp, const std::string &template_id)
 {
   if (template_id.empty()) return nullptr;
   const int first = lmp->atom->find_molecule(template_id.c_str());
@@ -47,20 +47,20 @@ static constexpr double SAME = 1.0e-6;       // numbers of a file have few digit
 static constexpr double ROUNDED = 1.0e-3;    // of a moment
 
 /// As the molecule has it now: what it states, and sums over its atoms for the rest.
-static GearQuatStated present(Molecule *molecule)
+static StatedMolecule present(Molecule *molecule)
 {
   molecule->compute_center();
   molecule->compute_mass();
   molecule->compute_com();
   molecule->compute_inertia();
   const double *t = molecule->itensor;    // xx yy zz yz xz xy
-  GearQuatStated now = {
+  StatedMolecule now = {
       false, molecule->masstotal, {}, {t[0], t[5], t[4], t[5], t[1], t[3], t[4], t[3], t[2]}};
   for (int k = 0; k < 3; ++k) now.center[k] = molecule->com[k] - molecule->center[k];
   return now;
 }
 
-static bool differ(const GearQuatStated &a, const GearQuatStated &b, double size)
+static bool differ(const StatedMolecule &a, const StatedMolecule &b, double size)
 {
   double largest = 0.0;
   for (const double moment : b.inertia) largest = std::max(largest, std::fabs(moment));
@@ -71,7 +71,7 @@ static bool differ(const GearQuatStated &a, const GearQuatStated &b, double size
 }
 
 /// Empty if a body can be so.
-static std::string fault_of(const GearQuatStated &stated, double size)
+static std::string fault_of(const StatedMolecule &stated, double size)
 {
   double moments[3], axes[9];
   principal_axes(stated.inertia, moments, axes);
@@ -85,10 +85,10 @@ static std::string fault_of(const GearQuatStated &stated, double size)
   return "";
 }
 
-static GearQuatStated read_stated(LAMMPS *lmp, Molecule *molecule, const std::string &template_id)
+static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::string &template_id)
 {
   const int flags[3] = {molecule->massflag, molecule->comflag, molecule->inertiaflag};
-  GearQuatStated stated = present(molecule);
+  StatedMolecule stated = present(molecule);
   if (!flags[0] && !flags[1] && !flags[2]) return stated;
 
   const double mass = molecule->masstotal;
@@ -96,7 +96,7 @@ static GearQuatStated read_stated(LAMMPS *lmp, Molecule *molecule, const std::st
   std::copy_n(molecule->com, 3, com);
   std::copy_n(molecule->itensor, 6, tensor);
   molecule->massflag = molecule->comflag = molecule->inertiaflag = 0;
-  const GearQuatStated summed = present(molecule);
+  const StatedMolecule summed = present(molecule);
   molecule->masstotal = mass;
   std::copy_n(com, 3, molecule->com);
   std::copy_n(tensor, 6, molecule->itensor);
@@ -118,9 +118,9 @@ static GearQuatStated read_stated(LAMMPS *lmp, Molecule *molecule, const std::st
   return stated;
 }
 
-std::vector<GearQuatStated> LAMMPS_NS::read_stated(LAMMPS *lmp, const std::string &template_id)
+std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
 {
-  std::vector<GearQuatStated> all;
+  std::vector<StatedMolecule> all;
   Molecule **molecules = find_template(lmp, template_id);
   for (int n = 0; molecules && n < molecules[0]->nset; ++n)
     all.push_back(::read_stated(lmp, molecules[n], template_id));
@@ -129,7 +129,7 @@ std::vector<GearQuatStated> LAMMPS_NS::read_stated(LAMMPS *lmp, const std::strin
 
 #else
 
-std::vector<GearQuatStated> LAMMPS_NS::read_stated(LAMMPS *lmp, const std::string &template_id)
+std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
 {
   if (!template_id.empty() && lmp->comm->me == 0)
     lmp->error->warning(
@@ -148,7 +148,7 @@ std::vector<GearQuatStated> LAMMPS_NS::read_stated(LAMMPS *lmp, const std::strin
 ------------------------------------------------------------------------- */
 
 /// The stated molecule at its place, turned.
-static GivenBody given_at(const GearQuatStated &stated, const GearQuatInsertion &at)
+static GivenBody given_at(const StatedMolecule &stated, const Insertion &at)
 {
   const double q[4] = {at.quat[1], at.quat[2], at.quat[3], at.quat[0]};
   double a[9], arm[3], turned[9];
@@ -172,8 +172,8 @@ static GivenBody given_at(const GearQuatStated &stated, const GearQuatInsertion 
   return given;
 }
 
-void LAMMPS_NS::add_molecule(LAMMPS *lmp, GearQuatBodies &bodies, int first,
-                             const GearQuatStated *stated, const GearQuatInsertion &insertion)
+void GearQuat::add_molecule(LAMMPS *lmp, Bodies &bodies, int first, const StatedMolecule *stated,
+                            const Insertion &insertion)
 {
   const Atom *atom = lmp->atom;
   tagint smallest = MAXTAGINT, id;

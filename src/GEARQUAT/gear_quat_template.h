@@ -14,13 +14,16 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-
-class GearQuatBodies;
 class LAMMPS;
 class Molecule;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class Bodies;
 
 /// What a molecule of a template states of itself, in the frame of the template.
-struct GearQuatStated {
+struct StatedMolecule {
   bool differs;    ///< from what its atoms add up to; if not, the atoms are what counts
   double mass;
   double center[3];    ///< of mass, from the geometric center
@@ -28,7 +31,7 @@ struct GearQuatStated {
 };
 
 /// Where an inserted molecule is: geometric center, velocity, rotation (scalar part first).
-struct GearQuatInsertion {
+struct Insertion {
   const double *center, *velocity, *quat;
 };
 
@@ -39,14 +42,14 @@ Molecule **find_template(LAMMPS *lmp, const std::string &template_id);
 /// What the molecules of a template state, one entry each; none for an empty ID.  Ends the run, naming
 /// the template, if no body can be so.  Rank 0 tells of what differs from the atoms, or, in a plugin
 /// for a LAMMPS without the header, that it cannot be read.
-std::vector<GearQuatStated> read_stated(LAMMPS *lmp, const std::string &template_id);
+std::vector<StatedMolecule> read_stated(LAMMPS *lmp, const std::string &template_id);
 
 /// One body of the atoms that were just created on all ranks, from index `first` on; its ID is the
 /// smallest molecule ID of its atoms.  It is fresh: its history begins with the forces of this step.
 /// Collective.
-void add_molecule(LAMMPS *lmp, GearQuatBodies &bodies, int first, const GearQuatStated *stated,
-                  const GearQuatInsertion &insertion);
+void add_molecule(LAMMPS *lmp, Bodies &bodies, int first, const StatedMolecule *stated,
+                  const Insertion &insertion);
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

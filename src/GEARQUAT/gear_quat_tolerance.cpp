@@ -34,8 +34,8 @@ static Scheme with_trial_row(Scheme scheme)
   return scheme;
 }
 
-GearQuatTolerance::GearQuatTolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme,
-                                     const StepControl &control, GearQuatBodies &bodies) :
+Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
+                     Bodies &bodies) :
     Pointers(lmp),
     fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present),
     next_step(0.0), fresh(false), told(false), kept()
@@ -43,7 +43,7 @@ GearQuatTolerance::GearQuatTolerance(LAMMPS *lmp, const Fix *fix, const Scheme &
   kept.values = present.values();
 }
 
-void GearQuatTolerance::refuse_scene() const
+void Tolerance::refuse_scene() const
 {
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR,
@@ -66,7 +66,7 @@ void GearQuatTolerance::refuse_scene() const
    start
 ------------------------------------------------------------------------- */
 
-Scheme GearQuatTolerance::scheme_of_start() const
+Scheme Tolerance::scheme_of_start() const
 {
   Scheme start = present;
   start.trial = false;
@@ -74,7 +74,7 @@ Scheme GearQuatTolerance::scheme_of_start() const
   return start;
 }
 
-void GearQuatTolerance::begin(bool full)
+void Tolerance::begin(bool full)
 {
   kept = Memory();
   next_step = update->dt;
@@ -89,7 +89,7 @@ void GearQuatTolerance::begin(bool full)
   }
 }
 
-void GearQuatTolerance::shorten_first_step()
+void Tolerance::shorten_first_step()
 {
   double here[2] = {0.0, largest_speed()}, all[2];
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
@@ -122,7 +122,7 @@ void GearQuatTolerance::shorten_first_step()
 }
 
 /// A fix that has begun this step when `begins` begins it, null for none.
-const Fix *GearQuatTolerance::integrated_before(const Fix *begins) const
+const Fix *Tolerance::integrated_before(const Fix *begins) const
 {
   for (const auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
     if (other == begins) break;
@@ -132,7 +132,7 @@ const Fix *GearQuatTolerance::integrated_before(const Fix *begins) const
 }
 
 /// Time so far was made of the steps before the one that has begun.
-void GearQuatTolerance::set_begun_step(double step)
+void Tolerance::set_begun_step(double step)
 {
   const bigint before = update->ntimestep - 1;
   update->atime += (before - update->atimestep) * update->dt;
@@ -145,10 +145,10 @@ void GearQuatTolerance::set_begun_step(double step)
    a step
 ------------------------------------------------------------------------- */
 
-Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody, const Load &load)
+Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
 {
   StepErrors one;
-  const GearQuatBody &body = bodies.body[ibody];
+  const Body &body = bodies.body[ibody];
   const Correction correction =
       order.correct(integrator, body.rigid, body.reach(), load, bodies.history(ibody), one);
   if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
@@ -157,7 +157,7 @@ Correction GearQuatTolerance::correct(const Integrator &integrator, int ibody, c
 }
 
 /// No site on this rank is faster.
-double GearQuatTolerance::largest_speed() const
+double Tolerance::largest_speed() const
 {
   double largest = 0.0;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
@@ -170,14 +170,14 @@ double GearQuatTolerance::largest_speed() const
 }
 
 /// Where nothing moves nothing is known of what a longer step would do.
-double GearQuatTolerance::farthest_step(double speed) const
+double Tolerance::farthest_step(double speed) const
 {
   if (speed == 0.0) return std::fabs(update->dt);
   return neighbor->skin > 0.0 ? PART_OF_SKIN * neighbor->skin / speed
                               : std::numeric_limits<double>::infinity();
 }
 
-bool GearQuatTolerance::choose()
+bool Tolerance::choose()
 {
   double here[5] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0,
                     largest_speed()};    // not const: STUBS
@@ -220,14 +220,14 @@ bool GearQuatTolerance::choose()
 }
 
 /// The step that ends now was made with the present one.
-void GearQuatTolerance::change_step()
+void Tolerance::change_step()
 {
   if (next_step == update->dt) return;
   update->update_time();
   set_step(next_step);
 }
 
-void GearQuatTolerance::set_values(int values)
+void Tolerance::set_values(int values)
 {
   present.rows = values;
   order = VariableOrder(present);
@@ -235,7 +235,7 @@ void GearQuatTolerance::set_values(int values)
   kept.steady = 0.0;
 }
 
-void GearQuatTolerance::change_values(int values)
+void Tolerance::change_values(int values)
 {
   while (present.values() != values) {
     const bool more = values > present.values();
@@ -245,7 +245,7 @@ void GearQuatTolerance::change_values(int values)
   }
 }
 
-void GearQuatTolerance::keep_step(double step)
+void Tolerance::keep_step(double step)
 {
   next_step = step;
   if (update->dt == step) return;
@@ -253,7 +253,7 @@ void GearQuatTolerance::keep_step(double step)
   change_step();
 }
 
-void GearQuatTolerance::put_back_begun_step(double step)
+void Tolerance::put_back_begun_step(double step)
 {
   if (const Fix *other = integrated_before(fix))
     error->all(
@@ -265,20 +265,20 @@ void GearQuatTolerance::put_back_begun_step(double step)
   set_begun_step(step);
 }
 
-void GearQuatTolerance::tell_of_step(double step) const
+void Tolerance::tell_of_step(double step) const
 {
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n",
                    step, update->dt);
 }
 
-bool GearQuatTolerance::owns_step() const
+bool Tolerance::owns_step() const
 {
   return update->dt == next_step;
 }
 
 /// As fix dt/reset changes it; this fix is told with all others.
-void GearQuatTolerance::set_step(double step)
+void Tolerance::set_step(double step)
 {
   update->dt = step;
   update->dt_default = 0;
@@ -291,7 +291,7 @@ void GearQuatTolerance::set_step(double step)
    outputs and restart
 ------------------------------------------------------------------------- */
 
-double GearQuatTolerance::element(int n) const
+double Tolerance::element(int n) const
 {
   switch (n) {
     case STEP:
@@ -311,7 +311,7 @@ double GearQuatTolerance::element(int n) const
   }
 }
 
-void GearQuatTolerance::recall(const Memory &memory)
+void Tolerance::recall(const Memory &memory)
 {
   set_values((int) memory.values);
   kept = memory;

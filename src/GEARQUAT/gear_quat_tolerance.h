@@ -17,11 +17,11 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_step_control.h"
 
-namespace LAMMPS_NS {
+namespace LAMMPS_NS::GearQuat {
 
-class GearQuatTolerance : protected Pointers {
+class Tolerance : protected Pointers {
  public:
-  /// Elements of the fix's vector, behind those of GearQuatSums.
+  /// Elements of the fix's vector, behind those of Sums.
   enum { STEP, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST_ERROR, HELD, ELEMENTS };
 
   /// What a restart file keeps: the next step's values, steps made with them, and the sums behind the
@@ -32,24 +32,23 @@ class GearQuatTolerance : protected Pointers {
   };
 
   /// scheme: of the fix; its number of values is the largest.
-  GearQuatTolerance(LAMMPS *lmp, const Fix *fix, const GearQuat::Scheme &scheme,
-                    const GearQuat::StepControl &control, GearQuatBodies &bodies);
+  Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
+            Bodies &bodies);
 
   /// Ends the run if something else in it changes the time step, or cannot follow it.
   void refuse_scene() const;
 
   /// The scheme with the present number of values.
-  const GearQuat::Scheme &scheme() const { return present; }
+  const Scheme &scheme() const { return present; }
   /// What histories have to be seeded with: one row more than the most, without a trial row.
-  GearQuat::Scheme scheme_of_start() const;
+  Scheme scheme_of_start() const;
   /// Histories are seeded.  full: to the last row; otherwise they begin with the fewest values.
   void begin(bool full);
   /// Where its error is known to be too large; no other fix must have begun the step.  Collective.
   void shorten_first_step();
 
   /// Correct one body.
-  GearQuat::Correction correct(const GearQuat::Integrator &integrator, int ibody,
-                               const GearQuat::Load &load);
+  Correction correct(const Integrator &integrator, int ibody, const Load &load);
   /// A body whose history has just begun with fewer terms than the others.
   void note_fresh() { fresh = true; }
   /// Choose values and length of the next step.  After the call histories have the new number of
@@ -71,11 +70,11 @@ class GearQuatTolerance : protected Pointers {
 
  private:
   const Fix *fix;
-  GearQuatBodies &bodies;
-  GearQuat::Scheme present;
-  GearQuat::StepControl control;
-  GearQuat::VariableOrder order;
-  GearQuat::StepErrors errors;    ///< of the bodies corrected so far
+  Bodies &bodies;
+  Scheme present;
+  StepControl control;
+  VariableOrder order;
+  StepErrors errors;    ///< of the bodies corrected so far
   double next_step;
   bool fresh;
   bool told;    ///< of a step held at its lower limit
@@ -91,6 +90,6 @@ class GearQuatTolerance : protected Pointers {
   double farthest_step(double speed) const;
 };
 
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -81,7 +81,7 @@ def test_own_functions_where_an_effect_is_off_are_named():
     effect = next(effect for effect in plan.EFFECTS if effect.name == "finite size")
     key = effect.idle, results.sizes.counted[1]
     own = results.profiles[key].own + type(results.profiles[key].own)(
-        {"GearQuatExtended::place": 9}
+        {"GearQuat::Extended::place": 9}
     )
     results.profiles[key] = replace(results.profiles[key], own=own)
     assert page.off_sentence(results) == "Not free when off: finite size."

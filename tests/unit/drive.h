@@ -18,7 +18,7 @@
 
 namespace Drive {
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 
 /// Load on a body at a state; norm2: what its quaternion's square is taken for (Scheme::norm2).
 using LoadOf = std::function<Load(const BodyState &state, double norm2)>;

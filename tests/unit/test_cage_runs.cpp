@@ -22,7 +22,7 @@ const char *name(Formulation f)
   return f == FIRST ? "first" : "second";
 }
 
-/// Centre of mass in extended precision, good to the last digit but one.
+/// Center of mass in extended precision, good to the last digit but one.
 struct Reference {
   int test_case;
   bool consistent;

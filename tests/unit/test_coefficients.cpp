@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 using Oracle::Exact;
 using R = Oracle::Rational;
 

@@ -197,7 +197,7 @@ double ball_error(Isokinetic mode, const Scheme &scheme, double h, bool start_kn
   return Check::largest_difference(rates, exact.data(), 6);
 }
 
-// --- two asymmetric bodies tied to each other and to the origin at sites off their centres
+// --- two asymmetric bodies tied to each other and to the origin at sites off their centers
 
 const double ARMS[2][3] = {{0.6, -0.3, 0.4}, {-0.2, 0.5, 0.7}};
 

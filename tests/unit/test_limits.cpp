@@ -10,7 +10,7 @@
 
 #include <limits>
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "checks.h"
 #include "gear_quat_nordsieck.h"
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 using Check::largest_difference;
 
 namespace {

@@ -10,7 +10,7 @@
 #include "gear_quat_quaternion.h"
 #include "oracles/cage_scene.h"
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 using Oracle::CageScene;
 using std::vector;
 

@@ -40,7 +40,7 @@ Scheme compensated(Formulation formulation, int values)
 
 // --- the cage, case 1, consistent body
 
-/// Error of the centre of mass at t = 200; the reference is good to 1e-13.
+/// Error of the center of mass at t = 200; the reference is good to 1e-13.
 double cage_error(const Oracle::CageScene &scene, const Scheme &scheme, double h)
 {
   const double reference[3] = {85.56573248988141, -6.06135624295223, 6.86227956266460};

@@ -9,7 +9,7 @@
 #include "gear_quat_quaternion.h"
 #include "oracles/euler_angles.h"
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 using Check::largest_difference;
 using Check::quaternion_distance;
 using std::vector;

@@ -8,7 +8,7 @@
 #include "checks.h"
 #include "gear_quat_rigid_body.h"
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 using Check::largest_difference;
 using std::vector;
 
@@ -30,7 +30,7 @@ double not_principal(const double *tensor, const double *moments, const double *
   return std::max(worst, largest_difference(third, a + 6, 3));
 }
 
-/// The paper's body: the tensor of its four sites about their centre of mass.
+/// The paper's body: the tensor of its four sites about their center of mass.
 void paper_tensor(double tensor[9])
 {
   const double site[4][3] = {{3, -4, 0}, {-3, -4, 0}, {0, 0, 0}, {0, 0, 12}};

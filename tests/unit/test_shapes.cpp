@@ -8,7 +8,7 @@
 #include "checks.h"
 #include "gear_quat_shapes.h"
 
-using namespace GearQuat;
+using namespace LAMMPS_NS::GearQuat;
 using Check::largest_difference;
 using Check::quaternion_distance;
 using std::vector;
@@ -69,7 +69,7 @@ TEST(Moments, TriangleIsThatOfASum)
   double second[3] = {0, 0, 0}, made[3];
   int count = 0;
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n - i; ++j) {    // centres of equal pieces, the even and the odd ones
+    for (int j = 0; j < n - i; ++j) {    // centers of equal pieces, the even and the odd ones
       for (int odd = 0; odd < (j < n - i - 1 ? 2 : 1); ++odd) {
         const double u = (i + (1 + odd) / 3.0) / n, v = (j + (1 + odd) / 3.0) / n;
         for (int k = 0; k < 3; ++k)

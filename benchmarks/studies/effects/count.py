@@ -20,7 +20,7 @@ HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|
 #: what the fix does for output, before the first step, and once a step however many bodies there are
 FIX = re.compile(r"LAMMPS_NS::FixGearQuat::")
 ASIDE = re.compile(
-    r"FixGearQuat::(show_bodies|begin_steps)\(|Comm\w+::forward_comm\(int\)|GearQuatNeighbors::(check|take)_\w+\("
+    r"FixGearQuat::(show_bodies|begin_steps)\(|Comm\w+::forward_comm\(int\)|GearQuat::Neighbors::(check|take)_\w+\("
 )
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")
 

@@ -72,7 +72,7 @@ def function_table(results, scene=plan.MOVED):
     found = {
         name: results.per_body(scene, lambda profile, name=name: profile.own[name])
         for name in names
-        if "GearQuat" in name and "GearQuatTable" not in name
+        if "GearQuat" in name and "BodyTable" not in name
     }
     rows = [
         [f"`{short(name)}`", number(count)]

@@ -15,14 +15,14 @@
 
 namespace Oracle {
 
-using GearQuat::BodyState;
-using GearQuat::Load;
-using GearQuat::RigidBody;
+using LAMMPS_NS::GearQuat::BodyState;
+using LAMMPS_NS::GearQuat::Load;
+using LAMMPS_NS::GearQuat::RigidBody;
 
 struct CageScene {
   RigidBody body;
   BodyState start;
-  double site_body[4][3];    ///< along the axes the moments belong to, from the centre of mass
+  double site_body[4][3];    ///< along the axes the moments belong to, from the center of mass
   double site_charge[4] = {-0.25, -0.25, -0.5, 1.0};
   double site_sigma[4] = {1.0, 1.0, 4.0, 10.0};
   double site_epsilon[4] = {0.0, 0.0, 0.0, 10.0};
@@ -41,11 +41,11 @@ struct CageScene {
     const double degree = std::acos(-1.0) / 180.0;
     double q_site[4], site_axes[9], a[9] = {};
     euler_quaternion(40.0 * degree, 100.0 * degree, 85.0 * degree, q_site);
-    GearQuat::rotation_matrix(q_site, 1.0, site_axes);    // space -> the axes of the sites
+    LAMMPS_NS::GearQuat::rotation_matrix(q_site, 1.0, site_axes);    // space -> the axes of the sites
     for (int i = 0; i < 9; ++i)
       for (int k = 0; k < 3; ++k) a[i] += axes[3 * (i / 3) + k] * site_axes[3 * k + i % 3];
     start = BodyState{};
-    GearQuat::quaternion_from_matrix(a, start.q);
+    LAMMPS_NS::GearQuat::quaternion_from_matrix(a, start.q);
     start.center[0] = test_case == 3 ? 70.0 : 84.0;
     start.velocity[0] = test_case == 3 ? 0.0 : 0.2;
     const double w = (test_case == 3 ? 0.08 : 0.05) * 180.0 * degree;
@@ -63,30 +63,30 @@ struct CageScene {
 
   double total_energy(const BodyState &state) const
   {
-    return potential(state, GearQuat::dot4(state.q, state.q)) +
+    return potential(state, LAMMPS_NS::GearQuat::dot4(state.q, state.q)) +
         translational_energy(body, state.velocity) + rotational_energy(body, state.omega_body);
   }
 
   double potential(const BodyState &state, double norm2, Load *total = nullptr) const
   {
     double a[9], energy = 0.0;
-    GearQuat::rotation_matrix(state.q, norm2, a);
+    LAMMPS_NS::GearQuat::rotation_matrix(state.q, norm2, a);
     for (int k = 0; k < 4; ++k) {
       double arm[3], force[3] = {0.0, 0.0, 0.0}, torque[3];
-      GearQuat::to_space(a, site_body[k], arm);
+      LAMMPS_NS::GearQuat::to_space(a, site_body[k], arm);
       const double sigma = 0.5 * (site_sigma[k] + CAGE_SIGMA);    // Lorentz-Berthelot, Eq. 19a
       const double epsilon = std::sqrt(site_epsilon[k] * CAGE_EPSILON);
       for (int c = 0; c < 26; ++c) {
         double d[3];
         for (int i = 0; i < 3; ++i) d[i] = state.center[i] + arm[i] - cage[c][i];
-        const double r2 = GearQuat::dot3(d, d), s2 = sigma * sigma / r2, s6 = s2 * s2 * s2;
+        const double r2 = LAMMPS_NS::GearQuat::dot3(d, d), s2 = sigma * sigma / r2, s6 = s2 * s2 * s2;
         const double coulomb = site_charge[k] * cage_charge[c] / std::sqrt(r2);
         energy += 4.0 * epsilon * (s6 * s6 - s6) + coulomb;    // Eq. 19
         const double over_r = (24.0 * epsilon * (2.0 * s6 * s6 - s6) + coulomb) / r2;
         for (int i = 0; i < 3; ++i) force[i] += over_r * d[i];
       }
       if (!total) continue;
-      GearQuat::cross3(arm, force, torque);    // Eq. 12
+      LAMMPS_NS::GearQuat::cross3(arm, force, torque);    // Eq. 12
       for (int i = 0; i < 3; ++i) {
         total->force[i] += force[i];
         total->torque_space[i] += torque[i];
@@ -124,16 +124,16 @@ struct CageScene {
       for (int i = 0; i < 3; ++i) offset[k][i] = site[k][i] - center[i];
       for (int i = 0; i < 9; ++i)
         tensor[i] += mass[k] *
-            ((i % 4 == 0) * GearQuat::dot3(offset[k], offset[k]) -
+            ((i % 4 == 0) * LAMMPS_NS::GearQuat::dot3(offset[k], offset[k]) -
              offset[k][i / 3] * offset[k][i % 3]);
     }
-    GearQuat::principal_axes(tensor, body.inertia, axes);
+    LAMMPS_NS::GearQuat::principal_axes(tensor, body.inertia, axes);
     for (int k = 0; k < 3; ++k)    // the axes near +x, +y, +z: omega is listed along them
       if (axes[4 * k] < 0.0)
         for (int i = 0; i < 3; ++i) axes[3 * k + i] = -axes[3 * k + i];
     if (!consistent)
       for (int i = 0; i < 9; ++i) axes[i] = i % 4 == 0;
-    for (int k = 0; k < 4; ++k) GearQuat::to_body(axes, offset[k], site_body[k]);
+    for (int k = 0; k < 4; ++k) LAMMPS_NS::GearQuat::to_body(axes, offset[k], site_body[k]);
   }
 };
 

@@ -18,9 +18,9 @@
 
 namespace Oracle {
 
-using GearQuat::BodyState;
-using GearQuat::Load;
-using GearQuat::RigidBody;
+using LAMMPS_NS::GearQuat::BodyState;
+using LAMMPS_NS::GearQuat::Load;
+using LAMMPS_NS::GearQuat::RigidBody;
 
 class ExactFlow {
  public:
@@ -81,11 +81,11 @@ class ExactFlow {
   Vector rates(const Vector &y) const
   {
     const BodyState s = unpacked(y);
-    const double norm2 = GearQuat::dot4(s.q, s.q);
+    const double norm2 = LAMMPS_NS::GearQuat::dot4(s.q, s.q);
     const Load l = load(s, norm2);
     double a[9], torque[3];
-    GearQuat::rotation_matrix(s.q, norm2, a);
-    GearQuat::to_body(a, l.torque_space, torque);
+    LAMMPS_NS::GearQuat::rotation_matrix(s.q, norm2, a);
+    LAMMPS_NS::GearQuat::to_body(a, l.torque_space, torque);
     const long double *q = &y[6], *w = &y[10];
     Vector d;
     for (int i = 0; i < 3; ++i) {
