@@ -34,7 +34,7 @@ def molecules(
 # --- the table -----------------------------------------------------------------------------------
 def rows_of_the_code():
     """Pattern -> what happens, and whether whatever the group."""
-    found = re.findall(r'\{"(\^[^"]+)", Neighbor::(\w+),\s*Neighbor::(\w+),', SOURCE.read_text())
+    found = re.findall(r'\{"(\^[^"]+)", NeighborRule::(\w+),\s*NeighborRule::(\w+),', SOURCE.read_text())
     return {pattern: (what, where) for pattern, what, where in found}
 
 
