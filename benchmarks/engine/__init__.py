@@ -1,1 +1,41 @@
-"""What all studies share: running LAMMPS, reading what it wrote, writing pages."""
+"""One engine for all studies.
+
+A study is a module or a package of ``benchmarks/studies`` with a ``STUDY``, and a template
+``benchmarks/templates/PAGE.md.j2``.  Nothing else has to be touched: ``benchmarks/run`` finds it.
+
+    STUDY = Study(
+        key="drift",                    # benchmarks/run drift
+        title="Energy over long runs",  # heading of the page
+        page="drift",                   # doc/drift.md, its pictures in doc/drift, templates/drift.md.j2
+        seconds=600.0,                  # shown by --list
+        measure=measure,                # Lab -> data
+        find=find,                      # data -> Finding
+    )
+
+``measure(lab)`` runs LAMMPS and returns plain data: numbers, arrays, dictionaries (their keys may be
+tuples) and dataclasses of these.  It judges nothing.  The data are kept as JSON, and ``--render`` makes
+the page from them again.  The Lab (lab.py) runs decks:
+
+    lab.sweep(name, deck, axes, read, settings)   every combination of values of variables -> read(finished)
+    lab.many({name: Job(deck, variables, steps)}) side by side, --jobs at once -> {name: Finished}
+    lab.in_turn(jobs, rounds)                     one at a time, for timing -> {name: [Finished, ...]}
+    lab.share(0.3)                                a context: its work is that part of the progress bar
+    lab.quick, lab.full, lab.parts                what was asked for
+
+A Finished has ``log.thermo`` (columns as arrays), ``log.tables`` (of every run), ``log.timers``,
+``log.seconds``, ``log.text``, ``sites`` (of the dump) and ``error``.
+
+``find(data)`` returns a Finding (study.py): measurements with uncertainties, tables, pictures and further
+names for the template.  It runs nothing, so that tests can feed it data that must be refused.  A bound
+(``least``, ``most``) belongs to its Measurement; ``--check`` compares with it, pages do not show it.
+
+Pictures are tuples of Panels (panels.py), or functions that draw into a path.  Statistics are in
+statistics.py.  Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and, see
+page.py,
+
+    {{ table("name") }}  {{ measured(measurements) }}  {{ picture("name", "Caption.") }}
+    {{ x | to(".1e") }}  {{ n | grouped }}
+
+``publish.py`` copies the page to doc and writes blocks into pages that people write, such as README.md:
+``blocks={"README.md": "drift_readme.md.j2"}``.
+"""

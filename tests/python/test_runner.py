@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from benchmarks.engine.lammps_runner import Job, LammpsError, find_lmp, run, run_many
+from benchmarks.engine.runner import LammpsError, find_lmp, run
 
 PROGRAM = """#!/bin/sh
 # stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script
@@ -15,14 +15,14 @@ PROGRAM = """#!/bin/sh
 
 @pytest.fixture
 def fake(tmp_path):
-    """A program that runs its deck as a shell script, and a maker of such jobs."""
+    """A program that runs its deck as a shell script, and a maker of deck and log."""
     program = tmp_path / "lmp"
     program.write_text(PROGRAM)
     program.chmod(0o755)
 
-    def job(name, script, steps=0, **variables):
+    def job(name, script):
         (tmp_path / name).write_text(script)
-        return Job(tmp_path / name, tmp_path / f"log.{name}", variables, steps)
+        return tmp_path / name, tmp_path / f"log.{name}"
 
     return str(program), job
 
@@ -48,18 +48,18 @@ def test_arguments_and_steps(fake):
     lmp, job = fake
     seen = []
     deck = 'echo "$@" > "$4"\necho "  Step  Time"\necho " 5 0.5 1"\necho " 10 1 2"\n'
-    made = job("good", deck, dt=0.1)
-    run(made, lmp, on_step=seen.append)
+    path, log = job("good", deck)
+    run(path, log, {"dt": 0.1}, lmp, on_step=seen.append)
     assert seen == [5, 10]
-    assert made.log.read_text().split() == [
-        "-in", "good", "-log", str(made.log), "-nocite", "-var", "dt", "0.1",
+    assert log.read_text().split() == [
+        "-in", "good", "-log", str(log), "-nocite", "-var", "dt", "0.1",
     ]  # fmt: skip
 
 
 def test_error_is_told_with_the_last_lines(fake):
     lmp, job = fake
     with pytest.raises(LammpsError, match="(?s)log.bad: exit code 3.*ERROR: no such fix"):
-        run(job("bad", "echo ERROR: no such fix\nexit 3\n"), lmp)
+        run(*job("bad", "echo ERROR: no such fix\nexit 3\n"), lmp=lmp)
 
 
 def test_timeout_ends_the_whole_group(fake, tmp_path):
@@ -67,22 +67,9 @@ def test_timeout_ends_the_whole_group(fake, tmp_path):
     made = job("slow", f"sleep 60 &\necho $! > {tmp_path}/child\nwait\n")
     begin = time.monotonic()
     with pytest.raises(LammpsError, match="not finished after 0.5 s"):
-        run(made, lmp, timeout=0.5)
+        run(*made, lmp=lmp, timeout=0.5)
     assert time.monotonic() - begin < 10
     assert gone(int((tmp_path / "child").read_text()))
-
-
-def test_many_add_up_and_an_error_ends_them(fake):
-    lmp, job = fake
-    done = []
-    jobs = [job(f"job{k}", "echo 50 1 1\necho 100 1 1\n", steps=100) for k in range(5)]
-    run_many(jobs, lmp, workers=2, progress=done.append)
-    assert sum(done) == 500
-    begin = time.monotonic()
-    endless = job("endless", "while true; do echo 1 1 1; sleep 0.05; done\n", steps=1000)
-    with pytest.raises(LammpsError, match="exit code 1"):
-        run_many([endless, job("bad", "exit 1\n")], lmp, workers=2)
-    assert time.monotonic() - begin < 10
 
 
 def test_missing_program_is_named():

@@ -1,6 +1,62 @@
-"""Hard cases: scenes with an exact or independent answer, and whether the fix gives it.
+"""Scenes that are hard to integrate, each with an exact or independent answer.
 
-``case.py`` what a case is; ``cases.py`` the list of them; ``runs.py`` LAMMPS; ``page.py`` tables and
-page; ``figures.py`` pictures.  Every other module is one case, its decks are those of
-``examples/hard/KEY``.
+Every module is a case: ``TITLE``, ``SECONDS`` on two quiet cores, ``measure(lab)`` and ``find(results)``.
 """
+
+from dataclasses import replace
+
+from benchmarks.engine.study import Finding, Study
+
+from . import (
+    boundaries,
+    cutoff,
+    encounter,
+    fast,
+    fine,
+    inertia,
+    lifecycle,
+    long,
+    newstep,
+    poles,
+    tumbling,
+)
+
+#: key, which names the folder under examples/hard -> case, in the order of the page
+CASES = {
+    case.__name__.rpartition(".")[2]: case
+    for case in (encounter, long, fine, poles, tumbling, inertia, fast, newstep, lifecycle)
+    + (boundaries, cutoff)
+}
+
+
+def measure(lab):
+    """Key -> what ``measure`` of the case returns."""
+    chosen = {key: case for key, case in CASES.items() if key in lab.parts or not lab.parts}
+    total, results = sum(case.SECONDS for case in chosen.values()), {}
+    for key, case in chosen.items():
+        with lab.share(case.SECONDS / total):
+            results[key] = case.measure(lab)
+    return results
+
+
+def find(results):
+    """All measurements and pictures; ``cases`` of the template: key -> names of its section."""
+    whole = Finding(measurements=[], context={"cases": {}})
+    for key, data in results.items():
+        case = CASES[key].find(data)
+        section = {"title": CASES[key].TITLE, "measurements": case.measurements}
+        whole.context["cases"][key] = section | case.context
+        whole.measurements.extend(replace(m, what=f"{key}: {m.what}") for m in case.measurements)
+        whole.pictures.update(case.pictures)
+    return whole
+
+
+STUDY = Study(
+    key="hard",
+    title="Hard cases",
+    page="hard_cases",
+    seconds=sum(case.SECONDS for case in CASES.values()),
+    measure=measure,
+    find=find,
+    parts=tuple(CASES),
+)

@@ -2,9 +2,13 @@
 
 import numpy as np
 
-from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
+from benchmarks.engine.decks import FORMULATIONS, deck
+from benchmarks.engine.panels import Curve, Panel, floor
+from benchmarks.engine.study import Finding, Measurement
 
-ASKED = 1e-10
+TITLE, SECONDS = "Periodic and triclinic boundaries", 20.0
+MOST = 1e-10
+STEP = 0.01
 #: edge vectors of the boxes as columns, as in make_boundaries.py
 CELLS = {
     "periodic": np.diag([10.0, 10.0, 10.0]),
@@ -29,84 +33,43 @@ def crossings(positions, cell):
     return int(np.abs(np.diff(boxes, axis=0)).sum())
 
 
-def judge(results):
-    """Rows; ``results``: (place, box, formulation) -> (time, difference (F,), crossings)."""
-    rows = []
-    for place, words in PLACES.items():
-        for box in CELLS:
-            if (place, box, FORMULATIONS[0]) not in results:
-                continue
-            found = [results[place, box, f] for f in FORMULATIONS]
-            worst = max(off.max() for _, off, _ in found)
-            count = min(number for _, _, number in found)
-            said = f"{count:,} crossings or more".replace(",", " ")
-            what = f"{words}, {box} box: sites against those in an open box, both formulations"
-            rows.append(at_most(what, ASKED, worst, said))
-    return tuple(rows)
-
-
-def panels(results):
-    """Differences over time, by box."""
-    colours = dict(zip(PLACES, ("potential", "translation", "kinetic")))
-    shown = []
-    for box in CELLS:
-        curves = []
-        for place, words in PLACES.items():
-            for formulation, line in zip(FORMULATIONS, "-:"):
-                time, off, _ = results[place, box, formulation]
-                label = f"{words}, {formulation}"
-                curves.append(Curve(label, time, floor(off), colours[place], line))
-        shown.append(Panel(f"{box} box", "time", "distance of a site", tuple(curves), ASKED))
-    return tuple(shown)
-
-
-def measure(runs, places=tuple(PLACES), steps=40_000, **options):
-    """(place, box, formulation) -> (time, difference, crossings)."""
-    variables = {
-        f"{place}-{box}-{formulation}": {
-            "place": place,
-            "box": box,
-            "formulation": formulation,
-            "compensate": "yes",
-            "dt": 0.01,
-            "steps": steps,
-            "every": steps // 20,
-            "dump": 50,
-        }
-        | options
-        for place in places
-        for formulation in FORMULATIONS
-        for box in ("open", *CELLS)
-    }
-    found = runs.many("boundaries", variables)
+def measure(lab, places=tuple(PLACES), steps=40_000, **options):
+    """(place, box, formulation) -> (time (F,), difference (F,), crossings)."""
+    axes = {"place": places, "box": ("open", *CELLS), "formulation": FORMULATIONS}
+    settings = {"compensate": "yes", "dt": STEP, "steps": steps, "every": steps // 20, "dump": 50}
+    sites = lab.sweep(
+        "boundaries", deck("hard/boundaries"), axes, lambda run: run.sites, settings | options
+    )
     results = {}
-    for place in places:
-        for formulation in FORMULATIONS:
-            open_box = found[f"{place}-open-{formulation}"].sites
-            time, here = 0.01 * open_box.step, open_box.positions
-            for box, cell in CELLS.items():
-                there = found[f"{place}-{box}-{formulation}"].sites.positions
-                off = difference(there, here, cell)
-                results[place, box, formulation] = time, off, crossings(here, cell)
+    for (place, box, formulation), there in sites.items():
+        if box != "open":
+            here = sites[place, "open", formulation]
+            off = difference(there.positions, here.positions, CELLS[box])
+            count = crossings(here.positions, CELLS[box])
+            results[place, box, formulation] = STEP * here.step, off, count
     return results
 
 
-def run(runs):
-    """Finding of the case."""
-    results = measure(runs)
-    text = (
-        "Two bodies tied by a bond, t = 400 at a step of 0.01, both formulations with compensated sums. "
-        "In flight they are more than 13 000 units away at the end, where the last digit of a position is 1.8e-12. "
-        "LAMMPS' image flags count 512 boxes to either side and begin again; the fix does not mind, "
-        "unwrapped positions in LAMMPS' dumps do."
-    )
-    return Finding(judge(results), panels(results), text)
+def find(results):
+    """Finding of what ``measure`` returns."""
+    measurements = []
+    for place, box in dict.fromkeys((place, box) for place, box, _ in results):
+        runs = [results[place, box, formulation] for formulation in FORMULATIONS]
+        worst = max(off.max() for _, off, _ in runs)
+        count = f"{min(number for *_, number in runs):,} crossings or more".replace(",", " ")
+        what = f"{PLACES[place]}, {box} box: largest distance of a site from that in an open box"
+        measurements.append(Measurement(what, worst, remark=count, most=MOST))
+    panels = tuple(_panel(results, box) for box in CELLS)
+    return Finding(measurements, pictures={"boundaries": panels}, context={"step": STEP})
 
 
-CASE = Case(
-    "boundaries",
-    "Periodic and triclinic boundaries",
-    "Sites of one body are wrapped one by one; the body is one all the same.",
-    20.0,
-    run,
-)
+def _panel(results, of_box):
+    """Differences over time in one box."""
+    colors = dict(zip(PLACES, ("potential", "translation", "kinetic")))
+    lines = dict(zip(FORMULATIONS, "-:"))
+    curves = []
+    for (place, box, formulation), (time, off, _) in results.items():
+        if box == of_box:
+            label = f"{PLACES[place]}, {formulation}"
+            curves.append(Curve(label, time, floor(off), colors[place], lines[formulation]))
+    return Panel(f"{of_box} box", "time", "distance of a site", tuple(curves))

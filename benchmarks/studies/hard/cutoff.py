@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.studies.drift.judge import slope
-from benchmarks.engine.tables import Row
-from .case import Case, Curve, Finding, Panel
+from benchmarks.engine.decks import deck
+from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine.statistics import slope
+from benchmarks.engine.study import Finding, Measurement
 
+TITLE, SECONDS = "500 water molecules with a plain cut-off", 60.0
 STEP, STEPS, EVERY = 2.0, 2500, 10
 RIGID = "fix rigid/nve/small"
 #: method -> variables of the deck; the first is the yardstick, the last two have too many values
@@ -46,93 +48,66 @@ class Water:
     def drift(self):
         """Slope of the energy over the second half, kcal/mol/ps, and its standard error."""
         half = len(self.time) // 2
-        found, error = slope(self.time[half:], self.total[half:])
-        return 1e3 * found, 1e3 * error
+        rate, error = slope(self.time[half:], self.total[half:])
+        return 1e3 * rate, 1e3 * error
+
+    @property
+    def end(self):
+        """Time in ps by which a run was lost."""
+        return (self.time[-1] + EVERY * STEP) / 1000
 
 
-def _drift(water):
-    return "{:.0f} ± {:.0f}".format(*water.drift)
+def read(finished):
+    """Water of a run."""
+    table = finished.thermo
+    finite = np.isfinite(table["v_total"])
+    columns = (table[name][finite] for name in ("Time", "v_total", "Temp"))
+    return Water(*columns, bool(finished.error) or not finite.all())
 
 
-def _fate(water):
-    if not water.lost:
-        return f"{water.hot:.0f} K"
-    return f"lost by {(water.time[-1] + EVERY * STEP) / 1000:g} ps"
+def measure(lab, methods=tuple(METHODS), steps=STEPS, **options):
+    """method -> Water."""
+    names = tuple(METHODS)
+    settings = {"dt": STEP, "steps": steps, "every": EVERY} | options
+    runs = lab.sweep(
+        "cutoff",
+        deck("hard/cutoff"),
+        {"method_number": [names.index(method) for method in methods]},
+        read,
+        lambda run: METHODS[names[run["method_number"]]] | settings,
+        may_fail=True,
+    )
+    return {names[number]: water for number, water in runs.items()}
 
 
-def judge(results):
-    """Rows; ``results``: method -> Water."""
-    rigid, rows = results[RIGID], []
+def find(results):
+    """Finding of what ``measure`` returns."""
+    measurements, rigid = [], results[RIGID]
     for method, water in results.items():
-        if method == RIGID or method in TOO_MANY:
+        if method in TOO_MANY:
             continue
+        what = f"{method}: mean temperature of the second half"
         if water.lost:
-            measured, met = _fate(water), False
-        else:
-            measured = f"{water.hot:.0f} K ({rigid.hot:.0f} K), drift {_drift(water)} "
-            measured += f"({_drift(rigid)}) kcal/mol/ps"
-            met = bool(water.hot <= HOTTER * rigid.hot)
-        rows.append(
-            Row(
-                f"{method}: mean temperature and drift of the second half (`{RIGID}`)",
-                f"no blow-up: at most {HOTTER:g} times as hot",
-                measured,
-                met,
-            )
-        )
-    return tuple(rows)
-
-
-def panels(results):
-    """Temperature and energy over time."""
-    colours = dict(zip(METHODS, ("rigid", "second", "translation", "first", "rotation")))
+            measurements.append(Measurement(what, np.inf, remark=f"lost by {water.end:g} ps", most=0))
+            continue
+        most = None if method == RIGID else HOTTER * rigid.hot
+        measurements.append(Measurement(what, water.hot, spec=".0f", unit="K", most=most))
+        what = f"{method}: drift of the energy in the second half"
+        measurements.append(Measurement(what, *water.drift, spec=".0f", unit="kcal/mol/ps"))
+    colors = dict(zip(METHODS, ("rigid", "second", "translation", "first", "rotation")))
     hot, energy = [], []
-    for method, colour in colours.items():
-        water = results[method]
-        hot.append(Curve(method, water.time / 1000, water.temperature, colour))
-        energy.append(
-            Curve(method, water.time / 1000, (water.total - water.total[0]) / 1000, colour)
-        )
-    return (
+    for method in (method for method in colors if method in results):
+        water, color = results[method], colors[method]
+        time = water.time / 1000
+        hot.append(Curve(method, time, water.temperature, color))
+        energy.append(Curve(method, time, (water.total - water.total[0]) / 1000, color))
+    panels = (
         Panel("step 2 fs", "time, ps", "temperature, K", tuple(hot), log=""),
         Panel("step 2 fs", "time, ps", "energy - start, 1000 kcal/mol", tuple(energy), log=""),
     )
+    return Finding(measurements, pictures={"cutoff": panels}, context=_context(results))
 
 
-def measure(runs, methods=tuple(METHODS), steps=STEPS, **options):
-    """method -> Water."""
-    variables = {
-        f"run{number}": METHODS[method] | {"dt": STEP, "steps": steps, "every": EVERY} | options
-        for number, method in enumerate(methods)
-    }
-    found = runs.many("cutoff", variables, may_fail=True)
-    results = {}
-    for method, finished in zip(methods, found.values()):
-        table = finished.thermo
-        finite = np.isfinite(table["v_total"])
-        columns = (table[name][finite] for name in ("Time", "v_total", "Temp"))
-        results[method] = Water(*columns, bool(finished.error) or not finite.all())
-    return results
-
-
-def run(runs):
-    """Finding of the case."""
-    results = measure(runs)
-    fates = "; ".join(f"{method}: {_fate(results[method])}" for method in TOO_MANY)
-    text = (
-        f"{STEPS * STEP / 1000:g} ps at {STEP:g} fs from water that was equilibrated with smooth "
-        "forces. The plain cut-off heats it whoever integrates: the energy jumps by kcal/mol whenever "
-        "a charge crosses 8 Å. A history of too many values carries each jump on, at this step those "
-        f"with one more than the default ({fates}). With forces that are smooth at the cut-off see "
-        "[what accuracy costs](accuracy_cost.md)."
-    )
-    return Finding(judge(results), panels(results), text)
-
-
-CASE = Case(
-    "cutoff",
-    "500 water molecules with a plain cut-off",
-    "Forces jump; no method keeps its order.",
-    60.0,
-    run,
-)
+def _context(results):
+    many = {method: results[method] for method in TOO_MANY if method in results}
+    return {"many": many, "picoseconds": STEPS * STEP / 1000, "step": STEP}

@@ -2,10 +2,13 @@
 
 import numpy as np
 
-from benchmarks.engine.tables import Row
-from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
+from benchmarks.engine.decks import FORMULATIONS, deck
+from benchmarks.engine.panels import Curve, Panel, floor
+from benchmarks.engine.study import Finding, Measurement
 
-ASKED = 1e-8
+TITLE, SECONDS = "Near-singular encounter", 8.0
+#: error with a tolerance is at most this, with a fixed step more
+BOUND = 1e-8
 DISTANCES = ("0.02", "0.002")
 TOLERANCE, STEP, END = 1e-15, 0.001, 8.0
 #: method -> variables of the deck
@@ -15,92 +18,63 @@ RIGID = "fix rigid/nve/small"
 METHODS[RIGID] = {"method": "rigid", "tolerance": 0}
 
 
-def judge(results):
-    """Rows; ``results``: (distance, method) -> thermo table, energy at every step.
-
-    Errors are relative to the depth of the potential that the runs with a tolerance meet.
-    """
-    rows = []
-    for distance in dict.fromkeys(distance for distance, _ in results):
-        off = {m: relative_error(results, distance, m).max() for m in METHODS}
-        for formulation in FORMULATIONS:
-            method = f"tolerance, {formulation}"
-            steps = len(results[distance, method]["Step"]) - 1
-            what = (
-                f"distance {distance}, {method}: error of the energy at every step over the depth"
-            )
-            rows.append(at_most(what, ASKED, off[method], f"{steps} steps"))
-        fixed = [off[f"step {STEP:g}, {formulation}"] for formulation in FORMULATIONS]
-        rows.append(
-            Row(
-                f"distance {distance}, fixed step of {STEP:g} ({END / STEP:.0f} steps), second, first "
-                f"formulation and `{RIGID}`: the same",
-                f"fails: > {ASKED:.0e}".replace("e-0", "e-"),
-                ", ".join(f"{error:.1e}" for error in (*fixed, off[RIGID])),
-                bool(min(fixed) > ASKED),
-            )
-        )
-    return tuple(rows)
-
-
 def depth(results, distance):
-    """Depth of the potential met: the smaller one of both runs with a tolerance."""
-    found = (results[distance, f"tolerance, {f}"]["c_potential"] for f in FORMULATIONS)
-    return min(-float(potential.min()) for potential in found)
+    """Depth of the potential that was met: the smaller one of both runs with a tolerance."""
+    runs = (results[distance, f"tolerance, {f}"]["c_potential"] for f in FORMULATIONS)
+    return min(-float(potential.min()) for potential in runs)
 
 
 def relative_error(results, distance, method):
     """|E(t) - E(0)| over the depth, (n,); infinite where the energy is no number."""
     total = results[distance, method]["v_total"]
-    return np.nan_to_num(np.abs(total - total[0]), nan=np.inf) / depth(results, distance)
+    return np.abs(total - total[0]) / depth(results, distance)
 
 
-def panels(results):
-    """Errors over time, by distance."""
+def measure(lab, distances=DISTANCES, **options):
+    """(distance, method) -> thermo output, energy at every step."""
+    numbers = {str(number): method for number, method in enumerate(METHODS)}
+
+    def settings(run):
+        own = METHODS[numbers[run["method_number"]]]
+        fixed = {"dt": STEP, "steps": round(END / STEP), "more": "", "until": 0}
+        free = {"steps": 1_000_000, "until": END}
+        return (free if own["tolerance"] else fixed) | own | options
+
+    axes = {"distance": distances, "method_number": tuple(numbers)}
+    runs = lab.sweep(
+        "encounter", deck("hard/encounter"), axes, lambda run: run.thermo, settings, may_fail=True
+    )
+    return {(distance, numbers[number]): table for (distance, number), table in runs.items()}
+
+
+def find(results):
+    """Finding of what ``measure`` returns."""
+    measurements = []
+    for distance, method in results:
+        adaptive = "tolerance" in METHODS[method] and METHODS[method]["tolerance"] > 0
+        error = relative_error(results, distance, method).max()
+        bounds = {"most": BOUND} if adaptive else {} if method == RIGID else {"least": BOUND}
+        name = f"`tolerance`, {method.split(', ')[1]} formulation" if adaptive else method
+        name = f"step {STEP:g}, `{RIGID}`" if method == RIGID else name
+        steps = len(results[distance, method]["Step"]) - 1 if adaptive else round(END / STEP)
+        what = f"distance {distance}, {name}: largest error of the energy over the depth"
+        measurements.append(Measurement(what, error, remark=f"{steps} steps", **bounds))
+    distances = tuple(dict.fromkeys(distance for distance, _ in results))
+    panels = tuple(_panel(results, distance) for distance in distances)
+    context = {"depths": [depth(results, distance) for distance in distances]}
+    context |= {"tolerance": TOLERANCE}
+    return Finding(measurements, pictures={"encounter": panels}, context=context)
+
+
+def _panel(results, distance):
+    """Errors over time."""
     looks = {m: (m.split(", ")[-1], "-" if "tol" in m else ":") for m in METHODS}
     looks[RIGID] = ("rigid", ":")
-    shown = []
-    for distance in DISTANCES:
-        curves = []
-        for method, (colour, line) in looks.items():
-            time, off = results[distance, method]["Time"], relative_error(results, distance, method)
-            worst = np.maximum.accumulate(floor(off))[1:]
-            kept = np.isfinite(worst)
-            curves.append(Curve(method, time[1:][kept], worst[kept], colour, line))
-        title = f"distance {distance}: largest error so far"
-        shown.append(Panel(title, "time", "energy / depth", tuple(curves), ASKED))
-    return tuple(shown)
-
-
-def measure(runs, distances=DISTANCES, **options):
-    """(distance, method) -> thermo table."""
-    variables = {}
-    for distance in distances:
-        for number, own in enumerate(METHODS.values()):
-            fixed = {"dt": STEP, "steps": round(END / STEP), "more": "", "until": 0}
-            free = {"steps": 1_000_000, "until": END}
-            lines = free if own["tolerance"] else fixed
-            variables[f"{distance}-{number}"] = {"distance": distance} | lines | own | options
-    found = runs.many("encounter", variables, may_fail=True)
-    keys = [(distance, method) for distance in distances for method in METHODS]
-    return {key: finished.thermo for key, finished in zip(keys, found.values())}
-
-
-def run(runs):
-    """Finding of the case."""
-    results = measure(runs)
-    depths = " and ".join(f"{depth(results, distance):.0f}" for distance in DISTANCES)
-    text = (
-        f"`tolerance {TOLERANCE:g}`; the potential energy falls to {depths} below zero. The charges of "
-        "the cage are reconstructed."
-    )
-    return Finding(judge(results), panels(results), text)
-
-
-CASE = Case(
-    "encounter",
-    "Near-singular encounter",
-    "A charge of the body flies by a sphere of the cage with nothing but 1/r between them.",
-    8.0,
-    run,
-)
+    curves = []
+    for method, (color, line) in looks.items():
+        time, off = results[distance, method]["Time"], relative_error(results, distance, method)
+        worst = np.maximum.accumulate(floor(off))[1:]
+        kept = np.isfinite(worst)
+        curves.append(Curve(method, time[1:][kept], worst[kept], color, line))
+    title = f"distance {distance}: largest error so far"
+    return Panel(title, "time", "energy / depth", tuple(curves))

@@ -3,86 +3,42 @@
 import numpy as np
 
 from benchmarks.engine import series
-from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
+from benchmarks.engine.decks import FORMULATIONS, deck
+from benchmarks.engine.panels import Curve, Panel, floor
+from benchmarks.engine.study import Finding, Measurement
 
-#: asked of the energy, by ``compensate``, and of the squared length of q
-ASKED = {"no": 2e-10, "yes": 1e-12}
-NORM = 1e-14
+TITLE, SECONDS = "The paper's 50 million steps", 100.0
+#: largest error of the energy by ``compensate``, and deviation of the squared length of q from 1
+MOST, MOST_LENGTH = {"no": 2e-10, "yes": 1e-12}, 1e-14
 SUMS = {"no": "plain", "yes": "compensated"}
 
 
-def judge(results):
-    """Rows; ``results``: (formulation, compensate) -> Series."""
-    rows = []
-    for compensate, word in SUMS.items():
-        for formulation in FORMULATIONS:
-            found = results[formulation, compensate]
-            error = float(np.abs(found.total - found.total[0]).max())
-            steps = f"{found.step[-1]:,.0f} steps".replace(",", " ")
-            what = f"error of the energy, {steps}, {formulation} formulation, {word}"
-            rows.append(at_most(what, ASKED[compensate], error))
-    worst = max(float(found.q_error.max()) for found in results.values())
-    rows.append(at_most("squared length of q less 1, all runs", NORM, worst))
-    return tuple(rows)
+def measure(lab, steps=50_000_000, **options):
+    """(compensate, formulation) -> Series; ``options``: variables of the deck."""
+    axes = {"compensate": tuple(SUMS), "formulation": FORMULATIONS}
+    settings = {"steps": steps, "every": 10_000} | options
+    return lab.sweep("fine", deck("hard/fine"), axes, lambda run: series.of_log(run.log), settings)
 
 
-def _curves(results):
-    curves = []
-    for (formulation, compensate), found in results.items():
-        error = np.maximum.accumulate(np.abs(found.total - found.total[0]))
-        line = "-" if compensate == "no" else "--"
+def find(results):
+    """Finding of what ``measure`` returns."""
+    measurements, curves = [], []
+    for (compensate, formulation), run in results.items():
+        error = np.abs(run.total - run.total[0])
         label = f"{formulation}, {SUMS[compensate]}"
-        curves.append(Curve(label, found.time[1:], floor(error[1:]), formulation, line))
-    return tuple(curves)
-
-
-def panels(results):
-    """Largest error of the energy so far, and how close the body comes: its potential energy."""
-    found = results["second", "yes"]
-    potential = Curve("", found.time, found.potential, "potential")
-    return (
-        Panel("largest error of the energy so far", "time", "energy", _curves(results), log="xy"),
+        what = f"{formulation} formulation, {SUMS[compensate]} sums: largest error of the energy"
+        measurements.append(Measurement(what, float(error.max()), most=MOST[compensate]))
+        line = "-" if compensate == "no" else "--"
+        worst = floor(np.maximum.accumulate(error)[1:])
+        curves.append(Curve(label, run.time[1:], worst, formulation, line))
+    worst = max(float(run.q_error.max()) for run in results.values())
+    what = "all runs: largest deviation of the squared length of q from 1"
+    measurements.append(Measurement(what, worst, most=MOST_LENGTH))
+    run = results["yes", "second"]
+    potential = Curve("", run.time, run.potential, "potential")
+    panels = (
+        Panel("largest error of the energy so far", "time", "energy", tuple(curves), log="xy"),
         Panel("second, compensated", "time", "potential energy", (potential,), log=""),
     )
-
-
-def measure(runs, steps=50_000_000, **options):
-    """(formulation, compensate) -> Series; ``options``: variables of the deck."""
-    variables = {
-        f"{formulation}-{SUMS[compensate]}": {
-            "formulation": formulation,
-            "compensate": compensate,
-            "steps": steps,
-            "every": 10_000,
-        }
-        | options
-        for formulation in FORMULATIONS
-        for compensate in SUMS
-    }
-    found = runs.many("fine", variables)
-    return {
-        (v["formulation"], v["compensate"]): series.read_log(found[name].log)
-        for name, v in variables.items()
-    }
-
-
-def run(runs):
-    """Finding of the case."""
-    results = measure(runs)
-    potential = results["second", "yes"].potential
-    text = (
-        "Consistent body, start of test case 1, defaults of the fix, energy sampled once per unit of "
-        f"time. The potential energy stays between {potential.min():.1f} and {potential.max():.1f}: this "
-        "trajectory meets no bare charge before its end. The charges of the cage are reconstructed."
-    )
-    return Finding(judge(results), panels(results), text)
-
-
-CASE = Case(
-    "fine",
-    "The paper's 50 million steps",
-    "At a step of 0.0001 every error of the method is far below rounding, which grows with the "
-    "number of steps.",
-    100.0,
-    run,
-)
+    span = {"lowest": run.potential.min(), "highest": run.potential.max(), "steps": run.step[-1]}
+    return Finding(measurements, pictures={"fine": panels}, context=span)

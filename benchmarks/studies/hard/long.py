@@ -5,13 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most
-from benchmarks.engine.tables import Row
+from benchmarks.engine.decks import FORMULATIONS, deck
+from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine.study import Finding, Measurement
 
+TITLE, SECONDS = "Case 1 to t = 50 000", 100.0
 #: energy sampled about every 10, at every step, and evaluations of the forces
-SAMPLED, EVERY_STEP, EVALUATIONS = 1e-9, 1e-8, 1_000_000
+MOST_SAMPLED, MOST_EVERY_STEP, MOST_EVALUATIONS = 1e-9, 1e-8, 1_000_000
 SHIFTS = tuple(f"{k}e-9" for k in range(10))
-_TOLD = re.compile(
+_LAST_LINE = re.compile(
     r"^evaluations (\d+), energy off by (\S+) sampled, (\S+) at every step$", re.MULTILINE
 )
 
@@ -25,83 +27,43 @@ class Long:
     every: float
 
 
-def told(text):
+def read(text):
     """Long of the text of a log.  Raises ValueError if the deck's last line is not in it."""
-    found = _TOLD.search(text)
-    if not found:
+    match = _LAST_LINE.search(text)
+    if not match:
         raise ValueError("the last line of in.long, with evaluations and errors, is not in the log")
-    return Long(int(found[1]), float(found[2]), float(found[3]))
+    return Long(int(match[1]), float(match[2]), float(match[3]))
 
 
-def judge(results):
-    """Rows; ``results``: formulation -> list of Long."""
-    rows = []
-    for formulation, found in results.items():
-        name = f"worst of {len(found)} starts, {formulation} formulation"
-        worst = max(one.sampled for one in found)
-        rows.append(at_most(f"{name}: error of the energy, sampled every 10", SAMPLED, worst))
-        worst = max(one.every for one in found)
-        rows.append(at_most(f"{name}: error of the energy at every step", EVERY_STEP, worst))
-        most = max(one.evaluations for one in found)
-        rows.append(
-            Row(
-                f"{name}: force evaluations",
-                f"≤ {EVALUATIONS:,}".replace(",", " "),
-                f"{most:,}".replace(",", " "),
-                most <= EVALUATIONS,
-            )
-        )
-    return tuple(rows)
+def measure(lab, shifts=SHIFTS, **options):
+    """(formulation, shift) -> Long."""
+    axes = {"formulation": FORMULATIONS, "shift": shifts}
+    settings = {"steps": 5_000_000} | options
+    return lab.sweep("long", deck("hard/long"), axes, lambda run: read(run.log.text), settings)
 
 
-def panels(results):
-    """Errors and evaluations by start."""
-    errors, counts = [], []
-    for formulation, found in results.items():
-        x = np.arange(len(found))
-        for name, marker in (("every", "x"), ("sampled", "o")):
-            label = f"{formulation}, {'at every step' if name == 'every' else 'sampled'}"
-            y = np.array([getattr(one, name) for one in found])
-            errors.append(Curve(label, x, y, formulation, "", marker))
-        y = np.array([one.evaluations for one in found]) / 1e6
-        counts.append(Curve(formulation, x, y, formulation, "", "o"))
-    most = EVALUATIONS / 1e6
-    return (
-        Panel("worst in each start", "start", "error of the energy", tuple(errors), SAMPLED),
-        Panel("force evaluations", "start", "million", tuple(counts), most, log=""),
+def find(results):
+    """Finding of what ``measure`` returns."""
+    measurements, errors, counts = [], [], []
+    for formulation in dict.fromkeys(formulation for formulation, _ in results):
+        runs = [run for (of, _), run in results.items() if of == formulation]
+        name = f"{formulation} formulation, worst of {len(runs)} starts"
+        sampled, every = (np.array([getattr(run, of) for run in runs]) for of in ("sampled", "every"))
+        evaluations = np.array([run.evaluations for run in runs])
+        energy = f"{name}: error of the energy"
+        measurements += [
+            Measurement(f"{energy}, sampled every 10", sampled.max(), most=MOST_SAMPLED),
+            Measurement(f"{energy} at every step", every.max(), most=MOST_EVERY_STEP),
+            Measurement(f"{name}: evaluations of the forces", int(evaluations.max()), spec=",",
+                        most=MOST_EVALUATIONS),
+        ]  # fmt: skip
+        x = np.arange(len(runs))
+        errors.append(Curve(f"{formulation}, at every step", x, every, formulation, "", "x"))
+        errors.append(Curve(f"{formulation}, sampled", x, sampled, formulation, "", "o"))
+        counts.append(Curve(formulation, x, evaluations / 1e6, formulation, "", "o"))
+    panels = (
+        Panel("worst in each start", "start", "error of the energy", tuple(errors)),
+        Panel("force evaluations", "start", "million", tuple(counts), log=""),
     )
-
-
-def measure(runs, shifts=SHIFTS, **options):
-    """formulation -> list of Long."""
-    variables = {
-        f"{formulation}-{shift}": {"formulation": formulation, "shift": shift, "steps": 5_000_000}
-        | options
-        for formulation in FORMULATIONS
-        for shift in shifts
-    }
-    found = runs.many("long", variables)
-    results = {}
-    for name, finished in found.items():
-        one = told(finished.log.read_text(encoding="utf-8"))
-        results.setdefault(variables[name]["formulation"], []).append(one)
-    return results
-
-
-def run(runs):
-    """Finding of the case."""
-    results = measure(runs)
-    text = (
-        f"Starts moved by 0 to {SHIFTS[-1]} along x, `tolerance` as in the deck; the paper's step of "
-        "0.0001 would take 500 million evaluations. The charges of the cage are reconstructed."
-    )
-    return Finding(judge(results), panels(results), text)
-
-
-CASE = Case(
-    "long",
-    "Case 1 to t = 50 000",
-    "Chaotic, with encounters of bare charges down to 0.002 and less in every run.",
-    100.0,
-    run,
-)
+    context = {"starts": len(SHIFTS), "shift": SHIFTS[-1]}
+    return Finding(measurements, pictures={"long": panels}, context=context)

@@ -8,12 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmarks.engine.decks import FORMULATIONS, deck
+from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine.sites import read_sites
+from benchmarks.engine.study import Finding, Measurement
 from benchmarks.reference import Cage, Problem, paper_problem, reference_state
-from benchmarks.engine.tables import Row
-from .case import FORMULATIONS, Case, Curve, Finding, Panel
-from .sites import read_sites
 
-ASKED = 2.0
+TITLE, SECONDS = "A change of the step in mid-run", 10.0
+MOST = 2.0
 #: time between changes
 SPAN = 40.0
 #: change: (words, step at first, step after the change, whether the first one comes back)
@@ -23,6 +25,8 @@ CHANGES = {
     "ten": ("×10", 0.02, 0.2, False),
     "back": ("×10 and back", 0.02, 0.2, True),
 }
+HISTORIES = {"kept": "history kept", "anew": "started anew"}
+PARTS = {"whole": "error of the whole run", "after": "error made after the last change"}
 
 
 @dataclass(frozen=True)
@@ -46,98 +50,52 @@ def errors(change, end, time):
     return Errors(_distance(paper_problem(1), time, end), _distance(after, SPAN, end))
 
 
-def judge(results):
-    """Rows; ``results``: (change, formulation, "kept" or "anew") -> Errors."""
-    rows = []
-    for name, part in (("whole", "of the whole run"), ("after", "made after the last change")):
-        for change, (words, *_) in CHANGES.items():
-            if (change, FORMULATIONS[0], "kept") not in results:
-                continue
+def measure(lab, changes=tuple(CHANGES), **options):
+    """(change, formulation, "kept" or "anew") -> Errors."""
+
+    def settings(run):
+        _, first, then, back = CHANGES[run["change"]]
+        steps = round(SPAN / first)
+        own = {"dt": first, "steps": steps, "every": steps, "to": then, "then": round(SPAN / then)}
+        own |= {"back": steps if back else 0, "anew": "yes" if run["history"] == "anew" else "no"}
+        return own | options
+
+    def read(run):
+        return read_sites(run.dump.with_suffix(".change")), run.sites
+
+    axes = {"change": changes, "formulation": FORMULATIONS, "history": tuple(HISTORIES)}
+    runs = lab.sweep("newstep", deck("hard/newstep"), axes, read, settings)
+    spans = {change: 3 if back else 2 for change, (*_, back) in CHANGES.items()}
+    return {key: errors(*sites, SPAN * spans[key[0]]) for key, sites in runs.items()}
+
+
+def find(results):
+    """Finding of what ``measure`` returns."""
+    measurements = []
+    for part, words in PARTS.items():
+        for change in dict.fromkeys(change for change, *_ in results):
             pairs = [
-                tuple(getattr(results[change, f, kind], name) for kind in ("kept", "anew"))
+                [getattr(results[change, f, history], part) for history in HISTORIES]
                 for f in FORMULATIONS
             ]
             worst = max(kept / anew for kept, anew in pairs)
-            said = "; ".join("{:.1e} and {:.1e}".format(*pair) for pair in pairs)
-            rows.append(
-                Row(
-                    f"step {words}: error {part} over that of a run started anew at the change, worst "
-                    "of both formulations",
-                    f"≤ {ASKED:g}",
-                    f"{worst:.3g} ({said})",
-                    bool(worst <= ASKED),
-                )
-            )
-    return tuple(rows)
+            remark = "; ".join("{:.1e} and {:.1e}".format(*pair) for pair in pairs)
+            what = f"step {CHANGES[change][0]}: {words}, over that of a run started anew"
+            measurements.append(Measurement(what, worst, spec=".3g", remark=remark, most=MOST))
+    changes = {words: (first, then, back) for words, first, then, back in CHANGES.values()}
+    panels = tuple(_panel(results, part) for part in PARTS)
+    context = {"span": SPAN, "changes": changes}
+    return Finding(measurements, pictures={"newstep": panels}, context=context)
 
 
-def panels(results):
+def _panel(results, part):
     """Errors of all runs, kept beside anew."""
-    panels = []
-    for name, title in (
-        ("whole", "error of the whole run"),
-        ("after", "made after the last change"),
-    ):
-        curves = []
-        for formulation in FORMULATIONS:
-            for kind, marker in (("kept", "o"), ("anew", "x")):
-                y = [getattr(results[change, formulation, kind], name) for change in CHANGES]
-                label = f"{formulation}, {'history kept' if kind == 'kept' else 'started anew'}"
-                x = np.arange(len(CHANGES))
-                curves.append(Curve(label, x, np.array(y), formulation, "", marker))
-        ticks = tuple(words for words, *_ in CHANGES.values())
-        panels.append(Panel(title, "change", "distance of a site", tuple(curves), ticks=ticks))
-    return tuple(panels)
-
-
-def measure(runs, changes=tuple(CHANGES), **options):
-    """(change, formulation, "kept" or "anew") -> Errors."""
-    variables = {}
-    for change in changes:
-        _, first, then, back = CHANGES[change]
-        steps = round(SPAN / first)
-        for formulation in FORMULATIONS:
-            for kind in ("kept", "anew"):
-                variables[f"{change}-{formulation}-{kind}"] = {
-                    "formulation": formulation,
-                    "dt": first,
-                    "steps": steps,
-                    "every": steps,
-                    "to": then,
-                    "then": round(SPAN / then),
-                    "back": steps if back else 0,
-                    "anew": "yes" if kind == "anew" else "no",
-                } | options
-    found = runs.many("newstep", variables)
-    results = {}
-    for name, finished in found.items():
-        change, formulation, kind = name.split("-")
-        middle = read_sites(finished.dump.with_suffix(".change"))
-        time = SPAN * (3 if CHANGES[change][3] else 2)
-        results[change, formulation, kind] = errors(middle, finished.sites, time)
-    return results
-
-
-def run(runs):
-    """Finding of the case."""
-    results = measure(runs)
-    steps = "; ".join(
-        f"{words}: {first:g} → {then:g}" + (f" → {first:g}" if back else "")
-        for words, first, then, back in CHANGES.values()
-    )
-    text = (
-        f"Test case 1, consistent body, defaults of the fix, a change every {SPAN:g} units of time "
-        f"(steps {steps}). What a coarse step leaves in the higher derivatives is as wrong as that "
-        "step was: where the step becomes shorter than half, the fix starts the histories anew by "
-        "itself; elsewhere it rescales them. The charges of the cage are reconstructed."
-    )
-    return Finding(judge(results), panels(results), text)
-
-
-CASE = Case(
-    "newstep",
-    "A change of the step in mid-run",
-    "A history belongs to one step; for another one its rows are rescaled.",
-    10.0,
-    run,
-)
+    changes = list(dict.fromkeys(change for change, *_ in results))
+    curves = []
+    for formulation in FORMULATIONS:
+        for history, marker in zip(HISTORIES, "ox"):
+            y = [getattr(results[change, formulation, history], part) for change in changes]
+            label = f"{formulation}, {HISTORIES[history]}"
+            curves.append(Curve(label, np.arange(len(y)), np.array(y), formulation, "", marker))
+    ticks = tuple(CHANGES[change][0] for change in changes)
+    return Panel(PARTS[part], "change", "distance of a site", tuple(curves), ticks=ticks)

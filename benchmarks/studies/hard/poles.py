@@ -2,13 +2,17 @@
 
 import numpy as np
 
-from .case import FORMULATIONS, Case, Curve, Finding, Panel, at_most, floor
+from benchmarks.engine.decks import FORMULATIONS, deck
+from benchmarks.engine.panels import Curve, Panel, floor
+from benchmarks.engine.study import Finding, Measurement
 
-ASKED = 1e-12
+TITLE, SECONDS = "Theta = 0 and pi, and passing through", 8.0
+MOST = 1e-12
 POSES = {"upright": "theta = 0", "inverted": "theta = pi", "passing": "passing through both"}
 FRAMES = ("straight", "turned")
 #: the rotation of make_poles.py: a quaternion, scalar first
 TURN = (4, 1, 2, 3)
+COLUMNS = " ".join(f"f_move[1][{column}]" for column in (16, 17, 18, 19))
 
 
 def rotation(turn=TURN):
@@ -32,72 +36,35 @@ def theta(quaternion):
     return 2 * np.arcsin(np.minimum(np.hypot(x, y), 1.0))
 
 
-def judge(results):
-    """Rows; ``results``: (pose, formulation) -> (time, theta, difference), each (F,)."""
-    rows = []
-    for pose, words in POSES.items():
-        if (pose, FORMULATIONS[0]) not in results:
-            continue
-        worst = max(results[pose, formulation][2].max() for formulation in FORMULATIONS)
-        what = f"{words}: sites against those of the turned scene, both formulations"
-        rows.append(at_most(what, ASKED, worst))
-    return tuple(rows)
-
-
-def panels(results):
-    """Theta over time, and differences over time."""
-    angles, off = [], []
-    for (pose, formulation), (time, angle, distance) in results.items():
-        colour = dict(zip(POSES, "xyz"))[pose]
-        if formulation == "second":
-            angles.append(Curve(POSES[pose], time, angle / np.pi, colour))
-        line = "-" if formulation == "second" else ":"
-        off.append(Curve(f"{pose}, {formulation}", time, floor(distance), colour, line))
-    return (
-        Panel("Euler angle", "time", "theta / pi", tuple(angles), log=""),
-        Panel("against the turned scene", "time", "distance of a site", tuple(off), ASKED),
-    )
-
-
-def measure(runs, poses=tuple(POSES), **options):
-    """(pose, formulation) -> (time, theta, difference); ``options``: variables of the deck."""
-    keys = [(p, f, frame) for p in poses for f in FORMULATIONS for frame in FRAMES]
-    columns = " ".join(f"f_move[1][{column}]" for column in (16, 17, 18, 19))
-    variables = {
-        "-".join(key): {"pose": key[0], "formulation": key[1], "frame": key[2], "more": columns}
-        | {"steps": 4000, "every": 20, "dump": 20, "compensate": "yes"}
-        | options
-        for key in keys
-    }
-    found = runs.many("poles", variables)
+def measure(lab, poses=tuple(POSES), **options):
+    """(pose, formulation) -> (time, theta, difference), each (F,); ``options``: variables of the deck."""
+    axes = {"pose": poses, "formulation": FORMULATIONS, "frame": FRAMES}
+    settings = {"steps": 4000, "every": 20, "dump": 20, "compensate": "yes", "more": COLUMNS}
+    runs = lab.sweep("poles", deck("hard/poles"), axes, lambda run: run, settings | options)
     results = {}
-    for pose in poses:
-        for formulation in FORMULATIONS:
-            straight, turned = (found[f"{pose}-{formulation}-{frame}"] for frame in FRAMES)
-            positions = [run.sites.positions for run in (straight, turned)]
-            thermo = straight.thermo
-            angle = theta([thermo[name] for name in columns.split()])
-            off = difference(*positions, rotation())
-            results[pose, formulation] = (thermo["Time"], angle, off)
+    for pose, formulation, _ in list(runs)[::2]:
+        straight, turned = (runs[pose, formulation, frame] for frame in FRAMES)
+        angle = theta([straight.thermo[name] for name in COLUMNS.split()])
+        off = difference(straight.sites.positions, turned.sites.positions, rotation())
+        results[pose, formulation] = (straight.thermo["Time"], angle, off)
     return results
 
 
-def run(runs):
-    """Finding of the case."""
-    results = measure(runs)
-    text = (
-        "Six sites with charges among six fixed ones, t = 20 at a step of 0.005, both formulations "
-        "with compensated sums; the same scene, turned as a whole about a general axis, is turned "
-        "back and compared site by site."
+def find(results):
+    """Finding of what ``measure`` returns."""
+    measurements, angles, off = [], [], []
+    for pose in dict.fromkeys(pose for pose, _ in results):
+        worst = max(results[pose, formulation][2].max() for formulation in FORMULATIONS)
+        what = f"{POSES[pose]}: largest distance of a site from the turned scene"
+        measurements.append(Measurement(what, worst, most=MOST))
+    for (pose, formulation), (time, angle, distance) in results.items():
+        color = dict(zip(POSES, "xyz"))[pose]
+        if formulation == "second":
+            angles.append(Curve(POSES[pose], time, angle / np.pi, color))
+        line = "-" if formulation == "second" else ":"
+        off.append(Curve(f"{pose}, {formulation}", time, floor(distance), color, line))
+    panels = (
+        Panel("Euler angle", "time", "theta / pi", tuple(angles), log=""),
+        Panel("against the turned scene", "time", "distance of a site", tuple(off)),
     )
-    return Finding(judge(results), panels(results), text)
-
-
-CASE = Case(
-    "poles",
-    "Theta = 0 and pi, and passing through",
-    "Euler angles are singular there; quaternions are not, and no frame is preferred as long as they "
-    "are kept at unit length.",
-    8.0,
-    run,
-)
+    return Finding(measurements, pictures={"poles": panels})

@@ -1,0 +1,94 @@
+"""From a study to its results: measure or read, find, draw, write, publish, check."""
+
+import importlib
+import json
+import pkgutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from tqdm import tqdm
+
+from benchmarks import studies
+
+from . import panels, provenance
+from .lab import Lab
+from .page import render
+from .publish import PublishError, check_places, publish
+from .store import read_data, write_csv, write_data
+
+BAR = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
+ORIGIN, DATA = "origin.json", "data.json"
+
+
+def all_studies():
+    """Key -> Study of all modules and packages of ``benchmarks.studies``."""
+    names = sorted(module.name for module in pkgutil.iter_modules(studies.__path__))
+    modules = [importlib.import_module(f"{studies.__name__}.{name}") for name in names]
+    return {module.STUDY.key: module.STUDY for module in modules if hasattr(module, "STUDY")}
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where data come from: a sentence for the page, and whether they are the ``whole`` study."""
+
+    sentence: str
+    whole: bool
+
+
+def measure(study, out, **options):
+    """Measure and keep data and their origin in ``out``; ``options`` are those of Lab."""
+    out.mkdir(parents=True, exist_ok=True)
+    with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar:
+        data = study.measure(Lab(out, advance=bar.update, **options))
+    whole = not options.get("quick") and not options.get("parts")
+    origin = {"sentence": provenance.sentence(out, study.packages), "whole": whole}
+    write_data(out / DATA, data)
+    (out / ORIGIN).write_text(json.dumps(origin, indent=1), encoding="utf-8")
+
+
+def results(study, out):
+    """Finding and Origin of the data that were kept in ``out``."""
+    if not (out / DATA).is_file():
+        raise FileNotFoundError(f"{out} has no {DATA}: measure first, without --render")
+    origin = json.loads((out / ORIGIN).read_text(encoding="utf-8"))
+    return study.find(read_data(out / DATA)), Origin(**origin)
+
+
+def write(study, out, finding, origin):
+    """Leave tables, pictures and the page in ``out``."""
+    rows = [(m.what, m.value, m.error, m.unit, m.remark) for m in finding.measurements]
+    header = ("measurement", "value", "standard error", "unit", "remark")
+    write_csv(out / "measurements.csv", header, rows)
+    for name, table in finding.tables.items():
+        write_csv(out / f"{name}.csv", table.header, table.rows)
+    folder = out / study.page
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, picture in finding.pictures.items():
+        path = folder / f"{name}.png"
+        picture(path) if callable(picture) else panels.draw(path, picture)
+    if origin.whole:
+        text = render(f"{study.page}.md.j2", study, finding, origin.sentence)
+        (out / f"{study.page}.md").write_text(text, encoding="utf-8")
+
+
+def prepare_publication(study, quick, parts):
+    """Raise PublishError where the results of such a run could not be published."""
+    if quick or parts:
+        raise PublishError("--publish needs the whole study: leave out --quick and name no part")
+    check_places(study)
+
+
+def conduct(study, out, render_only=False, publish_it=False, **options):
+    """Do all of it; returns the Finding."""
+    out = Path(out).resolve()
+    if publish_it:
+        prepare_publication(study, options.get("quick"), options.get("parts"))
+    if not render_only:
+        measure(study, out, **options)
+    finding, origin = results(study, out)
+    write(study, out, finding, origin)
+    if publish_it:
+        if not origin.whole:
+            raise PublishError(f"{out} has no results of the whole study")
+        publish(study, finding, origin.sentence, out)
+    return finding

@@ -1,0 +1,166 @@
+"""The laboratory of a study: it runs decks side by side or in turn, and keeps what they leave."""
+
+import itertools
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from .logs import Log
+from .runner import Interrupted, LammpsError, find_lmp, find_mpiexec, run
+from .sites import read_sites
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run of the ``deck`` at a path, with ``variables`` (name -> value) on so many ``ranks``.
+
+    ``steps`` orders the jobs and weighs them in the progress bar.
+    """
+
+    deck: Path
+    variables: dict
+    steps: int = 1
+    ranks: int = 1
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A run that has ended: its log, its dump if it wrote one, and LAMMPS' ``error``, "" for none."""
+
+    log: Log
+    dump: Path
+    error: str = ""
+
+    @property
+    def thermo(self):
+        """Thermo output of the last run of the deck: column -> array (n,)."""
+        return self.log.thermo
+
+    @cached_property
+    def sites(self):
+        """Sites of the dump."""
+        return read_sites(self.dump)
+
+
+class Lab:
+    """Runs jobs; ``out`` is the folder that gets ``logs`` and ``dumps``.
+
+    ``jobs``: how many runs go on at once.  ``quick`` and ``full``: whether the study should do less, or
+    also what takes very long.  ``parts``: the parts of the study that were asked for, all if empty.
+    ``advance(part)`` is told the part of the study's work that has been done since its last call.
+    """
+
+    def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, parts=(), advance=None):
+        self.out, self.jobs, self.quick, self.full, self.parts = Path(out), jobs, quick, full, parts
+        self._lmp, self._weight, self._lock = lmp, 1.0, threading.Lock()
+        self._advance = advance or (lambda part: None)
+
+    @property
+    def lmp(self):
+        """The LAMMPS program.  Raises LammpsError if there is none."""
+        return find_lmp(self._lmp)
+
+    @contextmanager
+    def share(self, part):
+        """Within this context, all work counts as ``part`` of the work of the study."""
+        before, self._weight = self._weight, self._weight * part
+        try:
+            yield
+        finally:
+            self._weight = before
+
+    def advance(self, part):
+        """Tell that ``part`` of the work of the current share is done."""
+        with self._lock:
+            self._advance(part * self._weight)
+
+    def dump(self, name):
+        """Path of the dump of a run."""
+        return self.out / "dumps" / f"{name}.dump"
+
+    def many(self, jobs, may_fail=False):
+        """Run ``jobs``, name -> Job, side by side, the longest first; returns name -> Finished.
+
+        ``may_fail``: whether an error of LAMMPS is a result, or a function that tells from its text.
+        Any other error ends all runs and is raised as LammpsError.
+        """
+        stop, total = threading.Event(), sum(job.steps for job in jobs.values())
+
+        def attempt(name):
+            return self._run(name, jobs[name], may_fail, stop, total)
+
+        order = sorted(jobs, key=lambda name: -jobs[name].steps)
+        with ThreadPoolExecutor(max_workers=self.jobs) as pool:
+            futures = {name: pool.submit(attempt, name) for name in order}
+            try:
+                errors = [future.exception() for future in futures.values()]
+            except BaseException:  # Ctrl-C
+                stop.set()
+                raise
+        for error in errors:
+            if error is not None and not isinstance(error, Interrupted):
+                raise error
+        return {name: futures[name].result() for name in jobs}
+
+    def in_turn(self, jobs, rounds):
+        """Run ``jobs``, name -> Job, one after the other and that so many times, for timing.
+
+        Every round begins with another job.  Returns name -> list of Finished, one per round.
+        """
+        found, names = {name: [] for name in jobs}, list(jobs)
+        total = rounds * sum(job.steps for job in jobs.values())
+        for number in range(rounds):
+            at = number % len(names)
+            for name in names[at:] + names[:at]:
+                finished = self._run(f"{name}.{number + 1}", jobs[name], False, None, total)
+                found[name].append(finished)
+        return found
+
+    def sweep(self, name, deck, axes, read, settings=None, may_fail=False):
+        """Run a deck for every combination of ``axes``, a dictionary variable -> values.
+
+        ``settings``: further variables, or a function of the combination (a dictionary) that returns
+        them; "steps" must be among all of them.  Returns tuple of values -> ``read(finished)``; a tuple
+        of one value is that value.
+        """
+        settings = settings or {}
+        jobs, keys = {}, {}
+        for values in itertools.product(*axes.values()):
+            variables = dict(zip(axes, values))
+            variables |= settings(variables) if callable(settings) else settings
+            of_run = "_".join([name, *map(str, values)])
+            jobs[of_run] = Job(deck, variables, int(variables["steps"]))
+            keys[of_run] = values if len(values) > 1 else values[0]
+        found = self.many(jobs, may_fail)
+        return {keys[of_run]: read(finished) for of_run, finished in found.items()}
+
+    def _run(self, name, job, may_fail, stop, total):
+        if stop is not None and stop.is_set():
+            raise Interrupted(name)
+        log, dump = self.out / "logs" / f"log.{name}", self.dump(name)
+        dump.parent.mkdir(parents=True, exist_ok=True)
+        variables = job.variables | {"out": dump.with_suffix("").resolve()}
+        launcher = [find_mpiexec(self.lmp), "-n", str(job.ranks)] if job.ranks > 1 else []
+        done, error = 0, ""
+
+        def on_step(step):
+            nonlocal done
+            if done < step <= job.steps:
+                self.advance((step - done) / total)
+                done = step
+
+        try:
+            run(job.deck, log, variables, self.lmp, launcher, on_step=on_step, stop=stop)
+        except Interrupted:
+            raise
+        except LammpsError as failure:
+            error = str(failure)
+            if not (may_fail(error) if callable(may_fail) else may_fail):
+                if stop is not None:
+                    stop.set()
+                raise
+        self.advance((job.steps - done) / total)
+        return Finished(Log(log), dump, error)

@@ -1,0 +1,59 @@
+"""Pages from templates: Jinja2, so that the prose can be read and corrected as prose."""
+
+import jinja2
+
+from .decks import ROOT
+
+TEMPLATES = ROOT / "benchmarks" / "templates"
+
+
+def _row(cells):
+    return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
+
+
+def markdown_table(header, rows):
+    """A table in Markdown."""
+    return "\n".join([_row(header), "|" + "---|" * len(header), *map(_row, rows)])
+
+
+def grouped(number):
+    """A whole number in groups of thousands."""
+    return f"{number:,.0f}".replace(",", " ")
+
+
+def _environment(page, finding):
+    """Jinja2 with the filters and functions of the templates; undefined names are errors.
+
+    ``x | to(".1e")`` formats a number, ``n | grouped`` a large one; ``table(name)`` shows a table of
+    the finding, ``measured(measurements)`` a table of measurements, ``picture(name, caption)`` a picture
+    with its caption.  Pictures of ``page`` are beside it, in the folder of its name.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+
+    def table(name):
+        return markdown_table(finding.tables[name].header, finding.tables[name].rows)
+
+    def measured(measurements):
+        return markdown_table(("measurement", "value"), [(m.what, m.text) for m in measurements])
+
+    def picture(name, caption, folder=page):
+        if name not in finding.pictures:
+            raise KeyError(f"the study draws no picture {name}")
+        return f"![{caption}]({folder}/{name}.png)\n\n*{caption}*"
+
+    environment.filters |= {"to": format, "grouped": grouped}
+    environment.globals |= {"table": table, "measured": measured, "picture": picture}
+    return environment
+
+
+def render(template, study, finding, provenance):
+    """Text of a template of a study; ``provenance``: sentence on where it was measured."""
+    environment = _environment(study.page, finding)
+    names = {"study": study, "provenance": provenance, "measurements": finding.measurements}
+    return environment.get_template(template).render(**names, **finding.context).rstrip() + "\n"

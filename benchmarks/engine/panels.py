@@ -1,0 +1,149 @@
+"""Pictures made of panels: a study says what is in them, and draw() draws them all alike."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from lammps_gearquat.style import COLOUR, STYLE  # noqa: E402
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a panel: ``x``, ``y`` and, for error bars, ``error``, each (n,).
+
+    ``color``: a name of style.COLOUR or a color of matplotlib; ``line`` ("" for none) and ``marker``
+    are matplotlib's; ``width``: of the line; ``hollow``: markers are not filled.
+    """
+
+    label: str
+    x: np.ndarray
+    y: np.ndarray
+    color: str
+    line: str = "-"
+    marker: str = ""
+    error: np.ndarray = None
+    width: float = None
+    hollow: bool = False
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Horizontal bars: ``names`` from top to bottom, what was ``below`` in gray, and ``more`` on top."""
+
+    names: tuple
+    below: np.ndarray
+    more: np.ndarray
+    color: str = "second"
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes with ``curves``, or with Bars in their place.
+
+    ``log``: "x", "y" or "xy".  ``ticks``: words for x = 0, 1, 2, ...; ``xticks``: the values at which x
+    is labeled.  ``xlim``, ``ylim``: ends of the axes.  ``lost``: (x, color) of runs that ended early,
+    drawn as crosses at the top.  ``legend``: whether the panel has one of its own.
+    """
+
+    title: str
+    xlabel: str
+    ylabel: str
+    curves: tuple
+    log: str = "y"
+    ticks: tuple = ()
+    xticks: tuple = ()
+    xlim: tuple = None
+    ylim: tuple = None
+    lost: tuple = ()
+    legend: bool = True
+
+
+def floor(values, least=1e-17):
+    """Sizes of values that can be drawn on a logarithmic axis."""
+    return np.maximum(np.abs(values), least)
+
+
+def _curve(axis, curve):
+    color = COLOUR.get(curve.color, curve.color)
+    look = {"linestyle": curve.line, "marker": curve.marker, "markersize": 3.5, "color": color}
+    look["label"] = curve.label
+    if curve.width is not None:
+        look["linewidth"] = curve.width
+    if curve.hollow:
+        look["markerfacecolor"] = "white"
+    if curve.error is None:
+        axis.plot(curve.x, curve.y, **look)
+    else:
+        axis.errorbar(curve.x, curve.y, yerr=curve.error, capsize=2, **look)
+
+
+def _bars(axis, bars):
+    axis.barh(bars.names, bars.below, color="#cccccc")
+    axis.barh(bars.names, bars.more, left=bars.below, color=COLOUR[bars.color])
+    for k, (start, length) in enumerate(zip(bars.below, bars.more)):
+        text = f" {length:+.0f}" if k else f" {length:.0f}"
+        axis.annotate(text, (start + max(length, 0), k), va="center")
+    axis.invert_yaxis()
+    axis.set_xlim(right=1.2 * max(a + b for a, b in zip(bars.below, bars.more)))
+
+
+def _scales(axis, panel):
+    if "x" in panel.log:
+        axis.set_xscale("log")
+    if "y" in panel.log:
+        axis.set_yscale("log")
+    if panel.ticks:
+        axis.set_xticks(range(len(panel.ticks)), panel.ticks)
+        axis.margins(x=0.15)
+    if panel.xticks:
+        axis.set_xticks(panel.xticks, [f"{x:g}" for x in panel.xticks])
+        axis.minorticks_off()
+    axis.set(xlim=panel.xlim, ylim=panel.ylim)
+
+
+def _draw(axis, panel):
+    axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel)
+    axis.set_title(panel.title, loc="left", fontsize=9)
+    if isinstance(panel.curves, Bars):
+        return _bars(axis, panel.curves)
+    for curve in panel.curves:
+        _curve(axis, curve)
+    for x, color in panel.lost:
+        axis.plot(x, 0.99, "x", color=COLOUR.get(color, color), transform=axis.get_xaxis_transform())
+    _scales(axis, panel)
+    if panel.legend and any(curve.label for curve in panel.curves):
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 3}
+        axis.legend(fontsize=7, **place)
+
+
+def draw(path, panels, columns=None, note=""):
+    """Draw ``panels`` in rows of so many ``columns`` (default: one row); ``note``: a line below them.
+
+    Panels without legends of their own share one, which has every label once.
+    """
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    columns = columns or len(panels)
+    rows = -(-len(panels) // columns)
+    with plt.rc_context(STYLE | {"font.size": 8.5}):
+        figure, axes = plt.subplots(
+            rows, columns, figsize=(4.2 * columns + 0.4, 3.4 * rows), layout="constrained", squeeze=False
+        )
+        shared = {}
+        for axis, panel in zip(axes.flat, panels):
+            _draw(axis, panel)
+            if not panel.legend:
+                handles, labels = axis.get_legend_handles_labels()
+                shared |= dict(zip(labels, handles))
+        if shared:
+            place = {"loc": "outside upper center", "ncols": 5, "fontsize": 8}
+            figure.legend(shared.values(), shared.keys(), **place)
+        if note:
+            figure.supxlabel(note, x=0.995, ha="right", fontsize=7, color="#666666")
+        figure.savefig(path)
+        plt.close(figure)

@@ -1,0 +1,61 @@
+"""Put the page, the pictures and the blocks of a study into this checkout.
+
+A block is what a study has written into a page that people write: it lies between two markers, of
+which the first names the command.
+"""
+
+import shutil
+
+from .decks import ROOT
+from .page import render
+
+ANY_BEGIN, END = "<!-- begin: ", "<!-- end -->"
+
+
+class PublishError(RuntimeError):
+    """A page lacks the place to write to."""
+
+
+def begin(command):
+    """The line before the block of a command."""
+    return f"{ANY_BEGIN}written by `{command}` -->"
+
+
+def split_block(text, command, page="README.md"):
+    """A page before, inside and after the block of a command.
+
+    Raises PublishError unless the page has exactly one such block.
+    """
+    before, marker, rest = text.partition(begin(command))
+    inside, end, after = rest.partition(END)
+    if not marker or not end or begin(command) in rest or ANY_BEGIN in inside:
+        raise PublishError(f"{page} needs one {begin(command)} and after it one {END}")
+    return before, inside, after
+
+
+def write_block(page, command, block):
+    """Put a block into a page, between its markers."""
+    before, _, after = split_block(page.read_text(encoding="utf-8"), command, page.name)
+    page.write_text(f"{before}{begin(command)}\n{block}\n{END}{after}", encoding="utf-8")
+
+
+def command_of(study):
+    """The command that publishes a study."""
+    return f"benchmarks/run {study.key} --publish"
+
+
+def check_places(study, root=ROOT):
+    """Raise PublishError if a page lacks the block of the study."""
+    for name in study.blocks:
+        split_block((root / name).read_text(encoding="utf-8"), command_of(study), name)
+
+
+def publish(study, finding, provenance, out, root=ROOT):
+    """Copy page and pictures from ``out``, the folder of the run, and write the blocks."""
+    for source in [out / f"{study.page}.md", *(out / study.page).glob("*.png")]:
+        target = root / "doc" / source.relative_to(out)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+    for name, template in study.blocks.items():
+        text = render(template, study, finding, provenance).rstrip()
+        write_block(root / name, command_of(study), text)

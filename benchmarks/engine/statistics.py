@@ -1,0 +1,82 @@
+"""Means, slopes and their uncertainties.  Arrays in, numbers out."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+#: how sure a deviation must be to count as one, over all values that are compared at once
+CONFIDENCE = 0.99
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A mean with its standard error and the degrees of freedom of the latter."""
+
+    value: np.ndarray
+    error: np.ndarray
+    freedoms: int
+
+
+def mean_of_blocks(blocks):
+    """Mean of ``blocks`` (n, ...) over the first axis, and standard error from their scatter.
+
+    Raises ValueError for fewer than three blocks.
+    """
+    blocks = np.asarray(blocks)
+    n = len(blocks)
+    if n < 3:
+        raise ValueError(f"{n} blocks are too few for a standard error")
+    return Mean(blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / math.sqrt(n), n - 1)
+
+
+def blocks_of(values, count):
+    """Means of ``count`` equal parts of a series (n,), without its first sample and a remainder.
+
+    Raises ValueError if there are fewer samples than blocks.
+    """
+    length = (len(values) - 1) // count
+    if length < 1:
+        raise ValueError(f"{len(values)} samples are too few for {count} blocks")
+    return np.asarray(values)[-length * count :].reshape(count, length).mean(axis=1)
+
+
+def deviation(one, other):
+    """Difference of two Means in units of its standard error."""
+    return (one.value - other.value) / np.hypot(one.error, other.error)
+
+
+def largest_deviation(one, other, count):
+    """How many standard errors the largest of ``count`` differences of two Means may have.
+
+    From Student's t distribution with the degrees of freedom of both, and Bonferroni's correction.
+    """
+    freedoms = one.freedoms + other.freedoms
+    return float(stats.t.ppf(1 - (1 - CONFIDENCE) / (2 * count), freedoms))
+
+
+def slope(time, values):
+    """Least-squares slope of ``values`` (n,) against ``time`` (n,), and its standard error.
+
+    Neighboring errors are alike, so the scatter about the line does not shrink as it would with n
+    independent samples: the standard error is that of W. K. Newey and K. D. West, Econometrica 55,
+    703 (1987), Eq. 5, with lags up to a twentieth of the series.  Raises ValueError for fewer than 20
+    samples.
+    """
+    n = len(time)
+    if n < 20:
+        raise ValueError(f"a slope needs 20 samples or more, not {n}")
+    x = time - time.mean()
+    found = x @ values / (x @ x)
+    score = x * (values - values.mean() - found * x)
+    lags = n // 20
+    total = score @ score
+    for lag in range(1, lags + 1):
+        total += 2 * (1 - lag / (lags + 1)) * (score[lag:] @ score[:-lag])
+    return float(found), float(math.sqrt(max(total, 0.0) * n / (n - 2)) / (x @ x))
+
+
+def order(steps, errors):
+    """Slope of log(error) over log(step), least squares: the order of a method."""
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

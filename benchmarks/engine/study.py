@@ -1,0 +1,91 @@
+"""A study and what it finds."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One number: ``what`` it is, its ``value`` and, where it is known, one standard ``error``.
+
+    ``spec`` formats value and error, ``unit`` follows them, and ``remark`` stands behind in parentheses.
+    ``least`` and ``most`` bound the value for ``--check``; None stands for no bound.
+    """
+
+    what: str
+    value: float
+    error: float = None
+    spec: str = ".1e"
+    unit: str = ""
+    remark: str = ""
+    least: float = None
+    most: float = None
+
+    @property
+    def text(self):
+        """The value with its uncertainty, as a page shows it."""
+        text = format(self.value, self.spec).replace(",", " ")
+        if self.error is not None:
+            text += f" ± {format(self.error, self.spec)}"
+        text += f" {self.unit}" if self.unit else ""
+        return text + (f" ({self.remark})" if self.remark else "")
+
+    @property
+    def bounds(self):
+        """The bounds in words, "" if there are none."""
+        parts = [("at least", self.least), ("at most", self.most)]
+        return " and ".join(f"{word} {bound:g}" for word, bound in parts if bound is not None)
+
+    @property
+    def holds(self):
+        """Whether the value lies within its bounds.  NaN lies within none."""
+        least = -math.inf if self.least is None else self.least
+        most = math.inf if self.most is None else self.most
+        return not self.bounds or bool(least <= self.value <= most)
+
+
+@dataclass(frozen=True)
+class Table:
+    """``rows`` of as many cells as the ``header`` has; written as CSV and shown as Markdown."""
+
+    header: tuple
+    rows: list
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a study makes of its data.
+
+    ``measurements``: a sequence of Measurement.  ``tables``: name -> Table; each is left as a CSV file.
+    ``pictures``: name -> tuple of Panel (see panels.py), or a function that draws into the path it gets.
+    ``context``: further names of the templates.  ``summary``: printed in place of the measurements.
+    """
+
+    measurements: tuple = ()
+    tables: dict = field(default_factory=dict)
+    pictures: dict = field(default_factory=dict)
+    context: dict = field(default_factory=dict)
+    summary: str = ""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study: how it measures, how it judges, and where its results are shown.
+
+    ``key``: its name on the command line.  ``page``: the page doc/PAGE.md, written from the template
+    PAGE.md.j2; its pictures go to doc/PAGE.  ``blocks``: file of the checkout -> template of the block
+    that the study writes there.  ``seconds``: duration on two quiet cores.  ``measure(lab)`` returns
+    plain data, ``find(data)`` a Finding.  ``parts``: what can be run alone, as KEY/PART.  ``packages``:
+    whose versions the page names.
+    """
+
+    key: str
+    title: str
+    page: str
+    seconds: float
+    measure: Callable = field(repr=False)
+    find: Callable = field(repr=False)
+    parts: tuple = ()
+    blocks: dict = field(default_factory=dict)
+    packages: tuple = ("lammps-gearquat", "numpy")

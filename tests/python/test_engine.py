@@ -1,0 +1,241 @@
+"""The engine of the benchmarks: measurements, logs, many runs, data kept, pages, publishing, the command."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from benchmarks import __main__ as command
+from benchmarks.engine import conduct, publish
+from benchmarks.engine.lab import Job, Lab
+from benchmarks.engine.logs import Log
+from benchmarks.engine.panels import Bars, Curve, Panel
+from benchmarks.engine.runner import LammpsError
+from benchmarks.engine.store import read_data, write_data
+from benchmarks.engine.study import Finding, Measurement, Study, Table
+from benchmarks.studies.hard.long import Long
+
+PROGRAM = """#!/bin/sh
+# stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script
+echo "LAMMPS (made up)" > "$4"
+. ./$2
+"""
+
+
+@pytest.fixture
+def fake(tmp_path):
+    """A Lab whose LAMMPS runs its deck as a shell script, and a maker of decks."""
+    program = tmp_path / "lmp"
+    program.write_text(PROGRAM)
+    program.chmod(0o755)
+
+    def deck(name, script):
+        (tmp_path / name).write_text(script)
+        return tmp_path / name
+
+    done = []
+    lab = Lab(tmp_path / "out", str(program), jobs=2, advance=done.append)
+    return lab, deck, done
+
+
+# --- measurements -------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    "bounds, within, beyond",
+    [({"most": 1e-12}, 0.99e-12, 1.01e-12), ({"least": 2.0}, 2.02, 1.98)],
+)
+def test_bounds(bounds, within, beyond):
+    assert Measurement("x", within, **bounds).holds
+    assert not Measurement("x", beyond, **bounds).holds
+    assert not Measurement("x", float("nan"), **bounds).holds
+    assert Measurement("x", float("nan")).holds
+
+
+def test_a_value_with_its_uncertainty():
+    assert Measurement("x", 12345.4, 10.2, ",.0f", "K", "here").text == "12 345 ± 10 K (here)"
+
+
+# --- logs ---------------------------------------------------------------------------------------
+def test_tables_of_a_log_that_ends_early(tmp_path):
+    log = tmp_path / "log"
+    log.write_text(
+        "   Step Time v_total\n 0 0.0 1.5\nWARNING: a word\n 10 0.1 -nan\n"
+        "Loop time of 1.5 on 2 procs for 10 steps\n 5 5 5\n"
+        "Modify  | 0.1        | 0.2        | 0.3        |   0.0 | 24.69\n"
+        "Other   |            | 0.4        |            |       |  4.37\nNlocal: 1\n"
+        "   Step PotEng\n 0 2.0\nERROR: lost\n"
+    )
+    first, second = Log(log).tables
+    assert list(first) == ["Step", "Time", "v_total"]
+    assert first["Step"].tolist() == [0, 10] and first["v_total"].tolist() == [1.5, np.inf]
+    assert second["PotEng"].tolist() == [2.0]
+    assert Log(log).timers == [{"Loop": 1.5, "Ranks": 2, "Modify": 0.3, "Other": 0.4}]
+    log.write_text("LAMMPS\nERROR: nothing was run\n")
+    with pytest.raises(ValueError, match="no thermo output"):
+        Log(log).thermo
+    with pytest.raises(ValueError, match="no loop time"):
+        Log(log).seconds
+
+
+# --- many runs ----------------------------------------------------------------------------------
+def test_a_sweep_runs_every_combination(fake):
+    lab, deck, done = fake
+    script = deck("in.echo", 'echo "$@" >> "$4"\necho 50 1 1\necho 100 1 1\n')
+    axes = {"pose": ("a", "b"), "dt": (0.1, 0.2)}
+    found = lab.sweep("echo", script, axes, lambda run: run.log.text.split(), {"steps": 100})
+    assert list(found) == [("a", 0.1), ("a", 0.2), ("b", 0.1), ("b", 0.2)]
+    words = found["b", 0.2]
+    assert words[words.index("pose") + 1] == "b" and words[words.index("dt") + 1] == "0.2"
+    assert sum(done) == pytest.approx(1.0)
+
+
+def test_progress_of_shares_adds_up(fake):
+    lab, deck, done = fake
+    script = deck("in.echo", "echo 5 1 1\n")
+    for part in (0.25, 0.75):
+        with lab.share(part):
+            lab.many({"one": Job(script, {}, 5), "two": Job(script, {}, 10)})
+    assert sum(done) == pytest.approx(1.0) and len(done) > 4
+
+
+def test_an_error_ends_all_runs_unless_it_is_a_result(fake):
+    lab, deck, _ = fake
+    endless = Job(deck("in.endless", "while true; do echo 1 1 1; sleep 0.05; done\n"), {}, 1000)
+    bad = Job(deck("in.bad", "echo ERROR: lost atoms\nexit 1\n"), {})
+    begin = time.monotonic()
+    with pytest.raises(LammpsError, match="exit code 1"):
+        lab.many({"endless": endless, "bad": bad})
+    assert time.monotonic() - begin < 10
+    assert "lost atoms" in lab.many({"bad": bad}, may_fail=True)["bad"].error
+    assert lab.many({"bad": bad}, may_fail=lambda text: "lost atoms" in text)["bad"].error
+    with pytest.raises(LammpsError, match="lost atoms"):
+        lab.many({"bad": bad}, may_fail=lambda text: "other" in text)
+
+
+def test_rounds_begin_with_another_job_each(fake, tmp_path):
+    lab, deck, done = fake
+    script = deck("in.order", f'echo "$4" >> {tmp_path}/order\n')
+    found = lab.in_turn({name: Job(script, {}) for name in "abc"}, 2)
+    order = [line.rpartition("log.")[2] for line in (tmp_path / "order").read_text().split()]
+    assert order == ["a.1", "b.1", "c.1", "b.2", "c.2", "a.2"]
+    assert [len(runs) for runs in found.values()] == [2, 2, 2] and sum(done) == pytest.approx(1.0)
+
+
+# --- data, page, publishing -----------------------------------------------------------------------
+def test_data_come_back_as_they_were(tmp_path):
+    data = {
+        ("pose", 0.1): (np.array([1.0, np.inf, 1e-300]), "text", None),
+        "long": Long(10, 1e-10, float("nan")),
+        3: [np.float64(0.1), True],
+    }
+    write_data(tmp_path / "data.json", data)
+    found = read_data(tmp_path / "data.json")
+    assert set(found) == set(data)
+    assert found["pose", 0.1][0].tolist() == [1.0, np.inf, 1e-300] and found["pose", 0.1][2] is None
+    assert found["long"].evaluations == 10 and np.isnan(found["long"].every)
+    assert found[3] == [0.1, True]
+
+
+def made_up(value=1e-13, **of_study):
+    """A study that runs nothing."""
+    x = np.array([1.0, 2.0])
+
+    def find(data):
+        panels = (
+            Panel("left", "time", "error", (Curve("a line", x, data["x"], "first"),)),
+            Panel("right", "", "ns", Bars(("low", "high"), x, x)),
+        )
+        table = Table(("a", "b|c"), [(1, "x|y")])
+        measurements = [Measurement("an error", value, 1e-14, most=1e-12)]
+        return Finding(measurements, {"both": table}, {"both": panels}, {"length": 1234567})
+
+    settings = {"parts": ("one",), "packages": ("numpy",), "blocks": {"README.md": "block.md.j2"}}
+    settings |= of_study
+    return Study("made", "Made up", "made_page", 1.0, lambda lab: {"x": x}, find, **settings)
+
+
+@pytest.fixture
+def templates(tmp_path, monkeypatch):
+    folder = tmp_path / "templates"
+    folder.mkdir()
+    (folder / "made_page.md.j2").write_text(
+        "# {{ study.title }}\n{{ provenance }}\n{{ table('both') }}\n{{ measured(measurements) }}\n"
+        "{{ picture('both', 'Both.') }}\n{{ length | grouped }}\n"
+    )
+    (folder / "block.md.j2").write_text("{{ picture('both', 'Both.', 'doc/made_page') }}\n")
+    monkeypatch.setattr("benchmarks.engine.page.TEMPLATES", folder)
+    return folder
+
+
+def test_a_study_leaves_its_results_and_is_rendered_again(templates, tmp_path):
+    out = tmp_path / "out"
+    conduct.conduct(made_up(), out)
+    text = (out / "made_page.md").read_text()
+    assert "| 1 | x\\|y |" in text and "| an error | 1.0e-13 ± 1.0e-14 |" in text
+    assert "![Both.](made_page/both.png)" in text and "1 234 567" in text
+    assert (out / "made_page" / "both.png").stat().st_size > 5000
+    assert (out / "both.csv").read_text().split() == ["a,b|c", "1,x|y"]
+    assert "at commit " in json.loads((out / "origin.json").read_text())["sentence"]
+    conduct.conduct(made_up(value=2e-13), out, render_only=True)
+    assert "2.0e-13" in (out / "made_page.md").read_text()
+    with pytest.raises(FileNotFoundError, match="measure first"):
+        conduct.conduct(made_up(), tmp_path / "empty", render_only=True)
+
+
+def test_publishing_writes_page_pictures_and_blocks(templates, tmp_path, monkeypatch):
+    root, out = tmp_path / "root", tmp_path / "out"
+    root.mkdir()
+    readme, study = root / "README.md", made_up()
+    mark = publish.begin("benchmarks/run made --publish")
+    finding = conduct.conduct(study, out)
+    for text in ("", mark, f"{mark}\n{publish.END}\n" * 2, f"{publish.END}\n{mark}"):
+        readme.write_text(text)
+        with pytest.raises(publish.PublishError, match="README.md needs one"):
+            publish.check_places(study, root)
+    readme.write_text(f"before\n{mark}\nold\n{publish.END}\nafter\n")
+    publish.publish(study, finding, "Somewhere.", out, root)
+    assert (root / "doc" / "made_page.md").read_text() == (out / "made_page.md").read_text()
+    assert (root / "doc" / "made_page" / "both.png").is_file()
+    block = "![Both.](doc/made_page/both.png)\n\n*Both.*"
+    assert readme.read_text() == f"before\n{mark}\n{block}\n{publish.END}\nafter\n"
+
+
+# --- the command --------------------------------------------------------------------------------
+@pytest.fixture
+def run(templates, tmp_path, monkeypatch):
+    def call(*words, **of_study):
+        study = made_up(**({"blocks": {}} | of_study))
+        monkeypatch.setattr(command, "all_studies", lambda: {"made": study})
+        return CliRunner().invoke(command.main, [*words, "--out", str(tmp_path / "out")])
+
+    return call
+
+
+def test_check_refuses_what_is_out_of_bounds(run):
+    done = run("made", "--check")
+    assert done.exit_code == 0 and "1 of 1 bounds hold" in done.output
+    done = run("made", "--check", value=1.01e-12)
+    assert done.exit_code == 1 and "FAILED an error: 1.0e-12" in done.output
+    assert run("made", value=1.01e-12).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (["other"], "no study other; there are made"),
+        (["made/two"], "no part two; its parts: one"),
+        (["made", "--quick", "--publish"], "needs the whole study"),
+        (["made/one", "--publish"], "needs the whole study"),
+    ],
+)
+def test_bad_options(run, words, said):
+    done = run(*words)
+    assert done.exit_code == 2 and said in done.output
+
+
+def test_every_study_is_listed_with_its_duration():
+    done = CliRunner().invoke(command.main, ["--list"])
+    assert done.exit_code == 0
+    for study in conduct.all_studies().values():
+        assert study.title in done.output
