@@ -2,7 +2,6 @@
 
 from .bench import bench
 from .cases import cases
-from .drift import drift
 from .effects import effects
 from .isokinetic import isokinetic
 from .pictures import pictures
@@ -10,5 +9,5 @@ from .workprecision import workprecision
 
 COMMANDS = {
     command.name: command
-    for command in (bench, cases, drift, effects, isokinetic, pictures, workprecision)
+    for command in (bench, cases, effects, isokinetic, pictures, workprecision)
 }

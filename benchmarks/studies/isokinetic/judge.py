@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from benchmarks.studies.drift.judge import slope
+from benchmarks.engine.statistics import slope
 from benchmarks.engine.tables import Row
 from .runs import CONSTRAINTS, THERMOSTAT, DriftRun
 

@@ -1,0 +1,58 @@
+"""Methods that the studies compare: settings of fix gear/quat, and LAMMPS' own rigid fixes."""
+
+from dataclasses import dataclass
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import to_hex
+
+#: kind -> (colors from light to dark, marker)
+_LOOKS = {"second": ("Blues", "o"), "first": ("Oranges", "s"), "rigid": ("Greys", "D")}
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method: name in files, name in texts, variables of the decks; ``kind``: formulation or "rigid"."""
+
+    key: str
+    label: str
+    variables: dict
+    kind: str
+
+    def __hash__(self):
+        return hash(self.key)
+
+    @property
+    def gear(self):
+        """Whether it is fix gear/quat."""
+        return self.kind != "rigid"
+
+
+def gear(formulation, values, compensate=False):
+    """Fix gear/quat with so many ``values``."""
+    variables = {"formulation": formulation, "values": values}
+    key, label = f"{formulation}-{values}", f"{formulation}, N = {values}"
+    if compensate:
+        key, label = f"{key}-compensated", f"{label}, compensated"
+        variables["compensate"] = "yes"
+    return Method(key, label, variables, formulation)
+
+
+def rigid(style, method):
+    """One of LAMMPS' own fixes; ``method`` is the variable of the decks that chooses it."""
+    return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
+
+
+def looks(methods):
+    """Method -> color, marker and line: one color for each kind, one shade for each method."""
+    found = {}
+    for kind, (colors, marker) in _LOOKS.items():
+        members = [method for method in methods if method.kind == kind]
+        for method, shade in zip(members, np.linspace(0.45, 0.95, len(members))):
+            line = "--" if "compensate" in method.variables else "-"
+            found[method] = {
+                "color": to_hex(matplotlib.colormaps[colors](shade)),
+                "marker": marker,
+                "line": line,
+            }
+    return found

@@ -1,0 +1,243 @@
+"""Energy over very long runs.
+
+Two scenes of ``examples`` that no method has to lose: the body without bare charges in the paper's
+cage, bound because its energy is below zero, and the free asymmetric top.  Every method runs the
+same number of steps at the same few steps, from one that is small for all of them to one that is
+usual with fix rigid/nve/small.  Samples are sparse; the largest error is that of the samples.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from benchmarks.engine import series
+from benchmarks.engine.decks import deck
+from benchmarks.engine.lab import Job
+from benchmarks.engine.methods import gear, looks, rigid
+from benchmarks.engine.panels import Curve, Panel, draw
+from benchmarks.engine.statistics import slope
+from benchmarks.engine.study import Finding, Measurement, Study, Table
+
+STEPS, QUICK_STEPS, SAMPLES = 10_000_000, 100_000, 2000
+#: LAMMPS' word for coordinates and energies that are not finite any more, and the fix's own
+NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up", "values can follow")
+#: a slope of less than so many standard errors, which are themselves estimates, is no drift
+SIGNIFICANT = 4.0
+#: an error of more than this part of the kinetic energy at the start spoils a run
+SPOILS = 0.1
+
+DEFAULT, DEFAULT_COMPENSATED = gear("second", 8), gear("second", 8, compensate=True)
+NO_SQUISH, VERLET = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
+METHODS = {
+    method.label: method
+    for method in (
+        gear("first", 5),
+        gear("first", 6),
+        gear("first", 8),
+        gear("second", 6),
+        DEFAULT,
+        DEFAULT_COMPENSATED,
+        gear("second", 10),
+        NO_SQUISH,
+        rigid("rigid/nve", "rigid_big"),
+        VERLET,
+    )
+}
+#: folder under examples -> (title, steps)
+SCENES = {
+    "coated": ("Body without bare charges in the cage", (0.02, 0.05, 0.125)),
+    "top": ("Free asymmetric top", (0.02, 0.05, 0.1)),
+}
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run: ``time`` and ``total`` energy (n,) of its samples, ``kinetic`` energy at the start.
+
+    ``lost``: the time by which numbers were no longer finite, None if they always were.
+    """
+
+    time: np.ndarray
+    total: np.ndarray
+    kinetic: float
+    lost: float = None
+
+    @property
+    def error(self):
+        """E(t) - E(0), shape (n,)."""
+        return self.total - self.total[0]
+
+    @property
+    def largest(self):
+        """Largest |error|, infinite if the run was lost."""
+        return math.inf if self.lost is not None else float(np.abs(self.error).max())
+
+    @property
+    def slope(self):
+        """Drift of the energy per unit of time, and its standard error."""
+        return slope(self.time, self.error)
+
+    @property
+    def spoiled(self):
+        """Whether the largest error is more than SPOILS of the kinetic energy at the start."""
+        return self.largest > SPOILS * self.kinetic
+
+
+# --- measuring ----------------------------------------------------------------------------------
+def is_lost(text):
+    """Whether LAMMPS' words say that a run ended because its numbers did."""
+    return any(words in text for words in NOT_FINITE)
+
+
+def read(finished, steps, interval):
+    """Run of a log; ``interval``: time between samples.
+
+    A run may have been refused before its first sample, and then was lost at once.
+    """
+    if not finished.log.tables or not len(finished.thermo["Step"]):
+        return Run(np.zeros(0), np.zeros(0), math.nan, interval)
+    samples = series.of_log(finished.log)
+    finite = np.isfinite(samples.total)
+    time, total, lost = samples.time[finite], samples.total[finite], None
+    if finished.error:
+        lost = float(time.max(initial=0.0)) + interval
+    elif not finite.all() or samples.step[-1] != steps:
+        lost = float(time.max(initial=0.0))
+    return Run(time, total, float(samples.kinetic[0]), lost)
+
+
+def measure(lab, scenes=SCENES, methods=METHODS, steps=None):
+    """(scene, label of the method, step) -> Run."""
+    steps = steps or (QUICK_STEPS if lab.quick else STEPS)
+    every, jobs, keys = max(1, steps // SAMPLES), {}, {}
+    for scene, (_, dts) in scenes.items():
+        for label, method in methods.items():
+            for dt in dts:
+                name = f"{scene}_{method.key}_dt{dt:g}"
+                variables = method.variables | {"dt": f"{dt:.17g}", "steps": steps, "every": every}
+                jobs[name], keys[name] = Job(deck(scene), variables, steps), (scene, label, dt)
+    runs = lab.many(jobs, may_fail=is_lost)
+    return {keys[name]: read(run, steps, every * keys[name][2]) for name, run in runs.items()}
+
+
+# --- judging ------------------------------------------------------------------------------------
+def show_largest(run):
+    """Largest error as text, with a star where it spoils the run."""
+    if run.lost is not None:
+        return f"lost, t = {run.lost:.0f}"
+    return f"{run.largest:.1e}" + ("*" if run.spoiled else "")
+
+
+def show_slope(run):
+    """Slope as text, in parentheses where it is not significant."""
+    if run.lost is not None:
+        return "lost"
+    rate, error = run.slope
+    text = f"{rate:.1e} ± {error:.0e}"
+    return text if abs(rate) > SIGNIFICANT * error else f"({text})"
+
+
+def ratio(runs, dt, ours, theirs):
+    """Largest error of the best of ``ours`` over that of the best of ``theirs``, labels of methods."""
+    own, other = (min(runs[label, dt].largest for label in labels) for labels in (ours, theirs))
+    return math.nan if math.isinf(own) and math.isinf(other) else own / other
+
+
+def contests(labels):
+    """Methods that are compared: words -> (labels, labels they are compared with)."""
+    best = [label for label in labels if METHODS[label].gear]
+    squish = [label for label in labels if label not in best and label != VERLET.label]
+    name = "NO_SQUISH (`fix rigid/nve/small`, `fix rigid/nve`)"
+    sets = {
+        f"default of `fix gear/quat` over {name}": ([DEFAULT.label], squish),
+        f"best setting of `fix gear/quat` over {name}": (best, squish),
+        "default with compensated sums over default": ([DEFAULT_COMPENSATED.label], [DEFAULT.label]),
+        f"`{VERLET.label}` over {name}": ([VERLET.label], squish),
+    }
+    return {
+        words: pair
+        for words, pair in sets.items()
+        if all(pair) and set(pair[0]) | set(pair[1]) <= set(labels)
+    }
+
+
+def tables(scene, runs, dts):
+    """Tables of one scene by name; ``runs``: (label, step) -> Run."""
+    labels = list(dict.fromkeys(label for label, _ in runs))
+    steps = [f"step {dt:g}" for dt in dts]
+
+    def table(first, show):
+        return Table((first, *steps), [[m, *(show(runs[m, dt]) for dt in dts)] for m in labels])
+
+    ratios = [
+        [words, *(f"{ratio(runs, dt, *pair):.1e}" for dt in dts)]
+        for words, pair in contests(labels).items()
+    ]
+    return {
+        f"largest_{scene}": table("largest error of the energy", show_largest),
+        f"drift_{scene}": table("drift, energy per unit of time", show_slope),
+        f"ratios_{scene}": Table(("ratio of largest errors", *steps), ratios),
+    }
+
+
+def find(results):
+    """Finding of what ``measure`` returns."""
+    scenes, measurements, shown, panels = {}, [], {}, ()
+    for scene in dict.fromkeys(scene for scene, *_ in results):
+        runs = {key[1:]: run for key, run in results.items() if key[0] == scene}
+        dts = list(dict.fromkeys(dt for _, dt in runs))
+        scenes[scene] = SCENES[scene][0]
+        shown |= tables(scene, runs, dts)
+        panels += panels_of(scenes[scene], runs, dts)
+        for (label, dt), run in runs.items():
+            what = f"{scene}, {label}, step {dt:g}"
+            measurements.append(Measurement(f"{what}: largest error of the energy", run.largest))
+            if run.lost is None:
+                measurements.append(Measurement(f"{what}: drift of the energy", *run.slope))
+    steps = round(max(run.time[-1] / dt for (*_, dt), run in results.items() if len(run.time)))
+    note = f"{steps:,} steps; crosses: no longer finite; hollow: no drift, one standard error; "
+    note += "charges of the cage: reconstructed"
+    picture = partial(draw, panels=panels, columns=3, note=note)
+    context = {"scenes": scenes, "steps": steps, "significant": SIGNIFICANT, "spoils": SPOILS}
+    return Finding(measurements, shown, {"drift": picture}, context)
+
+
+# --- picture ------------------------------------------------------------------------------------
+def panels_of(title, runs, dts):
+    """Error over time at the second step, largest error and slope against the step."""
+    look = looks([METHODS[label] for label in dict.fromkeys(label for label, _ in runs)])
+    history, largest, drifts, lost = [], [], [], []
+    for method, own in look.items():
+        of = {dt: runs[method.label, dt] for dt in dts}
+        kept = {dt: run for dt, run in of.items() if run.lost is None}
+        lost += [(dt, own["color"]) for dt in of if dt not in kept]
+        run = of[dts[1]]
+        if len(run.time):
+            worst = np.maximum.accumulate(np.abs(run.error))[1:]
+            history.append(Curve("", run.time[1:], worst, own["color"], own["line"]))
+        x, errors = np.array(list(kept)), [run.largest for run in kept.values()]
+        largest.append(Curve(method.label, x, np.array(errors), **own))
+        slopes = np.array([run.slope for run in kept.values()]).reshape(-1, 2)
+        seen = np.abs(slopes[:, 0]) > SIGNIFICANT * slopes[:, 1]
+        y = np.where(seen, np.abs(slopes[:, 0]), slopes[:, 1])
+        drifts.append(Curve("", x, y, **own))
+        drifts.append(Curve("", x[~seen], y[~seen], **(own | {"line": ""}), hollow=True))
+    by_step = {"log": "xy", "xticks": tuple(dts), "lost": tuple(lost), "legend": False}
+    at = f"{title}, step {dts[1]:g}"
+    return (
+        Panel(at, "time", "largest error so far", tuple(history), log="xy", legend=False),
+        Panel(title, "step", "largest error", tuple(largest), **by_step),
+        Panel(title, "step", "drift, energy per unit of time", tuple(drifts), **by_step),
+    )
+
+
+STUDY = Study(
+    key="drift",
+    title="Energy over long runs",
+    page="drift",
+    seconds=900.0,
+    measure=measure,
+    find=find,
+)
