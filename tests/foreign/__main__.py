@@ -79,10 +79,8 @@ def try_neighbors(report, lammps, ranks, only):
 def try_decks(report, source, programs, release, only, minutes):
     """Verdicts on all decks of one release; those that are not reached in time are "not run"."""
     begin, verdicts = time.monotonic(), []
-    manual = "\n".join(
-        (ROOT / "doc" / page).read_text()
-        for page in ("src/fix_gear_quat.rst", "howto/from_rigid.md")
-    )
+    pages = ("src/fix_gear_quat.rst", "howto/from_rigid.md")
+    manual = " ".join(" ".join((ROOT / "doc" / page).read_text().split()) for page in pages)
     # where most rigid fixes are comes first
     for path in sorted(decks.decks_of(source), key=lambda path: path.parts[1] != "rigid"):
         if not re.search(only or ".", str(path)):

