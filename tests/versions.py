@@ -1,4 +1,4 @@
-"""What `tests/run versions` found, as a table; with --publish in README."""
+"""What `tests/run versions` found, as a table; with --publish on the page about installing."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def compiler() -> str:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="tests/run versions")
     parser.add_argument("rows", type=Path, help="folder with the counts of each part")
-    parser.add_argument("--publish", action="store_true", help="write the table into README")
+    parser.add_argument("--publish", action="store_true", help="write the table into doc/install.md")
     arguments = parser.parse_args()
     rows = arguments.rows
     present = [row for row in HOW if not (rows / f"{row}.missing").exists()]
@@ -92,7 +92,7 @@ def main() -> int:
             return 1
         when = datetime.date.today().strftime("%d %b %Y")
         block = [*lines, "", f"The same sources in each; on {system()}, {compiler()}, {when}."]
-        write_block(ROOT / "README.md", COMMAND, "\n".join(block))
+        write_block(ROOT / "doc" / "install.md", COMMAND, "\n".join(block))
     return 0
 
 

@@ -20,7 +20,7 @@ def cases(out, full, jobs, lmp, publish_to):
     from benchmarks.studies.cases import figures, page, tables
     from benchmarks.studies.cases.runs import run_cases
 
-    with measurement(out, publish_to, page.COMMAND) as out:
+    with measurement(out, publish_to) as out:
         with shares() as progress:
             results = run_cases(out, full, lmp, jobs, progress)
         claims = tables.write_tables(out, results)

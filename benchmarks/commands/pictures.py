@@ -18,7 +18,7 @@ def pictures(out, lmp, publish_to):
 
     from benchmarks.studies.pictures import figures, film, page, scenes
 
-    with measurement(out, publish_to, page.COMMAND) as out:
+    with measurement(out, publish_to) as out:
         with shares() as progress:
             found = scenes.run(out, lmp, progress)
         figures.draw_orbit(out / "orbit.png", found[1])

