@@ -3,11 +3,10 @@
 from .bench import bench
 from .cases import cases
 from .effects import effects
-from .isokinetic import isokinetic
 from .pictures import pictures
 from .workprecision import workprecision
 
 COMMANDS = {
     command.name: command
-    for command in (bench, cases, effects, isokinetic, pictures, workprecision)
+    for command in (bench, cases, effects, pictures, workprecision)
 }

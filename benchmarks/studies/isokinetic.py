@@ -1,0 +1,377 @@
+"""Constant kinetic energy: how well it is kept, and what configurations come of it.
+
+Long runs of a few tied bodies (``examples/isokinetic/in.tethered``) show how well the kinetic energy
+is kept; short ones of rigid water (``in.isokinetic``) show what configurations come of it, beside
+fix rigid/nvt/small.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from benchmarks.engine import statistics
+from benchmarks.engine.decks import EXAMPLES
+from benchmarks.engine.lab import Job
+from benchmarks.engine.panels import Curve, Panel, draw, floor
+from benchmarks.engine.statistics import Mean, blocks_of, deviation, mean_of_blocks, slope
+from benchmarks.engine.study import Finding, Measurement, Study, Table
+
+CONSTRAINTS, THERMOSTAT = ("total", "separate"), "nvt"
+METHODS = (*CONSTRAINTS, THERMOSTAT)
+TITLES = {
+    "total": "`isokinetic total`",
+    "separate": "`isokinetic separate`",
+    THERMOSTAT: "`fix rigid/nvt/small`",
+}
+COLORS = {"total": "first", "separate": "second", THERMOSTAT: "total"}
+MOLECULES, TEMPERATURE = 216, 300.0
+SAMPLES = 500
+#: kcal/mol of all molecules in kJ/mol per mole of molecules
+KILOJOULES = 4.184 / MOLECULES
+
+#: largest relative change of a rescaled kinetic energy
+MOST_RESCALED = 1e-13
+#: by how much the order of the drift may fall short of the number of values
+ORDER_SLACK = 0.5
+#: bins with less are empty: no pair of oxygens comes as close
+LEAST_DISTRIBUTION = 0.05
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Sizes of all runs; times in the units of the scenes (water: fs)."""
+
+    drift_steps: int = 1_000_000
+    dts: tuple = (0.0125, 0.025, 0.05)
+    values: int = 6
+    water_dt: float = 1.5
+    water_steps: int = 16_000
+    every: int = 20
+    blocks: int = 10
+    seeds: tuple = (4711, 2718)
+
+    @property
+    def block(self):
+        """Steps of water in a block; as many come before the first."""
+        return self.water_steps // self.blocks
+
+    @property
+    def rescaled_dt(self):
+        """The step of the runs whose momenta are rescaled: the largest."""
+        return self.dts[-1]
+
+
+QUICK = Plan(drift_steps=20_000, dts=(0.05, 0.1), water_steps=400, every=10, seeds=(4711,))
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Kinetic energy of a long run: ``time`` (n,); ``error`` (n,), relative to the start's.
+
+    ``total``: the whole kinetic energy; ``separate``: of translation and rotation whichever is
+    further off.  ``balance`` (n,): error of potential + kinetic energy + heat, relative to the
+    kinetic energy at the start.
+    """
+
+    time: np.ndarray
+    error: np.ndarray
+    balance: np.ndarray
+
+    @property
+    def drift(self):
+        """Relative drift of the kinetic energy per unit of time, and its standard error."""
+        return slope(self.time, self.error)
+
+    @property
+    def largest(self):
+        """Largest relative change of the kinetic energy."""
+        return float(np.abs(self.error).max())
+
+
+@dataclass(frozen=True)
+class Water:
+    """A run of water: ``potential``, ``kinetic`` (n,) in kcal/mol, of all molecules.
+
+    ``distance`` (bins,) in Angstrom; ``distribution`` (blocks, bins): g(r) of the oxygens.
+    """
+
+    potential: np.ndarray
+    kinetic: np.ndarray
+    distance: np.ndarray
+    distribution: np.ndarray
+
+
+@dataclass(frozen=True)
+class Results:
+    """``kept``: (constraint, whether rescaled, step) -> Kept; ``water``: (method, seed) -> Water."""
+
+    plan: Plan
+    kept: dict
+    water: dict
+
+    def order(self, constraint):
+        """Power of the step with which the drift of the kinetic energy falls."""
+        rates = [abs(self.kept[constraint, False, dt].drift[0]) for dt in self.plan.dts]
+        return statistics.order(self.plan.dts, rates)
+
+    def waters(self, method):
+        """Runs of a method, one for each seed."""
+        return [water for (of, _), water in self.water.items() if of == method]
+
+    def energy(self, method):
+        """Mean potential energy of all molecules, from the blocks of all seeds."""
+        blocks = [blocks_of(water.potential, self.plan.blocks) for water in self.waters(method)]
+        return mean_of_blocks(np.concatenate(blocks))
+
+    def kinetic(self, method):
+        """Mean kinetic energy of all molecules and standard deviation of one configuration's."""
+        values = np.concatenate([water.kinetic for water in self.waters(method)])
+        return float(values.mean()), float(values.std())
+
+    def distribution(self, method):
+        """g(r) with errors, from the blocks of all seeds; distances (bins,) come first."""
+        waters = self.waters(method)
+        return waters[0].distance, mean_of_blocks(np.concatenate([w.distribution for w in waters]))
+
+
+# --- measuring ----------------------------------------------------------------------------------
+def _relative(values):
+    return values / values[0] - 1.0
+
+
+def read_kept(finished, constraint):
+    """Kept of a long run."""
+    c = finished.thermo
+    translation, rotation = c["f_move[1]"], c["f_move[2]"]
+    if constraint == "total":
+        error = _relative(translation + rotation)
+    else:
+        parts = np.array([_relative(translation), _relative(rotation)])
+        error = np.take_along_axis(parts, np.abs(parts).argmax(axis=0)[None], axis=0)[0]
+    balance = (c["v_all"] - c["v_all"][0]) / (translation[0] + rotation[0])
+    return Kept(c["Time"], error, balance)
+
+
+def read_distribution(path):
+    """Distances (bins,) and g (blocks, bins) of a file that fix ave/time wrote in mode vector.
+
+    Raises ValueError if the file has no blocks, or blocks of unequal length.
+    """
+    lines = path.read_text(encoding="utf-8").splitlines()
+    rows = [line.split() for line in lines if line.strip() and not line.startswith("#")]
+    bins = {int(words[1]) for words in rows if len(words) == 2}
+    values = np.array([words[1:3] for words in rows if len(words) != 2], dtype=float)
+    if len(bins) != 1 or not len(values) or len(values) % max(bins):
+        raise ValueError(f"{path}: blocks of unequal length, or none")
+    table = values.reshape(-1, max(bins), 2)
+    return table[0, :, 0], table[:, :, 1]
+
+
+def measure_water(lab, plan):
+    """(method, seed) -> Water."""
+    settings = {
+        "values": plan.values,
+        "dt": f"{plan.water_dt:.17g}",
+        "equilibrate": plan.block,
+        "steps": plan.water_steps,
+        "every": plan.every,
+        "block": plan.block,
+        "temperature": TEMPERATURE,
+    }
+
+    def read(finished):
+        c, file = finished.thermo, finished.dump.with_suffix("")
+        return Water(c["PotEng"], c["v_ketrans"] + c["v_kerot"], *read_distribution(file))
+
+    axes = {"constraint": METHODS, "seed": plan.seeds}
+    return lab.sweep("water", EXAMPLES / "isokinetic" / "in.isokinetic", axes, read, settings)
+
+
+def measure_kept(lab, plan):
+    """(constraint, whether rescaled, step) -> Kept: every step without rescaling, the largest with."""
+    keys = [(constraint, False, dt) for constraint in CONSTRAINTS for dt in plan.dts]
+    keys += [(constraint, True, plan.rescaled_dt) for constraint in CONSTRAINTS]
+    jobs = {}
+    for constraint, rescaled, dt in keys:
+        variables = {
+            "constraint": constraint,
+            "rescale": "yes" if rescaled else "no",
+            "values": plan.values,
+            "dt": f"{dt:.17g}",
+            "steps": plan.drift_steps,
+            "every": max(1, plan.drift_steps // SAMPLES),
+        }
+        name = f"{constraint}_{'rescaled' if rescaled else 'free'}_dt{dt:g}"
+        deck = EXAMPLES / "isokinetic" / "in.tethered"
+        jobs[name] = Job(deck, variables, plan.drift_steps)
+    runs = lab.many(jobs)
+    return {key: read_kept(run, key[0]) for key, run in zip(keys, runs.values())}
+
+
+def measure(lab, plan=None):
+    """Results."""
+    plan = plan or (QUICK if lab.quick else Plan())
+    with lab.share(0.9):
+        water = measure_water(lab, plan)
+    with lab.share(0.1):
+        return Results(plan, measure_kept(lab, plan), water)
+
+
+# --- judging ------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Distance:
+    """How far g(r) is from the thermostat's: largest and root mean square deviation, in standard
+    errors; ``difference``: the largest itself; ``most``: what Student's t allows."""
+
+    largest: float
+    rms: float
+    difference: float
+    most: float
+
+
+def compare_distributions(results, method):
+    """g(r) of a constraint against that of the thermostat, where there are pairs."""
+    (_, ours), (_, theirs) = (results.distribution(of) for of in (method, THERMOSTAT))
+    there = np.minimum(ours.value, theirs.value) > LEAST_DISTRIBUTION
+    ours, theirs = (Mean(m.value[there], m.error[there], m.freedoms) for m in (ours, theirs))
+    z = deviation(ours, theirs)
+    difference = float(np.abs(ours.value - theirs.value).max())
+    most = statistics.largest_deviation(ours, theirs, int(there.sum()))
+    return Distance(float(np.abs(z).max()), float(np.sqrt(np.mean(z**2))), difference, most)
+
+
+def measurements(results):
+    """Measurements with their bounds."""
+    plan, found = results.plan, []
+    for constraint in CONSTRAINTS:
+        what = f"{constraint}: order of the drift of the kinetic energy"
+        least = plan.values - ORDER_SLACK
+        found.append(Measurement(what, results.order(constraint), spec=".2f", least=least))
+        what = f"{constraint}, rescaled: largest relative change of the kinetic energy"
+        change = results.kept[constraint, True, plan.rescaled_dt].largest
+        found.append(Measurement(what, change, most=MOST_RESCALED))
+        ours, theirs = results.energy(constraint), results.energy(THERMOSTAT)
+        z = float(abs(deviation(ours, theirs)))
+        what = f"{constraint}: mean energy of water, deviation from the thermostat"
+        most = statistics.largest_deviation(ours, theirs, len(CONSTRAINTS))
+        errors = {"spec": ".1f", "unit": "standard errors"}
+        found.append(Measurement(what, z, most=most, **errors))
+        d = compare_distributions(results, constraint)
+        what = f"{constraint}: g(r) of water, largest deviation from the thermostat"
+        found.append(Measurement(what, d.largest, most=d.most, **errors))
+    return found
+
+
+def kept_tables(results):
+    """Tables of the tied bodies, and CSV of all their runs."""
+    plan = results.plan
+    steps = [f"step {dt:g}" for dt in plan.dts]
+    columns = {
+        "drift of K/K(0) in the run": lambda kept, dt: kept.drift[0] * plan.drift_steps * dt,
+        "largest change of K/K(0)": lambda kept, dt: kept.largest,
+        "largest error of the balance of energies, in units of K": lambda kept, dt: abs(
+            kept.balance
+        ).max(),
+    }
+    rows = []
+    for words, value in columns.items():
+        for constraint in CONSTRAINTS:
+            cells = [f"{value(results.kept[constraint, False, dt], dt):.1e}" for dt in plan.dts]
+            kept = results.kept[constraint, True, plan.rescaled_dt]
+            rescaled = f"{value(kept, plan.rescaled_dt):.1e}"
+            rows.append([f"{TITLES[constraint]}: {words}", *cells, rescaled])
+    header = ("", *steps, f"step {plan.rescaled_dt:g}, rescaled")
+    every = [
+        (*key, *kept.drift, kept.largest, abs(kept.balance).max())
+        for key, kept in results.kept.items()
+    ]
+    names = ("constraint", "rescaled", "step", "drift", "standard error", "largest", "balance")
+    return {"kinetic": Table(header, rows), "drift": Table(names, every)}
+
+
+def water_tables(results):
+    """Table of the energies of water, and CSV of the pair distributions."""
+    rows, every = [], []
+    for method in METHODS:
+        mean = results.energy(method)
+        value, error = KILOJOULES * float(mean.value), KILOJOULES * float(mean.error)
+        kinetic, scatter = (KILOJOULES * number for number in results.kinetic(method))
+        row = [TITLES[method], f"{value:.3f} ± {error:.3f}", f"{kinetic:.4f} ± {scatter:.1g}", "", ""]
+        if method != THERMOSTAT:
+            z = float(deviation(mean, results.energy(THERMOSTAT)))
+            d = compare_distributions(results, method)
+            row[3:] = [f"{z:+.1f}", f"{d.largest:.1f} ({d.difference:.2g}), rms {d.rms:.2f}"]
+        rows.append(row)
+        distances, g = results.distribution(method)
+        every += [(method, *values) for values in zip(distances, g.value, g.error)]
+    header = (
+        "water",
+        "potential energy, kJ/mol, ± standard error",
+        "kinetic energy, kJ/mol, ± its fluctuation",
+        "deviation of the energy, standard errors",
+        "largest deviation of g(r), standard errors (value)",
+    )
+    names = ("method", "r", "g", "standard error")
+    return {"water": Table(header, rows), "distribution": Table(names, every)}
+
+
+# --- picture ------------------------------------------------------------------------------------
+def panels(results):
+    """Kinetic energy over time, its drift by step, g(r) and its differences."""
+    dts = results.plan.dts
+    history, drifts, distributions, differences = [], [], [], []
+    _, theirs = results.distribution(THERMOSTAT)
+    for method in METHODS:
+        color, title = COLORS[method], TITLES[method].strip("`")
+        r, g = results.distribution(method)
+        seen = r >= 2.0
+        distributions.append(Curve(title, r[seen], g.value[seen], color))
+        if method == THERMOSTAT:
+            continue
+        error, off = np.hypot(g.error, theirs.error), g.value - theirs.value
+        differences.append(Curve(title, r[seen], off[seen], color, "", ".", error[seen]))
+        for dt, width in zip(dts, np.linspace(0.6, 1.8, len(dts))):
+            kept = results.kept[method, False, dt]
+            label = title if dt == dts[-1] else ""
+            history.append(Curve(label, kept.time[1:], floor(kept.error[1:]), color, width=width))
+        kept = results.kept[method, True, results.plan.rescaled_dt]
+        history.append(Curve("", kept.time[1:], floor(kept.error[1:]), color, "", "."))
+        rates = [abs(results.kept[method, False, dt].drift[0]) for dt in dts]
+        label = f"{title}, order {results.order(method):.1f}"
+        drifts.append(Curve(label, np.array(dts), np.array(rates), color, "-", "o"))
+    title = "kinetic energy, thicker for longer steps; dots: rescaled"
+    drift, pairs = "drift of K/K(0) per unit of time", "r of two oxygens, Å"
+    return (
+        Panel(title, "time", "|K/K(0) - 1|", tuple(history), log="xy"),
+        Panel("drift by step", "step", drift, tuple(drifts), log="xy", xticks=tuple(dts)),
+        Panel("pair distribution of water", pairs, "g(r)", tuple(distributions), log=""),
+        Panel("less that of the thermostat", pairs, "g(r)", tuple(differences), log=""),
+    )
+
+
+def find(results):
+    """Finding of Results."""
+    plan = results.plan
+    context = {
+        "plan": plan,
+        "molecules": MOLECULES,
+        "temperature": TEMPERATURE,
+        "picoseconds": plan.water_steps * plan.water_dt / 1000,
+        "confidence": statistics.CONFIDENCE,
+        "least": LEAST_DISTRIBUTION,
+    }
+    tables = kept_tables(results) | water_tables(results)
+    picture = partial(draw, panels=panels(results), columns=2)
+    return Finding(measurements(results), tables, {"isokinetic": picture}, context)
+
+
+STUDY = Study(
+    key="isokinetic",
+    title="Constant kinetic energy",
+    page="isokinetic",
+    seconds=360.0,
+    measure=measure,
+    find=find,
+    packages=("lammps-gearquat", "numpy", "scipy"),
+)

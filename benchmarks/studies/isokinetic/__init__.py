@@ -1,1 +1,0 @@
-"""Constant kinetic energy: runs.py (plan, logs), judge.py (verdicts), figures.py, page.py."""
