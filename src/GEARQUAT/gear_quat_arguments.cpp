@@ -5,8 +5,6 @@
 
 #include "gear_quat_arguments.h"
 
-#include "gear_quat_rigid_words.h"
-
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
@@ -18,21 +16,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
-
-// what is used unless the user says otherwise; measured, see doc/decisions.md
-
-static constexpr int FIRST_VALUES = 6, SECOND_VALUES = 8, PASSES = 2;
-
-// a pass more is of no use from three on; a number with too many digits would seem to hang
-
-static constexpr int PASSES_MOST = 100;
-
-static constexpr int MASK_WORDS = 5;    // force M xflag yflag zflag
 
 static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
 
@@ -52,6 +38,11 @@ int Arguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
                "molecule, group N ID1 ID2 ..., custom i_name or custom v_name");
   const std::string style = arg[FIRST_WORD];
   const int next = FIRST_WORD + 1;
+  if (style == "keywords") {
+    if (lmp->comm->me == 0) utils::logmesg(lmp, list_of_keywords());
+    error->all(FLERR, "Fix gear/quat keywords only lists the keywords, and no fix was made");
+  }
+  given["bodystyle"].text = style;
 
   if (style == "single") {
     bodystyle = BodyStyle::SINGLE;
@@ -87,202 +78,100 @@ int Arguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
   return 0;
 }
 
-static Isokinetic isokinetic_of(const std::string &value, Error *error)
-{
-  const std::map<std::string, Isokinetic> words = {
-      {"none", Isokinetic::NONE}, {"total", Isokinetic::TOTAL}, {"separate", Isokinetic::SEPARATE}};
-  const auto found = words.find(value);
-  if (found == words.end())
-    error->all(FLERR, "Fix gear/quat isokinetic: unknown value {} (none, total or separate)",
-               value);
-  return found->second;
-}
-
-static Arguments::Report report_of(const std::string &value, Error *error)
-{
-  using Report = Arguments::Report;
-  const std::map<std::string, Report> words = {
-      {"no", Report::NO}, {"short", Report::SHORT}, {"long", Report::LONG}};
-  const auto found = words.find(value);
-  if (found == words.end())
-    error->all(FLERR, "Fix gear/quat report: unknown value {} (no, short or long)", value);
-  return found->second;
-}
+/* ----------------------------------------------------------------------
+   keywords
+------------------------------------------------------------------------- */
 
 void Arguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
 {
-  Error *error = lmp->error;
-  std::set<std::string> seen;
+  for (const auto &row : keyword_table())
+    if (!row.standard.empty()) row.store(*this, {row.standard});
 
-  // one of two words, the first meaning false
-
-  auto choice = [&](const std::string &key, const std::string &value, const char *no,
-                    const char *yes) {
-    if (value != no && value != yes)
-      error->all(FLERR, "Fix gear/quat {}: unknown value {} ({} or {})", key, value, no, yes);
-    return value == yes;
-  };
-
-  for (int iarg = 0; iarg < narg; iarg += 2) {
-    const std::string key = arg[iarg];
-    const std::set<std::string> known = {
-        "formulation", "values",     "passes",    "start",  "c0",         "omega",  "momentum",
-        "project",     "compensate", "tolerance", "dtmin",  "dtmax",      "infile", "reinit",
-        "mol",         "force",      "torque",    "report", "isokinetic", "rescale"};
-    if (!known.count(key)) {
-      const std::string instead = instead_of_rigid_keyword(key);
-      if (!instead.empty())
-        error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", key, instead);
-      error->all(FLERR, "Unknown fix gear/quat keyword: {}", key);
-    }
-    if (key == "force" || key == "torque") {    // may be given many times
-      masks.push_back(parse_mask(lmp, narg - iarg, arg + iarg));
-      iarg += MASK_WORDS - 2;
-      continue;
-    }
-    if (!seen.insert(key).second) error->all(FLERR, "Fix gear/quat keyword {} is given twice", key);
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, error);
-    const std::string value = arg[iarg + 1];
-    if (value.empty()) error->all(FLERR, "Fix gear/quat {}: the value is an empty word", key);
-
-    if (key == "formulation")
-      scheme.formulation = choice(key, value, "first", "second") ? Formulation::SECOND
-                                                                 : Formulation::FIRST;
-    else if (key == "values")
-      scheme.rows = utils::inumeric(FLERR, value, false, lmp);
-    else if (key == "passes")
-      scheme.passes = utils::inumeric(FLERR, value, false, lmp);
-    else if (key == "compensate")
-      scheme.compensate = choice(key, value, "no", "yes");
-    else if (key == "start")
-      start = choice(key, value, "bootstrap", "zero") ? Start::ZERO : Start::BOOTSTRAP;
-    else if (key == "c0")
-      scheme.velocity_c0 = choice(key, value, "position", "velocity");
-    else if (key == "omega")
-      scheme.predicted_omega = choice(key, value, "corrected", "predicted");
-    else if (key == "momentum")
-      scheme.predicted_momentum = choice(key, value, "corrected", "predicted");
-    else if (key == "project")
-      scheme.project = choice(key, value, "no", "yes");
-    else if (key == "reinit")
-      reinit = choice(key, value, "no", "yes");
-    else if (key == "tolerance" || key == "dtmin" || key == "dtmax") {
-      const double number = utils::numeric(FLERR, value, false, lmp);
-      if (!(number > 0.0) || !std::isfinite(number))
-        error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", key, value);
-      (key == "tolerance"   ? control.eps
-           : key == "dtmin" ? control.shortest
-                            : control.longest) = number;
-    } else if (key == "report")
-      report = report_of(value, error);
-    else if (key == "isokinetic")
-      isokinetic = isokinetic_of(value, error);
-    else if (key == "rescale")
-      rescale = choice(key, value, "no", "yes");
-    else if (key == "mol")
-      mol = value;
-    else
-      infile = value;
+  for (int iarg = 0; iarg < narg; ++iarg) {
+    const Keyword &row = known_keyword(lmp, arg[iarg]);
+    if (row.kind != Keyword::MASK && given.count(row.name))
+      lmp->error->all(FLERR, "Fix gear/quat keyword {} is given twice", row.name);
+    KeywordValue value;
+    iarg += row.read(lmp, narg - iarg, arg + iarg, value);
+    row.store(*this, value);
+    given[row.name] = value;
   }
+  check_conditions(lmp);
+  check_ranges(lmp);
+  if (is_on("tolerance", "")) check_control(lmp);
+  if (!infile.empty()) reinit = false;    // what a file states is not computed again from the atoms
+}
 
-  const int fewest = scheme.first() ? FIRST_FEWEST : SECOND_FEWEST;
-  const int most = scheme.first() ? FIRST_MOST : SECOND_MOST;
-  const bool tolerance = seen.count("tolerance");
-  if (!seen.count("values"))
-    scheme.rows = tolerance ? std::min(most, VARIABLE_MOST)
-        : scheme.first()    ? FIRST_VALUES
-                            : SECOND_VALUES;
-  if (!seen.count("passes")) scheme.passes = PASSES;
-  if (scheme.rows < fewest || scheme.rows > most)
-    error->all(FLERR, "Fix gear/quat values: {} is not from {} to {}, as formulation {} requires",
-               scheme.rows, fewest, most, scheme.first() ? "first" : "second");
-  if (scheme.passes < 1 || scheme.passes > PASSES_MOST)
-    error->all(FLERR, "Fix gear/quat passes: {} is not from 1 to {}", scheme.passes, PASSES_MOST);
-  scheme.trial = tolerance;
-  if (tolerance) check_control(lmp, fewest);
-  for (const auto *key : {"dtmin", "dtmax"})
-    if (!tolerance && seen.count(key))
-      error->all(FLERR, "Fix gear/quat keyword {} requires keyword tolerance", key);
+/// True if a keyword has this value, given or by default; with an empty one, if it is in use, that
+/// is, has any value but the word none.
+bool Arguments::is_on(const std::string &keyword, const std::string &value) const
+{
+  const auto place = given.find(keyword);
+  if (keyword == "bodystyle") return place->second.text == value;
+  const Keyword &row = find_keyword(keyword);
+  const std::string &present = place == given.end() ? row.standard : place->second.text;
+  if (!value.empty()) return present == value;
+  return !present.empty() && !(row.kind == Keyword::WORD && present == "none");
+}
 
-  if (scheme.first() && seen.count("c0"))
-    error->all(FLERR, "Fix gear/quat keyword c0 belongs to formulation second");
-  for (const auto *key : {"omega", "momentum"})
-    if (!scheme.first() && seen.count(key))
-      error->all(FLERR, "Fix gear/quat keyword {} belongs to formulation first", key);
-
-  check_isokinetic(lmp, seen.count("rescale"));
-  if (!mol.empty() && !masks.empty())
-    error->all(FLERR,
-               "Fix gear/quat keywords force and torque cannot be used with mol: the numbers of "
-               "bodies change when bodies come");
-  if (!mol.empty() && bodystyle != BodyStyle::MOLECULE)
-    error->all(FLERR, "Fix gear/quat keyword mol requires bodystyle molecule");
-
-  // what a file states must not be computed again from the atoms
-
-  if (!infile.empty()) {
-    if (reinit && seen.count("reinit"))
-      error->all(FLERR,
-                 "Fix gear/quat reinit yes cannot be used with infile, which states the "
-                 "bodies once and for all");
-    reinit = false;
+/// What keywords require of each other and exclude.
+void Arguments::check_conditions(LAMMPS *lmp) const
+{
+  const auto because = [](const Keyword::Condition &condition) {
+    return condition.reason.empty() ? "" : ": " + condition.reason;
+  };
+  for (const auto &row : keyword_table()) {
+    if (!given.count(row.name) || !is_on(row.name, "")) continue;
+    for (const auto &condition : row.needs)
+      if (!is_on(condition.keyword, condition.value))
+        lmp->error->all(FLERR, "Fix gear/quat keyword {} requires {}{}", row.name,
+                        condition.value.empty() ? "keyword " + condition.keyword
+                                                : condition.keyword + " " + condition.value,
+                        because(condition));
+    for (const auto &condition : row.excludes)
+      if (is_on(row.name, condition.value) && given.count(condition.keyword) &&
+          is_on(condition.keyword, ""))
+        lmp->error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}{}",
+                        condition.value.empty() ? row.name
+                                                : row.name + std::string(" ") + condition.value,
+                        condition.keyword, because(condition));
   }
 }
 
-void Arguments::check_control(LAMMPS *lmp, int fewest)
+/// Integers in their ranges, and those that were not given.
+void Arguments::check_ranges(LAMMPS *lmp)
 {
-  control.fewest = fewest;
+  const bool tolerance = is_on("tolerance", "");
+  for (const auto &row : keyword_table()) {
+    if (row.kind != Keyword::INTEGER) continue;
+    const Keyword::Range &range = row.range(scheme.first());
+    const bool most = tolerance && row.most_with_tolerance;
+    KeywordValue value;
+    value.integer = most ? std::min(range.most, row.most_with_tolerance) : range.standard;
+    if (given.count(row.name)) value = given.at(row.name);
+    row.store(*this, value);
+    if (value.integer < range.fewest || value.integer > range.most)
+      lmp->error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.integer,
+                      range.fewest, range.most,
+                      row.ranges.size() == 1 ? ""
+                          : scheme.first()   ? ", as formulation first requires"
+                                             : ", as formulation second requires");
+    if (most && value.integer > row.most_with_tolerance)
+      lmp->error->all(FLERR,
+                      "Fix gear/quat tolerance: {} {} are more than {}, the largest number with "
+                      "which a step may shrink",
+                      value.integer, row.name, row.most_with_tolerance);
+  }
+}
+
+void Arguments::check_control(LAMMPS *lmp)
+{
+  scheme.trial = true;
+  control.fewest = find_keyword("values").range(scheme.first()).fewest;
   control.most = scheme.rows;
-  if (control.most > VARIABLE_MOST)
-    lmp->error->all(FLERR,
-                    "Fix gear/quat tolerance: {} values are more than {}, the largest number with "
-                    "which a step may shrink",
-                    control.most, VARIABLE_MOST);
   if (control.longest > 0.0 && control.shortest > control.longest)
     lmp->error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                     control.longest);
-}
-
-void Arguments::check_isokinetic(LAMMPS *lmp, bool rescale_given) const
-{
-  Error *error = lmp->error;
-  if (isokinetic == Isokinetic::NONE) {
-    if (rescale_given)
-      error->all(FLERR, "Fix gear/quat keyword rescale belongs to isokinetic total or separate");
-    return;
-  }
-  if (!scheme.first())
-    error->all(FLERR,
-               "Fix gear/quat keyword isokinetic belongs to formulation first: its constraint acts "
-               "on momenta, which formulation second does not have");
-  if (!masks.empty())
-    error->all(FLERR,
-               "Fix gear/quat keywords force and torque cannot be used with isokinetic, which acts "
-               "on all momenta: define a second fix for the bodies that are held");
-  if (!mol.empty())
-    error->all(FLERR,
-               "Fix gear/quat keyword mol cannot be used with isokinetic: bodies that come bring "
-               "kinetic energy");
-  if (control.eps > 0.0)
-    error->all(FLERR,
-               "Fix gear/quat keyword tolerance cannot be used with isokinetic: heat and "
-               "multipliers are those of one step and one number of values");
-}
-
-/// arg: the keyword and what follows.
-MaskWords Arguments::parse_mask(LAMMPS *lmp, int narg, char **arg)
-{
-  const std::string key = arg[0];
-  if (narg < MASK_WORDS) utils::missing_cmd_args(FLERR, "fix gear/quat " + key, lmp->error);
-  MaskWords words = {key == "torque", arg[1], {}};
-  for (int k = 0; k < 3; ++k) {
-    const std::string flag = arg[2 + k];
-    if (flag != "on" && flag != "off")
-      lmp->error->all(FLERR, "Fix gear/quat {}: unknown {}flag {} (on or off)", key, "xyz"[k],
-                      flag);
-    words.on[k] = flag == "on";
-  }
-  return words;
 }
 
 /* ----------------------------------------------------------------------

@@ -1,9 +1,13 @@
-"""Argument lines of the fix: made by the grammar of the manual, broken, and judged by that grammar.
+"""Argument lines of the fix: made by a grammar, broken, and judged by that grammar.
 
-What is here is written from doc/src/fix_gear_quat.rst, not from the source.
+Names, values, defaults and what goes with what are those that the fix lists itself, which
+test_documentation.py holds the manual to; how words are read and what the scene allows is written
+here from doc/src/fix_gear_quat.rst, not from the source.
 """
 
 import re
+
+from lammps_gearquat import keywords
 
 from . import tokens
 
@@ -58,28 +62,13 @@ CUSTOM = ("i_which", "i_none", "v_half")  # integers, and not too far apart
 TEMPLATES = ("two", "heavy")
 INFILES = ("bodies",)
 
-WORDS = {
-    "formulation": ("second", "first"),
-    "compensate": ("no", "yes"),
-    "start": ("bootstrap", "zero"),
-    "c0": ("position", "velocity"),
-    "omega": ("corrected", "predicted"),
-    "momentum": ("corrected", "predicted"),
-    "project": ("yes", "no"),
-    "reinit": ("yes", "no"),
-    "isokinetic": ("none", "total", "separate"),
-    "rescale": ("yes", "no"),
-    "report": ("no", "short", "long"),
-}
-RANGE = {"second": (4, 12), "first": (3, 8)}
-PASSES = (1, 100)
-TOLERANCE_MOST = 10  # values
-REALS = ("tolerance", "dtmin", "dtmax")
-MASKS = ("force", "torque")  # followed by four words, any number of times
-KEYWORDS = (*WORDS, "values", "passes", *REALS, "infile", "mol")
+TABLE = keywords.table()
+WORDS = {key: row.words for key, row in TABLE.items() if row.kind == "word"}
+INTEGERS = [key for key, row in TABLE.items() if row.kind == "integer"]
+NUMBERS = [key for key, row in TABLE.items() if row.kind == "number"]
+MASKS = [key for key, row in TABLE.items() if row.kind == "mask"]  # any number of times
 POOL = (
-    *KEYWORDS,
-    *MASKS,
+    *TABLE,
     *("on", "off", "*", "1*", "*2", "1*2", "2*1", "3", "1e-10", "1e-3", "0.1", "0"),
     *(value for values in WORDS.values() for value in values),
     *GROUPS,
@@ -132,8 +121,8 @@ def bodystyle(words):
 
 
 def take_masks(words, bodies):
-    """The words without those of MASKS, or None if there is a wrong one among these."""
-    rest, at = [], 0
+    """The words without those of MASKS, and which of MASKS are there; None if one is wrong."""
+    rest, masks, at = [], set(), 0
     while at < len(words):
         if words[at] not in MASKS:
             rest += words[at : at + 2]
@@ -149,45 +138,50 @@ def take_masks(words, bodies):
         last = int((high or str(bodies))[:30]) if star else first
         if not 1 <= first <= last <= bodies:
             return None
+        masks.add(words[at])
         at += 5
-    return rest
+    return rest, masks
 
 
-def keywords_agree(given, formulation, masked):
-    """Whether these keywords may be used together, their values being possible ones."""
-    constant = given.get("isokinetic", "none") != "none"
-    if constant and (formulation == "second" or masked or "tolerance" in given or "mol" in given):
-        return False
-    if "rescale" in given and not constant:
-        return False
-    if formulation == "first" and "c0" in given:
-        return False
-    if formulation == "second" and ("omega" in given or "momentum" in given):
-        return False
-    if "mol" in given and masked:
-        return False
-    return not ("infile" in given and given.get("reinit") == "yes")
+def in_use(key, given, value=""):
+    """Whether a keyword has a value, given or by default, or with an empty one any but none."""
+    default = TABLE[key].default if key in WORDS else ""
+    present = given.get(key, default)
+    return present == value if value else present not in ("", "none")
 
 
-def values_allowed(given, formulation):
-    """Whether each value belongs to its keyword."""
-    for key, value in given.items():
-        if key in WORDS and value not in WORDS[key]:
+def agrees(key, given):
+    """Whether a keyword that was given may be used with all others; bodystyle is among these."""
+    if not in_use(key, given):
+        return True
+    for other, value in TABLE[key].requires:
+        if given["bodystyle"] != value if other == "bodystyle" else not in_use(other, given, value):
             return False
-    for key, bounds in (("values", RANGE.get(formulation)), ("passes", PASSES)):
-        if key in given:
-            number = integer(given[key])
-            if number is None or not bounds[0] <= number <= bounds[1]:
-                return False
-    for key in REALS:
-        if key in given and (positive(given[key]) is None or "tolerance" not in given):
-            return False
-    if "dtmin" in given and "dtmax" in given:
-        if positive(given["dtmin"]) > positive(given["dtmax"]):
-            return False
-    if "tolerance" in given and integer(given.get("values", "0")) > TOLERANCE_MOST:
-        return False
-    return True
+    return not any(
+        in_use(key, given, value) and other in given and in_use(other, given)
+        for other, value in TABLE[key].excludes
+    )
+
+
+def bounds(key, given):
+    """Least and largest integer of a keyword."""
+    ranges, limit = TABLE[key].ranges, TABLE[key].most_with_tolerance
+    formulation = given.get("formulation", TABLE["formulation"].default)
+    least, most = ranges.get("") or ranges[formulation]
+    return least, min(most, limit) if limit and "tolerance" in given else most
+
+
+def allowed(key, given):
+    """Whether the value of a keyword belongs to it, in this scene."""
+    value = given[key]
+    if key in WORDS:
+        return value in WORDS[key]
+    if key in INTEGERS:
+        least, most = bounds(key, given)
+        return integer(value) is not None and least <= integer(value) <= most
+    if key in NUMBERS:
+        return positive(value) is not None
+    return value in {"infile": INFILES, "mol": TEMPLATES}[key]
 
 
 def is_valid(words):
@@ -196,19 +190,22 @@ def is_valid(words):
     if found is None:
         return False
     used, bodies = found
-    rest = take_masks(words[used:], bodies)
-    if rest is None:
+    taken = take_masks(words[used:], bodies)
+    if taken is None:
         return False
+    rest, masks = taken
     keys = rest[::2]
-    if len(rest) % 2 or len(set(keys)) != len(keys) or any(key not in KEYWORDS for key in keys):
+    if len(rest) % 2 or len(set(keys)) != len(keys) or any(key not in TABLE for key in keys):
         return False
     given = dict(zip(keys, rest[1::2]))
-    formulation, masked = given.get("formulation", "second"), len(rest) < len(words) - used
-    if not values_allowed(given, formulation) or not keywords_agree(given, formulation, masked):
+    if given.get("formulation", "first") not in WORDS["formulation"]:
         return False
-    if "mol" in given and (given["mol"] not in TEMPLATES or words[0] != "molecule"):
+    if not all(allowed(key, given) for key in given):
         return False
-    return "infile" not in given or given["infile"] in INFILES
+    if {"dtmin", "dtmax"} <= set(given) and positive(given["dtmin"]) > positive(given["dtmax"]):
+        return False
+    given |= dict.fromkeys(masks, "*")
+    return all(agrees(key, given | {"bodystyle": words[0]}) for key in given)
 
 
 # --- inputs ---------------------------------------------------------------------------------------
@@ -226,33 +223,29 @@ def bodies_at_random(rng):
 def valid(rng):
     """Words that the fix accepts, but for a few that look so."""
     words = bodies_at_random(rng)
-    formulation = rng.choice(("first", "second"))
     choices = {key: rng.choice(values) for key, values in WORDS.items()}
-    choices["formulation"] = formulation
-    choices["values"] = str(rng.randint(*RANGE[formulation]))
-    choices["passes"] = str(rng.randint(1, 3))
-    choices["infile"], choices["mol"] = "bodies", "two"
+    choices |= {"passes": str(rng.randint(1, 3)), "infile": "bodies", "mol": "two"}
     choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
     choices["dtmin"], choices["dtmax"] = "1e-5", rng.choice(("1e-5", "0.1", "1"))
-    if formulation == "second":
-        choices["isokinetic"] = "none"
-    keys = [key for key in choices if rng.random() < 0.35]
-    if formulation == "first" and "formulation" not in keys:
-        keys.append("formulation")
-
-    constant = "isokinetic" in keys and choices["isokinetic"] != "none"
-    wrong = {"tolerance", "mol"} if constant else {"rescale"}
-    wrong |= {"c0"} if formulation == "first" else {"omega", "momentum"}
-    wrong |= {"mol"} if words[0] != "molecule" else set()
-    wrong |= {"reinit"} if "infile" in keys else set()
-    wrong |= {"dtmin", "dtmax"} if "tolerance" not in set(keys) - wrong else set()
-    if "tolerance" in keys and int(choices["values"]) > TOLERANCE_MOST:
-        wrong.add("values")
-    pairs = [[key, choices[key]] for key in keys if key not in wrong]
-    if not constant and ["mol", "two"] not in pairs and rng.random() < 0.3:
+    given = {key: value for key, value in choices.items() if rng.random() < 0.35}
+    given["formulation"] = choices["formulation"]
+    given |= {key: "*" for key in MASKS if rng.random() < 0.2}
+    given["bodystyle"] = words[0]
+    for key in [key for key in given if key in TABLE]:
+        if not agrees(key, given):  # it may have been what another one disagrees with
+            del given[key]
+    for key in [key for key in given if key in TABLE]:
+        if not agrees(key, given):
+            del given[key]
+    if rng.random() < 0.35:
+        given["values"] = str(rng.randint(*bounds("values", given)))
+    if given["formulation"] == TABLE["formulation"].default and rng.random() < 0.65:
+        del given["formulation"]
+    pairs = [[key, value] for key, value in given.items() if key in TABLE and key not in MASKS]
+    for key in (key for key in MASKS if key in given):
         for _ in range(rng.choice((1, 1, 2))):
             flags = [rng.choice(("on", "off")) for _ in range(3)]
-            pairs.append([rng.choice(MASKS), rng.choice(("1", "*", "1*")), *flags])
+            pairs.append([key, rng.choice(("1", "*", "1*")), *flags])
     rng.shuffle(pairs)
     return words + [word for pair in pairs for word in pair]
 

@@ -5,9 +5,9 @@ from math import comb
 
 import numpy as np
 import pytest
-from fuzz import arguments
 
 from benchmarks.studies.workprecision import stability
+from lammps_gearquat import keywords
 from pages import first_script
 from running import ROOT
 
@@ -42,74 +42,52 @@ def documented_values(key, text):
     return set(re.findall(r"\*(\w+)\*", line.partition("(")[0]))
 
 
-ACCEPTED = set(strings("known", ARGUMENTS))
-NAMES = {
-    "infile",
-    "mol",
-    "tolerance",
-    "dtmin",
-    "dtmax",
-    "force",
-    "torque",
-}  # without a default value
-VALUES = {
-    key: {no, yes}
-    for key, no, yes in re.findall(
-        r'key == "(\w+)"\)\s*\S+ =\s*choice\(key, value, "(\w+)", "(\w+)"\)', ARGUMENTS
-    )
-}
-VALUES["isokinetic"] = set(re.findall(r'{"(\w+)", Isokinetic::', ARGUMENTS))
-VALUES["report"] = set(re.findall(r'{"(\w+)", Report::', ARGUMENTS))
-
-
-NUMBERS = set(re.findall(r'key == "(\w+)"\)\s*\S+ = utils::inumeric', ARGUMENTS))
+TABLE = keywords.table()
+WORDS = {key: set(row.words) for key, row in TABLE.items() if row.kind == "word"}
 
 
 def test_every_keyword_is_documented():
-    assert len(ACCEPTED) >= 8
-    assert documented_keywords(MANUAL) == ACCEPTED
-    for key in ACCEPTED:
+    assert len(TABLE) >= 20
+    assert documented_keywords(MANUAL) == set(TABLE)
+    for key in TABLE:
         assert f"*{key}*" in section("Description"), key
         without = MANUAL.replace(f" or *{key}*", "").replace(f"*{key}* or ", "")
-        assert documented_keywords(without) != ACCEPTED
+        assert documented_keywords(without) != set(TABLE)
 
 
 def test_every_value_is_documented():
-    assert set(VALUES) == ACCEPTED - NAMES - NUMBERS
-    for key, values in VALUES.items():
-        assert documented_values(key, MANUAL) == values
-        assert documented_values(key, MANUAL.replace(f"*{min(values)}*", "")) != values
+    for key, words in WORDS.items():
+        assert documented_values(key, MANUAL) == words
+        assert documented_values(key, MANUAL.replace(f"*{min(words)}*", "")) != words
 
 
-def test_the_fuzzer_breaks_every_keyword_and_value():
-    assert {*arguments.KEYWORDS, *arguments.MASKS} == documented_keywords(MANUAL)
-    for key, values in VALUES.items():
-        assert set(arguments.WORDS[key]) == values
+@pytest.mark.parametrize("key", [key for key in TABLE if TABLE[key].ranges])
+def test_every_range_is_documented(key):
+    syntax = section("Syntax").partition(f"*{key}* value")[2]
+    text = " ".join(syntax.splitlines()[1].split())
+    for formulation, (least, most) in TABLE[key].ranges.items():
+        assert f"{least} to {most}" + (f" for *{formulation}*" if formulation else "") in text
 
 
-def test_every_default_is_a_value():
+def test_every_default_is_documented():
     text = " ".join(section("Default").split())
     defaults = dict(re.findall(r"(\w+) = (\w+)", text.partition(", or ")[0]))
-    assert set(defaults) == ACCEPTED - NAMES
-    assert all(defaults[key] in values for key, values in VALUES.items())
+    stated = {key: row.default for key, row in TABLE.items() if re.fullmatch(r"\w+", row.default)}
+    assert {key: defaults.pop(key) for key in stated} == stated
+    (second, first) = re.findall(r"\d+", TABLE["values"].default)
+    limit = TABLE["values"].most_with_tolerance
+    most = [min(TABLE["values"].ranges[formulation][1], limit) for formulation in ("second", "first")]
+    with_tolerance = f"({most[0]} and {most[1]} with tolerance)"
+    assert f"values = {second} for *second* and {first} for *first* {with_tolerance}" in text
 
 
-def test_default_numbers_are_those_of_the_source():
-    text = " ".join(section("Default").split())
-    found = re.search(r"FIRST_VALUES = (\d+), SECOND_VALUES = (\d+), PASSES = (\d+)", ARGUMENTS)
-    first, second, passes = found.groups()
-    control = (SOURCES / "gear_quat_step_control.h").read_text()
-    most = int(re.search(r"VARIABLE_MOST = (\d+)", control)[1])
-    coefficients = (SOURCES / "gear_quat_coefficients.h").read_text()
-    first_most = int(re.search(r"FIRST_MOST = (\d+)", coefficients)[1])
-    with_tolerance = f"({most} and {min(most, first_most)} with tolerance)"
-    values = f"values = {second} for *second* and {first} for *first* {with_tolerance}"
-    assert f"{values}, passes = {passes}" in text
-    assert NUMBERS == {"values", "passes"}
+def test_a_list_that_is_cut_off_is_no_list():
+    with pytest.raises(RuntimeError, match="does not list its keywords"):
+        keywords.parse("ERROR: Unknown fix style gear/quat\n")
 
 
 def test_every_bodystyle_is_documented():
-    styles = set(re.findall(r'style == "(\w+)"', ARGUMENTS))
+    styles = set(re.findall(r'style == "(\w+)"', ARGUMENTS)) - {"keywords"}
     line = re.search(r"^\* bodystyle = (.*)$", section("Syntax"), re.M)[1]
     assert set(re.findall(r"\*(\w+)\*", line)) == styles
     assert len(styles) == 4
@@ -182,8 +160,8 @@ def words_of_examples(text):
 
 def test_every_keyword_has_an_example():
     styles = re.search(r"^\* bodystyle = (.*)$", section("Syntax"), re.M)[1]
-    assert ACCEPTED | set(re.findall(r"\*(\w+)\*", styles)) <= words_of_examples(MANUAL)
-    for key in ACCEPTED:
+    assert set(TABLE) | set(re.findall(r"\*(\w+)\*", styles)) <= words_of_examples(MANUAL)
+    for key in TABLE:
         assert key not in words_of_examples(MANUAL.replace(f" {key} ", " ")), key
 
 

@@ -1,11 +1,13 @@
 """What the commands of an input script say: lines, words, fix lines, runs, and what is refused.
 
-Text in, text out; LAMMPS is not needed here.  The rules for continuation, comments and quotes are
-those of LAMMPS' manual, "Parsing rules for input scripts".
+Text in, text out; LAMMPS is asked for the list of the fix's keywords only.  The rules for continuation,
+comments and quotes are those of LAMMPS' manual, "Parsing rules for input scripts".
 """
 
 import re
 from dataclasses import dataclass, replace
+
+from .. import keywords
 
 
 class DeckError(ValueError):
@@ -122,17 +124,8 @@ RIGID_KEYWORDS = dict.fromkeys(MASKS, _MASK_WORDS) | {"langevin": 4}
 RIGID_KEYWORDS |= dict.fromkeys(("temp", "iso", "aniso", "x", "y", "z", "tparam"), 3)
 RIGID_KEYWORDS |= dict.fromkeys(("couple", "pchain", "dilate", "infile", "reinit", "mol"), 1)
 RIGID_KEYWORDS |= {"gravity": 1}
-#: keywords of fix gear/quat that say how bodies are integrated, not what they are
-NUMERICAL = ("formulation", "values", "passes", "compensate", "start", "c0", "omega", "momentum")
-NUMERICAL += ("project",)
-_OF_ONE_FORMULATION = ("values", "c0", "omega", "momentum")
-#: those that change the time step in a run: trials have steps of equal length
-STEPPING = ("tolerance", "dtmin", "dtmax")
-#: those that say what moves, and how it does by nature
-PHYSICAL = ("infile", "reinit", "mol", *MASKS, "isokinetic", "rescale")
-#: those that only write
-WRITING = ("report",)
-KEYWORDS = NUMERICAL + STEPPING + PHYSICAL + WRITING
+#: what the keywords of fix gear/quat are about that say what moves, and how it does by nature
+_PHYSICAL = ("bodies", "physics")
 _REFUSED_KEYWORDS = {
     "langevin": "its forces are random, so there is no trajectory to compare: leave it"
     " out, or measure another run with --run N",
@@ -178,8 +171,9 @@ class FixLine:
             words += [key, *values]
         return " ".join(map(_plain, words))
 
-    def only(self, names):
-        """This line with those of its keywords that are in ``names``."""
+    def only(self, *about):
+        """This line, of fix gear/quat, with those of its keywords that are about these subjects."""
+        names = keywords.names(*about)
         return replace(self, keywords=tuple(pair for pair in self.keywords if pair[0] in names))
 
     @property
@@ -201,27 +195,28 @@ class FixLine:
                 f"fix {self.id}, keyword isokinetic: it belongs to formulation first, so it cannot"
                 f" be tried with '{text}'"
             )
-        kept = self.only(PHYSICAL)
+        kept = self.only(*_PHYSICAL)
         return replace(kept, keywords=pairs(text) + kept.keywords)
 
     def numerics(self, text):
-        """The NUMERICAL keywords of this line as text, changed by those in ``text``.
+        """The keywords about integration of this line as text, changed by those in ``text``.
 
         What belongs to the other formulation only goes with a change of formulation.
         """
-        own, new = dict(self.only(NUMERICAL).keywords), dict(pairs(text))
+        own, new = dict(self.only("integration").keywords), dict(pairs(text))
         if new.get("formulation", own.get("formulation")) != own.get("formulation"):
-            own = {key: own[key] for key in own if key not in _OF_ONE_FORMULATION}
+            table = keywords.table()
+            own = {key: own[key] for key in own if not table[key].of_one_formulation}
         return " ".join(f"{key} {values[0]}" for key, values in (own | new).items())
 
 
 def pairs(text):
     """Keywords of fix gear/quat in ``text``: pairs (keyword, (value,))."""
-    words = text.split()
-    unknown = [word for word in words[::2] if word not in NUMERICAL]
+    words, known = text.split(), keywords.names("integration")
+    unknown = [word for word in words[::2] if word not in known]
     if len(words) % 2 or unknown:
         raise DeckError(
-            f"'{text}' should be pairs of a keyword ({', '.join(NUMERICAL)}) and its value"
+            f"'{text}' should be pairs of a keyword ({', '.join(known)}) and its value"
         )
     return tuple((key, (value,)) for key, value in zip(words[::2], words[1::2]))
 
@@ -242,8 +237,8 @@ def parse_fix(words):
         raise DeckError(f"{who}: cannot make out which bodies: {' '.join(rest)}")
     known = RIGID_KEYWORDS
     if style == "gear/quat":
-        known = dict.fromkeys(KEYWORDS, 1) | dict.fromkeys(MASKS, _MASK_WORDS)
-    keywords, rest, body = [], rest[length:], tuple(rest[:length])
+        known = {key: row.arguments for key, row in keywords.table().items()}
+    given, rest, body = [], rest[length:], tuple(rest[:length])
     while rest:
         key = rest[0]
         if key not in known:
@@ -251,18 +246,20 @@ def parse_fix(words):
         if len(rest) <= known[key]:
             raise DeckError(f"{who}: keyword {key} lacks its arguments")
         if key not in MASKS:  # the last one counts
-            keywords = [pair for pair in keywords if pair[0] != key]
-        keywords.append((key, tuple(rest[1 : known[key] + 1])))
+            given = [pair for pair in given if pair[0] != key]
+        given.append((key, tuple(rest[1 : known[key] + 1])))
         rest = rest[known[key] + 1 :]
-    return FixLine(id_, group, style, body, tuple(keywords))
+    return FixLine(id_, group, style, body, tuple(given))
 
 
 def for_trials(line):
     """The line of a deck as its trials run it: (FixLine, notes)."""
-    left_out = [key for key, _ in line.keywords if key in STEPPING]
-    if line.style != "gear/quat" or not left_out:
+    if line.style != "gear/quat":
         return line, []
-    kept = line.only([key for key in KEYWORDS if key not in STEPPING])
+    kept = line.only("integration", *_PHYSICAL, "output")
+    left_out = [key for key, _ in line.keywords if key not in dict(kept.keywords)]
+    if not left_out:
+        return line, []
     return kept, [
         f"fix {line.id} {line.style}: {', '.join(left_out)} left out, for trials have steps of equal"
         " length; what it costs to let the step follow the error is not measured"
@@ -270,12 +267,12 @@ def for_trials(line):
 
 
 def translate(line):
-    """The same bodies for fix gear/quat: (FixLine without NUMERICAL keywords, notes).
+    """The same bodies for fix gear/quat: (FixLine with keywords about bodies and physics, notes).
 
     Raises DeckError for what fix gear/quat does not have.
     """
     if line.style == "gear/quat":
-        return line.only(PHYSICAL), []
+        return line.only(*_PHYSICAL), []
     style, who, notes = base_style(line.style), f"fix {line.id} {line.style}", []
     if style not in RIGID:
         raise DeckError(

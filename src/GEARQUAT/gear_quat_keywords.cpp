@@ -1,0 +1,311 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_keywords.h"
+
+#include "gear_quat_arguments.h"
+#include "gear_quat_rigid_words.h"
+
+#include "error.h"
+#include "lammps.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// A third pass rarely pays, and a number with too many digits would seem to hang.
+
+static constexpr int PASSES_MOST = 100;
+
+static constexpr char INTEGRATION[] = "integration", STEP[] = "step", BODIES[] = "bodies",
+                      PHYSICS[] = "physics", OUTPUT[] = "output";
+
+static constexpr char HELD[] =
+    "it acts on all momenta; define a second fix for the bodies that are held";
+static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies come";
+
+using Value = KeywordValue;
+
+/* ----------------------------------------------------------------------
+   the table; what decided the defaults is in doc/decisions.md
+------------------------------------------------------------------------- */
+
+// clang-format off
+
+static std::vector<Keyword> make_table()
+{
+  return {
+    Keyword("formulation", INTEGRATION, "which equations of motion are integrated",
+            [](Arguments &a, const Value &v) {
+              a.scheme.formulation = v.is("first") ? Formulation::FIRST : Formulation::SECOND;
+            }).word({"second", "first"}),
+    Keyword("values", INTEGRATION, "how many values a history keeps of each function",
+            [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
+        .integer({{SECOND_FEWEST, SECOND_MOST, 8}, {FIRST_FEWEST, FIRST_MOST, 6}}, VARIABLE_MOST),
+    Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
+            [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
+        .integer({{1, PASSES_MOST, 2}}),
+    Keyword("compensate", INTEGRATION, "whether sums carry along what rounding takes from them",
+            [](Arguments &a, const Value &v) { a.scheme.compensate = v.is("yes"); })
+        .word({"no", "yes"}),
+    Keyword("start", INTEGRATION, "which derivatives a history begins with",
+            [](Arguments &a, const Value &v) {
+              a.start = v.is("zero") ? Arguments::Start::ZERO : Arguments::Start::BOOTSTRAP;
+            }).word({"bootstrap", "zero"}),
+    Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
+            [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })
+        .word({"position", "velocity"}).requires_also({"formulation", "second", ""}),
+    Keyword("omega", INTEGRATION, "which angular velocity corrects the quaternion",
+            [](Arguments &a, const Value &v) { a.scheme.predicted_omega = v.is("predicted"); })
+        .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
+    Keyword("momentum", INTEGRATION, "which momentum corrects the position",
+            [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
+        .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
+    Keyword("project", INTEGRATION, "whether quaternions are kept at unit length",
+            [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
+        .word({"yes", "no"}),
+    Keyword("tolerance", STEP, "the error that a step may make, which the time step follows",
+            [](Arguments &a, const Value &v) { a.control.eps = v.number; })
+        .number()
+        .cannot_go_with({"isokinetic", "", "heat and multipliers are those of one step and one "
+                         "number of values"}),
+    Keyword("dtmin", STEP, "the time step does not become shorter",
+            [](Arguments &a, const Value &v) { a.control.shortest = v.number; })
+        .number().requires_also({"tolerance", "", ""}),
+    Keyword("dtmax", STEP, "the time step does not become longer",
+            [](Arguments &a, const Value &v) { a.control.longest = v.number; })
+        .number().requires_also({"tolerance", "", ""}),
+    Keyword("infile", BODIES, "the file that states bodies",
+            [](Arguments &a, const Value &v) { a.infile = v.text; })
+        .follows(Keyword::NAME, {"filename"}),
+    Keyword("reinit", BODIES, "whether changes in the atoms are taken over between runs",
+            [](Arguments &a, const Value &v) { a.reinit = v.is("yes"); })
+        .word({"yes", "no"})
+        .cannot_go_with({"infile", "yes", "the file states the bodies once and for all"}),
+    Keyword("mol", BODIES, "the template of bodies that other fixes insert",
+            [](Arguments &a, const Value &v) { a.mol = v.text; })
+        .follows(Keyword::NAME, {"template-ID"}).requires_also({"bodystyle", "molecule", ""})
+        .cannot_go_with({"isokinetic", "", "bodies that come bring kinetic energy"}),
+    Keyword("force", PHYSICS, "which components of the total force act on bodies M",
+            [](Arguments &a, const Value &v) { a.masks.push_back(v.mask); })
+        .follows(Keyword::MASK, {"M", "xflag", "yflag", "zflag"})
+        .cannot_go_with({"mol", "", RENUMBERED}).cannot_go_with({"isokinetic", "", HELD}),
+    Keyword("torque", PHYSICS, "which components of the total torque act on bodies M",
+            [](Arguments &a, const Value &v) { a.masks.push_back(v.mask); })
+        .follows(Keyword::MASK, {"M", "xflag", "yflag", "zflag"})
+        .cannot_go_with({"mol", "", RENUMBERED}).cannot_go_with({"isokinetic", "", HELD}),
+    Keyword("isokinetic", PHYSICS, "which kinetic energy of all bodies is kept constant",
+            [](Arguments &a, const Value &v) {
+              a.isokinetic = v.is("total") ? Isokinetic::TOTAL
+                  : v.is("separate")       ? Isokinetic::SEPARATE
+                                           : Isokinetic::NONE;
+            }).word({"none", "total", "separate"})
+        .requires_also({"formulation", "first", "its constraint acts on momenta, which formulation "
+                        "second does not have"}),
+    Keyword("rescale", PHYSICS, "whether momenta are scaled to exactly that energy",
+            [](Arguments &a, const Value &v) { a.rescale = v.is("yes"); })
+        .word({"yes", "no"}).requires_also({"isokinetic", "", ""}),
+    Keyword("report", OUTPUT, "what the log says about the scene",
+            [](Arguments &a, const Value &v) {
+              a.report = v.is("no") ? Arguments::Report::NO
+                  : v.is("long")    ? Arguments::Report::LONG
+                                    : Arguments::Report::SHORT;
+            }).word({"no", "short", "long"}, "short"),
+  };
+}
+
+// clang-format on
+
+const std::vector<Keyword> &GearQuat::keyword_table()
+{
+  static const std::vector<Keyword> table = make_table();
+  return table;
+}
+
+static const Keyword *row_of(const std::string &name)
+{
+  const auto &table = keyword_table();
+  const auto row = std::find_if(table.begin(), table.end(), [&name](const Keyword &one) {
+    return one.name == name;
+  });
+  return row == table.end() ? nullptr : &*row;
+}
+
+const Keyword &GearQuat::find_keyword(const std::string &name)
+{
+  return *row_of(name);
+}
+
+const Keyword &GearQuat::known_keyword(LAMMPS *lmp, const std::string &name)
+{
+  if (const Keyword *row = row_of(name)) return *row;
+  const std::string instead = instead_of_rigid_keyword(name);
+  if (!instead.empty())
+    lmp->error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", name, instead);
+  lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}", name);
+  return keyword_table().front();    // never reached
+}
+
+/* ----------------------------------------------------------------------
+   rows
+------------------------------------------------------------------------- */
+
+Keyword &Keyword::word(std::vector<std::string> possible, const std::string &default_word)
+{
+  kind = WORD;
+  words = std::move(possible);
+  standard = default_word.empty() ? words.front() : default_word;
+  return *this;
+}
+
+Keyword &Keyword::integer(std::vector<Range> possible, int at_most_with_tolerance)
+{
+  kind = INTEGER;
+  ranges = std::move(possible);
+  most_with_tolerance = at_most_with_tolerance;
+  return *this;
+}
+
+Keyword &Keyword::number()
+{
+  kind = NUMBER;
+  return *this;
+}
+
+Keyword &Keyword::follows(Kind what, std::vector<std::string> names)
+{
+  kind = what;
+  words = std::move(names);
+  return *this;
+}
+
+Keyword &Keyword::requires_also(Condition condition)
+{
+  needs.push_back(std::move(condition));
+  return *this;
+}
+
+Keyword &Keyword::cannot_go_with(Condition condition)
+{
+  excludes.push_back(std::move(condition));
+  return *this;
+}
+
+std::string Keyword::possible_words() const
+{
+  std::string text;
+  for (size_t n = 0; n < words.size(); ++n)
+    text += (n == 0 ? "" : n + 1 == words.size() ? " or " : ", ") + words[n];
+  return text;
+}
+
+/* ----------------------------------------------------------------------
+   reading
+------------------------------------------------------------------------- */
+
+int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
+{
+  Error *error = lmp->error;
+  const int count = kind == MASK ? (int) words.size() : 1;
+  if (narg <= count) utils::missing_cmd_args(FLERR, std::string("fix gear/quat ") + name, error);
+  value.text = arg[1];
+  if (value.text.empty()) error->all(FLERR, "Fix gear/quat {}: the value is an empty word", name);
+
+  if (kind == WORD && !std::count(words.begin(), words.end(), value.text))
+    error->all(FLERR, "Fix gear/quat {}: unknown value {} ({})", name, value.text,
+               possible_words());
+  if (kind == INTEGER) value.integer = utils::inumeric(FLERR, value.text, false, lmp);
+  if (kind == NUMBER) {
+    value.number = utils::numeric(FLERR, value.text, false, lmp);
+    if (!(value.number > 0.0) || !std::isfinite(value.number))
+      error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", name, value.text);
+  }
+  if (kind == MASK) {
+    value.mask = {std::string("torque") == name, value.text, {}};
+    for (int k = 0; k < 3; ++k) {
+      const std::string flag = arg[2 + k];
+      if (flag != "on" && flag != "off")
+        error->all(FLERR, "Fix gear/quat {}: unknown {} {} (on or off)", name, words[1 + k], flag);
+      value.mask.on[k] = flag == "on";
+    }
+  }
+  return count;
+}
+
+/* ----------------------------------------------------------------------
+   the list
+------------------------------------------------------------------------- */
+
+namespace {
+
+/// In brackets, where there are two ranges, the formulation.
+template <typename Text> std::string of_formulations(const Keyword &row, Text text)
+{
+  if (row.ranges.size() == 1) return text(row.ranges[0]);
+  return text(row.range(false)) + " (second), " + text(row.range(true)) + " (first)";
+}
+
+std::string values_cell(const Keyword &row)
+{
+  if (row.kind == Keyword::WORD) return row.possible_words();
+  if (row.kind == Keyword::NUMBER) return "positive";
+  if (row.kind != Keyword::INTEGER) return utils::join_words(row.words, " ");
+  std::string cell = of_formulations(row, [](const Keyword::Range &range) {
+    return fmt::format("{} to {}", range.fewest, range.most);
+  });
+  if (row.most_with_tolerance)
+    cell += fmt::format(", at most {} (tolerance)", row.most_with_tolerance);
+  return cell;
+}
+
+std::string default_cell(const Keyword &row)
+{
+  if (row.kind != Keyword::INTEGER) return row.standard;
+  std::string cell = of_formulations(row, [](const Keyword::Range &range) {
+    return std::to_string(range.standard);
+  });
+  if (row.most_with_tolerance) cell += ", most (tolerance)";
+  return cell;
+}
+
+/// excluded: a value belongs to the keyword of the row, otherwise to the other one.
+std::string conditions_cell(const std::vector<Keyword::Condition> &conditions, bool excluded)
+{
+  std::vector<std::string> parts;
+  for (const auto &one : conditions) {
+    if (one.value.empty())
+      parts.push_back(one.keyword);
+    else
+      parts.push_back(excluded ? fmt::format("{} ({})", one.keyword, one.value)
+                               : one.keyword + " " + one.value);
+  }
+  return utils::join_words(parts, ", ");
+}
+
+}    // namespace
+
+std::string GearQuat::list_of_keywords()
+{
+  static const char *const KINDS[] = {"word", "integer", "number", "name", "mask"};
+  std::vector<std::vector<std::string>> lines = {
+      {"keyword", "about", "kind", "values", "default", "requires", "excludes", "meaning"}};
+  for (const auto &row : keyword_table())
+    lines.push_back({row.name, row.about, KINDS[row.kind], values_cell(row), default_cell(row),
+                     conditions_cell(row.needs, false), conditions_cell(row.excludes, true),
+                     row.meaning});
+  std::vector<size_t> width(lines[0].size(), 1);
+  for (const auto &line : lines)
+    for (size_t n = 0; n + 1 < line.size(); ++n) width[n] = std::max(width[n], line[n].size());
+  std::string text;
+  for (const auto &line : lines) {
+    for (size_t n = 0; n + 1 < line.size(); ++n)
+      text += fmt::format("{:<{}}  ", line[n].empty() ? "-" : line[n], width[n]);
+    text += line.back() + "\n";
+  }
+  return text;
+}

