@@ -2,11 +2,10 @@
 
 from .bench import bench
 from .cases import cases
-from .effects import effects
 from .pictures import pictures
 from .workprecision import workprecision
 
 COMMANDS = {
     command.name: command
-    for command in (bench, cases, effects, pictures, workprecision)
+    for command in (bench, cases, pictures, workprecision)
 }

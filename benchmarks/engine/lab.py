@@ -63,6 +63,11 @@ class Lab:
         """The LAMMPS program.  Raises LammpsError if there is none."""
         return find_lmp(self._lmp)
 
+    def prefer(self, lmp):
+        """Run this LAMMPS program, if it is there, unless another one was asked for."""
+        if self._lmp is None and Path(lmp).is_file():
+            self._lmp = str(lmp)
+
     @contextmanager
     def share(self, part):
         """Within this context, all work counts as ``part`` of the work of the study."""

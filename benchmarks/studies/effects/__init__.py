@@ -1,6 +1,151 @@
 """What each effect costs: instructions counted by valgrind, and time.
 
 scenes.py (bodies on a lattice, one deck for many scenes), plan.py (effects and rungs of the ladder:
-a row each), count.py (valgrind's tool callgrind), runs.py (all that is measured), page.py and
-figures.py (doc/effects.md and its picture).
+a row each), count.py (valgrind's tool callgrind), runs.py (all that is measured).
 """
+
+import re
+
+import numpy as np
+
+from benchmarks.engine.panels import Bars, Panel
+from benchmarks.engine.study import Finding, Measurement, Study, Table
+
+from . import plan
+from .runs import measure
+
+#: relative difference between what an effect adds on the ladder and what it adds alone
+MOST_APART = 1e-3
+
+
+def number(value):
+    """A count as text: whole, or with its fraction."""
+    return f"{value:.0f}" if abs(value - round(value)) < 5e-4 else f"{value:.3f}"
+
+
+def row_of(rung):
+    """The effect that a rung adds, None if no row measures it alone."""
+    return next((effect for effect in plan.EFFECTS if effect.name == rung.row), None)
+
+
+# --- measurements -------------------------------------------------------------------------------
+def idle_measurements(results):
+    """What is left of the effects where they are off."""
+    found, free = [], {"spec": ".6g", "least": 0.0, "most": 0.0}
+    for effect in plan.EFFECTS:
+        if effect.own:
+            what = f"{effect.name}, off: instructions of its own functions per body and step"
+            found.append(Measurement(what, results.idle(effect), **free))
+        if effect.never:
+            what = f"{effect.name}, off: instructions more than where it is impossible"
+            found.append(Measurement(what, results.fix(effect.off, effect.never), **free))
+    return found
+
+
+def apart(results):
+    """Largest relative difference of what an effect adds on the ladder and what it adds alone."""
+    gaps = [0.0]
+    for rung in plan.LADDER:
+        effect = row_of(rung)
+        alone = results.fix(effect.on, effect.base) if effect else 0.0
+        if alone:  # some versions of LAMMPS ask for the virial whenever they print
+            gaps.append(abs(results.fix(rung.on, rung.base) - alone) / alone)
+    return max(gaps)
+
+
+# --- tables -------------------------------------------------------------------------------------
+def effects_table(results):
+    """Effects: what they add where they are on, what is left of them where they are not."""
+    rows = []
+    for effect in plan.EFFECTS:
+        on = ("needs several ranks", "")
+        if effect.on:
+            on = (number(results.fix(effect.on, effect.base)),)
+            on += (f"{results.nanoseconds(effect.on, effect.base):.0f}",)
+        own = number(results.idle(effect)) if effect.own else "none of its own"
+        twin = number(results.fix(effect.off, effect.never)) if effect.never else ""
+        rows.append([effect.name, *on, own, twin])
+    off = ("off: instructions of its own functions", "off: instructions more than where impossible")
+    return Table(("effect", "on: instructions", "on: ns", *off), rows)
+
+
+def ladder_table(results):
+    """Rungs: what a body costs, how much more that is than below, and what the effect adds alone."""
+    rows = []
+    for rung in plan.LADDER:
+        effect = row_of(rung)
+        rows.append(
+            [
+                rung.name,
+                number(results.fix(rung.on)),
+                number(results.fix(rung.on, rung.base)) if rung.base else "",
+                number(results.fix(effect.on, effect.base)) if effect else "",
+                f"{results.nanoseconds(rung.on):.0f}",
+                f"{results.nanoseconds(rung.on, part=1):.0f}",
+            ]
+        )
+    header = ("rung", "instructions in the fix", "more than below", "the effect alone")
+    return Table((*header, "ns in the fix", "ns in the pair style"), rows)
+
+
+def short(name):
+    """A function's name without namespaces, arguments and spaces that mean nothing."""
+    return re.sub(r"LAMMPS_NS::|\bGearQuat::|\bvoid |\(.*", "", name)
+
+
+def function_table(results, scene=plan.MOVED):
+    """Own instructions of the functions that a full body's step is made of, the largest first."""
+    names = results.profiles[scene, results.sizes.counted[1]].own
+    counts = {
+        name: results.per_body(scene, lambda profile, name=name: profile.own[name])
+        for name in names
+        if "GearQuat" in name and "GearQuat::Table" not in name
+    }
+    ordered = sorted(counts.items(), key=lambda item: -item[1])
+    rows = [[f"`{short(name)}`", number(count)] for name, count in ordered if count >= 1.0]
+    return Table(("function", "instructions per body and step"), rows)
+
+
+# --- picture ------------------------------------------------------------------------------------
+def panels(results):
+    """The ladder: instructions and time per body and step in the fix, rung by rung."""
+
+    def bars(value):
+        whole = np.array([value(rung.on) for rung in plan.LADDER])
+        more = np.array([value(rung.on, rung.base) for rung in plan.LADDER])
+        return Bars(tuple(rung.name for rung in plan.LADDER), whole - more, more)
+
+    return (
+        Panel("Instructions in the fix", "per body and step", "", bars(results.fix)),
+        Panel("Time in the fix", "ns per body and step", "", bars(results.nanoseconds)),
+    )
+
+
+def find(results):
+    """Finding of runs.Results."""
+    idle = idle_measurements(results)
+    more = Measurement("largest relative deviation from additivity", apart(results), most=MOST_APART)
+    tables = {
+        "effects": effects_table(results),
+        "ladder": ladder_table(results),
+        "functions": function_table(results),
+    }
+    context = {
+        "not_free": list(dict.fromkeys(m.what.partition(",")[0] for m in idle if m.value != 0)),
+        "apart": more,
+        "cage": results.cage,
+        "sizes": results.sizes,
+        "fixed": plan.FIXED,
+    }
+    return Finding([*idle, more], tables, {"effects": panels(results)}, context)
+
+
+STUDY = Study(
+    key="effects",
+    title="What each effect costs",
+    page="effects",
+    seconds=300.0,
+    measure=measure,
+    find=find,
+    packages=("lammps-gearquat",),
+)

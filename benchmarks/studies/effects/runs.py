@@ -1,12 +1,12 @@
-"""All that ``benchmarks/run effects`` measures: instructions, times, and the paper's cage."""
+"""All that the study measures: instructions, times, and the paper's cage."""
 
 import re
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
-from benchmarks.studies.bench.runs import breakdowns
-from benchmarks.engine.decks import examples_folder
-from benchmarks.engine.lammps_runner import Job, LammpsError, find_lmp, run
+from benchmarks.engine.decks import EXAMPLES, ROOT, deck
+from benchmarks.engine.lab import Job
+from benchmarks.engine.runner import LammpsError
+
 from . import count, plan
 from .scenes import write_molecules
 
@@ -28,7 +28,7 @@ QUICK = Sizes(timed=4, timed_steps=20, rounds=1, cage_steps=2000)
 
 @dataclass(frozen=True)
 class Cage:
-    """The paper's cage: seconds a step (rounds,) and pairs in the list, without and with exclusions."""
+    """The paper's cage: seconds per step (rounds,) and pairs in the list, without and with exclusions."""
 
     plain: list
     mended: list
@@ -37,23 +37,23 @@ class Cage:
 
     @property
     def speedup(self):
-        """Of the least times."""
+        """Ratio of the least times."""
         return min(self.plain) / min(self.mended)
 
 
-@dataclass
+@dataclass(frozen=True)
 class Results:
-    """``profiles``: (scene, side) -> count.Profile; ``seconds``: scene -> seconds a step in the fix and
+    """``profiles``: (scene, side) -> count.Profile; ``seconds``: scene -> seconds per step in the fix and
     in the pair style, [(fix, forces), ...] by round; ``cage``: Cage.
     """
 
     sizes: Sizes
-    profiles: dict = field(default_factory=dict)
-    seconds: dict = field(default_factory=dict)
-    cage: Cage = None
+    profiles: dict
+    seconds: dict
+    cage: Cage
 
     def per_body(self, scene, of):
-        """Instructions a body and step: what more bodies add, so nothing that is done once a step.
+        """Instructions per body and step: what more bodies add, so nothing that is done once per step.
 
         ``of``: a function of a Profile.
         """
@@ -61,100 +61,91 @@ class Results:
         more = of(self.profiles[scene, high]) - of(self.profiles[scene, low])
         return more / (high**3 - low**3) / self.sizes.counted_steps
 
-    def fix(self, scene):
-        """Instructions a body and step in the fix."""
-        return self.per_body(scene, lambda profile: profile.fix)
+    def fix(self, scene, base=None):
+        """Instructions per body and step in the fix, or by how many they are more than in ``base``."""
+        more = self.per_body(scene, lambda profile: profile.fix)
+        return more - (self.fix(base) if base else 0)
 
     def forces(self, scene):
-        """Instructions of a body of the larger scene and step in the pair style."""
+        """Instructions per body of the larger scene and step in the pair style."""
         high = self.sizes.counted[1]
         return self.profiles[scene, high].forces / high**3 / self.sizes.counted_steps
 
     def idle(self, effect):
-        """Instructions a body and step of an effect's own functions where it is not called for."""
+        """Instructions per body and step of an effect's own functions where it is off."""
         return self.per_body(effect.idle, lambda profile: profile.of(effect.own))
 
-    def nanoseconds(self, scene, part=0):
-        """Time a body and step in the fix, or in the pair style (part 1): the least of all rounds.
+    def nanoseconds(self, scene, base=None, part=0):
+        """Time per body and step in the fix, or in the pair style (part 1): the least of all rounds.
 
-        What else a machine does only adds to a time; differences of least times are left free of it.
+        Whatever else a machine does only adds to a time.  With ``base``: by how much it is more.
         """
-        return 1e9 / self.sizes.timed**3 * min(pair[part] for pair in self.seconds[scene])
+        least = 1e9 / self.sizes.timed**3 * min(pair[part] for pair in self.seconds[scene])
+        return least - (self.nanoseconds(base, part=part) if base else 0.0)
 
 
-def time_scenes(folder, sizes, lmp, progress):
-    """Scene -> [(seconds a step in the fix, in the pair style), ...], all scenes in turn."""
+def time_scenes(lab, sizes):
+    """Scene -> [(seconds per step in the fix, in the pair style), ...], all scenes in turn."""
+    folder, jobs = lab.out / "time", {}
+    folder.mkdir(parents=True, exist_ok=True)
     write_molecules(folder)
-    found = {scene: [] for scene in plan.scenes()}
-    for number in range(sizes.rounds):
-        for k, scene in enumerate(found):
-            deck = folder / f"in.time{k + 1}"
-            deck.write_text(scene.deck(sizes.timed, sizes.timed_steps), encoding="utf-8")
-            log = folder.parent / "logs" / f"log.time{k + 1}.{number + 1}"
-            run(Job(deck, log), lmp)
-            timed = breakdowns(log.read_text(encoding="utf-8"))[-1]
-            found[scene].append(tuple(timed[of] / sizes.timed_steps for of in ("Modify", "Pair")))
-            progress(1)
-    return found
+    for number, scene in enumerate(plan.scenes(), 1):
+        path = folder / f"in.time{number}"
+        path.write_text(scene.deck(sizes.timed, sizes.timed_steps), encoding="utf-8")
+        jobs[scene] = Job(path, {})
+    names = {f"time{number}": scene for number, scene in enumerate(jobs, 1)}
+    runs = lab.in_turn({name: jobs[scene] for name, scene in names.items()}, sizes.rounds)
+
+    def per_step(run):
+        return tuple(run.log.timers[-1][part] / sizes.timed_steps for part in ("Modify", "Pair"))
+
+    return {names[name]: [per_step(run) for run in of_scene] for name, of_scene in runs.items()}
 
 
 _PAIRS = re.compile(r"^Total # of neighbors = (\d+)", re.MULTILINE)
-_PROPOSED = re.compile(r"^    (neigh_modify .*)$", re.MULTILINE)
-EXCLUSIONS = " exclude group cage cage exclude molecule/intra body"
+_PROPOSED = re.compile(r"^    neigh_modify (.*)$", re.MULTILINE)
+_EXCLUSIONS = " exclude group cage cage exclude molecule/intra body"
 
 
-def time_cage(folder, sizes, lmp, progress):
-    """Test case 1 without exclusions, and with the lines that the report proposes for it."""
+def cage_deck(folder):
+    """Test case 1 with ``exclusions``, a variable, in place of those of the scene."""
+    common = EXAMPLES / "common"
+    scene = (common / "in.scene").read_text(encoding="utf-8")
+    if _EXCLUSIONS not in scene:
+        raise LammpsError(f"in.scene does not exclude the pairs that are counted ({_EXCLUSIONS})")
+    scene = scene.replace(_EXCLUSIONS, "\n${exclusions}")
+    scene = scene.replace("include ../common/in.motion", f"include {common / 'in.motion'}")
+    text = deck("case1").read_text(encoding="utf-8").replace("../common/in.scene", "in.scene")
     folder.mkdir(parents=True, exist_ok=True)
-    case = examples_folder() / "case1"
-    scene = (examples_folder() / "common" / "in.scene").read_text(encoding="utf-8")
-    if EXCLUSIONS not in scene:
-        raise LammpsError(
-            f"in.scene does not exclude the pairs that are to be counted ({EXCLUSIONS})"
-        )
-    plain = scene.replace(EXCLUSIONS, "\n${exclusions}").replace(
-        "include ../common/in.motion", f"include {examples_folder() / 'common' / 'in.motion'}"
-    )
-    (folder / "in.scene").write_text(plain, encoding="utf-8")
-    deck = folder / "in.cage"
-    text = (case / "in.case1").read_text(encoding="utf-8")
-    deck.write_text(text.replace("../common/in.scene", "in.scene"), encoding="utf-8")
-
-    seconds, pairs, proposed = {"plain": [], "mended": []}, {}, "print ''"
-    for number in range(sizes.rounds):
-        for kind, times in seconds.items():
-            log = folder.parent / "logs" / f"log.cage.{kind}.{number + 1}"
-            steps = sizes.cage_steps
-            variables = {"data": case / "data", "steps": steps, "every": steps}
-            variables["exclusions"] = proposed if kind == "mended" else "print ''"
-            run(Job(deck, log, variables), lmp)
-            said = log.read_text(encoding="utf-8")
-            times.append(breakdowns(said)[-1]["Loop"] / steps)
-            pairs[kind] = int(_PAIRS.search(said)[1])
-            if kind == "plain":
-                words = [line.removeprefix("neigh_modify ") for line in _PROPOSED.findall(said)]
-                if not words:
-                    raise LammpsError(f"{log.name}: the report proposes no exclusions")
-                proposed = "neigh_modify " + " ".join(words)
-            progress(1)
-    return Cage(seconds["plain"], seconds["mended"], pairs["plain"], pairs["mended"])
+    (folder / "in.scene").write_text(scene, encoding="utf-8")
+    (folder / "in.cage").write_text(text, encoding="utf-8")
+    return folder / "in.cage"
 
 
-def work(sizes):
-    """Number of runs, as ``progress`` gets them."""
-    return 1 + sizes.rounds * (len(plan.scenes()) + 2)
+def time_cage(lab, sizes):
+    """Cage: test case 1 without exclusions, and with the lines that the report proposes for it."""
+    path, steps = cage_deck(lab.out / "cage"), sizes.cage_steps
+    settings = {"data": EXAMPLES / "case1" / "data", "steps": steps, "every": steps}
+    plain = Job(path, settings | {"exclusions": "print ''"})
+    said = lab.many({"cage.report": plain})["cage.report"].log.text
+    proposed = " ".join(_PROPOSED.findall(said))
+    if not proposed:
+        raise LammpsError("log.cage.report: the report proposes no exclusions")
+    mended = Job(path, settings | {"exclusions": f"neigh_modify {proposed}"})
+    runs = lab.in_turn({"cage.plain": plain, "cage.mended": mended}, sizes.rounds)
+    seconds = [[run.log.seconds / steps for run in of_kind] for of_kind in runs.values()]
+    pairs = [int(_PAIRS.search(of_kind[0].log.text)[1]) for of_kind in runs.values()]
+    return Cage(*seconds, *pairs)
 
 
-def measure(folder, sizes=Sizes(), lmp=None, progress=lambda runs: None):
-    """Results.  ``folder`` gets decks, profiles and ``logs``."""
-    folder, lmp = Path(folder), find_lmp(lmp)
-    count.find_valgrind()
-    (folder / "logs").mkdir(parents=True, exist_ok=True)
-    results = Results(sizes)
-    steps = sizes.counted_steps
-    results.profiles = count.count(folder / "count", plan.scenes(), sizes.counted, steps, lmp)
-    progress(1)
-    (folder / "time").mkdir(exist_ok=True)
-    results.seconds = time_scenes(folder / "time", sizes, lmp, progress)
-    results.cage = time_cage(folder / "cage", sizes, lmp, progress)
-    return results
+def measure(lab):
+    """Results.  LAMMPS of the tree is preferred: names of functions are needed to count."""
+    lab.prefer(ROOT / "build" / "tree" / "lmp")
+    sizes = QUICK if lab.quick else Sizes()
+    steps, scenes = sizes.counted_steps, plan.scenes()
+    profiles = count.count(lab.out / "count", scenes, sizes.counted, steps, lab.lmp)
+    lab.advance(0.2)
+    with lab.share(0.7):
+        seconds = time_scenes(lab, sizes)
+    with lab.share(0.1):
+        return Results(sizes, profiles, seconds, time_cage(lab, sizes))

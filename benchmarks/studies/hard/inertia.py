@@ -152,11 +152,9 @@ def measure(lab, bodies=tuple(BODIES), **options):
     )
     results = {}
     for (body, formulation, steps), finished in runs.items():
-        promise = tuple(float(finished.thermo[column].sum()) for column in ESTIMATES)
-        error = (float("inf"), float("inf"))
-        if finished.error:
-            promise = error  # the fix has ended the run: it has promised nothing
-        else:
+        promise = error = (float("inf"), float("inf"))
+        if not finished.error:  # else the fix has ended the run: it has promised nothing
+            promise = tuple(float(finished.thermo[column].sum()) for column in ESTIMATES)
             sites = finished.sites
             if body not in answers:
                 answers[body] = exact(body, sites, times[body])

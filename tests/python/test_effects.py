@@ -1,13 +1,14 @@
-"""`benchmarks/run effects`: reading of profiles, texts and refusals; the counts are in tests/lammps."""
+"""The study of effects: reading of profiles, judging of made-up counts; real counts are in tests/lammps."""
 
 from dataclasses import replace
 
 import pytest
-from click.testing import CliRunner
 
-from benchmarks.commands.effects import effects as main
-from benchmarks.studies.effects import count, figures, page, plan, runs
-from benchmarks.engine.lammps_runner import LammpsError
+from benchmarks.engine.page import render
+from benchmarks.engine.runner import LammpsError
+from benchmarks.engine.store import read_data, write_data
+from benchmarks.studies import effects
+from benchmarks.studies.effects import count, plan, runs
 
 PART = """\
 # callgrind format
@@ -43,37 +44,48 @@ def test_a_profile_is_read():
 
 
 def made_up(cost=lambda scene, number: 100 * number + 7):
-    """Results in which a scene's step takes cost(scene, its number) instructions a body."""
-    sizes = runs.QUICK
-    results = runs.Results(sizes)
+    """Results in which a scene's step takes cost(scene, its number) instructions per body."""
+    sizes, profiles, seconds = runs.QUICK, {}, {}
     for number, scene in enumerate(plan.scenes(), 1):
         for side in sizes.counted:
             fix = round(sizes.counted_steps * (5 + side**3 * cost(scene, number)))
-            text = PART.replace("0 1000", f"0 {fix + 300}")
-            results.profiles[scene, side] = count.parse(text)
-        results.seconds[scene] = [(1e-6 * number, 2e-6), (1.1e-6 * number, 2e-6)]
-    results.cage = runs.Cage([2e-6, 3e-6, 4e-6], [1e-6] * 3, 435, 104)
-    return results
+            profiles[scene, side] = count.parse(PART.replace("0 1000", f"0 {fix + 300}"))
+        seconds[scene] = [(1e-6 * number, 2e-6), (1.1e-6 * number, 2e-6)]
+    cage = runs.Cage([2e-6, 3e-6, 4e-6], [1e-6] * 3, 435, 104)
+    return runs.Results(sizes, profiles, seconds, cage)
 
 
-def test_numbers_are_those_of_a_body_and_a_step(tmp_path):
+def broken(results):
+    return [m.what for m in effects.idle_measurements(results) if not m.holds]
+
+
+def test_numbers_are_those_of_a_body_and_a_step():
     results = made_up()
     assert results.fix(plan.scenes()[0]) == pytest.approx(107)
     assert results.nanoseconds(plan.scenes()[0]) == pytest.approx(1e3 / 64)
     assert results.cage.speedup == 2.0
-    assert "435 pairs" in page.cage_sentence(results) and "2.0 times" in page.cage_sentence(results)
-    assert len(page.effects_table(results)[1]) == len(plan.EFFECTS)
-    assert len(page.ladder_table(results)[1]) == len(plan.LADDER)
-    figures.draw(tmp_path / "ladder.png", results)
-    assert (tmp_path / "ladder.png").stat().st_size > 5000
+    finding = effects.find(results)
+    assert len(finding.tables["effects"].rows) == len(plan.EFFECTS)
+    assert len(finding.tables["ladder"].rows) == len(plan.LADDER)
+
+
+def test_results_come_back_from_their_file(tmp_path):
+    results = made_up()
+    write_data(tmp_path / "data.json", results)
+    again = read_data(tmp_path / "data.json")
+    assert again.profiles == results.profiles and again.seconds == results.seconds
+    assert effects.find(again).tables == effects.find(results).tables
 
 
 def test_an_effect_that_is_not_free_is_named():
     even = made_up(lambda scene, number: 1000)
-    assert page.off_sentence(even).startswith("Of every effect that is off, 0 instructions")
+    assert broken(even) == [] and effects.find(even).context["not_free"] == []
     virial = next(effect for effect in plan.EFFECTS if effect.name == "virial")
     dear = made_up(lambda scene, number: 1001 if scene == virial.off else 1000)
-    assert page.off_sentence(dear) == "Not free when off: virial."
+    assert [what.partition(",")[0] for what in broken(dear)] == ["virial"]
+    assert "although they are off: virial." in render(
+        "effects.md.j2", effects.STUDY, effects.find(dear), ""
+    )
 
 
 def test_own_functions_where_an_effect_is_off_are_named():
@@ -84,7 +96,7 @@ def test_own_functions_where_an_effect_is_off_are_named():
         {"GearQuat::Extended::place": 9}
     )
     results.profiles[key] = replace(results.profiles[key], own=own)
-    assert page.off_sentence(results) == "Not free when off: finite size."
+    assert [what.partition(",")[0] for what in broken(results)] == ["finite size"]
 
 
 def test_without_valgrind_the_line_that_installs_it_is_told(monkeypatch, tmp_path):
@@ -97,8 +109,3 @@ def test_a_program_without_names_is_refused(tmp_path):
     (tmp_path / "callgrind.1").write_text("")
     with pytest.raises(LammpsError, match="has no names of functions"):
         count._parts(tmp_path)
-
-
-def test_quick_times_are_not_published(tmp_path):
-    done = CliRunner().invoke(main, ["--quick", "--publish", str(tmp_path)])
-    assert done.exit_code == 2 and "needs the times in full" in done.output
