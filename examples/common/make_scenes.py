@@ -19,7 +19,7 @@ Body in a Steady-State Force Field", Tables 3 to 6.  The paper does not print tw
   ``unrotated``   the same moments along the unrotated axes, as if the sites had been forgotten when
                   the tensor was made diagonal.  Only an infile can state such a body.
 
-Units: lj.  Frames: ``site`` (axes in which the sites are listed, origin at the centre of mass),
+Units: lj.  Frames: ``site`` (axes in which the sites are listed, origin at the center of mass),
 ``body`` (principal axes), ``space``.
 """
 
@@ -27,6 +27,11 @@ import math
 import sys
 from collections import namedtuple
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parent))
+from data_files import (  # noqa: E402
+    add, cross, cube, data_text, diagonal, dot, matmul, matvec, numbers, transpose, write,
+)  # fmt: skip
 
 # --- Table 3: the four sites; coordinates from Fig. 1 and the printed inertia tensor -------------
 SITE_MASS = (2.0, 2.0, 10.0, 50.0)
@@ -46,7 +51,7 @@ CAGE_TYPE = 4
 CAGE_HALF_LENGTH = 100.0
 
 # --- Tables 5 and 6: the starts; angular velocity along the principal axes ------------------------
-Start = namedtuple("Start", "centre velocity omega_body")
+Start = namedtuple("Start", "center velocity omega_body")
 STARTS = {
     "case1": Start(
         (84.0, 0.0, 0.0),
@@ -64,41 +69,6 @@ EULER_PHI, EULER_PSI, EULER_THETA = (math.radians(a) for a in (40.0, 100.0, 85.0
 BOX_HALF_LENGTH = 1.0e5
 
 
-def dot(a, b):
-    """Scalar product of two sequences, rounded once."""
-    return math.fsum(x * y for x, y in zip(a, b))
-
-
-def matvec(m, v):
-    """Product of a matrix (tuple of rows) and a vector."""
-    return tuple(dot(row, v) for row in m)
-
-
-def transpose(m):
-    """Transposed matrix, as a tuple of rows."""
-    return tuple(zip(*m))
-
-
-def matmul(a, b):
-    """Product of two matrices, as a tuple of rows."""
-    columns = transpose(b)
-    return tuple(tuple(dot(row, c) for c in columns) for row in a)
-
-
-def cross(a, b):
-    """Vector product of two 3-vectors."""
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
-
-
-def diagonal(d):
-    """Diagonal 3x3 matrix of three numbers."""
-    return ((d[0], 0.0, 0.0), (0.0, d[1], 0.0), (0.0, 0.0, d[2]))
-
-
 def rotation_space_to_site():
     """Matrix A of Eq. 8 (corrected) for the start's quaternion, Eq. 2 (order: vector, scalar)."""
     half_difference, half_sum = (EULER_PHI - EULER_PSI) / 2, (EULER_PHI + EULER_PSI) / 2
@@ -112,11 +82,11 @@ def rotation_space_to_site():
     )
 
 
-def sites_about_centre():
-    """Site coordinates in the site frame, origin moved to the centre of mass."""
+def sites_about_center():
+    """Site coordinates in the site frame, origin moved to the center of mass."""
     total = math.fsum(SITE_MASS)
-    centre = [dot(SITE_MASS, axis) / total for axis in zip(*SITE_XYZ)]
-    return tuple(tuple(x - c for x, c in zip(site, centre)) for site in SITE_XYZ)
+    center = [dot(SITE_MASS, axis) / total for axis in zip(*SITE_XYZ)]
+    return tuple(tuple(x - c for x, c in zip(site, center)) for site in SITE_XYZ)
 
 
 def principal_moments_and_axes():
@@ -124,7 +94,7 @@ def principal_moments_and_axes():
 
     The body is symmetric in x, so one moment is I_xx and the other two follow from a 2x2 problem.
     """
-    x, y, z = zip(*sites_about_centre())
+    x, y, z = zip(*sites_about_center())
 
     def second(a, b):
         return math.fsum(m * p * q for m, p, q in zip(SITE_MASS, a, b))
@@ -164,19 +134,12 @@ def motion(start, body):
         body_from_site = diagonal((1.0, 1.0, 1.0))
     space_from_body = matmul(space_from_site, transpose(body_from_site))
     omega_space = matvec(space_from_body, start.omega_body)
-    arms = [matvec(space_from_site, site) for site in sites_about_centre()]
-    positions = [tuple(c + r for c, r in zip(start.centre, arm)) for arm in arms]
-    velocities = [
-        tuple(v + w for v, w in zip(start.velocity, cross(omega_space, arm))) for arm in arms
-    ]
+    arms = [matvec(space_from_site, site) for site in sites_about_center()]
+    positions = [add(start.center, arm) for arm in arms]
+    velocities = [add(start.velocity, cross(omega_space, arm)) for arm in arms]
     inertia = matmul(matmul(space_from_body, diagonal(moments)), transpose(space_from_body))
     momentum = matvec(space_from_body, tuple(i * w for i, w in zip(moments, start.omega_body)))
     return positions, velocities, inertia, momentum
-
-
-def numbers(values):
-    """Numbers with 17 significant digits, separated by blanks."""
-    return " ".join("%.17g" % (v + 0.0) for v in values)
 
 
 def data_file(case, body):
@@ -186,23 +149,9 @@ def data_file(case, body):
         (1, kind, charge, xyz) for kind, charge, xyz in zip(SITE_TYPE, SITE_CHARGE, positions)
     ] + [(0, CAGE_TYPE, charge, xyz) for charge, xyz in cage()]
     velocities = velocities + [(0.0, 0.0, 0.0)] * len(cage())
-    lines = [
-        "LAMMPS data file: %s, %s body; cage charges are reconstructed (make_scenes.py)"
-        % (case, body),
-        "",
-        "%d atoms" % len(atoms),
-        "%d atom types" % len(TYPE_MASS),
-        "",
-    ]
-    lines += ["%g %g %slo %shi" % (-BOX_HALF_LENGTH, BOX_HALF_LENGTH, a, a) for a in "xyz"]
-    lines += ["", "Masses", ""]
-    lines += ["%d %g  # %s" % (t, TYPE_MASS[t], TYPE_COMMENT[t]) for t in sorted(TYPE_MASS)]
-    lines += ["", "Atoms # full", ""]
-    for tag, (molecule, kind, charge, xyz) in enumerate(atoms, start=1):
-        lines.append("%d %d %d %g %s" % (tag, molecule, kind, charge, numbers(xyz)))
-    lines += ["", "Velocities", ""]
-    lines += ["%d %s" % (tag, numbers(v)) for tag, v in enumerate(velocities, start=1)]
-    return "\n".join(lines) + "\n"
+    title = "%s, %s body; cage charges are reconstructed (make_scenes.py)" % (case, body)
+    masses = ["%g  # %s" % (TYPE_MASS[t], TYPE_COMMENT[t]) for t in sorted(TYPE_MASS)]
+    return data_text(title, cube(BOX_HALF_LENGTH), masses, atoms, velocities)
 
 
 def infile(case):
@@ -211,7 +160,7 @@ def infile(case):
     _, _, inertia, momentum = motion(start, "unrotated")
     tensor = (inertia[0][0], inertia[1][1], inertia[2][2],
               inertia[0][1], inertia[0][2], inertia[1][2])  # fmt: skip
-    fields = (math.fsum(SITE_MASS),) + start.centre + tensor + start.velocity + momentum
+    fields = (math.fsum(SITE_MASS),) + start.center + tensor + start.velocity + momentum
     return (
         "# %s, unrotated body: principal moments along the unrotated axes (make_scenes.py)\n"
         "# ID masstotal xcm ycm zcm ixx iyy izz ixy ixz iyz vxcm vycm vzcm lx ly lz ixcm iycm izcm\n"
@@ -229,14 +178,5 @@ def scene_files():
     return files
 
 
-def main(folder):
-    """Write all files below ``folder``."""
-    for name, text in scene_files().items():
-        path = Path(folder) / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="ascii")
-        print(path)
-
-
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent)
+    write(scene_files())

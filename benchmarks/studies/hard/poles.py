@@ -10,7 +10,7 @@ TITLE, SECONDS = "Theta = 0 and pi, and passing through", 8.0
 MOST = 1e-12
 POSES = {"upright": "theta = 0", "inverted": "theta = pi", "passing": "passing through both"}
 FRAMES = ("straight", "turned")
-#: the rotation of make_poles.py: a quaternion, scalar first
+#: the rotation of examples/common/data_files.py: a quaternion, scalar first
 TURN = (4, 1, 2, 3)
 COLUMNS = " ".join(f"f_move[1][{column}]" for column in (16, 17, 18, 19))
 

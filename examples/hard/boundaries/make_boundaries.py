@@ -6,7 +6,7 @@
 writes ``hard/boundaries/data.BOX`` below FOLDER (default: the examples folder this program is in)
 for a box that is open and never left, a periodic one and a triclinic one.  The bodies, five sites
 each, are tied by a bond between their last sites and turn about the origin, which is a corner of the
-periodic boxes.  These sites are close to the centres of mass, so that the motion is not chaotic.
+periodic boxes.  These sites are close to the centers of mass, so that the motion is not chaotic.
 Positions are unwrapped: LAMMPS wraps them, and sets image flags, when it reads the file.
 
 Units: lj.
@@ -15,9 +15,8 @@ Units: lj.
 import sys
 from pathlib import Path
 
-EXAMPLES = Path(__file__).resolve().parents[2]
-sys.path.append(str(EXAMPLES / "common"))
-from make_scenes import cross, numbers  # noqa: E402
+sys.path.append(str(Path(__file__).resolve().parents[2] / "common"))
+from data_files import cross, data_text, write  # noqa: E402
 
 # a flat tetrahedron and the site of the bond, and its mirror image beyond the origin; both turn about
 # the axis of their largest moment, but for a little
@@ -32,21 +31,15 @@ BOXES = {
 
 def data_file(box):
     """Text of a LAMMPS data file, atom style full: molecules 1 and 2."""
-    lines = ["LAMMPS data file: two bodies tied together, %s box (make_boundaries.py)" % box, ""]
-    lines += ["10 atoms", "1 atom types", "1 bonds", "1 bond types", "", *BOXES[box], ""]
-    lines += ["Masses", "", "1 1", "", "Atoms # full", ""]
-    velocities = []
-    for molecule, sign in ((1, 1.0), (2, -1.0)):
-        for site in SITES:
-            place = [sign * c for c in site]
-            tag = len(velocities) + 1
-            lines.append("%d %d 1 0 %s" % (tag, molecule, numbers(place)))
-            velocities.append(cross(OMEGA[molecule - 1], place))
-    lines += ["", "Velocities", ""]
-    lines += ["%d %s" % (tag, numbers(v)) for tag, v in enumerate(velocities, start=1)]
-    lines += ["", "Bonds", ""]
-    lines.append("1 1 %d %d" % (len(SITES), 2 * len(SITES)))
-    return "\n".join(lines) + "\n"
+    atoms = [
+        (molecule, 1, 0.0, [sign * c for c in site])
+        for molecule, sign in ((1, 1.0), (2, -1.0))
+        for site in SITES
+    ]
+    velocities = [cross(OMEGA[molecule - 1], place) for molecule, *_, place in atoms]
+    title = "two bodies tied together, %s box (make_boundaries.py)" % box
+    bond = (len(SITES), 2 * len(SITES))
+    return data_text(title, BOXES[box], (1.0,), atoms, velocities, bond)
 
 
 def scene_files():
@@ -54,14 +47,5 @@ def scene_files():
     return {"hard/boundaries/data.%s" % box: data_file(box) for box in BOXES}
 
 
-def main(folder):
-    """Write all files below ``folder``."""
-    for name, text in scene_files().items():
-        path = Path(folder) / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="ascii")
-        print(path)
-
-
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else EXAMPLES)
+    write(scene_files())

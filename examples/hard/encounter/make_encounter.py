@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import solve_ivp
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent.parent / "common"))
+sys.path.append(str(Path(__file__).resolve().parents[2] / "common"))
 import make_scenes as scenes  # noqa: E402
+from data_files import numbers, transpose, write  # noqa: E402
 
 DISTANCES = ("0.02", "0.002")
 TIME = 4.0  # from the start to the closest approach
@@ -29,7 +29,7 @@ EPSILON = np.array([0.0, 0.0, 0.0, 10.0])
 charges, spheres = (np.array(column) for column in zip(*scenes.cage()))
 site_charge, site_mass = np.array(scenes.SITE_CHARGE), np.array(scenes.SITE_MASS)
 moments, axes = scenes.principal_moments_and_axes()
-moments, sites_body = np.array(moments), np.array(scenes.sites_about_centre()) @ np.array(axes).T
+moments, sites_body = np.array(moments), np.array(scenes.sites_about_center()) @ np.array(axes).T
 
 
 def potential_and_forces(sites):
@@ -44,7 +44,7 @@ def potential_and_forces(sites):
 
 
 def rate(_, y):
-    """Centre, velocity, rotation body -> space (nine), angular momentum in space."""
+    """Center, velocity, rotation body -> space (nine), angular momentum in space."""
     turn, spin = y[6:15].reshape(3, 3), y[15:]
     arms = sites_body @ turn.T
     _, forces = potential_and_forces(y[:3] + arms)
@@ -57,12 +57,12 @@ def rate(_, y):
 
 def closest(distance):
     """The state at the closest approach."""
-    turn = np.array(scenes.transpose(scenes.rotation_space_to_site())) @ np.array(axes).T
+    turn = np.array(transpose(scenes.rotation_space_to_site())) @ np.array(axes).T
     arms = sites_body @ turn.T
     towards = arms[SITE] / np.linalg.norm(arms[SITE])
     across = np.cross(towards, [0.0, 0.0, 1.0])
     line = across / np.linalg.norm(across)  # from the sphere to the site
-    centre = SPHERE + distance * line - arms[SITE]
+    center = SPHERE + distance * line - arms[SITE]
     inverse_inertia = turn @ np.diag(1 / moments) @ turn.T
     matrix = np.array(
         [[0, -arms[SITE][2], arms[SITE][1]], [arms[SITE][2], 0, -arms[SITE][0]],
@@ -72,9 +72,9 @@ def closest(distance):
         np.eye(3) / 64.0 - matrix @ inverse_inertia @ matrix
     )  # velocity of the site by an impulse
     impulse = np.cross(response @ line, towards)  # so that the site moves across the line
-    potential, _ = potential_and_forces(centre + arms)
+    potential, _ = potential_and_forces(center + arms)
     impulse *= np.sqrt(2 * (ENERGY - potential) / (impulse @ response @ impulse))
-    return np.concatenate([centre, impulse / 64.0, turn.ravel(), np.cross(arms[SITE], impulse)])
+    return np.concatenate([center, impulse / 64.0, turn.ravel(), np.cross(arms[SITE], impulse)])
 
 
 def data(distance):
@@ -95,16 +95,14 @@ def data(distance):
         first = text.index(title) + 2
         for k, row in enumerate(rows):
             words = text[first + k].split()[: 4 if title != "Velocities" else 1]
-            text[first + k] = " ".join(words) + " " + scenes.numbers(row)
+            text[first + k] = " ".join(words) + " " + numbers(row)
     return "\n".join(text) + "\n"
 
 
-def main(folder):
-    for distance in DISTANCES:
-        path = Path(folder) / f"data.{distance}.consistent"
-        path.write_text(data(distance), encoding="ascii")
-        print(path)
+def scene_files():
+    """All files as a dictionary: path below the examples folder -> text."""
+    return {"hard/encounter/data.%s.consistent" % distance: data(distance) for distance in DISTANCES}
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else HERE)
+    write(scene_files())

@@ -20,10 +20,8 @@ import math
 import sys
 from pathlib import Path
 
-EXAMPLES = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(EXAMPLES / "common"), str(EXAMPLES / "top")]
-from make_scenes import cross, matvec, numbers  # noqa: E402
-from make_top import rotation_space_from_body  # noqa: E402
+sys.path.append(str(Path(__file__).resolve().parents[2] / "common"))
+from data_files import add, cross, cube, data_text, general_rotation, matvec, write  # noqa: E402
 
 VELOCITY = (0.3, -0.2, 0.1)
 SPIN = (0.7, 0.6, 0.5)
@@ -74,23 +72,13 @@ BOX_HALF_LENGTH = 50.0
 def data_file(body):
     """Text of a LAMMPS data file, atom style full, a type for each mass."""
     sites, omega_body = BODIES[body]
-    rotation = rotation_space_from_body()
+    rotation = general_rotation()
     omega = matvec(rotation, omega_body)
     masses = sorted({mass for mass, _ in sites})
-    lines = ["LAMMPS data file: %s (make_inertia.py)" % body, ""]
-    lines += ["%d atoms" % len(sites), "%d atom types" % len(masses), ""]
-    lines += ["%g %g %slo %shi" % (-BOX_HALF_LENGTH, BOX_HALF_LENGTH, a, a) for a in "xyz"]
-    lines += ["", "Masses", ""]
-    lines += ["%d %.17g" % pair for pair in enumerate(masses, start=1)]
-    lines += ["", "Atoms # full", ""]
-    velocities = []
-    for tag, (mass, site) in enumerate(sites, start=1):
-        arm = matvec(rotation, site)
-        lines.append("%d 1 %d 0 %s" % (tag, masses.index(mass) + 1, numbers(arm)))
-        velocities.append([v + w for v, w in zip(VELOCITY, cross(omega, arm))])
-    lines += ["", "Velocities", ""]
-    lines += ["%d %s" % (tag, numbers(v)) for tag, v in enumerate(velocities, start=1)]
-    return "\n".join(lines) + "\n"
+    atoms = [(1, masses.index(mass) + 1, 0.0, matvec(rotation, site)) for mass, site in sites]
+    velocities = [add(VELOCITY, cross(omega, arm)) for *_, arm in atoms]
+    title = "%s (make_inertia.py)" % body
+    return data_text(title, cube(BOX_HALF_LENGTH), masses, atoms, velocities)
 
 
 def scene_files():
@@ -98,14 +86,5 @@ def scene_files():
     return {"hard/inertia/data.%s" % body: data_file(body) for body in BODIES}
 
 
-def main(folder):
-    """Write all files below ``folder``."""
-    for name, text in scene_files().items():
-        path = Path(folder) / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="ascii")
-        print(path)
-
-
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else EXAMPLES)
+    write(scene_files())

@@ -20,10 +20,10 @@ Units: lj.  Frames: ``body`` (principal axes), ``space``.
 import sys
 from pathlib import Path
 
-EXAMPLES = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(EXAMPLES / "common"), str(EXAMPLES / "top")]
-from make_scenes import cross, matmul, matvec, numbers  # noqa: E402
-from make_top import rotation_space_from_body  # noqa: E402
+sys.path.append(str(Path(__file__).resolve().parents[2] / "common"))
+from data_files import (  # noqa: E402
+    ONE, add, cross, cube, data_text, general_rotation, matmul, matvec, write,
+)  # fmt: skip
 
 # moments are largest about y, smallest about z; the heaviest site makes the third axis point to +z
 SITES = (
@@ -35,7 +35,7 @@ SITES = (
     (3, 0.0, (0.0, 0.4, 0.0)),
     (3, 0.0, (0.0, -0.4, 0.0)),
 )
-MASS = {1: 3.0, 2: 2.0, 3: 1.0, 4: 1.0}
+MASSES = (3.0, 2.0, 1.0, 1.0)
 # fixed spheres around it, symmetric in y
 CAGE = (
     (1.0, (4.5, 2.0, 0.5)),
@@ -45,7 +45,6 @@ CAGE = (
     (-1.5, (0.5, 0.0, 5.0)),
     (1.5, (-0.5, 0.0, -5.0)),
 )
-ONE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 HALF_TURN = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
 ABOUT_Y = ((0.6, 0.0, 0.8), (0.0, 1.0, 0.0), (-0.8, 0.0, 0.6))
 # pose: axes of the body in space, angular velocity and velocity in space
@@ -60,25 +59,15 @@ BOX_HALF_LENGTH = 100.0
 def data_file(pose, turned):
     """Text of a LAMMPS data file, atom style full: molecule 1 is the body, 0 the cage."""
     rotation, omega, velocity = POSES[pose]
-    frame = rotation_space_from_body() if turned else ONE
+    frame = general_rotation() if turned else ONE
     rotation = matmul(frame, rotation)
     omega, velocity = matvec(frame, omega), matvec(frame, velocity)
-    lines = ["LAMMPS data file: %s%s (make_poles.py)" % (pose, ", turned" * turned), ""]
-    lines += ["%d atoms" % (len(SITES) + len(CAGE)), "4 atom types", ""]
-    lines += ["%g %g %slo %shi" % (-BOX_HALF_LENGTH, BOX_HALF_LENGTH, a, a) for a in "xyz"]
-    lines += ["", "Masses", "", *("%d %g" % item for item in MASS.items()), "", "Atoms # full", ""]
-    velocities = []
-    for tag, (kind, charge, site) in enumerate(SITES, start=1):
-        arm = matvec(rotation, site)
-        lines.append("%d 1 %d %g %s" % (tag, kind, charge, numbers(arm)))
-        around = cross(omega, arm)
-        velocities.append([v + w for v, w in zip(velocity, around)])
-    for tag, (charge, place) in enumerate(CAGE, start=len(SITES) + 1):
-        lines.append("%d 0 4 %g %s" % (tag, charge, numbers(matvec(frame, place))))
-        velocities.append((0.0, 0.0, 0.0))
-    lines += ["", "Velocities", ""]
-    lines += ["%d %s" % (tag, numbers(v)) for tag, v in enumerate(velocities, start=1)]
-    return "\n".join(lines) + "\n"
+    atoms = [(1, kind, charge, matvec(rotation, site)) for kind, charge, site in SITES]
+    velocities = [add(velocity, cross(omega, arm)) for *_, arm in atoms]
+    atoms += [(0, 4, charge, matvec(frame, place)) for charge, place in CAGE]
+    velocities += [(0.0, 0.0, 0.0)] * len(CAGE)
+    title = "%s%s (make_poles.py)" % (pose, ", turned" * turned)
+    return data_text(title, cube(BOX_HALF_LENGTH), MASSES, atoms, velocities)
 
 
 def scene_files():
@@ -90,14 +79,5 @@ def scene_files():
     }
 
 
-def main(folder):
-    """Write all files below ``folder``."""
-    for name, text in scene_files().items():
-        path = Path(folder) / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="ascii")
-        print(path)
-
-
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else EXAMPLES)
+    write(scene_files())
