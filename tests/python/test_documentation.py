@@ -192,6 +192,15 @@ def test_every_link_leads_somewhere(page):
     assert [link for link in links if not (path.parent / link).exists()] == []
 
 
+def test_the_tests_that_decisions_name_exist():
+    text = (ROOT / "doc" / "decisions.md").read_text()
+    names = set(re.findall(r"`((?:tests/\w+/)?(?:test_\w+|\w+)\.(?:py|cpp|sh|yaml))`", text))
+    names -= {"run_tests.py"}  # LAMMPS' own
+    assert len(names) > 30
+    folders = [ROOT / "tests" / "lammps", ROOT]
+    assert [n for n in names if not any((folder / n).exists() for folder in folders)] == []
+
+
 def test_what_is_cited_is_this_version():
     project, citation = (
         re.search(r'^version(?: = |: )"?([\d.]+)"?$', (ROOT / name).read_text(), re.M)[1]
