@@ -80,7 +80,8 @@ def find(results):
         label = "worth of the estimates" if label == "spin, first" else ""
         worth = [run.worth.max() for run in runs]
         curves.append(Curve(label, np.array(steps), worth, "rigid", "", "x"))
-    panels = (Panel("largest error of the energy", "step", "energy", tuple(curves), log="xy"),)
+    largest = {"log": "xy", "xticks": tuple(steps)}
+    panels = (Panel("largest error of the energy", "step", "energy", tuple(curves), **largest),)
     if ("wall", "second", STEPS[1]) in results:
         panels += (_collision(results["wall", "second", STEPS[1]]),)
     context = {"end": END, "steps": STEPS, "spin": _spin(results)}
