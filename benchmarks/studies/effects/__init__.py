@@ -124,7 +124,9 @@ def panels(results):
 def find(results):
     """Finding of runs.Results."""
     idle = idle_measurements(results)
-    more = Measurement("largest relative deviation from additivity", apart(results), most=MOST_APART)
+    more = Measurement(
+        "largest relative deviation from additivity", apart(results), most=MOST_APART
+    )
     tables = {
         "effects": effects_table(results),
         "ladder": ladder_table(results),

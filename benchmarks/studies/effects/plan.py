@@ -90,7 +90,9 @@ EFFECTS = (
         off=MOVED,
         never=replace(MOVED, after="fix_modify move virial no"),
     ),
-    Effect("ghost bodies", None, MOVED, own=r"GearQuat::Bodies::(un)?pack_|FixGearQuat::(un)?pack_"),
+    Effect(
+        "ghost bodies", None, MOVED, own=r"GearQuat::Bodies::(un)?pack_|FixGearQuat::(un)?pack_"
+    ),
     Effect("predicted velocities", replace(MOVED, after="fix reads all viscous 0.0"), MOVED),
     Effect(
         "changing step",

@@ -88,7 +88,9 @@ def find(results):
             continue
         what = f"{method}: mean temperature of the second half"
         if water.lost:
-            measurements.append(Measurement(what, np.inf, remark=f"lost by {water.end:g} ps", most=0))
+            measurements.append(
+                Measurement(what, np.inf, remark=f"lost by {water.end:g} ps", most=0)
+            )
             continue
         most = None if method == RIGID else HOTTER * rigid.hot
         measurements.append(Measurement(what, water.hot, spec=".0f", unit="K", most=most))

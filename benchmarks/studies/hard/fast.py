@@ -70,7 +70,9 @@ def find(results):
     for event, formulation in dict.fromkeys(key[:2] for key in results):
         runs = [results[event, formulation, dt] for dt in steps]
         errors = [np.abs(run.error).max() for run in runs]
-        what = f"{EVENTS[event]}, {formulation} formulation: error of the energy over the worth of the"
+        what = (
+            f"{EVENTS[event]}, {formulation} formulation: error of the energy over the worth of the"
+        )
         what += f" estimates, at the worst of {len(steps)} steps"
         remark = f"error of the energy at step {steps[-1]:g}: {errors[-1]:.1e}"
         worst = max(run.ratio for run in runs)

@@ -185,9 +185,7 @@ def _panels(results):
     """Errors of orientation against steps, and against what the estimates add up to."""
     against, promised = [], []
     shown = ("thin3", "thin6", "two", "ball", "disc", "flat")
-    colors = dict(
-        zip(shown, ("potential", "kinetic", "translation", "rotation", "total", "rigid"))
-    )
+    colors = dict(zip(shown, ("potential", "kinetic", "translation", "rotation", "total", "rigid")))
     for (body, formulation), runs in results.items():
         kept = [run for run in runs if np.isfinite(run.error[1]) and run.error[1] > 0]
         if formulation == "second" and body in shown:

@@ -110,7 +110,10 @@ def _panels(results, lives):
         of_whole = results["whole", formulation].positions
         y = [np.abs(of_whole - results[life, formulation].positions).max() for life in lives]
         curves.append(Curve(formulation, np.arange(len(y)), floor(y), formulation, "", "o"))
-    title, ticks = "against the run in one go; 1e-17: the same digits", tuple(LIVES[l][1] for l in lives)
+    title, ticks = (
+        "against the run in one go; 1e-17: the same digits",
+        tuple(LIVES[l][1] for l in lives),
+    )
     return (
         Panel("second formulation", "time", "energy", hit, log=""),
         Panel(title, "", "distance of a site", tuple(curves), ticks=ticks),

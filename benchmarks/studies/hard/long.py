@@ -48,7 +48,9 @@ def find(results):
     for formulation in dict.fromkeys(formulation for formulation, _ in results):
         runs = [run for (of, _), run in results.items() if of == formulation]
         name = f"{formulation} formulation, worst of {len(runs)} starts"
-        sampled, every = (np.array([getattr(run, of) for run in runs]) for of in ("sampled", "every"))
+        sampled, every = (
+            np.array([getattr(run, of) for run in runs]) for of in ("sampled", "every")
+        )
         evaluations = np.array([run.evaluations for run in runs])
         energy = f"{name}: error of the energy"
         measurements += [

@@ -101,7 +101,9 @@ def data(distance):
 
 def scene_files():
     """All files as a dictionary: path below the examples folder -> text."""
-    return {"hard/encounter/data.%s.consistent" % distance: data(distance) for distance in DISTANCES}
+    return {
+        "hard/encounter/data.%s.consistent" % distance: data(distance) for distance in DISTANCES
+    }
 
 
 if __name__ == "__main__":
