@@ -9,6 +9,7 @@ from benchmarks.engine import series
 from benchmarks.engine.lab import Lab
 from benchmarks.engine.logs import Log
 from benchmarks.engine.methods import gear, looks
+from benchmarks.engine.page import render
 from benchmarks.engine.runner import LammpsError
 from benchmarks.engine.statistics import slope
 from benchmarks.studies import drift
@@ -142,6 +143,8 @@ def test_ratios_say_who_holds_the_energy():
     rows = {row[0]: row[1:] for row in finding.tables["largest_top"].rows}
     assert rows[DEFAULT] == ["1.0e-07", "lost, t = 10"] and rows[VERLET] == ["1.0e-03", "7.0e+00*"]
     assert finding.context["steps"] == 2000
+    text = render("drift.md.j2", drift.STUDY, finding, "Somewhere.")
+    assert f"| {DEFAULT} | 1.0e-07 | lost, t = 10 |" in text and "over 2 000 steps" in text
 
 
 def test_only_methods_that_were_run_are_compared():

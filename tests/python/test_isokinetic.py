@@ -5,6 +5,7 @@ import pytest
 
 from benchmarks.engine import statistics
 from benchmarks.engine.lab import Lab
+from benchmarks.engine.page import render
 from benchmarks.studies import isokinetic as runs
 
 PLAN = runs.Plan(drift_steps=1000, dts=(0.1, 0.2, 0.4), water_steps=400, every=10, blocks=5)
@@ -81,6 +82,12 @@ def test_the_first_sample_is_no_part_of_a_block():
     assert statistics.blocks_of([100.0, 1.0, 3.0, 5.0, 7.0], 2).tolist() == [2.0, 6.0]
     with pytest.raises(ValueError, match="too few"):
         statistics.blocks_of([1.0, 2.0], 2)
+
+
+def test_the_page_shows_what_was_found():
+    text = render("isokinetic.md.j2", runs.STUDY, runs.find(made_up()), "Somewhere.")
+    assert "| total: order of the drift of the kinetic energy | 6.00 |" in text
+    assert "allow deviations of\nup to 3." in text
 
 
 # --- files --------------------------------------------------------------------------------------
