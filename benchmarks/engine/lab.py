@@ -115,14 +115,14 @@ class Lab:
 
         Every round begins with another job.  Returns name -> list of Finished, one per round.
         """
-        found, names = {name: [] for name in jobs}, list(jobs)
+        finished_runs, names = {name: [] for name in jobs}, list(jobs)
         total = rounds * sum(job.steps for job in jobs.values())
         for number in range(rounds):
             at = number % len(names)
             for name in names[at:] + names[:at]:
                 finished = self._run(f"{name}.{number + 1}", jobs[name], False, None, total)
-                found[name].append(finished)
-        return found
+                finished_runs[name].append(finished)
+        return finished_runs
 
     def sweep(self, name, deck, axes, read, settings=None, may_fail=False):
         """Run a deck for every combination of ``axes``, a dictionary variable -> values.
@@ -139,8 +139,8 @@ class Lab:
             of_run = "_".join([name, *map(str, values)])
             jobs[of_run] = Job(deck, variables, int(variables["steps"]))
             keys[of_run] = values if len(values) > 1 else values[0]
-        found = self.many(jobs, may_fail)
-        return {keys[of_run]: read(finished) for of_run, finished in found.items()}
+        finished_runs = self.many(jobs, may_fail)
+        return {keys[of_run]: read(finished) for of_run, finished in finished_runs.items()}
 
     def _run(self, name, job, may_fail, stop, total):
         if stop is not None and stop.is_set():

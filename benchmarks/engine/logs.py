@@ -56,15 +56,15 @@ class Log:
 
         "Loop" is the whole run, "Ranks" the number of ranks; of "Other" LAMMPS prints only the mean.
         """
-        found = []
+        runs = []
         for part in re.split(r"^(?=Loop time of )", self.text, flags=re.MULTILINE)[1:]:
             loop = _LOOP.match(part)
             sections = {"Loop": float(loop[1]), "Ranks": int(loop[2])}
             for name, _, mean, most in _SECTION.findall(part.partition("Nlocal:")[0]):
                 if name != "Section":
                     sections[name] = float(most.strip() or mean)
-            found.append(sections)
-        return found
+            runs.append(sections)
+        return runs
 
     @property
     def seconds(self):

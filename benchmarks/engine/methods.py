@@ -45,14 +45,14 @@ def rigid(style, method):
 
 def looks(methods):
     """Method -> color, marker and line: one color for each kind, one shade for each method."""
-    found = {}
+    styles = {}
     for kind, (colors, marker) in _LOOKS.items():
         members = [method for method in methods if method.kind == kind]
         for method, shade in zip(members, np.linspace(0.45, 0.95, len(members))):
             line = "--" if "compensate" in method.variables else "-"
-            found[method] = {
+            styles[method] = {
                 "color": to_hex(matplotlib.colormaps[colors](shade)),
                 "marker": marker,
                 "line": line,
             }
-    return found
+    return styles

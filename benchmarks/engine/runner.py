@@ -55,8 +55,8 @@ def command_line(deck, log, variables, lmp, launcher=()):
 
 def _step_of(line):
     """Time step of a line of thermo output, None for any other line."""
-    found = re.match(r"\s*(\d+)(?:\s+[-+.\dinfa]\S*){2,}\s*$", line)
-    return int(found[1]) if found else None
+    match = re.match(r"\s*(\d+)(?:\s+[-+.\dinfa]\S*){2,}\s*$", line)
+    return int(match[1]) if match else None
 
 
 def _end_group(process):

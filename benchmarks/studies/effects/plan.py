@@ -143,8 +143,8 @@ LADDER = (
 
 def scenes():
     """Every scene once, in their order."""
-    found = [
+    every = [
         scene for effect in EFFECTS for scene in (effect.on, effect.base, effect.off, effect.never)
     ]
-    found += [scene for rung in LADDER for scene in (rung.on, rung.base)]
-    return list(dict.fromkeys(scene for scene in found if scene))
+    every += [scene for rung in LADDER for scene in (rung.on, rung.base)]
+    return list(dict.fromkeys(scene for scene in every if scene))
