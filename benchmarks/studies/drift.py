@@ -16,6 +16,7 @@ from benchmarks.engine import series
 from benchmarks.engine.decks import deck
 from benchmarks.engine.lab import Job
 from benchmarks.engine.methods import gear, looks, rigid
+from benchmarks.engine.page import grouped
 from benchmarks.engine.panels import Curve, Panel, draw
 from benchmarks.engine.statistics import slope
 from benchmarks.engine.study import Finding, Measurement, Study, Table
@@ -200,7 +201,7 @@ def find(results):
             if run.lost is None:
                 measurements.append(Measurement(f"{what}: drift of the energy", *run.slope))
     steps = round(max(run.time[-1] / dt for (*_, dt), run in results.items() if len(run.time)))
-    note = f"{steps:,} steps; crosses: no longer finite; hollow: no drift, one standard error; "
+    note = f"{grouped(steps)} steps; crosses: no longer finite; hollow: no drift, one standard error; "
     note += "charges of the cage: reconstructed"
     picture = partial(draw, panels=panels, columns=3, note=note)
     context = {"scenes": scenes, "steps": steps, "significant": SIGNIFICANT, "spoils": SPOILS}
