@@ -32,4 +32,4 @@ def write_page(folder, name, text, pictures=()):
 
 def provenance(out, packages=("lammps-gearquat", "numpy")):
     """One sentence: what measured, where and when.  ``out``: folder of the run."""
-    return origin.sentence(out, packages).replace("It was measured", "Measured")
+    return origin.sentence(out, packages, origin.commit("src")).replace("It was measured", "Measured")

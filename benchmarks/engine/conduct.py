@@ -38,10 +38,11 @@ class Origin:
 def measure(study, out, **options):
     """Measure and keep data and their origin in ``out``; ``options`` are those of Lab."""
     out.mkdir(parents=True, exist_ok=True)
+    at = provenance.commit("src", "benchmarks", "examples")
     with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar:
         data = study.measure(Lab(out, advance=bar.update, **options))
     whole = not options.get("quick") and not options.get("parts")
-    origin = {"sentence": provenance.sentence(out, study.packages), "whole": whole}
+    origin = {"sentence": provenance.sentence(out, study.packages, at), "whole": whole}
     write_data(out / DATA, data)
     (out / ORIGIN).write_text(json.dumps(origin, indent=1), encoding="utf-8")
 

@@ -46,11 +46,10 @@ def lammps_of(logs):
     return ", ".join(sorted(first)) or "LAMMPS of unknown version"
 
 
-def sentence(out, packages):
+def sentence(out, packages, at):
     """One sentence: what measured, where, when and at which commit.  ``out``: folder of the run."""
     cores = len(os.sched_getaffinity(0))
     versions = [f"{name} {metadata.version(name)}" for name in packages]
-    at = commit("src", "benchmarks", "examples")
     return (
         f"It was measured with {lammps_of(Path(out) / 'logs')}, {', '.join(versions)} and Python "
         f"{platform.python_version()} on {system()}, {processor()} ({cores} cores), on "
