@@ -1,17 +1,26 @@
 """The command ``gearquat``; each of its commands is a module of ``commands``."""
 
-import click
+import cloup
 
 from .commands.analyze import analyze
+from .commands.common import HELP
 from .commands.cost import cost
 from .commands.horizon import horizon
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="lammps-gearquat", message="%(version)s")
+@cloup.group(
+    sections=[
+        cloup.Section("Before a long run", [cost, horizon]),
+        cloup.Section("After it", [analyze]),
+    ],
+    context_settings=HELP,
+    epilog="\b\nExamples, to be run in a checkout of the repository:\n"
+    "  gearquat cost examples/water/in.water --var method rigid --budget 30\n"
+    "  gearquat horizon examples/case1/in.case1 --time 100",
+)
+@cloup.version_option(package_name="lammps-gearquat", message="%(version)s")
 def main():
-    """Rigid bodies in LAMMPS by Gear's predictor-corrector in quaternions (fix gear/quat)."""
+    """Rigid bodies in LAMMPS by Gear's predictor-corrector in quaternions (fix gear/quat).
 
-
-for command in (analyze, cost, horizon):
-    main.add_command(command)
+    Each command has a help page of its own: gearquat COMMAND -h
+    """

@@ -1,5 +1,6 @@
 """The keywords of fix gear/quat, as the fix lists them itself: ``fix ID group gear/quat keywords``."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -9,6 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+_OF_MPI = re.compile("PMI|HYD|MPI|OMPI")
 _DECK = """\
 region box block 0 1 0 1 0 1
 create_box 1 box
@@ -102,6 +104,8 @@ def table():
         done = subprocess.run(
             [lmp, "-in", "in.keywords", "-log", "none", "-nocite"],
             cwd=folder,
+            # among the ranks of an MPI program it is still a program of its own
+            env={name: value for name, value in os.environ.items() if not _OF_MPI.match(name)},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,

@@ -9,7 +9,7 @@ COLUMNS = "id mol type mass xu yu zu vx vy vz"
 class Motion:
     """Bodies that move straight and turn evenly about a fixed axis in space; all arrays over bodies.
 
-    ``shape`` (n, 3) of the sites from the centre of mass, ``of`` (n,) and ``masses`` (n,).
+    ``shape`` (n, 3) of the sites from the center of mass, ``of`` (n,) and ``masses`` (n,).
     """
 
     def __init__(self, counts, seed=1, omega=0.02, linear=(), spread=20.0):
@@ -24,11 +24,11 @@ class Motion:
         self.shape = shape - np.transpose(mean)[self.of]
         self.start = Rotation.random(len(counts), rng)
         self.omega = omega * rng.normal(size=(len(counts), 3))
-        self.centre = rng.uniform(-spread, spread, (len(counts), 3))
+        self.center = rng.uniform(-spread, spread, (len(counts), 3))
         self.velocity = 0.1 * rng.normal(size=(len(counts), 3))
 
-    def centres(self, time):
-        return self.centre + self.velocity * time
+    def centers(self, time):
+        return self.center + self.velocity * time
 
     def turns(self, time):
         """Rotations body -> space."""
@@ -37,7 +37,7 @@ class Motion:
     def sites(self, time):
         """Positions and velocities (n, 3)."""
         arms = self.turns(time)[self.of].apply(self.shape)
-        x = self.centres(time)[self.of] + arms
+        x = self.centers(time)[self.of] + arms
         return x, self.velocity[self.of] + np.cross(self.omega[self.of], arms)
 
     def rows(self, time):

@@ -33,7 +33,7 @@ def test_energies_are_those_of_the_fix(dumped):
     poses = Poses(atoms).run()
     found = poses.results
     assert found.step.tolist() == values.step.tolist() == [0, 1000, 2000, 3000, 4000, 5000]
-    assert found.centre[:, 0] == pytest.approx(values.centre, abs=1e-12)
+    assert found.center[:, 0] == pytest.approx(values.centre, abs=1e-12)
     assert found.ke_translation[:, 0] == pytest.approx(values.translation, rel=1e-11)
     assert found.ke_rotation[:, 0] == pytest.approx(values.rotation, rel=1e-11)
     assert found.ke_rotation[:, 0] != pytest.approx(values.rotation * 1.01, rel=1e-11)
@@ -59,11 +59,11 @@ def test_energy_belongs_to_the_dumped_pose(run_case, tmp_path, formulation):
 
 @pytest.mark.parametrize("formulation", ["first", "second"])
 def test_pose_is_that_of_the_reference(run_case, tmp_path, formulation):
-    """Recovered centre and rotation against the independent integrator."""
+    """Recovered center and rotation against the independent integrator."""
     run_case(1, formulation=formulation, dt=0.02, steps=5000, every=5000, dump=5000)
     found = Poses(open_dump(tmp_path / "poses.dump").atoms, reference=SITES).run().results
     end = reference_state(paper_problem(1), 100.0).double
-    assert found.centre[-1, 0] == pytest.approx(end.centre[0], abs=1e-7)
+    assert found.center[-1, 0] == pytest.approx(end.centre[0], abs=1e-7)
     turn = Rotation.from_quat(found.q[-1, 0], scalar_first=True).as_matrix()
     assert turn == pytest.approx(qt.rotation_space_body(end.q)[0], abs=1e-7)
 
@@ -95,7 +95,7 @@ def water(tmp_path_factory):
 
 
 def test_poses_are_those_of_the_fixs_own_array(water):
-    """Quaternion, angular velocity and momentum, centre and velocity, for 500 molecules."""
+    """Quaternion, angular velocity and momentum, center and velocity, for 500 molecules."""
     sites = Poses(open_dump(water / "water.dump").atoms, reference="principal", units="real").run()
     table = TablePoses(open_table(water / "water.table").atoms, units="real").run()
     assert np.array_equal(sites.results.ids, table.results.ids)
@@ -104,7 +104,7 @@ def test_poses_are_those_of_the_fixs_own_array(water):
         sites.results.q.reshape(-1, 4), scalar_first=True
     ), Rotation.from_quat(table.results.q.reshape(-1, 4), scalar_first=True)
     assert (both[0] * both[1].inv()).magnitude().max() < 1e-12
-    for name in ("centre", "velocity", "omega_space", "angular_momentum_space", "ke_rotation"):
+    for name in ("center", "velocity", "omega_space", "angular_momentum_space", "ke_rotation"):
         found, expected = sites.results[name], table.results[name]
         assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max()), name
         assert found != pytest.approx(1.01 * expected, abs=1e-3 * np.abs(expected).max()), name
@@ -125,8 +125,8 @@ def test_bodies_without_images_are_followed_as_with_them(water):
     (water / "wrapped.dump").write_text("".join(frames))
     exact = Poses(universe.atoms).run().results
     found = Poses(open_dump(water / "wrapped.dump").atoms).run().results
-    moved = found.centre - found.centre[0]
-    assert moved == pytest.approx(exact.centre - exact.centre[0], abs=1e-12)
+    moved = found.center - found.center[0]
+    assert moved == pytest.approx(exact.center - exact.center[0], abs=1e-12)
     assert found.residual.max() < 1e-12
 
 
@@ -158,7 +158,7 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
         water / "water.dump", "--out", tmp_path, "--units", "real", "--csv", "--jobs", jobs
     )
     assert result.exit_code == 0, result.output
-    assert "5 frames of 500 bodies, time 0 to 80." in result.output
+    assert "5 frames of 500 bodies were read, from time 0 to 80." in result.output
     exact = Poses(open_dump(water / "water.dump").atoms, "principal", units="real").run()
     assert np.array_equal(np.load(tmp_path / "poses.npy"), exact.results.table)
     assert columns(tmp_path / "poses.csv")["q_0"].tolist() == exact.columns()["q_0"].tolist()
@@ -212,12 +212,12 @@ def test_command_converts(water, tmp_path, suffix, wrap):
 
 def test_command_tells_of_stays(tmp_path):
     motion = dumps.Motion([3, 3])
-    motion.centre, motion.velocity = np.array([[0.0, 0, 0], [20, 0, 0]]), np.eye(3)[[0, 0]] * 0.5
+    motion.center, motion.velocity = np.array([[0.0, 0, 0], [20, 0, 0]]), np.eye(3)[[0, 0]] * 0.5
     path = dumps.write(tmp_path / "stay.dump", motion, np.arange(8.0))
     (tmp_path / "places").write_text("0 0 0\n20 0 0\n")
     result = run(path, "--out", tmp_path, "--near", tmp_path / "places", "--radius", 1.75)
     assert result.exit_code == 0, result.output
-    assert "2 stays within 1.75 of 2 places: 50.0% of the time." in result.output
+    assert "Bodies made 2 stays within 1.75 of 2 places, in 50.0% of the time." in result.output
     rows = columns(tmp_path / "stays.csv")
     assert rows["place"].tolist() == [1, 2] and rows["end"].tolist() == [3, 3]
 
@@ -233,10 +233,10 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (["--select", "resid 99"], "--select resid 99: no such atom"),
+        (["--select", "resid 99"], "--select resid 99 selects no atom"),
         (["--frames", "99:"], "no frame is left to analyse"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
-        (["--near", __file__], "--near and --radius belong together"),
+        (["--near", __file__], "should be provided together"),
         (
             ["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"],
             "MDAnalysis writes no such format",

@@ -152,7 +152,7 @@ def test_atoms_of_no_element_have_names_in_xyz(flights, tmp_path):
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch):
     for name in ("draw_totals", "draw_correlations"):
-        monkeypatch.setattr(f"lammps_gearquat.analysis_figures.{name}", lambda *_: None)
+        monkeypatch.setattr(f"lammps_gearquat.figures.{name}", lambda *_: None)
 
 
 def analyze(path, out, *arguments):
@@ -272,8 +272,8 @@ def test_the_header_may_say_units_once_or_more(tmp_path):
     path.write_text(one + two + one.replace("0.5", "2.5"))
     poses = Poses(open_dump(path).atoms).run()
     assert poses.results.time.tolist() == [0.5, 1.5, 2.5]
-    assert poses.results.centre[:2, 0] == pytest.approx(
-        motion.centre + motion.velocity * [[0.5], [1.5]]
+    assert poses.results.center[:2, 0] == pytest.approx(
+        motion.center + motion.velocity * [[0.5], [1.5]]
     )
     path.write_text("")
     with pytest.raises(DumpError, match="x.dump: the dump is empty"):

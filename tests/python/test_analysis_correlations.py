@@ -32,17 +32,17 @@ def test_displacement_of_a_straight_motion(held):
     """v^2 t^2, far from the origin."""
     velocity = RNG.normal(size=(BODIES, 3))
     time = 0.1 * np.arange(FRAMES)
-    centre = 1e4 + velocity * time[:, None, None]
-    found = correlations.mean_square_displacement(centre)
+    center = 1e4 + velocity * time[:, None, None]
+    found = correlations.mean_square_displacement(center)
     expected = (velocity**2).sum(axis=1).mean() * time**2
     assert found == pytest.approx(expected, rel=1e-8, abs=1e-10)
     assert found != pytest.approx(1.01 * expected, rel=5e-3)
 
 
 def test_displacement_of_any_motion(held):
-    centre = RNG.normal(size=(FRAMES, BODIES, 3)).cumsum(axis=0)
-    found = correlations.mean_square_displacement(centre)
-    assert found == pytest.approx(directly(square, centre), rel=1e-12, abs=1e-12)
+    center = RNG.normal(size=(FRAMES, BODIES, 3)).cumsum(axis=0)
+    found = correlations.mean_square_displacement(center)
+    assert found == pytest.approx(directly(square, center), rel=1e-12, abs=1e-12)
 
 
 def test_autocorrelation_of_any_motion(held):
@@ -121,16 +121,16 @@ def visiting(places):
 
 
 def test_stays_are_those_made_up():
-    centre = visiting([0, 0, 0, -1, -1, 1, 1, 0, 0, 0])
+    center = visiting([0, 0, 0, -1, -1, 1, 1, 0, 0, 0])
     time = 0.5 * np.arange(10)
-    found = residence.stays(centre, PLACES, 1.0, time)
+    found = residence.stays(center, PLACES, 1.0, time)
     rows = np.column_stack([found.body, found.place, found.begin, found.end])
     assert rows.tolist() == [[0, 0, 0, 3], [0, 1, 5, 7], [0, 0, 7, 10]]
     assert found.complete.tolist() == [False, True, False]
     assert found.fraction().tolist() == [0.6, 0.2]
     # 8 origins; a lag later the last is not seen, and 3 - 1, 2 - 1, 3 - 1 are still there
     assert found.survival()[:3] == pytest.approx([1.0, 5 / 7, 2 / 6])
-    assert residence.stays(centre, PLACES, 0.05, time).body.tolist() == []
+    assert residence.stays(center, PLACES, 0.05, time).body.tolist() == []
 
 
 def test_the_nearest_place_counts_and_boxes_are_periodic():
@@ -149,8 +149,8 @@ def test_survival_of_many_is_that_of_mdanalysis():
         where[k] = where[k - 1]
         pair = 2 * rng.integers(4) + np.arange(2)
         where[k, pair] = where[k, pair[::-1]]
-    centre = PLACES[where] + 0.01
-    found = residence.stays(centre, PLACES, 1.0, np.arange(30.0)).survival()
+    center = PLACES[where] + 0.01
+    found = residence.stays(center, PLACES, 1.0, np.arange(30.0)).survival()
     sets = [{(b, place) for b, place in enumerate(row)} for row in where]
     _, expected, _ = autocorrelation(sets, 20)
     assert found[:21] == pytest.approx(expected, rel=1e-12)

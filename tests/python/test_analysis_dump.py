@@ -18,12 +18,12 @@ def write(tmp_path):
     return write
 
 
-def centres(path, **options):
-    return Poses(open_dump(path, **options).atoms).run().results.centre
+def centers(path, **options):
+    return Poses(open_dump(path, **options).atoms).run().results.center
 
 
 def expected():
-    return np.array([MOTION.centres(t) for t in TIMES])
+    return np.array([MOTION.centers(t) for t in TIMES])
 
 
 def test_columns_are_read_in_double_precision(write):
@@ -40,7 +40,7 @@ def test_columns_are_read_in_double_precision(write):
 def test_atoms_may_be_in_any_order(write):
     rng = np.random.default_rng(0)
     path = write(MOTION, TIMES, lambda t, rows: rng.permutation(rows))
-    assert centres(path) == pytest.approx(expected(), abs=1e-13)
+    assert centers(path) == pytest.approx(expected(), abs=1e-13)
 
 
 BOX, EDGE = "-10 10", 20.0
@@ -59,7 +59,7 @@ def test_image_flags(write, bounds):
     columns = "id mol type mass x y z vx vy vz ix iy iz"
     change = lambda t, rows: wrapped(t, rows, True)  # noqa: E731
     path = write(MOTION, TIMES, change, box=BOX, columns=columns, bounds=bounds)
-    assert centres(path) == pytest.approx(expected(), abs=1e-13)
+    assert centers(path) == pytest.approx(expected(), abs=1e-13)
 
 
 def test_without_image_flags_bodies_are_made_whole_and_followed(write):
@@ -69,9 +69,9 @@ def test_without_image_flags_bodies_are_made_whole_and_followed(write):
     columns = "id mol type mass x y z vx vy vz"
     path = write(fast, times, wrapped, box=BOX, columns=columns)
     poses = Poses(open_dump(path).atoms).run()
-    moved = poses.results.centre - poses.results.centre[0]
+    moved = poses.results.center - poses.results.center[0]
     assert moved == pytest.approx(
-        np.array([fast.centres(t) for t in times]) - fast.centre, abs=1e-11
+        np.array([fast.centers(t) for t in times]) - fast.center, abs=1e-11
     )
     assert poses.results.residual.max() < 1e-12
 
@@ -107,10 +107,10 @@ def test_scaled_positions_in_a_triclinic_box(tmp_path, unwrapped):
     bounds = "xy xz yz pp pp pp\n-16 14 4\n-9 14 -6\n-8 12 3"
     text = path.read_text().replace("pp pp pp\n-50 50\n-50 50\n-50 50", bounds)
     path.write_text(text)
-    expected = np.array([small.centres(t) for t in TIMES])
-    assert centres(path) == pytest.approx(expected, abs=1e-12)
+    expected = np.array([small.centers(t) for t in TIMES])
+    assert centers(path) == pytest.approx(expected, abs=1e-12)
     path.write_text(text.replace("-9 14 -6", "-9 14 -6.06"))
-    assert np.abs(centres(path) - expected).max() > 1e-3
+    assert np.abs(centers(path) - expected).max() > 1e-3
 
 
 DATA = """made up
@@ -148,7 +148,7 @@ def test_masses_and_molecules_of_a_data_file(write, tmp_path):
 
 def test_bodies_of_another_column(write):
     columns = dumps.COLUMNS.replace("mol", "i_body")
-    assert centres(write(MOTION, TIMES, columns=columns), body="i_body").shape == (3, 3, 3)
+    assert centers(write(MOTION, TIMES, columns=columns), body="i_body").shape == (3, 3, 3)
 
 
 def test_atoms_in_no_body_are_left_out(write):
@@ -277,5 +277,5 @@ def test_a_table_with_too_few_columns(write):
 def test_columns_of_other_fixes_do_no_harm(write):
     add = lambda t, rows: np.column_stack([rows, rows[:, 0]])  # noqa: E731
     path = write(MOTION, TIMES, add, columns=dumps.COLUMNS + " f_average[1]")
-    assert centres(path) == pytest.approx(expected(), abs=1e-13)
+    assert centers(path) == pytest.approx(expected(), abs=1e-13)
     assert open_any(path)[1] is False

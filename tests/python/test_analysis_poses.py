@@ -26,7 +26,7 @@ def poses(dump):
 def test_poses_are_those_of_the_motion(poses):
     found = poses.results
     for k, time in enumerate(TIMES):
-        assert found.centre[k] == pytest.approx(MOTION.centres(time), abs=1e-12)
+        assert found.center[k] == pytest.approx(MOTION.centers(time), abs=1e-12)
         turn = MOTION.turns(time) * MOTION.turns(0.0).inv()
         error = Rotation.from_quat(found.q[k], scalar_first=True) * turn.inv()
         assert error.magnitude()[:3].max() < 1e-12
@@ -168,7 +168,7 @@ def test_some_of_the_frames(dump, poses, tmp_path, file, span):
     chosen = span.get("frames", [1, 3, 5])
     assert found.step.tolist() == chosen
     # signs are those of the frame before, so may differ
-    assert np.array_equal(found.centre, poses.results.centre[chosen])
+    assert np.array_equal(found.center, poses.results.center[chosen])
     assert np.abs(found.q) == pytest.approx(np.abs(poses.results.q[chosen]), abs=1e-15)
 
 
@@ -207,7 +207,7 @@ def test_csv_has_every_digit(poses, tmp_path):
     for name, values in columns.items():
         assert np.array_equal(values, found[name]), name
     assert found["body"][:6].tolist() == [1, 2, 3, 4, 5, 1]
-    assert found["centre_y"][7] == poses.results.centre[1, 2, 1]
+    assert found["center_y"][7] == poses.results.center[1, 2, 1]
     assert found["q_3"][7] == poses.results.q[1, 2, 3]
 
 
@@ -223,7 +223,7 @@ def test_other_trajectories(dump, tmp_path):
     other.atoms.masses = universe.atoms.masses
     found, exact = Poses(other.atoms).run().results, Poses(universe.atoms).run().results
     assert found.q[:, :3] == pytest.approx(exact.q[:, :3], abs=1e-4)
-    assert found.centre - found.centre[0] == pytest.approx(exact.centre - exact.centre[0], abs=1e-4)
+    assert found.center - found.center[0] == pytest.approx(exact.center - exact.center[0], abs=1e-4)
     assert found.omega_space == pytest.approx(exact.omega_space, abs=1e-5)
 
 

@@ -56,7 +56,7 @@ def test_the_rotation_is_the_best_one():
     """Of sites that are not rigid: no small further turn makes the weighted squares smaller."""
     bodies = bodies_of([5] * 40)
     arms = turned(bodies, Rotation.random(40, RNG)) + 0.2 * RNG.normal(size=(200, 3))
-    arms -= bodies.centre(arms)[bodies.of]
+    arms -= bodies.center(arms)[bodies.of]
 
     def squares(q):
         return bodies.sum(bodies.masses * ((arms - rotate(q[bodies.of], bodies.shape)) ** 2).sum(1))
@@ -86,7 +86,7 @@ def test_residual_sees_a_site_out_of_place(site):
     bodies = bodies_of([4])
     arms = turned(bodies, Rotation.random(1, RNG))
     arms[site] *= 1.01
-    arms -= bodies.centre(arms)[bodies.of]
+    arms -= bodies.center(arms)[bodies.of]
     assert superpose(bodies, arms)[1][0] > 1e-3
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from synthetic import line, make
 
-from lammps_gearquat import divergence as dv
+from benchmarks.engine import divergence as dv
 from benchmarks.engine import series
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lammps_gearquat.divergence import error_order
+from benchmarks.engine.divergence import error_order
 
 # centre of mass, test case 1, found in extended precision (notes on the paper)
 REFERENCE = {

@@ -4,17 +4,20 @@ import csv
 import math
 import os
 import re
+import signal
+import types
 from pathlib import Path
 
 import numpy as np
+import pppm_water
 import pytest
 from click.testing import CliRunner
 from clumps import FIX, FOR_GEAR
 
-from lammps_gearquat import divergence as dv
 from lammps_gearquat.commands.cost import cost as cost_command
 from lammps_gearquat.commands.horizon import horizon as horizon_command
-from lammps_gearquat.trials import cost, horizon, report, script
+from lammps_gearquat.analysis.bodies import Bodies
+from lammps_gearquat.trials import cost, evaluate, horizon, measure, report, script
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
 from lammps_gearquat.trials.worker import TrialError
@@ -37,8 +40,8 @@ def test_deck_is_followed_to_its_run(make_deck, tmp_path):
     with Deck(make_deck()) as deck:
         assert deck.lines[0].text() == "fix 1 all rigid group 3 clump1 clump2 clump3"
         assert (deck.dt, deck.end) == (0.004, 2.0)
-        assert deck.scene.bodies.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
-        assert deck.scene.map_missing and deck.scene.units == "lj"
+        assert deck.scene.bodies.of.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+        assert deck.map_missing and deck.time_unit == ""
         assert deck.scene.positions[4] == pytest.approx([1.0, 0.4, 2.1])
         assert deck.notes == []
     # nothing but the deck is there: no dump, no restart, no log, no averages
@@ -58,15 +61,15 @@ def test_a_later_run_and_a_fix_that_is_left_out(make_deck):
     with pytest.raises(DeckError, match="--without push"), Deck(make_deck(extra)):
         pass
     with Deck(make_deck(extra), without=["push"]) as deck:
-        assert "push" not in deck.scene.start.fixes
+        assert "push" not in deck.start.fixes
     with pytest.raises(DeckError, match="no fix pull"), Deck(make_deck(), without=["pull"]):
         pass
     second = make_deck(**{"run 1000000": "timestep 0.001\nrun 30"})
     with Deck(second, which=2) as deck:
-        assert (deck.scene.start.steps, deck.dt) == (30, 0.001)
+        assert (deck.start.steps, deck.dt) == (30, 0.001)
         own = deck.run(None, [30], deck.dt)
         gear = deck.run("formulation second", [30], deck.dt)
-        assert 0 < np.abs(own.centre - gear.centre).max() < 1e-5
+        assert 0 < np.abs(own.center - gear.center).max() < 1e-5
         assert np.abs(own.positions[-1] - deck.scene.positions).max() > 1e-3
     with pytest.raises(DeckError, match="in 2 run.s. only"), Deck(second, which=3):
         pass
@@ -113,8 +116,8 @@ def test_held_bodies_are_held_in_the_trials(make_deck, style):
         assert held.fix_lines("values 8")[0].endswith(f"values 8{MASKED}")
         own, gear = (held.run_to(keywords, 0.4, 400) for keywords in (None, "values 8"))
         other = free.run_to("values 8", 0.4, 400)
-    apart = np.abs(own.centre - gear.centre).max()
-    assert apart < 1e-5 < 1e-4 < np.abs(gear.centre - other.centre).max()
+    apart = np.abs(own.center - gear.center).max()
+    assert apart < 1e-5 < 1e-4 < np.abs(gear.center - other.center).max()
 
 
 def test_trials_of_a_deck_whose_step_follows_the_error(make_deck):
@@ -133,12 +136,12 @@ def test_trials_of_an_isokinetic_deck(make_deck):
     line = FIX.replace("${style}", "gear/quat") + " formulation first isokinetic total"
     with Deck(make_deck(**{FIX: line}, **FOR_GEAR)) as deck:
         found = horizon.measure(deck, time=0.4)
-        costs = cost.measure(deck, errors=[1e-4], time=0.4, budget=6.0, timings=1)
+        costs = cost.measure(deck, cost.Budget(6.0), errors=[1e-4], time=0.4, timings=1)
         with pytest.raises(DeckError, match="belongs to formulation first"):
             horizon.measure(deck, time=0.4, b="formulation second")
     assert found.trials[1].keywords == "formulation first values 8 compensate yes"
     assert found.largest[-1] < 1e-4
-    assert costs.rows[0][2] is not None
+    assert costs.rows[0].best is not None
     assert all("first" in trial.keywords for trial, _ in costs.trials if trial.keywords)
 
 
@@ -147,8 +150,8 @@ def test_evaluations_count_the_start(make_deck):
         own = deck.run_to(None, 0.4, 100)
         gear = deck.run_to("formulation second values 8", 0.4, 100)
         plain = deck.run_to("formulation second start zero", 0.4, 100)
-    assert own.evaluations == plain.evaluations == 101
-    assert gear.evaluations > 110
+    assert own.start_evaluations == plain.start_evaluations == 1
+    assert gear.start_evaluations > 10
 
 
 def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
@@ -156,15 +159,58 @@ def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
         with pytest.raises(TrialError, match="not finished after 0.2 s"):
             deck.run(None, [10**9], deck.dt, timeout=0.2)
         first = deck.run(None, [100], deck.dt)
-        deck.worker.process.kill()
-        deck.worker.process.join()
+        os.kill(deck.worker.pids[0], signal.SIGKILL)
         with pytest.raises(TrialError, match="ended its process"):
             deck.run(None, [100], deck.dt)
         with pytest.raises(TrialError, match="values"):
             deck.run("values 99", [100], deck.dt)
         assert (deck.run(None, [100], deck.dt).positions == first.positions).all()
         process = deck.worker.process
-    assert not process.is_alive()
+    assert process.poll() is not None
+
+
+# --- the checkpoint -------------------------------------------------------------------------------------
+def ran_again(deck):
+    """Whether the last trial repeated the runs that come before the measured one."""
+    return "for 30 steps" in deck.log.read_text()
+
+
+def test_earlier_runs_are_not_repeated(make_deck):
+    with Deck(make_deck(**{"run 0\nrun 500\nrun 1000000": "run 30\nrun 500"}), which=2) as deck:
+        deck.run(None, [10], deck.dt)
+        assert deck.start.checkpoints and not ran_again(deck)
+
+
+def test_earlier_runs_are_repeated_where_more_than_atoms_has_changed(make_deck):
+    """The variables of a thermostat for the atoms that are in no body are not in the checkpoint."""
+    changes = {FIX: "fix 1 all ${style} group 2 clump1 clump2\nfix 2 clump3 nvt temp 9 9 0.1"}
+    changes |= {"run 0\nrun 500\nrun 1000000": "run 30\nrun 500", " f_1 c_kinetic": ""}
+    with Deck(make_deck(**changes), which=2) as deck:
+        deck.run(None, [10], deck.dt)
+        assert not deck.start.checkpoints and ran_again(deck)
+    assert any("every trial repeats them" in note for note in deck.notes)
+
+
+def is_running(pid):
+    """Whether there is such a process, and more of it than an entry in the table of processes."""
+    path = Path(f"/proc/{pid}/cmdline")
+    return path.exists() and path.read_bytes() != b""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_checkpoint_is_as_good_as_the_runs_before_it(tmp_path, ranks):
+    """Also where molecules cross from rank to rank in these runs."""
+    path = pppm_water.write(tmp_path, side=5, steps=200, cutoff=5.0)
+    with Deck(path, ranks=ranks) as deck:
+        assert deck.start.checkpoints
+        quick = deck.run("formulation second values 8", [10], 1.0)
+        deck.start.checkpoints = False
+        repeated = deck.run("formulation second values 8", [10], 1.0)
+        pids = deck.worker.pids
+    assert len(pids) == ranks and not any(map(is_running, pids))
+    motion = repeated.positions[-1] - deck.scene.positions
+    assert quick.positions[-1] == pytest.approx(repeated.positions[-1], abs=1e-9)
+    assert np.abs(motion).max() > 0.01
 
 
 # --- refusals -----------------------------------------------------------------------------------------
@@ -219,8 +265,6 @@ def test_cost_of_a_deck_that_was_not_written_for_it(make_deck, tmp_path):
     result = CliRunner().invoke(cost_command, arguments)
     assert result.exit_code == 0, result.output
     assert (out / "cost.png").stat().st_size > 10_000
-    assert "atom_modify map yes" in result.output
-    assert "fix 1 all gear/quat group 3 clump1 clump2 clump3 formulation" in result.output
 
     trials = read(out / "trials.csv")
     own = [trial for trial in trials if trial["keywords"] == "the deck's own"]
@@ -228,21 +272,23 @@ def test_cost_of_a_deck_that_was_not_written_for_it(make_deck, tmp_path):
         np.array([float(trial[name]) for trial in own[-3:]])
         for name in ("timestep", "largest_position")
     )
-    assert dv.error_order(steps, errors) == pytest.approx(2.0, abs=0.2)  # fix rigid
+    order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert order == pytest.approx(2.0, abs=0.2)  # fix rigid
 
     # the line it prints does what it says: judged by a finer trial of another order
     with Deck(path) as deck:
         truth = deck.run_to("formulation second values 10", 1.2, 4800)
         for row in read(out / "cost.csv"):
             error, dt = float(row["error"]), report.usable_step(float(row["timestep"]))
-            assert f"timestep {dt:g}" in result.output
+            recommended = row["own_timestep" if row["keep"] == "yes" else "timestep"]
+            assert f"timestep {report.usable_step(float(recommended)):g}" in result.output
             line = deck.run_to(row["keywords"], 1.2, math.ceil(1.2 / dt))
-            found = np.linalg.norm(line.centre[-1] - truth.centre[-1], axis=1).max()
+            found = np.linalg.norm(line.center[-1] - truth.center[-1], axis=1).max()
             assert found < 1.5 * error
             steps = math.ceil(1.2 / float(row["own_timestep"]))
             if row["own_kind"] == "between":
                 found = np.linalg.norm(
-                    deck.run_to(None, 1.2, steps).centre[-1] - truth.centre[-1], axis=1
+                    deck.run_to(None, 1.2, steps).center[-1] - truth.center[-1], axis=1
                 ).max()
                 assert 0.5 * error < found < 1.5 * error
             # evaluations, not seconds: a busy machine does not change them
@@ -255,8 +301,8 @@ def costs_of(doubt, errors, own=2.0):
     class Trial:
         def __init__(self, keywords, dt, seconds):
             self.keywords, self.dt, self.seconds = keywords, dt, [seconds]
-            self.label, self.evaluations, self.median = keywords or "own", 1 / dt, seconds
-            self.warnings = ()
+            self.label, self.steps, self.median = keywords or "own", 1 / dt, seconds
+            self.start_evaluations, self.median_start = 1, 0.0
 
     costs = cost.Costs(1.0, doubt, None, None, 0)
     for dt in (0.1, 0.05, 0.025, 0.0125):
@@ -268,12 +314,81 @@ def costs_of(doubt, errors, own=2.0):
 
 def test_rows_are_the_cheapest_and_nothing_below_the_doubt():
     costs = costs_of(1e-8, [1e-3, 1e-6, 2e-8])
-    (_, own, best), (_, far, other), (_, *none) = costs.rows
+    own, best = costs.rows[0].own, costs.rows[0].best
+    far, other = costs.rows[1].own, costs.rows[1].best
     assert own.dt == pytest.approx(1e-3**0.5) and own.kind == "between"
     assert best.method == "a" and best.kind == "at most"
     assert far.kind == "extrapolated" and far.seconds == pytest.approx(1e3)
     assert other.dt == pytest.approx(0.1)
-    assert none == [None, None]
+    assert (costs.rows[2].own, costs.rows[2].best, costs.rows[2].choice) == (None, None, None)
+
+
+def test_the_own_fix_is_kept_where_none_is_faster():
+    keep, change = costs_of(1e-12, [1e-1, 1e-6]).rows
+    assert keep.keep and keep.choice is keep.own
+    assert not change.keep and change.choice is change.best
+    assert not cost.Row(1.0).keep and cost.Row(1.0, own=keep.own).keep
+    assert not cost.Row(1.0, own=change.own).keep  # extrapolated
+
+
+class MadeUpDeck:
+    """A deck of one moving site whose trials take time on a clock of their own."""
+
+    accurate, size, dt, end, notes = "formulation second values 8", 1.0, 1.0, 1e6, ()
+    time_unit = length_unit = ""
+    start = types.SimpleNamespace(steps=10**6, checkpoints=False)
+    scene = types.SimpleNamespace(bodies=Bodies([1, 1], [1.0, 1.0]))
+
+    def __init__(self, pace, overhead):
+        self.pace, self.overhead, self.now = pace, overhead, 0.0
+
+    def monotonic(self):
+        return self.now
+
+    def takes(self, keywords):
+        return "values 12" not in keywords
+
+    def run_to(self, keywords, end, steps, samples=1, timeout=None):
+        seconds = self.overhead + steps * self.pace
+        self.now += min(seconds, timeout)
+        order = 2 if keywords is None else 5 if "first" in keywords else 6
+        if seconds > timeout or end / steps > 4.0 * self.dt:
+            raise TrialError("not finished")
+        time = end * np.arange(1, samples + 1) / samples
+        center = 0.1 * time[:, None, None] * (end / steps) ** order * np.ones((1, 1, 3))
+        positions = center + np.array([[-1.0, 0, 0], [1.0, 0, 0]])
+        seconds = [steps * self.pace], [self.overhead]
+        return measure.Trial(keywords, end / steps, steps, time, positions, center, 1, *seconds)
+
+
+@pytest.mark.parametrize(("pace", "overhead"), [(1e-4, 0.1), (0.01, 0.5), (0.3, 2.0)])
+def test_cost_keeps_its_budget(monkeypatch, pace, overhead):
+    """However long a step takes, and an equilibration of 60 s included."""
+    deck = MadeUpDeck(pace, overhead)
+    monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
+    budget = cost.Budget(180.0)
+    deck.now += 60.0
+    costs = cost.measure(deck, budget)
+    assert 100.0 < deck.now < 180.0 and costs.before == 60.0
+    assert len({trial.keywords for trial, _ in costs.trials}) > 3
+    assert pace > 0.1 or any(row.choice for row in costs.rows)
+
+
+def test_a_budget_that_is_too_short_is_told(monkeypatch):
+    deck = MadeUpDeck(1.0, 3.0)
+    monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
+    with pytest.raises(DeckError, match="a step takes 1 s, .* try --budget 2.3e.03"):
+        cost.measure(deck, cost.Budget(100.0))
+    assert deck.now < 100.0
+
+
+def test_cost_of_a_deck_that_equilibrates(tmp_path):
+    """The first run that can be measured is found, and the others are run once."""
+    path = pppm_water.write(tmp_path, side=5, steps=100, cutoff=5.0)
+    result = CliRunner().invoke(cost_command, [str(path), "--budget", "20", "--out", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    assert "executed once, and all trials start from their end" in result.output
+    assert "rigid/nve/small" in result.output and "start (s)" in result.output
 
 
 def test_time_is_cut_where_the_reference_is_not_known():
@@ -285,7 +400,7 @@ def test_time_is_cut_where_the_reference_is_not_known():
     index, why = cost.cut_to(time, np.full(20, 1e-6), [1e-2, 1e-8])
     assert (index, why) == (19, "")
     index, why = cost.cut_to(time, np.full(20, 1.0), [1e-2, 1e-8])
-    assert index == 1 and "no error asked for" in why
+    assert index == 1 and "none of the errors can be judged" in why
 
 
 def test_usable_step_is_never_larger():
@@ -301,7 +416,8 @@ def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
     thresholds = (0.1, 1.0, 3.0)
     variables = {"choices": "paper", "steps": 4000, "every": 8}
     series = [run_case(2, formulation=name, **variables) for name in ("first", "second")]
-    expected = [dv.parting_time(*series, threshold) for threshold in thresholds]
+    distance = np.linalg.norm(series[0].centre - series[1].centre, axis=1)
+    expected = [evaluate.parting_time(series[0].time, distance, level) for level in thresholds]
     out = tmp_path / "out"
     arguments = [str(examples / "case2" / "in.case2"), "--var", "choices", "paper"]
     arguments += ["--time", "500", "--every", "1", "--out", str(out)]
@@ -321,7 +437,7 @@ def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
     # the whole curve, not only where it passes a threshold
     apart = [float(row["largest_position"]) for row in read(out / "horizon.csv")]
     early = slice(0, int(expected[0]))
-    assert apart[early] == pytest.approx(dv.separation(*series)[1:][early], rel=1e-6)
+    assert apart[early] == pytest.approx(distance[1:][early], rel=1e-6)
 
 
 def test_deck_as_it_is_against_an_accurate_one(make_deck):
@@ -340,7 +456,7 @@ def test_deck_as_it_is_against_an_accurate_one(make_deck):
 
 def test_samples_have_to_fit_the_step(make_deck):
     with Deck(make_deck()) as deck:
-        with pytest.raises(DeckError, match="no multiple of the time step"):
+        with pytest.raises(DeckError, match="not a multiple of the time step"):
             horizon.measure(deck, time=1.0, every=0.0101)
         with pytest.raises(DeckError, match="shorter than one sample"):
             horizon.measure(deck, time=1e-4)
@@ -375,16 +491,16 @@ def test_examples_of_fix_rigid_run(rigid_examples, name):
     with Deck(rigid_examples / "rigid" / f"in.rigid{name}") as deck:
         own = deck.run_to(None, 0.01, 1000)
         gear = deck.run_to("formulation second values 8", 0.01, 1000)
-        assert deck.scene.bodies.max() == 8
-        assert 0 < np.abs(own.centre - gear.centre).max() < 3e-4
+        assert len(deck.scene.bodies) == 9
+        assert 0 < np.abs(own.center - gear.center).max() < 3e-4
 
 
 @pytest.mark.parametrize(
     "name, options, said",
     [
-        ("rigid/in.rigid.tnr", {}, "fix 3 langevin: .* --without 3"),
+        ("rigid/in.rigid.tnr", {"which": 1}, "fix 3 langevin: .* --without 3"),
         ("rigid/in.rigid.gravity", {"without": ["pourfix"]}, "disable of fix gravity"),
-        ("micelle/in.micelle-rigid", {}, "temp/rescale"),
+        ("micelle/in.micelle-rigid", {"which": 1}, "temp/rescale"),
         ("ASPHERE/line/in.line", {"without": ["3"]}, "keyword langevin"),
         ("melt/in.melt", {}, "no fix that moves rigid bodies"),
         ("deposit/in.deposit.molecule.rigid-nve-small", {"without": ["2", "4"]}, "no atoms"),
@@ -393,6 +509,13 @@ def test_examples_of_fix_rigid_run(rigid_examples, name):
 def test_examples_that_cannot_be_measured_say_why(rigid_examples, name, options, said):
     with pytest.raises(DeckError, match=f"(?s){said}"), Deck(rigid_examples / name, **options):
         pass
+
+
+def test_the_first_run_that_can_be_measured_is_found(rigid_examples):
+    """In the two runs before it a thermostat acts on the bodies, or there are none."""
+    with Deck(rigid_examples / "micelle" / "in.micelle-rigid") as deck:
+        assert deck.fix_lines(None) == ["fix 5 solute rigid/small molecule"]
+        assert deck.start.checkpoints and deck.start.steps == 500
 
 
 def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
@@ -406,8 +529,8 @@ def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
 def test_cost_of_an_example_of_lammps(rigid_examples):
     """Each answer is less than fix rigid takes, as far as the cut-off of its potential allows."""
     with Deck(rigid_examples / "rigid" / "in.rigid") as deck:
-        costs = cost.measure(deck, errors=[1e-3], time=0.05, budget=20.0, timings=2)
-    _, own, best = costs.rows[0]
+        costs = cost.measure(deck, cost.Budget(20.0), errors=[1e-3], time=0.05, timings=2)
+    own, best = costs.rows[0].own, costs.rows[0].best
     assert own.evaluations > 5 * best.evaluations
     assert all(
         line.startswith("fix 1 all gear/quat group 9") for line in deck.fix_lines(best.method)

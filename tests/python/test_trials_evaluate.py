@@ -6,31 +6,24 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat import divergence as dv
+from lammps_gearquat.analysis.bodies import Bodies
+from lammps_gearquat.analysis.superposition import angles
 from lammps_gearquat.trials import evaluate
 from lammps_gearquat.trials.evaluate import Point, front, growth, price
 
 RNG = np.random.default_rng(3)
-BODIES = np.array([0, 1, 0, 2, 1, 0, 2, 1, 1, 3])  # 3, 4, 2 and 1 sites, mixed
-MASSES = RNG.uniform(1, 3, 10)
+OF = np.array([0, 0, 0, 1, 1, 1, 1, 2, 2, 3])  # bodies of 3, 4, 2 and 1 sites
+BODIES = Bodies(OF + 1, RNG.uniform(1, 3, 10))
 SITES = RNG.normal(size=(10, 3))
-
-
-def test_centres_are_those_of_each_body():
-    both = np.stack([SITES, SITES + [1, 0, 0]])
-    found = evaluate.centres(BODIES, MASSES, both)
-    for body in range(4):
-        own = BODIES == body
-        assert found[0, body] == pytest.approx(np.average(SITES[own], axis=0, weights=MASSES[own]))
-    assert found[1] == pytest.approx(found[0] + [1, 0, 0])
+LINE = SITES[7] - SITES[8]
 
 
 def turned(vectors):
     """Sites with each body turned by a rotation vector, and shifted."""
-    centre = evaluate.centres(BODIES, MASSES, SITES)
+    center = BODIES.center(SITES)
     moved = [
-        Rotation.from_rotvec(vectors[b]).apply(x - centre[b]) + centre[b] + 7.0
-        for b, x in zip(BODIES, SITES)
+        Rotation.from_rotvec(vectors[b]).apply(x - center[b]) + center[b] + 7.0
+        for b, x in zip(OF, SITES)
     ]
     return np.array(moved)
 
@@ -38,42 +31,33 @@ def turned(vectors):
 @pytest.mark.parametrize("angle", [0.0, 1e-10, 1e-3, 1.0, 3.0, np.pi])
 def test_angle_of_a_known_turn(angle):
     """A body of two sites has only an axis: it is turned about one at a right angle to it."""
-    line = SITES[3] - SITES[6]
-    across = np.cross(line, [1.0, 0.0, 0.0])
+    across = np.cross(LINE, [1.0, 0.0, 0.0])
     axes = np.array([[1.0, 0, 0], [0, 0.6, 0.8], across / np.linalg.norm(across), [0, 1.0, 0]])
-    found = evaluate.angles(BODIES, MASSES, SITES, turned(angle * axes))
-    assert found[:3] == pytest.approx(angle, abs=1e-7 if angle == np.pi else 2e-15 + 1e-12 * angle)
-    assert found[3] == 0.0
+    measured = angles(BODIES, SITES, turned(angle * axes))
+    assert measured[:3] == pytest.approx(angle, abs=2e-15 + 1e-12 * angle)
+    assert measured[3] == 0.0
     if angle:  # and 1 % is noticed
-        assert found[:3] != pytest.approx(1.01 * angle, rel=1e-3)
+        assert measured[:3] != pytest.approx(1.01 * angle, rel=1e-3)
 
 
 def test_a_turn_about_its_own_line_is_none():
-    line = SITES[3] - SITES[6]
-    vectors = np.array([[0.2, 0, 0], [0, 0, 0.2], 0.5 * line / np.linalg.norm(line), [1, 0, 0]])
-    found = evaluate.angles(BODIES, MASSES, np.stack([SITES] * 2), np.stack([turned(vectors)] * 2))
-    assert found == pytest.approx(np.array([[0.2, 0.2, 0.0, 0.0]] * 2), abs=1e-12)
+    vectors = np.array([[0.2, 0, 0], [0, 0, 0.2], 0.5 * LINE / np.linalg.norm(LINE), [1, 0, 0]])
+    measured = angles(BODIES, np.stack([SITES] * 2), np.stack([turned(vectors)] * 2))
+    assert measured == pytest.approx(np.array([[0.2, 0.2, 0.0, 0.0]] * 2), abs=1e-12)
 
 
-def test_size_of_bodies():
-    arms = SITES - evaluate.centres(BODIES, MASSES, SITES)[BODIES]
-    largest = [np.linalg.norm(arms[BODIES == body], axis=1).max() for body in range(3)]
-    assert evaluate.body_size(BODIES, MASSES, SITES) == pytest.approx(np.median(largest))
-    assert evaluate.body_size(np.arange(3), np.ones(3), SITES[:3]) == 0.0
+def test_power_of_ten_of_a_size():
     assert [evaluate.decade(x) for x in (0.0, 0.5, 1.0, 10.5)] == [1.0, 0.1, 1.0, 10.0]
 
 
-def test_separation_of_several_bodies_is_the_largest():
-    class Trial:
-        time = np.arange(3.0)
-
-        def __init__(self, centre):
-            self.centre = centre
-
-    still, moving = np.zeros((3, 2, 3)), np.zeros((3, 2, 3))
-    moving[:, 0, 0], moving[:, 1, 2] = [0, 1, 1], [0, 0.5, -3]
-    assert dv.separation(Trial(still), Trial(moving)).tolist() == [0, 1, 3]
-    assert dv.parting_time(Trial(still), Trial(moving), 2.9) == 2.0
+def test_parting_is_where_it_first_happens():
+    """Coming back does not undo a parting, and what is not a number has parted."""
+    time = np.arange(5.0)
+    distance = np.array([0.0, 1.0, 3.0, 0.5, np.nan])
+    assert evaluate.parting_time(time, distance, 0.9) == 1.0
+    assert evaluate.parting_time(time, distance, 2.9) == 2.0
+    assert evaluate.parting_time(time, distance, 3.0) == 4.0
+    assert math.isinf(evaluate.parting_time(time[:4], distance[:4], 3.1))
 
 
 # --- prices -----------------------------------------------------------------------------------------

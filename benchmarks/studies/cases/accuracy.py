@@ -8,7 +8,7 @@ import functools
 
 import numpy as np
 
-from lammps_gearquat import divergence as dv
+from benchmarks.engine import divergence as dv
 from benchmarks.reference import paper_problem, reference_state
 from .runs import ACCURACY_END, ACCURACY_STEPS, ACCURATE, COARSE_STEPS, STEP
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lammps_gearquat import divergence as dv
+from benchmarks.engine import divergence as dv
 from .runs import (
     ACCURATE,
     AS_PRINTED,

@@ -11,7 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from lammps_gearquat import divergence as dv  # noqa: E402
+from benchmarks.engine import divergence as dv  # noqa: E402
 from lammps_gearquat.style import COLOUR, RECONSTRUCTED, STYLE  # noqa: E402
 from . import accuracy  # noqa: E402
 from .claims import CAGE, CAGE_CHARGES, CAGE_SPACING  # noqa: E402

@@ -2,7 +2,7 @@
 
 import textwrap
 
-from lammps_gearquat import divergence as dv
+from benchmarks.engine import divergence as dv
 from benchmarks.engine.tables import markdown_table, write_csv
 from . import accuracy
 from .claims import THRESHOLDS, all_claims, parting_times, show_time

@@ -54,11 +54,11 @@ def read(case, folder):
     found, energies = poses.results, series.read_log(folder / f"log.case{case}")
     turn = Rotation.from_quat(found.q[:, 0], scalar_first=True)
     matrices = turn.as_matrix()
-    sites = found.centre + np.einsum("fij,nj->fni", matrices, poses.bodies.shape)
+    sites = found.center + np.einsum("fij,nj->fni", matrices, poses.bodies.shape)
     return Scene(
         case,
         found.time,
-        found.centre[:, 0],
+        found.center[:, 0],
         sites,
         np.swapaxes(matrices, 1, 2),
         turn.inv().apply(found.omega_space[:, 0]),

@@ -41,7 +41,7 @@ def pose_errors(masses, molecules, before, after, reference):
     bodies.set_shape(before[bodies.index])
     centres, turns = [], []
     for sites in (reference[bodies.index], after[bodies.index]):
-        centres.append(bodies.centre(sites))
+        centres.append(bodies.center(sites))
         q, _ = superpose(bodies, sites - centres[-1][bodies.of])
         turns.append(Rotation.from_quat(q, scalar_first=True))
     shifts = np.linalg.norm(centres[1] - centres[0], axis=1)

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine.checkout import find, provenance, write_block, write_page
-from lammps_gearquat.divergence import error_order
+from benchmarks.engine.divergence import error_order
 from benchmarks.engine.tables import markdown_table
 from . import plan, tables
 from .evaluate import RULE

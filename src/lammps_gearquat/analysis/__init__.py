@@ -7,10 +7,18 @@ trajectories for other viewers.  Beneath them ``bodies`` (who is in which body) 
     from lammps_gearquat.analysis import Poses, correlations, open_dump
 
     poses = Poses(open_dump("water.dump").atoms).run()
-    squares = correlations.mean_square_displacement(poses.results.centre)   # (F,)
+    squares = correlations.mean_square_displacement(poses.results.center)   # (F,)
 """
 
-from .dump import DumpError, open_any, open_dump, open_table
-from .poses import Poses, TablePoses
+import importlib
 
-__all__ = ["DumpError", "Poses", "TablePoses", "open_any", "open_dump", "open_table"]
+_HOME = dict.fromkeys(("DumpError", "open_any", "open_dump", "open_table"), ".dump")
+_HOME |= dict.fromkeys(("Poses", "TablePoses"), ".poses")
+__all__ = list(_HOME)
+
+
+def __getattr__(name):
+    """The names above, imported when asked for: ``bodies`` and ``superposition`` do not need MDAnalysis."""
+    if name in _HOME:
+        return getattr(importlib.import_module(_HOME[name], __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -14,7 +14,7 @@ class Bodies:
 
     ``ids`` (B,); ``index`` (n,): the sites among the atoms they were made from, body by body and of
     each by rising place; ``of`` (n,): the body of each; ``masses`` (n,), ``mass`` (B,);
-    ``shape`` (n, 3): sites in the body frame, from the centre of mass; ``moments`` (B, 3): principal moments
+    ``shape`` (n, 3): sites in the body frame, from the center of mass; ``moments`` (B, 3): principal moments
     of inertia of the sites as points, the largest first, vanishing ones exactly 0; ``axes`` (B, 3, 3):
     principal axes as rows, in the body frame; ``point`` and ``linear`` (B,): whether a body is one.
 
@@ -51,7 +51,7 @@ class Bodies:
         """Largest of values (n,) in each body, (B,)."""
         return np.maximum.reduceat(values, self._starts)
 
-    def centre(self, vectors):
+    def center(self, vectors):
         """Mass-weighted mean (B, 3) of vectors (n, 3)."""
         # from the first site: far from the origin no digit of the arms is lost
         first = vectors[self._starts]
@@ -73,21 +73,23 @@ class Bodies:
         ``principal``: instead the principal axes, sorted and directed as by the fix, so that
         quaternions become those of its array.
         """
-        arms = positions - self.centre(positions)[self.of]
+        arms = positions - self.center(positions)[self.of]
         square = np.einsum("ij,ij->i", arms, arms)
         tensor = square[:, None, None] * np.eye(3) - arms[:, :, None] * arms[:, None, :]
         moments, axes = np.linalg.eigh(self.sum(self.masses[:, None, None] * tensor))
         moments, axes = moments[:, ::-1], np.swapaxes(axes, 1, 2)[:, ::-1].copy()
         moments[self.counts == 1] = 0.0
         moments[moments <= LINEAR_FRACTION * moments[:, :1]] = 0.0
-        for b, begin in enumerate(self._starts):
-            own = slice(begin, begin + self.counts[b])
-            _direct(axes[b], arms[own], self.masses[own])
         self.moments = moments
         self.point = moments[:, 0] == 0.0
         self.linear = ~self.point & (moments[:, 2] == 0.0)
+        axes[np.linalg.det(axes) < 0.0, 1] *= -1.0  # right-handed
         axes[self.point] = np.eye(3)
         if principal:
+            for b, begin in enumerate(self._starts):
+                own = slice(begin, begin + self.counts[b])
+                _direct(axes[b], arms[own], self.masses[own])
+            axes[self.point] = np.eye(3)
             arms = np.einsum("nij,nj->ni", axes[self.of], arms)
             axes = np.broadcast_to(np.eye(3), axes.shape).copy()
         self.shape, self.axes = arms, axes

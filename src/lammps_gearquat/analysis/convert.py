@@ -55,7 +55,7 @@ def has_times(path):
 def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=None):
     """Write ``atoms`` in all frames to ``path``; its suffix names the format (dcd, xtc, pdb, ...).
 
-    ``atoms`` of a dump, in LAMMPS' ``units``.  Bodies are whole.  ``wrap`` puts their centres into the
+    ``atoms`` of a dump, in LAMMPS' ``units``.  Bodies are whole.  ``wrap`` puts their centers into the
     box; otherwise they go on beyond it as far as the dump tells.  Along periodic directions the origin
     is the corner of the box.  ``frames``: a slice; ``times`` (F,): of these frames, if known;
     ``progress``: wraps the iterator, such as tqdm.  Formats that hold only positions get a file of the
@@ -147,7 +147,7 @@ def _bodies(atoms):
     numbers = everything.resids.copy()
     alone = numbers == 0
     numbers[alone] = numbers.max() + 1 + np.arange(alone.sum())
-    # centres are only for wrapping: masses do not matter, and not all trajectories have them
+    # centers are only for wrapping: masses do not matter, and not all trajectories have them
     return Bodies(numbers, np.ones(len(everything)))
 
 
@@ -166,7 +166,7 @@ def _placed(ts, bodies, wrap):
     if not ts.data.get("whole", False):
         own = bodies.whole(own, box, periodic)
     if wrap:
-        images = np.floor(bodies.centre(own) @ np.linalg.inv(box)) * periodic
+        images = np.floor(bodies.center(own) @ np.linalg.inv(box)) * periodic
         own = own - (images @ box)[bodies.of]
     placed = np.empty_like(x)
     placed[bodies.index] = own

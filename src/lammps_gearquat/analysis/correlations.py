@@ -64,10 +64,10 @@ def _square_displacements(x):
     return both - 2.0 * _products(_power(x), len(x))
 
 
-def mean_square_displacement(centre):
-    """Mean of |x(t + lag) - x(t)|^2, (F,), of unwrapped centres (F, B, 3); length squared."""
-    frames, bodies = centre.shape[:2]
-    total = sum(_square_displacements(mapped.columns(centre, own)) for own in _portions(centre))
+def mean_square_displacement(center):
+    """Mean of |x(t + lag) - x(t)|^2, (F,), of unwrapped centers (F, B, 3); length squared."""
+    frames, bodies = center.shape[:2]
+    total = sum(_square_displacements(mapped.columns(center, own)) for own in _portions(center))
     return np.maximum(total, 0.0) / (_origins(frames) * bodies)
 
 
@@ -150,7 +150,7 @@ def all_correlations(poses, progress=iter):
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
     lag = lags(results.time)
-    tasks = [("mean_square_displacement", mean_square_displacement, (results.centre,))]
+    tasks = [("mean_square_displacement", mean_square_displacement, (results.center,))]
     for name in ("velocity", "omega_space"):
         if name in results:
             tasks.append((f"{name}_autocorrelation", autocorrelation, (results[name],)))

@@ -336,7 +336,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_st
 
 
 def open_table(path, timestep=1.0):
-    """Universe of a ``dump local`` of the fix's local data: an atom a body, at its centre of mass.
+    """Universe of a ``dump local`` of the fix's local data: an atom a body, at its center of mass.
 
     ``dump ID group local N FILE index f_FIX[1] f_FIX[2] ...`` with at least the columns 1 to 6, 13 to 25 and 28.
     Masses are not among them.  Raises DumpError if a column is missing.

@@ -4,7 +4,7 @@
 
     universe = open_dump("water.dump", timestep=1.0)
     poses = Poses(universe.atoms, units="real").run(verbose=True)
-    poses.results.centre, poses.results.q                    # (F, B, 3), (F, B, 4)
+    poses.results.center, poses.results.q                    # (F, B, 3), (F, B, 4)
     Poses(universe.atoms).run(backend="multiprocessing", n_workers=2)
     Poses(universe.atoms, out="poses.npy").run()             # as large as the disk allows
 
@@ -23,7 +23,7 @@ from .bodies import Bodies
 from .superposition import rotate, superpose
 
 VECTOR, ONE = (float, (3,)), (float,)
-POSE = {"centre": VECTOR, "q": (float, (4,)), "residual": ONE}
+POSE = {"center": VECTOR, "q": (float, (4,)), "residual": ONE}
 MOTION = {
     "velocity": VECTOR,
     "omega_space": VECTOR,
@@ -115,19 +115,19 @@ class _FrameTable(AnalysisBase):
             results[name] = results.table[name]
 
     def _join(self):
-        """Signs of quaternions that do not jump; centres likewise, where only images are known."""
-        q, centre = self.results.table["q"], self.results.table["centre"]
+        """Signs of quaternions that do not jump; centers likewise, where only images are known."""
+        q, center = self.results.table["q"], self.results.table["center"]
         images = self._images()
         for k in mapped.rows(q, 1):
             turned = np.einsum("bi,bi->b", q[k], q[k - 1]) < 0.0
             q[k, turned] *= -1.0
             if images is not None:
                 box, periodic = images
-                gone = np.round((centre[k] - centre[k - 1]) @ np.linalg.inv(box)) * periodic
-                centre[k] -= gone @ box
+                gone = np.round((center[k] - center[k - 1]) @ np.linalg.inv(box)) * periodic
+                center[k] -= gone @ box
 
     def _images(self):
-        """(box, periodic) if centres are to be joined from frame to frame, else None."""
+        """(box, periodic) if centers are to be joined from frame to frame, else None."""
         return None
 
     # --- what is done with the table ------------------------------------------------------------
@@ -148,12 +148,15 @@ class _FrameTable(AnalysisBase):
         }
         return columns | _flat(self.results.table.reshape(-1))
 
-    def to_csv(self, path):
-        """Write a row for each frame and body, with 17 digits; one frame at a time."""
+    def to_csv(self, path, progress=iter):
+        """Write a row for each frame and body, with 17 digits; one frame at a time.
+
+        ``progress`` wraps the iteration over frames, as tqdm does.
+        """
         with open(path, "w", newline="", encoding="utf-8") as file:
             names = _flat(self.results.table[0])
             csv.writer(file).writerow(["step", "time", "body", *names])
-            for k in mapped.rows(self.results.table):
+            for k in progress(mapped.rows(self.results.table)):
                 frame, step, time = (self.results[name][k] for name in ("table", "step", "time"))
                 values = np.column_stack(list(_flat(frame).values()))
                 keys = np.column_stack([np.full((len(frame), 2), (step, time)), self.ids])
@@ -188,7 +191,7 @@ def totals(table, mass=None):
         if known:
             momentum = mass[:, None] * frame["velocity"]
             found["momentum"][k] = momentum.sum(axis=0)
-            found["angular_momentum_space"][k] += np.cross(frame["centre"], momentum).sum(axis=0)
+            found["angular_momentum_space"][k] += np.cross(frame["center"], momentum).sum(axis=0)
     return found
 
 
@@ -210,7 +213,7 @@ class Poses(_FrameTable):
     After ``run``, F frames of B bodies, in units of the run; ``results.table`` has all as one array:
 
     * ``step``, ``time`` (F,); ``ids`` (B,)
-    * ``centre`` (F, B, 3): center of mass, unwrapped
+    * ``center`` (F, B, 3): center of mass, unwrapped
     * ``q`` (F, B, 4): quaternion, scalar first, body -> space; its sign is that of the frame before
     * ``residual`` (F, B): largest distance of a site from where the rigid reference would have it
     * ``velocity`` (F, B, 3), ``omega_space`` (F, B, 3): motion of a rigid body that fits the velocities of the
@@ -290,10 +293,10 @@ class Poses(_FrameTable):
     def _frame(self):
         bodies = self.bodies
         x, v = self._sites()
-        centre = bodies.centre(x)
-        arms = x - centre[bodies.of]
+        center = bodies.center(x)
+        arms = x - center[bodies.of]
         q, residual = superpose(bodies, arms)
-        fields = {"centre": centre, "q": q, "residual": residual}
+        fields = {"center": center, "q": q, "residual": residual}
         if v is not None:
             # of the rigid shape, not of the sites: thin bodies keep their digits
             fields |= self._motion(q, rotate(q[bodies.of], bodies.shape), v)
@@ -305,7 +308,7 @@ class Poses(_FrameTable):
     def _motion(self, q, arms, v):
         """Velocity, angular velocity and what follows; ``arms`` and ``v`` (n, 3) of the sites."""
         bodies = self.bodies
-        velocity = bodies.centre(v)
+        velocity = bodies.center(v)
         relative = v - velocity[bodies.of]
         momentum = bodies.sum(bodies.masses[:, None] * np.cross(arms, relative))
         omega = bodies.divided_by_inertia(q, momentum)
@@ -324,12 +327,12 @@ class Poses(_FrameTable):
 class TablePoses(_FrameTable):
     """The same from the fix's own table, a Universe of ``open_table``: exact, and one row a body.
 
-    Results are ``step``, ``time``, ``ids``, ``centre``, ``q``, ``velocity``, ``omega_space``,
+    Results are ``step``, ``time``, ``ids``, ``center``, ``q``, ``velocity``, ``omega_space``,
     ``angular_momentum_space`` and ``ke_rotation`` as of ``Poses``.  Masses are not in the table.
     """
 
     def __init__(self, atoms, units=None, out=None, **kwargs):
-        fields = {name: POSE[name] for name in ("centre", "q")}
+        fields = {name: POSE[name] for name in ("center", "q")}
         fields |= {name: MOTION[name] for name in TABLE_MOTION}
         super().__init__(atoms, atoms.ids, fields, units, out, **kwargs)
 
@@ -342,7 +345,7 @@ class TablePoses(_FrameTable):
         q, momentum = columns("q", "0123"), columns("l", "xyz")
         omega = rotate(q, columns("w", "xyz"))
         return {
-            "centre": data["x"][own],
+            "center": data["x"][own],
             "q": q,
             "velocity": data["v"][own],
             "omega_space": omega,

@@ -54,11 +54,11 @@ class Stays:
         return np.divide(lasting, asked, out=np.full(frames, np.nan), where=asked > 0)
 
 
-def stays(centre, places, radius, time, box=None):
-    """Stays of centres (F, B, 3) within ``radius`` of the nearest of ``places`` (S, 3).
+def stays(center, places, radius, time, box=None, progress=iter):
+    """Stays of centers (F, B, 3) within ``radius`` of the nearest of ``places`` (S, 3).
 
     ``time`` (F,); ``box`` (6,): lengths and angles of a periodic box, as MDAnalysis has them.  Distances are those
-    of MDAnalysis, in single precision.  Raises ValueError for a radius that is not above zero and places
+    of MDAnalysis, in single precision.  ``progress`` wraps the iteration over frames.  Raises ValueError for a radius that is not above zero and places
     that are not points.
     """
     places = np.atleast_2d(np.asarray(places, dtype=float))
@@ -66,7 +66,7 @@ def stays(centre, places, radius, time, box=None):
         raise ValueError("places: three coordinates each are required")
     if not radius > 0.0:
         raise ValueError(f"radius {radius:g}: it must be above zero")
-    frames, bodies = centre.shape[:2]
+    frames, bodies = center.shape[:2]
     at = np.full(bodies, -1)
     since = np.zeros(bodies, dtype=int)
     found = []
@@ -77,8 +77,8 @@ def stays(centre, places, radius, time, box=None):
         since[now != at] = k
         at[:] = now
 
-    for k in mapped.rows(centre):
-        change(k, nearest(centre[k], places, radius, box))
+    for k in progress(mapped.rows(center)):
+        change(k, nearest(center[k], places, radius, box))
     change(frames, np.full(bodies, -1))
     columns = np.concatenate(found).T
     return Stays(*columns, np.asarray(time, dtype=float), bodies, len(places))

@@ -49,7 +49,7 @@ def shortest_turn(before, after):
 def superpose(bodies, arms):
     """Quaternions (B, 4), scalar not negative, of the rotations shape -> arms; and residuals (B,).
 
-    ``bodies``: Bodies, whose shapes are turned; ``arms`` (n, 3): sites from their centres of mass, in the order
+    ``bodies``: Bodies, whose shapes are turned; ``arms`` (n, 3): sites from their centers of mass, in the order
     of ``bodies``.  The residual is the largest distance of a site from where its rigid body would have it.
 
     About the axis of a linear body nothing is known: the rotation is the shortest one from the shape.
@@ -68,6 +68,22 @@ def superpose(bodies, arms):
     q = _composed(bodies.divided_by_inertia(q, _torque(bodies, q, arms)), q)
     residual = np.linalg.norm(arms - rotate(q[bodies.of], shape), axis=1)
     return np.where(q[:, :1] < 0.0, -q, q), bodies.largest(residual)
+
+
+def angles(bodies, reference, positions):
+    """Angles (..., B) in radians between the poses of bodies at two sets of ``positions`` (..., n, 3).
+
+    ``bodies``: Bodies, whose shapes become those of the last reference.  A linear body has only an
+    axis to turn, a point has no angle.
+    """
+    reference, positions = np.broadcast_arrays(reference, positions)
+    found = np.empty((*positions.shape[:-2], len(bodies)))
+    for frame in np.ndindex(positions.shape[:-2]):
+        bodies.set_shape(reference[frame])
+        arms = positions[frame] - bodies.center(positions[frame])[bodies.of]
+        q, _ = superpose(bodies, arms)
+        found[frame] = 2.0 * np.arctan2(np.linalg.norm(q[:, 1:], axis=1), q[:, 0])
+    return found
 
 
 def _torque(bodies, q, arms):

@@ -1,88 +1,95 @@
 """The command ``gearquat cost``."""
 
-from pathlib import Path
+import cloup
 
-import click
+from ..trials.script import DeckError, pairs
+from ..trials.worker import TrialError
+from .common import POSITIVE, announce, command, deck_options, failing_clearly, out_option, progress_bar
 
-from ..trials.options import deck_options, failing_clearly, open_deck
+NORMS = ["largest position", "rms position", "largest orientation", "rms orientation"]
 
 
-@click.command()
+@command(
+    [
+        "gearquat cost examples/water/in.water --var method rigid --budget 30",
+        "gearquat cost examples/case1/in.case1 --error 1e-3 --error 1e-6 --time 20",
+    ]
+)
 @deck_options
-@click.option(
-    "--error",
-    "errors",
-    type=click.FloatRange(min=0, min_open=True),
-    multiple=True,
-    help="Error to price, in the deck's unit of length (orientations: radians); repeatable."
-    "  Default: powers of ten of the size of the bodies.",
-)
-@click.option(
-    "--time",
-    type=click.FloatRange(min=0, min_open=True),
-    help="Time of the trials.  Default: that of the deck's run, or what budget and chaos allow.",
-)
-@click.option(
-    "--of",
-    "norm",
-    type=click.Choice(
-        ["largest position", "rms position", "largest orientation", "rms orientation"]
+@cloup.option_group(
+    "What is measured",
+    cloup.option(
+        "--error",
+        "errors",
+        type=POSITIVE,
+        multiple=True,
+        help="Error whose cost is wanted, in the deck's unit of length (orientations: radians);"
+        " repeatable.  Default: powers of ten of the size of the bodies.",
     ),
-    default="largest position",
-    show_default=True,
-    help="What the error is of: over all bodies.",
+    cloup.option(
+        "--of",
+        "norm",
+        type=cloup.Choice(NORMS),
+        default=NORMS[0],
+        show_default=True,
+        help="Quantity that the error is of, over all bodies.",
+    ),
+    cloup.option(
+        "--time",
+        type=POSITIVE,
+        help="Time of the trials.  Default: that of the deck's run, or what budget and chaos allow.",
+    ),
+    cloup.option(
+        "--try",
+        "tries",
+        multiple=True,
+        metavar="KEYWORDS",
+        help='Further keywords of the fix to try, such as "formulation second values 9 passes 2".',
+    ),
 )
-@click.option(
-    "--budget",
-    type=click.FloatRange(min=0, min_open=True),
-    default=180.0,
-    show_default=True,
-    help="Seconds of wall time that all trials may take, about.",
+@cloup.option_group(
+    "What it takes and leaves",
+    cloup.option(
+        "--budget",
+        type=POSITIVE,
+        default=180.0,
+        show_default=True,
+        help="Seconds of wall time for everything, runs before the measured one included.",
+    ),
+    cloup.option(
+        "--timings",
+        type=cloup.IntRange(min=1),
+        default=5,
+        show_default=True,
+        help="Timings of each trial that matters, interleaved.",
+    ),
+    out_option("gearquat-cost", "cost.csv, trials.csv and cost.png"),
 )
-@click.option(
-    "--timings",
-    type=click.IntRange(min=1),
-    default=5,
-    show_default=True,
-    help="Timings of each trial that matters, interleaved.",
-)
-@click.option(
-    "--try",
-    "tries",
-    multiple=True,
-    help='Further keywords of the fix to try, such as "formulation second values 9 passes 2".',
-)
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("gearquat-cost"),
-    show_default=True,
-    help="Folder for cost.csv, trials.csv and cost.png.",
-)
-@failing_clearly
-def cost(deck, variables, without, which, errors, time, norm, budget, timings, tries, out):
-    """What accuracy costs in the scene of DECK, and the lines to put into it.
+@failing_clearly(DeckError, TrialError)
+def cost(scene, errors, time, norm, budget, timings, tries, out):
+    """Measure what accuracy costs in the scene of DECK, and print the lines to put into it.
 
     DECK is any LAMMPS input script with fix gear/quat, rigid, rigid/nve, rigid/small or
-    rigid/nve/small.  It is followed up to its run; from there short trials over time steps and
-    orders are compared with a finer one, and with the deck's own fix.  Errors are judged only as
+    rigid/nve/small.  It is followed up to its run; runs before that one are executed once, and all
+    trials start from their end.  Short trials over time steps and orders are compared with a finer
+    one and with the deck's own fix, which is recommended where no other is faster.  Errors are judged only as
     far as the finest trial is confirmed by a second one of the other formulation.
     """
-    from tqdm import tqdm
-
+    from .. import figures
     from ..trials import cost as trials
-    from ..trials import figures, report, script
+    from ..trials import report
+    from ..trials.measure import Deck
 
     for text in tries:
-        script.pairs(text)
-    with open_deck(deck, variables, without, which) as scene:
-        with tqdm(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}") as progress:
-            costs = trials.measure(
-                scene, errors, time, budget, timings, trials.NORMS.index(norm), tries, progress
-            )
-        out = out.resolve()
-        out.mkdir(parents=True, exist_ok=True)
-        report.write_costs(out, scene, costs)
-        figures.draw_cost(out / "cost.png", scene, costs)
-        click.echo(report.cost_text(scene, costs))
-    click.echo(f"\nTables and picture are in {out}")
+        pairs(text)
+    with progress_bar(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}") as progress:
+        clock = trials.Budget(budget, progress)
+        clock.say("following the deck")
+        say = announce(scene["path"], progress)
+        with Deck(**scene, say=say, on_wait=clock.spent, timeout=trials.SHARE_BEFORE * budget) as deck:
+            costs = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries)
+            out.mkdir(parents=True, exist_ok=True)
+            report.write_costs(out, deck, costs)
+            figures.draw_cost(out / "cost.png", deck, costs)
+            text = report.cost_text(deck, costs)
+    cloup.echo(f"{text}\n\nTables and picture are in {out.resolve()}")

@@ -1,80 +1,83 @@
 """The command ``gearquat horizon``."""
 
-from pathlib import Path
+import cloup
 
-import click
-
-from ..trials.options import deck_options, failing_clearly, open_deck
-
-_POSITIVE = click.FloatRange(min=0, min_open=True)
+from ..trials.script import DeckError
+from ..trials.worker import TrialError
+from .common import POSITIVE, announce, command, deck_options, failing_clearly, out_option, progress_bar
 
 
-@click.command()
+@command(
+    [
+        "gearquat horizon examples/case1/in.case1 --time 100",
+        "gearquat horizon examples/case2/in.case2 --var choices paper --time 500 --every 1 \\",
+        '    --a "formulation first values 5 momentum predicted" --b "formulation second"',
+    ]
+)
 @deck_options
-@click.option(
-    "--time",
-    type=_POSITIVE,
-    help="Time to follow.  Default: that of the deck's run, if affordable.",
+@cloup.option_group(
+    "What is measured",
+    cloup.option(
+        "--time",
+        type=POSITIVE,
+        help="Time to follow.  Default: that of the deck's run, if affordable.",
+    ),
+    cloup.option(
+        "--threshold",
+        "thresholds",
+        type=POSITIVE,
+        multiple=True,
+        help="Distance at which the runs have parted; repeatable.  Default: 0.1, 1 and 3 times the"
+        " power of ten of the size of the bodies.",
+    ),
+    cloup.option(
+        "--every", type=POSITIVE, help="Time between samples.  Default: a 500th of the whole time."
+    ),
 )
-@click.option(
-    "--threshold",
-    "thresholds",
-    type=_POSITIVE,
-    multiple=True,
-    help="Distance at which the runs have parted; repeatable.  Default: 0.1, 1 and 3 times the"
-    " power of ten of the size of the bodies.",
+@cloup.option_group(
+    "The two runs",
+    cloup.option(
+        "--a",
+        "first",
+        metavar="KEYWORDS",
+        help="First run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as"
+        " it is.",
+    ),
+    cloup.option(
+        "--b",
+        "second",
+        metavar="KEYWORDS",
+        help='Second run, in the same way.  Default: "formulation second values 8 compensate yes".',
+    ),
+    cloup.option("--step-a", type=POSITIVE, help="First time step.  Default: that of the deck."),
+    cloup.option(
+        "--step-b",
+        type=POSITIVE,
+        help="Second time step.  Default: half of the first, or with --b the same.",
+    ),
 )
-@click.option("--every", type=_POSITIVE, help="Time between samples.  Default: a 500th of it all.")
-@click.option(
-    "--a",
-    "first",
-    help="One run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as"
-    " it is.",
+@cloup.option_group(
+    "What it leaves", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png")
 )
-@click.option(
-    "--b",
-    "second",
-    help='The other run, in the same way.  Default: "formulation second values 8 compensate yes".',
-)
-@click.option("--step-a", type=_POSITIVE, help="Time step of one run.  Default: that of the deck.")
-@click.option(
-    "--step-b",
-    type=_POSITIVE,
-    help="Time step of the other run.  Default: half of the first, or the same with --b.",
-)
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("gearquat-horizon"),
-    show_default=True,
-    help="Folder for horizon.csv, parting.csv and horizon.png.",
-)
-@failing_clearly
-def horizon(
-    deck, variables, without, which, time, thresholds, every, first, second, step_a, step_b, out
-):
-    """Until what time the trajectory of DECK can be trusted.
+@failing_clearly(DeckError, TrialError)
+def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
+    """Measure until what time the trajectory of DECK can be trusted.
 
-    Runs the scene twice, at two accuracies, and reports when the two part, and the Lyapunov time
-    if their difference grows exponentially.  Two formulations can be compared as well:
-
-        gearquat horizon in.case1 --var choices paper --every 1 --time 2000
-        --threshold 0.1 --threshold 1 --threshold 3
-        --a "formulation first values 5 momentum predicted" --b "formulation second"
+    The scene is run twice, at two accuracies.  The command reports when the two runs part, and the Lyapunov
+    time if their difference grows exponentially.  Two formulations can be compared as well (--a, --b).
     """
-    from tqdm import tqdm
-
-    from ..trials import figures, report
+    from .. import figures
     from ..trials import horizon as trials
+    from ..trials import report
+    from ..trials.measure import Deck
 
-    with open_deck(deck, variables, without, which) as scene:
-        with tqdm(total=1, unit="step", unit_scale=True, desc="running LAMMPS") as progress:
-            found = trials.measure(
-                scene, first, second, (step_a, step_b), time, every, thresholds, progress
-            )
-        out = out.resolve()
-        out.mkdir(parents=True, exist_ok=True)
-        report.write_horizon(out, found)
-        figures.draw_horizon(out / "horizon.png", scene, found)
-        click.echo(report.horizon_text(scene, found))
-    click.echo(f"\nTables and picture are in {out}")
+    steps = (step_a, step_b)
+    with progress_bar(total=1, unit="step", unit_scale=True, desc="following the deck") as progress:
+        say = announce(scene["path"], progress)
+        with Deck(**scene, say=say, on_wait=progress.refresh) as deck:
+            runs = trials.measure(deck, first, second, steps, time, every, thresholds, progress)
+            out.mkdir(parents=True, exist_ok=True)
+            report.write_horizon(out, runs)
+            figures.draw_horizon(out / "horizon.png", deck, runs)
+            text = report.horizon_text(deck, runs)
+    cloup.echo(f"{text}\n\nTables and picture are in {out.resolve()}")

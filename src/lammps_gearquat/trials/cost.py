@@ -1,7 +1,7 @@
 """What an error costs in the scene of a deck: short trials over steps and orders.
 
 1. A reference: fix gear/quat of high order at finer and finer steps, until two of them agree far
-   better than asked, and a second one of the other formulation that confirms it.  Where these two
+   better than required, and a second one of the other formulation that confirms it.  Where these two
    part, nothing can be said about smaller errors; the time measured is cut so that the smallest
    error can be judged, if that leaves a tenth of it.
 2. Every method from coarse to fine steps, to the same time.
@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..analysis.superposition import angles
 from . import evaluate
 from .script import DeckError
 from .worker import TrialError
@@ -30,21 +31,49 @@ DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 
 SAMPLES = 20  # of a reference in time
 MARGIN = 3.0  # an error is judged if it is this much larger than the doubt about the reference
-SHORTEST = 0.1  # of the time asked for
+SHORTEST = 0.1  # of the time to be measured
 #: full-length runs at the deck's own step that fit into the budget: the time is chosen so
 RUNS_IN_BUDGET = 100
 SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.25
 FEWEST_STEPS = 20
 PATIENCE = 30.0  # seconds that any trial may take beyond what was expected
+#: seconds of the budget for tables and pictures, and the part of it that may pass before the trials
+CLOSING, SHARE_BEFORE = 6.0, 0.8
+#: another fix pays if the deck's own takes longer by this factor
+WORTHWHILE = 1.05
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one error costs: ``own``, Price with the deck's fix, and ``best``, that of fix gear/quat.
+
+    Either is None if the error cannot be had, or not be judged.
+    """
+
+    error: float
+    own: evaluate.Price = None
+    best: evaluate.Price = None
+
+    @property
+    def keep(self):
+        """Whether the deck's own fix is as fast as any."""
+        if self.own is None or self.best is None:
+            return self.own is not None and self.own.kind != "extrapolated"
+        return self.own.seconds < WORTHWHILE * self.best.seconds
+
+    @property
+    def choice(self):
+        """The Price of what is recommended, or None."""
+        return self.own if self.keep else self.best
 
 
 @dataclass
 class Costs:
-    """What was found; times, lengths in units of the deck.
+    """The answer; times, lengths in units of the deck.
 
     ``end``, the time of the trials; ``doubt``, how far the two best trials are apart there;
     ``trials``, list of (Trial, errors) with one error for each of NORMS; ``norm``, the index of the
-    one asked for; ``rows``, list of (error, own Price or None, best Price or None).
+    one that was chosen; ``rows``, list of Row; ``before``, seconds that following the deck took.
     """
 
     end: float
@@ -55,6 +84,7 @@ class Costs:
     trials: list = field(default_factory=list)
     rows: list = field(default_factory=list)
     notes: list = field(default_factory=list)
+    before: float = 0.0
 
     @property
     def doubt_limit(self):
@@ -62,13 +92,20 @@ class Costs:
         return MARGIN * self.doubt
 
     def points(self):
-        """Dictionary method -> list of evaluate.Point; no error is known better than ``doubt``."""
-        found = {}
+        """Dictionary keywords -> list of evaluate.Point; no error is known better than ``doubt``."""
+        points = {}
         for trial, errors in self.trials:
-            error = max(errors[self.norm], self.doubt)
-            point = evaluate.Point(trial.label, trial.dt, trial.evaluations, trial.median, error)
-            found.setdefault(trial.keywords, []).append(point)
-        return found
+            point = evaluate.Point(
+                trial.label,
+                trial.dt,
+                trial.steps,
+                trial.median,
+                max(errors[self.norm], self.doubt),
+                trial.start_evaluations,
+                trial.median_start,
+            )
+            points.setdefault(trial.keywords, []).append(point)
+        return points
 
 
 class Budget:
@@ -86,59 +123,73 @@ class Budget:
             self.shown = min(now, self.seconds)
         return now
 
+    def left(self):
+        """Seconds that trials may still take."""
+        return self.seconds - min(CLOSING, 0.1 * self.seconds) - self.spent()
+
     def say(self, text):
-        """What is being done now."""
+        """Show what is being done now."""
         if self.progress is not None:
             self.progress.set_description(text)
 
 
 class Study:
-    """The trials of one question about ``deck``."""
+    """The trials of one question about ``deck``.
+
+    ``pace``, seconds per step by keywords; ``overhead``, seconds that a trial takes beside its steps.
+    """
 
     def __init__(self, deck, budget, timings=5, norm=0):
         self.deck, self.budget, self.timings, self.norm = deck, budget, timings, norm
-        self.per_step = {}
-        self.failures = {}
+        self.pace, self.overhead, self.failures = {}, 0.0, {}
 
     def attempt(self, keywords, end, steps, samples=1):
-        """Trial, or None where LAMMPS gave up (a step that is too large)."""
-        expected = self.expected(keywords, steps)
-        name = keywords or "the deck's own fix"
-        self.budget.say(f"{name}, step {end / steps:.3g}")
+        """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
+        self.budget.say(f"{keywords or 'own fix'}, step {end / steps:.3g}")
+        timeout = min(PATIENCE + 3 * self.expected(keywords, steps), self.budget.left())
+        begin = clock.monotonic()
         try:
-            trial = self.deck.run_to(keywords, end, steps, samples, PATIENCE + 3 * expected)
+            trial = self.deck.run_to(keywords, end, steps, samples, max(timeout, 0.0))
         except TrialError as error:
             self.failures[keywords] = str(error)
             return None
         finally:
             self.budget.spent()
-        self.per_step[keywords] = trial.seconds[0] / trial.evaluations
+        self.pace[keywords] = trial.seconds[0] / steps
+        self.overhead = clock.monotonic() - begin - trial.seconds[0]
         return trial
 
     def expected(self, keywords, steps):
         """Seconds that a trial will take."""
-        return steps * self.per_step.get(keywords, max(self.per_step.values(), default=0.0))
+        pace = self.pace.get(keywords, max(self.pace.values(), default=0.0))
+        return self.overhead + steps * pace
+
+    def affords(self, keywords, steps, reserve=0.0, runs=1.0):
+        """Whether so many ``runs`` of this length leave ``reserve`` seconds of the budget."""
+        return runs * self.expected(keywords, steps) < self.budget.left() - reserve
 
     # --- 0. how long ----------------------------------------------------------------------------------
     def probe(self):
-        """Seconds a step with the deck's own fix, from a run of a few tenths of a second."""
-        steps = 10
+        """Find out what a step costs with the deck's own fix, from a run of a few tenths of a second."""
+        steps = FEWEST_STEPS
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
             if trial is None:
                 raise DeckError(f"LAMMPS cannot run the deck as it is: {self.failures[None]}")
-            if trial.seconds[0] > 0.2 or steps >= self.deck.scene.start.steps:
-                return trial.seconds[0] / steps
-            steps = min(4 * steps, self.deck.scene.start.steps)
+            if trial.seconds[0] > 0.2 or steps >= self.deck.start.steps:
+                return
+            steps = min(4 * steps, self.deck.start.steps)
 
-    def affordable_end(self, seconds_a_step):
+    def affordable_end(self):
         """(time, reason or ""): the deck's run, or as much of it as the budget allows."""
-        dt, whole = self.deck.dt, self.deck.scene.start.steps
-        steps = int(self.budget.seconds / (RUNS_IN_BUDGET * seconds_a_step))
+        whole = self.deck.start.steps
+        seconds = self.budget.left() / RUNS_IN_BUDGET
+        # a trial is to be more than its overhead
+        steps = int(max(seconds - self.overhead, 0.5 * seconds) / self.pace[None])
         if steps >= whole:
             return self.deck.end, ""
         steps = max(steps - steps % SAMPLES, SAMPLES)
-        return min(steps, whole) * dt, f"the budget of {self.budget.seconds:g} s"
+        return min(steps, whole) * self.deck.dt, f"the budget of {self.budget.seconds:g} s"
 
     # --- 1. the reference -------------------------------------------------------------------------------
     def find_reference(self, end, target):
@@ -148,155 +199,168 @@ class Study:
         """
         accurate = self.deck.accurate
         steps = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1)
-        limit = self.budget.spent() + SHARE_REFERENCE * self.budget.seconds
-        found, gaps, failed = [], [], 0
+        reserve = (1.0 - SHARE_REFERENCE) * self.budget.left()
+        finer, gaps, failed = [], [], 0
         while True:
             trial = self.attempt(accurate, end, steps, SAMPLES)
             if trial:
-                found.append(trial)
+                finer.append(trial)
             failed += trial is None
-            if len(found) > 1:
-                gaps.append(self.gap(found[-2], found[-1])[-1])
-                # far better than asked, or nothing gained by two further halvings
+            if len(finer) > 1:
+                gaps.append(self.gap(finer[-2], finer[-1])[-1])
+                # far better than required, or nothing gained by two further halvings
                 stalled = len(gaps) > 2 and gaps[-1] > 0.5 * gaps[-3]
                 if gaps[-1] < 0.03 * target or stalled:
                     break
-            if failed > 6:
-                raise DeckError(f"fix gear/quat cannot run this deck: {self.failures[accurate]}")
             # the confirmation takes somewhat more than the last trial
-            if found and self.budget.spent() + 4 * self.expected(accurate, steps) > limit:
+            affordable = self.affords(accurate, steps, reserve, runs=4)
+            if failed > 6 or not (finer or self.affords(accurate, steps, runs=4)):
+                raise DeckError(f"fix gear/quat cannot run this deck: {self.failures[accurate]}")
+            if finer and not affordable:
                 break
             steps *= 2
-        reference = found[int(np.argmin(gaps)) + 1 if gaps else 0]
+        reference = finer[int(np.argmin(gaps)) + 1 if gaps else 0]
         steps = SAMPLES * math.ceil(1.25 * reference.steps / SAMPLES)
         confirmation = self.attempt(CONFIRMATION, end, steps, SAMPLES)
         if confirmation is None:
             raise DeckError(f"the reference cannot be confirmed: {self.failures[CONFIRMATION]}")
         return reference, confirmation
 
-    def gap(self, one, other):
-        """Difference of two sampled trials in the norm asked for, shape (S,)."""
-        pairs = zip(one.positions, one.centre, other.positions, other.centre)
-        return np.array([self.error(*pair) for pair in pairs])
+    def gap(self, first, second):
+        """Difference of two sampled trials in the chosen norm, shape (S,)."""
+        frames = zip(first.positions, first.center, second.positions, second.center)
+        return np.array([self.error(*frame) for frame in frames])
 
     def rounding(self, trial):
-        """What rounding of the positions alone can make of the error asked for."""
-        scale = np.abs(trial.centre).max() if self.norm < 2 else 1.0
+        """What rounding of the positions alone can make of the error."""
+        scale = np.abs(trial.center).max() if self.norm < 2 else 1.0
         return float(np.finfo(float).eps * scale)
 
-    def error(self, positions, centre, reference, reference_centre):
-        """The error asked for, of sites (n, 3) and centres (B, 3)."""
+    def error(self, positions, center, reference, reference_center):
+        """The error in the chosen norm, of sites (n, 3) and centers (B, 3)."""
         if self.norm < 2:
-            shift = np.linalg.norm(centre - reference_centre, axis=1)
+            shift = np.linalg.norm(center - reference_center, axis=1)
             return (float(shift.max()), evaluate.rms(shift))[self.norm]
-        return self.errors(positions, centre, reference, reference_centre)[self.norm]
+        return self.errors(positions, center, reference, reference_center)[self.norm]
 
-    def errors(self, positions, centre, reference, reference_centre):
+    def errors(self, positions, center, reference, reference_center):
         """One error for each of NORMS."""
-        scene = self.deck.scene
-        shift = np.linalg.norm(centre - reference_centre, axis=1)
-        turn = evaluate.angles(scene.bodies, scene.masses, reference, positions)
+        shift = np.linalg.norm(center - reference_center, axis=1)
+        turn = angles(self.deck.scene.bodies, reference, positions)
         return float(shift.max()), evaluate.rms(shift), float(turn.max()), evaluate.rms(turn)
 
     # --- 2. the methods -------------------------------------------------------------------------------
-    def ladder(self, keywords, end, judge, errors, first, allowance):
+    def ladder(self, keywords, end, judge, errors, first, reserve):
         """Trials of one method over steps: from where it is too coarse to where it is good enough.
 
-        ``judge(trial)`` is its error; ``first``, the number of steps to begin with; ``allowance`` in
-        seconds.  Returns a list of (Trial, error), the finest last.
+        ``judge(trial)`` is its error; ``first``, the number of steps to begin with; ``reserve``, seconds
+        of the budget to leave.  Returns a list of (Trial, error), the finest last.
         """
-        limit = self.budget.spent() + allowance
         ratio = 2.0 if keywords is None else math.sqrt(2.0)
-        found = {}
+        rungs = {}
 
-        def one(steps):
+        def climb(exponent):
+            steps = round(first * ratio**exponent)
             trial = self.attempt(keywords, end, steps)
             if trial:
-                found[steps] = (trial, judge(trial))
-            return found[steps][1] if trial else None
+                rungs[steps] = (trial, judge(trial))
+            return rungs[steps][1] if trial else None
 
-        exponent, error = 0, one(first)
+        exponent, error = 0, climb(0)
         while error is not None and error < 3 * max(errors):
-            # far below what is asked, in larger strides
+            # far below the errors, in larger strides
             exponent -= 2 if error < min(errors) / 30 else 1
             steps = round(first * ratio**exponent)
-            if steps < FEWEST_STEPS or self.budget.spent() > limit:
+            if steps < FEWEST_STEPS or not self.affords(keywords, steps, reserve):
                 break
-            error = one(steps)
-        exponent, last = 0, [found[first][1]] if first in found else []
+            error = climb(exponent)
+        exponent, last = 0, [rungs[first][1]] if first in rungs else []
         while not last or last[-1] > min(errors) / 1.2:
             exponent += 1
-            steps = round(first * ratio**exponent)
-            if self.budget.spent() + self.expected(keywords, steps) > limit or exponent > 40:
+            if not self.affords(keywords, round(first * ratio**exponent), reserve) or exponent > 40:
                 break
-            error = one(steps)
+            error = climb(exponent)
             last += [] if error is None else [error]
             if len(last) > 3 and last[-1] > 0.8 * last[-4]:  # rounding, or no order at all
                 break
-        return [found[steps] for steps in sorted(found)]
+        return [rungs[steps] for steps in sorted(rungs)]
+
+    def climb_all(self, costs, judge, errors, tries):
+        """Trials of all methods into ``costs``; ``judge(trial)`` gives one error for each of NORMS."""
+        methods = [None, *dict.fromkeys([*filter(self.deck.takes, METHODS), *tries])]
+        middle = math.log(errors[0] * errors[-1]) / 2
+        own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
+        timing = SHARE_TIMING * self.budget.seconds
+        for count, keywords in enumerate(methods):
+            left = max(self.budget.left() - timing, 0.0)
+            reserve = timing + left * (1.0 - 1.0 / (len(methods) - count))
+            if left == 0.0 or not self.affords(keywords, gear_steps, timing):
+                costs.notes.append(f"the budget leaves no time for {keywords or 'the own fix'}")
+                continue
+            first = own_steps if keywords is None else gear_steps
+            norm = self.norm
+            rungs = self.ladder(keywords, costs.end, lambda t: judge(t)[norm], errors, first, reserve)
+            if rungs and keywords is not None:  # the next method begins in the middle
+                near = min(rungs, key=lambda rung: abs(math.log(rung[1] + 1e-300) - middle))
+                gear_steps = near[0].steps
+            costs.trials += [(trial, judge(trial)) for trial, _ in rungs]
+            if not rungs and keywords in self.failures:
+                reason = self.failures[keywords]
+                costs.notes.append(f"no trial of {keywords} came to its end: {reason}")
 
     # --- 3. the wall time -----------------------------------------------------------------------------
-    def repeat(self, trials, limit):
+    def repeat(self, trials):
         """Run trials again, interleaved, until each has ``timings`` wall times."""
         for _ in range(self.timings - 1):
             for trial in trials:
-                if self.budget.spent() + 2 * trial.seconds[0] > limit:
+                if not self.affords(trial.keywords, trial.steps, runs=1.5):
                     return
-                self.budget.say("timing")
-                end = float(trial.time[-1])
-                again = self.attempt(trial.keywords, end, trial.steps)
+                again = self.attempt(trial.keywords, float(trial.time[-1]), trial.steps)
                 if again:
                     trial.seconds += again.seconds
+                    trial.start_seconds += again.start_seconds
 
 
-def measure(deck, errors=(), time=None, budget=180.0, timings=5, norm=0, tries=(), progress=None):
+def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     """Costs of a Deck.
 
-    ``errors`` in units of the deck (radians for orientations; none: DECADES of the size of the
-    bodies); ``time``, of the trials; ``budget``, seconds of wall time; ``tries``, keywords of fix
-    gear/quat to try beside METHODS.  Raises DeckError where nothing can be measured.
+    ``budget``, a Budget that began before the deck was opened; ``errors`` in units of the deck
+    (radians for orientations; none: DECADES of the size of the bodies); ``time``, of the trials;
+    ``tries``, keywords of fix gear/quat to try beside METHODS.  Raises DeckError where nothing can
+    be measured.
     """
     unit = evaluate.decade(deck.size) if norm < 2 else 1.0
     errors = sorted(errors or [unit * decade for decade in DECADES], reverse=True)
-    study = Study(deck, Budget(budget, progress), timings, norm)
-    notes = list(deck.notes)
-    pace = study.probe()
-    asked, reason = (time, "") if time else study.affordable_end(pace)
-    reference, confirmation = study.find_reference(asked, min(errors))
+    study = Study(deck, budget, timings, norm)
+    before = budget.spent()
+    study.probe()
+    whole, reason = (time, "") if time else study.affordable_end()
+    reference, confirmation = study.find_reference(whole, min(errors))
     doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
-    at, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
-    end = asked * (at + 1) / SAMPLES
+    last, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
+    end = whole * (last + 1) / SAMPLES
+    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=before)
+    costs.notes += deck.notes
     if reason:
-        notes.append(
-            f"the trials end at t = {end:g}, not at {deck.end:g}, for {reason} allows no more"
+        costs.notes.append(
+            f"the trials end at t = {end:g}, not at {deck.end:g}, because {reason} allows no more"
         )
-    if cut:
-        notes.append(cut)
-    costs = Costs(end, float(doubt[at]), reference, confirmation, norm, notes=notes)
+    costs.notes += [cut] if cut else []
 
-    def against(judge):
-        known = reference.positions[at], reference.centre[at]
-        return lambda trial: judge(trial.positions[-1], trial.centre[-1], *known)
+    def judge(trial):
+        known = reference.positions[last], reference.center[last]
+        return study.errors(trial.positions[-1], trial.center[-1], *known)
 
     judged = [error for error in errors if error > costs.doubt_limit]
     wanted = judged or errors[:1]
-    methods = [None, *dict.fromkeys([*filter(deck.takes, METHODS), *tries])]
-    limit = (1 - SHARE_TIMING) * budget
-    middle = math.log(wanted[0] * wanted[-1]) / 2
-    first = {None: max(round(end / deck.dt), FEWEST_STEPS)}
-    for count, keywords in enumerate(methods):
-        allowance = max(limit - study.budget.spent(), 0.0) / (len(methods) - count)
-        steps = first.get(keywords, first.get("gear", first[None]))
-        found = study.ladder(keywords, end, against(study.error), wanted, steps, allowance)
-        if found and keywords is not None:  # the next method begins in the middle
-            near = min(found, key=lambda pair: abs(math.log(pair[1] + 1e-300) - middle))
-            first["gear"] = near[0].steps
-        costs.trials += [(trial, against(study.errors)(trial)) for trial, _ in found]
-        if not found and keywords in study.failures:
-            costs.notes.append(
-                f"no trial of {keywords} came to its end: {study.failures[keywords]}"
-            )
-    study.repeat(worth_timing(costs, wanted), budget)
+    study.climb_all(costs, judge, wanted, tries)
+    if not costs.trials:
+        enough = before + RUNS_IN_BUDGET * study.expected(None, SAMPLES)
+        raise DeckError(
+            f"a step takes {study.pace[None]:.2g} s, so {budget.seconds:g} s are too few to compare methods:"
+            f" try --budget {enough:.2g}"
+        )
+    study.repeat(worth_timing(costs, wanted))
     fill_rows(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
@@ -315,14 +379,14 @@ def known_until(time, doubt, errors):
 
 def warnings_of(trials):
     """What LAMMPS said in trials: list of notes, each once, with the methods it belongs to."""
-    said = {}
+    methods_of = {}
     for trial in trials:
         for line in trial.warnings:
-            said.setdefault(line, {})[trial.label] = True
+            methods_of.setdefault(line, {})[trial.label] = True
     methods = {trial.label for trial in trials if trial.keywords is not None}
     return [
-        f"{line} ({'every fix gear/quat' if methods <= set(who) else ', '.join(who)})"
-        for line, who in said.items()
+        f"{line} ({'every fix gear/quat' if methods <= set(labels) else ', '.join(labels)})"
+        for line, labels in methods_of.items()
     ]
 
 
@@ -338,18 +402,19 @@ def cut_to(time, doubt, errors):
             if good[-1] == last:
                 return last, ""
             return int(good[-1]), (
-                f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, for later the two best ones"
-                f" differ by more than {error / MARGIN:.2g}, so an error of {error:g} cannot be judged"
+                f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, because later the two best"
+                f" ones differ by more than {error / MARGIN:.2g}, so an error of {error:g} cannot be judged"
             )
-    return max(int(SHORTEST * len(time)) - 1, 0), (
-        f"the two best trials differ by {doubt[int(SHORTEST * len(time)) - 1]:.2g} already at a"
-        " tenth of the time, so no error asked for can be judged in this scene"
+    index = max(int(SHORTEST * len(time)) - 1, 0)
+    return index, (
+        f"the two best trials differ by {doubt[index]:.2g} already at a tenth of the time, so none of"
+        " the errors can be judged in this scene"
     )
 
 
 def candidates(points, error):
     """(own Price or None, Prices of the two methods that take the fewest evaluations)."""
-    prices = {key: evaluate.price(found, error, key is None) for key, found in points.items()}
+    prices = {key: evaluate.price(own, error, key is None) for key, own in points.items()}
     own = prices.pop(None, None)
     ranked = sorted((item for item in prices.items() if item[1]), key=lambda i: i[1].evaluations)
     return own, dict(ranked[:2])
@@ -375,4 +440,4 @@ def fill_rows(costs, errors):
         if error > costs.doubt_limit:
             own, prices = candidates(points, error)
             best = min(prices.values(), key=lambda price: price.seconds, default=None)
-        costs.rows.append((error, own, best))
+        costs.rows.append(Row(error, own, best))

@@ -6,73 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import lsq_linear
 
-#: a principal moment below this fraction of the largest counts as zero, as in fix rigid
-LINEAR = 1e-7
-
 
 # --- bodies ---------------------------------------------------------------------------------------
-def centres(bodies, masses, positions):
-    """Centres of mass (..., B, 3) of sites at ``positions`` (..., n, 3).
-
-    ``bodies`` (n,) are numbers 0 … B-1, ``masses`` (n,).
-    """
-    order = np.argsort(bodies, kind="stable")
-    first = np.searchsorted(bodies[order], np.arange(bodies.max() + 1))
-    weighted = (masses[:, None] * positions)[..., order, :]
-    return np.add.reduceat(weighted, first, axis=-2) / np.bincount(bodies, masses)[:, None]
-
-
-def body_size(bodies, masses, positions):
-    """Median over the bodies of the largest distance of a site from the centre of mass.
-
-    ``positions`` (n, 3).  Bodies of one site have no size; 0 if all are such.
-    """
-    arms = np.linalg.norm(positions - centres(bodies, masses, positions)[bodies], axis=1)
-    largest = np.zeros(bodies.max() + 1)
-    np.maximum.at(largest, bodies, arms)
-    extended = largest[np.bincount(bodies) > 1]
-    return float(np.median(extended)) if len(extended) else 0.0
-
-
 def decade(value):
     """The power of ten that does not exceed ``value``; 1 for 0."""
     return 10.0 ** math.floor(math.log10(value)) if value > 0 else 1.0
-
-
-def angles(bodies, masses, reference, positions):
-    """Angles (..., B) in radians between poses of bodies, both positions (..., n, 3).
-
-    That of the rotation which superposes them best, as in analysis.superposition, but of many
-    frames at once.  Sites in a line only have an axis to turn, a single site has none.
-    """
-    found = np.zeros((*positions.shape[:-2], bodies.max() + 1))
-    order = np.argsort(bodies, kind="stable")
-    counts = np.bincount(bodies)
-    for count in set(counts.tolist()) - {1}:
-        chosen = np.flatnonzero(counts == count)
-        sites = order[np.isin(bodies[order], chosen)].reshape(len(chosen), count)
-        weights = masses[sites][..., None]
-        now, then = positions[..., sites, :], reference[..., sites, :]
-        total = weights.sum(axis=-2, keepdims=True)
-        now = now - (weights * now).sum(axis=-2, keepdims=True) / total
-        then = then - (weights * then).sum(axis=-2, keepdims=True) / total
-        found[..., chosen] = _best_angle(np.swapaxes(weights * now, -1, -2) @ then)
-    return found
-
-
-def _best_angle(covariance):
-    """Angle of the rotation that superposes arms with this covariance (..., 3, 3)."""
-    left, spread, right = np.linalg.svd(covariance)
-    in_line = spread[..., 1] + spread[..., 2] < LINEAR * (spread[..., 0] + spread[..., 1])
-    axes = left[..., :, 0], right[..., 0, :]
-    sine = np.linalg.norm(np.cross(*axes), axis=-1)
-    of_axis = np.arctan2(sine, (axes[0] * axes[1]).sum(axis=-1))
-    left[..., :, 2] *= np.sign(np.linalg.det(left @ right))[..., None]
-    rotation = left @ right
-    twice = rotation - np.swapaxes(rotation, -1, -2)
-    sine = np.sqrt((twice**2).sum(axis=(-1, -2)) / 8.0)
-    cosine = (np.trace(rotation, axis1=-2, axis2=-1) - 1.0) / 2.0
-    return np.where(in_line, of_axis, np.arctan2(sine, cosine))
 
 
 def rms(values):
@@ -80,24 +18,36 @@ def rms(values):
     return float(np.sqrt(np.mean(np.square(values))))
 
 
+def parting_time(time, distance, threshold):
+    """The first of the times (S,) at which a distance (S,) is not below ``threshold``; infinite if none."""
+    apart = np.flatnonzero(~(distance <= threshold))
+    return float(time[apart[0]]) if len(apart) else math.inf
+
+
 # --- what an error costs --------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Point:
-    """A trial as a point of the work-precision diagram."""
+    """A trial as a point of the work-precision diagram.
+
+    ``evaluations`` of the forces and ``seconds`` are those of its steps; ``start_evaluations`` and
+    ``start_seconds`` those of what comes before the first step.
+    """
 
     method: str
     dt: float
     evaluations: float
     seconds: float
     error: float
+    start_evaluations: int = 1
+    start_seconds: float = 0.0
 
 
 @dataclass(frozen=True)
 class Price:
-    """What an error costs with one method.
+    """What an error costs with one method; the fields of Point, and ``kind``.
 
-    ``kind``: "between" two trials, "at most" (the coarsest trial is better than asked), or
-    "extrapolated" (no trial was as good as asked).
+    ``kind``: "between" two trials, "at most" (the coarsest trial is better than required), or
+    "extrapolated" (no trial was as good as required).
     """
 
     method: str
@@ -105,6 +55,8 @@ class Price:
     evaluations: float
     seconds: float
     kind: str
+    start_evaluations: int = 1
+    start_seconds: float = 0.0
 
 
 #: steeper than this, the error is not that of an order but of a limit of stability
@@ -115,7 +67,7 @@ def price(points, error, extrapolate=False):
     """Price of ``error`` from the Points of one method, or None if it is not reached.
 
     Between two trials logarithms are interpolated linearly.  The largest step counts below which
-    no finer trial is worse than asked, up to where rounding begins.  With ``extrapolate`` the line
+    no finer trial is worse than required, up to where rounding begins.  With ``extrapolate`` the line
     through the two finest trials is continued if none is good enough.
     """
     points = sorted(points, key=lambda p: p.dt)
@@ -128,29 +80,25 @@ def price(points, error, extrapolate=False):
     while last + 1 < len(points) and points[last + 1].error <= error:
         last += 1
     best = points[last]
-    if last + 1 == len(points):
-        return Price(best.method, best.dt, best.evaluations, best.seconds, "at most")
-    coarser = points[last + 1]
-    slope = math.log(coarser.error / best.error) / math.log(coarser.dt / best.dt)
-    if not slope < CLIFF:
-        return Price(best.method, best.dt, best.evaluations, best.seconds, "at most")
-    return _on_line(best, coarser, error, "between")
+    if last + 1 < len(points):
+        coarser = points[last + 1]
+        slope = math.log(coarser.error / best.error) / math.log(coarser.dt / best.dt)
+        if slope < CLIFF:
+            return _on_line(best, coarser, error, "between")
+    return _on_line(best, best, best.error, "at most")
 
 
-def _on_line(one, other, error, kind):
+def _on_line(finer, coarser, error, kind):
     """Price on the log-log line through two points."""
-    share = math.log(error / one.error) / math.log(other.error / one.error)
+    rise = math.log(coarser.error / finer.error)
+    share = math.log(error / finer.error) / rise if rise else 0.0
 
-    def along(a, b):
-        return math.exp(math.log(a) + share * math.log(b / a))
+    def along(name):
+        begin, end = getattr(finer, name), getattr(coarser, name)
+        return begin * (end / begin) ** share
 
-    return Price(
-        one.method,
-        along(one.dt, other.dt),
-        along(one.evaluations, other.evaluations),
-        along(one.seconds, other.seconds),
-        kind,
-    )
+    starts = finer.start_evaluations, finer.start_seconds
+    return Price(finer.method, *map(along, ("dt", "evaluations", "seconds")), kind, *starts)
 
 
 def front(points, cost):

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import divergence as dv
+from ..analysis.superposition import angles
 from . import evaluate
 from .cost import Budget, Study, warnings_of
 from .script import DeckError
@@ -21,7 +21,7 @@ BUDGET = 120.0  # seconds that set the default time
 class Horizon:
     """Two trials of one scene, B bodies, S samples; units of the deck.
 
-    ``largest`` and ``rms``, distances of the centres of mass of bodies, and ``angle``, the largest
+    ``largest`` and ``rms``, distances of the centers of mass of bodies, and ``angle``, the largest
     angle between orientations (radians), all (S,); ``parting``, list of (threshold, time), infinite
     if not reached; ``growth``, an evaluate.Growth or None, and then ``no_growth`` says why.
     """
@@ -80,8 +80,9 @@ def measure(
 
 def affordable(deck, dt_a, dt_b):
     """The time of the deck's run, or what two runs within BUDGET reach."""
-    pace = Study(deck, Budget(BUDGET)).probe()
-    return min(deck.end, BUDGET / (pace / dt_a + pace / dt_b))
+    study = Study(deck, Budget(BUDGET))
+    study.probe()
+    return min(deck.end, BUDGET / (study.pace[None] / dt_a + study.pace[None] / dt_b))
 
 
 def sampling(time, every, dt):
@@ -91,21 +92,20 @@ def sampling(time, every, dt):
     if segments < 1:
         raise DeckError(f"the time {time:g} is shorter than one sample, {stride * dt:g}")
     if every and abs(stride * dt / every - 1) > 1e-9:
-        raise DeckError(f"--every {every:g} is no multiple of the time step {dt:g}")
+        raise DeckError(f"--every {every:g} is not a multiple of the time step {dt:g}")
     return segments, stride * dt
 
 
 def compare(deck, trials, thresholds, notes=()):
     """Horizon of two trials sampled at the same times."""
     first, second = trials
-    scene = deck.scene
-    distance = np.linalg.norm(first.centre - second.centre, axis=-1)
-    angle = evaluate.angles(scene.bodies, scene.masses, second.positions, first.positions)
+    distance = np.linalg.norm(first.center - second.center, axis=-1)
+    angle = angles(deck.scene.bodies, second.positions, first.positions)
     unit = evaluate.decade(deck.size)
     thresholds = sorted(thresholds or [unit * factor for factor in THRESHOLDS])
-    largest = dv.separation(first, second)
-    parting = [(level, dv.parting_time(first, second, level)) for level in thresholds]
-    floor = evaluate.ROUNDING * np.abs(second.centre).max()
+    largest = distance.max(axis=1)
+    parting = [(level, evaluate.parting_time(first.time, largest, level)) for level in thresholds]
+    floor = evaluate.ROUNDING * np.abs(second.center).max()
     growth, no_growth = evaluate.growth(
         first.time, largest, SATURATION * (deck.size or unit), floor
     )

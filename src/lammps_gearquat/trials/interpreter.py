@@ -7,6 +7,7 @@ deck reads again.  The commands passed on are kept, so that they can be replayed
 """
 
 import re
+from collections import deque
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -22,6 +23,9 @@ SILENT_COMPUTES = ("ke/rigid", "erotate/rigid", "rigid/local")
 #: commands that move atoms and are no run
 OTHER_MOTION = set("""rerun temper temper/grem temper/npt neb neb/spin tad prd hyper mdi
     dynamical_matrix third_order partition""".split())
+#: commands that do not look at the positions of atoms
+BLIND = set("""next variable timestep thermo_style thermo_modify neighbor neigh_modify comm_modify
+    suffix package shell label jump unfix uncompute""".split())
 #: keywords of thermo_modify that decide whether a run goes on
 RUNS_ON = ("temp", "press", "lost", "lost/bond")
 MARK = "gearquat_branch"
@@ -33,12 +37,16 @@ class Command:
 
     ``mover`` is the FixLine if it defines a fix that moves bodies, and ``in_use`` whether later
     commands needed that very fix; ``modifies`` is the ID of such a fix in a fix_modify command.
+    Of a command that moves atoms, ``state`` is the prefix of the files with the state it led to;
+    it is ``superseded`` if nothing looked at that state before the next such command.
     """
 
     text: str
     mover: script.FixLine = None
     in_use: bool = False
     modifies: str = ""
+    state: str = ""
+    superseded: bool = False
 
 
 @dataclass
@@ -47,7 +55,8 @@ class Start:
 
     ``commands`` lead there; those with a ``mover`` define the fixes that move bodies now;
     ``steps`` is the length of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the
-    command that makes the box; ``lost`` is what thermo_modify says of lost atoms and bonds.
+    command that makes the box; ``lost`` is what thermo_modify says of lost atoms and bonds;
+    ``checkpoints``, whether there are saved states, from which a replay is to go on.
     """
 
     commands: list = field(default_factory=list)
@@ -57,6 +66,7 @@ class Start:
     box: int = 0
     lost: list = field(default_factory=list)
     notes: list = field(default_factory=list)
+    checkpoints: bool = False
 
 
 #: how the text of a deck speaks of a variable
@@ -65,6 +75,10 @@ _NAMES = re.compile(r"\bvariable\s+(\w+)|\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
 
 #: without any of these words a deck cannot define a fix that moves rigid bodies
 _HOPE = re.compile(r"rigid|gear/quat|\binclude\b|\bjump\s+(?!SELF)")
+
+
+#: what may bring a further run
+_LATER = re.compile(r"^\s*(run|include|jump)\b")
 
 
 class _Reached(Exception):
@@ -80,11 +94,11 @@ class Interpreter:
 
     ``folder`` is for files that the deck writes; ``say`` is told of what takes time.
 
-    ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies;
-    ``variables`` are those that LAMMPS was given, tuples (name, value, ...).
+    ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies, None is
+    the first that can be measured; ``variables`` are those that LAMMPS was given, tuples (name, value, ...).
     """
 
-    def __init__(self, lammps, folder, without=(), which=1, variables=(), say=print):
+    def __init__(self, lammps, folder, without=(), which=None, variables=(), say=print):
         self.lammps, self.folder, self.say = lammps, Path(folder), say
         self.without, self.variables = set(without), {name for name, *_ in variables}
         self.hope = any(_HOPE.search(value) for _, *values in variables for value in values)
@@ -98,6 +112,8 @@ class Interpreter:
         self.files = []
         self.label = None
         self.skip_jump = False
+        self.save = lambda prefix: None  # called with the names of checkpoints
+        self.moved = None  # the last Command that moved atoms, unless its state has been saved
 
     def follow(self, path):
         """Start of the deck ``path``, relative to the present folder.  Raises DeckError."""
@@ -137,10 +153,10 @@ class Interpreter:
     def _file(self, path):
         self.files.append(self._open(path))
         while True:
-            line = next(self.files[-1][1], None)
-            if line is None:
+            lines = self.files[-1][1]
+            if not lines:
                 break
-            self.execute(line)
+            self.execute(lines.popleft())
         if self.label:
             raise DeckError(f"label {self.label} was not found in {self.files[-1][0]}")
         self.files.pop()
@@ -156,7 +172,7 @@ class Interpreter:
             command = script.strip_comment(line)
             self.names |= {name for names in _NAMES.findall(command) for name in names if name}
             self.hope = self.hope or bool(_HOPE.search(command))
-        return path, iter(lines)
+        return path, deque(lines)
 
     def execute(self, line):
         """Follow or pass on one command."""
@@ -190,8 +206,25 @@ class Interpreter:
             raise DeckError(f"LAMMPS refuses the command\n  {text}\n  {said}") from error
 
     def _pass(self, line, **facts):
+        if line.split()[0] not in BLIND:
+            self._save()
         self._lammps("command", line)
         self.start.commands.append(Command(line, **facts))
+
+    def _pass_and_move(self, line):
+        """Pass on a command that takes time and moves atoms."""
+        if self.moved:
+            self.moved.superseded = True
+        self._lammps("command", line)
+        self.moved = Command(line)
+        self.start.commands.append(self.moved)
+
+    def _save(self):
+        """Keep the state that the last run has led to, unless that has been done."""
+        if self.moved:
+            self.moved.state = f"state{len(self.start.commands)}"
+            self.save(self.moved.state)
+            self.start.checkpoints, self.moved = True, None
 
     def _do_include(self, words, line):
         self._file(self._lammps("expand", words[1]))
@@ -357,7 +390,21 @@ class Interpreter:
                 "the deck minimizes the energy while a rigid fix is in use, which fix gear/quat"
                 " refuses: define that fix after minimize"
             )
-        self._pass(line)
+        self._pass_and_move(line)
+
+    def _is_to_be_measured(self):
+        """Whether the run at hand is the one that ``which`` means.  Raises DeckError if none can be."""
+        if self.which not in (None, self.runs):
+            return False
+        try:
+            script.check_scene(self.start.fixes, self.start.pair_style)
+            for command in self.movers.values():
+                script.translate(command.mover)
+        except DeckError:
+            if self.which or not any(_LATER.search(line) for lines in self.files for line in lines[1]):
+                raise
+            return False
+        return True
 
     def _do_run(self, words, line):
         if not self.hope:
@@ -366,9 +413,13 @@ class Interpreter:
         steps = script.run_steps(words, now) if self.movers else 0
         # run 0 moves nothing, but bodies take over the velocities of their atoms
         self.runs += steps > 0
-        if steps > 0 and self.runs == self.which:
+        if steps > 0 and self._is_to_be_measured():
             self.start.steps = steps
+            self._save()
             raise _Reached
         self._use_movers()
         self.say(f"'{' '.join(words)}' comes before the trials and is executed first")
-        self._pass(line)
+        if words[1] != "0":
+            self._pass_and_move(line)
+        else:
+            self._pass(line)

@@ -9,12 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
+from ..analysis.bodies import Bodies
 from . import evaluate, script
 from .worker import TrialError, Worker
 
 DECK_ITSELF = "the deck's own"
 #: keywords of fix gear/quat for a trajectory to compare with; the second ones where it has to be isokinetic
 ACCURATE = tuple(f"formulation {name} values 8 compensate yes" for name in ("second", "first"))
+#: a checkpoint is good if steps from it differ from the deck's own by this part of the motion
+CHECKPOINT_ERROR = 1e-6
 
 
 @dataclass
@@ -22,9 +25,9 @@ class Trial:
     """One way to move the bodies of a deck, from its start to ``time[-1]``.
 
     ``keywords`` of fix gear/quat, or None for the deck's own line; ``time`` (S,), samples after the
-    start; ``positions`` (S, n, 3) of sites; ``centre`` (S, B, 3), centres of mass of bodies;
-    ``evaluations`` of the forces: one a step, one of LAMMPS' set-up, and those of the fix's start;
-    ``seconds``, wall times of the run commands, set-up counted, one for each repetition.
+    start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies;
+    ``start_evaluations``, evaluations of the forces before the first step; ``seconds`` and
+    ``start_seconds``, wall times of the steps and of what comes before them, one for each repetition.
     """
 
     keywords: str
@@ -32,9 +35,10 @@ class Trial:
     steps: int
     time: np.ndarray
     positions: np.ndarray
-    centre: np.ndarray
-    evaluations: int
+    center: np.ndarray
+    start_evaluations: int = 1
     seconds: list = field(default_factory=list)
+    start_seconds: list = field(default_factory=list)
     warnings: tuple = ()
 
     @property
@@ -44,29 +48,84 @@ class Trial:
 
     @property
     def median(self):
-        """Median of the wall times."""
+        """Median of the wall times of the steps."""
         return float(np.median(self.seconds))
+
+    @property
+    def median_start(self):
+        """Median of the wall times of the start."""
+        return float(np.median(self.start_seconds))
+
+
+class Scene:
+    """The rigid bodies of a deck when they begin to move: B bodies of n sites.
+
+    ``ids`` (n,), rising within a body; ``bodies`` (Bodies), which has them in this order;
+    ``positions`` (n, 3), unwrapped; ``size``, the median over bodies of more than one site of the
+    largest distance of a site from the center of mass.
+    """
+
+    def __init__(self, situations):
+        ids = np.concatenate([part.sites.ids for part in situations])
+        labels = np.concatenate([part.labels for part in situations])
+        masses = np.concatenate([part.masses for part in situations])
+        positions = np.concatenate([part.sites.positions for part in situations])
+        order = np.argsort(ids)
+        order = order[labels[order, 0] >= 0]
+        if not len(order):
+            raise script.DeckError("the rigid fix of the deck has no atoms")
+        _, numbers = np.unique(labels[order], axis=0, return_inverse=True)
+        self.bodies = Bodies(numbers.reshape(-1) + 1, masses[order])
+        order = order[self.bodies.index]
+        self.ids, self.positions = ids[order], positions[order]
+        arms = positions[order] - self.bodies.center(positions[order])[self.bodies.of]
+        reach = self.bodies.largest(np.linalg.norm(arms, axis=1))[self.bodies.counts > 1]
+        self.size = float(np.median(reach)) if len(reach) else 0.0
+        self._id_order = np.argsort(self.ids)
+
+    def of_sites(self, parts):
+        """Positions (n, 3) of the sites of the bodies, from the Sites of all ranks."""
+        ids = np.concatenate([part.ids for part in parts])
+        positions = np.concatenate([part.positions for part in parts])
+        chosen = np.flatnonzero(np.isin(ids, self.ids))
+        if len(chosen) != len(self.ids):
+            raise TrialError("atoms of bodies were lost")
+        chosen = chosen[np.argsort(ids[chosen])]
+        ordered = np.empty((len(self.ids), 3))
+        ordered[self._id_order] = positions[chosen]
+        return ordered
+
+    def centers(self, positions):
+        """Centers of mass (S, B, 3) of sites at ``positions`` (S, n, 3)."""
+        return np.array([self.bodies.center(frame) for frame in positions])
 
 
 class Deck:
     """An input script, followed up to the run that moves its bodies; use it in a with statement.
 
     ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to
-    leave out; ``which`` counts the runs that move bodies; ``say`` is called with a line of text
-    when the deck takes time to come there.  Raises DeckError for decks that cannot be used.
+    leave out; ``which`` counts the runs that move bodies, None is the first that can be measured; ``ranks`` is the number of processes of
+    LAMMPS; ``say`` is called with a line of text when the deck takes time to come there, and
+    ``on_wait`` every now and then while LAMMPS is at work; ``timeout`` in seconds is what it may take.
+    Raises DeckError for decks that cannot be used.
     """
 
-    def __init__(self, path, variables=(), without=(), which=1, say=None):
+    def __init__(
+        self, path, variables=(), without=(), which=None, ranks=1, say=None, on_wait=None, timeout=None
+    ):
         self.path = Path(path).resolve()
         self.variables = [tuple(map(str, variable)) for variable in variables]
-        self.without, self.which, self.say = tuple(without), which, say
+        self.without, self.which, self.ranks = tuple(without), which, ranks
+        self.say, self.on_wait, self.timeout = say, on_wait, timeout
 
     def __enter__(self):
         self._folder = tempfile.TemporaryDirectory(prefix="gearquat-")
         self.log = Path(self._folder.name) / "log"
-        self.worker = Worker(self._folder.name)
+        self.worker = Worker(self._folder.name, self.ranks)
+        self.worker.on_wait = self.on_wait
         try:
             self._follow()
+            self._test_checkpoint()
         except BaseException:
             self.__exit__()
             raise
@@ -84,32 +143,53 @@ class Deck:
     def _follow(self):
         self.worker.on_news = self.say
         try:
-            self.scene = self._ask("follow", without=self.without, which=self.which)
+            parts = self._ask("follow", self.timeout, without=self.without, which=self.which)
         except TrialError as error:
             raise script.DeckError(f"LAMMPS cannot run the deck: {error}") from error
         self.worker.on_news = None
-        start = self.scene.start
-        self.lines = [command.mover for command in start.commands if command.mover]
-        script.check_scene(start.fixes, start.pair_style)
+        self._situation, self.start = parts[0], parts[0].start
+        self.dt = self._situation.dt
+        self.lines = [command.mover for command in self.start.commands if command.mover]
         own = [script.for_trials(line) for line in self.lines]
         translated = [script.translate(line) for line in self.lines]
         self.own = [line for line, _ in own]
         self.base = [line for line, _ in translated]
-        self.notes = [*start.notes, *(note for _, notes in own + translated for note in notes)]
-        if len(self.scene.ids) == 0:
-            raise script.DeckError("the rigid fix of the deck has no atoms")
-        self.time_unit, self.length_unit = script.UNITS[self.scene.units]
-        self.size = evaluate.body_size(self.scene.bodies, self.scene.masses, self.scene.positions)
+        notes = [note for _, notes in own + translated for note in notes]
+        self.notes = [*self.start.notes, *notes]
+        self.scene = Scene(parts)
+        self.size = self.scene.size
+        self.time_unit, self.length_unit = script.UNITS[self._situation.units]
+        self._continued = [part.continued for part in parts]
+
+    def _test_checkpoint(self):
+        """Do without checkpoints where steps from the last one are not those of the deck itself."""
+        if not self.start.checkpoints or self.own != self.lines:
+            return
+        try:
+            trial = self.run(None, [self._situation.test_steps], self.dt)
+            known = self.scene.of_sites(self._continued)
+            motion = np.abs(known - self.scene.positions).max()
+            rounding = 1e-12 * np.abs(known).max()
+            error = np.abs(trial.positions[-1] - known).max()
+            good = error < CHECKPOINT_ERROR * motion + rounding
+        except TrialError:
+            good = False
+        if not good:
+            self.start.checkpoints = False
+            self.notes.append(
+                "the runs before the measured one leave more behind than positions and velocities,"
+                " so every trial repeats them"
+            )
 
     @property
-    def dt(self):
-        """The time step of the deck."""
-        return self.scene.dt
+    def map_missing(self):
+        """Whether the deck lacks the atom map that fix gear/quat needs."""
+        return self._situation.map_missing
 
     @property
     def end(self):
         """The time its run takes."""
-        return self.scene.start.steps * self.dt
+        return self.start.steps * self.dt
 
     def takes(self, keywords):
         """Whether these keywords of fix gear/quat can go with what the deck says of its bodies."""
@@ -133,23 +213,32 @@ class Deck:
     def run(self, keywords, segments, dt, timeout=None):
         """Trial over segments of these numbers of steps.  Raises TrialError if LAMMPS does."""
         new = {b.id: b for b in self._with(keywords) if keywords is not None or b not in self.lines}
-        outcome = self._ask(
-            "trial", timeout, scene=self.scene, lines=new, dt=dt, segments=list(segments)
+        outcomes = self._ask(
+            "trial",
+            timeout,
+            start=self.start,
+            lines=new,
+            need_map=bool(new) and self.map_missing,
+            ramp_steps=round(self.end / dt),
+            dt=dt,
+            segments=list(segments),
         )
-        if not np.isfinite(outcome.positions).all():
-            raise TrialError("positions are no numbers")
-        centre = evaluate.centres(self.scene.bodies, self.scene.masses, outcome.positions)
-        steps = int(sum(segments))
+        samples = zip(*(outcome.samples for outcome in outcomes))
+        positions = np.array([self.scene.of_sites(parts) for parts in samples])
+        if not np.isfinite(positions).all():
+            raise TrialError("positions are not numbers")
+        first = next(outcome for outcome in outcomes if outcome.rank == 0)
         return Trial(
             keywords,
             dt,
-            steps,
+            int(sum(segments)),
             np.cumsum(segments) * dt,
-            outcome.positions,
-            centre,
-            1 + steps + outcome.start_evaluations,
-            [outcome.seconds],
-            outcome.warnings,
+            positions,
+            self.scene.centers(positions),
+            1 + first.start_evaluations,
+            [first.seconds],
+            [first.start_seconds],
+            first.warnings,
         )
 
     def run_to(self, keywords, end, steps, samples=1, timeout=None):

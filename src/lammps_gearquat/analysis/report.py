@@ -1,0 +1,54 @@
+"""Results of an analysis as CSV files and as text."""
+
+import numpy as np
+
+from ..tables import write_columns, write_rows
+
+
+def write_totals(path, poses):
+    """Write sums over all bodies by frame; returns them, name -> (F,) or (F, 3)."""
+    totals = poses.totals()
+    write_columns(path, {"step": poses.results.step, "time": poses.results.time, **totals})
+    return totals
+
+
+def write_bodies(path, poses):
+    """Write what each body is: ID, number of sites, kind, mass, principal moments.
+
+    Of a table of the fix only the IDs are known.
+    """
+    bodies = getattr(poses, "bodies", None)
+    if bodies is None:
+        return write_columns(path, {"body": poses.ids})
+    kinds = np.where(bodies.point, "point", np.where(bodies.linear, "linear", "general"))
+    header = ["body", "sites", "kind", "mass", "moment_1", "moment_2", "moment_3"]
+    rows = zip(bodies.ids, bodies.counts, kinds, bodies.mass, *bodies.moments.T)
+    return write_rows(path, header, rows)
+
+
+def write_stays(path, stays, ids):
+    """Write a row for each stay: body, place (from 1), times of its first and last frame, whether complete."""
+    columns = ids[stays.body], stays.place + 1, stays.time[stays.begin]
+    rows = zip(*columns, stays.time[stays.end - 1], stays.complete)
+    write_rows(path, ["body", "place", "begin", "end", "complete"], rows)
+
+
+def summary(poses, totals):
+    """A few lines for a terminal."""
+    time, (frames, number) = poses.results.time, poses.results.table.shape
+    many = "body" if number == 1 else "bodies"
+    lines = [f"{frames} frames of {number} {many} were read, from time {time[0]:g} to {time[-1]:g}."]
+    if "residual" in totals:
+        worst = totals["residual"].max()
+        lines.append(f"Sites are at most {worst:.2g} away from the rigid body of the first frame.")
+    if "velocity_residual" in totals:
+        worst = totals["velocity_residual"].max()
+        lines.append(f"Velocities of sites differ by at most {worst:.2g} from those of a rigid body.")
+    unit = f"in units {poses.units}" if poses.units else "in mass x velocity^2, without --units"
+    units = {"ke_translation": unit, "ke_rotation": unit, "potential": "as dumped"}
+    lines += [
+        f"The mean of {name} is {totals[name].mean():.6g}, {units[name]}."
+        for name in units
+        if name in totals
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,117 @@
+"""What the commands have in common: options, progress bars, and errors that say what to do."""
+
+import functools
+from pathlib import Path
+
+import cloup
+
+HELP = {"help_option_names": ["-h", "--help"]}
+POSITIVE = cloup.FloatRange(min=0, min_open=True)
+FILE = cloup.Path(exists=True, dir_okay=False, path_type=Path)
+#: modules of the extra [analysis], which commands import only when they are run
+ANALYSIS = ("numpy", "scipy", "matplotlib", "MDAnalysis", "tqdm")
+
+
+def command(examples):
+    """Decorator of a command; ``examples``: lines that can be pasted into a shell in a checkout."""
+    epilog = "\b\nExamples, to be run in a checkout of the repository:\n" + "\n".join(
+        f"  {line}" for line in examples
+    )
+    return cloup.command(epilog=epilog, show_constraints=True, context_settings=HELP)
+
+
+def out_option(name, holds):
+    """Option --out: the folder for the results; ``holds``: what it gets."""
+    return cloup.option(
+        "--out",
+        type=cloup.Path(file_okay=False, path_type=Path),
+        default=Path(name),
+        show_default=True,
+        help=f"Folder for {holds}.",
+    )
+
+
+def deck_options(function):
+    """The argument DECK and the options that say how it is read; they become the argument ``scene``."""
+
+    @cloup.argument("deck", type=FILE, help="LAMMPS input script with a fix that moves rigid bodies.")
+    @cloup.option_group(
+        "The deck",
+        cloup.option(
+            "--var",
+            "variables",
+            nargs=2,
+            multiple=True,
+            metavar="NAME VALUE",
+            help="Set a variable of the deck, as -var of lmp does; repeatable.",
+        ),
+        cloup.option(
+            "--without",
+            multiple=True,
+            metavar="ID",
+            help="Leave out the fix ID, for example a thermostat; repeatable.",
+        ),
+        cloup.option(
+            "--run",
+            "which",
+            type=cloup.IntRange(min=1),
+            metavar="N",
+            help="Measure the Nth of the runs in which the deck moves rigid bodies.  Default: the first that"
+            " can be measured, where no thermostat and no random force acts on the bodies.",
+        ),
+        cloup.option(
+            "--ranks",
+            type=cloup.IntRange(min=1),
+            default=1,
+            show_default=True,
+            metavar="N",
+            help="Run LAMMPS on N ranks, started with mpiexec.",
+        ),
+    )
+    @functools.wraps(function)
+    def collect(deck, variables, without, which, ranks, **rest):
+        scene = {"path": deck, "variables": variables, "without": without}
+        return function(scene={**scene, "which": which, "ranks": ranks}, **rest)
+
+    return collect
+
+
+def failing_clearly(*errors):
+    """Decorator: ``errors``, which a user can mend, and missing modules become messages of the command."""
+
+    def decorate(function):
+        @functools.wraps(function)
+        def run(*args, **kwargs):
+            try:
+                return function(*args, **kwargs)
+            except ModuleNotFoundError as error:
+                if (error.name or "").split(".")[0] not in ANALYSIS:
+                    raise
+                raise cloup.ClickException(
+                    f"this command needs {error.name}, which the extra [analysis] brings: run"
+                    " pip install '.[analysis]' in a checkout of the repository"
+                ) from error
+            except errors as error:
+                raise cloup.ClickException(str(error)) from error
+
+        return run
+
+    return decorate
+
+
+def progress_bar(iterable=None, **options):
+    """tqdm's progress bar, silent where the output is no terminal."""
+    from tqdm import tqdm
+
+    return tqdm(iterable, disable=None, **options)
+
+
+def announce(path, progress):
+    """Function that says what is done with a deck before its trials, above a progress bar."""
+
+    def say(text):
+        progress.clear()
+        cloup.echo(f"{path.name}: {text}", err=True)
+        progress.refresh()
+
+    return say

