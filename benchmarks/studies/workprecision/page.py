@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine.checkout import find, provenance, write_block, write_page
+from benchmarks.engine.page import render
+from benchmarks.engine.study import Finding, Study, Table
 from benchmarks.engine.divergence import error_order
 from benchmarks.engine.tables import markdown_table
 from . import plan, tables
@@ -24,6 +26,7 @@ PICTURES = {
 }
 #: errors the sentences speak of
 SAMPLE, FINE = 1e-6, 1e-8
+README_ERRORS = (1e-4, 1e-6, 1e-8)
 
 
 def _milliseconds(cost):
@@ -216,17 +219,26 @@ def write(out, results, drift=None):
     (Path(out) / PAGE).write_text(page_text(out, results, drift), encoding="utf-8")
 
 
+def readme_table(results):
+    """Time of fix rigid/nve/small relative to ours, by error: the default settings and the cheapest ones."""
+    rows = {row[0]: row for row in tables.speedup(results)[1]}
+    errors = [tables.power(target) for target in README_ERRORS]
+    header = ["time of `fix rigid/nve/small` relative to", *(f"error {error}" for error in errors)]
+    return Table(
+        header,
+        [
+            ["`fix gear/quat`, default settings", *(rows[error][5] for error in errors)],
+            ["`fix gear/quat`, cheapest settings", *(rows[error][2] for error in errors)],
+        ],
+    )
+
+
 def readme_block(out, results):
     """What README shows between its markers."""
-    return "\n".join(
-        [
-            *_picture("main.png", f"doc/{FOLDER}"),
-            f"{price_sentence(results)} {reach_sentence(results)} Other scenes, every N, where it "
-            f"does not pay, and how it was measured: [doc/{PAGE}](doc/{PAGE}).",
-            "",
-            provenance(out, PACKAGES),
-        ]
-    )
+    context = {"end": f"{results.end('case1'):g}"}
+    finding = Finding(tables={"readme": readme_table(results)}, context=context)
+    study = Study("workprecision", "", FOLDER, 0.0, None, None)
+    return render("accuracy_cost.readme.md.j2", study, finding, provenance(out, PACKAGES)).rstrip()
 
 
 def publish(folder, out, results, drift=None):
