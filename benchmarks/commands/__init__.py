@@ -1,11 +1,6 @@
 """The commands of studies that do not use the engine yet."""
 
 from .bench import bench
-from .cases import cases
-from .pictures import pictures
 from .workprecision import workprecision
 
-COMMANDS = {
-    command.name: command
-    for command in (bench, cases, pictures, workprecision)
-}
+COMMANDS = {command.name: command for command in (bench, workprecision)}

@@ -71,13 +71,6 @@ def measurement(out, publish_to=None, block=None):
         raise click.ClickException(str(error)) from error
 
 
-def shares():
-    """A progress bar of work in shares of a whole that is told as it goes."""
-    from tqdm import tqdm
-
-    return tqdm(total=1, unit="step", unit_scale=True, desc="running LAMMPS")
-
-
 def counted(total):
     """A progress bar of ``total`` pieces of work."""
     from tqdm import tqdm

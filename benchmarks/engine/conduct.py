@@ -12,7 +12,7 @@ from benchmarks import studies
 
 from . import panels, provenance
 from .lab import Lab
-from .page import render
+from .page import file_of, render
 from .publish import PublishError, check_places, publish
 from .store import read_data, write_csv, write_data
 
@@ -65,7 +65,7 @@ def write(study, out, finding, origin):
     folder = out / study.page
     folder.mkdir(parents=True, exist_ok=True)
     for name, picture in finding.pictures.items():
-        path = folder / f"{name}.png"
+        path = folder / file_of(name)
         picture(path) if callable(picture) else panels.draw(path, picture)
     if origin.whole:
         text = render(f"{study.page}.md.j2", study, finding, origin.sentence)

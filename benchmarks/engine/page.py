@@ -16,17 +16,28 @@ def markdown_table(header, rows):
     return "\n".join([_row(header), "|" + "---|" * len(header), *map(_row, rows)])
 
 
+def file_of(picture):
+    """File name of a picture: a PNG unless its name says otherwise."""
+    return picture if "." in picture else f"{picture}.png"
+
+
 def grouped(number):
     """A whole number in groups of thousands."""
     return f"{number:,.0f}".replace(",", " ")
 
 
+def rounded(number):
+    """Two significant digits of a large number, in groups of thousands."""
+    return grouped(float(f"{number:.1e}"))
+
+
 def _environment(page, finding):
     """Jinja2 with the filters and functions of the templates; undefined names are errors.
 
-    ``x | to(".1e")`` formats a number, ``n | grouped`` a large one; ``table(name)`` shows a table of
-    the finding, ``measured(measurements)`` a table of measurements, ``picture(name, caption)`` a picture
-    with its caption.  Pictures of ``page`` are beside it, in the folder of its name.
+    ``x | to(".1e")`` formats a number, ``n | grouped`` a large one, and ``n | rounded`` keeps two digits
+    of it; ``table(name)`` shows a table of the finding, ``measured(measurements)`` a table of
+    measurements, ``picture(name, caption)`` a picture with its caption.  Pictures of ``page`` are beside
+    it, in the folder of its name.
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
@@ -45,9 +56,9 @@ def _environment(page, finding):
     def picture(name, caption, folder=page):
         if name not in finding.pictures:
             raise KeyError(f"the study draws no picture {name}")
-        return f"![{caption}]({folder}/{name}.png)\n\n*{caption}*"
+        return f"![{caption}]({folder}/{file_of(name)})\n\n*{caption}*"
 
-    environment.filters |= {"to": format, "grouped": grouped}
+    environment.filters |= {"to": format, "grouped": grouped, "rounded": rounded}
     environment.globals |= {"table": table, "measured": measured, "picture": picture}
     return environment
 

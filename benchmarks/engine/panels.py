@@ -107,7 +107,8 @@ def _scales(axis, panel):
     axis.set(xlim=panel.xlim, ylim=panel.ylim)
 
 
-def _draw(axis, panel):
+def draw_panel(axis, panel):
+    """Draw one panel on ``axis``."""
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel)
     axis.set_title(panel.title, loc="left", fontsize=9)
     if isinstance(panel.curves, Bars):
@@ -124,9 +125,10 @@ def _draw(axis, panel):
         axis.legend(fontsize=7, **place)
 
 
-def draw(path, panels, columns=None, note=""):
-    """Draw ``panels`` in rows of so many ``columns`` (default: one row); ``note``: a line below them.
+def draw(path, panels, columns=None, note="", share_y=False):
+    """Draw ``panels`` in rows of so many ``columns`` (default: one row).
 
+    ``note``: a line below them; ``share_y``: whether they have one y axis.
     Panels without legends of their own share one, which has every label once.
     """
     Path(path).parent.mkdir(parents=True, exist_ok=True)
@@ -139,10 +141,11 @@ def draw(path, panels, columns=None, note=""):
             figsize=(4.2 * columns + 0.4, 3.4 * rows),
             layout="constrained",
             squeeze=False,
+            sharey=share_y,
         )
         shared = {}
         for axis, panel in zip(axes.flat, panels):
-            _draw(axis, panel)
+            draw_panel(axis, panel)
             if not panel.legend:
                 handles, labels = axis.get_legend_handles_labels()
                 shared |= dict(zip(labels, handles))

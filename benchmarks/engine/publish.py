@@ -51,11 +51,17 @@ def check_places(study, root=ROOT):
 
 
 def publish(study, finding, provenance, out, root=ROOT):
-    """Copy page and pictures from ``out``, the folder of the run, and write the blocks."""
-    for source in [out / f"{study.page}.md", *(out / study.page).glob("*.png")]:
-        target = root / "doc" / source.relative_to(out)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(source, target)
+    """Copy page and pictures from ``out``, the folder of the run, and write the blocks.
+
+    The pictures are those that the page or a block shows.
+    """
+    page, folder = root / "doc" / f"{study.page}.md", root / "doc" / study.page
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(out / page.name, page)
+    texts = [page.read_text(encoding="utf-8")]
     for name, template in study.blocks.items():
-        text = render(template, study, finding, provenance).rstrip()
-        write_block(root / name, command_of(study), text)
+        texts.append(render(template, study, finding, provenance).rstrip())
+        write_block(root / name, command_of(study), texts[-1])
+    for source in sorted((out / study.page).iterdir()):
+        if any(f"{study.page}/{source.name})" in text for text in texts):
+            shutil.copyfile(source, folder / source.name)

@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .logs import Log
-
 #: column of the thermo output -> column of the CSV file
 COLUMNS = {
     "Step": "step",
@@ -79,26 +77,7 @@ def of_log(log):
     return from_thermo(log.thermo)
 
 
-def read_log(path):
-    """Series of the last run in the LAMMPS log at ``path``.  Raises ValueError if it did not finish."""
-    log = Log(path)
-    if "ERROR" in log.text or len(log.timers) < max(1, len(log.tables)):
-        errors = [line for line in log.text.splitlines() if "ERROR" in line]
-        raise ValueError(f"{path}: not a finished run: {' '.join(errors) or 'no thermo output'}")
-    return of_log(log)
-
-
-def loop_seconds(path):
-    """Wall-clock time of the last run in a LAMMPS log, setup not included."""
-    return Log(path).seconds
-
-
 def write_csv(path, series):
     """Write a series with 17 significant digits."""
     header = ",".join(COLUMNS.values())
     np.savetxt(path, to_table(series), fmt="%.17g", delimiter=",", header=header, comments="")
-
-
-def read_csv(path):
-    """Series written by ``write_csv``."""
-    return from_table(np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2))

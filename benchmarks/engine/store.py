@@ -3,9 +3,19 @@
 import csv
 
 import jsonpickle
-import jsonpickle.ext.numpy
+import numpy as np
+from jsonpickle.ext.numpy import NumpyNDArrayHandlerView, register_handlers
 
-jsonpickle.ext.numpy.register_handlers()
+
+class _Values(NumpyNDArrayHandlerView):
+    """Arrays by value: jsonpickle's own handler of views may give back other numbers."""
+
+    def flatten(self, obj, data):
+        return super().flatten(np.array(obj, order="C"), data)
+
+
+register_handlers()
+jsonpickle.handlers.register(np.ndarray, _Values(), base=True)
 
 
 def write_data(path, data):

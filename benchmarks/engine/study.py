@@ -58,7 +58,8 @@ class Finding:
     """What a study makes of its data.
 
     ``measurements``: a sequence of Measurement.  ``tables``: name -> Table; each is left as a CSV file.
-    ``pictures``: name -> tuple of Panel (see panels.py), or a function that draws into the path it gets.
+    ``pictures``: name -> tuple of Panel (see panels.py), or a function that draws into the path it gets;
+    names without a suffix become PNG files, and those that the page shows are published.
     ``context``: further names of the templates.  ``summary``: printed in place of the measurements.
     """
 

@@ -4,19 +4,15 @@ import functools
 
 import clumps
 import pytest
-from synthetic import made_up
+from synthetic import made_up_results
 
 from benchmarks.engine import series
-from benchmarks.studies.cases import runs as cases
 
 
 @pytest.fixture
 def results():
     """Results of ``benchmarks/run cases`` as the paper tells them."""
-    found = cases.Results()
-    for run in cases.planned_runs():
-        found.add(run, made_up(run), seconds=1.0)
-    return found
+    return made_up_results()
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.engine.series import Series
+from benchmarks.studies.cases import plan
 
 
 def make(time, centre, potential=None, translation=None, rotation=None, error=None):
@@ -56,3 +57,11 @@ def made_up(run):
         centre[-1] += 1.0
     values = make(time, centre, potential, translation, rotation)
     return replace(values, step=time / run.dt)
+
+
+def made_up_results(full=False, seconds=1.0):
+    """Results of ``benchmarks/run cases`` as the paper tells them."""
+    results = plan.Results(plan.STEP, {}, {})
+    for run in plan.planned_runs(plan.STEP, full):
+        results.series[run.name], results.seconds[run.name] = made_up(run), seconds
+    return results

@@ -13,9 +13,8 @@ from benchmarks.studies.bench import figures as bench_figures
 from benchmarks.studies.bench import judge
 from benchmarks.studies.bench import page as bench_page
 from benchmarks.studies.bench import runs as bench
-from benchmarks.studies.cases import page as cases
 from benchmarks.studies.bench.runs import FIRST, FROZEN, NVE_SMALL, SECOND, SMALL
-from benchmarks.engine.checkout import END, PublishError
+from benchmarks.engine.checkout import PublishError
 from benchmarks.commands.bench import bench as command
 from benchmarks.engine.lammps_runner import LammpsError
 
@@ -391,7 +390,7 @@ def test_publishing(tmp_path, out):
     with pytest.raises(PublishError, match="is not a checkout of GEARQUAT"):
         bench_page.publish(tmp_path, out, made_up())
     (tmp_path / "src" / "GEARQUAT").mkdir(parents=True)
-    readme = f"{cases.BEGIN}\nnumbers\n{END}\n"
+    readme = "# Title\n"
     (tmp_path / "README.md").write_text(readme)
     (out / "many_bodies.png").write_bytes(b"picture")
     bench_page.publish(tmp_path, out, made_up())

@@ -1,26 +1,39 @@
 """Verdicts follow from the numbers: made-up results, and the same ones spoilt."""
 
-import csv
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from synthetic import PARTS, made_up
+from synthetic import made_up_results
 
-from benchmarks.studies.cases import claims, figures
-from benchmarks.studies.cases import runs as cases
-from benchmarks.studies.cases import tables
+from benchmarks.engine.page import render
+from benchmarks.studies import cases
+from benchmarks.studies.cases import accuracy, claims, figures, plan
 from benchmarks.studies.cases.claims import EXPLAINED, NOT, REPRODUCED
 
 
 def spoil(results, change, **chosen):
     """Results whose runs with the chosen attributes are changed."""
-    found = cases.Results()
-    for run, values in results.runs.items():
-        match = all(getattr(run, name) == value for name, value in chosen.items())
-        found.add(run, change(values) if match else values)
+    found = replace(results, series=dict(results.series))
+    for run in plan.planned_runs(results.step):
+        if all(getattr(run, name) == value for name, value in chosen.items()):
+            found.series[run.name] = change(results.series[run.name])
     return found
+
+
+def verdict(results, measure, **which):
+    """The verdict on the claim that ``measure`` is about; ``which`` tells claims of a kind apart."""
+    (claim,) = (
+        claim
+        for claim in claims.CLAIMS
+        if (measure == claim.measure)
+        or isinstance(claim.measure, partial)
+        and claim.measure.func == measure
+        and which.items() <= claim.measure.keywords.items()
+    )
+    return claims.Judged(claim, tuple(claim.measure(results)))
 
 
 def scaled(name, factor):
@@ -36,27 +49,23 @@ def drifting(values):
 
 def test_the_paper_reproduces_itself(results):
     found = claims.all_claims(results)
-    wrong = [c for c in found if c.verdict != REPRODUCED and "x similar" not in c.paper]
-    assert [(c.source, c.paper, c.measured) for c in wrong] == []
-    assert len({(c.source, c.paper) for c in found}) == len(found) >= 20
-    assert all(c.rule and c.measured for c in found)
+    wrong = [c for c in found if c.verdict != REPRODUCED and c.claim.measure != claims.similar_curve]
+    assert [(c.claim.source, c.claim.paper, c.measured) for c in wrong] == []
+    assert len({(c.claim.source, c.claim.paper) for c in found}) == len(found) == 22
 
 
-@pytest.mark.parametrize("case, digits, printed", [(1, 4, -0.7236), (3, 3, 3.993)])
-def test_energy_is_judged_by_every_printed_digit(results, case, digits, printed):
-    assert claims.initial_energy(results, case, printed, digits).verdict == REPRODUCED
+@pytest.mark.parametrize("case", [1, 3])
+def test_energy_is_judged_by_every_printed_digit(results, case):
+    judge = partial(verdict, measure=claims.initial_energy, case=case)
+    assert judge(results).verdict == REPRODUCED
     for factor in (1.01, 0.99):
-        wrong = spoil(results, scaled("total", factor), case=case)
-        assert claims.initial_energy(wrong, case, printed, digits).verdict == NOT
-    for row in cases.AS_PRINTED:  # both bodies count
-        wrong = spoil(results, scaled("total", 1.01), case=case, row=row)
-        assert claims.initial_energy(wrong, case, printed, digits).verdict == NOT
+        assert judge(spoil(results, scaled("total", factor), case=case)).verdict == NOT
+    for row in plan.AS_PRINTED:  # both bodies count
+        assert judge(spoil(results, scaled("total", 1.01), case=case, row=row)).verdict == NOT
 
 
 def test_held_energy(results):
-    def judge(found):
-        return claims.energy_held(found, 1, "first", "Fig. 2")
-
+    judge = partial(verdict, measure=claims.energy_error, case=1, formulation="first")
     assert judge(results).verdict == REPRODUCED
     one = judge(spoil(results, drifting, row="consistent-zero-free"))
     assert one.verdict == REPRODUCED and one.why == "not with the body: consistent"
@@ -64,128 +73,154 @@ def test_held_energy(results):
 
 
 def test_late_drift(results):
-    assert claims.late_drift(results).verdict == REPRODUCED
-    early = spoil(results, drifting, case=2, formulation="first")
-    assert claims.late_drift(early).verdict == EXPLAINED
+    judge = partial(verdict, measure=claims.late_drift)
+    assert judge(results).verdict == REPRODUCED
+    assert judge(spoil(results, drifting, case=2, formulation="first")).verdict == EXPLAINED
     level = spoil(results, lambda v: replace(v, total=v.total * 0 + v.total[0]), case=2)
-    assert claims.late_drift(level).verdict == NOT
-    assert claims.no_late_drift(results).verdict == REPRODUCED
-    assert claims.no_late_drift(spoil(results, drifting, formulation="second")).verdict == NOT
+    assert judge(level).verdict == NOT
+    judge = partial(verdict, measure=claims.no_late_drift)
+    assert judge(results).verdict == REPRODUCED
+    assert judge(spoil(results, drifting, formulation="second")).verdict == NOT
 
 
-@pytest.mark.parametrize(
-    "printed, others, verdict",
-    [
-        ([800.0, 2000.0], [], REPRODUCED),
-        ([641.0], [], REPRODUCED),
-        ([639.0], [], NOT),
-        ([961.0], [], NOT),
-        ([500.0, 1200.0], [], EXPLAINED),
-        ([500.0], [math.inf], EXPLAINED),
-        ([math.inf], [], NOT),
-    ],
-)
-def test_times(printed, others, verdict):
-    assert claims.judge_time(800, 800, printed, others) == verdict
+def test_times():
+    """The paper's 800 is near 641 and 959; it lies between 500 and 1200 or never."""
+    near = [claims.is_near(time, 800, 800) for time in (641.0, 639.0, 959.0, 961.0, math.inf)]
+    assert near == [True, False, True, False, False]
+    times = ([500.0, 1200.0], [500.0, math.inf], [639.0], [math.inf])
+    assert [claims.is_between(pair, 800, 800) for pair in times] == [True, True, False, False]
 
 
 def test_parting(results):
-    def judge(found):
-        return claims.parting(found, 3, "Table 7", "they differ after t = 800", 800, 800)
-
+    judge = partial(verdict, measure=claims.parting, case=3)
     assert judge(results).verdict == REPRODUCED
-    assert "apart by 0.1" in judge(results).why
-    never = spoil(results, lambda v: replace(v, centre=v.centre * 0), case=3)
-    assert judge(never).verdict == NOT
+    later = spoil(results, scaled("centre", 0.0), case=3)
+    assert judge(later).verdict == NOT
+    early = spoil(results, scaled("centre", 0.001), case=3)
+    for row, factor in zip(plan.ROWS, (1e3, 1e3, 0.0, 0.0)):
+        early = spoil(early, scaled("centre", factor), case=3, row=row, formulation="second")
+    assert judge(early).verdict == EXPLAINED
 
 
 def test_leaving(results):
-    assert claims.leaving_direction(results).verdict == REPRODUCED
-    assert claims.potential_vanishes(results).verdict == REPRODUCED
-    same = spoil(results, lambda v: replace(v, centre=v.centre[:, [0, 2, 1]]), formulation="first")
-    same = spoil(same, lambda v: replace(v, centre=-v.centre), formulation="first")
-    assert claims.leaving_direction(same).verdict == NOT
-    other = spoil(results, lambda v: replace(v, centre=-v.centre), case=3)
-    assert claims.leaving_direction(other).verdict == EXPLAINED
-    inside = spoil(results, lambda v: replace(v, centre=v.centre * 0), case=3)
-    assert claims.potential_vanishes(inside).verdict == NOT
+    judge = partial(verdict, measure=claims.leaving_direction)
+    assert judge(results).verdict == REPRODUCED
+    same = spoil(results, lambda v: replace(v, centre=-v.centre[:, [0, 2, 1]]), formulation="first")
+    assert judge(same).verdict == NOT
+    assert judge(spoil(results, scaled("centre", -1.0), case=3)).verdict == EXPLAINED
+    judge = partial(verdict, measure=claims.potential_vanishes)
+    assert judge(results).verdict == REPRODUCED
+    assert judge(spoil(results, scaled("centre", 0.0), case=3)).verdict == NOT
+    inside = spoil(results, scaled("centre", 0.0), case=3, formulation="first")
+    assert judge(inside).verdict == EXPLAINED
 
 
 def test_bounded(results):
-    assert claims.bounded(results).verdict == REPRODUCED
+    judge = partial(verdict, measure=claims.bounded)
+    assert judge(results).verdict == REPRODUCED
     roaming = spoil(results, lambda v: replace(v, centre=v.centre - 0.02 * v.time[:, None]), case=1)
-    assert claims.bounded(roaming).verdict == NOT
+    assert judge(roaming).verdict == NOT
+
+
+def test_observable(results):
+    judge = partial(verdict, measure=claims.observable)
+    assert judge(results).verdict == REPRODUCED
+    assert judge(spoil(results, scaled("centre", 0.0), case=1)).verdict == NOT
 
 
 def test_translation(results):
-    assert claims.translation_begins(results).verdict == REPRODUCED
-    slow = spoil(results, scaled("translation", 0.1), case=3)
-    assert claims.translation_begins(slow).verdict == EXPLAINED
-    never = spoil(results, scaled("translation", 0.0), case=3)
-    assert claims.translation_begins(never).verdict == NOT
+    judge = partial(verdict, measure=claims.translation_begins)
+    assert judge(results).verdict == REPRODUCED
+    assert judge(spoil(results, scaled("translation", 0.1), case=3)).verdict == EXPLAINED
+    assert judge(spoil(results, scaled("translation", 0.0), case=3)).verdict == NOT
 
 
 def test_omega(results):
-    assert claims.omega_first(results).verdict == REPRODUCED  # 3 against 1
+    judge = partial(verdict, measure=claims.omega_first)
+    assert judge(results).verdict == REPRODUCED  # 3 against 1
     shifted = spoil(results, lambda v: replace(v, centre=v.centre + 9.0), omega="corrected")
-    assert claims.omega_first(shifted).verdict == NOT
+    assert judge(shifted).verdict == NOT
 
 
 def test_step_independence(results):
-    def judge(found):
-        return claims.step_independent(
-            found, 3, lambda row, f: found.get(3, row, f, 0.001), 800, "point 3"
-        ).verdict
-
-    assert judge(results) == REPRODUCED
+    judge = partial(verdict, measure=claims.same_solution, case=3)
+    assert judge(results).verdict == REPRODUCED
     moved = scaled("centre", 1.02)
-    assert judge(spoil(results, moved, dt=0.001, row="unrotated-zero-free")) == EXPLAINED
-    assert judge(spoil(results, moved, dt=0.001)) == NOT
+    assert judge(spoil(results, moved, dt=0.001, row="unrotated-zero-free")).verdict == EXPLAINED
+    assert judge(spoil(results, moved, dt=0.001)).verdict == NOT
+    judge = partial(verdict, measure=claims.same_solution, other=2)
+    assert judge(results).verdict == REPRODUCED
+    assert judge(spoil(results, moved, case=2)).verdict == NOT
 
 
-def test_tables_are_written(results, tmp_path):
-    found = tables.write_tables(tmp_path, results)
-    with open(tmp_path / "table.csv", newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    assert [row["verdict"] for row in rows] == [claim.verdict for claim in found]
-    text = (tmp_path / "table.md").read_text(encoding="utf-8")
-    assert "reconstructed" in text and all(claim.paper in text for claim in found)
-    with open(tmp_path / "table7.csv", newline="", encoding="utf-8") as file:
-        times = list(csv.DictReader(file))
-    assert len(times) == (len(cases.ROWS) + 1) * 3
-    assert float(times[0]["apart by 0.1"]) == PARTS[1]
-    shown = tables.console_text(found, results)
-    assert all(claim.verdict.upper() in shown for claim in found)
+def exact(results):
+    """The same with the short runs at the reference, and 2 microseconds per step."""
+    found = replace(results, seconds={})
+    for run in plan.planned_runs(results.step):
+        values = results.series[run.name]
+        if run.dt in plan.ACCURACY_STEPS and not run.omega:
+            values.centre[values.at(plan.ACCURACY_END)] = accuracy.reference()
+        found.seconds[run.name] = 2e-6 * run.job.steps
+    return found
+
+
+def test_errors_are_measured_against_the_reference(results):
+    found = exact(results)
+    assert set(map(tuple, accuracy.position_errors(found).values())) == {(0.0,) * 4}
+    assert list(accuracy.step_costs(found).values()) == pytest.approx([2.0] * 5)
+    for values in found.series.values():
+        values.centre[values.at(plan.ACCURACY_END)] *= 1.01
+    assert min(min(row) for row in accuracy.position_errors(found).values()) > 0.5
+
+
+def test_bounds_refuse_what_is_not_reproduced(results):
+    broken = [m.what for m in cases.find(exact(results)).measurements if not m.holds]
+    assert broken == []
+    wrong = spoil(results, drifting)
+    wrong = spoil(wrong, scaled("centre", 1.01), dt=cases.CHECKED_STEP)
+    broken = " ".join(m.what for m in cases.find(wrong).measurements if not m.holds)
+    for words in ("not reproducible", "step 0.02: error of the center", "step 0.001: largest error"):
+        assert words in broken
+
+
+def test_the_page_shows_every_claim(results):
+    finding = cases.find(results)
+    text = render("results.md.j2", cases.STUDY, finding, "Somewhere.")
+    assert text.count("| reproduced") >= finding.context["count"][REPRODUCED] == 21
+    assert all(judged.measured in text for judged in claims.all_claims(results))
+
+
+def test_table_7_shows_the_times(results):
+    table = cases.table7(results)
+    assert [len(row) for row in table.rows] == [4] * (len(plan.ROWS) + 2)
+    assert table.rows[1][1].startswith("1000 / ") and table.rows[1][3].startswith("800 / ")
 
 
 def test_figures_are_drawn(results, tmp_path):
-    short = cases.Results()
-    for run, values in results.runs.items():
-        short.add(run, values.until(200))
-    figures.draw_all(tmp_path, short)
-    names = {path.name for path in tmp_path.iterdir()}
-    assert names == {f"figure{n:02d}.png" for n in range(2, 14)} | {"parting.png", "overview.png"}
-    assert all(path.stat().st_size > 10000 for path in tmp_path.iterdir())
+    short = replace(results, series={k: v.until(200) for k, v in results.series.items()})
+    drawn = figures.pictures(short)
+    assert len(drawn) == 14
+    for name in ("figure04", "figure08", "figure12", "parting", "overview"):
+        drawn[name](tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").stat().st_size > 10000
 
 
 def test_planned_runs_are_those_of_the_paper():
-    runs = cases.planned_runs(full=True)
-    assert len({run.name for run in runs}) == len(runs)
-    assert cases.planned_runs() == runs[: len(cases.planned_runs())]
-    steps = {(run.case, run.dt): run.steps for run in runs if run.end == 5000}
+    runs = plan.planned_runs(plan.STEP, full=True)
+    assert len({run.name for run in runs}) == len(runs) == 71
+    steps = {(run.case, run.dt): run.job.steps for run in runs if run.end == plan.END}
     assert steps[1, 0.001] == 5_000_000 and steps[2, 0.125] == 40_000
     assert steps[1, 0.0001] == 50_000_000
-    job = runs[0].job("logs")
-    assert job.variables["choices"] == "paper" and job.variables["every"] == 1000
+    assert runs[0].job.variables["choices"] == "paper" and runs[0].job.variables["every"] == 1000
+    quick = plan.planned_runs(plan.QUICK_STEP)
+    assert len({run.name for run in quick}) == len(quick) == 67
+    assert sum(run.job.steps for run in quick) < 0.25 * sum(run.job.steps for run in runs[:67])
 
 
-def test_full_adds_the_50_million_steps(results, tmp_path):
-    full = cases.Results()
-    for run in cases.planned_runs(full=True):
-        full.add(run, made_up(run))
-    assert full.has_full() and not results.has_full()
-    found = claims.all_claims(full)
-    extra = [c for c in found if "50 million" in c.source]
-    assert len(extra) == 2 and len(found) == len(claims.all_claims(results)) + 2
-    figures.draw_x(tmp_path / "fine.png", full, 1, "Fig. 4", cases.FINE_STEP)
-    assert (tmp_path / "fine.png").exists()
+def test_full_adds_the_50_million_steps(results):
+    full = made_up_results(full=True)
+    assert full.fine == 0.0001 and results.fine is None
+    added = claims.all_claims(full)[len(claims.all_claims(results)) :]
+    assert ["50 million" in judged.claim.source for judged in added] == [True, True]
+    panels = figures.paper_figure(full, 4).keywords["panels"]
+    assert len(panels[0].curves[0].x) == 5001

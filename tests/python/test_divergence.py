@@ -8,6 +8,7 @@ from synthetic import line, make
 
 from benchmarks.engine import divergence as dv
 from benchmarks.engine import series
+from benchmarks.engine.logs import Log
 
 
 def test_parting_time_is_the_first_sample_beyond_the_threshold():
@@ -70,35 +71,23 @@ def test_order_of_a_power_law_and_of_a_wrong_one():
     assert dv.error_order(steps, 3.0 * steps**5.05) != pytest.approx(5.0)
 
 
-def test_csv_keeps_every_digit(tmp_path):
-    rng = np.random.default_rng(1)
-    values = series.from_table(rng.normal(size=(7, 10)))
-    series.write_csv(tmp_path / "series.csv", values)
-    assert (
-        series.to_table(series.read_csv(tmp_path / "series.csv")) == series.to_table(values)
-    ).all()
-
-
 LOG = """LAMMPS (22 Jul 2025)
    Step          Time       c_centre[1]    c_centre[2]    c_centre[3]    c_potential     v_ketrans       v_kerot        v_total        v_qerror
          0  0 84 0 0 -3.5 1.25 1.5 -0.75 0
         10  0.5 84.25 0 1e-05 -3.5 1.25 1.5 -0.75 2.2204460492503131e-16
-{end}
+Loop time of 1.5 on 1 procs for 10 steps
 """
 
 
-def test_log_is_read_by_the_reader_of_lammps(tmp_path):
-    (tmp_path / "log").write_text(LOG.format(end="Loop time of 1.5 on 1 procs for 10 steps"))
-    values = series.read_log(tmp_path / "log")
+def test_a_series_is_read_and_written_with_every_digit(tmp_path):
+    (tmp_path / "log").write_text(LOG)
+    values = series.of_log(Log(tmp_path / "log"))
     assert values.time.tolist() == [0, 0.5]
     assert values.centre[1].tolist() == [84.25, 0, 1e-05]
     assert values.q_error[1] == 2.2204460492503131e-16
     assert values.until(0.25).time.tolist() == [0]
     assert values.at(0.4) == 1
-
-
-@pytest.mark.parametrize("end", ["", "ERROR: Lost atoms"])
-def test_unfinished_log_is_refused(tmp_path, end):
-    (tmp_path / "log").write_text(LOG.format(end=end))
-    with pytest.raises(ValueError, match="not a finished run"):
-        series.read_log(tmp_path / "log")
+    values.total[1] = -1 / 3
+    series.write_csv(tmp_path / "series.csv", values)
+    table = np.loadtxt(tmp_path / "series.csv", delimiter=",", skiprows=1)
+    assert (table == series.to_table(values)).all()

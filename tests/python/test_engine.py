@@ -137,6 +137,15 @@ def test_data_come_back_as_they_were(tmp_path):
     assert found[3] == [0.1, True]
 
 
+def test_views_of_arrays_come_back_as_they_were(tmp_path):
+    whole = np.random.default_rng(1).normal(size=(30, 4, 3))
+    views = {"part": whole[:, 0], "turned": np.swapaxes(whole, 1, 2), "column": whole[:, :, 1].T}
+    views |= {"whole": whole, "every": whole[::2], "bytes": whole.astype(">f8")[1:]}
+    write_data(tmp_path / "data.json", views)
+    found = read_data(tmp_path / "data.json")
+    assert all((found[name] == values).all() for name, values in views.items())
+
+
 def made_up(value=1e-13, **of_study):
     """A study that runs nothing."""
     x = np.array([1.0, 2.0])
@@ -194,9 +203,10 @@ def test_publishing_writes_page_pictures_and_blocks(templates, tmp_path, monkeyp
         with pytest.raises(publish.PublishError, match="README.md needs one"):
             publish.check_places(study, root)
     readme.write_text(f"before\n{mark}\nold\n{publish.END}\nafter\n")
+    (out / "made_page" / "other.png").touch()
     publish.publish(study, finding, "Somewhere.", out, root)
     assert (root / "doc" / "made_page.md").read_text() == (out / "made_page.md").read_text()
-    assert (root / "doc" / "made_page" / "both.png").is_file()
+    assert [path.name for path in (root / "doc" / "made_page").iterdir()] == ["both.png"]
     block = "![Both.](doc/made_page/both.png)\n\n*Both.*"
     assert readme.read_text() == f"before\n{mark}\n{block}\n{publish.END}\nafter\n"
 

@@ -1,12 +1,14 @@
-"""The camera and what it draws; pictures and film of a made-up motion; what is published."""
+"""The camera and its pictures; pictures and film of a made-up motion; a short run."""
 
 import numpy as np
 import pytest
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine import checkout
-from benchmarks.studies.pictures import figures, film, page, scenes
+from benchmarks.engine.lab import Lab
+from benchmarks.engine.page import file_of, render
+from benchmarks.studies import pictures
+from benchmarks.studies.pictures import film
 from benchmarks.studies.pictures.view import Camera, sphere_image
 
 
@@ -38,16 +40,16 @@ def scene():
     sites = centre[:, None] + np.einsum("fij,nj->fni", turn.as_matrix(), shape)
     energy = 1.0 + 0.1 * np.sin(time)
     omega = np.tile([0.02, 0.01, 0.03], (len(time), 1))
-    return scenes.Scene(1, time, centre, sites, axes, omega, -energy, 0.5 * energy, 0.5 * energy)
+    energies = {"potential": -energy, "rotation": energy, "total": 0 * energy}
+    return pictures.Scene(time, centre, sites, axes, omega, energies)
 
 
-def test_pictures_are_drawn(scene, tmp_path):
-    for name, draw in (
-        ("orbit", figures.draw_orbit),
-        ("tumbling", figures.draw_tumbling),
-        ("energy", figures.draw_energy),
-    ):
-        draw(tmp_path / f"{name}.png", scene)
+def test_pictures_are_drawn_and_shown(scene, tmp_path):
+    finding = pictures.find({1: scene, 3: scene})
+    drawn, text = finding.pictures, render("pictures.md.j2", pictures.STUDY, finding, "Somewhere.")
+    assert all(f"(pictures/{file_of(name)})" in text for name in drawn)
+    for name in ("orbit", "tumbling", "energy"):
+        drawn[name](tmp_path / f"{name}.png")
         with Image.open(tmp_path / f"{name}.png") as picture:
             assert picture.size == (1536, 864)
             assert len(picture.convert("RGB").getcolors(10**6)) > 50  # something is on it
@@ -62,36 +64,16 @@ def test_film_has_a_picture_for_each_sample(scene, tmp_path):
         assert (np.asarray(found.convert("RGB")) != first).any()
 
 
-def test_what_is_published_is_small_enough():
-    from running import ROOT
-
-    sizes = {name: (ROOT / "doc" / "pictures" / name).stat().st_size for name in page.PICTURES}
-    assert sizes["leaving.gif"] < 1.5e6 and max(sizes.values()) == sizes["leaving.gif"]
-
-
-def test_publishing(tmp_path):
-    out, folder = tmp_path / "out", tmp_path / "checkout"
-    out.mkdir()
-    (folder / "src" / "GEARQUAT").mkdir(parents=True)
-    for name in page.PICTURES:
-        (out / name).write_bytes(b"made up")
-    with pytest.raises(checkout.PublishError):
-        page.publish(folder, out)
-    (folder / "README.md").write_text("before\n")
-    page.publish(folder, out)
-    assert all(name in (folder / "doc" / "pictures.md").read_text() for name in page.PICTURES)
-    assert (folder / "doc" / "pictures" / "orbit.png").read_bytes() == b"made up"
-
-
 def test_scenes_are_those_of_the_fix(monkeypatch, tmp_path):
     """A short run: positions, energies and angular velocity of one and the same samples."""
-    monkeypatch.setattr(scenes, "RUNS", {1: (0.01, 4.0, 0.5)})
-    found = scenes.run(tmp_path)[1]
+    monkeypatch.setattr(pictures, "RUNS", {1: (0.01, 4.0, 0.5)})
+    found = pictures.measure(Lab(tmp_path))[1]
+    total, translation = found.energies["total"], found.energies["translation"]
     assert found.time == pytest.approx(0.5 * np.arange(9))
-    assert found.total == pytest.approx(np.full(9, found.total[0]), abs=1e-10)
+    assert total == pytest.approx(np.full(9, total[0]), abs=1e-10)
     masses = np.array([2.0, 2.0, 10.0, 50.0])
     centres = np.einsum("n,fni->fi", masses, found.sites) / masses.sum()
     assert centres == pytest.approx(found.centre, abs=1e-12)
     moved = (found.centre[2:] - found.centre[:-2]) / 1.0
     kinetic = 32.0 * (moved**2).sum(axis=1)
-    assert kinetic == pytest.approx(found.translation[1:-1], rel=1e-2)
+    assert kinetic == pytest.approx(translation[1:-1], rel=1e-2)

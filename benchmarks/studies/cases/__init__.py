@@ -1,5 +1,142 @@
 """The paper's three test cases, and its claims about them.
 
-runs.py (what is run), claims.py (the paper's numbers, rules and verdicts), accuracy.py (errors by
-step), tables.py, figures.py (the paper's figures), page.py (doc/results.md and README's block).
+plan.py (what is run), claims.py (the paper's claims, and how the measurement decides on them),
+accuracy.py (errors by step), figures.py (the paper's figures, and two of our own).
 """
+
+import textwrap
+
+from benchmarks.engine.study import Finding, Measurement, Study, Table
+from benchmarks.engine import divergence as dv
+
+from . import accuracy
+from .claims import (
+    EXPLAINED,
+    NOT,
+    REPRODUCED,
+    THRESHOLDS,
+    all_claims,
+    parting_times,
+    show_times,
+)
+from .figures import pictures
+from .plan import ACCURACY_END, ACCURACY_STEPS, ACCURATE, AS_PRINTED, END, ROWS, measure
+
+PAPER_TIMES = ("1300", "250 to 300", "800")
+#: what --check demands: of how many claims, and of the errors with the defaults of the fix
+LEAST_REPRODUCED, MOST_NOT, MOST_ERROR = 15, 2, 1e-9
+CHECKED_STEP = 0.02
+
+
+# --- tables -------------------------------------------------------------------------------------
+def claim_table(claims):
+    """Every claim, what was measured, and the verdict."""
+    rows = []
+    for judged in claims:
+        verdict = f"{judged.verdict}: {judged.why}" if judged.why else judged.verdict
+        claim = judged.claim
+        rows.append((claim.source, claim.paper, judged.measured, claim.condition, verdict))
+    return Table(("where", "the paper says", "measured", "reproduced if", "verdict"), rows)
+
+
+def table7(results):
+    """Times at which the formulations part, for every start and threshold.
+
+    The last row is for comparison: when fix rigid/nve/small parts from the second formulation with the
+    defaults of the fix.
+    """
+    header = ["apart by " + " / ".join(f"{t:g}" for t in THRESHOLDS)]
+    header += [f"case {case}, step {dt:g}" for case, dt in results.step.items()]
+    rows = [("the paper, which gives no threshold", *PAPER_TIMES)]
+    remarks = dict.fromkeys(AS_PRINTED, " (as the paper ran)") | {ACCURATE: " (defaults of the fix)"}
+    for key, row in ROWS.items():
+        times = [show_times(parting_times(results, case, key)) for case in results.step]
+        rows.append((row.label + remarks.get(key, ""), *times))
+    times = []
+    for case in results.step:
+        pair = [results.get(case, ACCURATE, name) for name in ("rigid", "second")]
+        times.append(show_times([dv.parting_time(*pair, threshold) for threshold in THRESHOLDS]))
+    return Table(header, [*rows, ("fix rigid/nve/small against the second formulation", *times)])
+
+
+def error_table(first, steps, errors, costs=None):
+    """Errors by method and step, and what a step costs."""
+    header = (first, *(f"step {step:g}" for step in steps), *(["µs per step"] if costs else []))
+    rows = [
+        (label, *(f"{error:.1e}" for error in row), *([f"{costs[label]:.2f}"] if costs else []))
+        for label, row in errors.items()
+    ]
+    return Table(header, rows)
+
+
+# --- finding ------------------------------------------------------------------------------------
+def measurements(position, energy, steps, count):
+    """Errors of all methods with all digits, and how many claims got which verdict."""
+    found = [
+        Measurement("claims that are reproduced", count[REPRODUCED], spec="d", least=LEAST_REPRODUCED),
+        Measurement("claims that are not reproducible", count[NOT], spec="d", most=MOST_NOT),
+    ]
+    defaults = (accuracy.FIRST, accuracy.SECOND)
+    for label, errors in position.items():
+        for step, error in zip(ACCURACY_STEPS, errors):
+            what = f"{label}, step {step:g}: error of the center of mass at t = {ACCURACY_END:g}"
+            most = MOST_ERROR if label in defaults and step == CHECKED_STEP else None
+            found.append(Measurement(what, error, most=most))
+    for label, errors in energy.items():
+        for step, error in zip(steps, errors):
+            what = f"{label}, step {step:g}: largest error of the total energy to t = {END:g}"
+            most = MOST_ERROR if label in defaults and step == steps[0] else None
+            found.append(Measurement(what, error, most=most))
+    return found
+
+
+def summary(claims, width=100):
+    """The claims for a terminal, one short block for each."""
+    lines, indent = [], {"initial_indent": "    ", "subsequent_indent": "    "}
+    for judged in claims:
+        claim = judged.claim
+        lines += textwrap.wrap(f"{judged.verdict.upper()}: {claim.paper} ({claim.source})", width)
+        lines += textwrap.wrap(judged.measured, width, **indent)
+        lines += textwrap.wrap(judged.why, width, **indent)
+    return "\n".join(lines)
+
+
+def find(results):
+    """Finding of plan.Results."""
+    claims = all_claims(results)
+    count = {verdict: 0 for verdict in (REPRODUCED, EXPLAINED, NOT)}
+    for judged in claims:
+        count[judged.verdict] += 1
+    position, energy = accuracy.position_errors(results), accuracy.energy_errors(results)
+    steps, costs = accuracy.energy_steps(results), accuracy.step_costs(results)
+    at = ACCURACY_STEPS.index(CHECKED_STEP)
+    ours, rigid = energy[accuracy.SECOND], energy[accuracy.RIGID]
+    tables = {
+        "claims": claim_table(claims),
+        "table7": table7(results),
+        "position": error_table("error of the center of mass", ACCURACY_STEPS, position),
+        "energy": error_table("largest error of the total energy", steps, energy, costs),
+    }
+    context = {
+        "claims": len(claims),
+        "count": count,
+        "runs": len(results.series),
+        "step": CHECKED_STEP,
+        "at": {label: errors[at] for label, errors in position.items()},
+        "better": [f"{step:g}" for step, a, b in zip(steps, ours, rigid) if a < b],
+        "worse": [f"{step:g}" for step, a, b in zip(steps, ours, rigid) if not a < b],
+        "ends": (ACCURACY_END, END),
+        "fine": results.fine,
+    }
+    found = measurements(position, energy, steps, count)
+    return Finding(found, tables, pictures(results), context, summary(claims))
+
+
+STUDY = Study(
+    key="cases",
+    title="The paper's claims and what was measured",
+    page="results",
+    seconds=180.0,
+    measure=measure,
+    find=find,
+)

@@ -1,18 +1,15 @@
 """The film of test case 3: the body goes round a sphere of the cage, and leaves."""
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from PIL import Image
+from tqdm import tqdm
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from PIL import Image  # noqa: E402
-
-from .figures import LOOK, NOTE, add_body, add_cage  # noqa: E402
-from .view import Camera, Stage  # noqa: E402
+from .figures import LOOK, NOTE, add_body, add_cage
+from .view import Camera, Stage
 
 SIZE, DPI = (6.4, 3.6), 100
-COLOURS, SECONDS = 96, 0.07
+COLORS, SECONDS = 96, 0.07
 VIEW = Camera((92.0, -10.0, 2.0), -72.0, 16.0, 440.0)
 CLOSE = 14.0
 
@@ -41,16 +38,17 @@ def _still(scene, k):
     return pixels
 
 
-def draw_film(path, scene, begin=200.0, every=4, progress=None):
+def draw_film(path, scene, begin=200.0, every=4):
     """Film of a Scene from time ``begin`` on as an animated GIF, a picture for each ``every`` samples.
 
     One palette serves all pictures, so that only what has moved is stored anew.
     """
     rows = range(int(np.searchsorted(scene.time, begin)), len(scene.time), every)
     with plt.rc_context(LOOK):
-        stills = [Image.fromarray(_still(scene, k)) for k in (progress(rows) if progress else rows)]
+        bar = tqdm(rows, desc="drawing the film", disable=None)
+        stills = [Image.fromarray(_still(scene, k)) for k in bar]
     sample = np.concatenate([np.asarray(stills[k]) for k in (0, len(stills) // 2, -1)])
-    palette = Image.fromarray(sample).quantize(COLOURS, dither=Image.Dither.NONE)
+    palette = Image.fromarray(sample).quantize(COLORS, dither=Image.Dither.NONE)
     frames = [still.quantize(palette=palette, dither=Image.Dither.NONE) for still in stills]
     durations = [int(1000 * SECONDS)] * (len(frames) - 1) + [2000]
     frames[0].save(

@@ -25,13 +25,13 @@ class Camera:
         return np.array([right, np.cross(back, right), back])
 
     def project(self, points):
-        """Points (..., 3) on the picture (..., 2), their depth (...), and how large a unit is there (...)."""
+        """Points (..., 3) on the picture (..., 2), their depth (...), and the size of a unit there (...)."""
         seen = (np.asarray(points, dtype=float) - self.target) @ self.frame().T
         scale = self.distance / (self.distance - seen[..., 2])
         return seen[..., :2] * scale[..., None], seen[..., 2], scale
 
 
-def sphere_image(colour, fade=0.0, pixels=96):
+def sphere_image(color, fade=0.0, pixels=96):
     """A lit sphere as an image (pixels, pixels, 4); ``fade`` mixes it with white, 1 is white."""
     edge = (np.arange(pixels) + 0.5) / pixels * 2.0 - 1.0
     x, y = np.meshgrid(edge, edge)
@@ -39,7 +39,7 @@ def sphere_image(colour, fade=0.0, pixels=96):
     z = np.sqrt(np.clip(1.0 - r2, 0.0, 1.0))
     light = np.array([-0.45, 0.55, 0.71])
     bright = np.clip(light[0] * x + light[1] * y + light[2] * z, 0.0, 1.0)
-    shade = (0.45 + 0.55 * bright)[..., None] * np.array(to_rgb(colour))
+    shade = (0.45 + 0.55 * bright)[..., None] * np.array(to_rgb(color))
     shade = shade + 0.5 * (bright**24)[..., None] * (WHITE - shade)
     image = np.empty((pixels, pixels, 4))
     image[..., :3] = np.clip(shade + fade * (WHITE - shade), 0.0, 1.0)
@@ -49,7 +49,7 @@ def sphere_image(colour, fade=0.0, pixels=96):
 
 @dataclass
 class Stage:
-    """What is to be seen by a camera: gathered, then drawn from far to near."""
+    """Everything that a camera sees: gathered, then drawn from far to near."""
 
     camera: Camera
     haze: tuple = (1e9, 2e9)  # depths behind the target between which things fade away
@@ -59,16 +59,16 @@ class Stage:
         near, far = self.haze
         return 0.75 * float(np.clip((-depth - near) / (far - near), 0.0, 1.0))
 
-    def spheres(self, centres, radius, colour):
+    def spheres(self, centres, radius, color):
         """Spheres at centres (n, 3)."""
         for at, depth, scale in zip(*self.camera.project(np.atleast_2d(centres))):
-            self._things.append((depth, self._draw_sphere, (at, radius * scale, colour, depth)))
+            self._things.append((depth, self._draw_sphere, (at, radius * scale, color, depth)))
 
-    def lines(self, points, colour, width, pieces=1, alpha=1.0):
-        """A path (n, 3), cut into pieces that are sorted by depth on their own; ``colour`` one or one each."""
+    def lines(self, points, color, width, pieces=1, alpha=1.0):
+        """A path (n, 3), cut into pieces that are sorted by depth on their own; ``color`` one or one each."""
         at, depth, _ = self.camera.project(points)
-        colours = [colour] * pieces if isinstance(colour, str) else colour
-        for part, own in zip(np.array_split(np.arange(len(points) - 1), pieces), colours):
+        colors = [color] * pieces if isinstance(color, str) else color
+        for part, own in zip(np.array_split(np.arange(len(points) - 1), pieces), colors):
             if len(part):
                 chosen = np.append(part, part[-1] + 1)
                 middle = depth[chosen].mean()
@@ -77,22 +77,22 @@ class Stage:
                     (middle, self._draw_line, (at[chosen], tuple(mixed), width, alpha))
                 )
 
-    def rod(self, begin, end, colour, width, radii=(0.0, 0.0)):
+    def rod(self, begin, end, color, width, radii=(0.0, 0.0)):
         """A straight rod between the surfaces of two spheres, in pieces that are sorted by depth."""
         begin, along = np.asarray(begin), np.asarray(end) - np.asarray(begin)
         inside = 0.97 * np.asarray(radii) / np.linalg.norm(along)
         steps = np.linspace(inside[0], 1.0 - inside[1], 5)[:, None]
-        self.lines(begin + steps * along, colour, width, 4)
+        self.lines(begin + steps * along, color, width, 4)
 
-    def _draw_sphere(self, axis, order, at, radius, colour, depth):
+    def _draw_sphere(self, axis, order, at, radius, color, depth):
         extent = (at[0] - radius, at[0] + radius, at[1] - radius, at[1] + radius)
-        image = sphere_image(colour, self._fade(depth))
+        image = sphere_image(color, self._fade(depth))
         axis.imshow(image, extent=extent, origin="lower", zorder=order, interpolation="bilinear")
 
     @staticmethod
-    def _draw_line(axis, order, at, colour, width, alpha):
+    def _draw_line(axis, order, at, color, width, alpha):
         axis.plot(
-            *at.T, color=colour, linewidth=width, alpha=alpha, zorder=order, solid_capstyle="round"
+            *at.T, color=color, linewidth=width, alpha=alpha, zorder=order, solid_capstyle="round"
         )
 
     def draw(self, axis, half_width, half_height):

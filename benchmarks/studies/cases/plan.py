@@ -1,0 +1,158 @@
+"""The paper's three test cases: what is run, and where each result is found again.
+
+Source: R. M. Pratt and K. M. Bin Mohamad Zaini, "General Algorithms for 3-D Motion of a Non-Planar
+Body in a Steady-State Force Field".  Every run is sampled once per unit of time.
+"""
+
+from dataclasses import dataclass
+
+from benchmarks.engine import series
+from benchmarks.engine.decks import deck_of_case
+from benchmarks.engine.lab import Job
+
+FORMULATIONS = ("first", "second")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One way to read the paper, a row of Table 7: a body, a start and what is projected."""
+
+    key: str
+    body: str
+    label: str
+    variables: dict
+
+
+ROWS = {
+    key: Row(key, body, f"{body} body, {label}", {"body": body} | variables)
+    for key, body, label, variables in (
+        ("consistent-zero-free", "consistent", "zero start, not projected", {"choices": "paper"}),
+        ("unrotated-zero-free", "unrotated", "zero start, not projected", {"choices": "paper"}),
+        (
+            "unrotated-zero-projected",
+            "unrotated",
+            "zero start, projected",
+            {"choices": "paper", "project": "yes"},
+        ),
+        ("consistent-accurate", "consistent", "accurate start, projected", {}),
+    )
+}
+#: rows with the paper's own choices throughout, and the row with the defaults of the fix
+AS_PRINTED, ACCURATE = ("consistent-zero-free", "unrotated-zero-free"), "consistent-accurate"
+
+STEP = {1: 0.001, 2: 0.125, 3: 0.005}  # of Table 7
+QUICK_STEP = {1: 0.005, 2: 0.125, 3: 0.025}
+END = 5000.0
+FINE_STEP = 0.0001  # --full: the 50 million steps of Figs. 2 to 4
+
+#: case: (part of the step of Table 7, end) of the runs that ask whether the step matters
+OTHER_STEP = {1: (1 / 2, 1500.0), 3: (1 / 5, 1500.0)}
+
+#: which omega feeds Eq. 5: short runs with an accurate start at this step
+OMEGA_STEP, OMEGA_END = 0.05, 200.0
+
+#: error against step (accuracy.py): short runs of case 1, to where its trajectory is known
+ACCURACY_STEPS, ACCURACY_END = (0.1, 0.05, 0.02, 0.01), 200.0
+#: energy against step: long runs of case 1 at steps that are too large for it
+COARSE_STEPS = (0.25, 1.0)
+
+
+def name_of(case, row, formulation, dt, omega=""):
+    """Name of a run and its files."""
+    name = f"case{case}_{row}_{formulation}_dt{dt:g}"
+    return f"{name}_omega-{omega}" if omega else name
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: a case, a row, a formulation (or "rigid", fix rigid/nve/small), a step, its end."""
+
+    case: int
+    row: str
+    formulation: str
+    dt: float
+    end: float = END
+    omega: str = ""
+
+    @property
+    def name(self):
+        """Name of its files."""
+        return name_of(self.case, self.row, self.formulation, self.dt, self.omega)
+
+    @property
+    def job(self):
+        """What the Lab runs."""
+        steps = round(self.end / self.dt)
+        variables = {"formulation": self.formulation, "dt": f"{self.dt:.17g}"}
+        variables |= {"steps": steps, "every": round(1.0 / self.dt)} | ROWS[self.row].variables
+        if self.omega:
+            # as the paper corrects: a second pass would use the corrected one in any case
+            variables |= {"omega": self.omega, "values": 5, "passes": 1}
+        return Job(deck_of_case(self.case), variables, steps)
+
+
+def planned_runs(step, full=False):
+    """All runs behind the tables and the figures; ``step``: that of each case."""
+    runs = [
+        Run(case, row, formulation, dt)
+        for case, dt in step.items()
+        for row in ROWS
+        for formulation in FORMULATIONS
+    ]
+    runs += [Run(case, ACCURATE, "rigid", dt) for case, dt in step.items()]
+    runs += [
+        Run(case, row, formulation, step[case] * part, end)
+        for case, (part, end) in OTHER_STEP.items()
+        for row in AS_PRINTED
+        for formulation in FORMULATIONS
+    ]
+    runs += [
+        Run(1, ACCURATE, "first", OMEGA_STEP, OMEGA_END, omega)
+        for omega in ("corrected", "predicted")
+    ]
+    for dt in (*ACCURACY_STEPS, *COARSE_STEPS):
+        end = END if dt in COARSE_STEPS else ACCURACY_END
+        for formulation in FORMULATIONS:
+            runs += [Run(1, row, formulation, dt, end) for row in (AS_PRINTED[0], ACCURATE)]
+        runs.append(Run(1, ACCURATE, "rigid", dt, end))
+    if full:
+        runs += [Run(1, row, form, FINE_STEP) for row in AS_PRINTED for form in FORMULATIONS]
+    return runs
+
+
+@dataclass(frozen=True)
+class Results:
+    """Finished runs: ``step`` of each case; Series and ``seconds`` of LAMMPS' loop by name_of."""
+
+    step: dict
+    series: dict
+    seconds: dict
+
+    def get(self, case, row, formulation, dt=None, omega=""):
+        """Series of a run; ``dt`` is the step of the case unless given."""
+        return self.series[name_of(case, row, formulation, dt or self.step[case], omega)]
+
+    def loop_seconds(self, case, row, formulation):
+        """Wall time of a run at the step of the case, without its start."""
+        return self.seconds[name_of(case, row, formulation, self.step[case])]
+
+    def other_step(self, case):
+        """The step of the case's runs that ask whether the step matters."""
+        return self.step[case] * OTHER_STEP[case][0]
+
+    @property
+    def fine(self):
+        """FINE_STEP if the 50 million steps were run, else None."""
+        return FINE_STEP if name_of(1, AS_PRINTED[0], "first", FINE_STEP) in self.series else None
+
+
+def measure(lab):
+    """Run everything: Results.  Leaves each series as CSV in the folder ``series``."""
+    step = QUICK_STEP if lab.quick else STEP
+    found = lab.many({run.name: run.job for run in planned_runs(step, lab.full)})
+    results = Results(step, {}, {})
+    (lab.out / "series").mkdir(exist_ok=True)
+    for name, finished in found.items():
+        results.series[name], results.seconds[name] = series.of_log(finished.log), finished.log.seconds
+        series.write_csv(lab.out / "series" / f"{name}.csv", results.series[name])
+    return results
