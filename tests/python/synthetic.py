@@ -59,9 +59,7 @@ def made_up(run):
     return replace(values, step=time / run.dt)
 
 
-def made_up_results(full=False, seconds=1.0):
+def made_up_results(full=False):
     """Results of ``benchmarks/run cases`` as the paper tells them."""
-    results = plan.Results(plan.STEP, {}, {})
-    for run in plan.planned_runs(plan.STEP, full):
-        results.series[run.name], results.seconds[run.name] = made_up(run), seconds
-    return results
+    runs = plan.planned_runs(plan.STEP, full)
+    return plan.Results(plan.STEP, {run.name: made_up(run) for run in runs})

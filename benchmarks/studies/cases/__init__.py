@@ -59,14 +59,10 @@ def table7(results):
     return Table(header, [*rows, ("fix rigid/nve/small against the second formulation", *times)])
 
 
-def error_table(first, steps, errors, costs=None):
-    """Errors by method and step, and what a step costs."""
-    header = (first, *(f"step {step:g}" for step in steps), *(["µs per step"] if costs else []))
-    rows = [
-        (label, *(f"{error:.1e}" for error in row), *([f"{costs[label]:.2f}"] if costs else []))
-        for label, row in errors.items()
-    ]
-    return Table(header, rows)
+def error_table(first, steps, errors):
+    """Errors by method and step."""
+    rows = [(label, *(f"{error:.1e}" for error in row)) for label, row in errors.items()]
+    return Table((first, *(f"step {step:g}" for step in steps)), rows)
 
 
 # --- finding ------------------------------------------------------------------------------------
@@ -108,14 +104,13 @@ def find(results):
     for judged in claims:
         count[judged.verdict] += 1
     position, energy = accuracy.position_errors(results), accuracy.energy_errors(results)
-    steps, costs = accuracy.energy_steps(results), accuracy.step_costs(results)
-    at = ACCURACY_STEPS.index(CHECKED_STEP)
+    steps, at = accuracy.energy_steps(results), ACCURACY_STEPS.index(CHECKED_STEP)
     ours, rigid = energy[accuracy.SECOND], energy[accuracy.RIGID]
     tables = {
         "claims": claim_table(claims),
         "table7": table7(results),
         "position": error_table("error of the center of mass", ACCURACY_STEPS, position),
-        "energy": error_table("largest error of the total energy", steps, energy, costs),
+        "energy": error_table("largest error of the total energy", steps, energy),
     }
     context = {
         "claims": len(claims),

@@ -60,12 +60,3 @@ def energy_errors(results):
 
     steps = energy_steps(results)
     return {label: [largest(method, dt) for dt in steps] for label, method in METHODS.items()}
-
-
-def step_costs(results):
-    """Label -> microseconds per step of the long run of case 1."""
-    costs = {}
-    for label, (row, formulation) in METHODS.items():
-        steps = results.get(1, row, formulation).step[-1]
-        costs[label] = 1e6 * results.loop_seconds(1, row, formulation) / steps
-    return costs

@@ -122,19 +122,14 @@ def planned_runs(step, full=False):
 
 @dataclass(frozen=True)
 class Results:
-    """Finished runs: ``step`` of each case; Series and ``seconds`` of LAMMPS' loop by name_of."""
+    """Finished runs: ``step`` of each case, and the Series of every run by name_of."""
 
     step: dict
     series: dict
-    seconds: dict
 
     def get(self, case, row, formulation, dt=None, omega=""):
         """Series of a run; ``dt`` is the step of the case unless given."""
         return self.series[name_of(case, row, formulation, dt or self.step[case], omega)]
-
-    def loop_seconds(self, case, row, formulation):
-        """Wall time of a run at the step of the case, without its start."""
-        return self.seconds[name_of(case, row, formulation, self.step[case])]
 
     def other_step(self, case):
         """The step of the case's runs that ask whether the step matters."""
@@ -150,9 +145,8 @@ def measure(lab):
     """Run everything: Results.  Leaves each series as CSV in the folder ``series``."""
     step = QUICK_STEP if lab.quick else STEP
     found = lab.many({run.name: run.job for run in planned_runs(step, lab.full)})
-    results = Results(step, {}, {})
+    results = Results(step, {name: series.of_log(run.log) for name, run in found.items()})
     (lab.out / "series").mkdir(exist_ok=True)
-    for name, finished in found.items():
-        results.series[name], results.seconds[name] = series.of_log(finished.log), finished.log.seconds
-        series.write_csv(lab.out / "series" / f"{name}.csv", results.series[name])
+    for name, values in results.series.items():
+        series.write_csv(lab.out / "series" / f"{name}.csv", values)
     return results
