@@ -263,36 +263,28 @@ def measurements(results):
     return rows
 
 
-def kept_tables(results):
-    """Tables of the tied bodies, and CSV of all their runs."""
+def kinetic_table(results):
+    """Drift, largest change and balance of the tied bodies by step."""
     plan = results.plan
-    steps = [f"step {dt:g}" for dt in plan.dts]
+    keys = [(False, dt) for dt in plan.dts] + [(True, plan.rescaled_dt)]
     columns = {
         "drift of K/K(0) in the run": lambda kept, dt: kept.drift[0] * plan.drift_steps * dt,
         "largest change of K/K(0)": lambda kept, dt: kept.largest,
-        "largest error of the balance of energies, in units of K": lambda kept, dt: abs(
-            kept.balance
-        ).max(),
+        "largest error of the balance of energies, in units of K": (
+            lambda kept, dt: abs(kept.balance).max()
+        ),
     }
     rows = []
     for words, value in columns.items():
         for constraint in CONSTRAINTS:
-            cells = [f"{value(results.kept[constraint, False, dt], dt):.1e}" for dt in plan.dts]
-            kept = results.kept[constraint, True, plan.rescaled_dt]
-            rescaled = f"{value(kept, plan.rescaled_dt):.1e}"
-            rows.append([f"{TITLES[constraint]}: {words}", *cells, rescaled])
-    header = ("", *steps, f"step {plan.rescaled_dt:g}, rescaled")
-    every = [
-        (*key, *kept.drift, kept.largest, abs(kept.balance).max())
-        for key, kept in results.kept.items()
-    ]
-    names = ("constraint", "rescaled", "step", "drift", "standard error", "largest", "balance")
-    return {"kinetic": Table(header, rows), "drift": Table(names, every)}
+            numbers = [value(results.kept[constraint, *key], key[1]) for key in keys]
+            rows.append([f"{TITLES[constraint]}: {words}", *(f"{x:.1e}" for x in numbers)])
+    return Table(("", *(f"step {dt:g}" + ", rescaled" * fixed for fixed, dt in keys)), rows)
 
 
-def water_tables(results):
-    """Table of the energies of water, and CSV of the pair distributions."""
-    rows, every = [], []
+def water_table(results):
+    """Energies of water and deviations from the thermostat."""
+    rows = []
     for method in METHODS:
         mean = results.energy(method)
         value, error = KILOJOULES * float(mean.value), KILOJOULES * float(mean.error)
@@ -309,8 +301,6 @@ def water_tables(results):
             d = compare_distributions(results, method)
             row[3:] = [f"{z:+.1f}", f"{d.largest:.1f} ({d.difference:.2g}), rms {d.rms:.2f}"]
         rows.append(row)
-        distances, g = results.distribution(method)
-        every += [(method, *values) for values in zip(distances, g.value, g.error)]
     header = (
         "water",
         "potential energy, kJ/mol, ± standard error",
@@ -318,8 +308,7 @@ def water_tables(results):
         "deviation of the energy, standard errors",
         "largest deviation of g(r), standard errors (value)",
     )
-    names = ("method", "r", "g", "standard error")
-    return {"water": Table(header, rows), "distribution": Table(names, every)}
+    return Table(header, rows)
 
 
 # --- picture ------------------------------------------------------------------------------------
@@ -367,7 +356,7 @@ def find(results):
         "confidence": statistics.CONFIDENCE,
         "least": LEAST_DISTRIBUTION,
     }
-    tables = kept_tables(results) | water_tables(results)
+    tables = {"kinetic": kinetic_table(results), "water": water_table(results)}
     picture = partial(draw, panels=panels(results), columns=2)
     return Finding(measurements(results), tables, {"isokinetic": picture}, context)
 
