@@ -5,8 +5,6 @@ import runpy
 import numpy as np
 import pytest
 
-from benchmarks.engine import decks
-
 MOTIONS = ("first", "second", "rigid")
 METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")
 ENERGY = {1: -0.72360304, 2: -0.72360304, 3: 3.99270832}
@@ -34,12 +32,6 @@ def test_generator_check_can_fail(generator, examples):
         masses[3] /= 1.01
         generator["scene_files"].__globals__["SITE_MASS"] = (2.0, 2.0, 10.0, 50.0)
     assert all((examples / name).read_text() != text for name, text in files.items())
-
-
-def test_package_finds_the_decks(examples):
-    for case in ENERGY:
-        deck = decks.deck_of_case(case)
-        assert deck.read_text() == (examples / f"case{case}" / f"in.case{case}").read_text()
 
 
 @pytest.mark.parametrize("body", ["consistent", "unrotated"])

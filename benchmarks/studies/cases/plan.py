@@ -7,7 +7,7 @@ Body in a Steady-State Force Field".  Every run is sampled once per unit of time
 from dataclasses import dataclass
 
 from benchmarks.engine import series
-from benchmarks.engine.decks import deck_of_case
+from benchmarks.engine.decks import deck
 from benchmarks.engine.lab import Job
 
 FORMULATIONS = ("first", "second")
@@ -88,7 +88,7 @@ class Run:
         if self.omega:
             # as the paper corrects: a second pass would use the corrected one in any case
             variables |= {"omega": self.omega, "values": 5, "passes": 1}
-        return Job(deck_of_case(self.case), variables, steps)
+        return Job(deck(f"case{self.case}"), variables, steps)
 
 
 def planned_runs(step, full=False):

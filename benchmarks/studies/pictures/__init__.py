@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from benchmarks.engine import series
-from benchmarks.engine.decks import deck_of_case
+from benchmarks.engine.decks import deck
 from benchmarks.engine.lab import Job
 from benchmarks.engine.study import Finding, Study
 from lammps_gearquat.analysis import Poses, open_dump
@@ -60,7 +60,7 @@ def measure(lab):
     for case, (step, end, every) in RUNS.items():
         steps, between = round((QUICK_END if lab.quick else end) / step), round(every / step)
         variables = {"dt": step, "steps": steps, "every": between, "dump": between}
-        jobs[case] = Job(deck_of_case(case), variables, steps)
+        jobs[case] = Job(deck(f"case{case}"), variables, steps)
     found = lab.many({f"case{case}": job for case, job in jobs.items()})
     return {case: read(found[f"case{case}"], RUNS[case][0]) for case in jobs}
 
