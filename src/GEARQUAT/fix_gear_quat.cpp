@@ -19,21 +19,16 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
 #include "gear_quat_checks.h"
-#include "gear_quat_extract.h"
-#include "gear_quat_infile_out.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_neighbors.h"
+#include "gear_quat_outputs.h"
 #include "gear_quat_report.h"
 #include "gear_quat_respa.h"
 #include "gear_quat_restart.h"
-#include "gear_quat_rigid_words.h"
 #include "gear_quat_scene.h"
-#include "gear_quat_sums.h"
-#include "gear_quat_table.h"
 #include "gear_quat_template.h"
 
 #include "atom.h"
-#include "citeme.h"
 #include "comm.h"
 #include "error.h"
 #include "force.h"
@@ -49,47 +44,13 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace GearQuat;
 
-// LAMMPS shows the first line of each
-
-static const char cite_first[] =
-    "fix gear/quat: quaternions in the equations of motion, first-order form\n\n"
-    "@Article{Evans1977,\n"
-    " author = {Denis J. Evans},\n"
-    " title = {On the Representation of Orientation Space},\n"
-    " journal = {Molecular Physics},\n"
-    " year = 1977,\n"
-    " volume = 34,\n"
-    " pages = {317--325}\n"
-    "}\n\n";
-
-static const char cite_second[] =
-    "fix gear/quat: quaternions in the equations of motion, second-order form\n\n"
-    "@Article{Rapaport1985,\n"
-    " author = {Dennis C. Rapaport},\n"
-    " title = {Molecular Dynamics Simulation Using Quaternions},\n"
-    " journal = {Journal of Computational Physics},\n"
-    " year = 1985,\n"
-    " volume = 60,\n"
-    " pages = {306--314}\n"
-    "}\n\n";
-
-static const char cite_cases[] =
-    "fix gear/quat: both forms side by side, test cases\n\n"
-    "@Misc{PrattZaini,\n"
-    " author = {Ronald M. Pratt and Khairil Mazwan {Bin Mohamad Zaini}},\n"
-    " title = {General Algorithms for {3-D} Motion of a Non-Planar Body in a Steady-State Force "
-    "Field}\n"
-    "}\n\n";
-
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), met_atoms(false), reported(false), compared(false), velocities_read(true),
     vflag_of_step(0)
 {
-  if (lmp->citeme)
-    for (const char *what : {cite_first, cite_second, cite_cases}) lmp->citeme->add(what);
-
+  add_citations(lmp);
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = 1;
   global_freq = 1;
@@ -123,6 +84,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   size_vector = Sums::ELEMENTS + motion->elements();
   find_template(lmp, args->mol);    // it has to exist
   extracts.reset(new Extract(lmp, *bodies, args->mol));
+  readers.reset(new Readers);
   maxexchange = bodies->max_exchange();
   comm_forward = bodies->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
@@ -134,7 +96,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   count_rows();
   size_array_rows_variable = !args->mol.empty();    // rows may be asked for before they are there
 
-  // only now that nothing can fail: LAMMPS would go on calling a fix that does not exist
+  // This comes last because LAMMPS would call back a fix whose constructor has failed.
   extlist = new int[size_vector]{1, 1};
   for (int n = 0; n < motion->elements(); ++n) extlist[Sums::ELEMENTS + n] = motion->extensive(n);
   atom->add_callback(Atom::GROW);
@@ -151,8 +113,6 @@ void FixGearQuat::create_bodies()
   bodies->create(args->body_ids(lmp, groupbit), given);
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixGearQuat::~FixGearQuat()
 {
   if (copymode) return;
@@ -161,9 +121,7 @@ FixGearQuat::~FixGearQuat()
   delete[] extlist;
 }
 
-/* ---------------------------------------------------------------------- */
-
-/// LAMMPS asks for it when a new fix has got its restart data, on all ranks.
+/// LAMMPS calls this on all ranks, when a new fix has received its restart data.
 int FixGearQuat::setmask()
 {
   resume();
@@ -205,17 +163,14 @@ void FixGearQuat::reset_dt()
   motion->follow_time_step();
 }
 
-/// Bodies keep their state between runs; what the user changed in the atoms is taken over.
+/// Bodies keep their state between runs, and take over what the user has changed in the atoms.
 void FixGearQuat::setup_pre_neighbor()
 {
   bodies->check_whole();
   bodies->choose_large();
   bodies->update_ghosts();
   if (met_atoms) take_velocities(update->ntimestep, false);
-  const bool from_atoms = args->infile.empty() &&
-      std::none_of(stated.begin(), stated.end(), [](const StatedMolecule &one) {
-                            return one.differs;
-                          });
+  const bool from_atoms = args->infile.empty() && !any_differs(stated);
   const bool take_over = from_atoms && (args->reinit || !met_atoms);
   if (take_over && !bodies->atoms_match()) {
     bodies->recreate();
@@ -231,7 +186,7 @@ void FixGearQuat::setup_pre_neighbor()
   count_rows();
 }
 
-/// What fixes that scale velocities or shift them gave to the atoms of bodies in the end of a step.
+/// Other fixes may have scaled or shifted the velocities of atoms at the end of a step.
 void FixGearQuat::take_velocities(bigint step, bool end)
 {
   motion->take_velocities(neighbors->take_velocities(step, end));
@@ -239,10 +194,10 @@ void FixGearQuat::take_velocities(bigint step, bool end)
 
 void FixGearQuat::setup(int vflag)
 {
-  readers_every = periods_of_readers(lmp, this);
+  *readers = readers_at_end(lmp, this);
   bodies->spread_states();
   bodies->place_velocities();
-  for (auto &one : bodies->last) one.work = 0.0;    // positions are the corrected ones
+  bodies->forget_work();    // positions are the corrected ones
   v_init(vflag);
   if (!reported) neighbors->check_gravity();
   bodies->gather_loads(atom->f, atom->torque);
@@ -254,20 +209,20 @@ void FixGearQuat::setup(int vflag)
   reported = true;
 }
 
-/// A row, once there, stays: what has asked for it goes on doing so when its body is gone.
+/// The array never becomes shorter, because output goes on asking for the rows of removed bodies.
 void FixGearQuat::count_rows()
 {
   size_array_rows = std::max(size_array_rows, (int) bodies->number());
 }
 
-/// Local data have to be there whenever something may read them.
+/// LAMMPS does not ask for local data, so they are made before anything may read them.
 void FixGearQuat::show_bodies()
 {
   array_local = table->local();
   size_local_rows = bodies->nowned();
 }
 
-/// Atoms were exchanged; other fixes may have inserted or removed bodies.
+/// Atoms were exchanged, and other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
   bodies->update_ghosts();
@@ -281,14 +236,10 @@ void FixGearQuat::pre_neighbor()
 
 void FixGearQuat::initial_integrate(int vflag)
 {
-  vflag_of_step = vflag;
-  take_velocities(update->ntimestep - 1, true);
-  // forces of the step before are still there, those of all other fixes among them
-  if (motion->begins_steps()) begin_steps(atom->f, atom->torque);
-  begin_step();
+  begin_step(vflag, atom->f, atom->torque);
 }
 
-/// The first fix gear/quat in the list does so for all of them: their bodies act on each other.
+/// The first fix gear/quat in the list starts the bodies of all of them, for they act on each other.
 void FixGearQuat::begin_steps(double **f, double **torque)
 {
   std::vector<Motion *> all;
@@ -308,8 +259,12 @@ void FixGearQuat::final_integrate()
   finish_step(atom->f, atom->torque);
 }
 
-void FixGearQuat::begin_step()
+/// f, torque: what all pair styles and fixes have made in the step before.
+void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
+  vflag_of_step = vflag;
+  take_velocities(update->ntimestep - 1, true);
+  if (motion->begins_steps()) begin_steps(f, torque);
   if (update->ntimestep == update->firststep + 1 && !compared)    // run ... pre no
     neighbors->check_all();
   else
@@ -331,21 +286,13 @@ void FixGearQuat::finish_step(double **f, double **torque)
   bodies->spread_states();
   bodies->place_sites(true);
   table->forget();
-  if (!read_at_end()) return;
-  comm->forward_comm();    // ghost atoms are where the forces were taken
-  show_bodies();
+  const bool output_due = output->next == update->ntimestep;
+  if (output_due || is_due(readers->of_atoms, update->ntimestep))
+    comm->forward_comm();    // ghost atoms are where the forces were taken
+  if (output_due || is_due(readers->of_local_data, update->ntimestep)) show_bodies();
 }
 
-/// True if output or another fix may read atoms or bodies when this step is done.
-bool FixGearQuat::read_at_end() const
-{
-  if (output->next == update->ntimestep) return true;
-  for (const int period : readers_every)
-    if (update->ntimestep % period == 0) return true;
-  return false;
-}
-
-/// With tolerance only: all fixes have finished the step.
+/// LAMMPS calls this with keyword tolerance only, when all fixes have finished the step.
 void FixGearQuat::end_of_step()
 {
   motion->choose_step();
@@ -379,13 +326,8 @@ void FixGearQuat::tally_virial(double **f)
 void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {
   if (!respa->outermost(ilevel)) return;
-  vflag_of_step = vflag;
-  take_velocities(update->ntimestep - 1, true);
-  if (motion->begins_steps()) {
-    respa->recall();
-    begin_steps(respa->forces(), respa->torques());
-  }
-  begin_step();
+  if (motion->begins_steps()) respa->sum_present();
+  begin_step(vflag, respa->forces(), respa->torques());
 }
 
 void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
@@ -443,7 +385,7 @@ void FixGearQuat::copy_arrays(int i, int j, int delflag)
   bodies->copy_arrays(i, j, delflag);
 }
 
-/// A new atom: in no body, unless set_molecule() follows.
+/// A new atom is in no body unless set_molecule() follows.
 void FixGearQuat::set_arrays(int i)
 {
   bodies->set_arrays(i);
@@ -508,7 +450,7 @@ void FixGearQuat::write_restart(FILE *fp)
   if (comm->me == 0) restarts->write(fp);
 }
 
-/// All bodies in the format of keyword infile, beside the binary restart file.
+/// Writes all bodies in the format of keyword infile beside the binary restart file.
 void FixGearQuat::write_restart_file(const char *file)
 {
   if (!met_atoms) return;    // the atoms may still be changed by the user
@@ -521,7 +463,7 @@ void FixGearQuat::restart(char *buf)
   restarts->read(buf);
 }
 
-/// The bodies of a restart file go on, if they are those of the command.
+/// The bodies of a restart file continue if the command makes the same ones.
 void FixGearQuat::resume()
 {
   if (!restarts->was_read()) return;

@@ -36,6 +36,7 @@ namespace GearQuat {
   class Restart;
   class Sums;
   struct Arguments;
+  struct Readers;
   struct StatedMolecule;
 }    // namespace GearQuat
 
@@ -102,21 +103,20 @@ class FixGearQuat : public Fix, public GearQuat::Peer {
 
   std::vector<GearQuat::StatedMolecule> stated;    // by molecules of the template
 
-  bool met_atoms;                    // bodies were compared with the atoms in a run before
-  bool reported;                     // the scene, once
-  bool compared;                     // bodies with the atoms, before this run
-  bool velocities_read;              // between prediction and correction, by others
-  int vflag_of_step;                 // what LAMMPS asked of the virial when the step began
-  std::vector<int> readers_every;    // of other fixes, at the end of a step
+  bool met_atoms;          // bodies were compared with the atoms in a run before
+  bool reported;           // the scene, once
+  bool compared;           // bodies with the atoms, before this run
+  bool velocities_read;    // between prediction and correction, by others
+  int vflag_of_step;       // what LAMMPS asked of the virial when the step began
+  std::unique_ptr<GearQuat::Readers> readers;    // other fixes at the end of a step
 
   void take_velocities(bigint step, bool end);
   void create_bodies();
   void resume();
   void begin_steps(double **, double **);
-  void begin_step();
+  void begin_step(int, double **, double **);
   void finish_step(double **, double **);
   void tally_virial(double **);
-  bool read_at_end() const;
   void count_rows();
   void show_bodies();
 };

@@ -138,7 +138,7 @@ void Arguments::check_conditions(LAMMPS *lmp) const
   }
 }
 
-/// Integers in their ranges, and those that were not given.
+/// Stores integers, the default ones too, and ends the run if one is outside of its range.
 void Arguments::check_ranges(LAMMPS *lmp)
 {
   const bool tolerance = is_on("tolerance", "");
@@ -255,7 +255,7 @@ std::vector<tagint> Arguments::group_ids(LAMMPS *lmp, int groupbit) const
   return ids;
 }
 
-/// What a value may be, and how far values may be apart: every double here is an integer.
+/// The largest value and the largest difference of values: doubles up to here hold integers exactly.
 static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
 
 /// Bodies are numbered from the smallest value in the group, as fix rigid numbers them.

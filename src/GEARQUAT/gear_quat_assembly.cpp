@@ -22,21 +22,7 @@ static constexpr int IRREGULAR = 0;
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
 static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
 
-std::vector<Assembly::PlacedSite> Assembly::place_sites(std::vector<Site> &sites)
-{
-  auto placed = meet<PlacedSite>(sites);
-  report_faults();
-  return placed;
-}
-
-std::vector<Assembly::OwnedBody> Assembly::make_bodies(std::vector<Site> &sites)
-{
-  auto made = meet<OwnedBody>(sites);
-  warn_of_clumps();
-  return made;
-}
-
-/// Two plates may be a body; two halves of a molecule at both faces of the box are none.
+/// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
 void Assembly::warn_of_clumps() const
 {
   tagint here = in_clumps, any;
@@ -50,27 +36,41 @@ void Assembly::warn_of_clumps() const
 }
 
 /* ----------------------------------------------------------------------
-   rendezvous: every site to the rank that its body's ID names, replies back
+   rendezvous: every site to the rank that its body's ID names, which makes the body and replies where
+   the site is in it; then the bodies to the ranks of their owners
 ------------------------------------------------------------------------- */
 
-template <typename Reply> std::vector<Reply> Assembly::meet(std::vector<Site> &sites)
+std::vector<Assembly::PlacedSite> Assembly::place_sites(std::vector<Site> &sites)
 {
+  const int n = (int) sites.size();
   std::vector<int> ranks;
-  ranks.reserve(sites.size() + 1);
   for (const auto &site : sites) ranks.push_back((int) (site.id % comm->nprocs));
-  ranks.push_back(0);    // no null pointer on a rank without sites
-
+  sites.emplace_back();    // no null pointers on a rank without sites
+  ranks.push_back(0);
   char *buffer = nullptr;
-  const int n = comm->rendezvous(IRREGULAR, (int) sites.size(), (char *) sites.data(), sizeof(Site),
-                                 0, ranks.data(), callback<Reply>, 0, buffer, sizeof(Reply), this);
-  const auto *replies = (const Reply *) buffer;
-  std::vector<Reply> result(replies, replies + n);
+  const int count =
+      comm->rendezvous(IRREGULAR, n, (char *) sites.data(), sizeof(Site), 0, ranks.data(),
+                       make_bodies, 0, buffer, sizeof(PlacedSite), this);
+  const auto *replies = (const PlacedSite *) buffer;
+  const std::vector<PlacedSite> placed(replies, replies + count);
   memory->sfree(buffer);
-  return result;
+  report_faults();
+  warn_of_clumps();
+  return placed;
 }
 
-template <typename Reply>
-int Assembly::callback(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
+std::vector<Assembly::OwnedBody> Assembly::owned_bodies()
+{
+  const int n = (int) made.size();
+  made.emplace_back();
+  owner_ranks.push_back(0);
+  char *unused = nullptr;
+  comm->rendezvous(IRREGULAR, n, (char *) made.data(), sizeof(OwnedBody), 0, owner_ranks.data(),
+                   receive_bodies, 0, unused, sizeof(OwnedBody), this);
+  return owned;
+}
+
+int Assembly::make_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
 {
   auto *assembly = (Assembly *) self;
   auto *sites = (Site *) in;
@@ -79,44 +79,49 @@ int Assembly::callback(int n, char *in, int &flag, int *&ranks, char *&out, void
   });
 
   assembly->memory->create(ranks, n + 1, "gear/quat:ranks");
-  auto *replies = (Reply *) assembly->memory->smalloc((n + 1) * sizeof(Reply), "gear/quat:replies");
-  int count = 0;
+  auto *replies =
+      (PlacedSite *) assembly->memory->smalloc((n + 1) * sizeof(PlacedSite), "gear/quat:replies");
   for (int first = 0, last; first < n; first = last) {
-    for (last = first; last < n && sites[last].id == sites[first].id; ++last)
+    for (last = first; last < n && sites[last].id == sites[first].id; ++last) {
       undo_image_flag_overflow(assembly->domain, sites[first].x, sites[last].x);
-    assembly->reply(sites + first, last - first, replies, ranks, count);
+      ranks[last] = sites[last].rank;
+    }
+    assembly->place(sites + first, last - first, replies + first);
   }
   out = (char *) replies;
   flag = 2;    // a second communication, with a new buffer
-  return count;
+  return n;
 }
 
-void Assembly::reply(const Site *sites, int n, PlacedSite *replies, int *ranks, int &count)
+int Assembly::receive_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
+{
+  const auto *bodies = (const OwnedBody *) in;
+  ((Assembly *) self)->owned.assign(bodies, bodies + n);
+  flag = 0;    // no reply
+  ranks = nullptr;
+  out = nullptr;
+  return 0;
+}
+
+/// Make a body of its sites, and say where each of them is in it.
+void Assembly::place(const Site *sites, int n, PlacedSite *replies)
 {
   double axes[9];
   int owner;
-  const OwnedBody owned = make_body(sites, n, axes, owner);
-  for (int i = 0; i < n; ++i) {
-    PlacedSite &placed = replies[count];
-    double arm[3];
-    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - owned.state.center[k];
-    to_body(axes, arm, placed.site_body);
-    std::copy_n(owned.state.q, 4, placed.q_body);
-    placed.local = sites[i].local;
-    placed.owner = sites[owner].tag;
-    ranks[count++] = sites[i].rank;
-  }
-}
-
-void Assembly::reply(const Site *sites, int n, OwnedBody *replies, int *ranks, int &count)
-{
-  double axes[9];
-  int owner;
-  replies[count] = make_body(sites, n, axes, owner);
+  const OwnedBody body = make_body(sites, n, axes, owner);
   std::vector<const double *> positions;
-  for (int i = 0; i < n; ++i) positions.push_back(sites[i].x);
+  for (int i = 0; i < n; ++i) {
+    double arm[3];
+    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - body.state.center[k];
+    to_body(axes, arm, replies[i].site_body);
+    std::copy_n(body.state.q, 4, replies[i].q_body);
+    replies[i].local = sites[i].local;
+    replies[i].owner = sites[owner].tag;
+    positions.push_back(sites[i].x);
+  }
   if (lies_in_clumps(domain, positions)) in_clumps = sites[0].id;
-  ranks[count++] = sites[owner].rank;
+  made.push_back(body);
+  owner_ranks.push_back(sites[owner].rank);
 }
 
 /* ----------------------------------------------------------------------
@@ -251,8 +256,9 @@ void Assembly::find_frame(const Momenta &momenta, const Site *sites, int n, doub
       faulty[NOT_FINITE] = owned.body.id;
 }
 
-/// Senses that belong to the body, not to its orientation at the start: the first and the third
-/// axis point to the side of the heaviest site that is on a side at all, of equals the first.
+/// Directs the axes by the body itself, not by its orientation at the start: the first and the third
+/// axis point to the side of the heaviest site that is not in the plane across the axis; of equally
+/// heavy sites the first one counts.
 void Assembly::orient_axes(const Site *sites, int n, const double *center, double axes[9]) const
 {
   std::vector<const Site *> order(n);
@@ -291,7 +297,7 @@ void Assembly::orient_axes(const Site *sites, int n, const double *center, doubl
    what no body can be
 ------------------------------------------------------------------------- */
 
-/// In the order of Assembly's faults; the first that is met is told.
+/// In the order of Assembly's faults, of which the first one is reported.
 static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
     "Fix gear/quat: inertia or velocities of body {} are not finite numbers",

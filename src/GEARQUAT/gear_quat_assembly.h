@@ -24,7 +24,7 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What a body is; travels with its owner atom.
+/// The properties of a body, which travel with its owner atom.
 struct Body {
   RigidBody rigid;
   tagint id;        ///< the user's: molecule ID, group number or custom value
@@ -35,7 +35,7 @@ struct Body {
   int large;        ///< on several ranks: not all of its sites can see their owner atom
   Mask off;         ///< components of the load that do not act
 
-  /// How far a rotation by a radian moves what is far out: a site, or a solid's own parts.
+  /// The way of the outermost part of the body, a site or a part of a solid, per radian.
   double reach() const
   {
     const double *i = rigid.inertia;
@@ -44,7 +44,7 @@ struct Body {
   /// The error of a step as a length.
   double length(const Correction &error) const
   {
-    return std::max(error.position_error, reach() * error.angle_error);
+    return std::max(error.position_error(), reach() * error.angle_error());
   }
 };
 
@@ -71,19 +71,19 @@ class Assembly : protected Pointers {
 
   Assembly(LAMMPS *lmp, const GivenBodies &given) : Pointers(lmp), given(given) {}
 
-  /// Both are collective and return what belongs to this rank's atoms; two meetings, each of which
-  /// makes the bodies, so that not every site has to carry its whole body back.  Massless bodies, and
-  /// bodies in the infile that no atom belongs to, end the run on all ranks.
+  /// Makes the bodies, each on one rank, and returns where the sites of this rank are in them.
+  /// Massless bodies, and bodies in the infile that no atom belongs to, end the run on all ranks.
+  /// Collective.
   std::vector<PlacedSite> place_sites(std::vector<Site> &sites);
-  std::vector<OwnedBody> make_bodies(std::vector<Site> &sites);
+  /// The bodies whose owner atoms are on this rank.  Collective.
+  std::vector<OwnedBody> owned_bodies();
 
  private:
   const GivenBodies &given;
   enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS };
   tagint faulty[FAULTS] = {};    ///< a body met on this rank with each fault, 0 for none
-  tagint in_clumps =
-      0;    ///< a body met on this rank whose sites are half a period apart, 0 for none
-  std::vector<tagint> found;    ///< given bodies met on this rank
+  tagint in_clumps = 0;          ///< one whose sites are half a period apart, 0 for none
+  std::vector<tagint> found;     ///< given bodies met on this rank
 
   OwnedBody make_body(const Site *sites, int n, double axes[9], int &owner);
 
@@ -101,11 +101,13 @@ class Assembly : protected Pointers {
   void report_faults();
   void warn_of_clumps() const;
 
-  template <typename Reply> std::vector<Reply> meet(std::vector<Site> &sites);
-  template <typename Reply>
-  static int callback(int n, char *in, int &flag, int *&ranks, char *&out, void *self);
-  void reply(const Site *sites, int n, PlacedSite *replies, int *ranks, int &count);
-  void reply(const Site *sites, int n, OwnedBody *replies, int *ranks, int &count);
+  std::vector<OwnedBody> made;     ///< on this rank, whoever owns them
+  std::vector<int> owner_ranks;    ///< of these
+  std::vector<OwnedBody> owned;    ///< by atoms of this rank
+
+  static int make_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self);
+  static int receive_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self);
+  void place(const Site *sites, int n, PlacedSite *replies);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

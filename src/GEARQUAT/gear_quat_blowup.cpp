@@ -24,7 +24,7 @@ using namespace GearQuat;
 
 static constexpr double NONE = std::numeric_limits<double>::infinity();
 
-/// LAMMPS' code for a face that follows the atoms begins with this one.
+/// Codes of LAMMPS from this one on mean faces that follow the atoms.
 static constexpr int SHRINKS = 2;
 
 static double length(const double *a)
@@ -54,7 +54,7 @@ void Blowup::check_loads(double h, double **f) const
 void Blowup::check_load(int ibody, double h, double **f) const
 {
   const BodyState after =
-      kicked(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody], h);
+      kicked(bodies.body[ibody].rigid, bodies.state_of(ibody), bodies.load_of(ibody), h);
   if (!limits(h).keep_velocities(after)) stop(ibody, after, h, f);
 }
 
@@ -85,7 +85,8 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   error->one(FLERR, text);
 }
 
-/// All ranks see a large body go astray, each with its own sites: the text of the one that sees most.
+/// All ranks notice that a large body is unstable, each with its own sites.  Returns the text of the
+/// rank whose site is nearest to another atom.
 std::string Blowup::agree(const std::string &text, int ibody, int bad, const Meeting &met) const
 {
   const bool any = std::any_of(bodies.sites.begin(), bodies.sites.end(), [&](const auto &site) {
@@ -106,10 +107,10 @@ std::string Blowup::agree(const std::string &text, int ibody, int bad, const Mee
   return said;
 }
 
-/// What is beyond the limits, the first thing in the order of cause and effect.
+/// Says which limit is exceeded; the cause comes before its effects.
 std::string Blowup::what_happened(int ibody, const BodyState &s, double h) const
 {
-  const Load &l = bodies.load[ibody];
+  const Load &l = bodies.load_of(ibody);
   const double push = length(l.force) / force->ftm2v, twist = length(l.torque_space) / force->ftm2v;
   if (!std::isfinite(push)) return "meets a force that is not a finite number";
   if (!std::isfinite(twist)) return "meets a torque that is not a finite number";

@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The end of a run in which a body goes astray, at the step where it does: before its atoms are
-   placed, so before a dump or another fix sees them.  The comparison is in gear_quat_limits.h and
+/* Ends a run at the step in which a body becomes unstable, before its atoms are placed, so before a
+   dump or another fix sees them.  The comparison is in gear_quat_limits.h and
    is made by the fix for every body and step; what is here is for the run that has to end. */
 
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
@@ -22,10 +22,10 @@ class Blowup : protected Pointers {
   {
   }
 
-  /// For a step h in the present box, which is none where it follows the atoms.
+  /// The limits for a step h in the present box.  A box that follows the atoms sets none.
   MotionLimits limits(double h) const;
 
-  /// Ends the run if the present loads would make an owned body go astray within a step h.  Atoms are
+  /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms are
   /// where the loads were taken; f: forces on them.
   void check_loads(double h, double **f) const;
   /// The same of one body.

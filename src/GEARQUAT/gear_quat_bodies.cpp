@@ -23,7 +23,7 @@ using namespace GearQuat;
 
 Bodies::Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
     Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nmove(0), nbodies(0),
-    natoms(0), nlarge(0), strangers(0), told(false), ncentered(0), wrapped(false),
+    natoms(0), nlarge(0), strangers(0), warned_strangers(false), ncentered(0), wrapped(false),
     any_ghosts(false), any_forces(true), nmax(0), body_id(nullptr), owner_tag(nullptr),
     owned(nullptr), site_body(nullptr), forward(Forward::STATES), labels(nullptr)
 {
@@ -47,7 +47,7 @@ void Bodies::clear(bool with_extended)
 {
   nown = 0;
   large.clear();
-  kept.clear();
+  packed_large.clear();
   drop_ghosts();
   sites.clear();
   frame.clear();
@@ -99,7 +99,7 @@ void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
 
   Assembly assembly(lmp, given);
   const auto placed = assembly.place_sites(sites);
-  const auto made = assembly.make_bodies(sites);
+  const auto made = assembly.owned_bodies();
 
   for (const auto &site : placed) {
     body_id[site.local] = ids[site.local];
@@ -135,7 +135,7 @@ void Bodies::refuse_atoms() const
 
 void Bodies::drop_ghosts()
 {
-  if (!large.empty()) keep_large();
+  if (!large.empty()) pack_large();
   body.resize(nown);
   state.resize(nown);
   load.resize(nown);
@@ -252,7 +252,7 @@ void Bodies::list_sites()
     for (const Site &site : sites) extended.list(site.atom, site.body);
 }
 
-/// On a single rank ghosts are images of own atoms, on several they are told.
+/// On a single rank ghosts are images of own atoms, on several their owners tell them.
 tagint Bodies::id_of(int i) const
 {
   return body_id[atom->map(atom->tag[i])];
@@ -279,8 +279,8 @@ bool Bodies::take_stock()
     promote();
     return false;
   }
-  if (all[4] > 0 && !told) {
-    told = true;
+  if (all[4] > 0 && !warned_strangers) {
+    warned_strangers = true;
     if (comm->me == 0)
       error->warning(FLERR,
                      "Fix gear/quat: {} atoms of the fix group were created after the fix was "
@@ -346,7 +346,7 @@ double Bodies::memory_usage() const
       state.capacity() * sizeof(BodyState) + load.capacity() * sizeof(Load) +
       last.capacity() * sizeof(Correction) + frame.capacity() * sizeof(Frame) +
       sites.capacity() * sizeof(Site) + large.capacity() * sizeof(Large) +
-      (kept.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
+      (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
       extended.memory_usage();
 }

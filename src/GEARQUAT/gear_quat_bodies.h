@@ -38,12 +38,29 @@ class Bodies : protected Pointers {
   Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme);
   ~Bodies() override;
 
-  // owned bodies, then large ones of other ranks, then (not in `last`) ghosts
+  // Owned bodies come first, then large ones of other ranks, then ghosts, which have no correction.
 
   std::vector<Body> body;
-  std::vector<BodyState> state;
-  std::vector<Load> load;
-  std::vector<Correction> last;    ///< what the last corrector told
+  const BodyState &state_of(int ibody) const { return state[ibody]; }
+  const Load &load_of(int ibody) const { return load[ibody]; }
+  const Correction &last_of(int ibody) const { return last[ibody]; }
+
+  // The rooms that move bodies write states and corrections here, and call spread_states() then.
+
+  BodyState &change_state(int ibody) { return state[ibody]; }
+  Correction &change_last(int ibody) { return last[ibody]; }
+  void forget_work()
+  {
+    for (auto &correction : last) correction.work = 0.0;
+  }
+
+  struct Snapshot {
+    std::vector<BodyState> states;
+    std::vector<Load> loads;
+  };
+  Snapshot snapshot() const { return {state, load}; }
+  void put_back_states(const Snapshot &saved) { state = saved.states; }
+  void put_back_loads(const Snapshot &saved) { load = saved.loads; }
 
   // bodies that this rank moves by what they need in a step, large ones last and in the same order
   // on all ranks; valid until atoms are exchanged
@@ -72,8 +89,10 @@ class Bodies : protected Pointers {
   bool is_large(int ibody) const { return !large.empty() && body[ibody].large; }
   /// On all ranks.
   bigint number_of_large() const { return nlarge; }
-  /// What moves an owned body, of the load it met.
+  /// The load without the components that are turned off for this body.
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
+  /// The rotation matrix space -> body of a state that spread_states() has seen.
+  const double *axes(int ibody) const { return frame[ibody].axes; }
   double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * scheme.size(); }
   bool in_body(int atom) const { return body_id[atom] != 0; }
@@ -105,7 +124,7 @@ class Bodies : protected Pointers {
   /// Find the body of every atom after atoms were exchanged, created or removed; one that not all of
   /// its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
   void update_ghosts();
-  /// Where all bodies are large ghost atoms are told their bodies' IDs by this alone.  Collective.
+  /// Ghost atoms learn the IDs of their bodies if all bodies are large.  Collective.
   void tell_ids_to_ghosts()
   {
     if (nlarge == nbodies) tell_ghosts();
@@ -122,14 +141,14 @@ class Bodies : protected Pointers {
   bigint number_of_sites() const { return natoms; }
   /// An atom of the fix group was created that is in no body yet; it may be added to one.
   void note_stranger(int change) { strangers += change; }
-  /// A number for every owned atom, behind them their ghosts: these get those of the owned.  Collective.
+  /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
   void spread_labels(std::vector<double> &label);
 
   // one step
 
-  /// Fresh bodies have got their histories.
+  /// Fresh bodies have histories now and become like all others.
   void take_in_fresh();
-  /// Whether anything in the scene may make a force; if not, nothing is gathered.
+  /// any: something in the scene may make a force; otherwise no loads are gathered.
   void expect_forces(bool any);
 
   void spread_states();
@@ -166,6 +185,10 @@ class Bodies : protected Pointers {
   double memory_usage() const;
 
  private:
+  std::vector<BodyState> state;
+  std::vector<Load> load;
+  std::vector<Correction> last;    ///< what the last corrector has found
+
   Fix *fix;
   Scheme scheme;
   Extended extended;
@@ -175,7 +198,7 @@ class Bodies : protected Pointers {
   bigint nlarge;               ///< on all ranks
   std::vector<double> box;     ///< shape of the box that the bodies were last seen in; may be empty
   int strangers;               ///< atoms created since the fix was defined, in no body
-  bool told;                   ///< of them, once
+  bool warned_strangers;       ///< that there are such atoms
   std::vector<double> rows;    ///< histories of moved bodies
   std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
 
@@ -184,8 +207,8 @@ class Bodies : protected Pointers {
     int body;
   };
   std::vector<Large> large;    ///< sorted: the same order on all ranks; empty on a single one
-  std::vector<double> kept;    ///< all of them, packed, while atoms are exchanged
-  std::vector<double> parts, sums;    ///< their loads: of the atoms here, and of all
+  std::vector<double> packed_large;    ///< all of them, packed, while atoms are exchanged
+  std::vector<double> parts, sums;     ///< their loads: of the atoms here, and of all
 
   struct Frame {       ///< what placing a site needs, derived from the state
     double axes[9];    ///< rotation matrix space -> body
@@ -193,7 +216,7 @@ class Bodies : protected Pointers {
   };
   std::vector<Frame> frame;    ///< all bodies here
 
-  // what the step leaves out, decided when atoms were exchanged
+  // These say what a step can leave out, and change only when atoms are exchanged.
 
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
   std::vector<tagint> unseen;     ///< owner atoms that sites here do not see
@@ -232,7 +255,7 @@ class Bodies : protected Pointers {
   void list_sites();
   int body_of(int atom) const;
   bool take_stock();
-  void keep_large();
+  void pack_large();
   void gather_large();
   void share_large();
   void promote();

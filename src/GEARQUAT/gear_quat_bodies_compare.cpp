@@ -141,7 +141,7 @@ void Bodies::follow_atom_ids()
     if (owner_tag[owner] != atom->tag[owner])
       changed.insert(changed.end(), {owner_tag[owner], atom->tag[owner]});
   }
-  const std::vector<tagint> all = gather_all(changed, MPI_LMP_TAGINT, world);
+  const std::vector<tagint> all = gather(changed, world);
   std::unordered_map<tagint, tagint> now;
   for (size_t n = 0; n < all.size(); n += 2) now[all[n]] = all[n + 1];
   for (int i = 0; i < atom->nlocal && !now.empty(); ++i) {

@@ -33,7 +33,7 @@ static double ghost_cutoff(const Comm *comm, const Domain *domain)
 void Bodies::choose_large()
 {
   drop_ghosts();
-  kept.clear();
+  packed_large.clear();
   const double cutoff = ghost_cutoff(comm, domain);
   for (int ibody = 0; ibody < nown; ++ibody) {
     Body &one = body[ibody];
@@ -54,8 +54,7 @@ void Bodies::promote()
 {
   std::sort(unseen.begin(), unseen.end());
   unseen.erase(std::unique(unseen.begin(), unseen.end()), unseen.end());
-  std::vector<tagint> all = gather_all(unseen, MPI_LMP_TAGINT, world);
-  std::sort(all.begin(), all.end());
+  const std::vector<tagint> all = gather_sorted(unseen, world);
   for (int ibody = 0; ibody < nown; ++ibody)
     if (std::binary_search(all.begin(), all.end(), atom->tag[owner_atom[ibody]]))
       body[ibody].large = 1;
@@ -63,10 +62,10 @@ void Bodies::promote()
 }
 
 /// Before atoms are exchanged: the owner may be another rank afterwards.
-void Bodies::keep_large()
+void Bodies::pack_large()
 {
-  kept.resize(large.size() * large_size());
-  double *buf = kept.data();
+  packed_large.resize(large.size() * large_size());
+  double *buf = packed_large.data();
   for (const Large &one : large) {
     buf[0] = ubuf(one.owner).d;
     pack_moved(one.body, buf + 1);
@@ -85,16 +84,16 @@ void Bodies::gather_large()
     buf[0] = ubuf(atom->tag[owner_atom[ibody]]).d;
     pack_moved(ibody, buf + 1);
   }
-  kept = gather_all(mine, MPI_DOUBLE, world);
+  packed_large = gather(mine, world);
 }
 
 /// Large bodies of other ranks, behind the owned ones.
 void Bodies::share_large()
 {
   const int size = large_size();
-  if ((bigint) kept.size() != nlarge * size) gather_large();
-  for (size_t m = 0; m < kept.size(); m += size) {
-    const tagint tag = (tagint) ubuf(kept[m]).i;
+  if ((bigint) packed_large.size() != nlarge * size) gather_large();
+  for (size_t m = 0; m < packed_large.size(); m += size) {
+    const tagint tag = (tagint) ubuf(packed_large[m]).i;
     const int owner = atom->map(tag);
     int ibody = owner >= 0 && owner < atom->nlocal ? owned[owner] : -1;
     if (ibody < 0) {
@@ -104,7 +103,7 @@ void Bodies::share_large()
       last.emplace_back();
       load.emplace_back();
       rows.resize((size_t) nmove * scheme.size());
-      unpack_moved(ibody, &kept[m + 1], scheme.size());
+      unpack_moved(ibody, &packed_large[m + 1], scheme.size());
     }
     large.push_back({tag, ibody});
   }

@@ -18,20 +18,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr int MAX_SWEEPS = 12;
-static constexpr int MAX_HALVINGS = 8;
-
-// sweeps end when the next one would change accelerations by less than this, relative to how the
-// bodies move: less than rounding takes from their velocities in a step, or than the polynomial of
-// the motion leaves out.  A change that no longer falls is taken for rounding of the forces below
-// ROUNDING; above, the nodes are too far apart, or forces jump, as at a cut-off.  Which of the two,
-// shorter spacings tell; after the last of JUMPING of them a change below JUMP counts as jumps.
-
-static constexpr double CONVERGED = 1.0e-15;
-static constexpr double ROUNDING = 1.0e-9;
-static constexpr double JUMP = 0.1;
-static constexpr int JUMPING = 3;
-
 /* ---------------------------------------------------------------------- */
 
 void Party::measure()
@@ -65,8 +51,7 @@ static int most_values(const std::vector<Party> &parties)
 }
 
 Bootstrap::Bootstrap(LAMMPS *lmp, const std::vector<Party> &parties, double h) :
-    Pointers(lmp), parties(parties), h(h), collocation(most_values(parties)), evaluations(0),
-    jumps(0)
+    Pointers(lmp), parties(parties), h(h), collocation(most_values(parties)), evaluations(0)
 {
   for (auto &party : this->parties) party.power.assign(collocation.number_of_nodes(), 0.0);
 }
@@ -88,7 +73,7 @@ void Bootstrap::seed_body(Bodies &bodies, int ibody, const Load &acting, const S
                           double h, int terms)
 {
   const RigidBody &rigid = bodies.body[ibody].rigid;
-  auto series = local_series(rigid, bodies.state[ibody], acting, h);
+  auto series = local_series(rigid, bodies.state_of(ibody), acting, h);
   series.terms = terms;
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
@@ -145,26 +130,21 @@ std::string Bootstrap::names() const
   return utils::join_words(ids, " and ");
 }
 
-/// Spacing after spacing; after the call atoms, states and loads are as before.
+/// Tries one spacing after the other.  After the call atoms, states and loads are as before.
 bool Bootstrap::search(Forces &forces)
 {
-  std::vector<std::vector<BodyState>> states;
-  std::vector<std::vector<Load>> loads;
-  for (const auto &party : parties) {
-    const int n = party.bodies->nmoved();
-    states.emplace_back(party.bodies->state.begin(), party.bodies->state.begin() + n);
-    loads.emplace_back(party.bodies->load.begin(), party.bodies->load.begin() + n);
-  }
+  std::vector<Bodies::Snapshot> snapshots;
+  for (const auto &party : parties) snapshots.push_back(party.bodies->snapshot());
   const auto put_back = [&]() {
     for (size_t p = 0; p < parties.size(); ++p) {
-      std::copy(states[p].begin(), states[p].end(), parties[p].bodies->state.begin());
-      std::copy(loads[p].begin(), loads[p].end(), parties[p].bodies->load.begin());
+      parties[p].bodies->put_back_states(snapshots[p]);
+      parties[p].bodies->put_back_loads(snapshots[p]);
     }
   };
   forces.save();
   bool done = false;
   double spacing = first_spacing();
-  for (int n = 0; n < MAX_HALVINGS && !done; ++n, spacing *= 0.5) {
+  for (int n = 0; n < SweepRule::MAX_SPACINGS && !done; ++n, spacing *= 0.5) {
     put_back();
     done = collocate(forces, spacing);
   }
@@ -197,7 +177,7 @@ double Bootstrap::first_spacing() const
   return way > reach ? h * reach / way : h;
 }
 
-/// Size of a body, in units of which its motion is judged.
+/// The length that the motion of a body is compared with.
 double Bootstrap::length(const Body &body) const
 {
   return body.extent > 0.0 ? body.extent : neighbor->skin;
@@ -211,33 +191,30 @@ bool Bootstrap::collocate(Forces &forces, double spacing)
     const Bodies &bodies = *party.bodies;
     party.work.resize(bodies.nmoved());
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      collocation.begin(
-          local_series(bodies.body[ibody].rigid, bodies.state[ibody], party.acting(ibody), spacing),
-          party.work[ibody]);
+      collocation.begin(local_series(bodies.body[ibody].rigid, bodies.state_of(ibody),
+                                     party.acting(ibody), spacing),
+                        party.work[ibody]);
   }
 
+  using Verdict = SweepRule::Verdict;
+  Verdict verdict = Verdict::ANOTHER_SWEEP;
   double change = 0.0;
-  bool found = false, stuck = false;
-  for (int n = 0; n < MAX_SWEEPS && !found && !stuck; ++n) {
-    const double before = change;
-    if (!sweep(forces, spacing, n == 0, change)) {
+  for (rule.begin_spacing(); verdict == Verdict::ANOTHER_SWEEP;) {
+    if (!sweep(forces, spacing, rule.is_first_sweep(), change)) {
       reason = fmt::format("sites would leave the neighbor skin, {}", neighbor->skin);
       return false;
     }
-    const double next = n > 0 && change < before ? change * (change / before) : change;
-    found = next < CONVERGED || (n > 0 && next < truncation());
-    stuck = !std::isfinite(change) || (n > 1 && change > 0.5 * before);
+    verdict = rule.judge(change, [this]() {
+      return truncation();
+    });
   }
-  reason.clear();
-  if (!found && change < ROUNDING) found = true;
-  if (!found && change < JUMP && ++jumps == JUMPING) {
-    reason = fmt::format(" (forces jump: by {:.1g} of the motion in a step)", change);
-    found = true;
-  }
-  if (!found) {
+  if (verdict == Verdict::SHORTER_SPACING) {
     reason = "forces vary too much within a few steps";
     return false;
   }
+  reason.clear();
+  if (verdict == Verdict::JUMPS)
+    reason = fmt::format(" (forces jump: by {:.1g} of the motion in a step)", change);
   seed_all(spacing);
   return true;
 }
@@ -256,7 +233,7 @@ void Bootstrap::seed_all(double spacing)
   }
 }
 
-/// Largest of all bodies.
+/// The largest truncation error of all bodies.
 double Bootstrap::truncation() const
 {
   double here = 0.0, all;
@@ -290,7 +267,7 @@ bool Bootstrap::visit(Forces &forces, int node, double spacing, double &change)
   for (auto &party : parties) {
     Bodies &bodies = *party.bodies;
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      bodies.state[ibody] = collocation.state_at(node, party.work[ibody], spacing);
+      bodies.change_state(ibody) = collocation.state_at(node, party.work[ibody], spacing);
     bodies.spread_states();
     bodies.place_sites(true);
   }
@@ -303,7 +280,7 @@ bool Bootstrap::visit(Forces &forces, int node, double spacing, double &change)
     for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody) {
       const Body &body = party.bodies->body[ibody];
       change = std::max(change,
-                        collocation.set_load(node, body.rigid, party.bodies->state[ibody],
+                        collocation.set_load(node, body.rigid, party.bodies->state_of(ibody),
                                              party.acting(ibody), spacing, length(body),
                                              party.work[ibody]));
     }

@@ -30,9 +30,9 @@ struct Party {
   std::vector<Collocation::Workspace> work;
   std::vector<double> power;    ///< of all forces at the nodes, where a constraint takes it
 
-  /// States and loads are those of a node: what the constraint makes of them.
+  /// The isokinetic constraint takes its sums from the present states and loads.
   void measure();
-  /// What moves a body, after measure().
+  /// The load that moves a body, after measure().
   Load acting(int ibody) const;
   /// Histories of all bodies from what states and loads determine.
   void seed_local(int terms, double h);
@@ -59,8 +59,8 @@ class Bootstrap : protected Pointers {
   double h;
 
   Collocation collocation;
-  int evaluations;       ///< of the forces, so far
-  int jumps;             ///< spacings at which forces seemed to jump
+  int evaluations;    ///< of the forces, so far
+  SweepRule rule;
   std::string reason;    ///< why the last spacing failed, or what is to be said about it
 
   void measure(int node);

@@ -91,7 +91,7 @@ void Census::count_body(const SiteCount *sites, int n)
   if (in_group == n) removed_freedoms += (bigint) domain->dimension * n + own_freedoms - freedoms;
 }
 
-/// Center and principal moments tell whether masses went from one atom of the body to another.
+/// Center and principal moments change if masses move from one atom of a body to another.
 bool Census::same_masses(const SiteCount *sites, int n, const SiteCount &owner) const
 {
   double first[3] = {}, second[6] = {};
@@ -114,8 +114,8 @@ bool Census::same_masses(const SiteCount *sites, int n, const SiteCount &owner) 
   return true;
 }
 
-/// Between two looks a body may have been moved, turned or even deformed by the user, but its atoms are
-/// not whole periods apart that were together; nor did the parts at two faces of the box move with them.
+/// The user may have moved, rotated or deformed a body between two runs.  It is torn if its atoms are
+/// whole periods further apart than before, or if parts of it have moved with the faces of the box.
 void Census::look_for_tears(const SiteCount *sites, int n, const SiteCount &owner)
 {
   for (int i = 0; i < n; ++i) {

@@ -22,7 +22,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// One force evaluation a step: all levels of r-RESPA have to have the same step.
+/// Forces are evaluated once per step, so all levels of r-RESPA need the same time step.
 static void refuse_respa_with_steps(LAMMPS *lmp)
 {
   const std::vector<double> steps = RespaForces::steps(lmp);
@@ -34,7 +34,7 @@ static void refuse_respa_with_steps(LAMMPS *lmp)
                       level + 1, steps[0], steps[level]);
 }
 
-/// A box that follows its atoms moves no atom; one that a fix changes does.
+/// A box that follows its atoms moves none of them, but a fix that changes the box does.
 static void refuse_box_changes(LAMMPS *lmp)
 {
   for (const auto *other : lmp->modify->get_fix_list())
@@ -72,7 +72,8 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Bodies &
   }
 }
 
-/// Granular walls ask one fix for the masses of its bodies, the first.  (Pair styles refuse a second.)
+/// Granular walls ask only the first rigid fix for the masses of its bodies; pair styles refuse a
+/// second one.
 static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
 {
   const Fix *first = nullptr;

@@ -9,6 +9,7 @@
 #include "atom.h"
 #include "bond.h"
 #include "comm.h"
+#include "compute.h"
 #include "dihedral.h"
 #include "fix.h"
 #include "force.h"
@@ -40,7 +41,7 @@ static const char *const RANDOM_FIXES[] = {"langevin", "brownian", "^gle", "^gld
 static const char *const COLLISIONS[] = {"^srd"};
 static constexpr int MOST_WITH_NOISE = 6, MOST_WITH_COLLISIONS = 4;
 
-// bond styles that break, or change with what they have met
+// bond styles that break or have a memory
 
 static const char *const UNFOLLOWED_BONDS[] = {"quartic",    "quartic/omp",        "bpm/rotational",
                                                "bpm/spring", "bpm/spring/plastic", "rheo/shell"};
@@ -58,7 +59,7 @@ static const char *const FOLLOWED_FIXES[] = {
 static const char *const WITHOUT_VARIABLES[] = {"^enforce2d",  "^freeze$", "^lineforce",
                                                 "^planeforce", "^spring$", "^viscous$"};
 
-// what of a variable is another one when it is evaluated once more
+// functions and styles of variables that give another value whenever they are evaluated
 
 static const char *const UNREPEATABLE[] = {"random(", "normal(", "next(", "py_", "style = python"};
 
@@ -193,12 +194,12 @@ std::vector<double> Forces::external_forces(bigint step)
 
 /* ---------------------------------------------------------------------- */
 
-static void keep(double **array, int n, std::vector<double> &copy)
+static void save_array(double **array, int n, std::vector<double> &copy)
 {
   if (array && n) copy.assign(array[0], array[0] + 3 * (size_t) n);
 }
 
-static void put_back(double **array, const std::vector<double> &copy)
+static void restore_array(double **array, const std::vector<double> &copy)
 {
   if (!copy.empty()) std::copy(copy.begin(), copy.end(), array[0]);
 }
@@ -207,9 +208,9 @@ void Forces::save()
 {
   tallies.save();
   const int n = atom->nlocal + atom->nghost;
-  keep(atom->x, n, x);
-  keep(atom->v, n, v);
-  keep(atom->f, n, f);
+  save_array(atom->x, n, x);
+  save_array(atom->v, n, v);
+  save_array(atom->f, n, f);
   if (atom->torque_flag) {
     torque.resize(3 * (size_t) n);
     if (n) std::copy_n(atom->torque[0], torque.size(), torque.begin());
@@ -219,10 +220,10 @@ void Forces::save()
 void Forces::restore()
 {
   tallies.restore();
-  put_back(atom->x, x);
-  put_back(atom->v, v);
-  put_back(atom->f, f);
-  if (atom->torque_flag) put_back(atom->torque, torque);
+  restore_array(atom->x, x);
+  restore_array(atom->v, v);
+  restore_array(atom->f, f);
+  if (atom->torque_flag) restore_array(atom->torque, torque);
 }
 
 double Forces::largest_displacement() const
@@ -256,7 +257,7 @@ void Forces::clear_forces()
   if (atom->torque_flag) std::fill_n(atom->torque[0], n, 0.0);
 }
 
-/// Without energies and virials: what thermo prints of the step stays as it is.
+/// Leaves out energies and virials, so that thermo output of the step stays as it is.
 void Forces::compute_forces()
 {
   if (force->pair && force->pair->compute_flag) force->pair->compute(0, 0);
@@ -267,4 +268,72 @@ void Forces::compute_forces()
     if (force->improper) force->improper->compute(0, 0);
   }
   if (force->kspace && force->kspace->compute_flag) force->kspace->compute(0, 0);
+}
+
+/* ----------------------------------------------------------------------
+   what LAMMPS notes of computes
+------------------------------------------------------------------------- */
+
+static constexpr bigint NEVER = -1;
+
+/// The notes of a compute that name the step of its last evaluation.
+static std::vector<bigint *> steps_of_evaluation(Compute *one)
+{
+  return {&one->invoked_scalar, &one->invoked_vector, &one->invoked_array, &one->invoked_peratom,
+          &one->invoked_local};
+}
+
+static std::vector<bigint *> steps_of_tally(Update *update)
+{
+  return {&update->eflag_global, &update->vflag_global, &update->eflag_atom, &update->vflag_atom};
+}
+
+void Tallies::save()
+{
+  notes.clear();
+  for (auto *one : modify->get_compute_list()) {
+    Note note = {one->invoked_flag, {}, {}};
+    int n = 0;
+    for (const auto *step : steps_of_evaluation(one)) note.invoked[n++] = *step;
+    if (one->timeflag) note.steps.assign(one->tlist, one->tlist + one->ntime);
+    notes.push_back(note);
+  }
+  int n = 0;
+  for (const auto *step : steps_of_tally(update)) tallied[n++] = *step;
+  modify->clearstep_compute();
+}
+
+void Tallies::pretend()
+{
+  for (auto *step : steps_of_tally(update)) *step = update->ntimestep;
+}
+
+bool Tallies::used() const
+{
+  const auto &computes = modify->get_compute_list();
+  return std::any_of(computes.begin(), computes.end(), [](const Compute *one) {
+    return one->timeflag && one->invoked_flag;
+  });
+}
+
+void Tallies::restore()
+{
+  size_t which = 0;
+  for (auto *one : modify->get_compute_list()) {
+    const Note &note = notes[which++];
+    int n = 0;
+    one->invoked_flag = note.flag;
+    for (auto *step : steps_of_evaluation(one)) {
+      if (*step != note.invoked[n]) {
+        *step = NEVER;
+        one->invoked_flag = Compute::INVOKED_NONE;
+      }
+      ++n;
+    }
+    if (!one->timeflag) continue;
+    one->clearstep();
+    for (const bigint step : note.steps) one->addstep(step);
+  }
+  int n = 0;
+  for (auto *step : steps_of_tally(update)) *step = tallied[n++];
 }

@@ -43,9 +43,8 @@ struct KineticSums {
 
   void add(const RigidBody &body, const Load &load, const BodyState &state)
   {
-    double a[9], torque_body[3];
-    rotation_matrix(state.q, dot4(state.q, state.q), a);
-    to_body(a, load.torque_space, torque_body);
+    double torque_body[3];
+    torque_along_axes(state.q, dot4(state.q, state.q), load, torque_body);
     add(body, load.force, torque_body, state.velocity, state.omega_body);
   }
 };

@@ -5,13 +5,19 @@
 
 #include "gear_quat_infile.h"
 
+#include "gear_quat_bodies.h"
+#include "gear_quat_gather.h"
+#include "gear_quat_outputs.h"
+
 #include "comm.h"
 #include "error.h"
 #include "lammps.h"
+#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -171,4 +177,78 @@ GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename
     bodies[line.id] = body;
   }
   return bodies;
+}
+
+/* ----------------------------------------------------------------------
+   writing
+------------------------------------------------------------------------- */
+
+namespace {
+
+/// A line of the file; the ID apart, for it is an integer of any size.
+struct BodyLine {
+  tagint id;
+  int image[3];
+  double mass, center[3], inertia_space[6], velocity[3], angular_momentum_space[3];
+};
+
+BodyLine line_of(const Body &body, const BodyState &state, const double *row)
+{
+  BodyLine line = BodyLine();
+  line.id = body.id;
+  line.mass = body.rigid.mass;
+  std::copy_n(row + BodyTable::CENTER, 3, line.center);
+  std::copy_n(row + BodyTable::VELOCITY, 3, line.velocity);
+  std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, line.angular_momentum_space);
+  for (int k = 0; k < 3; ++k) line.image[k] = (int) row[BodyTable::IMAGE + k];
+
+  // A^T I A, the rows of A being the principal axes; xx yy zz xy xz yz
+
+  static constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
+  double a[9];
+  rotation_matrix(state.q, dot4(state.q, state.q), a);
+  for (int m = 0; m < 6; ++m)
+    for (int k = 0; k < 3; ++k)
+      line.inertia_space[m] += body.rigid.inertia[k] * a[3 * k + FIRST[m]] * a[3 * k + SECOND[m]];
+  return line;
+}
+
+void print(FILE *file, const BodyLine &line)
+{
+  fprintf(file, TAGINT_FORMAT " %.16e", line.id, line.mass);
+  for (const double value : line.center) fprintf(file, " %.16e", value);
+  for (const double value : line.inertia_space) fprintf(file, " %.16e", value);
+  for (const double value : line.velocity) fprintf(file, " %.16e", value);
+  for (const double value : line.angular_momentum_space) fprintf(file, " %.16e", value);
+  fprintf(file, " %d %d %d\n", line.image[0], line.image[1], line.image[2]);
+}
+
+}    // namespace
+
+void GearQuat::write_given_bodies(LAMMPS *lmp, const std::string &filename,
+                                  const std::string &fix_id, const Bodies &bodies, double **rows)
+{
+  std::vector<BodyLine> mine;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    mine.push_back(line_of(bodies.body[ibody], bodies.state_of(ibody), rows[ibody]));
+  const auto before = [](const BodyLine &a, const BodyLine &b) {
+    return a.id < b.id;
+  };
+  const std::vector<BodyLine> all = gather_sorted(mine, lmp->world, before, 0);
+  if (lmp->comm->me != 0) return;
+
+  const auto refuse = [&] {
+    lmp->error->one(FLERR, "Fix gear/quat: cannot write file {}: {}", filename,
+                    utils::getsyserror());
+  };
+  const std::string unfinished = filename + ".tmp";
+  FILE *file = fopen(unfinished.c_str(), "w");
+  if (!file) refuse();
+  fprintf(file,
+          "# fix %s gear/quat: mass, center of mass, inertia tensor and momenta of %zu bodies on "
+          "timestep " BIGINT_FORMAT "\n\n%zu\n",
+          fix_id.c_str(), all.size(), lmp->update->ntimestep, all.size());
+  for (const BodyLine &line : all) print(file, line);
+  const bool failed = ferror(file) != 0;
+  if (fclose(file) != 0 || failed || rename(unfinished.c_str(), filename.c_str()) != 0) refuse();
 }

@@ -23,6 +23,8 @@ class LAMMPS;
 
 namespace LAMMPS_NS::GearQuat {
 
+class Bodies;
+
 struct GivenBody {
   double mass;
   double center[3];     ///< wrapped, as in the file
@@ -37,6 +39,13 @@ using GivenBodies = std::map<tagint, GivenBody>;
 /// Read on rank 0, return on all ranks.  Any fault of the file ends the run on all ranks with a
 /// message that names file and line.
 GivenBodies read_given_bodies(LAMMPS *lmp, const std::string &filename);
+
+/// Write all bodies, sorted by ID, with all digits; a file that cannot be written ends the run.
+/// A file of this name is whole at any time: it is written under another name and then renamed.
+/// rows: those of BodyTable for this rank's owned bodies.  fix_id: for the comment on line 1.
+/// Collective.
+void write_given_bodies(LAMMPS *lmp, const std::string &filename, const std::string &fix_id,
+                        const Bodies &bodies, double **rows);
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -24,6 +24,8 @@
 #include "gear_quat_nordsieck.h"
 #include "gear_quat_rigid_body.h"
 
+#include <array>
+
 namespace LAMMPS_NS::GearQuat {
 
 enum class Formulation { FIRST, SECOND };
@@ -72,9 +74,14 @@ constexpr int MAX_SIZE = (FIRST_MOST + 2) * Scheme::FIRST_WIDTH >
 
 /// What the corrector tells of a step.
 struct Correction {
-  double work;              ///< of the load along the way from the predicted to the corrected pose
-  double position_error;    ///< estimated local error of the center of mass, length
-  double angle_error;       ///< estimated local error of the orientation, radians
+  double work;    ///< of the load along the way from the predicted to the corrected pose
+  double position_residual2, quaternion_residual2;    ///< squared, summed over the passes
+  double error_weight;                                ///< of a residual in the local error
+
+  /// Estimated local error of the center of mass, length.
+  double position_error() const { return error_weight * std::sqrt(position_residual2); }
+  /// Estimated local error of the orientation, radians.
+  double angle_error() const { return 2.0 * error_weight * std::sqrt(quaternion_residual2); }
 };
 
 class Integrator {
@@ -90,6 +97,7 @@ class Integrator {
         (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
   }
 
+  double step() const { return h; }
   /// Another step; histories have to be rescaled with it.
   void set_step(double step)
   {
@@ -99,28 +107,23 @@ class Integrator {
 
   void predict(double *rows) const
   {
-    if (scheme.first())
-      scheme.compensate ? First<1>::predict(rows, n) : First<0>::predict(rows, n);
-    else
-      scheme.compensate ? Second<2>::predict(rows, n) : Second<0>::predict(rows, n);
+    with_history([&](auto history) {
+      history.predict(rows, n);
+    });
   }
 
   void predict_center(double *rows) const
   {
-    if (scheme.first())
-      scheme.compensate ? First<1>::predict<FIRST_CENTER>(rows, n)
-                        : First<0>::predict<FIRST_CENTER>(rows, n);
-    else
-      scheme.compensate ? Second<2>::predict<SECOND_CENTER>(rows, n)
-                        : Second<0>::predict<SECOND_CENTER>(rows, n);
+    with_history([&](auto history) {
+      history.template predict<center_columns(history)>(rows, n);
+    });
   }
 
   void rescale(double *rows, double ratio) const
   {
-    if (scheme.first())
-      scheme.compensate ? First<1>::rescale(rows, n, ratio) : First<0>::rescale(rows, n, ratio);
-    else
-      scheme.compensate ? Second<2>::rescale(rows, n, ratio) : Second<0>::rescale(rows, n, ratio);
+    with_history([&](auto history) {
+      history.rescale(rows, n, ratio);
+    });
     if (!scheme.trial) return;
     const double factor = std::pow(ratio, n);
     for (int i = 0; i < scheme.width(); ++i) rows[scheme.trial_row() + i] *= factor;
@@ -161,10 +164,8 @@ class Integrator {
   {
     const int width = scheme.width(), quat = scheme.quaternion(), row = scheme.first() ? 0 : 1;
     double *rates = rows + width, *qddot = rates + width + quat;
-    double a[9], torque_body[3], omegadot_body[3], qdot[4];
-    rotation_matrix(state.q, scheme.norm2(state.q), a);
-    to_body(a, load.torque_space, torque_body);
-    angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
+    double omegadot_body[3], qdot[4];
+    angular_acceleration(body, state, scheme.norm2(state.q), load, omegadot_body);
     quaternion_rate(rows + quat, state.omega_body, qdot);
     quaternion_acceleration(rows + quat, qdot, omegadot_body, qddot);
     for (int i = 0; i < 3; ++i) rates[Scheme::POSITION + i] = h * state.velocity[i];
@@ -193,18 +194,29 @@ class Integrator {
     return dot4(q, q + scheme.width()) / h;
   }
 
-  /// Correct a predicted history with the load met at the predicted pose, then project.
+  /// The rotation matrix A of the orientation in a history.
+  std::array<double, 9> axes_of(const double *rows) const
+  {
+    std::array<double, 9> axes;
+    const double *q = rows + scheme.quaternion();
+    rotation_matrix(q, scheme.norm2(q), axes.data());
+    return axes;
+  }
+
+  /// Correct a predicted history with the load met at the predicted pose, then project.  axes: of
+  /// this pose, as axes_of() finds them.
+  Correction correct(const RigidBody &body, const Load &load, const double *axes,
+                     double *rows) const
+  {
+    Pending pending = begin(load, axes, rows);
+    with_history([&](auto history) {
+      correct_all(history, body, load, rows, pending);
+    });
+    return conclude(load, rows, pending);
+  }
   Correction correct(const RigidBody &body, const Load &load, double *rows) const
   {
-    Pending pending = begin(load, rows);
-    const double *torque_body = pending.torque_body;
-    if (scheme.first())
-      scheme.compensate ? correct_first<First<1>>(body, load, torque_body, rows, pending.total)
-                        : correct_first<First<0>>(body, load, torque_body, rows, pending.total);
-    else
-      scheme.compensate ? correct_second<Second<2>>(body, load, torque_body, rows, pending.total)
-                        : correct_second<Second<0>>(body, load, torque_body, rows, pending.total);
-    return conclude(load, rows, pending);
+    return correct(body, load, axes_of(rows).data(), rows);
   }
 
   // First-order form under a constraint of all bodies together: the same correction pass by pass,
@@ -219,14 +231,12 @@ class Integrator {
     Residual total;
   };
 
-  Pending begin(const Load &load, const double *rows) const
+  Pending begin(const Load &load, const double *axes, const double *rows) const
   {
     Pending pending;
-    double a[9];
     copy(rows + Scheme::POSITION, 3, pending.x);
     copy(rows + scheme.quaternion(), 4, pending.q);
-    rotation_matrix(pending.q, scheme.norm2(pending.q), a);
-    to_body(a, load.torque_space, pending.torque_body);
+    to_body(axes, load.torque_space, pending.torque_body);
     pending.total = Residual();
     return pending;
   }
@@ -235,15 +245,19 @@ class Integrator {
                     Pending &pending) const
   {
     const Damping damping = {alpha};
-    scheme.compensate ? pass_first<First<1>>(body, load, damping, rows, pending)
-                      : pass_first<First<0>>(body, load, damping, rows, pending);
+    with_first([&](auto history) {
+      correct_center(history, body, load, damping, rows, pending.total.x);
+      correct_rotation(history, body, pending.torque_body, damping, rows, pending.total.q);
+    });
   }
 
   /// Projects |q| = 1.
   Correction finish(const Load &load, double *rows, const Pending &pending) const
   {
     if (scheme.project)
-      scheme.compensate ? project_row<First<1>>(rows) : project_row<First<0>>(rows);
+      with_first([&](auto history) {
+        project_row(history, rows);
+      });
     return conclude(load, rows, pending);
   }
 
@@ -271,22 +285,33 @@ class Integrator {
   {
     double x[3], residual[3] = {0.0, 0.0, 0.0}, dx[3];
     copy(rows + Scheme::POSITION, 3, x);
-    if (scheme.first())
-      scheme.compensate ? correct_center_first<First<1>>(body, load, Undamped(), rows, residual)
-                        : correct_center_first<First<0>>(body, load, Undamped(), rows, residual);
-    else
-      scheme.compensate ? correct_center_second<Second<2>>(body, load, rows, residual)
-                        : correct_center_second<Second<0>>(body, load, rows, residual);
+    with_history([&](auto history) {
+      correct_center(history, body, load, Undamped(), rows, residual);
+    });
     for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
-    return {dot3(load.force, dx), error_weight * std::sqrt(dot3(residual, residual)), 0.0};
+    return {dot3(load.force, dx), dot3(residual, residual), 0.0, error_weight};
   }
 
  private:
-  static constexpr int FIRST_CENTER = 6,
-                       SECOND_CENTER = 3;    // columns of the center, the first ones
-
   template <int CARRIES> using First = Nordsieck<Scheme::FIRST_WIDTH, CARRIES>;
   template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
+
+  /// Columns of the center, the first ones.
+  template <int CARRIES> static constexpr int center_columns(First<CARRIES>) { return 6; }
+  template <int CARRIES> static constexpr int center_columns(Second<CARRIES>) { return 3; }
+
+  /// Calls act with the kind of history that this scheme has.
+  template <class Act> void with_history(Act act) const
+  {
+    if (scheme.first())
+      with_first(act);
+    else
+      scheme.compensate ? act(Second<2>()) : act(Second<0>());
+  }
+  template <class Act> void with_first(Act act) const
+  {
+    scheme.compensate ? act(First<1>()) : act(First<0>());
+  }
 
   Scheme scheme;
   double h, per_h;
@@ -311,35 +336,35 @@ class Integrator {
   }
 
   /// Residual of a column is target - row, row that of the order of the equation.
-  template <class History, int COUNT>
-  void feed_back(double *rows, const double *row, int component, double *target,
+  template <int COUNT, class History>
+  void feed_back(History history, double *rows, const double *row, int component, double *target,
                  double *total = nullptr) const
   {
     for (int i = 0; i < COUNT; ++i) target[i] -= row[component + i];
-    History::template correct<COUNT>(rows, n, c, component, target);
+    history.template correct<COUNT>(rows, n, c, component, target);
     if (total)
       for (int i = 0; i < COUNT; ++i) total[i] += target[i];
   }
 
   /// Momenta (Eq. 14) and positions (Eq. 13): as long as forces stay one pass is all.
-  template <class History, class Damper>
-  void correct_center_first(const RigidBody &body, const Load &load, const Damper &damper,
-                            double *rows, double *residual) const
+  template <int CARRIES, class Damper>
+  void correct_center(First<CARRIES> history, const RigidBody &body, const Load &load,
+                      const Damper &damper, double *rows, double *residual) const
   {
     const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
     double before[3], target[3];
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i) target[i] = h * damper.force(load.force[i], before[i]);
-    feed_back<History, 3>(rows, rates, Scheme::MOMENTUM, target);
+    feed_back<3>(history, rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
-    feed_back<History, 3>(rows, rates, Scheme::POSITION, target, residual);
+    feed_back<3>(history, rows, rates, Scheme::POSITION, target, residual);
   }
 
   /// Angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16).
-  template <class History, class Damper>
-  void correct_rotation_first(const RigidBody &body, const double *torque_body,
-                              const Damper &damper, double *rows, double *residual) const
+  template <int CARRIES, class Damper>
+  void correct_rotation(First<CARRIES> history, const RigidBody &body, const double *torque_body,
+                        const Damper &damper, double *rows, double *residual) const
   {
     const int quat = scheme.quaternion();
     const double *rates = rows + scheme.width(), *omega_body = rows + Scheme::OMEGA;
@@ -349,71 +374,64 @@ class Integrator {
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * before[i]);
     angular_acceleration(body, torque, before, target);
     for (int i = 0; i < 3; ++i) target[i] *= h;
-    feed_back<History, 3>(rows, rates, Scheme::OMEGA, target);
+    feed_back<3>(history, rows, rates, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
-    feed_back<History, 4>(rows, rates, quat, target, residual);
+    feed_back<4>(history, rows, rates, quat, target, residual);
   }
 
-  template <class History>
-  void correct_first(const RigidBody &body, const Load &load, const double *torque_body,
-                     double *rows, Residual &total) const
+  template <int CARRIES>
+  void correct_all(First<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
+                   Pending &pending) const
   {
-    correct_center_first<History>(body, load, Undamped(), rows, total.x);
+    Residual &total = pending.total;
+    correct_center(history, body, load, Undamped(), rows, total.x);
     for (int pass = 0; pass < scheme.passes; ++pass)
-      correct_rotation_first<History>(body, torque_body, Undamped(), rows, total.q);
-    if (scheme.project) project_row<History>(rows);
-  }
-
-  template <class History>
-  void pass_first(const RigidBody &body, const Load &load, const Damping &damping, double *rows,
-                  Pending &pending) const
-  {
-    correct_center_first<History>(body, load, damping, rows, pending.total.x);
-    correct_rotation_first<History>(body, pending.torque_body, damping, rows, pending.total.q);
+      correct_rotation(history, body, pending.torque_body, Undamped(), rows, total.q);
+    if (scheme.project) project_row(history, rows);
   }
 
   void add_first(double *rows, int component, const double *change) const
   {
-    scheme.compensate ? First<1>::add<3>(rows, n, 0, component, change)
-                      : First<0>::add<3>(rows, n, 0, component, change);
+    with_first([&](auto history) {
+      history.template add<3>(rows, n, 0, component, change);
+    });
   }
 
   Correction conclude(const Load &load, const double *rows, const Pending &pending) const
   {
-    Correction result;
     const double *q = rows + scheme.quaternion();
     double dx[3], dq[4], angle_body[3];
     for (int i = 0; i < 3; ++i) dx[i] = rows[i] - pending.x[i];
     for (int i = 0; i < 4; ++i) dq[i] = q[i] - pending.q[i];
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
-    result.work = dot3(load.force, dx) + dot3(pending.torque_body, angle_body);
-    result.position_error = error_weight * std::sqrt(dot3(pending.total.x, pending.total.x));
-    result.angle_error = 2.0 * error_weight * std::sqrt(dot4(pending.total.q, pending.total.q));
-    return result;
+    const Residual &total = pending.total;
+    return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body), dot3(total.x, total.x),
+            dot4(total.q, total.q), error_weight};
   }
 
   /// Positions (Eq. 17): forces stay, so one pass is all.
-  template <class History>
-  void correct_center_second(const RigidBody &body, const Load &load, double *rows,
-                             double *residual) const
+  template <int CARRIES>
+  void correct_center(Second<CARRIES> history, const RigidBody &body, const Load &load, Undamped,
+                      double *rows, double *residual) const
   {
     const double *seconds = rows + 2 * scheme.width();
     const double half_h2 = 0.5 * h * h;
     double target[3];
     for (int i = 0; i < 3; ++i) target[i] = half_h2 * load.force[i] / body.mass;
-    feed_back<History, 3>(rows, seconds, Scheme::POSITION, target, residual);
+    feed_back<3>(history, rows, seconds, Scheme::POSITION, target, residual);
   }
 
-  template <class History>
-  void correct_second(const RigidBody &body, const Load &load, const double *torque_body,
-                      double *rows, Residual &total) const
+  template <int CARRIES>
+  void correct_all(Second<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
+                   Pending &pending) const
   {
+    Residual &total = pending.total;
     const int quat = scheme.quaternion(), width = scheme.width();
     const double *rates = rows + width, *seconds = rows + 2 * width, *q = rows + quat;
     const double half_h2 = 0.5 * h * h;
     double target[4];
-    correct_center_second<History>(body, load, rows, total.x);
+    correct_center(history, body, load, Undamped(), rows, total.x);
 
     // quaternions (Eqs. 6, 7, 18)
 
@@ -421,30 +439,30 @@ class Integrator {
       double omega_body[3], omegadot_body[3], qdot[4];
       for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] * per_h;
       angular_velocity(q, scheme.norm2(q), qdot, omega_body);
-      angular_acceleration(body, torque_body, omega_body, omegadot_body);
+      angular_acceleration(body, pending.torque_body, omega_body, omegadot_body);
       quaternion_acceleration(q, qdot, omegadot_body, target);
       for (int i = 0; i < 4; ++i) target[i] *= half_h2;
-      feed_back<History, 4>(rows, seconds, quat, target, total.q);
+      feed_back<4>(history, rows, seconds, quat, target, total.q);
     }
     if (!scheme.project) return;
 
     // a rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4)
 
-    project_row<History>(rows);
+    project_row(history, rows);
     const double radial = -dot4(q, rates + quat);
     for (int i = 0; i < 4; ++i) target[i] = radial * q[i];
-    History::template add<4>(rows, n, 1, quat, target);
+    history.template add<4>(rows, n, 1, quat, target);
   }
 
   /// |q| = 1 (Eq. 3), by what is missing: a compensated row keeps its digits.
-  template <class History> void project_row(double *rows) const
+  template <class History> void project_row(History history, double *rows) const
   {
     const double *q = rows + scheme.quaternion();
     const double norm2 = dot4(q, q), norm = std::sqrt(norm2);
     const double missing = (1.0 - norm2) / (norm * (1.0 + norm));
     double change[4];
     for (int i = 0; i < 4; ++i) change[i] = missing * q[i];
-    History::template add<4>(rows, n, 0, scheme.quaternion(), change);
+    history.template add<4>(rows, n, 0, scheme.quaternion(), change);
   }
 };
 

@@ -38,7 +38,7 @@ void IsokineticConstraint::measure()
 {
   KineticSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    here.add(bodies.body[ibody].rigid, bodies.load[ibody], bodies.state[ibody]);
+    here.add(bodies.body[ibody].rigid, bodies.load_of(ibody), bodies.state_of(ibody));
   sums = over_all(here);
   alpha = multipliers(mode, sums);
 }
@@ -78,13 +78,13 @@ void IsokineticConstraint::refuse_rest() const
    a step
 ------------------------------------------------------------------------- */
 
-/// With the torques at the predicted pose and the velocities of now.
+/// Sums with the torques at the predicted pose and the present velocities.
 KineticSums IsokineticConstraint::of_pending() const
 {
   KineticSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const BodyState &s = bodies.state[ibody];
-    here.add(bodies.body[ibody].rigid, bodies.load[ibody].force, pending[ibody].torque_body,
+    const BodyState &s = bodies.state_of(ibody);
+    here.add(bodies.body[ibody].rigid, bodies.load_of(ibody).force, pending[ibody].torque_body,
              s.velocity, s.omega_body);
   }
   return over_all(here);
@@ -95,15 +95,16 @@ void IsokineticConstraint::correct(const Integrator &integrator)
   const int n = bodies.nmoved();
   pending.resize(n);
   for (int ibody = 0; ibody < n; ++ibody)
-    pending[ibody] = integrator.begin(bodies.load[ibody], bodies.history(ibody));
+    pending[ibody] =
+        integrator.begin(bodies.load_of(ibody), bodies.axes(ibody), bodies.history(ibody));
 
   for (int pass = 0; pass < scheme.passes; ++pass) {
     alpha = multipliers(mode, of_pending());
     for (int ibody = 0; ibody < n; ++ibody) {
       const RigidBody &rigid = bodies.body[ibody].rigid;
       double *rows = bodies.history(ibody);
-      integrator.correct_pass(rigid, bodies.load[ibody], alpha, rows, pending[ibody]);
-      bodies.state[ibody] = integrator.body_state(rigid, rows);
+      integrator.correct_pass(rigid, bodies.load_of(ibody), alpha, rows, pending[ibody]);
+      bodies.change_state(ibody) = integrator.body_state(rigid, rows);
     }
   }
 
@@ -120,9 +121,9 @@ void IsokineticConstraint::correct(const Integrator &integrator)
 
   for (int ibody = 0; ibody < n; ++ibody) {
     double *rows = bodies.history(ibody);
-    bodies.last[ibody] = integrator.finish(bodies.load[ibody], rows, pending[ibody]);
+    bodies.change_last(ibody) = integrator.finish(bodies.load_of(ibody), rows, pending[ibody]);
     if (rescale) integrator.scale_momenta(bodies.body[ibody].rigid, factor, rows);
-    bodies.state[ibody] = integrator.body_state(bodies.body[ibody].rigid, rows);
+    bodies.change_state(ibody) = integrator.body_state(bodies.body[ibody].rigid, rows);
   }
 }
 
@@ -154,18 +155,18 @@ double IsokineticConstraint::element(int n) const
    restart
 ------------------------------------------------------------------------- */
 
-IsokineticConstraint::Kept IsokineticConstraint::keep() const
+IsokineticConstraint::Checkpoint IsokineticConstraint::checkpoint() const
 {
-  Kept kept = {(double) mode, (double) counted, target, {}};
-  std::copy_n(heat, MAX_VALUES, kept.heat);
-  return kept;
+  Checkpoint saved = {(double) mode, (double) counted, target, {}};
+  std::copy_n(heat, MAX_VALUES, saved.heat);
+  return saved;
 }
 
-bool IsokineticConstraint::take(const Kept &kept)
+bool IsokineticConstraint::restore(const Checkpoint &saved)
 {
-  if (kept.mode != (double) mode) return false;
-  counted = (bigint) kept.bodies;
-  target = kept.target;
-  std::copy_n(kept.heat, MAX_VALUES, heat);
+  if (saved.mode != (double) mode) return false;
+  counted = (bigint) saved.bodies;
+  target = saved.target;
+  std::copy_n(saved.heat, MAX_VALUES, heat);
   return true;
 }

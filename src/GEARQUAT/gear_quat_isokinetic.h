@@ -38,12 +38,13 @@ class IsokineticConstraint : protected Pointers {
 
   // after measure()
 
-  /// What moves an owned body.
+  /// The load on an owned body together with the forces of the constraint.
   Load acting(int ibody) const
   {
-    return damped_load(bodies.body[ibody].rigid, bodies.state[ibody], bodies.load[ibody], alpha);
+    return damped_load(bodies.body[ibody].rigid, bodies.state_of(ibody), bodies.load_of(ibody),
+                       alpha);
   }
-  /// Of all forces and torques.
+  /// The power of all forces and torques.
   double power() const { return sums.power(); }
   double element(int n) const;
 
@@ -53,14 +54,14 @@ class IsokineticConstraint : protected Pointers {
   void rescale_step(double ratio);
 
   /// What a restart file holds, the same on all ranks.
-  struct Kept {
+  struct Checkpoint {
     double mode, bodies;
     KineticSums target;
     double heat[MAX_VALUES];
   };
-  Kept keep() const;
+  Checkpoint checkpoint() const;
   /// False if the file is of another kind of constraint.
-  bool take(const Kept &kept);
+  bool restore(const Checkpoint &saved);
 
  private:
   Bodies &bodies;

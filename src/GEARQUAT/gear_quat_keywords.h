@@ -98,6 +98,15 @@ const Keyword &known_keyword(LAMMPS *lmp, const std::string &name);
 /// or more blanks; an empty cell is a hyphen.
 std::string list_of_keywords();
 
+// words of the rigid fixes that this fix does not have
+
+/// What to write instead of a keyword of fix rigid and its kin; empty for any other word.
+std::string instead_of_rigid_keyword(const std::string &keyword);
+
+/// The words of fix_modify that the rigid fixes have: returns how many were used, and ends the run
+/// on all ranks where this fix cannot do what they ask for.
+int modify_like_rigid(LAMMPS *lmp, int narg, char **arg);
+
 }    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -21,8 +21,9 @@ struct MotionLimits {
   static constexpr double TURN = 3.14159265358979323846;    ///< radians in a step
   static constexpr double NORM2 = 100.0;    ///< |q|^2 is less than this, and more than its inverse
 
-  double speed2, rate2;
+  double speed2 = 0.0, rate2 = 0.0;
 
+  MotionLimits() = default;
   /// h: the time step, not zero.  length: of the scene, infinite for none.
   MotionLimits(double h, double length) :
       speed2((length / h) * (length / h)), rate2((TURN / h) * (TURN / h))
@@ -47,10 +48,8 @@ struct MotionLimits {
 inline BodyState kicked(const RigidBody &body, const BodyState &before, const Load &load, double h)
 {
   BodyState s = before;
-  double a[9], torque_body[3], omegadot_body[3];
-  rotation_matrix(s.q, dot4(s.q, s.q), a);
-  to_body(a, load.torque_space, torque_body);
-  angular_acceleration(body, torque_body, before.omega_body, omegadot_body);
+  double omegadot_body[3];
+  angular_acceleration(body, before, dot4(s.q, s.q), load, omegadot_body);
   for (int k = 0; k < 3; ++k) {
     s.velocity[k] += h * load.force[k] / body.mass;
     s.omega_body[k] += h * omegadot_body[k];

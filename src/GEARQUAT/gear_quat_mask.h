@@ -43,13 +43,12 @@ inline Load acting_load(const Load &met, Mask off)
 /// Work of a load met at the pose `before` along the small way to the pose `after`.
 inline double work_between(const Load &met, const BodyState &before, const BodyState &after)
 {
-  double a[9], torque_body[3], dx[3], dq[4], angle_body[3];
+  double torque_body[3], dx[3], dq[4], angle_body[3];
   const double norm2 = dot4(before.q, before.q);
   for (int i = 0; i < 3; ++i) dx[i] = after.center[i] - before.center[i];
   for (int i = 0; i < 4; ++i) dq[i] = after.q[i] - before.q[i];
   angular_velocity(before.q, norm2, dq, angle_body);
-  rotation_matrix(before.q, norm2, a);
-  to_body(a, met.torque_space, torque_body);
+  torque_along_axes(before.q, norm2, met, torque_body);
   return dot3(met.force, dx) + dot3(torque_body, angle_body);
 }
 

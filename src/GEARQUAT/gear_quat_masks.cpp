@@ -24,9 +24,7 @@ std::vector<tagint> all_ids(LAMMPS *lmp, const Bodies &bodies)
 {
   std::vector<tagint> mine;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) mine.push_back(bodies.body[ibody].id);
-  std::vector<tagint> ids = gather_all(mine, MPI_LMP_TAGINT, lmp->world);
-  std::sort(ids.begin(), ids.end());
-  return ids;
+  return gather_sorted(mine, lmp->world);
 }
 
 /// n, *, *n, n* or m*n with 1 <= m <= n <= number; false if it is none of these.

@@ -23,16 +23,16 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// a history made with a step so much longer than the next one is not worth keeping: what it has in
-// its higher rows is as wrong as that step was
+// If the step becomes shorter than this part of the last one, histories start anew: the errors in
+// their higher rows are those of the long step.
 
 static constexpr double SHORTER = 0.49;
 
-// Forces at a corrected pose differ from those at the predicted one by what the step has corrected:
-// at a stable step they leave a residual of a part of the last one.  One of more than OTHER_FORCES
-// times the last one is due to other forces than those of the last step, or of more than OTHER_NOISE
-// times where forces are random.  So it is not if it is rounding: of forces, relative to those on
-// single atoms, or of what a body moves in a step.
+// Forces at a corrected pose differ from those at the predicted one by what the step has corrected,
+// so at a stable step they leave a smaller residual than the last one.  If a residual exceeds the last
+// one OTHER_FORCES times, or OTHER_NOISE times where forces are random, the forces are not those of
+// the last step any more.  Residuals that rounding explains are excepted: rounding of forces, relative
+// to the largest force on an atom, and rounding of the way that a body moves in a step.
 
 static constexpr double OTHER_FORCES = 1.0, OTHER_NOISE = 10.0;
 static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-13;
@@ -41,7 +41,7 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 
 Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
     Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme),
-    started(false), set_up(false), h(0.0), h_made(0.0)
+    started(false), set_up(false), last_step(0.0)
 {
   if (args.control.eps > 0.0)
     tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, bodies));
@@ -62,7 +62,7 @@ void Motion::meet_bodies()
 void Motion::init()
 {
   if (tolerance) tolerance->refuse_scene();
-  if (tolerance && started) tolerance->keep_step(h);
+  if (tolerance && started) tolerance->keep_step(step());
   follow_time_step();
 }
 
@@ -78,21 +78,18 @@ void Motion::make_integrator(double step)
 
 void Motion::follow_time_step()
 {
-  const double step = update->dt;
-  if (step == 0.0 || !std::isfinite(step)) return;
-  if (integrator && step == h) return;
-  if (tolerance && started && !tolerance->owns_step()) return;    // it is put back before a step
-  const double ratio = step / h;
+  const double next = update->dt;
+  if (next == 0.0 || !std::isfinite(next) || next == step()) return;
+  if (tolerance && started && !tolerance->is_changing_step()) return;    // it will be put back
+  const double ratio = next / step();
   if (integrator)
-    integrator->set_step(step);
+    integrator->set_step(next);
   else
-    make_integrator(step);
-  if (started && ratio != 1.0) {
-    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      integrator->rescale(bodies.history(ibody), ratio);
-    if (isokinetic) isokinetic->rescale_step(ratio);
-  }
-  h = step;
+    make_integrator(next);
+  if (!started) return;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    integrator->rescale(bodies.history(ibody), ratio);
+  if (isokinetic) isokinetic->rescale_step(ratio);
 }
 
 void Motion::impose_masks()
@@ -108,7 +105,7 @@ void Motion::impose_masks()
 
 void Motion::begin_run()
 {
-  if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, h);
+  if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, step());
   if (isokinetic) isokinetic->begin_run(!started);
   set_up = true;
 }
@@ -128,7 +125,7 @@ void Motion::begin_steps(const std::vector<Motion *> &all, double **f)
       full.push_back(one);
       needed.push_back(needs);
     } else if (needs) {
-      Bootstrap::zero(one->party(true), one->h);
+      Bootstrap::zero(one->party(true), one->step());
       one->begin(false);
     }
   }
@@ -137,7 +134,7 @@ void Motion::begin_steps(const std::vector<Motion *> &all, double **f)
       }))
     return;
 
-  // histories that could go on are made anew where this makes the start of the others full
+  // Histories that could continue start anew too if this gives the others a start of full order.
 
   const bool some_go_on = !std::all_of(needed.begin(), needed.end(), [](bool one) {
     return one;
@@ -147,24 +144,24 @@ void Motion::begin_steps(const std::vector<Motion *> &all, double **f)
   std::vector<Party> parties;
   for (size_t n = 0; n < full.size(); ++n)
     if (needed[n] || together) parties.push_back(full[n]->party(needed[n]));
-  const bool found = Bootstrap(full[0]->lmp, parties, full[0]->h).run();
+  const bool found = Bootstrap(full[0]->lmp, parties, full[0]->step()).run();
   for (size_t n = 0; n < full.size(); ++n)
     if (needed[n] || (together && found)) full[n]->begin(found);
   for (auto *one : full)
     if (found && one->tolerance) one->tolerance->shorten_first_step();
 }
 
-/// Null if the histories can go on.  Collective.
+/// Returns null if the histories can continue.  Collective.
 const char *Motion::reason_to_start_anew(double **f)
 {
-  if (std::fabs(h) < SHORTER * std::fabs(h_made) && can_start_anew())
+  if (std::fabs(step()) < SHORTER * std::fabs(last_step) && can_start_anew())
     return "the time step is less than half of that of the last steps";
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
   return forces_changed(f) ? "forces are not those of the last step" : nullptr;
 }
 
-/// The other fixes that move atoms: forces have derivatives that such motion makes.
+/// The other fixes that move atoms: the derivatives of forces depend on that motion.
 std::string Motion::present_movers() const
 {
   std::string ids = "of this run:";
@@ -213,30 +210,30 @@ bool Motion::forces_changed(double **f)
       (ratio > OTHER_FORCES && Forces(lmp, starting_together()).reason().empty());
 }
 
-/// Of a residual, as a length.  force: the largest one on an atom.
+/// The part of a residual that rounding explains, as a length.  force: the largest one on an atom.
 double Motion::rounding(int ibody, double force) const
 {
   const Body &body = bodies.body[ibody];
-  const BodyState &s = bodies.state[ibody];
-  const double step = std::fabs(h);
+  const BodyState &s = bodies.state_of(ibody);
+  const double size = std::fabs(step());
   double response = 1.0 / body.rigid.mass;
   for (const double moment : body.rigid.inertia)
     if (moment > 0.0) response = std::max(response, body.reach() * body.reach() / moment);
   const double noise = ROUNDING_OF_FORCES * std::sqrt((double) body.natoms) * force;
-  const double way = step * std::sqrt(dot3(s.velocity, s.velocity)) +
-      body.reach() * (1.0 + step * std::sqrt(dot3(s.omega_body, s.omega_body)));
-  return step * step * response * noise + ROUNDING_OF_MOTION * way;
+  const double way = size * std::sqrt(dot3(s.velocity, s.velocity)) +
+      body.reach() * (1.0 + size * std::sqrt(dot3(s.omega_body, s.omega_body)));
+  return size * size * response * noise + ROUNDING_OF_MOTION * way;
 }
 
 double Motion::last_error() const
 {
   double largest = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    largest = std::max(largest, bodies.body[ibody].length(bodies.last[ibody]));
+    largest = std::max(largest, bodies.body[ibody].length(bodies.last_of(ibody)));
   return largest;
 }
 
-/// True if histories are to be made; rank 0 says why they are made anew.
+/// True if histories have to start; rank 0 says why they start anew.
 bool Motion::has_to_start(double **f)
 {
   const char *reason = started ? reason_to_start_anew(f) : nullptr;
@@ -244,7 +241,7 @@ bool Motion::has_to_start(double **f)
     utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
   const bool needs = !started || reason;
   movers = present_movers();
-  if (needs) blowup.check_loads(h, f);
+  if (needs) blowup.check_loads(step(), f);
   return needs;
 }
 
@@ -259,16 +256,16 @@ Party Motion::party(bool needed)
           {}};
 }
 
-/// Histories are made, full: to the last row.
+/// Histories have started.  full: all their rows are known.
 void Motion::begin(bool full)
 {
   started = true;
   if (!tolerance) return;
   tolerance->begin(full);
-  make_integrator(h);
+  make_integrator(step());
 }
 
-/// This fix, and those that a full start finds derivatives for.
+/// The fixes whose histories a start of full order makes together with those of this fix.
 std::vector<const Fix *> Motion::starting_together() const
 {
   std::vector<const Fix *> found;
@@ -287,29 +284,30 @@ void Motion::take_velocities(const std::vector<int> &changed)
 {
   if (!started) return;
   for (const int ibody : changed)
-    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state[ibody], bodies.acting(ibody),
-                               bodies.history(ibody));
+    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state_of(ibody),
+                               bodies.acting(ibody), bodies.history(ibody));
 }
 
 void Motion::predict(double **f)
 {
-  if (tolerance && !tolerance->owns_step()) tolerance->put_back_begun_step(h);
-  h_made = h;
-  const MotionLimits limits = blowup.limits(h);
+  const double h = step();
+  if (tolerance && update->dt != h) tolerance->put_back_begun_step(h);
+  last_step = h;
+  limits = blowup.limits(h);
   const auto check = [&](int ibody) {
-    const BodyState &state = bodies.state[ibody];
+    const BodyState &state = bodies.state_of(ibody);
     if (!limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
   };
   for (const int ibody : bodies.points) {
     double *rows = bodies.history(ibody);
     integrator->predict_center(rows);
-    integrator->center_state(bodies.body[ibody].rigid, rows, bodies.state[ibody]);
+    integrator->center_state(bodies.body[ibody].rigid, rows, bodies.change_state(ibody));
     check(ibody);
   }
   for (const int ibody : bodies.tops) {
     double *rows = bodies.history(ibody);
     integrator->predict(rows);
-    bodies.state[ibody] = integrator->body_state(bodies.body[ibody].rigid, rows);
+    bodies.change_state(ibody) = integrator->body_state(bodies.body[ibody].rigid, rows);
     check(ibody);
   }
 }
@@ -325,15 +323,15 @@ void Motion::correct(double **f)
 /// MASKED: some components of the loads do not act.
 template <bool MASKED> void Motion::correct_bodies(double **f)
 {
-  const MotionLimits limits = blowup.limits(h);
+  const double h = step();
   const auto correct_all = [&](auto changing) {
     for (const int ibody : bodies.points) {
       correct_body<MASKED, true, changing>(ibody);
-      if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
+      if (!limits.keep(bodies.state_of(ibody))) blowup.stop(ibody, bodies.state_of(ibody), h, f);
     }
     for (const int ibody : bodies.tops) {
       correct_body<MASKED, false, changing>(ibody);
-      if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
+      if (!limits.keep(bodies.state_of(ibody))) blowup.stop(ibody, bodies.state_of(ibody), h, f);
     }
   };
   tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
@@ -345,39 +343,39 @@ template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int 
 {
   double *rows = bodies.history(ibody);
   const RigidBody &rigid = bodies.body[ibody].rigid;
-  const Load load = MASKED ? bodies.acting(ibody) : bodies.load[ibody];
-  BodyState &state = bodies.state[ibody];
+  const Load load = MASKED ? bodies.acting(ibody) : bodies.load_of(ibody);
+  BodyState &state = bodies.change_state(ibody);
   const BodyState before = state;
-  Correction &last = bodies.last[ibody];
+  Correction &last = bodies.change_last(ibody);
   if (CHANGING)
     last = tolerance->correct(*integrator, ibody, load);
   else
     last = POINT ? integrator->correct_center(rigid, load, rows)
-                 : integrator->correct(rigid, load, rows);
+                 : integrator->correct(rigid, load, bodies.axes(ibody), rows);
   if (POINT)
     integrator->center_state(rigid, rows, state);
   else
     state = integrator->body_state(rigid, rows);
-  if (MASKED) last.work = work_between(bodies.load[ibody], before, state);
+  if (MASKED) last.work = work_between(bodies.load_of(ibody), before, state);
 }
 
-/// Under a constraint of all of them.
+/// The isokinetic constraint couples all bodies, so they are corrected pass by pass.
 void Motion::correct_together(double **f)
 {
+  const double h = step();
   isokinetic->correct(*integrator);
-  const MotionLimits limits = blowup.limits(h);
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list)
-      if (!limits.keep(bodies.state[ibody])) blowup.stop(ibody, bodies.state[ibody], h, f);
+      if (!limits.keep(bodies.state_of(ibody))) blowup.stop(ibody, bodies.state_of(ibody), h, f);
 }
 
-/// Bodies that came in this step: their histories begin with what is known of them.
+/// The histories of bodies that came in this step begin with the derivatives that are known.
 void Motion::begin_fresh(double **f)
 {
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
-    blowup.check_load(ibody, h, f);
-    Bootstrap::seed_body(bodies, ibody, bodies.acting(ibody), present_scheme(), h, known);
+    blowup.check_load(ibody, step(), f);
+    Bootstrap::seed_body(bodies, ibody, bodies.acting(ibody), present_scheme(), step(), known);
     if (tolerance) tolerance->note_fresh();
   }
   bodies.take_in_fresh();
@@ -385,8 +383,10 @@ void Motion::begin_fresh(double **f)
 
 void Motion::choose_step()
 {
-  if (tolerance->choose()) make_integrator(h);
-  tolerance->change_step();
+  const int values = tolerance->scheme().values();
+  const double next = tolerance->choose();
+  if (tolerance->scheme().values() != values) make_integrator(step());
+  tolerance->change_step(next);
 }
 
 /* ----------------------------------------------------------------------
@@ -418,30 +418,31 @@ const Integrator *Motion::present_integrator() const
    restart
 ------------------------------------------------------------------------- */
 
-Motion::Kept Motion::keep() const
+Motion::Checkpoint Motion::checkpoint() const
 {
   const Scheme &scheme = args.scheme;
   return {(double) scheme.first(),
           (double) scheme.values(),
           (double) scheme.compensate,
           (double) started,
-          h,
+          step(),
           (double) scheme.trial,
-          tolerance ? tolerance->memory() : Tolerance::Memory(),
-          isokinetic ? isokinetic->keep() : IsokineticConstraint::Kept()};
+          tolerance ? tolerance->checkpoint() : Tolerance::Checkpoint(),
+          isokinetic ? isokinetic->checkpoint() : IsokineticConstraint::Checkpoint()};
 }
 
-void Motion::take(const Kept &kept)
+void Motion::restore(const Checkpoint &saved)
 {
-  const Kept mine = keep();
-  const bool same = kept.formulation == mine.formulation && kept.values == mine.values &&
-      kept.compensate == mine.compensate && kept.variable == mine.variable &&
-      (isokinetic ? isokinetic->take(kept.isokinetic)
-                  : kept.isokinetic.mode == (double) Isokinetic::NONE);
-  started = kept.started != 0.0 && same;
-  if (tolerance && started) tolerance->recall(kept.tolerance);
-  h = h_made = kept.h;
-  if (kept.started != 0.0 && !same && comm->me == 0)
+  const Checkpoint mine = checkpoint();
+  const bool same = saved.formulation == mine.formulation && saved.values == mine.values &&
+      saved.compensate == mine.compensate && saved.variable == mine.variable &&
+      (isokinetic ? isokinetic->restore(saved.isokinetic)
+                  : saved.isokinetic.mode == (double) Isokinetic::NONE);
+  started = saved.started != 0.0 && same;
+  if (tolerance && started) tolerance->restore(saved.tolerance);
+  last_step = saved.h;
+  if (saved.h != 0.0) make_integrator(saved.h);
+  if (saved.started != 0.0 && !same && comm->me == 0)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file has histories of another formulation, another "

@@ -30,22 +30,22 @@ class Motion : protected Pointers {
   /// bodies: empty, with histories of args.scheme.
   Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies);
 
-  /// The bodies are there: masks are given to them.  Collective.
+  /// The store has made its bodies, and they receive their masks.  Collective.
   void meet_bodies();
-  /// Before a run; ends it if something else in it stands in the way of a changing step.  Collective.
+  /// Before a run.  Ends it if the scene does not allow a changing time step.  Collective.
   void init();
   /// LAMMPS' time step may have changed; histories keep their polynomials.
   void follow_time_step();
   /// Histories have to be made anew.
   void forget() { started = false; }
-  /// Masks of the command hold from here on, whatever a restart file said.  Collective.
+  /// The masks of the command replace those of a restart file.  Collective.
   void impose_masks();
   /// Poses, velocities and loads are those of the first step.  Collective.
   void begin_run();
 
   /// True once bodies have histories.
   bool has_started() const { return started; }
-  /// Other fixes have given these bodies other velocities; histories that there are take them over.
+  /// Histories take over the velocities that other fixes have given to these bodies.
   void take_velocities(const std::vector<int> &changed);
   /// True before the first step of a run that LAMMPS has set up: begin_steps() has to be called.
   bool begins_steps() const { return set_up; }
@@ -62,7 +62,7 @@ class Motion : protected Pointers {
   void correct(double **f);
 
   bool changes_step() const { return tolerance != nullptr; }
-  /// With tolerance only, when all fixes have finished the step.  Collective.
+  /// To be called with tolerance only, when all fixes have finished the step.  Collective.
   void choose_step();
 
   // elements of the fix's vector behind those of Sums
@@ -74,16 +74,16 @@ class Motion : protected Pointers {
   /// Null before the start.
   const Integrator *present_integrator() const;
 
-  /// What a restart file holds beside the histories.
-  struct Kept {
+  /// The part of a restart file that is not a history.
+  struct Checkpoint {
     double formulation, values, compensate, started, h, variable;
-    Tolerance::Memory tolerance;
-    IsokineticConstraint::Kept isokinetic;
+    Tolerance::Checkpoint tolerance;
+    IsokineticConstraint::Checkpoint isokinetic;
   };
-  Kept keep() const;
-  /// The histories of the file are about to arrive; where they are of another kind than this
-  /// command's they are made anew, and rank 0 says so.
-  void take(const Kept &kept);
+  Checkpoint checkpoint() const;
+  /// The histories of the file are about to arrive.  If they do not fit this command they start
+  /// anew, and rank 0 says so.
+  void restore(const Checkpoint &saved);
 
  private:
   Fix *fix;
@@ -95,12 +95,14 @@ class Motion : protected Pointers {
   std::unique_ptr<Tolerance> tolerance;                ///< null: the step is LAMMPS' own
   std::unique_ptr<Integrator> integrator;
 
-  bool started;          ///< histories are those of the step h
-  bool set_up;           ///< LAMMPS has evaluated forces for a run, no step of it has begun
-  double h;              ///< step of the histories
-  double h_made;         ///< step that they were made with
-  std::string movers;    ///< IDs of the other fixes that moved atoms in the last steps
+  bool started;           ///< histories are those of the step of the integrator
+  bool set_up;            ///< LAMMPS has evaluated forces for a run, no step of it has begun
+  double last_step;       ///< the time step of the last step that was made
+  MotionLimits limits;    ///< of the present step
+  std::string movers;     ///< IDs of the other fixes that moved atoms in the last steps
 
+  /// The time step of the histories; 0 before the first run.
+  double step() const { return integrator ? integrator->step() : 0.0; }
   const Scheme &present_scheme() const;
   void make_integrator(double step);
   bool has_to_start(double **f);

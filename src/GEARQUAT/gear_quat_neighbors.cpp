@@ -80,14 +80,15 @@ static const NeighborRule NEIGHBORS[] = {
     {"^ipi", NeighborRule::REFUSED, NeighborRule::ALWAYS, "unfix one of the two"},
 };
 
-// relative to the velocities of a site: rounding, and what a rigid motion may be off by
+// tolerances relative to the velocity of a site: for rounding, and for a motion to count as rigid
 
 static constexpr double SAME = 1.0e-11, RIGID = 1.0e-6;
 
 /* ---------------------------------------------------------------------- */
 
 Neighbors::Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args) :
-    Pointers(lmp), fix(fix), bodies(bodies), args(args), sample(0), told_noise(false), told(false)
+    Pointers(lmp), fix(fix), bodies(bodies), args(args), sample(0), warned_noise(false),
+    warned_change(false)
 {
 }
 
@@ -99,7 +100,7 @@ void Neighbors::init()
 {
   taken.clear();
   watched.clear();
-  told = false;
+  warned_change = false;
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
     tell_noise(other);
@@ -129,15 +130,15 @@ void Neighbors::init()
   }
 }
 
-/// Random forces have no derivatives, and those of collisions last a single step.
+/// Random forces have no derivatives, and forces of collisions last a single step only.
 void Neighbors::tell_noise(const Fix *other)
 {
   const bool collides = utils::strmatch(other->style, "^srd");
-  if (told_noise || (!collides && !utils::strmatch(other->style, "^langevin"))) return;
+  if (warned_noise || (!collides && !utils::strmatch(other->style, "^langevin"))) return;
   const bool first = args.scheme.first();
   const int most = first ? (collides ? 3 : 4) : (collides ? 4 : 6);
   if (args.scheme.values() <= most || (!collides && !shared_atom(other))) return;
-  told_noise = true;
+  warned_noise = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: forces of fix {} ({}) are random, and {} values make heat of "
@@ -182,7 +183,7 @@ void Neighbors::refuse(const Fix *other, const NeighborRule &row, tagint shared)
              other->id, other->style, shared, row.instead);
 }
 
-/// The rigid fixes want it disabled, and apply it themselves to bodies whose mass a file states.
+/// The rigid fixes require keyword disable, and apply gravity to bodies themselves.
 void Neighbors::check_gravity()
 {
   if (!utils::strmatch(update->integrate_style, "^verlet")) return;
@@ -203,7 +204,7 @@ void Neighbors::check_gravity()
       const double factor =
           force->ftm2v * bodies.body[site.body].rigid.mass / bodies.atom_mass(site.atom);
       double off[3];
-      for (int k = 0; k < 3; ++k) off[k] = factor * f[k] - bodies.load[site.body].force[k];
+      for (int k = 0; k < 3; ++k) off[k] = factor * f[k] - bodies.load_of(site.body).force[k];
       if (dot3(off, off) > RIGID * RIGID * factor * factor * dot3(f, f)) here[1] = 1;
     }
     if (n) std::copy(forces.begin(), forces.end(), atom->f[0]);
@@ -233,27 +234,25 @@ std::vector<int> Neighbors::take_velocities(bigint step, bool end)
   for (const auto *one : taken)
     if (one->nevery > 0 && step % one->nevery == 0) acted.push_back(one);
   if (acted.empty()) return changed;
-  const auto before = bodies.state;
-  const auto loads = bodies.load;    // of the last step: accelerations of bodies follow from them
+  const auto before = bodies.snapshot();    // its loads are those of the last step
   if (!gather_impulses()) return changed;
 
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const RigidBody &rigid = bodies.body[ibody].rigid;
-    const Load &impulse = bodies.load[ibody];
-    BodyState &state = bodies.state[ibody];
+    const Load &impulse = bodies.load_of(ibody);
+    BodyState &state = bodies.change_state(ibody);
     if (dot3(impulse.force, impulse.force) + dot3(impulse.torque_space, impulse.torque_space) ==
         0.0)
       continue;
-    double a[9], twist[3];
-    rotation_matrix(state.q, dot4(state.q, state.q), a);
-    to_body(a, impulse.torque_space, twist);
+    double twist[3];
+    torque_along_axes(state.q, dot4(state.q, state.q), impulse, twist);
     for (int k = 0; k < 3; ++k) {
       state.velocity[k] += impulse.force[k] / rigid.mass;
       if (rigid.inertia[k] > 0.0) state.omega_body[k] += twist[k] / rigid.inertia[k];
     }
     changed.push_back(ibody);
   }
-  bodies.load = loads;
+  bodies.put_back_loads(before);    // accelerations of bodies follow from them
   bodies.spread_states();
 
   tagint torn = 0, any;
@@ -271,13 +270,13 @@ std::vector<int> Neighbors::take_velocities(bigint step, bool end)
                "those of a rigid motion; whole bodies have to be in the group, without a region or "
                "a bias that divides them",
                names(acted), any, step);
-  bodies.state = before;
+  bodies.put_back_states(before);
   bodies.spread_states();
   return {};
 }
 
-/// Momentum and angular momentum that atoms have more than their bodies, as loads.  Collective;
-/// false if nowhere any.
+/// Differences of momentum and angular momentum between atoms and their bodies, as loads.  False if
+/// there are none on any rank.  Collective.
 bool Neighbors::gather_impulses()
 {
   int differs = 0, any;
@@ -325,7 +324,7 @@ bool Neighbors::is_as_fast(const Bodies::Site &site) const
 
 void Neighbors::check_velocities()
 {
-  if (told || bodies.sites.empty()) return;
+  if (warned_change || bodies.sites.empty()) return;
   const auto &site = bodies.sites[++sample % bodies.sites.size()];
   if (!is_as_fast(site)) tell(site, "velocity");
 }
@@ -343,7 +342,7 @@ void Neighbors::check_places()
                    update->ntimestep);
     return;
   }
-  if (told || bodies.sites.empty()) return;
+  if (warned_change || bodies.sites.empty()) return;
   const auto &site = bodies.sites[sample % bodies.sites.size()];
   if (!is_there(site)) tell(site, "place");
 }
@@ -351,7 +350,7 @@ void Neighbors::check_places()
 void Neighbors::check_all()
 {
   for (const auto &site : bodies.sites) {
-    if (told) return;
+    if (warned_change) return;
     if (!is_there(site))
       tell(site, "place");
     else if (!is_as_fast(site))
@@ -361,7 +360,7 @@ void Neighbors::check_all()
 
 void Neighbors::tell(const Bodies::Site &site, const char *what)
 {
-  told = true;
+  warned_change = true;
   std::vector<const Fix *> others;
   for (const auto *other : modify->get_fix_list())
     if (other != fix) others.push_back(other);

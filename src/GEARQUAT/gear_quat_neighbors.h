@@ -45,7 +45,7 @@ class Neighbors : protected Pointers {
   /// and is left alone otherwise.  Collective.
   std::vector<int> take_velocities(bigint step, bool end);
 
-  // local, and as cheap as a single site unless a fix is known to move atoms
+  // These are local and look at a single site unless a fix is known to move atoms.
 
   void check_velocities();
   void check_places();
@@ -59,8 +59,8 @@ class Neighbors : protected Pointers {
   std::vector<const Fix *> taken;      ///< whose velocities bodies take over
   std::vector<const Fix *> watched;    ///< that may move single atoms
   size_t sample;                       ///< the site that is looked at next
-  bool told_noise;                     ///< of random forces, once
-  bool told;                           ///< of a change by something unknown, once a run
+  bool warned_noise;                   ///< of random forces
+  bool warned_change;                  ///< of a change by something unknown in this run
 
   void tell_noise(const Fix *other);
   tagint shared_atom(const Fix *other) const;

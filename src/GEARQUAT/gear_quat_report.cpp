@@ -10,6 +10,7 @@
 #include "gear_quat_scene.h"
 #include "gear_quat_surroundings.h"
 
+#include "citeme.h"
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
@@ -22,17 +23,64 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// A row of the report.  omits: what is left out while the effect is off or in part, with a bound.
+namespace {
+
+/// A row of the report.  omits: the contributions that are left out, with a bound.
 struct Effect {
   const char *name;
   bool on;
   std::string reason;
   std::string omits;
+  bool in_part = false;    ///< may leave out something while it is on
 };
+
+}    // namespace
 
 static constexpr char NOTHING[] = "nothing: the trajectory is the same to the last bit";
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   papers to cite; LAMMPS shows the first line of each
+------------------------------------------------------------------------- */
+
+static const char cite_first[] =
+    "fix gear/quat: quaternions in the equations of motion, first-order form\n\n"
+    "@Article{Evans1977,\n"
+    " author = {Denis J. Evans},\n"
+    " title = {On the Representation of Orientation Space},\n"
+    " journal = {Molecular Physics},\n"
+    " year = 1977,\n"
+    " volume = 34,\n"
+    " pages = {317--325}\n"
+    "}\n\n";
+
+static const char cite_second[] =
+    "fix gear/quat: quaternions in the equations of motion, second-order form\n\n"
+    "@Article{Rapaport1985,\n"
+    " author = {Dennis C. Rapaport},\n"
+    " title = {Molecular Dynamics Simulation Using Quaternions},\n"
+    " journal = {Journal of Computational Physics},\n"
+    " year = 1985,\n"
+    " volume = 60,\n"
+    " pages = {306--314}\n"
+    "}\n\n";
+
+static const char cite_cases[] =
+    "fix gear/quat: both forms side by side, test cases\n\n"
+    "@Misc{PrattZaini,\n"
+    " author = {Ronald M. Pratt and Khairil Mazwan {Bin Mohamad Zaini}},\n"
+    " title = {General Algorithms for {3-D} Motion of a Non-Planar Body in a Steady-State Force "
+    "Field}\n"
+    "}\n\n";
+
+void GearQuat::add_citations(LAMMPS *lmp)
+{
+  if (!lmp->citeme) return;
+  for (const char *paper : {cite_first, cite_second, cite_cases}) lmp->citeme->add(paper);
+}
+
+/* ----------------------------------------------------------------------
+   effects
+------------------------------------------------------------------------- */
 
 static std::string listed(const Scene &scene)
 {
@@ -54,7 +102,7 @@ static Effect rotation(const Scene &scene)
                     "the body; of the energy of an equally fast one about that axis, less than "
                     "this",
                     LINEAR_FRACTION);
-  return {"rotation", on, listed(scene), omits};
+  return {"rotation", on, listed(scene), omits, true};
 }
 
 static Effect torques(const Scene &scene, bool forces)
@@ -98,7 +146,7 @@ static Effect compensation(const Arguments &args, const Scene &scene)
           fmt::format("rounding of a coordinate, at most {:.1e} of length in a sum", rounding)};
 }
 
-/// Every effect is one row; another one is another line.
+/// The rows of the report.
 static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                    const Scene &scene)
 {
@@ -151,8 +199,7 @@ void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, 
                                  fix->id, scene.bodies, sites, scene.freedoms);
   for (const auto &row : rows) {
     text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);
-    if (args.report == Arguments::Report::LONG && (!row.on || row.name == rows[0].name) &&
-        !row.omits.empty())
+    if (args.report == Arguments::Report::LONG && (!row.on || row.in_part) && !row.omits.empty())
       text += fmt::format("  {:<20}      leaves out {}\n", "", row.omits);
   }
   for (const auto &line : surroundings.lines()) text += "  " + line + "\n";

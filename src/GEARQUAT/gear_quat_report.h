@@ -19,6 +19,9 @@ namespace LAMMPS_NS::GearQuat {
 class Bodies;
 struct Arguments;
 
+/// The papers that LAMMPS asks users of the fix to cite.
+void add_citations(LAMMPS *lmp);
+
 /// Writes the report to screen and log on rank 0, as long as args.report wants it.  Collective; to be
 /// called in setup(), when neighbor lists are built and bodies have their ghosts.
 void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies);

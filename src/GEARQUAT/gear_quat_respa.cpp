@@ -80,17 +80,17 @@ void RespaForces::add(int level)
 
 /// LAMMPS keeps them in a fix of its own, that packs for each atom 3 numbers a level: forces, then
 /// torques.
-void RespaForces::recall()
+void RespaForces::sum_present()
 {
   begin();
   Fix *store = modify->get_fix_by_id("RESPA");
   const int n = levels();
-  std::vector<double> kept((torque ? 6 : 3) * (size_t) n);
+  std::vector<double> stored((torque ? 6 : 3) * (size_t) n);
   for (int i = 0; i < atom->nlocal; ++i) {
-    store->pack_exchange(i, kept.data());
+    store->pack_exchange(i, stored.data());
     for (int j = 0; j < 3 * n; ++j) {
-      f[i][j % 3] += kept[j];
-      if (torque) torque[i][j % 3] += kept[3 * n + j];
+      f[i][j % 3] += stored[j];
+      if (torque) torque[i][j % 3] += stored[3 * n + j];
     }
   }
 }

@@ -25,7 +25,7 @@ class RespaForces : protected Pointers {
   /// True for the level that begins and ends a step.
   bool outermost(int level) const;
   /// Before a step: the sum over the levels of what each has found last, all fixes included.
-  void recall();
+  void sum_present();
   /// The forces, and torques where atoms have some, of one level; level 0 begins a sum.
   void add(int level);
 

@@ -20,7 +20,7 @@ using namespace GearQuat;
 // files of releases up to 0.2.0 begin with the formulation, 0 or 1
 
 static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
-static constexpr double FORMAT = 1;
+static constexpr double FORMAT = 2;
 
 Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
     Pointers(lmp), fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)
@@ -30,7 +30,7 @@ Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
 void Restart::write(FILE *fp) const
 {
   const Block data = {MAGIC, FORMAT, (double) bodies.has_extended(), (double) atom->natoms,
-                      motion.keep()};
+                      motion.checkpoint()};
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
@@ -41,7 +41,7 @@ void Restart::read(const char *buf)
 {
   double head[2];
   std::memcpy(head, buf, sizeof(head));
-  const bool older = head[0] != MAGIC;
+  const bool older = head[0] != MAGIC || head[1] < FORMAT;
   if (older || head[1] != FORMAT)
     error->all(FLERR,
                "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
@@ -93,7 +93,7 @@ bool Restart::resume(int group)
   using Resumed = Bodies::Resumed;
   const Resumed found = bodies.resume(packed_atoms(), block.extended != 0.0, group);
   if (found == Resumed::NONE) return false;
-  motion.take(block.motion);
+  motion.restore(block.motion);
   if (found == Resumed::FEWER && motion.has_started()) {
     motion.forget();    // forces have derivatives that the motion of the others made
     if (comm->me == 0)

@@ -45,7 +45,7 @@ class Restart : protected Pointers {
     double magic, format;
     double extended;    ///< bodies have sites that are more than points
     double natoms;      ///< in the file
-    Motion::Kept motion;
+    Motion::Checkpoint motion;
   };
   Block block;
   bool waiting;    ///< for resume()

@@ -58,6 +58,23 @@ inline void angular_acceleration(const RigidBody &body, const double *torque_bod
   omegadot_body[2] = about(2, 0, 1);
 }
 
+/// The torque along the principal axes, Eq. 10.  norm2: see rotation_matrix().
+inline void torque_along_axes(const double *q, double norm2, const Load &load, double *torque_body)
+{
+  double a[9];
+  rotation_matrix(q, norm2, a);
+  to_body(a, load.torque_space, torque_body);
+}
+
+/// The same acceleration of a body in a state under a load.
+inline void angular_acceleration(const RigidBody &body, const BodyState &state, double norm2,
+                                 const Load &load, double *omegadot_body)
+{
+  double torque_body[3];
+  torque_along_axes(state.q, norm2, load, torque_body);
+  angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
+}
+
 inline double translational_energy(const RigidBody &body, const double *velocity)
 {
   return 0.5 * body.mass * dot3(velocity, velocity);

@@ -8,14 +8,17 @@
 #include "gear_quat_bodies.h"
 
 #include "comm.h"
+#include "compute.h"
 #include "domain.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -53,15 +56,42 @@ bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
   return false;
 }
 
-std::vector<int> GearQuat::periods_of_readers(LAMMPS *lmp, const Fix *owner)
+// LAMMPS' own fixes that read local data of other fixes through computes only, and the computes
+
+static const char *const NO_LOCAL_DATA[] = {
+    "^ave/atom",  "^ave/chunk", "^ave/correlate", "^ave/grid", "^ave/time", "^balance", "^ehex",
+    "^enforce2d", "^halt",      "^heat",          "^momentum", "^print",    "^temp/",   "^vector"};
+static constexpr char LOCAL_COMPUTES[] = "^reduce";
+
+Readers GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
 {
-  std::vector<int> periods;
-  for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && other->nevery > 0 &&
-        (lmp->modify->get_fix_mask(other) & FixConst::END_OF_STEP) &&
-        std::find(periods.begin(), periods.end(), other->nevery) == periods.end())
-      periods.push_back(other->nevery);
-  return periods;
+  const auto add = [](std::vector<int> &periods, int period) {
+    if (!std::count(periods.begin(), periods.end(), period)) periods.push_back(period);
+  };
+  const auto &computes = lmp->modify->get_compute_list();
+  const bool reduced = std::any_of(computes.begin(), computes.end(), [](const Compute *compute) {
+    return utils::strmatch(compute->style, LOCAL_COMPUTES);
+  });
+  Readers readers;
+  for (auto *other : lmp->modify->get_fix_list()) {
+    if (other == owner || other->nevery <= 0 ||
+        !(lmp->modify->get_fix_mask(other) & FixConst::END_OF_STEP))
+      continue;
+    add(readers.of_atoms, other->nevery);
+    const bool known =
+        std::any_of(std::begin(NO_LOCAL_DATA), std::end(NO_LOCAL_DATA), [other](const char *style) {
+          return utils::strmatch(other->style, style);
+        });
+    if (reduced || !known) add(readers.of_local_data, other->nevery);
+  }
+  return readers;
+}
+
+bool GearQuat::is_due(const std::vector<int> &periods, bigint step)
+{
+  return std::any_of(periods.begin(), periods.end(), [step](int period) {
+    return step % period == 0;
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -91,7 +121,7 @@ Scene::Scene(LAMMPS *lmp, const Bodies &store)
     ++here[KINDS + top_of(one.rigid, lmp->domain->dimension)];
     here[FREEDOMS] += lmp->domain->dimension == 2 ? 2 + (one.rigid.inertia[2] > 0.0)
                                                   : 3 + one.rigid.rotational_freedoms();
-    for (const double x : store.state[ibody].center)
+    for (const double x : store.state_of(ibody).center)
       largest_here[0] = std::max(largest_here[0], std::fabs(x));
     largest_here[1] = std::max(largest_here[1], -(double) one.natoms);
     largest_here[2] = std::max(largest_here[2], (double) one.natoms);

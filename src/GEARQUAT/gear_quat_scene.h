@@ -29,8 +29,15 @@ std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
 /// Whether anything may make a force: styles other than "zero", fixes that act around the forces.
 bool makes_forces(LAMMPS *lmp, const Fix *owner);
 
-/// Every how many steps other fixes may read the atoms at the end of a step; each number once.
-std::vector<int> periods_of_readers(LAMMPS *lmp, const Fix *owner);
+/// Every how many steps other fixes may read something at the end of a step; each number once.
+struct Readers {
+  std::vector<int> of_atoms;
+  std::vector<int> of_local_data;    ///< of the fix that asks; a part of the above
+};
+Readers readers_at_end(LAMMPS *lmp, const Fix *owner);
+
+/// True if one of the periods ends with this step.
+bool is_due(const std::vector<int> &periods, bigint step);
 
 /// The same on all ranks.
 struct Scene {

@@ -23,7 +23,7 @@ static constexpr char MEND[] = "or make the body linear by an infile with a smal
 
 namespace {
 
-/// Axes of the smallest and of the largest moment; false if there is none or but one size.
+/// Finds the axes of the smallest and of the largest moment.  False unless the smallest one is tiny.
 bool thin(const RigidBody &body, int &smallest, int &largest)
 {
   smallest = largest = 0;
@@ -35,7 +35,7 @@ bool thin(const RigidBody &body, int &smallest, int &largest)
       body.inertia[smallest] < NEARLY_LINEAR * body.inertia[largest];
 }
 
-/// A body that is lost; numbers for the message.
+/// The numbers in the message about a body that rotates too fast.
 struct Lost {
   double moment, largest_moment, omega, longest_step;
 };
@@ -61,7 +61,7 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
   double energy[2] = {0.0, 0.0}, all_energy[2];    // twice the kinetic one, degrees of freedom
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const RigidBody &rigid = bodies.body[ibody].rigid;
-    const BodyState &state = bodies.state[ibody];
+    const BodyState &state = bodies.state_of(ibody);
     energy[0] += 2.0 *
         (translational_energy(rigid, state.velocity) + rotational_energy(rigid, state.omega_body));
     energy[1] += 3.0 + rigid.rotational_freedoms();
@@ -76,10 +76,10 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const Body &body = bodies.body[ibody];
     int smallest, largest;
-    if (body.id < id[0] && is_lost(scheme, body.rigid, bodies.state[ibody], h, lost[0]))
+    if (body.id < id[0] && is_lost(scheme, body.rigid, bodies.state_of(ibody), h, lost[0]))
       id[0] = body.id;
     if (body.id > id[1] || !thin(body.rigid, smallest, largest)) continue;
-    BodyState warm = bodies.state[ibody];
+    BodyState warm = bodies.state_of(ibody);
     for (double &omega : warm.omega_body) omega = 0.0;
     warm.omega_body[smallest] = std::sqrt(share / body.rigid.inertia[smallest]);
     if (is_lost(scheme, body.rigid, warm, h, lost[1])) id[1] = body.id;

@@ -44,10 +44,8 @@ inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, 
 {
   TaylorSeries series;
   series.terms = 3;
-  double a[9], torque_body[3], omegadot_body[3], qdot[4], qddot[4];
-  rotation_matrix(state.q, dot4(state.q, state.q), a);
-  to_body(a, load.torque_space, torque_body);
-  angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
+  double omegadot_body[3], qdot[4], qddot[4];
+  angular_acceleration(body, state, dot4(state.q, state.q), load, omegadot_body);
   quaternion_rate(state.q, state.omega_body, qdot);
   quaternion_acceleration(state.q, qdot, omegadot_body, qddot);
   for (int i = 0; i < 3; ++i) {
@@ -95,6 +93,48 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
     }
   }
 }
+
+/// Decides when the sweeps end, from the largest change that each of them makes in any body.
+class SweepRule {
+ public:
+  static constexpr int MAX_SPACINGS = 8;    ///< that are tried, each half of the one before
+
+  enum class Verdict { ANOTHER_SWEEP, CONVERGED, JUMPS, SHORTER_SPACING };
+
+  /// The next sweep is the first one with this node spacing.
+  void begin_spacing() { sweeps = 0; }
+  bool is_first_sweep() const { return sweeps == 0; }
+
+  /// After a sweep.  truncation: a function that finds what the polynomial leaves out; it is called
+  /// only if the answer depends on it.
+  ///
+  /// Sweeps end when the next one would change accelerations by less than CONVERGED, relative to how
+  /// the bodies move: less than rounding takes from their velocities in a step, or than the
+  /// polynomial leaves out.  A change that no longer falls is taken for rounding of the forces below
+  /// ROUNDING; above, the nodes are too far apart, or forces jump, as at a cutoff.  Which of the two
+  /// it is shorter spacings tell: after the last of JUMPING of them a change below JUMP counts as
+  /// jumps.
+  template <class Truncation> Verdict judge(double change, Truncation truncation)
+  {
+    const bool first = sweeps++ == 0, second = sweeps == 2;
+    const double before = first ? 0.0 : last;
+    last = change;
+    const double next = !first && change < before ? change * (change / before) : change;
+    if (next < CONVERGED || (!first && next < truncation())) return Verdict::CONVERGED;
+    const bool falls = first || second || change <= 0.5 * before;
+    if (std::isfinite(change) && falls && sweeps < MAX_SWEEPS) return Verdict::ANOTHER_SWEEP;
+    if (change < ROUNDING) return Verdict::CONVERGED;
+    return change < JUMP && ++jumps == JUMPING ? Verdict::JUMPS : Verdict::SHORTER_SPACING;
+  }
+
+ private:
+  static constexpr int MAX_SWEEPS = 12, JUMPING = 3;
+  static constexpr double CONVERGED = 1.0e-15, ROUNDING = 1.0e-9, JUMP = 0.1;
+
+  int sweeps = 0;    ///< with the present spacing
+  int jumps = 0;     ///< spacings at which forces seemed to jump
+  double last = 0.0;
+};
 
 /// Collocation of one body; the object's tables are the same for all bodies.
 class Collocation {

@@ -60,16 +60,16 @@ class VariableOrder {
     more = adams_moulton(n).value() * factorial;
   }
 
-  /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a rotation by
-  /// a radian moves what is far out on the body.
+  /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a rotation
+  /// by a radian moves what is far out on the body.
   Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
-                     const Load &load, double *rows, StepErrors &errors) const
+                     const Load &load, const double *axes, double *rows, StepErrors &errors) const
   {
     const double *last = rows + (n - 1) * scheme.width();
     double *trial = rows + scheme.trial_row();
     double before[Scheme::FIRST_WIDTH], change[Scheme::FIRST_WIDTH];
     std::copy_n(last, scheme.width(), before);
-    const Correction correction = integrator.correct(body, load, rows);
+    const Correction correction = integrator.correct(body, load, axes, rows);
     for (int i = 0; i < scheme.width(); ++i) {
       const double found = (last[i] - before[i]) / n;
       change[i] = found - trial[i];

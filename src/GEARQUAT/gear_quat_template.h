@@ -44,6 +44,14 @@ Molecule **find_template(LAMMPS *lmp, const std::string &template_id);
 /// for a LAMMPS without the header, that it cannot be read.
 std::vector<StatedMolecule> read_stated(LAMMPS *lmp, const std::string &template_id);
 
+/// True if one of them is not what its atoms add up to.
+inline bool any_differs(const std::vector<StatedMolecule> &stated)
+{
+  for (const auto &molecule : stated)
+    if (molecule.differs) return true;
+  return false;
+}
+
 /// One body of the atoms that were just created on all ranks, from index `first` on; its ID is the
 /// smallest molecule ID of its atoms.  It is fresh: its history begins with the forces of this step.
 /// Collective.

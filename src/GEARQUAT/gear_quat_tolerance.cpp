@@ -38,9 +38,9 @@ Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const St
                      Bodies &bodies) :
     Pointers(lmp),
     fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present),
-    next_step(0.0), fresh(false), told(false), kept()
+    changing_step(false), fresh(false), warned_held(false), record()
 {
-  kept.values = present.values();
+  record.values = present.values();
 }
 
 void Tolerance::refuse_scene() const
@@ -76,8 +76,7 @@ Scheme Tolerance::scheme_of_start() const
 
 void Tolerance::begin(bool full)
 {
-  kept = Memory();
-  next_step = update->dt;
+  record = Checkpoint();
   set_values(full ? control.most : control.fewest);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     double *rows = bodies.history(ibody);
@@ -137,7 +136,6 @@ void Tolerance::set_begun_step(double step)
   const bigint before = update->ntimestep - 1;
   update->atime += (before - update->atimestep) * update->dt;
   update->atimestep = before;
-  next_step = step;
   set_step(step);
 }
 
@@ -149,8 +147,8 @@ Correction Tolerance::correct(const Integrator &integrator, int ibody, const Loa
 {
   StepErrors one;
   const Body &body = bodies.body[ibody];
-  const Correction correction =
-      order.correct(integrator, body.rigid, body.reach(), load, bodies.history(ibody), one);
+  const Correction correction = order.correct(integrator, body.rigid, body.reach(), load,
+                                              bodies.axes(ibody), bodies.history(ibody), one);
   if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
   errors.include(one);
   return correction;
@@ -161,7 +159,7 @@ double Tolerance::largest_speed() const
 {
   double largest = 0.0;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const BodyState &s = bodies.state[ibody];
+    const BodyState &s = bodies.state_of(ibody);
     const double speed = std::sqrt(dot3(s.velocity, s.velocity)) +
         bodies.body[ibody].reach() * std::sqrt(dot3(s.omega_body, s.omega_body));
     largest = std::max(largest, speed);
@@ -177,7 +175,7 @@ double Tolerance::farthest_step(double speed) const
                               : std::numeric_limits<double>::infinity();
 }
 
-bool Tolerance::choose()
+double Tolerance::choose()
 {
   double here[5] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0,
                     largest_speed()};    // not const: STUBS
@@ -194,45 +192,44 @@ bool Tolerance::choose()
 
   const double step = update->dt, size = std::fabs(step);
   const int values = present.values();
-  kept.smallest = kept.steps == 0.0 ? size : std::min(kept.smallest, size);
-  kept.steps += 1.0;
-  kept.steady += 1.0;
-  kept.time += size;
-  kept.values_sum += values;
-  kept.largest = std::max(kept.largest, all[1] / control.eps);
+  record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
+  record.steps += 1.0;
+  record.steady += 1.0;
+  record.time += size;
+  record.values_sum += values;
+  record.largest = std::max(record.largest, all[1] / control.eps);
 
-  auto next = control.next({all[0], all[1], all[2]}, step, values, (int) kept.steady,
+  auto next = control.next({all[0], all[1], all[2]}, step, values, (int) record.steady,
                            farthest_step(all[4]));
   if (all[3] != 0.0) next.values = control.fewest;    // rows above are zero in a fresh history
   if (next.held) {
-    kept.held += 1.0;
-    if (!told && comm->me == 0)
+    record.held += 1.0;
+    if (!warned_held && comm->me == 0)
       error->warning(
           FLERR,
           "Fix gear/quat tolerance: step {} makes an error of {:.2g}, more than {:.2g}, but "
           "dtmin keeps the time step at {:.3g}; further such steps are counted",
           update->ntimestep, all[1], control.eps, control.shortest);
-    told = true;
+    warned_held = true;
   }
   if (next.values != values) change_values(next.values);
-  next_step = next.step;
-  return next.values != values;
+  return next.step;
 }
 
 /// The step that ends now was made with the present one.
-void Tolerance::change_step()
+void Tolerance::change_step(double step)
 {
-  if (next_step == update->dt) return;
+  if (step == update->dt) return;
   update->update_time();
-  set_step(next_step);
+  set_step(step);
 }
 
 void Tolerance::set_values(int values)
 {
   present.rows = values;
   order = VariableOrder(present);
-  kept.values = values;
-  kept.steady = 0.0;
+  record.values = values;
+  record.steady = 0.0;
 }
 
 void Tolerance::change_values(int values)
@@ -247,10 +244,9 @@ void Tolerance::change_values(int values)
 
 void Tolerance::keep_step(double step)
 {
-  next_step = step;
   if (update->dt == step) return;
   tell_of_step(step);
-  change_step();
+  change_step(step);
 }
 
 void Tolerance::put_back_begun_step(double step)
@@ -272,19 +268,16 @@ void Tolerance::tell_of_step(double step) const
                    step, update->dt);
 }
 
-bool Tolerance::owns_step() const
-{
-  return update->dt == next_step;
-}
-
-/// As fix dt/reset changes it; this fix is told with all others.
+/// As fix dt/reset changes it; this fix learns of it with all others.
 void Tolerance::set_step(double step)
 {
+  changing_step = true;
   update->dt = step;
   update->dt_default = 0;
   if (force->pair) force->pair->reset_dt();
   for (auto *other : modify->get_fix_list()) other->reset_dt();
   output->reset_dt();
+  changing_step = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -297,22 +290,22 @@ double Tolerance::element(int n) const
     case STEP:
       return update->dt;
     case SMALLEST:
-      return kept.smallest;
+      return record.smallest;
     case MEAN:
-      return kept.steps > 0.0 ? kept.time / kept.steps : 0.0;
+      return record.steps > 0.0 ? record.time / record.steps : 0.0;
     case VALUES:
       return present.values();
     case MEAN_VALUES:
-      return kept.steps > 0.0 ? kept.values_sum / kept.steps : 0.0;
+      return record.steps > 0.0 ? record.values_sum / record.steps : 0.0;
     case LARGEST_ERROR:
-      return kept.largest;
+      return record.largest;
     default:
-      return kept.held;
+      return record.held;
   }
 }
 
-void Tolerance::recall(const Memory &memory)
+void Tolerance::restore(const Checkpoint &saved)
 {
-  set_values((int) memory.values);
-  kept = memory;
+  set_values((int) saved.values);
+  record = saved;
 }

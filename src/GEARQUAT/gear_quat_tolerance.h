@@ -26,7 +26,7 @@ class Tolerance : protected Pointers {
 
   /// What a restart file keeps: the next step's values, steps made with them, and the sums behind the
   /// outputs.
-  struct Memory {
+  struct Checkpoint {
     double values, steady;
     double steps, time, smallest, values_sum, largest, held;
   };
@@ -44,29 +44,29 @@ class Tolerance : protected Pointers {
   Scheme scheme_of_start() const;
   /// Histories are seeded.  full: to the last row; otherwise they begin with the fewest values.
   void begin(bool full);
-  /// Where its error is known to be too large; no other fix must have begun the step.  Collective.
+  /// Makes the first step shorter if its error would be too large.  Collective.
   void shorten_first_step();
 
   /// Correct one body.
   Correction correct(const Integrator &integrator, int ibody, const Load &load);
-  /// A body whose history has just begun with fewer terms than the others.
+  /// The history of a body has just begun with fewer terms than the others have.
   void note_fresh() { fresh = true; }
-  /// Choose values and length of the next step.  After the call histories have the new number of
-  /// values; true if it is another one.  Collective.
-  bool choose();
+  /// Choose values and length of the next step, and return the length.  After the call histories
+  /// have the new number of values.  Collective.
+  double choose();
   /// update->dt and all that depends on it, this fix too, become those of the next step.
-  void change_step();
-  /// The timestep command gives the first step only: `step` is put back.
+  void change_step(double step);
+  /// Restores `step`, that of the histories: the timestep command sets the first step only.
   void keep_step(double step);
-  /// The same in a run that LAMMPS has not set up, so that a step has begun with another one already.
-  /// Ends the run if other atoms have moved with that.
+  /// The same in a run with pre no, whose first step has begun with another length already.  Ends the
+  /// run if other atoms have moved.
   void put_back_begun_step(double step);
-  /// True while update->dt is what this control has made it.
-  bool owns_step() const;
+  /// True while fixes are told of a step that this control has chosen.
+  bool is_changing_step() const { return changing_step; }
 
   double element(int n) const;
-  Memory memory() const { return kept; }
-  void recall(const Memory &memory);
+  Checkpoint checkpoint() const { return record; }
+  void restore(const Checkpoint &saved);
 
  private:
   const Fix *fix;
@@ -75,10 +75,10 @@ class Tolerance : protected Pointers {
   StepControl control;
   VariableOrder order;
   StepErrors errors;    ///< of the bodies corrected so far
-  double next_step;
+  bool changing_step;
   bool fresh;
-  bool told;    ///< of a step held at its lower limit
-  Memory kept;
+  bool warned_held;    ///< of a step held at its lower limit
+  Checkpoint record;
 
   void set_values(int values);
   void change_values(int values);

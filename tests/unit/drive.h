@@ -60,11 +60,7 @@ inline const char *name(const Scheme &scheme)
   return scheme.first() ? "first" : scheme.velocity_c0 ? "second, velocity c0" : "second";
 }
 
-// The start as the host finds it (gear_quat_bootstrap.cpp): order of the nodes, the rule that ends
-// the sweeps, and half the spacing where they do not end.
-
-constexpr int MAX_SWEEPS = 12, MAX_HALVINGS = 8;
-constexpr double CONVERGED = 1.0e-15, SETTLED = 1.0e-9;
+// The start as the host finds it (gear_quat_bootstrap.cpp).
 
 /// One sweep over all nodes, outwards.  Returns the largest change.
 inline double sweep(const Collocation &collocation, const RigidBody &body, const LoadOf &load,
@@ -98,25 +94,25 @@ inline Found bootstrap(int values, const RigidBody &body, const BodyState &state
   const Collocation collocation(values);
   Collocation::Workspace work;
   Found found;
-  for (int n = 0; n < MAX_HALVINGS; ++n, spacing *= 0.5) {
+  SweepRule rule;
+  using Verdict = SweepRule::Verdict;
+  for (int n = 0; n < SweepRule::MAX_SPACINGS; ++n, spacing *= 0.5) {
     collocation.begin(local_series(body, state, load(state, dot4(state.q, state.q)), spacing),
                       work);
-    double change = 0.0;
-    for (int k = 0; k < MAX_SWEEPS; ++k) {
-      const double before = change;
-      change = sweep(collocation, body, load, spacing, length, k == 0, work);
+    Verdict verdict = Verdict::ANOTHER_SWEEP;
+    found.sweeps = 0;
+    for (rule.begin_spacing(); verdict == Verdict::ANOTHER_SWEEP; ++found.sweeps) {
+      const double change =
+          sweep(collocation, body, load, spacing, length, rule.is_first_sweep(), work);
       found.evaluations += 2 * collocation.pairs();
-      if (!std::isfinite(change)) break;
-      const double next = k > 0 && change < before ? change * (change / before) : change;
-      const bool converged = next < CONVERGED ||
-          (k > 0 && next < collocation.truncation(length, work));
-      if (converged || (k > 1 && change < SETTLED && change > 0.5 * before)) {
-        found.series = collocation.series(work);
-        found.spacing = spacing;
-        found.sweeps = k + 1;
-        return found;
-      }
+      verdict = rule.judge(change, [&]() {
+        return collocation.truncation(length, work);
+      });
     }
+    if (verdict == Verdict::SHORTER_SPACING) continue;
+    found.series = collocation.series(work);
+    found.spacing = spacing;
+    return found;
   }
   throw std::runtime_error("forces vary too much within a few steps");
 }

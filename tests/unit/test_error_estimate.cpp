@@ -42,8 +42,8 @@ Errors run(const RigidBody &body, const BodyState &start, const LoadOf &load, co
     double dx[3], dq[4];
     for (int i = 0; i < 3; ++i) dx[i] = after.center[i] - exact.center[i];
     for (int i = 0; i < 4; ++i) dq[i] = after.q[i] - exact.q[i];
-    sum.position += estimate.position_error * estimate.position_error / steps;
-    sum.angle += estimate.angle_error * estimate.angle_error / steps;
+    sum.position += estimate.position_error() * estimate.position_error() / steps;
+    sum.angle += estimate.angle_error() * estimate.angle_error() / steps;
     sum.true_position += dot3(dx, dx) / steps;
     sum.true_angle += 4.0 * dot4(dq, dq) / steps;    // a turn by an angle moves q by half of it
   }
@@ -108,7 +108,7 @@ TEST(ErrorEstimate, IsTheWeightTimesTheResiduals)
       const double x = weight(scheme) * std::sqrt(dot3(dx, dx)),
                    angle = 2.0 * weight(scheme) * std::sqrt(dot4(dq, dq));
       Check::holds_and_refuses_one_percent(
-          {c.position_error, c.angle_error}, [&](const vector<double> &e) {
+          {c.position_error(), c.angle_error()}, [&](const vector<double> &e) {
             return std::fabs(e[0] - x) <= 1e-5 * x && std::fabs(e[1] - angle) <= 1e-5 * angle;
           });
     }
@@ -143,22 +143,23 @@ TEST(ErrorEstimate, IsALengthAndAnAngleInWhateverUnits)
     Correction worst = {};
     for (int n = 0; n < 20; ++n) {
       const Correction c = motion.step();
-      worst.position_error = std::max(worst.position_error, c.position_error);
-      worst.angle_error = std::max(worst.angle_error, c.angle_error);
+      worst.error_weight = c.error_weight;
+      worst.position_residual2 = std::max(worst.position_residual2, c.position_residual2);
+      worst.quaternion_residual2 = std::max(worst.quaternion_residual2, c.quaternion_residual2);
     }
     return worst;
   };
   for (const Scheme &scheme : {scheme_of(Formulation::FIRST), scheme_of(Formulation::SECOND)}) {
     const Correction plain = largest(scheme, 1.0, 1.0, 1.0);
-    ASSERT_GT(plain.position_error, 1e-10);
-    ASSERT_GT(plain.angle_error, 1e-11);
+    ASSERT_GT(plain.position_error(), 1e-10);
+    ASSERT_GT(plain.angle_error(), 1e-11);
     const double units[][3] = {{8.0, 1.0, 1.0}, {1.0, 0.25, 1.0}, {1.0, 1.0, 2.0}, {3.0, 7.0, 0.1}};
     for (const auto &u : units) {
       const Correction c = largest(scheme, u[0], u[1], u[2]);
       Check::holds_and_refuses_one_percent(
-          {c.position_error, c.angle_error}, [&](const vector<double> &e) {
-            return std::fabs(e[0] / (u[2] * plain.position_error) - 1.0) < 1e-3 &&
-                std::fabs(e[1] / plain.angle_error - 1.0) < 1e-3;
+          {c.position_error(), c.angle_error()}, [&](const vector<double> &e) {
+            return std::fabs(e[0] / (u[2] * plain.position_error()) - 1.0) < 1e-3 &&
+                std::fabs(e[1] / plain.angle_error() - 1.0) < 1e-3;
           });
     }
   }

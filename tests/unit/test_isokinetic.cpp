@@ -109,7 +109,8 @@ struct Host {
     }
     const vector<Load> loads = loads_of(states);
     for (size_t b = 0; b < bodies.size(); ++b)
-      pending.push_back(integrator.begin(loads[b], rows[b].data()));
+      pending.push_back(integrator.begin(loads[b], integrator.axes_of(rows[b].data()).data(),
+                                         rows[b].data()));
     for (int pass = 0; pass < scheme.passes; ++pass) {
       const Multipliers alpha = multipliers(mode, pending_sums(loads, pending));
       for (size_t b = 0; b < bodies.size(); ++b)
@@ -388,7 +389,7 @@ TEST(Isokinetic, AnAxisWithoutInertiaIsLeftAlone)
   const double axis = rows[Scheme::OMEGA + 2], across = rows[Scheme::OMEGA];
   for (int n = 0; n < 1000; ++n) {
     integrator.predict(rows.data());
-    auto pending = integrator.begin(Load{}, rows.data());
+    auto pending = integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
     for (int pass = 0; pass < scheme.passes; ++pass)
       integrator.correct_pass(rod, Load{}, alpha, rows.data(), pending);
     integrator.finish(Load{}, rows.data(), pending);

@@ -56,8 +56,8 @@ TEST(Points, MoveToTheBitAsWithRotation)
         const Correction short_told =
             integrator.correct_center(POINT, pull(kept.center), center.data());
         EXPECT_EQ(short_told.work, told.work);
-        EXPECT_EQ(short_told.position_error, told.position_error);
-        EXPECT_EQ(short_told.angle_error, told.angle_error);
+        EXPECT_EQ(short_told.position_error(), told.position_error());
+        EXPECT_EQ(short_told.angle_error(), told.angle_error());
 
         integrator.predict_center(changed.data());
         integrator.center_state(POINT, changed.data(), kept);

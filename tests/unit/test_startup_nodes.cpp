@@ -302,3 +302,52 @@ TEST(StartupNodes, HalvesTheSpacingUntilSweepsConverge)
   };
   EXPECT_THROW(bootstrap(6, TOP, top_state(0.0), broken, 0.1), std::runtime_error);
 }
+
+// --- the rule that ends the sweeps ---
+
+namespace {
+
+using Verdict = SweepRule::Verdict;
+
+/// The last verdict about these changes with one spacing.
+Verdict judged(SweepRule &rule, const vector<double> &changes, double truncation = 0.0)
+{
+  Verdict verdict = Verdict::ANOTHER_SWEEP;
+  rule.begin_spacing();
+  for (double change : changes) {
+    EXPECT_EQ(verdict, Verdict::ANOTHER_SWEEP);
+    verdict = rule.judge(change, [&]() {
+      return truncation;
+    });
+  }
+  return verdict;
+}
+
+}    // namespace
+
+TEST(Sweeps, EndWhenTheNextChangeWouldBeLessThanRoundingOrTruncation)
+{
+  SweepRule rule;
+  EXPECT_EQ(judged(rule, {1e-3, 1e-7}), Verdict::ANOTHER_SWEEP);    // the next one: 1e-11
+  EXPECT_EQ(judged(rule, {1e-3, 1e-7}, 2e-11), Verdict::CONVERGED);
+  EXPECT_EQ(judged(rule, {1e-3, 1e-7, 1e-12}), Verdict::CONVERGED);
+  EXPECT_EQ(judged(rule, {1e-3}, 1.0), Verdict::ANOTHER_SWEEP);    // one change tells nothing
+}
+
+TEST(Sweeps, EndWhereTheChangeIsRoundingOfTheForces)
+{
+  SweepRule rule;
+  EXPECT_EQ(judged(rule, {1e-3, 1e-7, 4e-10, 3e-10}), Verdict::CONVERGED);
+  EXPECT_EQ(judged(rule, {1e-3, 1e-7, 4e-9, 3e-9}), Verdict::SHORTER_SPACING);
+}
+
+TEST(Sweeps, ForcesThatJumpAreTakenAsTheyAreAtTheThirdSpacing)
+{
+  SweepRule rule;
+  const vector<double> stuck = {0.5, 0.06, 0.05};
+  EXPECT_EQ(judged(rule, stuck), Verdict::SHORTER_SPACING);
+  EXPECT_EQ(judged(rule, {0.5, 0.4, 0.3}), Verdict::SHORTER_SPACING);    // too large for a jump
+  EXPECT_EQ(judged(rule, stuck), Verdict::SHORTER_SPACING);
+  EXPECT_EQ(judged(rule, stuck), Verdict::JUMPS);
+  EXPECT_EQ(judged(rule, {std::nan("")}), Verdict::SHORTER_SPACING);
+}

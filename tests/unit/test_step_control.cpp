@@ -122,7 +122,8 @@ struct Following {
     StepErrors errors;
     integrator.predict(rows.data());
     const double norm2 = scheme.norm2(rows.data() + scheme.quaternion());
-    order.correct(integrator, scene.body, 1.0, scene.load(state(), norm2), rows.data(), errors);
+    order.correct(integrator, scene.body, 1.0, scene.load(state(), norm2),
+                  integrator.axes_of(rows.data()).data(), rows.data(), errors);
     t += h;
     ++steps;
     ++steady;
@@ -268,8 +269,9 @@ TEST(StepControl, TheEstimateIsTheCorrectorsOwn)
       StepErrors errors;
       vector<double> copy = rows;
       const Correction own = VariableOrder(scheme).correct(
-          integrator, scene.body, reach, scene.load(scene.start, 1.0), copy.data(), errors);
-      const double larger = std::max(own.position_error, reach * own.angle_error);
+          integrator, scene.body, reach, scene.load(scene.start, 1.0),
+          integrator.axes_of(copy.data()).data(), copy.data(), errors);
+      const double larger = std::max(own.position_error(), reach * own.angle_error());
       EXPECT_GT(larger, 0.0);
       EXPECT_NEAR(errors.same / larger, 1.0, 1e-9) << name(scheme) << " " << scheme.values();
     }

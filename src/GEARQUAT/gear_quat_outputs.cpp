@@ -1,0 +1,211 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_outputs.h"
+
+#include "gear_quat_gather.h"
+#include "gear_quat_template.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "force.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// |q|^2 of four squares carries this rounding itself; less is reported as zero
+
+static constexpr double NORM_ROUNDING = 1.0e-15;
+
+/* ----------------------------------------------------------------------
+   scalar and vector
+------------------------------------------------------------------------- */
+
+double Sums::energy_correction() const
+{
+  double here[2] = {0.0, 0.0}, all[2];
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    const Load &l = bodies.load_of(ibody);
+    here[0] -= bodies.last_of(ibody).work;
+    here[1] += std::sqrt(dot3(l.force, l.force) * dot3(s.center, s.center)) +
+        std::sqrt(dot3(l.torque_space, l.torque_space));
+  }
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  const double rounding = std::numeric_limits<double>::epsilon() * all[1];
+  return std::fabs(all[0]) < rounding ? 0.0 : all[0] / force->ftm2v;
+}
+
+/// The contribution of a body to a sum, or its candidate for a maximum, in the global vector.
+double Sums::of_body(int n, int ibody, const Integrator *integrator) const
+{
+  const RigidBody &rigid = bodies.body[ibody].rigid;
+  const BodyState &s = bodies.state_of(ibody);
+  const Correction &last = bodies.last_of(ibody);
+  switch (n) {
+    case KE_TRANSLATION:
+      return translational_energy(rigid, s.velocity);
+    case KE_ROTATION:
+      return rotational_energy(rigid, s.omega_body);
+    case NORM:
+      return std::fabs(dot4(s.q, s.q) - 1.0);
+    case RADIAL:
+      return integrator ? std::fabs(integrator->radial_rate(bodies.history(ibody))) : 0.0;
+    case MAX_POSITION:
+      return last.position_error();
+    case RMS_POSITION:
+      return last.position_error() * last.position_error();
+    case MAX_ANGLE:
+      return last.angle_error();
+    default:
+      return last.angle_error() * last.angle_error();
+  }
+}
+
+double Sums::element(int n, const Integrator *integrator) const
+{
+  const bool largest = n == NORM || n == RADIAL || n == MAX_POSITION || n == MAX_ANGLE;
+  double here = 0.0, all;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const double one = of_body(n, ibody, integrator);
+    here = largest ? std::max(here, one) : here + one;
+  }
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, largest ? MPI_MAX : MPI_SUM, world);
+  if (n == KE_TRANSLATION || n == KE_ROTATION) return all * force->mvv2e;
+  if (n == NORM || n == RADIAL) return all < NORM_ROUNDING ? 0.0 : all;
+  if (largest) return all;
+  return bodies.number() ? std::sqrt(all / bodies.number()) : 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   array and local data
+------------------------------------------------------------------------- */
+
+double **BodyTable::local()
+{
+  mine.resize(bodies.nowned());
+  rows.resize(bodies.nowned());
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    rows[ibody] = mine[ibody].data();
+    fill_row(ibody, rows[ibody]);
+  }
+  return rows.data();
+}
+
+double BodyTable::global(int row, int column)
+{
+  if (!gathered) gather_rows();
+  return row < (int) all.size() ? all[row][column] : 0.0;
+}
+
+/// A center in the box and its image flags; also where it has flown so far that flags are no integers.
+void BodyTable::wrap(const double *center, double *wrapped, double *image) const
+{
+  const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};
+  const bool tilted = domain->triclinic;
+  std::copy_n(center, 3, wrapped);
+  if (tilted) domain->x2lamda(wrapped, wrapped);
+  for (int k = 0; k < 3; ++k) {
+    const double low = tilted ? 0.0 : domain->boxlo[k], period = tilted ? 1.0 : domain->prd[k];
+    image[k] = periodic[k] ? std::floor((wrapped[k] - low) / period) : 0.0;
+    wrapped[k] -= image[k] * period;
+  }
+  if (tilted) domain->lamda2x(wrapped, wrapped);
+}
+
+/// Quaternions have the scalar first, as everywhere in LAMMPS.
+void BodyTable::fill_row(int ibody, double *row) const
+{
+  const Body &body = bodies.body[ibody];
+  const BodyState &s = bodies.state_of(ibody);
+  const Load &l = bodies.load_of(ibody);
+
+  double a[9], momentum_body[3];
+  wrap(s.center, row + CENTER, row + IMAGE);
+  rotation_matrix(s.q, dot4(s.q, s.q), a);
+  for (int i = 0; i < 3; ++i) momentum_body[i] = body.rigid.inertia[i] * s.omega_body[i];
+
+  std::copy_n(s.velocity, 3, row + VELOCITY);
+  for (int i = 0; i < 3; ++i) {
+    row[FORCE + i] = l.force[i] / force->ftm2v;
+    row[TORQUE + i] = l.torque_space[i] / force->ftm2v;
+  }
+  row[QUATERNION] = s.q[3];
+  std::copy_n(s.q, 3, row + QUATERNION + 1);
+  std::copy_n(s.omega_body, 3, row + OMEGA_BODY);
+  to_space(a, momentum_body, row + ANGULAR_MOMENTUM);
+  row[POSITION_ERROR] = bodies.last_of(ibody).position_error();
+  row[ANGLE_ERROR] = bodies.last_of(ibody).angle_error();
+  row[ID] = double(body.id);
+}
+
+void BodyTable::gather_rows()
+{
+  std::vector<Row> rows_here(bodies.nowned());    // local() has shown `mine`
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) fill_row(ibody, rows_here[ibody].data());
+  all = gather_sorted(rows_here, world, [](const Row &a, const Row &b) {
+    return a[ID] < b[ID];
+  });
+  gathered = true;
+}
+
+/* ----------------------------------------------------------------------
+   what other C++ code may ask for
+------------------------------------------------------------------------- */
+
+void *Extract::extract(const std::string &name, int &dim)
+{
+  dim = 0;
+  nbody = (int) bodies.body.size();
+  if (name == "nbody") return &nbody;
+  if (name == "onemol") return find_template(lmp, template_id);
+  if (name == "ke") {
+    ke = energy(false);
+    return &ke;
+  }
+  if (name == "erotational") {
+    erotational = energy(true);
+    return &erotational;
+  }
+
+  if (name == "body") {
+    dim = 1;
+    body.assign(atom->nlocal + 1, -1);    // one more: no null pointer on a rank without atoms
+    for (const auto &site : bodies.sites)
+      if (site.atom < atom->nlocal) body[site.atom] = site.body;
+    return body.data();
+  }
+  if (name == "masstotal") {
+    dim = 1;
+    masstotal.resize(nbody + 1);
+    for (int i = 0; i < nbody; ++i) masstotal[i] = bodies.body[i].rigid.mass;
+    return masstotal.data();
+  }
+  if (name == "inertia") {
+    dim = 2;
+    inertia.resize(3 * (nbody + 1));
+    inertia_rows.resize(nbody + 1);
+    for (int i = 0; i < nbody; ++i) {
+      inertia_rows[i] = inertia.data() + 3 * i;
+      std::copy_n(bodies.body[i].rigid.inertia, 3, inertia_rows[i]);
+    }
+    return inertia_rows.data();
+  }
+  return nullptr;
+}
+
+double Extract::energy(bool rotational) const
+{
+  double here = 0.0, all;
+  for (int i = 0; i < bodies.nowned(); ++i)
+    here += rotational ? rotational_energy(bodies.body[i].rigid, bodies.state_of(i).omega_body)
+                       : translational_energy(bodies.body[i].rigid, bodies.state_of(i).velocity);
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all * force->mvv2e;
+}

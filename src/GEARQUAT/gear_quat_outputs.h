@@ -1,0 +1,132 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* What users see of the bodies: of all together the fix's scalar and vector, of each a row of numbers
+   in its global array and local data; and what other C++ code may ask for by name. */
+
+#ifndef LMP_GEAR_QUAT_OUTPUTS_H
+#define LMP_GEAR_QUAT_OUTPUTS_H
+
+#include "gear_quat_bodies.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS::GearQuat {
+
+/// The fix's scalar and vector.  All calls are collective.
+class Sums : protected Pointers {
+ public:
+  /// Elements of the vector, as the manual lists them.
+  enum {
+    KE_TRANSLATION,
+    KE_ROTATION,
+    NORM,
+    RADIAL,
+    MAX_POSITION,
+    RMS_POSITION,
+    MAX_ANGLE,
+    RMS_ANGLE,
+    ELEMENTS
+  };
+
+  Sums(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
+
+  /// Energy that takes thermo's potential energy from the predicted to the corrected pose; zero if
+  /// it is less than rounding of the centers alone can make of the loads.
+  double energy_correction() const;
+  /// An element; integrator: null as long as there are no histories.
+  double element(int n, const Integrator *integrator) const;
+
+ private:
+  const Bodies &bodies;
+
+  double of_body(int n, int ibody, const Integrator *integrator) const;
+};
+
+/// A row of numbers of every body, for the fix's global array (all bodies on all ranks, sorted by ID)
+/// and for its local data (owned bodies).
+class BodyTable : protected Pointers {
+ public:
+  /// Columns, counted from 0; the first fifteen are those of fix rigid.
+  enum {
+    CENTER = 0,
+    VELOCITY = 3,
+    FORCE = 6,
+    TORQUE = 9,
+    IMAGE = 12,
+    QUATERNION = 15,
+    OMEGA_BODY = 19,
+    ANGULAR_MOMENTUM = 22,
+    POSITION_ERROR = 25,
+    ANGLE_ERROR = 26,
+    ID = 27,
+    COLUMNS = 28
+  };
+
+  BodyTable(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
+
+  /// Rows of owned bodies, anew at every call; the pointers stay valid until the next one.
+  double **local();
+  /// A number of the global array, 0 in rows without a body.  Rows are gathered when the first is
+  /// asked for after forget(): collective.
+  double global(int row, int column);
+  /// Poses, loads or bodies have changed.
+  void forget() { gathered = false; }
+  double memory_usage() const
+  {
+    return (mine.capacity() + all.capacity()) * sizeof(Row) + rows.capacity() * sizeof(double *);
+  }
+
+ private:
+  const Bodies &bodies;
+  using Row = std::array<double, COLUMNS>;
+  std::vector<Row> mine, all;
+  std::vector<double *> rows;
+  bool gathered = false;    ///< `all` is of the present poses
+
+  void wrap(const double *center, double *wrapped, double *image) const;
+  void fill_row(int ibody, double *row) const;
+  void gather_rows();
+};
+
+/// What other C++ code may ask the fix by name, see Fix::extract(): names as those of fix rigid where
+/// it has them.  Bodies are numbered as in the local data of the fix, owned ones first.
+class Extract : protected Pointers {
+ public:
+  /// template_id: that of keyword mol, or empty.
+  Extract(LAMMPS *lmp, const Bodies &bodies, const std::string &template_id) :
+      Pointers(lmp), bodies(bodies), template_id(template_id)
+  {
+  }
+
+  /// Null for an unknown name.  The result holds until atoms or bodies are exchanged, created or
+  /// removed, or until the same name is asked for again.  dim: 0 scalar, 1 vector, 2 array.
+  ///   body         int *      owned atoms: number of the body, -1 for none
+  ///   nbody        int *      owned and ghost bodies of this rank
+  ///   masstotal    double *   owned and ghost bodies
+  ///   inertia      double **  the same: principal moments
+  ///   ke           double *   translational kinetic energy of all bodies; collective
+  ///   erotational  double *   rotational kinetic energy of all bodies; collective
+  ///   onemol       Molecule **  the molecules of the template of keyword mol, null without
+  void *extract(const std::string &name, int &dim);
+
+ private:
+  const Bodies &bodies;
+  std::string template_id;
+
+  std::vector<int> body;
+  int nbody = 0;
+  std::vector<double> masstotal, inertia;
+  std::vector<double *> inertia_rows;
+  double ke = 0.0, erotational = 0.0;
+
+  double energy(bool rotational) const;
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif
