@@ -28,7 +28,7 @@ namespace LAMMPS_NS::GearQuat {
 struct NeighborRule {
   const char *style;    ///< pattern
   enum { TAKEN, WATCHED, REFUSED } what;
-  enum { SHARED, ALWAYS, CONSTRAINED, GJF } where;    ///< the case that is meant
+  enum { SHARED, ALWAYS, CONSTRAINED, GJF, IMPULSES } where;    ///< the case that is meant
   const char *instead;
 };
 
@@ -60,6 +60,7 @@ static const NeighborRule NEIGHBORS[] = {
     {"^oneway", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
     {"^shardlow", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
     {"^lb/momentum", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix momentum"},
+    {"^lb/viscous", NeighborRule::REFUSED, NeighborRule::IMPULSES, "use fix rigid for them"},
     {"^wall/flow", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
     {"^smd/setvel", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
     {"^tmd$", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix spring or fix spring/self"},
@@ -116,7 +117,7 @@ void Neighbors::init()
       if (atom && comm->me == 0)
         error->warning(FLERR,
                        "Fix gear/quat: fix {} ({}) moves single atoms, which bodies do not follow; "
-                       "the run will end when it moves one of a body. {}",
+                       "the run will end when it moves one of a body; {}",
                        other->id, other->style, row->instead);
     } else {
       taken.push_back(other);
@@ -175,6 +176,13 @@ void Neighbors::refuse(const Fix *other, const NeighborRule &row, tagint shared)
     case NeighborRule::GJF:
       if (shared && (modify->get_fix_mask(const_cast<Fix *>(other)) & FixConst::INITIAL_INTEGRATE))
         break;
+      return;
+    case NeighborRule::IMPULSES:
+      if (!shared) return;
+      error->all(FLERR,
+                 "Fix gear/quat: fix {} ({}) exchanges an impulse with bodies in each step, among "
+                 "them that of atom {}, which no number of values can follow; {}",
+                 other->id, other->style, shared, row.instead);
       return;
   }
   error->all(FLERR,
