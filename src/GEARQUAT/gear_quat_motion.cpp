@@ -283,9 +283,12 @@ std::vector<const Fix *> Motion::starting_together() const
 void Motion::take_velocities(const std::vector<int> &changed)
 {
   if (!started) return;
-  for (const int ibody : changed)
-    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state_of(ibody),
-                               bodies.acting(ibody), bodies.history(ibody));
+  if (isokinetic) isokinetic->measure();
+  for (const int ibody : changed) {
+    const Load load = isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
+    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state_of(ibody), load,
+                               bodies.history(ibody));
+  }
 }
 
 void Motion::predict(double **f)

@@ -238,6 +238,7 @@ class Campaign:
         if a_try.kind in (INTEGRATES, BOX, MOVES, RIGID_ONLY):
             self._refused(outcome, answers)
             return outcome
+        errors = self._without_refusals_of_lammps(n, outcome, answers, errors)
         if errors:
             self._broken(n, outcome, errors)
             return outcome
@@ -276,6 +277,20 @@ class Campaign:
             outcome.result = "LAMMPS refuses"
         else:
             outcome.result = "refused" if first.error else "warned"
+
+    def _without_refusals_of_lammps(self, n, outcome, answers, errors):
+        """Errors but those that LAMMPS ends the same variant with beside fix rigid, such as a style that does
+        not run on several ranks: these variants leave ``answers``.  A crash is never excused."""
+        left = {}
+        for variant, error in errors.items():
+            key = self._key(n, variant, "rigid")
+            self._need([key])
+            if error.startswith("crash") or self.answers[key].error != error or variant == FIRST:
+                left[variant] = error
+                continue
+            del answers[variant]
+            outcome.excused.append(f"{named(variant)}: {error.strip().splitlines()[0]}")
+        return left
 
     def _broken(self, n, outcome, errors):
         variant, error = next(iter(errors.items()))

@@ -237,10 +237,24 @@ def test_isokinetic_and_a_thermostat(lmp_wheel):
         "isokinetic keeps the kinetic energy, which fix bath (temp/csvr) changes"
         in result.errors[0]
     )
-    result = lmp_wheel.run(
-        molecules(lmp_wheel, "fix still all momentum 5 linear 1 1 1", fix, steps=20)
-    )
-    assert result.returncode == 0, result.output
+
+
+@pytest.mark.parametrize("mode", ["total", "separate"])
+def test_isokinetic_and_momentum(lmp_wheel, mode):
+    """A change of 1e-9 makes a difference of its own size: the damping by the multipliers goes on."""
+    fix = f"gear/quat molecule report no formulation first isokinetic {mode}"
+    ends, sums = [], []
+    for still in ("", "\nfix still all momentum 20 linear 1 1 1"):
+        after = f"velocity all zero linear\nvelocity all set 1e-9 0 0 sum yes{still}"
+        deck = molecules(lmp_wheel, after, fix, dt=0.125, steps=80, thermo=10)
+        deck = deck.replace("econserve", "econserve f_move[9]")
+        result = lmp_wheel.run(deck)
+        assert result.returncode == 0, result.output
+        table = energies(result.thermo[0])
+        sums.append(table["TotEng"] + table["f_move[9]"])
+        ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
+    assert abs(sums[1] - sums[0]).max() < 1e-8 * abs(sums[0]).max()
+    assert ends[1] == pytest.approx(ends[0], abs=1e-7)
 
 
 # --- watched, and what no table knows ------------------------------------------------------------
