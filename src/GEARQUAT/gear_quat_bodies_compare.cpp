@@ -122,10 +122,10 @@ void Bodies::check_whole()
   const Census found = census(0);
   if (found.broken) {
     const std::string had = found.had
-        ? fmt::format("{} of its {} atoms", found.left, found.had)
-        : fmt::format("{} of its atoms, not the one that owned it,", found.left);
+        ? fmt::format("has {} of its {} atoms left", found.left, found.had)
+        : fmt::format("has lost its owner atom and keeps {} others", found.left);
     error->all(FLERR,
-               "Fix gear/quat: body {} has {} left; a body must be removed as a whole, and no atom "
+               "Fix gear/quat: body {} {}; a body must be removed as a whole, and no atom "
                "of it may leave the box through a face that is not periodic",
                found.broken, had);
   }

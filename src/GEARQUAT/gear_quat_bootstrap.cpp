@@ -116,8 +116,8 @@ bool Bootstrap::run()
     if (most > 0 && values > most)
       utils::logmesg(
           lmp,
-          "Fix gear/quat {}: random forces heat bodies with many values; values {} suits "
-          "them, not {}\n",
+          "Fix gear/quat {}: random forces heat bodies with many values; use values {} instead "
+          "of {}\n",
           party.fix->id, most == 4 ? "4" : fmt::format("4 to {}", most), values);
   }
   return false;
