@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from synthetic import line, make
 
-from benchmarks.engine import divergence as dv
 from benchmarks.engine import series
 from benchmarks.engine.logs import Log
+from benchmarks.engine.statistics import order
+from benchmarks.studies.cases import divergence as dv
 
 
 def test_parting_time_is_the_first_sample_beyond_the_threshold():
@@ -60,15 +61,14 @@ def test_leaving(rate, axis):
     speed = float(np.linalg.norm(rate))
     assert dv.leaving_axis(gone) == axis
     assert dv.leaving_time(gone) == math.floor(dv.OUTSIDE / speed) + 1
-    assert dv.farthest(gone) == pytest.approx(100 * speed)
     inside = line(rate=np.array(rate) / 3)
     assert dv.leaving_axis(inside) == "" and math.isinf(dv.leaving_time(inside))
 
 
 def test_order_of_a_power_law_and_of_a_wrong_one():
     steps = np.array([0.1, 0.05, 0.02])
-    assert dv.error_order(steps, 3.0 * steps**5) == pytest.approx(5.0)
-    assert dv.error_order(steps, 3.0 * steps**5.05) != pytest.approx(5.0)
+    assert order(steps, 3.0 * steps**5) == pytest.approx(5.0)
+    assert order(steps, 3.0 * steps**5.05) != pytest.approx(5.0)
 
 
 LOG = """LAMMPS (22 Jul 2025)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.engine.divergence import error_order
+from benchmarks.engine.statistics import order as order_of
 
 # centre of mass, test case 1, found in extended precision (notes on the paper)
 REFERENCE = {
@@ -46,21 +46,21 @@ def test_reference_check_can_fail(run_case, formulation):
 )
 def test_order(run_case, formulation, steps, order):
     found = [errors(run_case, (200,), dt, formulation=formulation)[0] for dt in steps]
-    assert error_order(steps, found) >= order
+    assert order_of(steps, found) >= order
 
 
 @pytest.mark.parametrize("formulation", LIMIT)
 def test_zero_start_is_of_first_order(run_case, formulation):
     steps = (0.01, 0.005, 0.0025)
     found = [errors(run_case, (200,), dt, formulation=formulation, start="zero")[0] for dt in steps]
-    assert error_order(steps, found) == pytest.approx(1.0, abs=0.2)
+    assert order_of(steps, found) == pytest.approx(1.0, abs=0.2)
 
 
 def test_c0_velocity_costs_two_orders(run_case):
     """The paper's 3/16 instead of 3/20."""
     steps = (0.1, 0.05)
     found = [errors(run_case, (200,), dt, c0="velocity")[0] for dt in steps]
-    assert 4.0 < error_order(steps, found) < 6.0
+    assert 4.0 < order_of(steps, found) < 6.0
 
 
 @pytest.mark.parametrize("formulation", LIMIT)

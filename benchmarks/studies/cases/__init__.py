@@ -7,18 +7,10 @@ accuracy.py (errors by step), figures.py (the paper's figures, and two of our ow
 import textwrap
 
 from benchmarks.engine.study import Finding, Measurement, Study, Table
-from benchmarks.engine import divergence as dv
 
 from . import accuracy
-from .claims import (
-    EXPLAINED,
-    NOT,
-    REPRODUCED,
-    THRESHOLDS,
-    all_claims,
-    parting_times,
-    show_times,
-)
+from . import divergence as dv
+from .claims import EXPLAINED, NOT, REPRODUCED, THRESHOLDS, all_claims, parting_times, show_times
 from .figures import pictures
 from .plan import ACCURACY_END, ACCURACY_STEPS, ACCURATE, AS_PRINTED, END, ROWS, measure
 

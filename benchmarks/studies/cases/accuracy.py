@@ -7,9 +7,9 @@ import functools
 
 import numpy as np
 
-from benchmarks.engine import divergence as dv
 from benchmarks.reference import paper_problem, reference_state
 
+from . import divergence as dv
 from .plan import ACCURACY_END, ACCURACY_STEPS, ACCURATE, AS_PRINTED, COARSE_STEPS
 
 PAPER = AS_PRINTED[0]

@@ -15,9 +15,9 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.engine import divergence as dv
 from benchmarks.reference import Cage
 
+from . import divergence as dv
 from .plan import ACCURATE, AS_PRINTED, FORMULATIONS, OMEGA_END, OMEGA_STEP, ROWS
 
 REPRODUCED, EXPLAINED, NOT = "reproduced", "explained", "not reproducible"

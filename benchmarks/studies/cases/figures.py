@@ -9,13 +9,13 @@ from functools import partial
 import matplotlib.pyplot as plt
 import numpy as np
 
-from benchmarks.engine import divergence as dv
-from lammps_gearquat.style import COLOUR, RECONSTRUCTED, STYLE
 from benchmarks.engine.panels import Curve, Panel, draw, draw_panel
 from benchmarks.studies.pictures.figures import CAGE_RADIUS, PLUS, SPACING, add_cage
 from benchmarks.studies.pictures.view import Camera, Stage
+from lammps_gearquat.style import RECONSTRUCTED, STYLE
 
 from . import accuracy
+from . import divergence as dv
 from .claims import THRESHOLDS
 from .plan import ACCURACY_END, ACCURACY_STEPS, ACCURATE, AS_PRINTED, FORMULATIONS, ROWS
 

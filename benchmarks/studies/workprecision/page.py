@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.engine.checkout import find, provenance, write_block, write_page
 from benchmarks.engine.page import render
 from benchmarks.engine.study import Finding, Study, Table
-from benchmarks.engine.divergence import error_order
+from benchmarks.engine.statistics import order as error_order
 from benchmarks.engine.tables import markdown_table
 from . import plan, tables
 from .evaluate import RULE

@@ -6,25 +6,23 @@ of the run.
 
 import numpy as np
 
-#: beyond this distance from the centre of the cage (its corners: 173) the body has left it
+#: beyond this distance from the center of the cage (its corners: 173) the body has left it
 OUTSIDE = 200.0
 
 
 def separation(first, second):
-    """Distance between the centres of mass of two series, shape (n,) of their common times.
+    """Distance between the centers of mass of two series, shape (n,) of their common times.
 
-    Both have to be sampled at the same times from the start on; the longer one is cut.  Of several
-    bodies (``centre`` of shape (n, B, 3)) it is the largest distance.
+    Both have to be sampled at the same times from the start on; the longer one is cut.
     """
     n = min(len(first.time), len(second.time))
     if not np.allclose(first.time[:n], second.time[:n], rtol=1e-9, atol=1e-9):
         raise ValueError("the two series are not sampled at the same times")
-    distance = np.linalg.norm(first.centre[:n] - second.centre[:n], axis=-1)
-    return distance.reshape(n, -1).max(axis=1)
+    return np.linalg.norm(first.centre[:n] - second.centre[:n], axis=1)
 
 
 def parting_time(first, second, threshold):
-    """First sampled time at which the centres of mass are further apart than ``threshold``.
+    """First sampled time at which the centers of mass are farther apart than ``threshold``.
 
     Infinite if they never are.
     """
@@ -43,10 +41,10 @@ def energy_scale(series):
 
 
 def drift_onset(series, fraction=0.02):
-    """Time from which the total energy stays off its start by ``fraction`` of the energy's swing.
+    """Time from which the total energy differs from its start by more than ``fraction`` of the swing.
 
     Returns (time, sign): infinite and 0 if the last sample lies within it.  The swing is that of
-    the potential energy, so that an onset is what an eye would see in the paper's figures.
+    the potential energy, the height of the paper's figures.
     """
     error = energy_error(series)
     limit = fraction * energy_scale(series)
@@ -55,11 +53,6 @@ def drift_onset(series, fraction=0.02):
     within = np.flatnonzero(np.abs(error) <= limit)
     onset = series.time[within[-1] + 1] if len(within) else series.time[0]
     return float(onset), int(np.sign(error[-1]))
-
-
-def farthest(series):
-    """Largest distance of the centre of mass from the centre of the cage."""
-    return float(np.linalg.norm(series.centre, axis=1).max())
 
 
 def leaving_time(series):
@@ -81,8 +74,3 @@ def leaving_axis(series):
     velocity = series.centre[-1] - series.centre[-2]
     axis = int(np.argmax(np.abs(velocity)))
     return ("-" if velocity[axis] < 0 else "+") + "xyz"[axis]
-
-
-def error_order(steps, errors):
-    """Slope of log(error) over log(step), least squares: the order of a method."""
-    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
