@@ -104,7 +104,10 @@ def _scales(axis, panel):
     if panel.xticks:
         axis.set_xticks(panel.xticks, [f"{x:g}" for x in panel.xticks])
         axis.minorticks_off()
-    axis.set(xlim=panel.xlim, ylim=panel.ylim)
+    if panel.xlim:
+        axis.set_xlim(panel.xlim)
+    if panel.ylim:
+        axis.set_ylim(panel.ylim)
 
 
 def draw_panel(axis, panel):

@@ -68,7 +68,7 @@ def test_held_energy(results):
     judge = partial(verdict, measure=claims.energy_error, case=1, formulation="first")
     assert judge(results).verdict == REPRODUCED
     one = judge(spoil(results, drifting, row="consistent-zero-free"))
-    assert one.verdict == REPRODUCED and one.why == "not with the body: consistent"
+    assert one.verdict == REPRODUCED and one.why == "but not with the consistent body"
     assert judge(spoil(results, drifting, formulation="first")).verdict == NOT
 
 

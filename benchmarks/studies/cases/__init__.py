@@ -25,7 +25,8 @@ def claim_table(claims):
     """Every claim, what was measured, and the verdict."""
     rows = []
     for judged in claims:
-        verdict = f"{judged.verdict}: {judged.why}" if judged.why else judged.verdict
+        link = ", " if judged.verdict == REPRODUCED else ": "
+        verdict = judged.verdict + (link + judged.why if judged.why else "")
         claim = judged.claim
         rows.append((claim.source, claim.paper, judged.measured, claim.condition, verdict))
     return Table(("where", "the paper says", "measured", "reproduced if", "verdict"), rows)
@@ -78,6 +79,12 @@ def measurements(position, energy, steps, count):
     return found
 
 
+def listed(numbers):
+    """Numbers as words of a sentence, "" if there are none."""
+    *others, last = [f"{number:g}" for number in numbers] or [""]
+    return f"{', '.join(others)} and {last}" if others else last
+
+
 def summary(claims, width=100):
     """The claims for a terminal, one short block for each."""
     lines, indent = [], {"initial_indent": "    ", "subsequent_indent": "    "}
@@ -110,8 +117,8 @@ def find(results):
         "runs": len(results.series),
         "step": CHECKED_STEP,
         "at": {label: errors[at] for label, errors in position.items()},
-        "better": [f"{step:g}" for step, a, b in zip(steps, ours, rigid) if a < b],
-        "worse": [f"{step:g}" for step, a, b in zip(steps, ours, rigid) if not a < b],
+        "better": listed(step for step, a, b in zip(steps, ours, rigid) if a < b),
+        "worse": listed(step for step, a, b in zip(steps, ours, rigid) if not a < b),
         "ends": (ACCURACY_END, END),
         "fine": results.fine,
     }

@@ -84,7 +84,7 @@ class Judged:
         """What the verdict rests on; "" if the claim holds in all runs."""
         failing = [reading.label for reading in self.readings if reading.holds is False]
         if self.verdict == REPRODUCED and failing:
-            return "not with the body: " + ", ".join(failing)
+            return "but not with the " + " and ".join(failing) + " body"
         return self.claim.reason if self.verdict == EXPLAINED else ""
 
 
@@ -294,7 +294,7 @@ def formulations_part(case, source, paper, low, high):
         paper,
         f"the time is within {WITHIN} at one threshold; it is explained if times of Table 7 enclose it",
         partial(parting, case=case, low=low, high=high),
-        lead="apart by 0.1 / 1 / 3 at t = ",
+        lead="time until they are apart by 0.1 / 1 / 3: ",
         reason="the time depends more on threshold, body, start and projection than on the formulation",
     )
 
@@ -304,10 +304,10 @@ def step_does_not_matter(case, source, paper, until, other=None):
     return Claim(
         source,
         f"{paper} the solution is the same until t = {until}",
-        f"no run parts before {until} less {WITHIN}; it is explained if some do not",
+        f"all runs agree until t = {until * (1 - TIME_TOLERANCE):g}; it is explained if some do",
         partial(same_solution, case=case, until=until, other=other),
         all,
-        lead="apart by 1 at t = ",
+        lead="time until the runs are apart by 1: ",
         reason="the zero start leaves an error of first order, so another step changes the solution"
         " about as much as the other formulation",
     )
@@ -356,7 +356,7 @@ CLAIMS = (
         "x of the first formulation is similar to that of test case 1 until about t = 1000",
         f"the time is within {WITHIN} with one body; it is explained if those of the two enclose it",
         similar_curve,
-        lead="x differs by a quarter of its range at t = ",
+        lead="time until x differs by a quarter of its range: ",
     ),
     Claim(
         "test case 3, Figs. 8, 9",
@@ -379,7 +379,7 @@ CLAIMS = (
     Claim(
         "test case 3, Figs. 12, 13",
         "the body leaves toward -z in the first formulation and toward +y in the second",
-        "it does in a run made as the paper made it; it is explained if the formulations differ",
+        "it does so in a run with the choices of the paper; it is explained if the formulations differ",
         leaving_direction,
         lead="first and second formulation: ",
         reason="where the formulations part before the body leaves, its direction is chaotic",
