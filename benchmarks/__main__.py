@@ -102,8 +102,4 @@ def main(names, out, publish_it, check, render_only, **options):
 
 
 if __name__ == "__main__":
-    from benchmarks.commands import COMMANDS
-
-    if sys.argv[1:2] and sys.argv[1] in COMMANDS:
-        COMMANDS[sys.argv.pop(1)](prog_name="benchmarks/run")
     main(prog_name="benchmarks/run")

@@ -22,6 +22,9 @@ the page from them again.  The Lab (lab.py) runs decks:
     lab.share(0.3)                                a context: its work is that part of the progress bar
     lab.quick, lab.full, lab.parts                what was asked for
 
+Where starting LAMMPS would take longer than the run, session.py keeps it in a process, times the ``run``
+command alone, and repeats competitors in turn until their medians are steady.
+
 A Finished has ``log.thermo`` (columns as arrays), ``log.tables`` (of every run), ``log.timers``,
 ``log.seconds``, ``log.text``, ``sites`` (of the dump) and ``error``.
 

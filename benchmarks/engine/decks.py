@@ -10,13 +10,3 @@ FORMULATIONS = ("second", "first")
 def deck(scene):
     """Input deck of a scene under examples, such as "case1" or "hard/poles"."""
     return EXAMPLES / scene / f"in.{Path(scene).name}"
-
-
-def examples_folder():
-    """Folder that holds ``case1`` … and ``common``, as a Path."""
-    return EXAMPLES
-
-
-def deck_of_case(case):
-    """Input deck of test case 1, 2 or 3."""
-    return deck(f"case{case}")

@@ -11,6 +11,7 @@ _LOOP = re.compile(r"^Loop time of (\S+) on (\d+) procs", re.MULTILINE)
 _SECTION = re.compile(r"^(\w+) +\|([^|]*)\|([^|]*)\|([^|]*)\|", re.MULTILINE)
 #: LAMMPS' reader leaves out lines with words; infinity in digits is read
 _NOT_FINITE = re.compile(r"(?<=\s)-?(?:nan|inf)(?=\s)")
+_START = re.compile(r"^Fix gear/quat \S+: start of order \d+ from (\d+) force", re.MULTILINE)
 _STEP = re.compile(r"^ *Step ", re.MULTILINE)
 
 
@@ -72,6 +73,11 @@ class Log:
         if not self.timers:
             raise ValueError(f"{self.path}: not a finished run: no loop time")
         return self.timers[-1]["Loop"]
+
+    @property
+    def start_evaluations(self):
+        """Force evaluations that fix gear/quat made to start; 0 without a start."""
+        return sum(map(int, _START.findall(self.text)))
 
     @property
     def version(self):

@@ -28,14 +28,17 @@ class Method:
         return self.kind != "rigid"
 
 
-def gear(formulation, values, compensate=False):
-    """Fix gear/quat with so many ``values``."""
-    variables = {"formulation": formulation, "values": values}
-    key, label = f"{formulation}-{values}", f"{formulation}, N = {values}"
+def gear(formulation, values, compensate=False, **more):
+    """Fix gear/quat with so many ``values``; ``more``: variables of the decks, such as passes or c0."""
+    variables = {"formulation": formulation, "values": values, **more}
+    words = [formulation, f"N = {values}"]
+    for name, value in more.items():
+        words.append(f"{value} pass{'es' * (value > 1)}" if name == "passes" else f"{name} {value}")
+    key = "-".join(map(str, variables.values()))
     if compensate:
-        key, label = f"{key}-compensated", f"{label}, compensated"
+        key, words = f"{key}-compensated", [*words, "compensated"]
         variables["compensate"] = "yes"
-    return Method(key, label, variables, formulation)
+    return Method(key, ", ".join(words), variables, formulation)
 
 
 def rigid(style, method):

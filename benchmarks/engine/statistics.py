@@ -48,11 +48,16 @@ def deviation(mean, other):
 
 
 def largest_deviation(mean, other, count):
-    """How many standard errors the largest of ``count`` differences of two Means may have.
+    """How many standard errors the largest of ``count`` differences of two Means may have."""
+    return allowed(count, mean.freedoms + other.freedoms)
 
-    From Student's t distribution with the degrees of freedom of both, and Bonferroni's correction.
+
+def allowed(count, freedoms):
+    """How many standard errors the largest of ``count`` deviations may have.
+
+    From Student's t distribution with the degrees of freedom of the errors, and Bonferroni's
+    correction.
     """
-    freedoms = mean.freedoms + other.freedoms
     return float(stats.t.ppf(1 - (1 - CONFIDENCE) / (2 * count), freedoms))
 
 

@@ -6,7 +6,7 @@ from math import comb
 import numpy as np
 import pytest
 
-from benchmarks.studies.workprecision import stability
+from benchmarks.reference import stability
 from lammps_gearquat import keywords
 from pages import first_script
 from running import ROOT

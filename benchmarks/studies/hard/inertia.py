@@ -15,7 +15,7 @@ from benchmarks.engine.panels import Curve, Panel
 from benchmarks.engine.study import Finding, Measurement
 from benchmarks.reference import Problem, State, integrators
 from benchmarks.reference.fields import LennardJonesUnits
-from benchmarks.studies.workprecision.judge import pose_errors
+from benchmarks.engine.sites import pose_errors
 
 TITLE, SECONDS = "Small, equal and vanishing moments of inertia", 45.0
 BODIES = {

@@ -1,4 +1,4 @@
-"""Largest stable steps: of the linear test equation, and by bisection of anything that can be tried.
+"""Largest stable steps of Gear's methods for the linear test equation, from exact coefficients.
 
 Test equation: x'' = -omega^2 x, one force evaluation a step, at the predicted position.  One step is
 a linear map of the history y_j = h^j x^(j) / j!, and counts as stable while no eigenvalue is larger
@@ -95,26 +95,3 @@ def linear_limit(step_matrix, highest=4.0, scan=800, digits=5):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if stable(middle) else (low, middle)
     return low
-
-
-def fewest_steps(usable, start, most, ratio=1.02):
-    """Fewest steps n for which ``usable(n)``; None if not even ``most`` are enough.
-
-    Doubles from ``start`` until usable, then halves the gap in log n until it is below ``ratio``.
-    Assumes that more steps are usable if fewer are.
-    """
-    low, high = None, start
-    while not usable(high):
-        low, high = high, 2 * high
-        if high > most:
-            return None
-    while low is None and high > 1:
-        if usable(high // 2):
-            high //= 2
-        else:
-            low = high // 2
-    while low is not None and high > low + 1 and high / low > ratio:
-        middle = round(math.sqrt(low * high))
-        middle = min(max(middle, low + 1), high - 1)
-        low, high = (low, middle) if usable(middle) else (middle, high)
-    return high

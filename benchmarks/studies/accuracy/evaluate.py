@@ -1,6 +1,6 @@
-"""Fitted orders, costs of given errors, verdicts.  Arrays in, numbers out."""
+"""Fitted orders and costs of errors.  Arrays in, numbers out."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import theilslopes
@@ -8,24 +8,20 @@ from scipy.stats import theilslopes
 #: the part of a curve that its order is fitted on (see ``asymptotic``)
 FINEST, ABOVE_FLOOR, DECADES, FINER, PAST = 5, 3.0, 3, 1.25, 2.0
 FEWEST_POINTS = 3
-RULE = (
-    f"lines of fitted order: median slope (Theil and Sen) over the {DECADES} decades above rounding, "
-    f"steps below 1/{FINER:g} of the largest usable one and at most 1/{PAST:g} of one at which the "
-    f"error changes sign; rounding: {ABOVE_FLOOR:g} times the worst of "
-    f"the {FINEST} finest runs, where their errors do not fall any more"
-)
-MET, MISSED = "met", "missed"
+#: part of all slopes that the uncertainty of an order holds, that of one standard error
+CONFIDENCE = 0.683
 
 
 @dataclass(frozen=True)
 class Fit:
-    """error = coefficient * step^order through the points ``used`` (mask)."""
+    """error = coefficient * step^order through the points ``used`` (mask); ``error`` of the order."""
 
     order: float
+    error: float
     coefficient: float
     used: np.ndarray
 
-    def error(self, step):
+    def at(self, step):
         """The line at ``step``."""
         return self.coefficient * np.asarray(step, dtype=float) ** self.order
 
@@ -65,8 +61,9 @@ def fitted_order(steps, errors, limit=np.inf):
     used = asymptotic(steps, errors, limit)
     if used.sum() < FEWEST_POINTS:
         return None
-    order, constant, *_ = theilslopes(np.log(errors[used]), np.log(steps[used]))
-    return Fit(float(order), float(np.exp(constant)), used)
+    line = theilslopes(np.log(errors[used]), np.log(steps[used]), CONFIDENCE)
+    error = 0.5 * (line.high_slope - line.low_slope)
+    return Fit(float(line.slope), float(error), float(np.exp(line.intercept)), used)
 
 
 def sign_change(steps, errors):
@@ -83,17 +80,27 @@ def sign_change(steps, errors):
 
 @dataclass(frozen=True)
 class Cost:
-    """What an error costs; ``kind`` is measured, extrapolated, or "at most": any run is enough."""
+    """What an error costs; ``kind`` is measured, extrapolated, or "at most": any run is enough.
+
+    ``error``: standard error relative to the value.
+    """
 
     value: float
     kind: str = "measured"
+    error: float = 0.0
+
+    def over(self, other):
+        """This cost over another one; None if one of them is.  A ratio may be "at least", too."""
+        kinds = {"measured": "at least", "extrapolated": "at most", "at most": "at most"}
+        kind = kinds[self.kind] if other.kind == "at most" else self.kind
+        return Cost(self.value / other.value, kind, float(np.hypot(self.error, other.error)))
 
 
 def cost_of(costs, errors, target):
     """Cost beyond which all errors are at most ``target``; None if the dearest run misses it.
 
     Log-log between the dearest run that misses the target and the next dearer one, which reaches it.
-    A run that went astray has the error inf, and the cost NaN where that is not known.
+    A lost run has the error inf, and the cost NaN where that is not known.
     """
     costs, errors = np.asarray(costs, float), np.asarray(errors, float)
     known = ~np.isnan(costs)
@@ -122,33 +129,33 @@ def extrapolated_cost(costs, errors, target):
 
 
 def cheapest(costs_by_name):
-    """(name, Cost) of the lowest cost of a dictionary name -> Cost or None; None if all are."""
-    known = {name: cost for name, cost in costs_by_name.items() if cost is not None}
-    if not known:
-        return None
-    name = min(known, key=lambda key: known[key].value)
-    return name, known[name]
+    """(name, Cost) of the lowest cost of a dictionary name -> Cost or None; twice None if all are."""
+    known = [item for item in costs_by_name.items() if item[1] is not None]
+    return min(known, key=lambda item: item[1].value, default=(None, None))
 
 
-def at_least(measured, asked):
-    """Verdict on a number that has to be at least ``asked``; NaN and None miss."""
-    return MET if measured is not None and measured >= asked else MISSED
+def price(results, scene, method, target, unit="seconds", extrapolate=False):
+    """Cost of an error with one method, with the uncertainty of its timings.
+
+    ``unit``: evaluations or seconds; ``extrapolate``: where no run gets there and forces are smooth.
+    """
+    _, errors = results.errors(scene, method)
+    costs = results.column(scene, method, unit)
+    cost = cost_of(costs, errors, target)
+    if cost is None and extrapolate and results.scenes[scene].smooth:
+        cost = extrapolated_cost(costs, errors, target)
+    if cost is None or unit == "evaluations":
+        return cost
+    low, high, count = (results.column(scene, method, c) for c in ("low", "high", "timings"))
+    error = np.nanmedian(0.93 * (high - low) / np.sqrt(np.maximum(count, 1)) / costs)
+    return replace(cost, error=float(error))
 
 
-def at_most(measured, asked):
-    """Verdict on a number that has to be at most ``asked``; NaN and None miss."""
-    return MET if measured is not None and measured <= asked else MISSED
-
-
-def order_asked(formulation, values, c0="position"):
+def expected_order(formulation, values):
     """Order of the global error that Gear's method with N values is expected to have.
 
-    An odd N has order N, an even one N + 1 by symmetry; in the second formulation from N = 5 on, and
-    with c0 "velocity" N - 1 for even N.
+    An odd N has order N, an even one N + 1 by symmetry; in the second formulation from N = 5 on.
     """
-    even = values % 2 == 0
-    if formulation == "second" and values == 4:
+    if (formulation, values) == ("second", 4):
         return 3
-    if c0 == "velocity" and even:
-        return values - 1
-    return values + 1 if even else values
+    return values + 1 - values % 2

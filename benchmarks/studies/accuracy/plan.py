@@ -1,0 +1,235 @@
+"""What is run: methods, scenes, and the numbers of steps of each.
+
+A method is a set of variables of the decks under ``examples``, so that every run can be repeated by
+``lmp -in DECK -var ...``.  A scene is a deck, how long it runs and with how many steps.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+from benchmarks.engine import decks
+from benchmarks.engine.methods import gear, rigid
+
+#: what the fix takes unless told: values of each formulation, and passes
+DEFAULT_VALUES, DEFAULT_PASSES, PASSES = {"second": 8, "first": 6}, 2, (1, 2)
+#: columns of the log of every scene (examples/common/in.motion), and the further one asked for
+TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
+VALUES = {"second": range(4, 13), "first": range(3, 9)}
+
+
+def setting(formulation, values, passes=DEFAULT_PASSES, **more):
+    """A setting of fix gear/quat whose name says the passes."""
+    return gear(formulation, values, passes=passes, **more)
+
+
+DEFAULTS = {name: setting(name, values) for name, values in DEFAULT_VALUES.items()}
+DEFAULT = DEFAULTS["second"]
+RIGID_NVE, RIGID_SMALL = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
+ALL_METHODS = (
+    *(setting(name, n, passes) for passes in PASSES for name in VALUES for n in VALUES[name]),
+    setting("second", 6, c0="velocity"),
+    setting("second", DEFAULT_VALUES["second"], c0="velocity"),
+    RIGID_NVE,
+    RIGID_SMALL,
+)
+METHODS = {method.key: method for method in ALL_METHODS}
+
+
+def _few(*settings):
+    """Settings, the defaults and LAMMPS' own fixes, each once."""
+    return tuple(dict.fromkeys((*settings, *DEFAULTS.values(), RIGID_NVE, RIGID_SMALL)))
+
+
+#: methods of the scenes where a step costs milliseconds, and of a first look; and where forces jump
+FEW_METHODS = _few(
+    *(setting("second", n) for n in (6, 8, 10)),
+    *(setting("first", n) for n in (6, 8)),
+    setting("second", 8, 1),
+)
+ROUGH_METHODS = _few(setting("second", 6), setting("second", 8), setting("first", 5))
+
+
+def geometric(first, last, ratio):
+    """Whole numbers from ``first`` to ``last``, each about ``ratio`` times the one before."""
+    numbers, x = [], float(first)
+    while x < last * ratio**0.5:
+        numbers.append(min(round(x), last))
+        x *= ratio
+    return tuple(sorted(set(numbers)))
+
+
+def half_decades(first, last):
+    """1e-first ... 1e-last, two per decade."""
+    return tuple(10.0 ** (-k / 2) for k in range(2 * first, 2 * last + 1))
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A deck and how it is run.
+
+    Every run ends at ``end``; it is sampled ``samples`` times, and its number of steps is a multiple
+    of that.  ``gear_blocks``, ``rigid_blocks``: steps between two samples, ascending; ``far``: those
+    of fix rigid/nve/small if it has others.  ``measure``: the error that prices are for, position or
+    orientation.  ``time``: its unit, "" for reduced ones.  ``cost``: seconds per step, and ``minutes``:
+    of all runs, both roughly; ``tolerances``: those of SciPy's solvers; ``smooth``: whether forces have
+    no jump.
+    """
+
+    key: str
+    title: str
+    end: float
+    samples: int
+    gear_blocks: tuple
+    rigid_blocks: tuple
+    methods: tuple
+    measure: str = "position"
+    time: str = ""
+    cost: float = 1.3e-6
+    minutes: float = 15.0
+    tolerances: tuple = ()
+    smooth: bool = True
+    far: tuple = ()
+    variables: tuple = ()
+
+    @property
+    def deck(self):
+        """Path of the input script."""
+        return decks.deck(self.key.partition("-")[0])
+
+    @property
+    def heading(self):
+        """What the scene is and how long its runs are."""
+        time = f"{self.end:g} {self.time}" if self.time else f"t = {self.end:g}"
+        return f"{self.title}, {time}"
+
+    def steps(self, method):
+        """Numbers of steps that a method is run with, ascending."""
+        blocks = self.gear_blocks if method.gear else self.rigid_blocks
+        if method == RIGID_NVE and self.far:
+            blocks = self.far
+        return [self.samples * block for block in blocks]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One scene, one method, one number of steps."""
+
+    scene: Scene
+    method: object
+    steps: int
+
+    @property
+    def dt(self):
+        """The time step."""
+        return self.scene.end / self.steps
+
+    @property
+    def cost(self):
+        """Seconds that it takes, roughly, with LAMMPS started and the scene read."""
+        return 0.006 + self.scene.cost * self.steps
+
+    @property
+    def name(self):
+        """Name of its log."""
+        return f"{self.scene.key}_{self.method.key}_{self.steps}"
+
+    def variables(self, sampled, timers=False):
+        """Variables of the deck, name -> value.
+
+        ``sampled``: with the samples of the scene, else with output at start and end only;
+        ``timers``: with LAMMPS' timers inside the step.
+        """
+        own = dict(self.scene.variables) | self.method.variables
+        own |= {"dt": f"{self.dt:.17g}", "steps": self.steps, "every": self.steps}
+        if sampled:
+            own["every"] = max(1, self.steps // self.scene.samples)
+            if self.method.gear:
+                own["more"] = TANGENCY
+        if timers:
+            own["timers"] = "normal"
+        return own
+
+    def perform(self, session, sampled=False, timers=False):
+        """Its Outcome in a Session; options as in ``variables``."""
+        return session.run(self.scene.deck, self.variables(sampled, timers), self.name, self.cost)
+
+
+# --- scenes ---------------------------------------------------------------------------------------
+def _one_body(quick, **facts):
+    """A scene of one body, whose steps cost microseconds."""
+    facts |= {"end": 200.0, "samples": 40, "methods": FEW_METHODS if quick else ALL_METHODS}
+    if quick:
+        blocks, rigid_blocks, far = geometric(8, 256, 2.0), geometric(16, 1 << 10, 2.0), ()
+    else:
+        blocks, rigid_blocks = geometric(8, 1000, 2 ** (1 / 3)), geometric(16, 1 << 14, 2.0)
+        far = geometric(16, 1 << 17, 2.0)  # to where rounding stops it
+    facts |= {"gear_blocks": blocks, "rigid_blocks": rigid_blocks, "far": far}
+    return Scene(tolerances=half_decades(4, 12) if quick else half_decades(2, 13), **facts)
+
+
+def _water(quick, forces, **facts):
+    """500 water molecules; units real."""
+    facts |= {"time": "fs", "cost": 7e-3, "minutes": 5.0}
+    facts |= {"end": 8.0 if quick else 48.0, "samples": 2 if quick else 12}
+    facts["gear_blocks"] = (2, 4) if quick else (1, 2, 3, 4, 6, 8, 12, 16, 24)
+    facts["rigid_blocks"] = (2, 4) if quick else (1, 2, 4, 8, 16, 32)
+    return Scene(variables=(("forces", forces),), **facts)
+
+
+@cache
+def scenes(quick):
+    """Key -> Scene, all of them."""
+    tolerances = () if quick else (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+    cage = "One body in the cage (test case 1, consistent body)"
+    smooth, plain = (f"500 SPC/E molecules, {how} cutoff" for how in ("smooth at the", "plain"))
+    found = (
+        _one_body(quick, key="case1", title=cage),
+        _one_body(quick, key="top", title="Free asymmetric top", measure="orientation"),
+        _water(
+            quick, "smooth", key="water", title=smooth, methods=FEW_METHODS, tolerances=tolerances
+        ),
+        _water(quick, "plain", key="water-plain", title=plain, methods=ROUGH_METHODS, smooth=False),
+    )
+    return {scene.key: scene for scene in found}
+
+
+# --- further runs, test case 1 only ---------------------------------------------------------------
+#: steps of the runs that show rounding, and of those that time the fix itself
+ROUNDING_STEPS = (0.02, 0.01, 0.005, 0.002, 0.001)
+MODIFY_STEPS, MODIFY_DT = 200_000, 0.02
+MODIFY = (RIGID_NVE, *DEFAULTS.values(), RIGID_SMALL)
+
+
+def scene_runs(scene):
+    """Runs of all methods of a scene."""
+    return [Run(scene, method, steps) for method in scene.methods for steps in scene.steps(method)]
+
+
+def order_runs(scene, quick):
+    """(formulation, N) -> runs with compensated sums, so that rounding hides as little as possible."""
+    blocks = geometric(20, 400, 2**0.5 if quick else 2**0.125)
+    return {
+        (name, n): [
+            Run(scene, setting(name, n, compensate=True), b * scene.samples) for b in blocks
+        ]
+        for name in VALUES
+        for n in VALUES[name]
+    }
+
+
+def rounding_runs(scene, quick):
+    """(formulation, whether sums are compensated) -> runs with small steps."""
+    return {
+        (name, compensate): [
+            Run(scene, setting(name, values, compensate=compensate), round(scene.end / dt))
+            for dt in (ROUNDING_STEPS[:2] if quick else ROUNDING_STEPS)
+        ]
+        for name, values in DEFAULT_VALUES.items()
+        for compensate in (False, True)
+    }
+
+
+def modify_runs(scene, quick):
+    """Long runs that time the fix itself."""
+    steps = MODIFY_STEPS // 20 if quick else MODIFY_STEPS
+    return [Run(replace(scene, end=steps * MODIFY_DT), method, steps) for method in MODIFY]

@@ -1,0 +1,318 @@
+"""The references, the errors of runs, and everything that is run, in order."""
+
+import math
+from collections import Counter
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from benchmarks.engine.runner import LammpsError
+from benchmarks.engine.session import MOST_ROUNDS, RunError, Session, time_in_turn
+from benchmarks.engine.sites import pose_errors
+from benchmarks.reference import FreeField, paper_problem, reference_state, solvers
+from benchmarks.reference.lammps_forces import deck_problem
+
+from . import plan
+
+#: timings of every run, at least
+ROUNDS, QUICK_ROUNDS = 5, 2
+#: a step is usable while the total energy stays within this part of the kinetic energy at the start,
+#: every |q|^2 within it of 1, and the change of |q|^2 / 2 over a step below it
+USABLE = 0.1
+#: how much finer the run is that judges the others where nothing better is known
+FINER = 16
+
+
+# --- what is kept ---------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Errors:
+    """Errors of a run, in the units of its deck; infinite where the run was lost.
+
+    ``position``: distance of the centers of mass at the end, ``orientation``: angle of the rotation
+    from the reference to the run, radians; both root mean square over the bodies.  ``energy``: largest
+    deviation of the total energy from its start over the samples; ``drift``: magnitude of its slope,
+    least squares over the samples, per unit of time.  ``norm``: largest | |q|^2 - 1 |, ``tangency``:
+    largest | q.qdot | over the samples; NaN where the method has no quaternion of its own.
+    """
+
+    position: float
+    orientation: float
+    energy: float
+    drift: float
+    norm: float
+    tangency: float
+
+
+LOST = Errors(np.inf, np.inf, np.inf, np.inf, np.nan, np.nan)
+
+
+@dataclass(frozen=True)
+class Point(Errors):
+    """One run: its errors and what it cost.
+
+    ``scene``, ``method``: keys; ``start``: force evaluations of the method's own start, ``evaluations``:
+    all, with those of the set-up; ``low``, ``seconds``, ``high``: quartiles of so many ``timings`` of
+    the ``run`` command, NaN if it was not timed.
+    """
+
+    scene: str
+    method: str
+    steps: int
+    dt: float
+    start: int
+    evaluations: int
+    timings: int = 0
+    low: float = np.nan
+    seconds: float = np.nan
+    high: float = np.nan
+
+
+@dataclass
+class Results:
+    """Everything that was measured.
+
+    ``runs``: list of Point.  ``solvers``: (scene, solver) -> list of (tolerance, evaluations, error of
+    position, of orientation).  ``limits``: (scene, method) -> largest usable step, 0 if none was found.
+    ``orders``: (formulation, N) and ``rounding``: (formulation, whether compensated) -> list of (step,
+    error of position) in test case 1.  ``modify``: method -> Timing of a step inside the fix.
+    """
+
+    quick: bool
+    runs: list = field(default_factory=list)
+    solvers: dict = field(default_factory=dict)
+    limits: dict = field(default_factory=dict)
+    orders: dict = field(default_factory=dict)
+    rounding: dict = field(default_factory=dict)
+    modify: dict = field(default_factory=dict)
+
+    @property
+    def scenes(self):
+        """Key -> Scene of the scenes that were run."""
+        keys = dict.fromkeys(point.scene for point in self.runs)
+        return {key: plan.scenes(self.quick)[key] for key in keys}
+
+    def curve(self, scene, method):
+        """Points of one method, from large steps to small ones."""
+        found = [p for p in self.runs if (p.scene, p.method) == (scene, method.key)]
+        return sorted(found, key=lambda point: point.steps)
+
+    def column(self, scene, method, name):
+        """One column of ``curve``, shape (n,)."""
+        return np.array([getattr(point, name) for point in self.curve(scene, method)], dtype=float)
+
+    def errors(self, scene, method):
+        """Steps and errors (the scene's measure) of one method, two arrays (n,)."""
+        measure = plan.scenes(self.quick)[scene].measure
+        return self.column(scene, method, "dt"), self.column(scene, method, measure)
+
+    def solver(self, scene, name):
+        """Evaluations and errors (the scene's measure) of a SciPy solver, two arrays (n,)."""
+        column = 2 if plan.scenes(self.quick)[scene].measure == "position" else 3
+        table = np.array(sorted(self.solvers.get((scene, name), []), key=lambda row: row[1]))
+        return table.reshape(-1, 4)[:, [1, column]].T
+
+
+# --- references -----------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Reference:
+    """``problem`` and its ``state`` at the end; ``ids`` (S,) of the sites and their ``sites`` (S, 3).
+
+    ``problem`` is None where the reference is itself a run of LAMMPS.
+    """
+
+    problem: object
+    state: object
+    ids: np.ndarray
+    sites: np.ndarray
+
+    def positions(self, outcome):
+        """Positions (n, 3) of all atoms of an Outcome; those in no body stay."""
+        positions = outcome.before.copy()
+        positions[np.searchsorted(outcome.ids, self.ids)] = self.sites
+        return positions
+
+
+def reference_of(scene, folder, session):
+    """Where the sites of a scene are at its end, independent of the fix.
+
+    Test case 1 is written down a second time, in extended precision; a free top is exact; water is
+    extrapolated with LAMMPS' forces.  Where forces jump, it is fix rigid/nve/small at a step FINER times
+    smaller than its finest one: no more is known.  ``folder`` keeps the states.
+    """
+    if not scene.smooth:
+        run = plan.Run(scene, plan.RIGID_NVE, FINER * scene.steps(plan.RIGID_NVE)[-1])
+        outcome = run.perform(session)
+        return Reference(None, None, outcome.ids, outcome.after)
+    if scene.key == "case1":
+        problem, ids = paper_problem(1, "consistent"), np.arange(1, 5)
+    else:
+        problem = deck_problem(scene.deck, dict(scene.variables))
+        ids = problem.field.ids
+    if scene.key == "top":
+        problem.field.close()
+        problem = problem.with_field(FreeField())
+    state = reference_state(problem, scene.end, folder=folder)
+    return Reference(problem, state, ids, problem.site_positions(state).astype(np.float64))
+
+
+# --- errors of one run ----------------------------------------------------------------------------
+def energy_errors(time, total):
+    """(energy, drift) as in Errors."""
+    deviation = np.abs(total - total[0])
+    if not np.isfinite(deviation).all():
+        return np.inf, np.inf
+    return float(deviation.max()), abs(float(np.polyfit(time - time[0], total - total[0], 1)[0]))
+
+
+def errors_of(outcome, reference):
+    """Errors of the Outcome of a sampled run; ``reference``: positions (n, 3)."""
+    atoms = outcome.masses, outcome.molecules
+    pose = pose_errors(*atoms, outcome.before, outcome.after, reference)
+    thermo = outcome.thermo
+    constraints = [
+        float(np.abs(thermo[column]).max()) if plan.TANGENCY in thermo else np.nan
+        for column in (plan.NORM, plan.TANGENCY)
+    ]
+    return Errors(*pose, *energy_errors(thermo["Time"], thermo[plan.TOTAL]), *constraints)
+
+
+def judged(session, run, reference):
+    """(Outcome, Errors) of a sampled run; the Outcome of one that LAMMPS ended is its RunError."""
+    try:
+        outcome = run.perform(session, sampled=True)
+    except RunError as error:
+        return error, LOST
+    return outcome, errors_of(outcome, reference.positions(outcome))
+
+
+def is_usable(session, run):
+    """Whether a run ends, and holds energy and quaternions within USABLE."""
+    try:
+        thermo = run.perform(session, sampled=True).thermo
+    except RunError:
+        return False
+    kinetic = thermo["v_ketrans"][0] + thermo["v_kerot"][0]
+    energy, _ = energy_errors(thermo["Time"], thermo[plan.TOTAL])
+    norm = np.abs(thermo[plan.NORM]).max()
+    radial = np.abs(thermo.get(plan.TANGENCY, 0.0)).max() * run.dt
+    return energy <= USABLE * kinetic and max(norm, radial) <= USABLE
+
+
+def fewest_steps(usable, start, most, ratio=1.02):
+    """Fewest steps n for which ``usable(n)``; None if not even ``most`` are enough.
+
+    Doubles from ``start`` until usable, then halves the gap in log n until it is below ``ratio``.
+    Assumes that more steps are usable if fewer are.
+    """
+    low, high = None, start
+    while not usable(high):
+        low, high = high, 2 * high
+        if high > most:
+            return None
+    while low is None and high > 1:
+        if usable(high // 2):
+            high //= 2
+        else:
+            low = high // 2
+    while low is not None and high > low + 1 and high / low > ratio:
+        middle = round(math.sqrt(low * high))
+        middle = min(max(middle, low + 1), high - 1)
+        low, high = (low, middle) if usable(middle) else (middle, high)
+    return high
+
+
+def largest_step(session, scene, method):
+    """Largest usable step of a method in a scene, 0 if none was found."""
+    first, *_, most = scene.steps(method)
+    steps = fewest_steps(lambda n: is_usable(session, plan.Run(scene, method, n)), first, most)
+    return scene.end / steps if steps else 0.0
+
+
+def timed(session, run, outcome):
+    """Wall time of a run; refuses one that does not repeat the Outcome of the sampled run to the bit."""
+    again = run.perform(session)
+    if not np.array_equal(again.after, outcome.after, equal_nan=True):
+        raise LammpsError(f"log.{run.name}: the timed run does not repeat the sampled one")
+    return again.seconds
+
+
+def point_of(run, outcome, errors, timing=None):
+    """The Point of a run."""
+    start = 0 if isinstance(outcome, RunError) else outcome.start
+    names = {"scene": run.scene.key, "method": run.method.key, "steps": run.steps, "dt": run.dt}
+    names |= {"start": start, "evaluations": 1 + start + run.steps}
+    if timing:
+        names |= {"timings": timing.count, "low": timing.low}
+        names |= {"seconds": timing.median, "high": timing.high}
+    return Point(**asdict(errors), **names)
+
+
+# --- everything -----------------------------------------------------------------------------------
+def solver_rows(scene, reference, solver):
+    """Rows of Results.solvers of one SciPy solver."""
+    task = reference.problem, scene.end, reference.state, solver, scene.tolerances
+    return [
+        (found.tolerance, found.evaluations, found.errors.rms_centre, found.errors.rms_angle)
+        for found in solvers.work_precision(*task)
+    ]
+
+
+def run_scene(lab, session, results, scene, reference):
+    """Errors of all methods, their largest steps, timings in turn, and SciPy's solvers."""
+    runs, rounds = plan.scene_runs(scene), QUICK_ROUNDS if lab.quick else ROUNDS
+    total, outcomes = sum(run.cost for run in runs) * (1 + rounds), {}
+    for run in runs:
+        outcomes[run] = judged(session, run, reference)
+        lab.advance(run.cost / total)
+    mine = [outcome for run, (outcome, _) in outcomes.items() if run.method.gear]
+    if all(isinstance(outcome, RunError) for outcome in mine):  # the deck or the fix is at fault
+        raise LammpsError(str(mine[-1]))
+    for method in scene.methods if scene.smooth else ():
+        results.limits[scene.key, method.key] = largest_step(session, scene, method)
+
+    counts = Counter()
+
+    def once(run):
+        counts[run] += 1
+        if counts[run] <= rounds:
+            lab.advance(run.cost / total)
+        return timed(session, run, outcomes[run][0])
+
+    ended = [run for run, (outcome, _) in outcomes.items() if not isinstance(outcome, RunError)]
+    times = time_in_turn(ended, rounds, once, rounds if lab.quick else MOST_ROUNDS)
+    results.runs += [point_of(run, *own, times.get(run)) for run, own in outcomes.items()]
+    for solver in solvers.METHODS if scene.tolerances else ():
+        results.solvers[scene.key, solver] = solver_rows(scene, reference, solver)
+
+
+def run_further(lab, session, results, scene, reference):
+    """Orders, rounding and time in the fix, all in test case 1."""
+
+    def errors(runs):
+        return [(run.dt, judged(session, run, reference)[1].position) for run in runs]
+
+    for key, runs in plan.order_runs(scene, lab.quick).items():
+        results.orders[key] = errors(runs)
+    for key, runs in plan.rounding_runs(scene, lab.quick).items():
+        results.rounding[key] = errors(runs)
+
+    def once(run):
+        return run.perform(session, timers=True).modify / run.steps
+
+    rounds = QUICK_ROUNDS if lab.quick else ROUNDS
+    times = time_in_turn(plan.modify_runs(scene, lab.quick), rounds, once, rounds)
+    results.modify = {run.method.key: timing for run, timing in times.items()}
+
+
+def measure(lab):
+    """Results.  Everything runs one at a time, because everything is timed."""
+    scenes = [s for key, s in plan.scenes(lab.quick).items() if key in lab.parts or not lab.parts]
+    results = Results(lab.quick)
+    with Session(lab.out / "logs") as session:
+        for scene in scenes:
+            reference = reference_of(scene, lab.out / "reference", session)
+            with lab.share(scene.minutes / sum(scene.minutes for scene in scenes)):
+                run_scene(lab, session, results, scene, reference)
+            if scene.key == "case1":
+                run_further(lab, session, results, scene, reference)
+    return results

@@ -1,0 +1,228 @@
+"""Prices of errors, and the tables and measurements of the page.
+
+Bounds stand here and nowhere else; every other number is measured.
+"""
+
+from dataclasses import fields
+
+import numpy as np
+
+from benchmarks.engine.page import grouped
+from benchmarks.engine.statistics import order
+from benchmarks.engine.study import Measurement, Table
+from benchmarks.reference.solvers import METHODS as SOLVERS
+from benchmarks.reference.stability import first_order_step, linear_limit, second_order_step
+
+from . import plan
+from .evaluate import cheapest, cost_of, expected_order, fitted_order, price, sign_change
+from .runs import Point
+
+TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
+#: speed-up over fix rigid/nve/small in test case 1, by error
+LEAST_SPEEDUP = {1e-4: 5.0, 1e-6: 30.0, 1e-8: 150.0}
+#: slopes may be so much less than the order, from so many values on
+ORDER_MARGIN, LEAST_VALUES = 0.4, 5
+#: error of position at the smallest step of plain and of compensated sums; time in the fix
+MOST_ROUNDING, MOST_MODIFY = {False: 5e-11, True: 1e-12}, 1.0
+NONE = "–"
+THEIRS = f"time of `{plan.RIGID_NVE.label}` relative to"
+ROWS = ("`fix gear/quat`, default settings", "`fix gear/quat`, cheapest settings")
+
+
+def power(number):
+    """A power of ten as text."""
+    return f"{number:.0e}".replace("e-0", "e-")
+
+
+def significant(number, digits=2):
+    """A number with a few significant digits, without exponent, thousands apart."""
+    rounded = float(f"{number:.{digits - 1}e}")
+    return grouped(rounded) if rounded >= 10 else f"{rounded:g}"
+
+
+def cheapest_setting(results, scene, target, unit="seconds", passes=None):
+    """(Method, Cost) of the cheapest setting of fix gear/quat; (None, None) if none gets there.
+
+    ``passes``: only settings with so many.
+    """
+    ours = [m for m in results.scenes[scene].methods if m.gear]
+    ours = [m for m in ours if passes in (None, m.variables["passes"])]
+    return cheapest({method: price(results, scene, method, target, unit) for method in ours})
+
+
+def speedups(results, scene, target):
+    """Wall time of fix rigid/nve/small over that of the defaults, and of the cheapest setting.
+
+    Two Costs, either None where a side is missing, and the cheapest Method or None.
+    """
+    theirs = price(results, scene, plan.RIGID_NVE, target, extrapolate=True)
+    default = price(results, scene, plan.DEFAULT, target)
+    method, best = cheapest_setting(results, scene, target)
+    return *(theirs and own and theirs.over(own) for own in (default, best)), method
+
+
+def ratio_text(cost, error=True):
+    """A ratio of costs as text, with its standard error."""
+    if cost is None:
+        return NONE
+    sign = {"at least": "≥ ", "at most": "≤ "}.get(cost.kind, "")
+    own = f" ± {significant(cost.error * cost.value, 1)}" if error and cost.error else ""
+    return f"{sign}{significant(cost.value)}×{own}" + " (extrapolated)" * (
+        cost.kind == "extrapolated"
+    )
+
+
+def count_text(cost):
+    """A number of evaluations as text."""
+    return NONE if cost is None else "≤ " * (cost.kind == "at most") + grouped(cost.value)
+
+
+# --- test case 1 and other scenes -----------------------------------------------------------------
+def case1(results):
+    """Tables speedup, evaluations and readme, and their measurements."""
+    speed, counts, found, short = [], [], [], [[row] for row in ROWS]
+    for target in TARGETS:
+        default, best, method = speedups(results, "case1", target)
+        words = NONE if method is None else method.label
+        speed.append([power(target), ratio_text(best), words, ratio_text(default)])
+        for row, name, cost in zip(short, ROWS, (default, best)):
+            row.append(ratio_text(cost, error=False))
+            value, error = (cost.value, cost.error * cost.value) if cost else (np.nan, None)
+            what = f"test case 1, error {power(target)}: {THEIRS} {name}"
+            least = LEAST_SPEEDUP.get(target)
+            found.append(Measurement(what, value, error, ".3g", "times", least=least))
+        setting, own = cheapest_setting(results, "case1", target, "evaluations")
+        usual = price(results, "case1", plan.DEFAULT, target, "evaluations")
+        others = [cost_of(*results.solver("case1", solver), target) for solver in SOLVERS]
+        words = NONE if setting is None else setting.label
+        counts.append([power(target), count_text(own), words, *map(count_text, (usual, *others))])
+        known = [cost.value for cost in others if cost]
+        value, most = own.value if own else np.nan, min(known) if known else None
+        what = f"test case 1, error {power(target)}: force evaluations with the cheapest settings"
+        found.append(Measurement(what, value, spec=",.0f", most=most))
+    header = ("error", "cheapest settings", "namely", "default settings")
+    least = len(LEAST_SPEEDUP)
+    errors = [f"error {power(target)}" for target in TARGETS[:least]]
+    tables = {
+        "speedup": Table(header, speed),
+        "evaluations": Table((*header, *SOLVERS), counts),
+        "readme": Table([THEIRS, *errors], [row[: least + 1] for row in short]),
+    }
+    return tables, found
+
+
+def other_speedups(results):
+    """Speed-ups in the other scenes with smooth forces."""
+    rows = []
+    for key, scene in results.scenes.items():
+        if key == "case1" or not scene.smooth:
+            continue
+        cells = []
+        for target in TARGETS:
+            default, best, method = speedups(results, key, target)
+            words = f"{ratio_text(best, False)} ({method.label}), " if best else ""
+            cells.append(f"{words}default {ratio_text(default, False)}" if best else NONE)
+        rows.append([f"{scene.heading}: {scene.measure}", *cells])
+    return Table(["scene", *map(power, TARGETS)], rows)
+
+
+# --- order, stability, rounding, time in the fix --------------------------------------------------
+def limit_of(formulation, n):
+    """Largest omega h of the linear test equation."""
+    step = second_order_step if formulation == "second" else first_order_step
+    return linear_limit(lambda omega_h: step(n, omega_h))
+
+
+def order_fits(results):
+    """(formulation, N) -> (steps, errors, Fit or None) of test case 1 with compensated sums."""
+    columns = {key: np.transpose(points) for key, points in results.orders.items()}
+    return {key: (*columns[key], fitted_order(*columns[key])) for key in columns}
+
+
+def orders(results):
+    """Slope of each N beside the order, and the largest stable steps; table and measurements."""
+    header = ["formulation", "N", "order", "slope", "ω Δt, linear"]
+    header += [f"largest usable step, {n} pass{'es' * (n > 1)}" for n in plan.PASSES]
+    rows, found = [], []
+    for (name, n), (steps, errors, fit) in order_fits(results).items():
+        expected, cancels = expected_order(name, n), sign_change(steps, errors)
+        slope, error = (fit.order, fit.error) if fit else (np.nan, None)
+        remark = f"the error changes sign at step {cancels:.2g}" if cancels else ""
+        least = expected - ORDER_MARGIN if n >= LEAST_VALUES else None
+        what = f"{name} formulation, N = {n}: order of the error of position"
+        own = Measurement(what, slope, error, ".2f", remark=remark, least=least)
+        found.append(own)
+        limits = [results.limits.get(("case1", plan.setting(name, n, p).key)) for p in plan.PASSES]
+        steps = [NONE if limit is None else f"{limit:.2f}" for limit in limits]
+        slope = own.text if fit else NONE
+        rows.append([name, n, expected, slope, f"{limit_of(name, n):.2f}", *steps])
+    return Table(header, rows), found
+
+
+def rounding(results):
+    """Errors at small steps, plain and compensated; table and measurements."""
+    steps, rows, found = [dt for dt, _ in next(iter(results.rounding.values()))], [], []
+    for (name, compensate), points in results.rounding.items():
+        sums = "compensated" if compensate else "plain"
+        rows.append([name, sums, *(f"{error:.1e}" for _, error in points)])
+        what = f"{name} formulation, {sums} sums, step {steps[-1]:g}: error of position"
+        found.append(Measurement(what, points[-1][1], most=MOST_ROUNDING[compensate]))
+    return Table(["formulation", "sums", *(f"step {dt:g}" for dt in steps)], rows), found
+
+
+def modify(results):
+    """Time inside the fix, beside that of fix rigid/nve/small; table and measurements."""
+    yard, rows, found = results.modify[plan.RIGID_NVE.key], [], []
+    for method in plan.MODIFY:
+        own = results.modify[method.key]
+        share, error = own.median / yard.median, np.hypot(own.error, yard.error)
+        label = method.label + " (default)" * (method == plan.DEFAULT)
+        times = f"{own.median * 1e9:.0f} ({own.low * 1e9:.0f} to {own.high * 1e9:.0f})"
+        cell = "1" if method == plan.RIGID_NVE else f"{share:.2f} ± {share * error:.2f}"
+        rows.append([label, times, cell])
+        if method == plan.DEFAULT:
+            what = f"time inside the fix relative to {plan.RIGID_NVE.label}"
+            found.append(Measurement(what, share, share * error, ".2f", most=MOST_MODIFY))
+    header = ("", "nanoseconds per step (quartiles)", f"relative to {plan.RIGID_NVE.label}")
+    return Table(header, rows), found
+
+
+# --- numbers of the sentences ---------------------------------------------------------------------
+def constraints(results):
+    """(largest | |q|^2 - 1 |, largest |q.qdot|) over all sampled runs with usable steps."""
+    rows = [
+        p
+        for p in results.runs
+        if p.method in plan.METHODS and plan.METHODS[p.method].gear and np.isfinite(p.energy)
+        if p.dt <= results.limits.get((p.scene, p.method), 0.0)
+    ]
+    return tuple(
+        max((getattr(p, name) for p in rows), default=0.0) for name in ("norm", "tangency")
+    )
+
+
+def closest(results, ours):
+    """The Point of test case 1 with the smallest error, of fix gear/quat or of fix rigid/nve/small."""
+    points = [p for p in results.runs if p.scene == "case1"]
+    if ours:
+        return min((p for p in points if plan.METHODS[p.method].gear), key=lambda p: p.position)
+    return min((p for p in points if p.method == plan.RIGID_NVE.key), key=lambda p: p.position)
+
+
+def cutoff(results):
+    """Powers of the step with which errors in water fall, by scene; and errors with a plain cutoff."""
+    powers, methods = {}, (plan.DEFAULT, plan.RIGID_NVE)
+    for scene in ("water", "water-plain"):
+        for method in methods:
+            steps, errors = results.errors(scene, method)
+            ended = np.isfinite(errors)
+            powers[scene, method.gear] = order(steps[ended], errors[ended])
+    found = [{p.steps: p.position for p in results.curve("water-plain", m)} for m in methods]
+    steps = max(set(found[0]) & set(found[1]))
+    return {"powers": powers, "steps": steps, "errors": [errors[steps] for errors in found]}
+
+
+def of_runs(results):
+    """All runs as a table."""
+    names = [f.name for f in fields(Point)]
+    return Table(names, [[getattr(p, name) for name in names] for p in results.runs])
