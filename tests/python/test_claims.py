@@ -49,7 +49,9 @@ def drifting(values):
 
 def test_the_paper_reproduces_itself(results):
     found = claims.all_claims(results)
-    wrong = [c for c in found if c.verdict != REPRODUCED and c.claim.measure != claims.similar_curve]
+    wrong = [
+        c for c in found if c.verdict != REPRODUCED and c.claim.measure != claims.similar_curve
+    ]
     assert [(c.claim.source, c.claim.paper, c.measured) for c in wrong] == []
     assert len({(c.claim.source, c.claim.paper) for c in found}) == len(found) == 22
 
@@ -176,7 +178,11 @@ def test_bounds_refuse_what_is_not_reproduced(results):
     wrong = spoil(results, drifting)
     wrong = spoil(wrong, scaled("centre", 1.01), dt=cases.CHECKED_STEP)
     broken = " ".join(m.what for m in cases.find(wrong).measurements if not m.holds)
-    for words in ("not reproducible", "step 0.02: error of the center", "step 0.001: largest error"):
+    for words in (
+        "not reproducible",
+        "step 0.02: error of the center",
+        "step 0.001: largest error",
+    ):
         assert words in broken
 
 

@@ -41,7 +41,9 @@ def table7(results):
     header = ["apart by " + " / ".join(f"{t:g}" for t in THRESHOLDS)]
     header += [f"case {case}, step {dt:g}" for case, dt in results.step.items()]
     rows = [("the paper, which gives no threshold", *PAPER_TIMES)]
-    remarks = dict.fromkeys(AS_PRINTED, " (as the paper ran)") | {ACCURATE: " (defaults of the fix)"}
+    remarks = dict.fromkeys(AS_PRINTED, " (as the paper ran)") | {
+        ACCURATE: " (defaults of the fix)"
+    }
     for key, row in ROWS.items():
         times = [show_times(parting_times(results, case, key)) for case in results.step]
         rows.append((row.label + remarks.get(key, ""), *times))
@@ -62,7 +64,9 @@ def error_table(first, steps, errors):
 def measurements(position, energy, steps, count):
     """Errors of all methods with all digits, and how many claims got which verdict."""
     found = [
-        Measurement("claims that are reproduced", count[REPRODUCED], spec="d", least=LEAST_REPRODUCED),
+        Measurement(
+            "claims that are reproduced", count[REPRODUCED], spec="d", least=LEAST_REPRODUCED
+        ),
         Measurement("claims that are not reproducible", count[NOT], spec="d", most=MOST_NOT),
     ]
     defaults = (accuracy.FIRST, accuracy.SECOND)

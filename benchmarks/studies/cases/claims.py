@@ -2,8 +2,8 @@
 
 A verdict is never typed; it follows from the readings of a claim:
 
-reproduced        the claim holds in a run made as the paper made it (zero start, nothing projected),
-                  with at least one of the two bodies, or with all where the claim asks for that
+reproduced        the claim holds in runs made as the paper made them (zero start, nothing projected),
+                  with one of the two bodies, or with both where the claim asks for that
 explained         it does not, but the readings show where it comes from
 not reproducible  neither
 """
@@ -140,7 +140,9 @@ def energy_error(results, case, formulation, fine=False):
     """The largest error of the total energy, in parentheses relative to the swing of the potential."""
     for body, values in printed(results, case, formulation, results.fine if fine else None):
         error, swing = np.abs(dv.energy_error(values)).max(), dv.energy_scale(values)
-        yield Reading(body, f"{error:.2g} ({100 * error / swing:.2g} %)", bool(error <= VISIBLE * swing))
+        yield Reading(
+            body, f"{error:.2g} ({100 * error / swing:.2g} %)", bool(error <= VISIBLE * swing)
+        )
     for name, label in ((formulation, "defaults of the fix"), ("rigid", "fix rigid/nve/small")):
         error = np.abs(dv.energy_error(results.get(case, ACCURATE, name))).max()
         yield Reading(label, f"{error:.2g}")

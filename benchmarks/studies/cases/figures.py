@@ -44,7 +44,9 @@ FIGURES = {
 def curves(what, runs):
     """Curves of one panel; ``runs``: formulation -> Series."""
     if what == "x":
-        return tuple(Curve(f"{f} formulation", run.time, run.centre[:, 0], f) for f, run in runs.items())
+        return tuple(
+            Curve(f"{f} formulation", run.time, run.centre[:, 0], f) for f, run in runs.items()
+        )
     (run,) = runs.values()
     if what == "trajectory":
         return tuple(Curve(x, run.time, run.centre[:, k], x) for k, x in enumerate("xyz"))
@@ -57,7 +59,9 @@ def paper_figure(results, number):
     what, ylabel, case, formulation = FIGURES[number]
     formulations = (formulation,) if formulation else FORMULATIONS
     dt, panels = results.fine if case == 1 else None, []
-    words = f"Fig. {number}, test case {case}, " + (f"{formulation} formulation, " if formulation else "")
+    words = f"Fig. {number}, test case {case}, " + (
+        f"{formulation} formulation, " if formulation else ""
+    )
     for row in AS_PRINTED:
         runs = {form: results.get(case, row, form, dt) for form in formulations}
         title, label = f"{words}{ROWS[row].body} body", "" if panels else ylabel
@@ -75,7 +79,9 @@ def parting_figure(results):
             gap = dv.separation(*pair)
             shown.append(Curve(row.label, pair[0].time[: len(gap)][1:], gap[1:], color))
         ends = np.array([0.0, shown[0].x[-1]])
-        shown += [Curve("", ends, 0 * ends + apart, "#888888", ":", width=0.6) for apart in THRESHOLDS]
+        shown += [
+            Curve("", ends, 0 * ends + apart, "#888888", ":", width=0.6) for apart in THRESHOLDS
+        ]
         label = "" if panels else "distance between the centers of mass"
         title = f"case {case}, step {dt:g}"
         panels.append(Panel(title, "time", label, tuple(shown), ylim=(1e-15, 1e4), legend=False))
@@ -96,7 +102,9 @@ PATHS = {1: "#009e73", 3: "#222222"}
 def error_panel(results):
     """Error of the center of mass against the step, a curve per method."""
     errors, steps = accuracy.position_errors(results), np.array(ACCURACY_STEPS)
-    shown = tuple(Curve(label, steps, np.array(errors[label]), **look) for label, look in LOOKS.items())
+    shown = tuple(
+        Curve(label, steps, np.array(errors[label]), **look) for label, look in LOOKS.items()
+    )
     title = f"test case 1: error of the center of mass at t = {ACCURACY_END:g}"
     look = {"log": "xy", "xticks": ACCURACY_STEPS, "ylim": (1e-16, 1.0), "legend": False}
     return Panel(title, "step (one evaluation of the forces)", "", shown, **look)
