@@ -9,10 +9,7 @@ from .commands.horizon import horizon
 
 
 @cloup.group(
-    sections=[
-        cloup.Section("Before a long run", [cost, horizon]),
-        cloup.Section("After it", [analyze]),
-    ],
+    sections=[cloup.Section("Before a long run", [cost, horizon]), cloup.Section("After it", [analyze])],
     context_settings=HELP,
     epilog="\b\nExamples, to be run in a checkout of the repository:\n"
     "  gearquat cost examples/water/in.water --var method rigid --budget 30\n"

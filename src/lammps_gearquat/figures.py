@@ -11,7 +11,6 @@ import numpy as np  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 from .style import COLOUR, STYLE  # noqa: E402
-from .trials import evaluate  # noqa: E402
 from .trials.cost import NORMS  # noqa: E402
 
 OWN = "#666666"
@@ -69,7 +68,7 @@ def _look(keywords, methods):
 def draw_cost(path, deck, costs):
     """Error against evaluations and against seconds, both per unit of time."""
     time = deck.time_unit or "time unit"
-    title = f"What accuracy costs: {deck.path.name}, errors at t = {costs.end:.3g} {deck.time_unit}"
+    title = f"What accuracy costs: {deck.path.name}, errors at t = {costs.end:.6g} {deck.time_unit}"
     panels = {"evaluations": "evaluations of the forces", "seconds": "seconds"}
     with _picture(path, title, ncols=2, figsize=(11, 4.8), sharey=True) as (figure, axes):
         for axis, (name, words) in zip(axes, panels.items()):
@@ -77,8 +76,9 @@ def draw_cost(path, deck, costs):
             axis.set_xlabel(f"{words} per {time}")
             _ticks(axis.xaxis)
         points = [point for mine in costs.points().values() for point in mine]
-        smallest = min([costs.doubt] + [row.error for row in costs.rows])
-        axes[0].set_ylim(smallest / 4, 3 * max(point.error for point in points))
+        errors = [row.error for row in costs.rows]
+        largest = max(errors + [point.error for point in points])
+        axes[0].set_ylim(min([costs.doubt, *errors]) / 4, 4 * largest)
         unit = deck.length_unit if costs.norm < 2 else "rad"
         axes[0].set_ylabel(_named(f"{NORMS[costs.norm]} error", unit))
         handles, labels = axes[0].get_legend_handles_labels()
@@ -105,8 +105,9 @@ def _draw_prices(axis, name, costs):
     edge = axis.get_yaxis_transform()
     for row in costs.rows:
         axis.axhline(row.error, color="#999999", linewidth=0.5, zorder=0)
-        target = f"target {row.error:.0e}"
-        axis.text(1.0, row.error, target, transform=edge, fontsize=7, color=OWN, va="bottom", ha="right")
+        if name == "seconds":  # beside the last panel
+            note = {"fontsize": 7, "color": OWN, "va": "center", "ha": "left"}
+            axis.text(1.01, row.error, f"target {row.error:.0e}", transform=edge, **note)
     axis.axhspan(1e-300, costs.doubt, color="#dddddd", zorder=0)
     note = {"fontsize": 7, "color": OWN, "va": "top", "ha": "left", "clip_on": True}
     axis.text(0.01, costs.doubt, "below the uncertainty of the reference", transform=edge, **note)
@@ -117,8 +118,7 @@ def draw_horizon(path, deck, horizon):
     """Differences against time, with the thresholds and the fitted growth."""
     time, growth = horizon.time, horizon.growth
     first, second = (
-        f"{trial.label if trial.keywords else 'as it is'}, step {trial.dt:g}"
-        for trial in horizon.trials
+        f"{trial.label if trial.keywords else 'as it is'}, step {trial.dt:g}" for trial in horizon.trials
     )
     title = f"{deck.path.name}: {first}\nagainst {second}"
     curves = {"largest": "#0072b2", "rms": "#56b4e9", "angle": "#d55e00"}
@@ -134,8 +134,8 @@ def draw_horizon(path, deck, horizon):
         note = {"fontsize": 7, "color": OWN, "va": "bottom"}
         for level, parted in horizon.parting:
             axis.axhline(level, **line)
-            unit = _named(f"threshold {level:g}", deck.length_unit)
-            axis.text(0.0, level, unit, transform=axis.get_yaxis_transform(), **note)
+            threshold = f"threshold {level:g} {deck.length_unit}"
+            axis.text(0.0, level, threshold, transform=axis.get_yaxis_transform(), **note)
             if np.isfinite(parted):
                 axis.axvline(parted, **line)
         axis.set_xlabel(_named("time", deck.time_unit))

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from lammps_gearquat.analysis.bodies import Bodies
 from lammps_gearquat.analysis.superposition import angles
 from lammps_gearquat.trials import evaluate
-from lammps_gearquat.trials.evaluate import Point, front, growth, price
+from lammps_gearquat.trials.evaluate import Point, growth, price
 
 RNG = np.random.default_rng(3)
 OF = np.array([0, 0, 0, 1, 1, 1, 1, 2, 2, 3])  # bodies of 3, 4, 2 and 1 sites
@@ -100,13 +100,6 @@ def test_the_largest_step_below_which_all_are_good():
     assert price(lucky, 0.05**2 * 1.001).dt == pytest.approx(0.05, rel=1e-3)
     rounded = [Point("m", 0.001, 1e4, 1, 2e-3), *curve(2)]
     assert price(rounded, 1e-3).dt == pytest.approx(math.sqrt(1e-3))
-
-
-def test_front():
-    points = curve(2, method="a") + curve(5, method="b") + [Point("c", 1, 150, 1, 1.0)]
-    kept = front(points, lambda point: point.evaluations)
-    assert [p.method for p in kept] == ["b", "b", "b"]
-    assert [p.evaluations for p in kept] == [100, 200, 400]
 
 
 # --- growth -----------------------------------------------------------------------------------------

@@ -28,17 +28,13 @@ class Bodies:
         self.index = order[numbers[order] != 0]
         if not len(self.index):
             raise ValueError("no atom is in a body: the ID of the body is 0 for all of them")
-        self.ids, self._starts, self.counts = np.unique(
-            numbers[self.index], return_index=True, return_counts=True
-        )
+        self.ids, self._starts, self.counts = np.unique(numbers[self.index], return_index=True, return_counts=True)
         self.of = np.repeat(np.arange(len(self.ids)), self.counts)
         self.masses = masses[self.index]
         self.mass = self.sum(self.masses)
         bad = self.ids[~(self.mass > 0.0)]
         if len(bad):
-            raise ValueError(
-                f"body {bad[0]} has no mass; the masses of its atoms must add up to more than zero"
-            )
+            raise ValueError(f"body {bad[0]} has no mass; the masses of its atoms must add up to more than zero")
 
     def __len__(self):
         return len(self.ids)

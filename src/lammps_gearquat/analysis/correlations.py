@@ -81,9 +81,7 @@ def rotation_path(q, axis=None):
     turn = Rotation.from_quat(q.reshape(-1, 4), scalar_first=True)
     frames, bodies = q.shape[:2]
     matrices = turn.as_matrix().reshape(frames, bodies, 3, 3)
-    steps = Rotation.from_matrix(
-        (matrices[1:] @ np.swapaxes(matrices[:-1], -1, -2)).reshape(-1, 3, 3)
-    )
+    steps = Rotation.from_matrix((matrices[1:] @ np.swapaxes(matrices[:-1], -1, -2)).reshape(-1, 3, 3))
     steps = steps.as_rotvec().reshape(frames - 1, bodies, 3)
     if axis is not None:
         linear = np.isfinite(axis[:, 0])

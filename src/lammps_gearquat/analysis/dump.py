@@ -179,9 +179,7 @@ class DumpFrames(DumpReader):
                 f"{self.filename}: no column id; without it a row cannot be followed from frame to frame"
             )
         if kind is None:
-            raise DumpError(
-                f"{self.filename}: no positions; columns xu yu zu or x y z are required"
-            )
+            raise DumpError(f"{self.filename}: no positions; columns xu yu zu or x y z are required")
         missing = [name for name in self._additional_columns if name not in index]
         if missing:
             raise DumpError(f"{self.filename}: no column {' '.join(missing)}")
@@ -267,9 +265,7 @@ def _names(masses, types):
 def _universe(reader_arguments, ids, bodies, masses, types):
     """A Universe whose residues are the bodies."""
     numbers, residue = np.unique(bodies, return_inverse=True)
-    universe = MDAnalysis.Universe.empty(
-        len(ids), n_residues=len(numbers), atom_resindex=residue, trajectory=False
-    )
+    universe = MDAnalysis.Universe.empty(len(ids), n_residues=len(numbers), atom_resindex=residue, trajectory=False)
     universe.add_TopologyAttr("ids", ids)
     universe.add_TopologyAttr("resids", numbers)
     universe.add_TopologyAttr("masses", masses)
@@ -346,9 +342,7 @@ def open_table(path, timestep=1.0):
     names = {c: TABLE.get(int(match[1]), c) for c, match in found.items() if match}
     missing = sorted(set(TABLE) - {int(match[1]) for match in found.values() if match})
     if missing:
-        raise DumpError(
-            f"{path}: the dump local of the fix's table lacks column(s) {' '.join(map(str, missing))}"
-        )
+        raise DumpError(f"{path}: the dump local of the fix's table lacks column(s) {' '.join(map(str, missing))}")
     extra = [name for name in TABLE.values() if name[0] in "qwl"]
     arguments = {"additional_columns": extra, "names": names, "dt": timestep}
     with DumpFrames(str(path), **arguments) as reader:

@@ -251,9 +251,7 @@ class Poses(_FrameTable):
     def _set_reference(self, reference):
         if isinstance(reference, str):
             if reference not in ("first", "principal"):
-                raise ValueError(
-                    f"reference {reference}: first, principal or positions are required"
-                )
+                raise ValueError(f"reference {reference}: first, principal or positions are required")
             self._ts = self._trajectory[0]
             self.bodies.set_shape(self._sites()[0], principal=reference == "principal")
             return

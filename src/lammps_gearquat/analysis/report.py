@@ -47,8 +47,6 @@ def summary(poses, totals):
     unit = f"in units {poses.units}" if poses.units else "in mass x velocity^2, without --units"
     units = {"ke_translation": unit, "ke_rotation": unit, "potential": "as dumped"}
     lines += [
-        f"The mean of {name} is {totals[name].mean():.6g}, {units[name]}."
-        for name in units
-        if name in totals
+        f"The mean of {name} is {totals[name].mean():.6g}, {units[name]}." for name in units if name in totals
     ]
     return "\n".join(lines)

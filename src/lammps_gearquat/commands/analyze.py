@@ -30,14 +30,9 @@ def _frames(_context, _option, text):
 @cloup.option_group(
     "Atoms and bodies",
     cloup.option(
-        "--body",
-        default="mol",
-        show_default=True,
-        help="Column with the ID of the body; atoms with 0 are in none.",
+        "--body", default="mol", show_default=True, help="Column with the ID of the body; atoms with 0 are in none."
     ),
-    cloup.option(
-        "--select", default="all", help="Atoms, in MDAnalysis' words, such as 'resid 1-500'."
-    ),
+    cloup.option("--select", default="all", help="Atoms, in MDAnalysis' words, such as 'resid 1-500'."),
     cloup.option(
         "--reference",
         default="principal",
@@ -47,8 +42,7 @@ def _frames(_context, _option, text):
     ),
     cloup.option("--data", type=FILE, help="Data file with masses and molecules, if not in the dump."),
     cloup.option(
-        "--atom-style",
-        help="Columns of the data file, such as 'id type x y z', if not those of full or molecular.",
+        "--atom-style", help="Columns of the data file, such as 'id type x y z', if not those of full or molecular."
     ),
     cloup.option("--potential", help="Column with potential energies of atoms."),
 )
@@ -57,8 +51,7 @@ def _frames(_context, _option, text):
     cloup.option(
         "--units",
         type=cloup.Choice(UNITS),
-        help="LAMMPS' units, unless the dump has them (dump_modify units yes); for energies and"
-        " --convert.",
+        help="LAMMPS' units, unless the dump has them (dump_modify units yes); for energies and" " --convert.",
     ),
     cloup.option(
         "--timestep",
@@ -66,9 +59,7 @@ def _frames(_context, _option, text):
         help="LAMMPS' time step, unless the dump has times (dump_modify time yes).  Without either,"
         " tables have numbers of steps for times.",
     ),
-    cloup.option(
-        "--frames", callback=_frames, metavar="START:STOP:STEP", help="Frames to read."
-    ),
+    cloup.option("--frames", callback=_frames, metavar="START:STOP:STEP", help="Frames to read."),
 )
 @cloup.option_group(
     "Stays of bodies near given places, such as the sites of a cage",
@@ -88,12 +79,7 @@ def _frames(_context, _option, text):
     ),
     cloup.option("--wrap", is_flag=True, help="With --convert, put bodies back into the box."),
     cloup.option(
-        "--jobs",
-        type=cloup.IntRange(min=1),
-        default=1,
-        show_default=True,
-        metavar="N",
-        help="Processes that read.",
+        "--jobs", type=cloup.IntRange(min=1), default=1, show_default=True, metavar="N", help="Processes that read."
     ),
 )
 @failing_clearly(ValueError)
@@ -122,9 +108,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     cloup.echo(report.summary(poses, totals))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     memory += options["jobs"] * (resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
-    cloup.echo(
-        f"The analysis took at most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}"
-    )
+    cloup.echo(f"The analysis took at most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}")
 
 
 def _bar(what, unit):
@@ -144,8 +128,7 @@ def _settle(trajectory, converted, options):
         cloup.echo("The last frame of the dump is not whole, and is left out.")
     if converted and not options["units"]:
         raise ValueError(
-            "--convert needs the units of the dump: give --units, or write the dump with dump_modify"
-            " units yes"
+            "--convert needs the units of the dump: give --units, or write the dump with dump_modify" " units yes"
         )
     if trajectory.timed and timestep is not None:
         cloup.echo("The dump has times of its own; --timestep is not used.")

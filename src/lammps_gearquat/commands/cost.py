@@ -1,5 +1,7 @@
 """The command ``gearquat cost``."""
 
+from time import monotonic
+
 import cloup
 
 from ..trials.script import DeckError, pairs
@@ -75,6 +77,7 @@ def cost(scene, errors, time, norm, budget, timings, tries, out):
     one and with the deck's own fix, which is recommended where no other is faster.  Errors are judged only as
     far as the finest trial is confirmed by a second one of the other formulation.
     """
+    begin = monotonic()
     from .. import figures
     from ..trials import cost as trials
     from ..trials import report
@@ -83,7 +86,7 @@ def cost(scene, errors, time, norm, budget, timings, tries, out):
     for text in tries:
         pairs(text)
     with progress_bar(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}") as progress:
-        clock = trials.Budget(budget, progress)
+        clock = trials.Budget(budget, progress, begin)
         clock.say("following the deck")
         say = announce(scene["path"], progress)
         with Deck(**scene, say=say, on_wait=clock.spent, timeout=trials.SHARE_BEFORE * budget) as deck:

@@ -17,11 +17,7 @@ from .common import POSITIVE, announce, command, deck_options, failing_clearly, 
 @deck_options
 @cloup.option_group(
     "What is measured",
-    cloup.option(
-        "--time",
-        type=POSITIVE,
-        help="Time to follow.  Default: that of the deck's run, if affordable.",
-    ),
+    cloup.option("--time", type=POSITIVE, help="Time to follow.  Default: that of the deck's run, if affordable."),
     cloup.option(
         "--threshold",
         "thresholds",
@@ -30,9 +26,7 @@ from .common import POSITIVE, announce, command, deck_options, failing_clearly, 
         help="Distance at which the runs have parted; repeatable.  Default: 0.1, 1 and 3 times the"
         " power of ten of the size of the bodies.",
     ),
-    cloup.option(
-        "--every", type=POSITIVE, help="Time between samples.  Default: a 500th of the whole time."
-    ),
+    cloup.option("--every", type=POSITIVE, help="Time between samples.  Default: a 500th of the whole time."),
 )
 @cloup.option_group(
     "The two runs",
@@ -40,8 +34,7 @@ from .common import POSITIVE, announce, command, deck_options, failing_clearly, 
         "--a",
         "first",
         metavar="KEYWORDS",
-        help="First run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as"
-        " it is.",
+        help="First run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as" " it is.",
     ),
     cloup.option(
         "--b",
@@ -51,14 +44,10 @@ from .common import POSITIVE, announce, command, deck_options, failing_clearly, 
     ),
     cloup.option("--step-a", type=POSITIVE, help="First time step.  Default: that of the deck."),
     cloup.option(
-        "--step-b",
-        type=POSITIVE,
-        help="Second time step.  Default: half of the first, or with --b the same.",
+        "--step-b", type=POSITIVE, help="Second time step.  Default: half of the first, or with --b the same."
     ),
 )
-@cloup.option_group(
-    "What it leaves", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png")
-)
+@cloup.option_group("What it leaves", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png"))
 @failing_clearly(DeckError, TrialError)
 def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
     """Measure until what time the trajectory of DECK can be trusted.

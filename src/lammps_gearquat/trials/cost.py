@@ -35,10 +35,10 @@ SHORTEST = 0.1  # of the time to be measured
 #: full-length runs at the deck's own step that fit into the budget: the time is chosen so
 RUNS_IN_BUDGET = 100
 SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.25
-FEWEST_STEPS = 20
+FEWEST_STEPS, PROBE_STEPS = 8, 20
 PATIENCE = 30.0  # seconds that any trial may take beyond what was expected
 #: seconds of the budget for tables and pictures, and the part of it that may pass before the trials
-CLOSING, SHARE_BEFORE = 6.0, 0.8
+CLOSING, SHARE_BEFORE = 10.0, 0.8
 #: another fix pays if the deck's own takes longer by this factor
 WORTHWHILE = 1.05
 
@@ -109,11 +109,14 @@ class Costs:
 
 
 class Budget:
-    """Seconds of wall time, shown by ``progress`` (an object like a tqdm bar, or None)."""
+    """Seconds of wall time, shown by ``progress`` (an object like a tqdm bar, or None).
 
-    def __init__(self, seconds, progress=None):
+    They begin at ``begin`` on the monotonic clock, None: now.
+    """
+
+    def __init__(self, seconds, progress=None, begin=None):
         self.seconds, self.progress, self.shown = seconds, progress, 0.0
-        self.begin = clock.monotonic()
+        self.begin = clock.monotonic() if begin is None else begin
 
     def spent(self):
         """Seconds since the beginning; moves the bar."""
@@ -171,7 +174,7 @@ class Study:
     # --- 0. how long ----------------------------------------------------------------------------------
     def probe(self):
         """Find out what a step costs with the deck's own fix, from a run of a few tenths of a second."""
-        steps = FEWEST_STEPS
+        steps = PROBE_STEPS
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
             if trial is None:
@@ -342,9 +345,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=before)
     costs.notes += deck.notes
     if reason:
-        costs.notes.append(
-            f"the trials end at t = {end:g}, not at {deck.end:g}, because {reason} allows no more"
-        )
+        costs.notes.append(f"the trials end at t = {end:g}, not at {deck.end:g}, because {reason} allows no more")
     costs.notes += [cut] if cut else []
 
     def judge(trial):

@@ -101,16 +101,6 @@ def _on_line(finer, coarser, error, kind):
     return Price(finer.method, *map(along, ("dt", "evaluations", "seconds")), kind, *starts)
 
 
-def front(points, cost):
-    """Points that no other beats in both ``cost(point)`` and error, the cheapest first."""
-    kept, best = [], math.inf
-    for point in sorted(points, key=lambda p: (cost(p), p.error)):
-        if point.error < best:
-            kept.append(point)
-            best = point.error
-    return kept
-
-
 # --- how a difference grows -----------------------------------------------------------------------
 @dataclass(frozen=True)
 class Growth:

@@ -41,9 +41,7 @@ class Horizon:
         return self.trials[0].time
 
 
-def measure(
-    deck, a=None, b=None, steps=(None, None), time=None, every=None, thresholds=(), progress=None
-):
+def measure(deck, a=None, b=None, steps=(None, None), time=None, every=None, thresholds=(), progress=None):
     """Horizon of a Deck.
 
     ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
@@ -106,9 +104,7 @@ def compare(deck, trials, thresholds, notes=()):
     largest = distance.max(axis=1)
     parting = [(level, evaluate.parting_time(first.time, largest, level)) for level in thresholds]
     floor = evaluate.ROUNDING * np.abs(second.center).max()
-    growth, no_growth = evaluate.growth(
-        first.time, largest, SATURATION * (deck.size or unit), floor
-    )
+    growth, no_growth = evaluate.growth(first.time, largest, SATURATION * (deck.size or unit), floor)
     return Horizon(
         trials,
         largest,

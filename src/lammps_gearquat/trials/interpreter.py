@@ -127,9 +127,7 @@ class Interpreter:
             quits = " before it quits"
         self._check_options()
         if self.runs:
-            raise DeckError(
-                f"--run {self.which}: the deck moves rigid bodies in {self.runs} run(s) only{quits}"
-            )
+            raise DeckError(f"--run {self.which}: the deck moves rigid bodies in {self.runs} run(s) only{quits}")
         raise self._no_movers(quits)
 
     def _no_movers(self, quits=""):
@@ -145,9 +143,7 @@ class Interpreter:
             raise DeckError(f"--without: no fix {', '.join(fixes)} in the deck up to its run")
         if variables:
             known = ", ".join(sorted(self.names)) or "none"
-            raise DeckError(
-                f"--var: no variable {', '.join(variables)} in the deck up to its run; it has {known}"
-            )
+            raise DeckError(f"--var: no variable {', '.join(variables)} in the deck up to its run; it has {known}")
 
     # --- which command comes next -----------------------------------------------------------------
     def _file(self, path):

@@ -110,9 +110,7 @@ class Deck:
     Raises DeckError for decks that cannot be used.
     """
 
-    def __init__(
-        self, path, variables=(), without=(), which=None, ranks=1, say=None, on_wait=None, timeout=None
-    ):
+    def __init__(self, path, variables=(), without=(), which=None, ranks=1, say=None, on_wait=None, timeout=None):
         self.path = Path(path).resolve()
         self.variables = [tuple(map(str, variable)) for variable in variables]
         self.without, self.which, self.ranks = tuple(without), which, ranks
@@ -136,16 +134,15 @@ class Deck:
         self._folder.cleanup()
 
     def _ask(self, name, timeout=None, **arguments):
-        return self.worker.ask(
-            name, timeout, deck=self.path, variables=self.variables, log=self.log, **arguments
-        )
+        return self.worker.ask(name, timeout, deck=self.path, variables=self.variables, log=self.log, **arguments)
 
     def _follow(self):
         self.worker.on_news = self.say
         try:
             parts = self._ask("follow", self.timeout, without=self.without, which=self.which)
         except TrialError as error:
-            raise script.DeckError(f"LAMMPS cannot run the deck: {error}") from error
+            remedy = "; a longer --budget gives it more time" if self.timeout else ""
+            raise script.DeckError(f"LAMMPS did not come to the run to be measured: {error}{remedy}") from error
         self.worker.on_news = None
         self._situation, self.start = parts[0], parts[0].start
         self.dt = self._situation.dt

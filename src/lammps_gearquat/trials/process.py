@@ -192,9 +192,7 @@ def _warnings(text):
     """Lines of a log that matter to who reads the answer."""
     warnings = _LIMITED.findall(text)
     if any(int(number) for number in _DANGEROUS.findall(text)):
-        warnings.append(
-            "neighbor lists were built too late: neigh_modify delay 0 every 1 check yes"
-        )
+        warnings.append("neighbor lists were built too late: neigh_modify delay 0 every 1 check yes")
     return tuple(dict.fromkeys(warnings))
 
 

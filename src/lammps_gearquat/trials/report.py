@@ -3,7 +3,6 @@
 import math
 
 from ..tables import aligned, write_rows
-from . import evaluate
 from .cost import NORMS
 
 
@@ -56,7 +55,7 @@ def cost_text(deck, costs):
     seconds = f"seconds per {deck.time_unit or 'time unit'}"
     header = ["error", "fix line", "timestep", seconds, "speed-up", "start (s)"]
     lines += ["", aligned(header, [_cost_cells(costs, row) for row in costs.rows])]
-    lines += ["", *_explained(costs), "", *_front_text(costs), "", *_script_lines(deck, costs)]
+    lines += ["", *_explained(costs), "", *_script_lines(deck, costs)]
     return "\n".join(lines)
 
 
@@ -85,14 +84,12 @@ def _explained(costs):
         "Every method evaluates the forces once per step.  Seconds are wall times of the steps.  The start,",
         "which is LAMMPS' set-up and, with fix gear/quat, the evaluations of the forces that its first"
         " derivatives",
-        "take, is paid once per run and stands apart.  Speed-up is over the deck's own fix at the same"
-        " error;",
+        "take, is paid once per run and stands apart.  Speed-up is over the deck's own fix at the same" " error;",
         "~ marks one whose own cost is extrapolated, <= a coarsest trial that was better than required.",
     ]
     starts = {p.method: p for row in costs.rows for p in (row.own, row.best) if p}
     words = [
-        f"{p.start_seconds:.2g} s and {p.start_evaluations} evaluations with {name}"
-        for name, p in starts.items()
+        f"{p.start_seconds:.2g} s and {p.start_evaluations} evaluations with {name}" for name, p in starts.items()
     ]
     lines += [f"A start takes {', '.join(words)}."] if words else []
     timings = [trial.seconds for trial, _ in costs.trials if len(trial.seconds) > 1]
@@ -104,18 +101,6 @@ def _explained(costs):
         f" of a trial is {spread[len(spread) // 2]:.2f} times the",
         f"fastest in the middle trial, and {spread[-1]:.2f} times at most.",
     ]
-
-
-def _front_text(costs):
-    """The Pareto front by evaluations."""
-    points = [point for mine in costs.points().values() for point in mine]
-    rows = [
-        [f"{p.error:.1e}", p.method, f"{p.dt:.3g}", f"{p.evaluations:.0f}", f"{p.seconds:.3g}"]
-        for p in evaluate.front(points, lambda point: point.evaluations)
-        if p.error > costs.doubt
-    ]
-    header = ["error", "fix", "timestep", "evaluations", "seconds"]
-    return ["Pareto front of all trials, by evaluations of the forces:", aligned(header, rows)]
 
 
 def _script_lines(deck, costs):

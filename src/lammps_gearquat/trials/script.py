@@ -99,9 +99,7 @@ def run_steps(words, now=0):
     if "upto" in words:
         steps -= now
     if {"start", "stop"} & set(words):
-        raise DeckError(
-            "run ... start or stop: the trials are of runs that begin and end by themselves"
-        )
+        raise DeckError("run ... start or stop: the trials are of runs that begin and end by themselves")
     if "every" in words:
         for command in words[words.index("every") + 2 :]:
             name = (split(command) or ["NULL"])[0]
@@ -215,9 +213,7 @@ def pairs(text):
     words, known = text.split(), keywords.names("integration")
     unknown = [word for word in words[::2] if word not in known]
     if len(words) % 2 or unknown:
-        raise DeckError(
-            f"'{text}' should be pairs of a keyword ({', '.join(known)}) and its value"
-        )
+        raise DeckError(f"'{text}' should be pairs of a keyword ({', '.join(known)}) and its value")
     return tuple((key, (value,)) for key, value in zip(words[::2], words[1::2]))
 
 
@@ -290,9 +286,7 @@ def translate(line):
             if not stated:
                 kept.append((key, ("no" if no else "yes",)))
             elif not no:
-                notes.append(
-                    f"{who}: keyword reinit is left out; bodies of an infile stay as stated"
-                )
+                notes.append(f"{who}: keyword reinit is left out; bodies of an infile stay as stated")
         elif key in _LEFT_OUT:
             notes.append(f"{who}: keyword {key} is left out; {_LEFT_OUT[key]}")
         else:
