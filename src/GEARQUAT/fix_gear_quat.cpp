@@ -287,9 +287,9 @@ void FixGearQuat::finish_step(double **f, double **torque)
   bodies->place_sites(true);
   table->forget();
   const bool output_due = output->next == update->ntimestep;
-  if (output_due || is_due(readers->of_atoms, update->ntimestep))
+  if (is_due(readers->of_atoms, update->ntimestep) || output_due)
     comm->forward_comm();    // ghost atoms are where the forces were taken
-  if (output_due || is_due(readers->of_local_data, update->ntimestep)) show_bodies();
+  if (is_due(readers->of_local_data, update->ntimestep) || output_due) show_bodies();
 }
 
 /// LAMMPS calls this with keyword tolerance only, when all fixes have finished the step.
