@@ -147,6 +147,8 @@ def draw(path, panels, columns=None, note="", share_y=False):
             sharey=share_y,
         )
         shared = {}
+        for axis in axes.flat[len(panels) :]:
+            axis.set_axis_off()
         for axis, panel in zip(axes.flat, panels):
             draw_panel(axis, panel)
             if not panel.legend:

@@ -81,14 +81,12 @@ def draw_main(path, results):
 
 # --- panels ---------------------------------------------------------------------------------------
 def _few(scene):
-    """Method -> color, marker and line of those that the panels of a scene show."""
+    """Method -> color, marker and line, the same in all scenes, of those that its panels show."""
     few = {*plan.FEW_METHODS, *plan.ROUGH_METHODS, plan.setting("second", 12)}
-    look = looks([method for method in scene.methods if method in few])
+    look = looks([method for method in plan.ALL_METHODS if method in few])
     look[plan.RIGID_SMALL]["line"] = ":"
-    for method, own in look.items():
-        if method.gear and method.variables["passes"] == 1:
-            own["line"] = "--"
-    return look
+    look[plan.setting("second", 8, 1)]["line"] = "--"
+    return {method: own for method, own in look.items() if method in scene.methods}
 
 
 def _curves(results, scene, unit, quantity, label=False):
@@ -137,10 +135,10 @@ def top_panels(results, scene):
     )
     dots = [Curve("", c.x, c.y, c.color, "", "o") for c in norms]
     dots += [Curve("", c.x, c.y, c.color, "", "s", hollow=True) for c in tangents]
-    constraints = "largest ||q|² − 1| (filled) and |q·q̇| (hollow); the lower edge is zero"
+    constraints = "constraints: ||q|² − 1| filled, |q·q̇| hollow, zero at the edge"
     return (
         Panel("error of the orientation, radians", calls, "", orientation, "xy", legend=False),
-        panel("error of the orientation, radians", "orientation", "seconds"),
+        panel("the same error against wall time", "orientation", "seconds"),
         panel("largest error of the energy", "energy"),
         panel("drift of the energy per unit of time", "drift"),
         Panel(constraints, calls, "", tuple(dots), "xy", ylim=(TINY / 3, 1), legend=False),
@@ -161,7 +159,7 @@ def order_panels(results):
                 curves.append(Curve(label, used, fit.at(used), own["color"], width=1.6))
             limit = results.limits.get(("case1", method.key))
             if limit:
-                curves.append(Curve("", np.array([limit]), np.array([0.5]), own["color"], "", "v"))
+                curves.append(Curve("", np.array([limit]), np.array([0.2]), own["color"], "", "v"))
         scales = {"log": "xy", "xticks": (1, 0.5, 0.2, 0.1, 0.05, 0.02), "ylim": (1e-14, 1)}
         title, error = f"{name} formulation, compensated sums", "error of the center of mass"
         panels.append(Panel(title, "step", error, tuple(curves), **scales))
@@ -170,12 +168,12 @@ def order_panels(results):
 
 def cutoff_panels(results):
     """The same water with forces smooth at the cutoff, and with a plain cutoff."""
-    scenes = [results.scenes[key] for key in ("water", "water-plain")]
     error = "error of the centers of mass (rms), Å"
+    look = {"log": "xy", "xticks": (5, 10, 20, 50, 100, 200, 400), "legend": False}
     return tuple(
-        Panel(s.heading, AXIS["evaluations"], error, _curves(results, s, "evaluations", "position", True),
-              "xy", legend=False)  # fmt: skip
-        for s in scenes
+        Panel(scene.heading, AXIS["evaluations"], error, curves, **look)
+        for scene in map(results.scenes.get, ("water", "water-plain"))
+        for curves in [_curves(results, scene, "evaluations", "position", label=True)]
     )
 
 
