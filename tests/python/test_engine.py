@@ -1,6 +1,7 @@
 """The engine of the benchmarks: measurements, logs, many runs, data kept, pages, publishing, the command."""
 
 import json
+import os
 import time
 
 import numpy as np
@@ -13,6 +14,7 @@ from benchmarks.engine.lab import Job, Lab
 from benchmarks.engine.logs import Log
 from benchmarks.engine.panels import Bars, Curve, Panel
 from benchmarks.engine.runner import LammpsError
+from benchmarks.engine.runner import run as run_deck
 from benchmarks.engine.store import read_data, write_data
 from benchmarks.engine.study import Finding, Measurement, Study, Table
 from benchmarks.studies.hard.long import Long
@@ -76,6 +78,57 @@ def test_tables_of_a_log_that_ends_early(tmp_path):
         Log(log).thermo
     with pytest.raises(ValueError, match="no loop time"):
         Log(log).seconds
+
+
+# --- one run ------------------------------------------------------------------------------------
+def alive(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return open(f"/proc/{pid}/stat").read().split()[2] != "Z"
+
+
+def gone(pid):
+    """Whether a process ends within two seconds."""
+    for _ in range(100):
+        if not alive(pid):
+            return True
+        time.sleep(0.02)
+    return False
+
+
+def test_arguments_and_steps(fake, tmp_path):
+    lab, deck, _ = fake
+    seen, log = [], tmp_path / "log.good"
+    script = 'echo "$@" > "$4"\necho "  Step  Time"\necho " 5 0.5 1"\necho " 10 1 2"\n'
+    run_deck(deck("good", script), log, {"dt": 0.1}, lab.lmp, on_step=seen.append)
+    assert seen == [5, 10]
+    assert log.read_text().split() == [
+        "-in", "good", "-log", str(log), "-nocite", "-var", "dt", "0.1",
+    ]  # fmt: skip
+
+
+def test_error_is_told_with_the_last_lines(fake, tmp_path):
+    lab, deck, _ = fake
+    bad = deck("bad", "echo ERROR: no such fix\nexit 3\n")
+    with pytest.raises(LammpsError, match="(?s)log.bad: exit code 3.*ERROR: no such fix"):
+        run_deck(bad, tmp_path / "log.bad", lmp=lab.lmp)
+
+
+def test_timeout_ends_the_whole_group(fake, tmp_path):
+    lab, deck, _ = fake
+    slow = deck("slow", f"sleep 60 &\necho $! > {tmp_path}/child\nwait\n")
+    begin = time.monotonic()
+    with pytest.raises(LammpsError, match="not finished after 0.5 s"):
+        run_deck(slow, tmp_path / "log.slow", lmp=lab.lmp, timeout=0.5)
+    assert time.monotonic() - begin < 10
+    assert gone(int((tmp_path / "child").read_text()))
+
+
+def test_missing_program_is_named():
+    with pytest.raises(LammpsError, match="/nowhere/lmp"):
+        Lab("out", "/nowhere/lmp").lmp
 
 
 # --- many runs ----------------------------------------------------------------------------------
