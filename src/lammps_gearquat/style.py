@@ -1,4 +1,4 @@
-"""How all pictures look: colours, matplotlib's settings, and what is said of the cage."""
+"""How all pictures look: colors, matplotlib's settings, and what is said of the cage."""
 
 COLOUR = {
     "potential": "#0072b2",

@@ -234,7 +234,7 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
     ("arguments", "text"),
     [
         (["--select", "resid 99"], "--select resid 99 selects no atom"),
-        (["--frames", "99:"], "no frame is left to analyse"),
+        (["--frames", "99:"], "no frame is left to analyze"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
         (["--near", __file__], "should be provided together"),
         (

@@ -43,8 +43,8 @@ MOST = 2**31 - 1
 def remark(units):
     """What one unit of LAMMPS is in the files written."""
     length, time = ANGSTROM_AND_PS[units]
-    one, other = ("1 sigma", "1 tau") if units == "lj" else ("length 1", "time 1")
-    return f"LAMMPS units {units}: {one} is {length:g} Angstrom here, {other} is {time:g} ps"
+    length_name, time_name = ("1 sigma", "1 tau") if units == "lj" else ("length 1", "time 1")
+    return f"LAMMPS units {units}: {length_name} is {length:g} Angstrom here, {time_name} is {time:g} ps"
 
 
 def has_times(path):

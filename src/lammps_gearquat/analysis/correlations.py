@@ -160,8 +160,8 @@ def all_correlations(poses, progress=iter):
             for order in (1, 2):
                 name = f"axis{k + 1}_order{order}"
                 tasks.append((name, orientation_correlation, (results.q, axis, order)))
-    found = {name: function(*arguments) for name, function, arguments in progress(tasks)}
+    functions = {name: function(*arguments) for name, function, arguments in progress(tasks)}
     largest = 0.0
-    if "mean_square_rotation" in found:
-        found["mean_square_rotation"], largest = found["mean_square_rotation"]
-    return {"lag": lag, **found}, largest
+    if "mean_square_rotation" in functions:
+        functions["mean_square_rotation"], largest = functions["mean_square_rotation"]
+    return {"lag": lag, **functions}, largest

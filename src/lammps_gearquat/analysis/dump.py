@@ -287,9 +287,9 @@ def _from_data_file(data, atom_style, ids):
         known = MDAnalysis.Universe(str(data), topology_format="DATA", format="DATA", **style).atoms
     order = np.argsort(known.ids)
     place = np.searchsorted(known.ids[order], ids)
-    found = known.ids[order][np.minimum(place, len(known) - 1)]
-    if not np.array_equal(found, ids):
-        lost = ids[found != ids][0]
+    nearest = known.ids[order][np.minimum(place, len(known) - 1)]
+    if not np.array_equal(nearest, ids):
+        lost = ids[nearest != ids][0]
         raise DumpError(f"{data}: no atom {lost}, which the dump has")
     known = known[order][place]
     return known.masses, known.resids, known.types
@@ -338,9 +338,9 @@ def open_table(path, timestep=1.0):
     Masses are not among them.  Raises DumpError if a column is missing.
     """
     columns, _ = columns_of(path)
-    found = {c: re.fullmatch(r"f_\S+\[(\d+)\]", c) for c in columns}
-    names = {c: TABLE.get(int(match[1]), c) for c, match in found.items() if match}
-    missing = sorted(set(TABLE) - {int(match[1]) for match in found.values() if match})
+    numbers = {c: re.fullmatch(r"f_\S+\[(\d+)\]", c) for c in columns}
+    names = {c: TABLE.get(int(match[1]), c) for c, match in numbers.items() if match}
+    missing = sorted(set(TABLE) - {int(match[1]) for match in numbers.values() if match})
     if missing:
         raise DumpError(f"{path}: the dump local of the fix's table lacks column(s) {' '.join(map(str, missing))}")
     extra = [name for name in TABLE.values() if name[0] in "qwl"]

@@ -6,7 +6,7 @@ import numpy as np
 
 #: rows that are gone over before their pages are let go
 ROWS = 20
-#: rows of which a few columns are read before their pages are let go; each is mapped with its neighbours
+#: rows of which a few columns are read before their pages are let go; each is mapped with its neighbors
 BLOCK = 500
 
 
@@ -31,8 +31,8 @@ def rows(array, begin=0):
 
 def columns(array, own):
     """Columns ``own`` (a slice) of all rows of an array (F, B, ...), in memory, as floats."""
-    found = np.empty((len(array), own.stop - own.start, *array.shape[2:]))
+    held = np.empty((len(array), own.stop - own.start, *array.shape[2:]))
     for begin in range(0, len(array), BLOCK):
-        found[begin : begin + BLOCK] = array[begin : begin + BLOCK, own]
+        held[begin : begin + BLOCK] = array[begin : begin + BLOCK, own]
         release(array)
-    return found
+    return held

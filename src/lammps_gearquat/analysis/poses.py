@@ -77,7 +77,7 @@ class _FrameTable(AnalysisBase):
         chosen = slice(start, stop, step) if frames is None else frames
         self._row = {frame: row for row, frame in enumerate(np.arange(number)[chosen].tolist())}
         if not self._row:
-            raise ValueError("no frame is left to analyse")
+            raise ValueError("no frame is left to analyze")
         if self._out:
             shape = len(self._row), len(self.ids)
             np.lib.format.open_memmap(self._out, "w+", self._dtype, shape).flush()
@@ -179,20 +179,20 @@ def _flat(records):
 def totals(table, mass=None):
     """Sums over the bodies of a table (F, B), see ``_FrameTable.totals``; ``mass`` (B,)."""
     names = table.dtype.names
-    found = {n: np.empty(len(table)) for n in names if n.startswith(("ke_", "potential"))}
-    found |= {n: np.empty(len(table)) for n in names if n.endswith("residual")}
+    sums = {n: np.empty(len(table)) for n in names if n.startswith(("ke_", "potential"))}
+    sums |= {n: np.empty(len(table)) for n in names if n.endswith("residual")}
     known = mass is not None and "velocity" in names
-    found |= {n: np.empty((len(table), 3)) for n in ("momentum", "angular_momentum_space") if known}
+    sums |= {n: np.empty((len(table), 3)) for n in ("momentum", "angular_momentum_space") if known}
     for k in mapped.rows(table):
         frame = table[k]
-        for name in set(found) & set(names):
+        for name in set(sums) & set(names):
             values = frame[name]
-            found[name][k] = values.max() if name.endswith("residual") else values.sum(axis=0)
+            sums[name][k] = values.max() if name.endswith("residual") else values.sum(axis=0)
         if known:
             momentum = mass[:, None] * frame["velocity"]
-            found["momentum"][k] = momentum.sum(axis=0)
-            found["angular_momentum_space"][k] += np.cross(frame["center"], momentum).sum(axis=0)
-    return found
+            sums["momentum"][k] = momentum.sum(axis=0)
+            sums["angular_momentum_space"][k] += np.cross(frame["center"], momentum).sum(axis=0)
+    return sums
 
 
 class Poses(_FrameTable):

@@ -69,18 +69,18 @@ def stays(center, places, radius, time, box=None, progress=iter):
     frames, bodies = center.shape[:2]
     at = np.full(bodies, -1)
     since = np.zeros(bodies, dtype=int)
-    found = []
+    rows = []
 
     def change(k, now):
         left = np.flatnonzero((now != at) & (at >= 0))
-        found.append(np.column_stack([left, at[left], since[left], np.full(len(left), k)]))
+        rows.append(np.column_stack([left, at[left], since[left], np.full(len(left), k)]))
         since[now != at] = k
         at[:] = now
 
     for k in progress(mapped.rows(center)):
         change(k, nearest(center[k], places, radius, box))
     change(frames, np.full(bodies, -1))
-    columns = np.concatenate(found).T
+    columns = np.concatenate(rows).T
     return Stays(*columns, np.asarray(time, dtype=float), bodies, len(places))
 
 
@@ -89,7 +89,7 @@ def nearest(points, places, radius, box=None):
     pairs, distances = capped_distance(
         np.asarray(points, dtype=np.float32), places.astype(np.float32), radius, box=box
     )
-    found = np.full(len(points), -1)
+    place = np.full(len(points), -1)
     order = np.argsort(-distances, kind="stable")  # the nearest is written last
-    found[pairs[order, 0]] = pairs[order, 1]
-    return found
+    place[pairs[order, 0]] = pairs[order, 1]
+    return place

@@ -77,13 +77,13 @@ def angles(bodies, reference, positions):
     axis to turn, a point has no angle.
     """
     reference, positions = np.broadcast_arrays(reference, positions)
-    found = np.empty((*positions.shape[:-2], len(bodies)))
+    turned = np.empty((*positions.shape[:-2], len(bodies)))
     for frame in np.ndindex(positions.shape[:-2]):
         bodies.set_shape(reference[frame])
         arms = positions[frame] - bodies.center(positions[frame])[bodies.of]
         q, _ = superpose(bodies, arms)
-        found[frame] = 2.0 * np.arctan2(np.linalg.norm(q[:, 1:], axis=1), q[:, 0])
-    return found
+        turned[frame] = 2.0 * np.arctan2(np.linalg.norm(q[:, 1:], axis=1), q[:, 0])
+    return turned
 
 
 def _torque(bodies, q, arms):
@@ -91,8 +91,8 @@ def _torque(bodies, q, arms):
     # taken along principal axes: about a thin body's own axis it is no difference of larger numbers
     axes = bodies.axes_space(q)
     own = np.einsum("nij,nj->ni", bodies.axes[bodies.of], bodies.shape)
-    found = np.einsum("nij,nj->ni", axes[bodies.of], arms)
-    torque = bodies.sum(bodies.masses[:, None] * np.cross(own, found))
+    measured = np.einsum("nij,nj->ni", axes[bodies.of], arms)
+    torque = bodies.sum(bodies.masses[:, None] * np.cross(own, measured))
     return np.einsum("bij,bi->bj", axes, torque)
 
 

@@ -2,10 +2,11 @@
 
 script          what the commands of a deck say: text in, text out
 interpreter     the deck's flow of commands, up to the run that moves its bodies
-worker          a process that replays these commands in LAMMPS, with other fix lines and steps
+checkpoint      the state that a run has led to, saved and restored
+process         a process that follows a deck, then replays it with other fix lines and steps
+worker          that process, or several ranks of it, as the caller sees it
 measure         trials of one deck: where its bodies are, and what it cost to bring them there
-evaluate        errors, prices, fronts, growth: arrays in, numbers out
+evaluate        prices and growth: arrays in, numbers out
 cost, horizon   the two questions
-report, figures   the answers as text, tables and pictures
-options         what both commands have in common
+report          the answers as text and tables
 """

@@ -43,20 +43,14 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Price:
-    """What an error costs with one method; the fields of Point, and ``kind``.
+class Price(Point):
+    """What an error costs with one method, as a point of its own, and how it is known.
 
     ``kind``: "between" two trials, "at most" (the coarsest trial is better than required), or
     "extrapolated" (no trial was as good as required).
     """
 
-    method: str
-    dt: float
-    evaluations: float
-    seconds: float
-    kind: str
-    start_evaluations: int = 1
-    start_seconds: float = 0.0
+    kind: str = "between"
 
 
 #: steeper than this, the error is not that of an order but of a limit of stability
@@ -98,7 +92,7 @@ def _on_line(finer, coarser, error, kind):
         return begin * (end / begin) ** share
 
     starts = finer.start_evaluations, finer.start_seconds
-    return Price(finer.method, *map(along, ("dt", "evaluations", "seconds")), kind, *starts)
+    return Price(finer.method, *map(along, ("dt", "evaluations", "seconds")), error, *starts, kind)
 
 
 # --- how a difference grows -----------------------------------------------------------------------

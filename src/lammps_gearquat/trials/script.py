@@ -66,16 +66,16 @@ def branches(words):
     """Branches of an if command: list of (condition, commands); the condition of else is None."""
     if len(words) < 4 or words[2] != "then":
         raise DeckError(f"not an if command: {' '.join(words)}")
-    found = [(words[1], [])]
+    parts = [(words[1], [])]
     rest = iter(words[3:])
     for word in rest:
         if word == "elif":
-            found.append((next(rest, ""), []))
+            parts.append((next(rest, ""), []))
         elif word == "else":
-            found.append((None, []))
+            parts.append((None, []))
         else:
-            found[-1][1].append(word)
-    return found
+            parts[-1][1].append(word)
+    return parts
 
 
 def file_name(word):
