@@ -12,10 +12,10 @@ import numpy as np
 
 from benchmarks.engine.decks import FORMULATIONS, deck
 from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine.sites import pose_errors
 from benchmarks.engine.study import Finding, Measurement
 from benchmarks.reference import Problem, State, integrators
 from benchmarks.reference.fields import LennardJonesUnits
-from benchmarks.engine.sites import pose_errors
 
 TITLE, SECONDS = "Small, equal and vanishing moments of inertia", 45.0
 BODIES = {
