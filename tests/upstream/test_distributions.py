@@ -52,6 +52,7 @@ def test_a_fresh_environment(distributions, kind, tmp_path):
         total = result.thermo[-1]["TotEng"]
         assert total == pytest.approx([total[0]] * len(total), abs=1e-6) and len(total) > 3
     assert "analyze" in call_well(scripts / "gearquat", "--help")
+    assert "[analysis]" in call(scripts / "gearquat", "cost", ROOT / "README.md").stderr
 
 
 @pytest.mark.parametrize("kind", ["wheel", "sdist"])

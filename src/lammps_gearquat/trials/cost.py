@@ -345,7 +345,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=before)
     costs.notes += deck.notes
     if reason:
-        costs.notes.append(f"the trials end at t = {end:g}, not at {deck.end:g}, because {reason} allows no more")
+        costs.notes.append(f"{reason} allows trials until t = {whole:g}, and the run ends at {deck.end:g}")
     costs.notes += [cut] if cut else []
 
     def judge(trial):
