@@ -15,6 +15,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from benchmarks.engine.provenance import commit
 from running import MPI_ENVIRONMENT, OPEN_MPI_ENVIRONMENT, ROOT
 
 from . import decks, engine, neighbors, scene, selfcheck, yamls
@@ -101,10 +102,15 @@ def try_decks(report, source, programs, release, only, minutes):
 
 
 # --- all together ---------------------------------------------------------------------------------
+def save(name, found):
+    """Keep what a part has found, with the commit of the sources that it was run on."""
+    (SCRATCH / f"{name}.pickle").write_bytes(pickle.dumps((commit("src"), found)))
+
+
 def saved(name):
-    """What the last run of a part has found, None if there was none."""
+    """Commit and findings of the last run of a part, None if there was none."""
     path = SCRATCH / f"{name}.pickle"
-    return pickle.loads(path.read_bytes()) if path.exists() else None
+    return pickle.loads(path.read_bytes()) if path.exists() else (None, None)
 
 
 def programs_for(build):
@@ -164,11 +170,12 @@ def main():
     if words.all and not words.only:
         for name, found in (("neighbors", tried), ("decks", verdicts), ("units", units)):
             if found:
-                (SCRATCH / f"{name}.pickle").write_bytes(pickle.dumps(found))
+                save(name, found)
     if words.publish and report.failed:
         say("not published: something differs")
     elif words.publish:
-        text = page(*(saved(name) for name in ("neighbors", "decks", "units")))
+        commits, found = zip(*(saved(name) for name in ("neighbors", "decks", "units")))
+        text = page(commits, *found)
         (ROOT / "doc" / "foreign.md").write_text(text, encoding="utf-8")
     return 1 if report.failed else 0
 

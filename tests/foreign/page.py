@@ -5,7 +5,7 @@ import os
 import platform
 from collections import Counter
 
-from benchmarks.engine.provenance import commit, processor, system
+from benchmarks.engine.provenance import processor, system
 
 from . import decks, neighbors, scene
 
@@ -158,8 +158,16 @@ def decks_table(verdicts):
     return lines
 
 
-def page(tried, verdicts, units):
-    """Text of doc/foreign.md; arguments as in __main__."""
+def measured_at(commits):
+    """The commit of all parts, or that of each."""
+    if len(set(commits)) == 1:
+        return f"Commit {commits[0]}"
+    parts = zip(("Neighbors", "decks", "unit tests"), commits)
+    return ", ".join(f"{part} at commit {name}" for part, name in parts if name)
+
+
+def page(commits, tried, verdicts, units):
+    """Text of doc/foreign.md; arguments as in __main__, ``commits`` in the order of the others."""
     left_out = [
         name
         for name, found in (("decks", verdicts), ("neighbors", tried), ("unit tests", units))
@@ -173,7 +181,7 @@ def page(tried, verdicts, units):
     counts = Counter(outcome.result for outcome in units[0])
     return TEXT.format(
         command=COMMAND,
-        where=f"Commit {commit('src')}, {system()}, {processor()} ({len(os.sched_getaffinity(0))} cores),"
+        where=f"{measured_at(commits)}, {system()}, {processor()} ({len(os.sched_getaffinity(0))} cores),"
         f" Python {platform.python_version()}, {datetime.date.today():%d %b %Y}.",
         left_out=f"Not run for this page: {', '.join(left_out)}." if left_out else "",
         first=decks.FIRST,
