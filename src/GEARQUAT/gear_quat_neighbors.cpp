@@ -28,7 +28,7 @@ namespace LAMMPS_NS {
 struct Neighbor {
   const char *style;    ///< pattern
   enum { TAKEN, WATCHED, REFUSED } what;
-  enum { SHARED, ALWAYS, CONSTRAINED, GJF } where;    ///< the case that is meant
+  enum { SHARED, ALWAYS, CONSTRAINED, GJF, IMPULSES } where;    ///< the case that is meant
   const char *instead;
 };
 
@@ -60,6 +60,7 @@ static const Neighbor NEIGHBORS[] = {
     {"^oneway", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
     {"^shardlow", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
     {"^lb/momentum", Neighbor::REFUSED, Neighbor::SHARED, "use fix momentum"},
+    {"^lb/viscous", Neighbor::REFUSED, Neighbor::IMPULSES, "use fix rigid for them"},
     {"^wall/flow", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
     {"^smd/setvel", Neighbor::REFUSED, Neighbor::SHARED, GROUP},
     {"^tmd$", Neighbor::REFUSED, Neighbor::SHARED, "use fix spring or fix spring/self"},
@@ -176,6 +177,13 @@ void GearQuatNeighbors::refuse(const Fix *other, const Neighbor &row, tagint sha
     case Neighbor::GJF:
       if (shared && (modify->get_fix_mask(const_cast<Fix *>(other)) & FixConst::INITIAL_INTEGRATE))
         break;
+      return;
+    case Neighbor::IMPULSES:
+      if (!shared) return;
+      error->all(FLERR,
+                 "Fix gear/quat: fix {} ({}) exchanges an impulse with bodies in each step, among "
+                 "them that of atom {}, which no number of values can follow; {}",
+                 other->id, other->style, shared, row.instead);
       return;
   }
   error->all(FLERR,
