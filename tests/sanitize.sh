@@ -189,7 +189,7 @@ velocity all create 1.0 4711 loop geom
 pair_style lj/cut 2.5
 pair_coeff * * 1.0 1.0
 fix move all gear/quat molecule
-fix scale all temp/csvr 1.0 1.0 0.1 4711
+fix scale all temp/rescale 1 1.0 1.0 0.0 1.0
 timestep 0.002
 run 10
 write_restart restart.large
@@ -198,7 +198,7 @@ read_restart restart.large
 pair_style lj/cut 2.5
 pair_coeff * * 1.0 1.0
 fix move all gear/quat molecule
-fix scale all temp/csvr 1.0 1.0 0.1 4711
+fix scale all temp/rescale 1 1.0 1.0 0.0 1.0
 run 10
 EOF
   check "large body on two ranks" "$folder" '^Total wall time' "${twice[@]}" "${leaks[@]}" "$tree/lmp" -in in.large -log none

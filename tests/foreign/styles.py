@@ -431,7 +431,7 @@ NOT_TRIED = {
         (r"alchemy|hyper/.*|pimd/.*|phonon", _REPLICAS),
         (r"colvars|imd|ipi|saed/vtk", _OUTSIDE),
         (r"cmap|electrode/.*|polarize/.*|electron/.*|orient/.*|ttm/.*|sgcmc|wall/table|gle", _DATA),
-        (r"(.*/)?drude(/.*)?|srd|wall/srd|pour", _DECKS),
+        (r"(.*/)?drude(/.*)?|srd|wall/srd|pour|lb/(fluid|momentum|viscous)", _DECKS),
         (r"adapt/fep", "fix adapt by another name"),
         (r"pair|tune/kspace", "reads a certain pair or kspace style, no atoms"),
         (r"enforce2d", "needs a 2d scene; only LAMMPS' own decks have it, as far as those were run"),
