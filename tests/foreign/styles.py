@@ -367,7 +367,6 @@ COMPUTES = {
     "rattlers/atom": passive("type 0 3", atoms=SPHERES),
     "rdf": passive("20"),
     "reduce": passive("sum x vx fx"),
-    "reduce/chunk": passive("cc sum c_ka", before=(*CHUNKS, "compute ka all ke/atom")),
     "reduce/region": passive("slab sum vx", before=SLAB),
     "slice": passive("1 3 1 c_vv", before=("compute vv all com",)),
     "stress/atom": tuple(
@@ -455,7 +454,7 @@ NOT_TRIED = {
         (r"pressure/cylinder", _ALIAS),
         (r"saed", "needs a table of scattering factors; xrd is tried"),
         (
-            r"basal/atom|composition/atom",
+            r"basal/atom|composition/atom|reduce/chunk",
             "reads memory that it has not set, with fix rigid as well",
         ),
     ),
