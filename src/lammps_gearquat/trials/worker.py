@@ -81,6 +81,16 @@ def launcher(ranks):
     return [program, "-n", str(ranks)]
 
 
+def _drain(connection):
+    """Close a connection once its other end is closed, which a process does when it ends."""
+    with connection:
+        while connection.poll(PATIENCE):
+            try:
+                connection.recv_bytes()
+            except (EOFError, OSError):
+                return
+
+
 class Worker:
     """Processes that run LAMMPS, begun anew when they are gone; to be used in a with statement.
 
@@ -100,7 +110,7 @@ class Worker:
         self.end()
 
     def end(self):
-        """End all processes."""
+        """End all processes, and return when they have ended."""
         for pid in self.pids:
             try:
                 os.kill(pid, signal.SIGKILL)
@@ -110,7 +120,7 @@ class Worker:
             self.process.kill()
             self.process.wait()
         for connection in self.connections:
-            connection.close()
+            _drain(connection)
         self.process, self.connections, self.pids = None, [], []
 
     def _begin(self):
