@@ -5,8 +5,7 @@ GEARQUAT_TREE names) with GEARQUAT compiled in and Open MPI, ``lmp_wheel`` the L
 loads GEARQUAT as a plugin; ``lmp`` runs a test with both.
 
     def test_something(lmp_tree):
-        result = lmp_tree.run(DECK, variables={"dt": 0.01}, ranks=4)
-        assert result.returncode == 0, result.output
+        result = lmp_tree.succeed(DECK, variables={"dt": 0.01}, ranks=4)
         assert result.thermo[-1]["TotEng"][-1] == pytest.approx(...)
 """
 
@@ -186,6 +185,20 @@ class Lammps:
             log.read_text(errors="replace"),
             self.folder,
         )
+
+    def succeed(self, deck: Path | str, *arguments: object, **settings: object) -> Result:
+        """Runs a deck that has to come to its end; see ``run``."""
+        result = self.run(deck, *arguments, **settings)
+        assert result.returncode == 0, result.output
+        return result
+
+    def refuse(self, deck: Path | str, message: str, **settings: object) -> Result:
+        """Runs a deck that has to end with an error, of which ``message`` is a part; see ``run``."""
+        result = self.run(deck, **settings)
+        assert result.returncode != 0 and result.errors, result.output
+        # LAMMPS breaks long lines
+        assert message in " ".join(result.output.split()), result.output
+        return result
 
 
 # A bare root has no /etc/hosts: every MPI looks up its own name at its start, and would wait 5 s or

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -57,7 +58,7 @@ timestep {dt}
 {before}
 fix move all {fix}
 {after}
-thermo_style custom step temp pe ke etotal press
+thermo_style custom step temp pe ke etotal press {columns}
 thermo_modify norm no format float %.17g
 thermo {thermo}
 dump poses all custom {steps} {dump} id xu yu zu vx vy vz
@@ -83,6 +84,40 @@ UNITS = {
 }
 
 
+# sites of SPC/E about their center of mass, in the plane y = 0
+WATER_MASSES = np.array([15.9994, 1.008, 1.008])
+WATER_CHARGES = np.array([-0.8476, 0.4238, 0.4238])
+_HALF = np.deg2rad(109.47 / 2)
+WATER_SITES = np.array(
+    [[0, 0, 0], [np.sin(_HALF), 0, np.cos(_HALF)], [-np.sin(_HALF), 0, np.cos(_HALF)]]
+)
+WATER_SITES -= WATER_MASSES @ WATER_SITES / WATER_MASSES.sum()
+
+
+def random_rotation(rng: np.random.Generator) -> np.ndarray:
+    """Rotation matrix, shape (3, 3)."""
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return turn * np.linalg.det(turn)
+
+
+def write_data(path: Path, box: list[str], masses, atoms: list, velocities: list) -> Path:
+    """A data file of atom style full.
+
+    ``box``: lines of the header; ``atoms``: rows of molecule, type, charge, place and image flags;
+    ``velocities``: rows of three numbers.
+    """
+
+    def section(name, rows):
+        numbered = (" ".join(f"{w:.17g}" for w in (k, *row)) for k, row in enumerate(rows, 1))
+        return ["", name, "", *numbered]
+
+    lines = ["rigid bodies", "", f"{len(atoms)} atoms", f"{len(masses)} atom types", *box]
+    lines += section("Masses", [[mass] for mass in masses])
+    lines += section("Atoms # full", atoms) + section("Velocities", velocities)
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
 def water_data(
     path: Path,
     n: int = 3,
@@ -97,84 +132,45 @@ def water_data(
     """
     rng = np.random.default_rng(20251121)
     scale = UNITS[units]
-    half = np.deg2rad(109.47 / 2)
-    site = np.array([[0, 0, 0], [np.sin(half), 0, np.cos(half)], [-np.sin(half), 0, np.cos(half)]])
-    mass, charge = np.array([15.9994, 1.008, 1.008]), [-0.8476, 0.4238, 0.4238]
-    site -= mass @ site / mass.sum()
-    box = np.array([n * spacing] * 3)
+    box = np.diag([n * spacing] * 3)  # rows are its vectors
+    box[1, 0] = tilt
+    charges = WATER_CHARGES * scale["charge"]
     atoms, velocities = [], []
-    for cell in np.ndindex(n, n, n):
-        centre = np.array(cell) * spacing + shift + rng.uniform(-0.1, 0.1, 3)
-        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-        arms = site @ (turn * np.linalg.det(turn)).T
+    for molecule, cell in enumerate(np.ndindex(n, n, n), 1):
+        center = np.array(cell) * spacing + shift + rng.uniform(-0.1, 0.1, 3)
+        arms = WATER_SITES @ random_rotation(rng).T
         velocity, spin = rng.normal(size=3) * 0.003, rng.normal(size=3) * 0.01
-        for k, arm in enumerate(arms):
-            tag = len(atoms) + 1
-            x = centre + arm
-            image = np.zeros(3, int)
-            for axis in (2, 1, 0):  # the box vectors are (L,0,0), (tilt,L,0), (0,0,L)
-                image[axis] = np.floor(x[axis] / box[axis])
-                x[axis] -= image[axis] * box[axis]
-                if axis == 1:
-                    x[0] -= image[1] * tilt
-                if axis == 0 and tilt:
-                    inside = np.floor((x[0] - x[1] / box[1] * tilt) / box[0])
-                    x[0] += (image[0] - inside) * box[0]
-                    image[0] = inside
-            v = (velocity + np.cross(spin, arm)) * scale["length"] / scale["time"]
-            x = x * scale["length"]
-            atoms.append(
-                f"{tag} {tag // 3 + (tag % 3 > 0)} {1 + (k > 0)} {charge[k] * scale['charge']:.17g} "
-                + " ".join(f"{c:.17g}" for c in x)
-                + " "
-                + " ".join(map(str, image))
-            )
-            velocities.append(f"{tag} " + " ".join(f"{c:.17g}" for c in v))
-    lengths = box * scale["length"]
-    lines = ["rigid water", "", f"{len(atoms)} atoms", "2 atom types", ""]
-    lines += [f"0 {length:.17g} {axis}lo {axis}hi" for axis, length in zip("xyz", lengths)]
+        x = center + arms
+        image = np.floor(x @ np.linalg.inv(box))
+        x = (x - image @ box) * scale["length"]
+        atoms += np.column_stack([[molecule] * 3, [1, 2, 2], charges, x, image]).tolist()
+        speed = (velocity + np.cross(spin, arms)) * scale["length"] / scale["time"]
+        velocities += speed.tolist()
+    length = f"{n * spacing * scale['length']:.17g}"
+    lines = [f"0 {length} {axis}lo {axis}hi" for axis in "xyz"]
     if tilt:
         lines.append(f"{tilt * scale['length']:.17g} 0 0 xy xz yz")
-    lines += [
-        "",
-        "Masses",
-        "",
-        f"1 {mass[0] * scale['mass']:.17g}",
-        f"2 {mass[1] * scale['mass']:.17g}",
-    ]
-    lines += ["", "Atoms # full", "", *atoms, "", "Velocities", "", *velocities, ""]
-    path.write_text("\n".join(lines))
-    return path
+    masses = [WATER_MASSES[k] * scale["mass"] for k in (0, 1)]
+    return write_data(path, lines, masses, atoms, velocities)
 
 
 def flat_water_data(path: Path, n: int = 4, spacing: float = 3.3) -> Path:
     """n^2 rigid SPC/E molecules that lie in the plane z = 0, over all boundaries, for `dimension 2`."""
     rng = np.random.default_rng(20251122)
-    half = np.deg2rad(109.47 / 2)
-    mass, charge = np.array([15.9994, 1.008, 1.008]), [-0.8476, 0.4238, 0.4238]
-    site = np.array([[0, 0], [np.sin(half), np.cos(half)], [-np.sin(half), np.cos(half)]])
-    site -= mass @ site / mass.sum()
     length = n * spacing
     atoms, velocities = [], []
     for molecule, cell in enumerate(np.ndindex(n, n), 1):
-        centre = np.array(cell) * spacing + rng.uniform(-0.1, 0.1, 2)
+        center = np.array(cell) * spacing + rng.uniform(-0.1, 0.1, 2)
         c, s = np.cos(angle := rng.uniform(0, 2 * np.pi)), np.sin(angle)
         velocity, spin = rng.normal(size=2) * 0.003, rng.normal() * 0.01
-        for k, arm in enumerate(site @ np.array([[c, s], [-s, c]])):
-            tag = len(atoms) + 1
-            image = np.floor((centre + arm) / length).astype(int)
-            x, v = centre + arm - image * length, velocity + spin * np.array([-arm[1], arm[0]])
-            atoms.append(
-                f"{tag} {molecule} {1 + (k > 0)} {charge[k]} {x[0]:.17g} {x[1]:.17g} 0 "
-                f"{image[0]} {image[1]} 0"
-            )
-            velocities.append(f"{tag} {v[0]:.17g} {v[1]:.17g} 0")
-    lines = ["flat rigid water", "", f"{len(atoms)} atoms", "2 atom types", ""]
-    lines += [f"0 {length:.17g} {axis}lo {axis}hi" for axis in "xy"] + ["-0.5 0.5 zlo zhi"]
-    lines += ["", "Masses", "", *(f"{k} {mass[k - 1]}" for k in (1, 2))]
-    lines += ["", "Atoms # full", "", *atoms, "", "Velocities", "", *velocities, ""]
-    path.write_text("\n".join(lines))
-    return path
+        arms = WATER_SITES[:, [0, 2]] @ np.array([[c, s], [-s, c]])
+        image = np.floor((center + arms) / length)
+        x, v = center + arms - image * length, velocity + spin * arms[:, ::-1] * [-1, 1]
+        for k in range(3):
+            atoms.append([molecule, 1 + (k > 0), WATER_CHARGES[k], *x[k], 0, *image[k], 0])
+            velocities.append([*v[k], 0])
+    box = [f"0 {length:.17g} {axis}lo {axis}hi" for axis in "xy"] + ["-0.5 0.5 zlo zhi"]
+    return write_data(path, box, WATER_MASSES[:2], atoms, velocities)
 
 
 def water(
@@ -191,8 +187,9 @@ def water(
     newton="on",
     processors="* * *",
     comm="brick",
+    columns="",
 ) -> str:
-    """A deck; dt in fs whatever the units."""
+    """A deck; dt in fs whatever the units, ``columns`` of thermo behind the usual ones."""
     scale = UNITS[units]
     if fix.startswith("gear/quat"):
         after = "fix_modify move energy yes\n" + after
@@ -207,6 +204,7 @@ def water(
         newton=newton,
         processors=processors,
         comm=comm,
+        columns=columns,
         thermo=thermo or steps,
         dt=f"{dt * scale['time']:.17g}",
         inner=2.7 * scale["length"],
@@ -236,9 +234,28 @@ def one_after_the_other(decks) -> str:
     return "\nclear\n".join(decks)
 
 
+def frames(path: Path) -> dict[int, np.ndarray]:
+    """Step -> columns of each frame of a dump, shape (rows, columns), sorted as dumped.
+
+    A last frame that the end of the run has cut off is left out.
+    """
+    found = {}
+    for text in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
+        words = text.split()
+        rows = re.split("ITEM: (?:ATOMS|ENTRIES).*\n", text)[-1].partition("ITEM:")[0]
+        if rows.count("\n") == int(words[words.index("OF") + 2]):
+            found[int(words[0])] = np.loadtxt(rows.splitlines(), ndmin=2)
+    return found
+
+
 def last_frame(path: Path) -> np.ndarray:
-    """Columns of the last frame of a dump, shape (atoms, columns), sorted as dumped."""
-    return np.loadtxt(path.read_text().rpartition("ITEM: ATOMS")[2].splitlines()[1:], ndmin=2)
+    """Columns of the last frame of a dump, shape (rows, columns), sorted as dumped."""
+    return list(frames(path).values())[-1]
+
+
+def last_numbers(path: Path, count: int) -> np.ndarray:
+    """The last numbers of a file, such as those that fix ave/time wrote, shape (count,)."""
+    return np.array(path.read_text().split()[-count:], float)
 
 
 def whole_deck(path: Path, files=("data", "infile")) -> str:
