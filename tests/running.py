@@ -49,6 +49,11 @@ class Result:
         return self.stdout + self.stderr
 
     @property
+    def words(self) -> str:
+        """The same as one line with single spaces, for LAMMPS breaks long messages."""
+        return " ".join(self.output.split())
+
+    @property
     def errors(self) -> list[str]:
         """The texts behind ``ERROR:`` or ``ERROR on proc N:``, wherever they were printed."""
         return re.findall(r"^ERROR(?: on proc \d+)?: (.*)$", self.output, re.MULTILINE)
@@ -196,8 +201,7 @@ class Lammps:
         """Runs a deck that has to end with an error, of which ``message`` is a part; see ``run``."""
         result = self.run(deck, **settings)
         assert result.returncode != 0 and result.errors, result.output
-        # LAMMPS breaks long lines
-        assert message in " ".join(result.output.split()), result.output
+        assert message in result.words, result.output
         return result
 
 

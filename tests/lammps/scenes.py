@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+FORMULATIONS = ["first", "second"]
+
 # Two rigid triangles in a box, no forces: for everything about commands and life cycles.
 TWO_MOLECULES = """
 units lj
@@ -251,6 +253,15 @@ def frames(path: Path) -> dict[int, np.ndarray]:
 def last_frame(path: Path) -> np.ndarray:
     """Columns of the last frame of a dump, shape (rows, columns), sorted as dumped."""
     return list(frames(path).values())[-1]
+
+
+def difference(one: np.ndarray, other: np.ndarray) -> float:
+    """Largest difference of two frames, relative to the largest position and the largest velocity.
+
+    Columns 1 to 3 are positions, 4 to 6 velocities.
+    """
+    parts = (slice(1, 4), slice(4, 7))
+    return max(np.abs((one - other)[:, k]).max() / np.abs(one[:, k]).max() for k in parts)
 
 
 def last_numbers(path: Path, count: int) -> np.ndarray:
