@@ -23,14 +23,14 @@ COLUMNS = {
 class Series:
     """One run: n samples of one body, in the units of the run.
 
-    ``time`` (n,); ``centre`` (n, 3), centre of mass; ``potential``, ``translation``, ``rotation``
+    ``time`` (n,); ``center`` (n, 3), center of mass; ``potential``, ``translation``, ``rotation``
     and ``total`` (n,), energies of the corrected pose (Eq. 20); ``q_error`` (n,), largest deviation
     of the quaternion's square from 1.
     """
 
     step: np.ndarray
     time: np.ndarray
-    centre: np.ndarray
+    center: np.ndarray
     potential: np.ndarray
     translation: np.ndarray
     rotation: np.ndarray
@@ -55,15 +55,15 @@ class Series:
 def from_table(table):
     """Series of an array of shape (n, 10), columns as in COLUMNS."""
     step, time, x, y, z, potential, translation, rotation, total, q_error = np.asarray(table).T
-    centre = np.column_stack([x, y, z])
-    return Series(step, time, centre, potential, translation, rotation, total, q_error)
+    center = np.column_stack([x, y, z])
+    return Series(step, time, center, potential, translation, rotation, total, q_error)
 
 
 def to_table(series):
     """Array of shape (n, 10) of a series, columns as in COLUMNS."""
     s = series
     return np.column_stack(
-        [s.step, s.time, s.centre, s.potential, s.translation, s.rotation, s.total, s.q_error]
+        [s.step, s.time, s.center, s.potential, s.translation, s.rotation, s.total, s.q_error]
     )
 
 

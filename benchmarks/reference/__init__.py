@@ -16,7 +16,7 @@ double.  What there is, and how it is used::
 
     # State in long double: exact without forces, else by extrapolation
     end = reference_state(problem, 200.0, folder=cache)
-    end.centre, end.velocity, end.q, end.omega_body  # (B, 3) (B, 3) (B, 4) (B, 3)
+    end.center, end.velocity, end.q, end.omega_body  # (B, 3) (B, 3) (B, 4) (B, 3)
     end.double                                       # the same as float64
     a, b = reference_states(problem, [100.0, 200.0]) # several times, one integration
     # forces that jump: no error estimate helps; judge it by another fixed step
@@ -25,12 +25,12 @@ double.  What there is, and how it is used::
     # sites (S, 3), unwrapped, to compare with a dump; their atom IDs in a deck_problem
     problem.site_positions(end), problem.field.ids
 
-    # centre (B,), angle (B,), energy (one number)
+    # center (B,), angle (B,), energy (one number)
     errors = state_errors(problem, end, other_state)
     points = work_precision(problem, 200.0, end, "DOP853", tolerances)  # or "LSODA"
     points[0].evaluations, points[0].errors
 
-State of a body: centre of mass and velocity in space axes; q in the paper's order (vector part
+State of a body: center of mass and velocity in space axes; q in the paper's order (vector part
 first, scalar last; A(q) of Eq. 8 turns space into body axes); omega_body along the principal axes,
 radians per unit of time.  Units are those of the field.  Which principal axis is which, and its
 direction, differ between problems made in different ways: compare q within one problem, sites

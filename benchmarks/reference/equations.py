@@ -1,6 +1,6 @@
 """Equations of motion of B rigid bodies, in any NumPy float type.
 
-Written down from the paper, independent of the fix: state of each body is centre of mass and
+Written down from the paper, independent of the fix: state of each body is center of mass and
 velocity in space axes, unit quaternion q (paper's order, scalar last) and angular velocity along
 the principal axes.  All B bodies are integrated as one array of shape (B, 13).
 
@@ -20,7 +20,7 @@ from . import quaternion as qt
 
 #: columns of a packed state (B, 13)
 PARTS = {
-    "centre": slice(0, 3),
+    "center": slice(0, 3),
     "velocity": slice(3, 6),
     "q": slice(6, 10),
     "omega_body": slice(10, 13),
@@ -31,10 +31,10 @@ NO_INERTIA = 1e-7
 
 @dataclass(frozen=True)
 class State:
-    """Where B bodies are: ``centre``, ``velocity`` (B, 3) in space axes, ``q`` (B, 4),
+    """Where B bodies are: ``center``, ``velocity`` (B, 3) in space axes, ``q`` (B, 4),
     ``omega_body`` (B, 3) along the principal axes."""
 
-    centre: np.ndarray
+    center: np.ndarray
     velocity: np.ndarray
     q: np.ndarray
     omega_body: np.ndarray
@@ -90,7 +90,7 @@ def principal_axes(tensors):
 
 
 def inertia_tensors(masses, arms, first):
-    """Tensors (B, 3, 3) of point masses (S,) at ``arms`` (S, 3) from their body's centre of mass;
+    """Tensors (B, 3, 3) of point masses (S,) at ``arms`` (S, 3) from their body's center of mass;
     ``first`` (B,) is the index of each body's first site."""
     square = (arms * arms).sum(axis=1)[:, None, None] * np.eye(3, dtype=arms.dtype)
     outer = arms[:, :, None] * arms[:, None, :]
@@ -102,7 +102,7 @@ class RigidBodies:
     """Shapes of B rigid bodies with S sites in all, sorted by body.
 
     ``body`` (S,), index of a site's body; ``masses`` (B,); ``moments`` (B, 3), principal moments;
-    ``sites_body`` (S, 3), sites in principal axes from the centre of mass.
+    ``sites_body`` (S, 3), sites in principal axes from the center of mass.
     """
 
     body: np.ndarray
@@ -148,15 +148,15 @@ def bodies_from_sites(site_masses, positions, velocities, body, dtype=np.longdou
         return np.add.reduceat(values, first, axis=0)
 
     mass = total(masses)
-    centre = total(masses[:, None] * x) / mass[:, None]
+    center = total(masses[:, None] * x) / mass[:, None]
     velocity = total(masses[:, None] * v) / mass[:, None]
-    arms, relative = x - centre[body], v - velocity[body]
+    arms, relative = x - center[body], v - velocity[body]
     moments, axes = principal_axes(inertia_tensors(masses, arms, first))
     bodies = RigidBodies(body, mass, moments, np.einsum("si,sij->sj", arms, axes[body]))
     momentum = total(masses[:, None] * qt.cross(arms, relative))
     omega_body = np.einsum("bi,bij->bj", momentum, axes) / moments
     q = np.array([qt.of_rotation(matrix) for matrix in axes])
-    return bodies, State(centre, velocity, q, omega_body)
+    return bodies, State(center, velocity, q, omega_body)
 
 
 class Problem:
@@ -169,7 +169,7 @@ class Problem:
 
     def __init__(self, name, bodies, field, start):
         self.name, self.bodies, self.field, self.start = name, bodies, field, start
-        self.dtype = start.centre.dtype
+        self.dtype = start.center.dtype
         self._first = bodies.first
 
     def astype(self, dtype):
@@ -183,14 +183,14 @@ class Problem:
         return Problem(name or self.name, self.bodies, field.astype(self.dtype), self.start)
 
     def arms_space(self, y):
-        """Sites from their centres of mass in space axes, shape (S, 3), of a packed state."""
+        """Sites from their centers of mass in space axes, shape (S, 3), of a packed state."""
         rotation = qt.rotation_space_body(y[:, PARTS["q"]])[self.bodies.body]
         return (rotation * self.bodies.sites_body[:, None, :]).sum(axis=2)
 
     def site_positions(self, state):
         """Site positions in space, shape (S, 3), of a State."""
         y = state.packed()
-        return y[self.bodies.body, PARTS["centre"]] + self.arms_space(y)
+        return y[self.bodies.body, PARTS["center"]] + self.arms_space(y)
 
     def rates(self, _time, y):
         """Time derivative of a packed state, shape (B, 13)."""
@@ -198,7 +198,7 @@ class Problem:
         q = y[:, PARTS["q"]]
         rotation = qt.rotation_space_body(q)
         arms = (rotation[bodies.body] * bodies.sites_body[:, None, :]).sum(axis=2)
-        _, site_forces = self.field.energy_and_forces(y[bodies.body, PARTS["centre"]] + arms)
+        _, site_forces = self.field.energy_and_forces(y[bodies.body, PARTS["center"]] + arms)
         site_forces = np.asarray(site_forces, dtype=y.dtype)
         force = np.add.reduceat(site_forces, self._first, axis=0)
         torque_space = np.add.reduceat(qt.cross(arms, site_forces), self._first, axis=0)
@@ -206,7 +206,7 @@ class Problem:
         factor = y.dtype.type(self.field.force_to_acceleration)
         gyroscopic = qt.cross(omega, bodies.moments * omega)
         rates = np.empty_like(y)
-        rates[:, PARTS["centre"]] = y[:, PARTS["velocity"]]
+        rates[:, PARTS["center"]] = y[:, PARTS["velocity"]]
         rates[:, PARTS["velocity"]] = factor * force / bodies.masses[:, None]
         spin = np.concatenate([omega, np.zeros_like(omega[:, :1])], axis=1)
         rates[:, PARTS["q"]] = qt.product(q, spin) / 2

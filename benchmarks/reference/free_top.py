@@ -204,4 +204,4 @@ def exact_state(problem, time):
         for moments, omega, q in zip(problem.bodies.moments, start.omega_body, start.q)
     ]
     q, omega = (np.array(values) for values in zip(*poses))
-    return State(start.centre + start.velocity * dtype(time), start.velocity, q, omega)
+    return State(start.center + start.velocity * dtype(time), start.velocity, q, omega)

@@ -16,7 +16,7 @@ SITE_MASSES = (2, 2, 10, 50)
 SITES = ((3, -4, 0), (-3, -4, 0), (0, 0, 0), (0, 0, 12))
 EULER_DEGREES = (40, 100, 85)  # phi, psi, theta
 
-#: case -> centre of mass, velocity, omega_body in units of pi; as text, so that any float type
+#: case -> center of mass, velocity, omega_body in units of pi; as text, so that any float type
 #: takes the decimal number itself and not its neighbour in double precision
 STARTS = {
     1: (("84", "0", "0"), ("0.2", "0", "0"), ("0.00625", "-0.0125", "0.00625")),
@@ -27,7 +27,7 @@ STARTS[2] = STARTS[1]
 _PI = "3.14159265358979323846264338327950288419717"
 
 
-def _centred_sites(dtype):
+def _centered_sites(dtype):
     masses, sites = np.array(SITE_MASSES, dtype=dtype), np.array(SITES, dtype=dtype)
     return masses, sites - (masses[:, None] * sites).sum(axis=0) / masses.sum()
 
@@ -67,16 +67,16 @@ def bodies_and_start(case=1, body="consistent", dtype=np.longdouble):
     """(RigidBodies, State) of test case 1, 2 or 3; ``body`` is consistent or unrotated."""
     if case not in STARTS or body not in BODIES:
         raise ValueError(f"the case is 1, 2 or 3 and the body one of {BODIES}: not {case}, {body}")
-    masses, sites = _centred_sites(dtype)
+    masses, sites = _centered_sites(dtype)
     moments, axes = _principal_frame(masses, sites)
     pi = dtype(_PI)
     q = quaternion_of_euler(*(pi * degrees / 180 for degrees in EULER_DEGREES))
     if body == "consistent":
         sites = (sites[:, :, None] * axes).sum(axis=1)
         q = qt.product(q, qt.of_rotation(axes))
-    centre, velocity, turns = (np.array([dtype(t) for t in row]) for row in STARTS[case])
+    center, velocity, turns = (np.array([dtype(t) for t in row]) for row in STARTS[case])
     shapes = RigidBodies(np.zeros(4, dtype=int), masses.sum()[None], moments[None], sites)
-    return shapes, State(centre[None], velocity[None], q[None], pi * turns[None])
+    return shapes, State(center[None], velocity[None], q[None], pi * turns[None])
 
 
 def paper_problem(case=1, body="consistent", dtype=np.longdouble):

@@ -20,17 +20,17 @@ SMALLEST_TOLERANCE = 100 * np.finfo(float).eps
 
 @dataclass(frozen=True)
 class Errors:
-    """``centre`` (B,), distance of the centres of mass; ``angle`` (B,), radians, of the rotation
+    """``center`` (B,), distance of the centers of mass; ``angle`` (B,), radians, of the rotation
     between the orientations; ``energy``, total energy at the end less that at the start."""
 
-    centre: np.ndarray
+    center: np.ndarray
     angle: np.ndarray
     energy: float
 
     @property
-    def rms_centre(self):
-        """Root mean square of ``centre`` over the bodies."""
-        return float(np.sqrt((self.centre**2).mean()))
+    def rms_center(self):
+        """Root mean square of ``center`` over the bodies."""
+        return float(np.sqrt((self.center**2).mean()))
 
     @property
     def rms_angle(self):
@@ -51,7 +51,7 @@ class WorkPoint:
 def state_errors(problem, reference, state):
     """Errors of a State of any float type, judged in the float type of the problem."""
     state, reference = state.astype(problem.dtype), reference.astype(problem.dtype)
-    away = state.centre - reference.centre
+    away = state.center - reference.center
     energy = sum(problem.energies(state)) - sum(problem.energies(problem.start))
     return Errors(
         np.sqrt((away * away).sum(axis=1)).astype(np.float64),

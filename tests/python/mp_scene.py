@@ -36,8 +36,8 @@ class Scene:
     def __init__(self):
         with mp.workdps(DIGITS):
             total = mp.mpf(sum(MASSES))
-            centre = [sum(m * s[k] for m, s in zip(MASSES, SITES)) / total for k in range(3)]
-            arms = [[s[k] - centre[k] for k in range(3)] for s in SITES]
+            center = [sum(m * s[k] for m, s in zip(MASSES, SITES)) / total for k in range(3)]
+            arms = [[s[k] - center[k] for k in range(3)] for s in SITES]
             tensor = mp.matrix(3, 3)
             for m, (x, y, z) in zip(MASSES, arms):
                 tensor += m * mp.matrix(
@@ -79,7 +79,7 @@ class Scene:
         return force
 
     def rates(self, _time, y):
-        """Time derivative of [centre, velocity, q, omega_body], 13 numbers."""
+        """Time derivative of [center, velocity, q, omega_body], 13 numbers."""
         q, w, turn = y[6:10], y[10:], rotation(y[6:10])
         force, torque = [mp.mpf(0)] * 3, [mp.mpf(0)] * 3
         for k, site in enumerate(self.sites):

@@ -70,23 +70,23 @@ class PaperGear:
         self.moments, self.sites = np.abs(turn) @ bodies.moments[0], bodies.sites_body @ turn.T
         # space <- old body <- new body
         self.q = qt.product(start.q[0], quaternion_of(turn))
-        self.centre, self.velocity = start.centre[0], start.velocity[0]
+        self.center, self.velocity = start.center[0], start.velocity[0]
         self.omega = turn @ start.omega_body[0]
 
-    def accelerations(self, centre, q, omega):
+    def accelerations(self, center, q, omega):
         """Force (3,) and rate of omega (3,), Eqs. 7, 10 and 12."""
         a = eq_8(q)
         arms = self.sites @ a  # Eq. 9
-        _, forces = self.cage.energy_and_forces(centre + arms)
+        _, forces = self.cage.energy_and_forces(center + arms)
         torque = a @ np.cross(arms, forces).sum(axis=0)
         gyroscopic = np.cross(omega, self.moments * omega)
         return forces.sum(axis=0), (torque - gyroscopic) / self.moments
 
     def first(self, steps):
-        """Centre of mass after ``steps`` of the first-order form."""
+        """Center of mass after ``steps`` of the first-order form."""
         h, predict = self.h, pascal(5)
         x, p, q, w = (np.zeros((5, n)) for n in (3, 3, 4, 3))
-        x[0], x[1], p[0] = self.centre, h * self.velocity, self.mass * self.velocity
+        x[0], x[1], p[0] = self.center, h * self.velocity, self.mass * self.velocity
         q[0], w[0] = self.q, self.omega
         q[1] = h * 0.5 * matrix_w(self.q) @ [*self.omega, 0]
         for _ in range(steps):
@@ -103,10 +103,10 @@ class PaperGear:
         return x[0]
 
     def second(self, steps):
-        """Centre of mass after ``steps`` of the second-order form."""
+        """Center of mass after ``steps`` of the second-order form."""
         h, predict = self.h, pascal(6)
         x, q = np.zeros((6, 3)), np.zeros((6, 4))
-        x[0], x[1] = self.centre, h * self.velocity
+        x[0], x[1] = self.center, h * self.velocity
         q[0], q[1] = self.q, h * 0.5 * matrix_w(self.q) @ [*self.omega, 0]
         for _ in range(steps):
             x, q = predict @ x, predict @ q

@@ -8,7 +8,7 @@ from benchmarks.engine.series import Series
 from benchmarks.studies.cases import plan
 
 
-def make(time, centre, potential=None, translation=None, rotation=None, error=None):
+def make(time, center, potential=None, translation=None, rotation=None, error=None):
     """Series at ``time`` (n,) with the given columns; what is not given is zero or constant."""
     n = len(time)
 
@@ -18,8 +18,8 @@ def make(time, centre, potential=None, translation=None, rotation=None, error=No
     potential, translation = column(potential), column(translation)
     rotation = column(rotation, 1.0)
     total = potential + translation + rotation if error is None else 1.0 + column(error)
-    centre = np.asarray(centre, dtype=float)
-    return Series(time, time, centre, potential, translation, rotation, total, np.zeros(n))
+    center = np.asarray(center, dtype=float)
+    return Series(time, time, center, potential, translation, rotation, total, np.zeros(n))
 
 
 def line(end=100, rate=(0.0, 0.0, 0.0), start=(0.0, 0.0, 0.0), **columns):
@@ -36,13 +36,13 @@ PARTS = {1: 1000.0, 2: 270.0, 3: 800.0}
 def made_up(run):
     """Series of a run of ``benchmarks/run cases`` as the paper tells it."""
     time = np.arange(run.end + 1.0)
-    centre = np.zeros((len(time), 3))
-    centre[:, 0] = 90.0
+    center = np.zeros((len(time), 3))
+    center[:, 0] = 90.0
     if run.formulation == "second":
-        centre[:, 0] += 0.1001 * 10 ** np.minimum((time / PARTS[run.case] - 1) * 10, 2)
+        center[:, 0] += 0.1001 * 10 ** np.minimum((time / PARTS[run.case] - 1) * 10, 2)
     if run.case == 3:
         axis, sign = (2, -1) if run.formulation == "first" else (1, 1)
-        centre[:, axis] += sign * np.maximum(time - 900, 0)
+        center[:, axis] += sign * np.maximum(time - 900, 0)
     potential = -3.0 + np.sin(time)
     translation = 0.5 * np.minimum(time / 20, 1.0)
     rotation = ENERGY[run.case] - potential - translation
@@ -52,10 +52,10 @@ def made_up(run):
     if run.case == 2 and run.formulation == "first":
         rotation = rotation + np.where(time > 4000, 0.3, 0.0)
     if run.omega == "predicted":
-        centre[-1] += 3.0
+        center[-1] += 3.0
     if run.omega == "corrected":
-        centre[-1] += 1.0
-    values = make(time, centre, potential, translation, rotation)
+        center[-1] += 1.0
+    values = make(time, center, potential, translation, rotation)
     return replace(values, step=time / run.dt)
 
 

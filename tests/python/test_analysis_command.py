@@ -33,7 +33,7 @@ def test_energies_are_those_of_the_fix(dumped):
     poses = Poses(atoms).run()
     found = poses.results
     assert found.step.tolist() == values.step.tolist() == [0, 1000, 2000, 3000, 4000, 5000]
-    assert found.center[:, 0] == pytest.approx(values.centre, abs=1e-12)
+    assert found.center[:, 0] == pytest.approx(values.center, abs=1e-12)
     assert found.ke_translation[:, 0] == pytest.approx(values.translation, rel=1e-11)
     assert found.ke_rotation[:, 0] == pytest.approx(values.rotation, rel=1e-11)
     assert found.ke_rotation[:, 0] != pytest.approx(values.rotation * 1.01, rel=1e-11)
@@ -63,7 +63,7 @@ def test_pose_is_that_of_the_reference(run_case, tmp_path, formulation):
     run_case(1, formulation=formulation, dt=0.02, steps=5000, every=5000, dump=5000)
     found = Poses(open_dump(tmp_path / "poses.dump").atoms, reference=SITES).run().results
     end = reference_state(paper_problem(1), 100.0).double
-    assert found.center[-1, 0] == pytest.approx(end.centre[0], abs=1e-7)
+    assert found.center[-1, 0] == pytest.approx(end.center[0], abs=1e-7)
     turn = Rotation.from_quat(found.q[-1, 0], scalar_first=True).as_matrix()
     assert turn == pytest.approx(qt.rotation_space_body(end.q)[0], abs=1e-7)
 

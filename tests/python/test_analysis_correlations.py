@@ -115,7 +115,7 @@ PLACES = np.array([[0.0, 0, 0], [10, 0, 0]])
 
 
 def visiting(places):
-    """Centres (F, 1, 3) at 0.1 from the places with these numbers; -1 is nowhere."""
+    """Centers (F, 1, 3) at 0.1 from the places with these numbers; -1 is nowhere."""
     at = np.array([[0.1, 0, 0], [10.1, 0, 0], [50, 0, 0]])
     return at[list(places)][:, None, :]
 

@@ -96,38 +96,38 @@ def test_times():
 def test_parting(results):
     judge = partial(verdict, measure=claims.parting, case=3)
     assert judge(results).verdict == REPRODUCED
-    later = spoil(results, scaled("centre", 0.0), case=3)
+    later = spoil(results, scaled("center", 0.0), case=3)
     assert judge(later).verdict == NOT
-    early = spoil(results, scaled("centre", 0.001), case=3)
+    early = spoil(results, scaled("center", 0.001), case=3)
     for row, factor in zip(plan.ROWS, (1e3, 1e3, 0.0, 0.0)):
-        early = spoil(early, scaled("centre", factor), case=3, row=row, formulation="second")
+        early = spoil(early, scaled("center", factor), case=3, row=row, formulation="second")
     assert judge(early).verdict == EXPLAINED
 
 
 def test_leaving(results):
     judge = partial(verdict, measure=claims.leaving_direction)
     assert judge(results).verdict == REPRODUCED
-    same = spoil(results, lambda v: replace(v, centre=-v.centre[:, [0, 2, 1]]), formulation="first")
+    same = spoil(results, lambda v: replace(v, center=-v.center[:, [0, 2, 1]]), formulation="first")
     assert judge(same).verdict == NOT
-    assert judge(spoil(results, scaled("centre", -1.0), case=3)).verdict == EXPLAINED
+    assert judge(spoil(results, scaled("center", -1.0), case=3)).verdict == EXPLAINED
     judge = partial(verdict, measure=claims.potential_vanishes)
     assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, scaled("centre", 0.0), case=3)).verdict == NOT
-    inside = spoil(results, scaled("centre", 0.0), case=3, formulation="first")
+    assert judge(spoil(results, scaled("center", 0.0), case=3)).verdict == NOT
+    inside = spoil(results, scaled("center", 0.0), case=3, formulation="first")
     assert judge(inside).verdict == EXPLAINED
 
 
 def test_bounded(results):
     judge = partial(verdict, measure=claims.bounded)
     assert judge(results).verdict == REPRODUCED
-    roaming = spoil(results, lambda v: replace(v, centre=v.centre - 0.02 * v.time[:, None]), case=1)
+    roaming = spoil(results, lambda v: replace(v, center=v.center - 0.02 * v.time[:, None]), case=1)
     assert judge(roaming).verdict == NOT
 
 
 def test_observable(results):
     judge = partial(verdict, measure=claims.observable)
     assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, scaled("centre", 0.0), case=1)).verdict == NOT
+    assert judge(spoil(results, scaled("center", 0.0), case=1)).verdict == NOT
 
 
 def test_translation(results):
@@ -140,14 +140,14 @@ def test_translation(results):
 def test_omega(results):
     judge = partial(verdict, measure=claims.omega_first)
     assert judge(results).verdict == REPRODUCED  # 3 against 1
-    shifted = spoil(results, lambda v: replace(v, centre=v.centre + 9.0), omega="corrected")
+    shifted = spoil(results, lambda v: replace(v, center=v.center + 9.0), omega="corrected")
     assert judge(shifted).verdict == NOT
 
 
 def test_step_independence(results):
     judge = partial(verdict, measure=claims.same_solution, case=3)
     assert judge(results).verdict == REPRODUCED
-    moved = scaled("centre", 1.02)
+    moved = scaled("center", 1.02)
     assert judge(spoil(results, moved, dt=0.001, row="unrotated-zero-free")).verdict == EXPLAINED
     assert judge(spoil(results, moved, dt=0.001)).verdict == NOT
     judge = partial(verdict, measure=claims.same_solution, other=2)
@@ -160,7 +160,7 @@ def exact(results):
     for run in plan.planned_runs(results.step):
         values = results.series[run.name]
         if run.dt in plan.ACCURACY_STEPS and not run.omega:
-            values.centre[values.at(plan.ACCURACY_END)] = accuracy.reference()
+            values.center[values.at(plan.ACCURACY_END)] = accuracy.reference()
     return results
 
 
@@ -168,7 +168,7 @@ def test_errors_are_measured_against_the_reference(results):
     found = exact(results)
     assert set(map(tuple, accuracy.position_errors(found).values())) == {(0.0,) * 4}
     for values in found.series.values():
-        values.centre[values.at(plan.ACCURACY_END)] *= 1.01
+        values.center[values.at(plan.ACCURACY_END)] *= 1.01
     assert min(min(row) for row in accuracy.position_errors(found).values()) > 0.5
 
 
@@ -176,7 +176,7 @@ def test_bounds_refuse_what_is_not_reproduced(results):
     broken = [m.what for m in cases.find(exact(results)).measurements if not m.holds]
     assert broken == []
     wrong = spoil(results, drifting)
-    wrong = spoil(wrong, scaled("centre", 1.01), dt=cases.CHECKED_STEP)
+    wrong = spoil(wrong, scaled("center", 1.01), dt=cases.CHECKED_STEP)
     broken = " ".join(m.what for m in cases.find(wrong).measurements if not m.holds)
     for words in (
         "not reproducible",

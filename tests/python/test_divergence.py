@@ -28,7 +28,7 @@ def test_parting_is_where_it_first_happens():
 
 def test_not_a_number_is_a_parting():
     broken = line()
-    broken.centre[40] = np.nan
+    broken.center[40] = np.nan
     assert dv.parting_time(line(), broken, 1.0) == 40.0
 
 
@@ -83,7 +83,7 @@ def test_a_series_is_read_and_written_with_every_digit(tmp_path):
     (tmp_path / "log").write_text(LOG)
     values = series.of_log(Log(tmp_path / "log"))
     assert values.time.tolist() == [0, 0.5]
-    assert values.centre[1].tolist() == [84.25, 0, 1e-05]
+    assert values.center[1].tolist() == [84.25, 0, 1e-05]
     assert values.q_error[1] == 2.2204460492503131e-16
     assert values.until(0.25).time.tolist() == [0]
     assert values.at(0.4) == 1

@@ -139,10 +139,10 @@ def test_exact_pendulums():
         spins = speed * np.outer([0.9, 0.1, -1.0], [1.0, 0.0, 0.0])
         sites = Sites(np.array([0]), np.ones(3), arms[None], spins[None] + 0.2)
         then = inertia.exact("three", sites, 0.7)
-        centre = then.mean(axis=0)
-        assert centre == pytest.approx(np.full(3, 0.2 * np.sin(0.7)), abs=1e-15)
-        assert np.linalg.norm(then - centre, axis=1) == pytest.approx([0.9, 0.1, 1.0])
-        angle = (then - centre)[0, 0] / 0.9
+        center = then.mean(axis=0)
+        assert center == pytest.approx(np.full(3, 0.2 * np.sin(0.7)), abs=1e-15)
+        assert np.linalg.norm(then - center, axis=1) == pytest.approx([0.9, 0.1, 1.0])
+        angle = (then - center)[0, 0] / 0.9
         assert (angle == pytest.approx(speed * np.sin(0.7), rel=1e-6)) == (speed < 0.1)
     # its derivative is the speed that energy leaves
     swings = [inertia.exact("three", sites, t)[0] - 0.2 * np.sin(t) for t in (0.6995, 0.7, 0.7005)]

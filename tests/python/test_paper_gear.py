@@ -37,7 +37,7 @@ def test_rotation_does_not_depend_on_the_frame_while_q_is_of_length_one():
 @pytest.mark.parametrize("momentum", ["predicted", "corrected"])
 def test_first_formulation(run_case, body, momentum):
     variables = {"body": body, "momentum": momentum, "choices": "paper", "formulation": "first"}
-    found = run_case(1, dt=DT, steps=STEPS, every=STEPS, **variables).centre[-1]
+    found = run_case(1, dt=DT, steps=STEPS, every=STEPS, **variables).center[-1]
 
     def move(turn, h=DT):
         return paper_gear.PaperGear(body, 1, h, turn, momentum == "predicted").first(STEPS)
@@ -49,7 +49,7 @@ def test_first_formulation(run_case, body, momentum):
 @pytest.mark.parametrize("body", ["consistent", "unrotated"])
 def test_second_formulation(run_case, body):
     variables = {"body": body, "choices": "paper", "formulation": "second"}
-    found = run_case(1, dt=DT, steps=STEPS, every=STEPS, **variables).centre[-1]
+    found = run_case(1, dt=DT, steps=STEPS, every=STEPS, **variables).center[-1]
 
     def move(turn, h=DT):
         return paper_gear.PaperGear(body, 1, h, turn).second(STEPS)

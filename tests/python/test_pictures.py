@@ -35,13 +35,13 @@ def scene():
     time = np.arange(0.0, 240.0, 2.0)
     turn = Rotation.from_rotvec(np.outer(time, [0.02, 0.01, 0.03]))
     axes = np.swapaxes(turn.as_matrix(), 1, 2)
-    centre = np.outer(time, [0.3, -0.1, 0.05]) + [70.0, 0.0, 0.0]
+    center = np.outer(time, [0.3, -0.1, 0.05]) + [70.0, 0.0, 0.0]
     shape = np.array([[3, -4, -9], [-3, -4, -9], [0, 0, -9], [0, 0, 3]])
-    sites = centre[:, None] + np.einsum("fij,nj->fni", turn.as_matrix(), shape)
+    sites = center[:, None] + np.einsum("fij,nj->fni", turn.as_matrix(), shape)
     energy = 1.0 + 0.1 * np.sin(time)
     omega = np.tile([0.02, 0.01, 0.03], (len(time), 1))
     energies = {"potential": -energy, "rotation": energy, "total": 0 * energy}
-    return pictures.Scene(time, centre, sites, axes, omega, energies)
+    return pictures.Scene(time, center, sites, axes, omega, energies)
 
 
 def test_pictures_are_drawn_and_shown(scene, tmp_path):
@@ -72,8 +72,8 @@ def test_scenes_are_those_of_the_fix(monkeypatch, tmp_path):
     assert found.time == pytest.approx(0.5 * np.arange(9))
     assert total == pytest.approx(np.full(9, total[0]), abs=1e-10)
     masses = np.array([2.0, 2.0, 10.0, 50.0])
-    centres = np.einsum("n,fni->fi", masses, found.sites) / masses.sum()
-    assert centres == pytest.approx(found.centre, abs=1e-12)
-    moved = (found.centre[2:] - found.centre[:-2]) / 1.0
+    centers = np.einsum("n,fni->fi", masses, found.sites) / masses.sum()
+    assert centers == pytest.approx(found.center, abs=1e-12)
+    moved = (found.center[2:] - found.center[:-2]) / 1.0
     kinetic = 32.0 * (moved**2).sum(axis=1)
     assert kinetic == pytest.approx(translation[1:-1], rel=1e-2)

@@ -203,5 +203,5 @@ def test_double_precision_is_kept():
 def test_state_packs_and_unpacks():
     start = paper_problem(1).start
     again = State.of(start.packed())
-    assert all((getattr(again, n) == getattr(start, n)).all() for n in ("centre", "velocity", "q"))
+    assert all((getattr(again, n) == getattr(start, n)).all() for n in ("center", "velocity", "q"))
     assert start.double.q.dtype == np.float64

@@ -28,7 +28,7 @@ def top(omega, moments=None):
             bodies.body, bodies.masses, np.array([moments], dtype=LONG), bodies.sites_body
         )
     spin = np.array([omega], dtype=LONG)
-    return Problem("top", bodies, FreeField(), State(start.centre, start.velocity, start.q, spin))
+    return Problem("top", bodies, FreeField(), State(start.center, start.velocity, start.q, spin))
 
 
 @pytest.mark.parametrize("omega", OMEGAS)
@@ -45,7 +45,7 @@ def test_agrees_with_the_integrator(omega, wrong):
     state = State.of(integrate(problem, (40,)).states[-1])
     exact = exact_state(problem, wrong * 40)
     assert (qt.angle_between(exact.q, state.q).max() < 1e-15) == (wrong == 1)
-    assert np.abs(exact.centre - state.centre).max() < (1e-16 if wrong == 1 else 1)
+    assert np.abs(exact.center - state.center).max() < (1e-16 if wrong == 1 else 1)
     if wrong == 1:
         assert np.abs(exact.omega_body - state.omega_body).max() < 1e-16
 

@@ -101,11 +101,11 @@ def runs():
     return run
 
 
-@pytest.mark.parametrize("case, body, time, centre", TABLE)
-def test_reference_table(runs, case, body, time, centre):
+@pytest.mark.parametrize("case, body, time, center", TABLE)
+def test_reference_table(runs, case, body, time, center):
     _, solution = runs(case, body)
     found = solution.states[solution.times.index(time)][0, :3]
-    for value, printed in zip(found, centre):
+    for value, printed in zip(found, center):
         last_but_one = LONG(10) ** (1 - len(printed.split(".")[1]))
         assert abs(value - LONG(printed)) < last_but_one, f"{value} is not {printed}"
         assert abs(value - LONG(printed) * LONG("1.01")) > last_but_one

@@ -198,7 +198,7 @@ def test_case_1_in_lammps_is_case_1_in_the_cage(examples):
         assert abs(energy - expected_energy) < 2e-14 and np.abs(forces - expected).max() < 1e-14
         assert np.abs(forces - 1.01 * expected).max() > 1e-3
         ends = [reference_state(problem, 50.0) for problem in (cage, scene)]
-        assert np.abs(ends[0].centre - ends[1].centre).max() < 1e-12
+        assert np.abs(ends[0].center - ends[1].center).max() < 1e-12
     finally:
         scene.field.close()
 
@@ -209,9 +209,9 @@ def test_energy_is_kept_where_lammps_gives_the_forces(write_deck):
     end = type(problem.start).of(step.states[-1])
     energies = [sum(problem.energies(state)) for state in (problem.start, end)]
     assert abs(energies[1] - energies[0]) < 1e-10
-    assert np.abs(end.centre - problem.start.centre).max() > 1e-3
+    assert np.abs(end.center - problem.start.center).max() > 1e-3
     free = problem.with_field(FreeField())
-    assert np.abs(reference_state(free, 0.1).centre - end.centre).max() > 1e-6
+    assert np.abs(reference_state(free, 0.1).center - end.center).max() > 1e-6
     problem.field.close()
 
 

@@ -35,7 +35,7 @@ def test_every_call_is_counted(method):
     problem = Problem("counted", plain.bodies, field, plain.start)
     state, evaluations = solve(problem, 20.0, method, 1e-8)
     assert field.calls == evaluations > 50
-    assert state.centre.dtype == np.float64
+    assert state.center.dtype == np.float64
 
 
 @pytest.mark.parametrize("method, floor", [("DOP853", 1e-9), ("LSODA", 1e-8)])
@@ -44,7 +44,7 @@ def test_errors_fall_with_the_tolerance(method, floor):
     end = reference_state(problem, 100.0)
     points = work_precision(problem, 100.0, end, method, (1e-5, 1e-8, 1e-11), done.append)
     assert done == [1, 1, 1]
-    for get in (lambda e: e.rms_centre, lambda e: e.rms_angle, lambda e: abs(e.energy)):
+    for get in (lambda e: e.rms_center, lambda e: e.rms_angle, lambda e: abs(e.energy)):
         errors = [get(point.errors) for point in points]
         assert errors[0] > 20 * errors[1] > 400 * errors[2] and errors[2] < floor
     work = [point.evaluations for point in points]
@@ -54,9 +54,9 @@ def test_errors_fall_with_the_tolerance(method, floor):
 def test_a_wrong_reference_is_noticed():
     problem = paper_problem(1)
     end = reference_state(problem, 10.0)
-    wrong = State(end.centre * LONG("1.01"), end.velocity, end.q, end.omega_body)
+    wrong = State(end.center * LONG("1.01"), end.velocity, end.q, end.omega_body)
     (point,) = work_precision(problem, 10.0, wrong, "DOP853", [1e-12])
-    assert point.errors.rms_centre > 0.1
+    assert point.errors.rms_center > 0.1
 
 
 def test_errors_are_distances_angles_and_energies():
@@ -64,15 +64,15 @@ def test_errors_are_distances_angles_and_energies():
     start = problem.start
     half = LONG("5e-13")
     turned = qt.product(start.q, np.array([[np.sin(half), 0, 0, np.cos(half)]]))
-    moved = start.centre + np.array([3e-12, 0, 4e-12], dtype=LONG)
+    moved = start.center + np.array([3e-12, 0, 4e-12], dtype=LONG)
     faster = start.velocity + np.array([1e-12, 0, 0], dtype=LONG)
     errors = state_errors(problem, start, State(moved, start.velocity, turned, start.omega_body))
-    assert errors.rms_centre == pytest.approx(5e-12, rel=1e-5, abs=0)
+    assert errors.rms_center == pytest.approx(5e-12, rel=1e-5, abs=0)
     assert errors.rms_angle == pytest.approx(1e-12, rel=1e-5, abs=0)
     assert errors.rms_angle != pytest.approx(1.01e-12, rel=1e-5, abs=0)
-    errors = state_errors(problem, start, State(start.centre, faster, -start.q, start.omega_body))
+    errors = state_errors(problem, start, State(start.center, faster, -start.q, start.omega_body))
     assert errors.energy == pytest.approx(64 * 0.2 * 1e-12, rel=1e-3, abs=0)
-    assert errors.rms_centre == errors.rms_angle == 0
+    assert errors.rms_center == errors.rms_angle == 0
 
 
 def test_bad_input_is_refused():

@@ -39,7 +39,7 @@ def changed(problem, part):
     """A problem that differs in one part by 1e-18, or in its field."""
     start, bodies = problem.start, problem.bodies
     if part == "start":
-        start = State(start.centre + LONG("1e-17"), start.velocity, start.q, start.omega_body)
+        start = State(start.center + LONG("1e-17"), start.velocity, start.q, start.omega_body)
     if part == "shape":
         arrays = bodies.masses, bodies.moments * (1 + LONG("1e-18")), bodies.sites_body
         bodies = type(bodies)(bodies.body, *arrays)
@@ -51,8 +51,8 @@ def test_each_state_is_computed_once(calls):
     first = reference_states(problem, [1.0, 2.0])
     again = reference_states(paper_problem(1), [2.0, 1.0, 3.0])
     assert calls == [1.0, 2.0, 3.0]
-    assert (again[0].centre == first[1].centre).all() and (again[1].q == first[0].q).all()
-    assert first[0].centre.dtype == LONG and first[0].double.centre.dtype == np.float64
+    assert (again[0].center == first[1].center).all() and (again[1].q == first[0].q).all()
+    assert first[0].center.dtype == LONG and first[0].double.center.dtype == np.float64
 
 
 @pytest.mark.parametrize("part", ["start", "shape"])
@@ -99,13 +99,13 @@ def test_without_forces_the_state_is_exact(calls):
     end = reference_state(free, 1000.0)
     assert calls == []
     assert sum(free.energies(end)) == pytest.approx(sum(free.energies(free.start)), rel=1e-18)
-    assert (end.centre == free.start.centre + 1000 * free.start.velocity).all()
+    assert (end.center == free.start.center + 1000 * free.start.velocity).all()
 
 
 def test_end_of_test_case_1_is_the_published_one():
     end = reference_state(paper_problem(1), 200.0)
     expected = [LONG("85.56573248988141"), LONG("-6.06135624295223"), LONG("6.86227956266460")]
-    assert np.abs(end.centre[0] - expected).max() < 2e-14
+    assert np.abs(end.center[0] - expected).max() < 2e-14
 
 
 def test_double_precision_is_refused():

@@ -64,7 +64,7 @@ def test_initial_energy_refuses_another_cage(lmp_wheel, examples, tmp_path, char
 def test_unrotated_is_another_body(run_case, formulation):
     """Same energy, same start, another motion: the infile is read."""
     end = [
-        run_case(1, formulation=formulation, body=body, dt=0.02, steps=2500, every=2500).centre[-1]
+        run_case(1, formulation=formulation, body=body, dt=0.02, steps=2500, every=2500).center[-1]
         for body in ("consistent", "unrotated")
     ]
     assert abs(end[0] - end[1]).max() > 0.01
@@ -74,12 +74,12 @@ def test_unrotated_is_another_body(run_case, formulation):
 def test_ranks_agree(lmp_wheel, examples, ranks):
     deck = examples / "case1" / "in.case1"
     variables = {"dt": 0.02, "steps": 1000, "every": 500}
-    centre = []
+    center = []
     for n in (1, ranks):
         result = lmp_wheel.run(deck, variables, ranks=n)
         assert result.returncode == 0, result.output
-        centre.append([result.thermo[-1][f"c_centre[{k}]"][-1] for k in (1, 2, 3)])
-    assert centre[0] == pytest.approx(centre[1], rel=1e-10, abs=1e-10)
+        center.append([result.thermo[-1][f"c_centre[{k}]"][-1] for k in (1, 2, 3)])
+    assert center[0] == pytest.approx(center[1], rel=1e-10, abs=1e-10)
 
 
 # --- the free top -------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.engine.statistics import order as order_of
 
-# centre of mass, test case 1, found in extended precision (notes on the paper)
+# center of mass, test case 1, found in extended precision (notes on the paper)
 REFERENCE = {
     ("consistent", 100): (85.43010788464767, -1.784299103660877, 1.14360193088973),
     ("consistent", 200): (85.56573248988141, -6.06135624295223, 6.86227956266460),
@@ -16,12 +16,12 @@ LIMIT = {"first": 1e-7, "second": 1e-9}
 
 
 def errors(run_case, times, dt, **variables):
-    """Errors of the centre of mass at ``times`` (multiples of 100)."""
+    """Errors of the center of mass at ``times`` (multiples of 100)."""
     every = round(100 / dt)
     body = variables.setdefault("body", "consistent")
     found = run_case(1, dt=dt, steps=every * max(times) // 100, every=every, **variables)
     return [
-        float(np.linalg.norm(found.centre[time // 100] - REFERENCE[body, time])) for time in times
+        float(np.linalg.norm(found.center[time // 100] - REFERENCE[body, time])) for time in times
     ]
 
 
@@ -38,7 +38,7 @@ def test_reference_check_can_fail(run_case, formulation):
     error = errors(run_case, (100, 200), 0.02, formulation=formulation)
     found = run_case(1, formulation=formulation, dt=0.02 * 0.99, steps=10000, every=10000)
     assert max(error) < LIMIT[formulation]
-    assert np.linalg.norm(found.centre[-1] - REFERENCE["consistent", 200]) > LIMIT[formulation]
+    assert np.linalg.norm(found.center[-1] - REFERENCE["consistent", 200]) > LIMIT[formulation]
 
 
 @pytest.mark.parametrize(

@@ -416,7 +416,7 @@ def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
     thresholds = (0.1, 1.0, 3.0)
     variables = {"choices": "paper", "steps": 4000, "every": 8}
     series = [run_case(2, formulation=name, **variables) for name in ("first", "second")]
-    distance = np.linalg.norm(series[0].centre - series[1].centre, axis=1)
+    distance = np.linalg.norm(series[0].center - series[1].center, axis=1)
     expected = [evaluate.parting_time(series[0].time, distance, level) for level in thresholds]
     out = tmp_path / "out"
     arguments = [str(examples / "case2" / "in.case2"), "--var", "choices", "paper"]

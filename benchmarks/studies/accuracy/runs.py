@@ -252,7 +252,7 @@ def solver_rows(scene, reference, solver):
     """Rows of Results.solvers of one SciPy solver."""
     task = reference.problem, scene.end, reference.state, solver, scene.tolerances
     return [
-        (found.tolerance, found.evaluations, found.errors.rms_centre, found.errors.rms_angle)
+        (found.tolerance, found.evaluations, found.errors.rms_center, found.errors.rms_angle)
         for found in solvers.work_precision(*task)
     ]
 

@@ -30,7 +30,7 @@ METHODS = {
 @functools.cache
 def reference():
     """Center of mass (3,) of test case 1, consistent body, at ACCURACY_END; in extended precision."""
-    return reference_state(paper_problem(1, "consistent"), ACCURACY_END).double.centre[0]
+    return reference_state(paper_problem(1, "consistent"), ACCURACY_END).double.center[0]
 
 
 def position_errors(results):
@@ -38,7 +38,7 @@ def position_errors(results):
     errors = {}
     for label, method in METHODS.items():
         runs = [results.get(1, *method, dt) for dt in ACCURACY_STEPS]
-        ends = [values.centre[values.at(ACCURACY_END)] for values in runs]
+        ends = [values.center[values.at(ACCURACY_END)] for values in runs]
         errors[label] = [float(np.linalg.norm(end - reference())) for end in ends]
     return errors
 

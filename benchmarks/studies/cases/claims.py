@@ -179,7 +179,7 @@ def observable(results):
     """Case 1: the largest difference of x between the formulations in two spans of time."""
     first, second = (printed(results, 1, formulation) for formulation in FORMULATIONS)
     for (body, one), (_, other) in zip(first, second):
-        gap = np.abs(one.centre[:, 0] - other.centre[:, 0])
+        gap = np.abs(one.center[:, 0] - other.center[:, 0])
         spans = ((1300, 1500), (1500, 2500))
         a, b = (gap[(one.time >= begin) & (one.time <= end)].max() for begin, end in spans)
         yield Reading(body, f"{a:.2g} and {b:.2g}", bool(min(a, b) > 1.0))
@@ -199,8 +199,8 @@ def similar_curve(results):
     """Cases 1 and 2, first formulation: when x differs by a quarter of its range."""
     found = {}
     for (body, one), (_, other) in zip(*(printed(results, case, "first") for case in (1, 2))):
-        gap = np.abs(one.centre[:, 0] - other.centre[:, 0])
-        beyond = np.flatnonzero(gap > 0.25 * np.ptp(one.centre[:, 0]))
+        gap = np.abs(one.center[:, 0] - other.center[:, 0])
+        beyond = np.flatnonzero(gap > 0.25 * np.ptp(one.center[:, 0]))
         found[body] = float(one.time[beyond[0]]) if len(beyond) else math.inf
     among = is_between(found.values(), 1000, 1000)
     for body, time in found.items():
@@ -210,7 +210,7 @@ def similar_curve(results):
 def bounded(results):
     """Case 1: the largest distance from the sphere where the body starts."""
     for label, values in printed_both(results, 1):
-        distance = np.linalg.norm(values.centre[:, None, :] - CAGE.positions, axis=2)
+        distance = np.linalg.norm(values.center[:, None, :] - CAGE.positions, axis=2)
         home = int(distance[0].argmin())
         stays = bool((distance.argmin(axis=1) == home).all())
         yield Reading(label, f"{distance[:, home].max():.1f}", stays)
@@ -251,9 +251,9 @@ def leaving_direction(results):
 
 def omega_first(results):
     """Case 1: errors with Eq. 5 fed by the corrected and by the predicted omega."""
-    best = results.get(1, ACCURATE, "second").centre[int(OMEGA_END)]
+    best = results.get(1, ACCURATE, "second").center[int(OMEGA_END)]
     ends = [
-        results.get(1, ACCURATE, "first", OMEGA_STEP, omega).centre[-1]
+        results.get(1, ACCURATE, "first", OMEGA_STEP, omega).center[-1]
         for omega in ("corrected", "predicted")
     ]
     corrected, predicted = (float(np.linalg.norm(end - best)) for end in ends)

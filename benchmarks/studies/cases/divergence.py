@@ -18,7 +18,7 @@ def separation(first, second):
     n = min(len(first.time), len(second.time))
     if not np.allclose(first.time[:n], second.time[:n], rtol=1e-9, atol=1e-9):
         raise ValueError("the two series are not sampled at the same times")
-    return np.linalg.norm(first.centre[:n] - second.centre[:n], axis=1)
+    return np.linalg.norm(first.center[:n] - second.center[:n], axis=1)
 
 
 def parting_time(first, second, threshold):
@@ -57,7 +57,7 @@ def drift_onset(series, fraction=0.02):
 
 def leaving_time(series):
     """Time after which the body stays outside the cage; infinite if it is inside at the end."""
-    distance = np.linalg.norm(series.centre, axis=1)
+    distance = np.linalg.norm(series.center, axis=1)
     if not distance[-1] > OUTSIDE:
         return float("inf")
     inside = np.flatnonzero(distance <= OUTSIDE)
@@ -71,6 +71,6 @@ def leaving_axis(series):
     """
     if not np.isfinite(leaving_time(series)):
         return ""
-    velocity = series.centre[-1] - series.centre[-2]
+    velocity = series.center[-1] - series.center[-2]
     axis = int(np.argmax(np.abs(velocity)))
     return ("-" if velocity[axis] < 0 else "+") + "xyz"[axis]

@@ -45,11 +45,11 @@ def curves(what, runs):
     """Curves of one panel; ``runs``: formulation -> Series."""
     if what == "x":
         return tuple(
-            Curve(f"{f} formulation", run.time, run.centre[:, 0], f) for f, run in runs.items()
+            Curve(f"{f} formulation", run.time, run.center[:, 0], f) for f, run in runs.items()
         )
     (run,) = runs.values()
     if what == "trajectory":
-        return tuple(Curve(x, run.time, run.centre[:, k], x) for k, x in enumerate("xyz"))
+        return tuple(Curve(x, run.time, run.center[:, k], x) for k, x in enumerate("xyz"))
     kinds = ENERGIES if what == "energies" else KINETIC
     return tuple(Curve(label, run.time, getattr(run, kind), kind) for kind, label in kinds.items())
 
@@ -113,16 +113,16 @@ def error_panel(results):
 def _paths(stage, results, reach, width):
     """The paths of test cases 1 and 3 with the defaults of the fix, as far as ``reach``."""
     for case, color in PATHS.items():
-        path = results.get(case, ACCURATE, "second").centre
+        path = results.get(case, ACCURATE, "second").center
         near = (np.abs(path) < reach).all(axis=1).cumprod().astype(bool)
         stage.lines(path[near], color, width, 1 + len(path[near]) // 4)
 
 
 def _add_inset(axis, whole, run):
     """A magnified path beside the cage, as seen by the camera of ``whole``."""
-    middle, reach = 0.5 * (run.centre.min(axis=0) + run.centre.max(axis=0)), 18.0
+    middle, reach = 0.5 * (run.center.min(axis=0) + run.center.max(axis=0)), 18.0
     near = Stage(Camera(tuple(middle), -62.0, 17.0, 150.0), haze=(10.0, 60.0))
-    near.lines(run.centre, PATHS[1], 1.0, 1 + len(run.centre) // 4)
+    near.lines(run.center, PATHS[1], 1.0, 1 + len(run.center) // 4)
     near.spheres([[SPACING, 0.0, 0.0]], CAGE_RADIUS, PLUS)
     inset = axis.inset_axes((0.66, 0.6, 0.34, 0.4))
     near.draw(inset, reach, reach)

@@ -27,13 +27,13 @@ QUICK_END = 300.0
 class Scene:
     """One run of one body, F samples; lj units.
 
-    ``time`` (F,); ``centre`` (F, 3); ``sites`` (F, n, 3); ``axes`` (F, 3, 3): principal axes as rows, in
+    ``time`` (F,); ``center`` (F, 3); ``sites`` (F, n, 3); ``axes`` (F, 3, 3): principal axes as rows, in
     space; ``omega_body`` (F, 3): along them; ``energies``: "potential", "translation", "rotation" and
     "total" -> (F,).
     """
 
     time: np.ndarray
-    centre: np.ndarray
+    center: np.ndarray
     sites: np.ndarray
     axes: np.ndarray
     omega_body: np.ndarray

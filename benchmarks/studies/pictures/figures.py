@@ -72,12 +72,12 @@ def draw_orbit(path, scene, pieces=160):
         left, right = figure.subplots(1, 2, width_ratios=(1, 1.25))
         whole = Stage(Camera((0.0, 0.0, 0.0), -58.0, 17.0, 620.0), haze=(20.0, 240.0))
         add_cage(whole)
-        whole.lines(scene.centre, _shades(pieces), 1.4, pieces)
+        whole.lines(scene.center, _shades(pieces), 1.4, pieces)
         add_body(whole, scene.sites[-1], 1.5)
         whole.draw(left, 160.0, 178.0)
-        middle = 0.5 * (scene.centre.min(axis=0) + scene.centre.max(axis=0))
+        middle = 0.5 * (scene.center.min(axis=0) + scene.center.max(axis=0))
         near = Stage(Camera(tuple(middle), -62.0, 22.0, 150.0), haze=(10.0, 60.0))
-        near.lines(scene.centre, _shades(pieces), 1.6, pieces)
+        near.lines(scene.center, _shades(pieces), 1.6, pieces)
         near.spheres([[SPACING, 0.0, 0.0]], CAGE_RADIUS, PLUS)
         add_body(near, scene.sites[-1], 4.5)
         near.draw(right, 17.5, 16.0)
@@ -91,7 +91,7 @@ def _snapshots(axis, scene, rows):
     gap, reach = 26.0, 13.0
     for place, k in enumerate(rows):
         stage = Stage(Camera((0.0, 0.0, 0.0), -60.0, 18.0, 200.0))
-        add_body(stage, scene.sites[k] - scene.centre[k], 5.0)
+        add_body(stage, scene.sites[k] - scene.center[k], 5.0)
         inset = axis.inset_axes([place / len(rows), 0.1, 1.0 / len(rows), 0.9])
         stage.draw(inset, gap / 2, reach)
         label = f"t = {scene.time[k]:g}"

@@ -21,12 +21,12 @@ def _still(scene, k):
     stage = Stage(VIEW, haze=(30.0, 190.0))
     add_cage(stage, 0.8)
     if k > 0:
-        stage.lines(scene.centre[: k + 1], "#009e73", 1.3, 1 + k // 16)
+        stage.lines(scene.center[: k + 1], "#009e73", 1.3, 1 + k // 16)
     add_body(stage, scene.sites[k], 1.8)
     height = 76.0
     stage.draw(axis, height * SIZE[0] / SIZE[1], height)
     near = Stage(Camera((0.0, 0.0, 0.0), VIEW.azimuth, VIEW.elevation, 200.0))
-    add_body(near, scene.sites[k] - scene.centre[k], 5.0)
+    add_body(near, scene.sites[k] - scene.center[k], 5.0)
     inset = figure.add_axes((0.76, 0.55, 0.23, 0.37))
     near.draw(inset, CLOSE + 1.0, CLOSE)
     figure.text(0.02, 0.93, f"t = {scene.time[k]:4.0f}", fontsize=12, family="monospace")

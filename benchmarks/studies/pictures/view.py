@@ -59,9 +59,9 @@ class Stage:
         near, far = self.haze
         return 0.75 * float(np.clip((-depth - near) / (far - near), 0.0, 1.0))
 
-    def spheres(self, centres, radius, color):
-        """Spheres at centres (n, 3)."""
-        for at, depth, scale in zip(*self.camera.project(np.atleast_2d(centres))):
+    def spheres(self, centers, radius, color):
+        """Spheres at centers (n, 3)."""
+        for at, depth, scale in zip(*self.camera.project(np.atleast_2d(centers))):
             self._things.append((depth, self._draw_sphere, (at, radius * scale, color, depth)))
 
     def lines(self, points, color, width, pieces=1, alpha=1.0):
