@@ -30,9 +30,9 @@ _PARITY_EVEN = {(0, 1, 2), (1, 2, 0), (2, 0, 1)}
 
 
 def _mpf(values):
-    """List of mpf of an array of any float type, exactly."""
+    """Array of mpf of an array of any float type, exactly."""
     high = [float(v) for v in values]
-    return [mp.mpf(h) + mp.mpf(float(v - type(v)(h))) for v, h in zip(values, high)]
+    return np.array([mp.mpf(h) + mp.mpf(float(v - type(v)(h))) for v, h in zip(values, high)])
 
 
 def _to_float(values, dtype):
@@ -40,24 +40,15 @@ def _to_float(values, dtype):
     return np.array([dtype(mp.nstr(v, 25)) for v in values], dtype=dtype)
 
 
-def _dot(a, b):
-    return mp.fsum(x * y for x, y in zip(a, b))
-
-
-def _cross(a, b):
-    return [a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3] for k in range(3)]
-
-
-def _unit(a):
-    length = mp.sqrt(_dot(a, a))
-    return [x / length for x in a]
+def _length(a):
+    return mp.sqrt(a @ a)
 
 
 def _uniform(moments, omega):
     """Whether omega is constant: I omega parallel to omega, to the last digits of the data."""
-    momentum = [i * w for i, w in zip(moments, omega)]
-    torque, size = _cross(omega, momentum), mp.sqrt(_dot(omega, omega) * _dot(momentum, momentum))
-    return all(abs(t) <= size * mp.mpf(10) ** (8 - DIGITS) for t in torque)
+    momentum = moments * omega
+    torque, size = qt.cross(omega, momentum), _length(omega) * _length(momentum)
+    return (abs(torque) <= size * mp.mpf(10) ** (8 - DIGITS)).all()
 
 
 @dataclass(frozen=True)
@@ -76,7 +67,7 @@ class _Wave:
 
     def omega(self, time):
         """omega_body, in the body's own order of axes."""
-        u, omega = self.u0 + self.rate * time, [None] * 3
+        u, omega = self.u0 + self.rate * time, np.empty(3, dtype=object)
         for axis, amplitude, function in zip(self.order, self.amplitudes, ("cn", "sn", "dn")):
             omega[axis] = amplitude * mp.ellipfun(function, u, m=self.m)
         return omega
@@ -104,9 +95,7 @@ def _wave(moments, omega):
 
     def excess(axis):
         """2T I_axis - L^2, without cancellation."""
-        return _dot(
-            [i * w * w for i, w in zip(moments, omega)], [moments[axis] - i for i in moments]
-        )
+        return (moments * omega**2) @ (moments[axis] - moments)
 
     middle = excess(rising[1])
     if abs(middle) < excess(rising[2]) * mp.mpf(10) ** (8 - DIGITS):
@@ -136,11 +125,8 @@ class FreeTop:
     def __init__(self, moments, omega_body, q):
         with mp.workdps(DIGITS):
             self.moments, self._omega = _mpf(moments), _mpf(omega_body)
-            q = _mpf(q)
-            length = mp.sqrt(_dot(q, q))
-            self._q = [x / length for x in q]
-            momentum = [i * w for i, w in zip(self.moments, self._omega)]
-            self._length = mp.sqrt(_dot(momentum, momentum))
+            self._q = qt.normalised(_mpf(q))
+            self._length = _length(self.moments * self._omega)
             self._uniform = _uniform(self.moments, self._omega)
             if not self._uniform:
                 self._wave = _wave(self.moments, self._omega)
@@ -148,52 +134,31 @@ class FreeTop:
 
     def _frame(self, omega):
         """Quaternion of the axes (e_3 - part along L, L x that, L), seen from the body."""
-        axis = self._wave.order[2]
-        z = _unit([i * w for i, w in zip(self.moments, omega)])
-        e3 = [mp.mpf(k == axis) for k in range(3)]
-        y = _unit(_cross(z, e3))
-        return _quaternion_of_columns(_cross(y, z), y, z)
+        z = self.moments * omega
+        y = qt.cross(z, np.eye(3, dtype=int)[self._wave.order[2]])
+        axes = [axis / _length(axis) for axis in (qt.cross(y, z), y, z)]
+        return qt.of_rotation(np.transpose(axes))
 
     def at(self, time, dtype=np.longdouble):
         """(q, omega_body) at ``time``, shapes (4,) and (3,)."""
         with mp.workdps(DIGITS):
             t = _mpf([np.longdouble(time)])[0]
             if self._uniform:
-                q, omega = _product(self._q, _spin(self._omega, t)), self._omega
+                q, omega = qt.product(self._q, _spin(self._omega, t)), self._omega
             else:
                 omega = self._wave.omega(t)
                 half = self._length * self._wave.turned(t) / 2
-                about = [mp.mpf(0), mp.mpf(0), mp.sin(half), mp.cos(half)]
+                about = np.array([mp.mpf(0), mp.mpf(0), mp.sin(half), mp.cos(half)])
                 # space <- body(0) <- axes at L -> turned about L -> axes at L <- body(t)
-                q = _product(self._q, _product(self._frame0, about))
-                q = _product(q, _conjugate(self._frame(omega)))
+                q = qt.product(self._q, qt.product(self._frame0, about))
+                q = qt.product(q, qt.conjugate(self._frame(omega)))
             return _to_float(q, dtype), _to_float(omega, dtype)
 
 
 def _spin(omega, t):
     """Quaternion of a uniform rotation for the time t."""
-    speed = mp.sqrt(_dot(omega, omega))
-    if speed == 0:
-        return [mp.mpf(0), mp.mpf(0), mp.mpf(0), mp.mpf(1)]
-    half = speed * t / 2
-    return [w / speed * mp.sin(half) for w in omega] + [mp.cos(half)]
-
-
-def _product(a, b):
-    """Quaternion product of lists of mpf."""
-    vector = _cross(a[:3], b[:3])
-    vector = [a[3] * y + b[3] * x + v for x, y, v in zip(a, b, vector)]
-    return [*vector, a[3] * b[3] - _dot(a[:3], b[:3])]
-
-
-def _conjugate(q):
-    return [-x for x in q[:3]] + [q[3]]
-
-
-def _quaternion_of_columns(x, y, z):
-    """Quaternion of the rotation matrix with these columns."""
-    matrix = np.array([x, y, z], dtype=object).T
-    return list(qt.of_rotation(matrix))
+    half = _length(omega) * t / 2
+    return np.append(omega * t / 2 * mp.sinc(half), mp.cos(half))
 
 
 def exact_state(problem, time):

@@ -1,33 +1,27 @@
-"""The paper's scene once more in mpmath, 30 digits, plain loops: for the reference package's tests."""
+"""The paper's scene once more in mpmath, 30 digits: for the reference package's tests."""
+
+import itertools
 
 import mpmath as mp
+import numpy as np
 
 DIGITS = 30
-MASSES = (2, 2, 10, 50)
-SITES = ((3, -4, 0), (-3, -4, 0), (0, 0, 0), (0, 0, 12))
-LEVELS = (-1, 0, 1)
-CAGE = [
-    ((100 * x, 100 * y, 100 * z), -1 if (z or y or -x) > 0 else 1)
-    for x in LEVELS
-    for y in LEVELS
-    for z in LEVELS
-    if x or y or z
-]
-
-
-def cross(a, b):
-    """Vector product."""
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+MASSES = np.array([2, 2, 10, 50], dtype=object)
+SITES = np.array([(3, -4, 0), (-3, -4, 0), (0, 0, 0), (0, 0, 12)], dtype=object)
+CAGE = np.array([place for place in itertools.product((-1, 0, 1), repeat=3) if any(place)])
+CAGE_CHARGES = np.array([-1 if (z or y or -x) > 0 else 1 for x, y, z in CAGE])
 
 
 def rotation(q):
     """Matrix body -> space of a unit quaternion, vector first; the transpose of Eq. 8."""
     a, b, c, s = q
-    return [
-        [2 * (a * a + s * s) - 1, 2 * (a * b - c * s), 2 * (a * c + b * s)],
-        [2 * (a * b + c * s), 2 * (b * b + s * s) - 1, 2 * (b * c - a * s)],
-        [2 * (a * c - b * s), 2 * (b * c + a * s), 2 * (c * c + s * s) - 1],
-    ]
+    return np.array(
+        [
+            [2 * (a * a + s * s) - 1, 2 * (a * b - c * s), 2 * (a * c + b * s)],
+            [2 * (a * b + c * s), 2 * (b * b + s * s) - 1, 2 * (b * c - a * s)],
+            [2 * (a * c - b * s), 2 * (b * c + a * s), 2 * (c * c + s * s) - 1],
+        ]
+    )
 
 
 class Scene:
@@ -35,23 +29,16 @@ class Scene:
 
     def __init__(self):
         with mp.workdps(DIGITS):
-            total = mp.mpf(sum(MASSES))
-            center = [sum(m * s[k] for m, s in zip(MASSES, SITES)) / total for k in range(3)]
-            arms = [[s[k] - center[k] for k in range(3)] for s in SITES]
+            self.total = mp.mpf(MASSES.sum())
+            arms = SITES - MASSES @ SITES / self.total
             tensor = mp.matrix(3, 3)
-            for m, (x, y, z) in zip(MASSES, arms):
-                tensor += m * mp.matrix(
-                    [
-                        [y * y + z * z, -x * y, -x * z],
-                        [-x * y, x * x + z * z, -y * z],
-                        [-x * z, -y * z, x * x + y * y],
-                    ]
-                )
-            self.total, self.moments = total, sorted(mp.eigsy(tensor, eigvals_only=True))[::-1]
+            for mass, arm in zip(MASSES, arms):
+                tensor += mp.matrix(mass * (arm @ arm * np.eye(3, dtype=int) - np.outer(arm, arm)))
+            self.moments = np.array(sorted(mp.eigsy(tensor, eigvals_only=True))[::-1])
             tilt = mp.atan2(2 * tensor[1, 2], tensor[1, 1] - tensor[2, 2]) / 2
             c, s = mp.cos(tilt), mp.sin(tilt)
-            self.sites = [[x, c * y + s * z, c * z - s * y] for x, y, z in arms]
-            self.charges = [mp.mpf(-1) / 4, mp.mpf(-1) / 4, mp.mpf(-1) / 2, mp.mpf(1)]
+            self.sites = np.array([[x, c * y + s * z, c * z - s * y] for x, y, z in arms])
+            self.charges = np.array([mp.mpf(quarters) / 4 for quarters in (-1, -1, -2, 4)])
             self.start = self._start(tilt)
 
     @staticmethod
@@ -65,33 +52,25 @@ class Scene:
         turns = [mp.mpf(k) * mp.pi / 160 for k in (1, -2, 1)]
         return [mp.mpf(84), mp.mpf(0), mp.mpf(0), mp.mpf(1) / 5, mp.mpf(0), mp.mpf(0), *q, *turns]
 
-    def _force(self, k, position):
-        """Force on site k."""
-        force = [mp.mpf(0)] * 3
-        for place, charge in CAGE:
-            gap = [position[i] - place[i] for i in range(3)]
-            square = mp.fsum(g * g for g in gap)
-            radial = self.charges[k] * charge / (square * mp.sqrt(square))
-            if k == 3:
-                sixth = (100 / square) ** 3
-                radial += 40 * (12 * sixth * sixth - 6 * sixth) / square
-            force = [f + radial * g for f, g in zip(force, gap)]
-        return force
+    def _forces(self, positions):
+        """Forces (4, 3) on the sites."""
+        gap = positions[:, None] - 100 * CAGE
+        square = (gap * gap).sum(axis=2)
+        radial = self.charges[:, None] * CAGE_CHARGES / square ** mp.mpf("1.5")
+        sixth = (100 / square[3]) ** 3
+        radial[3] += 40 * (12 * sixth * sixth - 6 * sixth) / square[3]
+        return (radial[:, :, None] * gap).sum(axis=1)
 
     def rates(self, _time, y):
         """Time derivative of [center, velocity, q, omega_body], 13 numbers."""
-        q, w, turn = y[6:10], y[10:], rotation(y[6:10])
-        force, torque = [mp.mpf(0)] * 3, [mp.mpf(0)] * 3
-        for k, site in enumerate(self.sites):
-            arm = [mp.fdot(row, site) for row in turn]
-            own = self._force(k, [y[i] + arm[i] for i in range(3)])
-            force = [a + b for a, b in zip(force, own)]
-            torque = [a + b for a, b in zip(torque, cross(arm, own))]
-        torque_body = [mp.fdot([row[j] for row in turn], torque) for j in range(3)]
-        gyroscopic = cross(w, [i * a for i, a in zip(self.moments, w)])
-        vector = [(q[3] * w[i] + c) / 2 for i, c in enumerate(cross(q[:3], w))]
-        spin = [(t - g) / i for t, g, i in zip(torque_body, gyroscopic, self.moments)]
-        return [*y[3:6], *(f / self.total for f in force), *vector, -mp.fdot(q[:3], w) / 2, *spin]
+        center, velocity, q, s, w = np.split(np.array(y), (3, 6, 9, 10))
+        turn = rotation(y[6:10])
+        arms = self.sites @ turn.T
+        forces = self._forces(center + arms)
+        torque_body = np.cross(arms, forces).sum(axis=0) @ turn
+        spin = (torque_body - np.cross(w, self.moments * w)) / self.moments
+        vector = (s * w + np.cross(q, w)) / 2
+        return [*velocity, *forces.sum(axis=0) / self.total, *vector, -(q @ w) / 2, *spin]
 
     def at(self, time):
         """State at ``time`` by mpmath's Taylor integrator: seconds of work for each unit of time."""

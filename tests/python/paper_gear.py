@@ -6,21 +6,15 @@ motion depends on the choice of body axes: A(q) = |q|^2 R + (|q|^2 - 1) 1 holds 
 of the principal axes.  ``turn`` takes the body axes of the reference into any of the 24.
 """
 
-import itertools
-from math import comb
-
 import numpy as np
+from scipy.linalg import pascal
+from scipy.spatial.transform import Rotation
 
 from benchmarks.reference import paper_problem
 from benchmarks.reference import quaternion as qt
 
 FIRST = np.array([251 / 720, 1, 11 / 12, 1 / 3, 1 / 24])  # Table 1
 SECOND = np.array([3 / 16, 251 / 360, 1, 11 / 18, 1 / 6, 1 / 60])  # Table 2
-
-
-def pascal(n):
-    """Matrix that predicts a history of n rows y_j = h^j x^(j) / j!."""
-    return np.array([[comb(j, i) for j in range(n)] for i in range(n)], dtype=float)
 
 
 def eq_8(q):
@@ -41,23 +35,13 @@ def matrix_w(q):
     return np.array([[q4, -q3, q2, q1], [q3, q4, -q1, q2], [-q2, q1, q4, q3], [-q1, -q2, -q3, q4]])
 
 
-def axis_frames():
-    """The 24 rotations that permute and flip axes, each (3, 3): old body axes -> new ones."""
-    for order in itertools.permutations(range(3)):
-        for signs in itertools.product((1.0, -1.0), repeat=3):
-            turn = np.diag(signs) @ np.eye(3)[list(order)]
-            if np.linalg.det(turn) > 0:
-                yield turn
+#: the 24 rotations that permute and flip axes, (24, 3, 3): old body axes -> new ones
+FRAMES = np.rint(Rotation.create_group("O").as_matrix())
 
 
 def quaternion_of(turn):
-    """Quaternion, vector first, whose Eq. 8 is ``turn`` (one of axis_frames)."""
-    guesses = (np.array(g, dtype=float) for g in itertools.product((-1, 0, 1), repeat=4) if any(g))
-    return next(
-        q
-        for q in (guess / np.linalg.norm(guess) for guess in guesses)
-        if np.allclose(eq_8(q), turn)
-    )
+    """Quaternion, vector first, whose Eq. 8 is ``turn``."""
+    return Rotation.from_matrix(turn.T).as_quat()
 
 
 class PaperGear:
@@ -83,8 +67,8 @@ class PaperGear:
         return forces.sum(axis=0), (torque - gyroscopic) / self.moments
 
     def first(self, steps):
-        """Center of mass after ``steps`` of the first-order form."""
-        h, predict = self.h, pascal(5)
+        """Centre of mass after ``steps`` of the first-order form."""
+        h, predict = self.h, pascal(5, "upper")
         x, p, q, w = (np.zeros((5, n)) for n in (3, 3, 4, 3))
         x[0], x[1], p[0] = self.center, h * self.velocity, self.mass * self.velocity
         q[0], w[0] = self.q, self.omega
@@ -103,8 +87,8 @@ class PaperGear:
         return x[0]
 
     def second(self, steps):
-        """Center of mass after ``steps`` of the second-order form."""
-        h, predict = self.h, pascal(6)
+        """Centre of mass after ``steps`` of the second-order form."""
+        h, predict = self.h, pascal(6, "upper")
         x, q = np.zeros((6, 3)), np.zeros((6, 4))
         x[0], x[1] = self.center, h * self.velocity
         q[0], q[1] = self.q, h * 0.5 * matrix_w(self.q) @ [*self.omega, 0]

@@ -5,56 +5,36 @@ not told the paper's labelling, so the fix has to agree with one of the 24, to r
 """
 
 import numpy as np
-import paper_gear
 import pytest
+from paper_gear import FRAMES, PaperGear, eq_8
 
 DT, STEPS = 0.125, 40
-FRAMES = list(paper_gear.axis_frames())
-
-
-def best_frame(found, move):
-    """Least distance between ``found`` and the 24 results of ``move(turn)``, and that of the worst."""
-    distances = [float(np.linalg.norm(found - move(turn))) for turn in FRAMES]
-    return min(distances), max(distances)
-
-
-def test_frames_are_the_24_of_the_cube():
-    assert len(FRAMES) == 24
-    for turn in FRAMES:
-        assert paper_gear.eq_8(paper_gear.quaternion_of(turn)) == pytest.approx(turn, abs=1e-15)
 
 
 def test_rotation_does_not_depend_on_the_frame_while_q_is_of_length_one():
     """All 24 start from the same sites."""
     sites = []
     for turn in FRAMES:
-        gear = paper_gear.PaperGear("consistent", 1, DT, turn)
-        sites.append(gear.sites @ paper_gear.eq_8(gear.q))
+        gear = PaperGear("consistent", 1, DT, turn)
+        sites.append(gear.sites @ eq_8(gear.q))
+    assert len(sites) == 24
     assert all(each == pytest.approx(sites[0], abs=1e-12) for each in sites)
 
 
 @pytest.mark.parametrize("body", ["consistent", "unrotated"])
-@pytest.mark.parametrize("momentum", ["predicted", "corrected"])
-def test_first_formulation(run_case, body, momentum):
-    variables = {"body": body, "momentum": momentum, "choices": "paper", "formulation": "first"}
-    found = run_case(1, dt=DT, steps=STEPS, every=STEPS, **variables).center[-1]
+@pytest.mark.parametrize(
+    "formulation, momentum",
+    [("first", "predicted"), ("first", "corrected"), ("second", "predicted")],
+)
+def test_fix_moves_as_the_paper(run_case, body, formulation, momentum):
+    variables = {"body": body, "momentum": momentum, "formulation": formulation}
+    found = run_case(1, dt=DT, steps=STEPS, every=STEPS, choices="paper", **variables).center[-1]
 
-    def move(turn, h=DT):
-        return paper_gear.PaperGear(body, 1, h, turn, momentum == "predicted").first(STEPS)
+    def distances(h):
+        gears = [PaperGear(body, 1, h, turn, momentum == "predicted") for turn in FRAMES]
+        return [np.linalg.norm(found - getattr(gear, formulation)(STEPS)) for gear in gears]
 
-    assert best_frame(found, move)[0] < 1e-11
-    assert best_frame(found, lambda turn: move(turn, 1.01 * DT))[0] > 1e-11
-
-
-@pytest.mark.parametrize("body", ["consistent", "unrotated"])
-def test_second_formulation(run_case, body):
-    variables = {"body": body, "choices": "paper", "formulation": "second"}
-    found = run_case(1, dt=DT, steps=STEPS, every=STEPS, **variables).center[-1]
-
-    def move(turn, h=DT):
-        return paper_gear.PaperGear(body, 1, h, turn).second(STEPS)
-
-    best, worst = best_frame(found, move)
-    assert best < 1e-11
-    assert worst > 1e-9  # the frame does matter
-    assert best_frame(found, lambda turn: move(turn, 1.01 * DT))[0] > 1e-11
+    of_frames = distances(DT)
+    assert min(of_frames) < 1e-11
+    assert formulation == "first" or max(of_frames) > 1e-9  # the frame does matter
+    assert min(distances(1.01 * DT)) > 1e-11
