@@ -3,10 +3,12 @@
 import functools
 
 import clumps
+import numpy as np
 import pytest
 from synthetic import made_up_results
 
 from benchmarks.engine import series
+from benchmarks.engine.decks import deck
 
 
 @pytest.fixture
@@ -16,16 +18,23 @@ def results():
 
 
 @pytest.fixture
-def run_case(lmp_wheel, examples, tmp_path):
-    """``run_case(case, **variables)``: Series of a deck; a dump is tmp_path / "poses.dump"."""
+def run_scene(lmp_wheel, tmp_path):
+    """``run_scene(scene, ranks=1, **variables)``: thermo output of a deck, column -> samples.
 
-    def run(case, **variables):
-        deck = examples / f"case{case}" / f"in.case{case}"
-        result = lmp_wheel.run(deck, {"out": tmp_path / "poses", **variables})
-        assert result.returncode == 0, result.output
-        return series.from_thermo(result.thermo[-1])
+    A dump is tmp_path / "poses.dump".
+    """
+
+    def run(scene, ranks=1, **variables):
+        result = lmp_wheel.succeed(deck(scene), {"out": tmp_path / "poses", **variables}, ranks)
+        return {name: np.array(values) for name, values in result.thermo[-1].items()}
 
     return run
+
+
+@pytest.fixture
+def run_case(run_scene):
+    """``run_case(case, **variables)``: Series of the deck of a test case."""
+    return lambda case, **variables: series.from_thermo(run_scene(f"case{case}", **variables))
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ import runpy
 
 import numpy as np
 import pytest
+from scene_files import read_atoms
 
 MOTIONS = ("first", "second", "rigid")
 METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")
@@ -15,22 +16,14 @@ def generator(examples):
     return runpy.run_path(str(examples / "common" / "make_scenes.py"))
 
 
-def test_generator_writes_the_committed_files(generator, examples):
+def test_generator_writes_the_committed_files(generator, examples, monkeypatch):
     files = generator["scene_files"]()
     assert len(files) == 6
     for name, text in files.items():
         assert (examples / name).read_text() == text, f"{name} is not what make_scenes.py writes"
-
-
-def test_generator_check_can_fail(generator, examples):
-    masses = list(generator["SITE_MASS"])
-    masses[3] *= 1.01
-    generator["scene_files"].__globals__["SITE_MASS"] = tuple(masses)
-    try:
-        files = generator["scene_files"]()
-    finally:
-        masses[3] /= 1.01
-        generator["scene_files"].__globals__["SITE_MASS"] = (2.0, 2.0, 10.0, 50.0)
+    wrong = (2.0, 2.0, 10.0, 1.01 * 50.0)
+    monkeypatch.setitem(generator["scene_files"].__globals__, "SITE_MASS", wrong)
+    files = generator["scene_files"]()
     assert all((examples / name).read_text() != text for name, text in files.items())
 
 
@@ -40,7 +33,6 @@ def test_generator_check_can_fail(generator, examples):
 def test_initial_energy(run_case, case, formulation, body):
     found = run_case(case, formulation=formulation, body=body, steps=0)
     assert found.total[0] == pytest.approx(ENERGY[case], abs=5e-9)
-    assert found.total[0] != pytest.approx(ENERGY[case] * 1.01, abs=5e-9)
     assert found.total == pytest.approx(found.potential + found.translation + found.rotation)
 
 
@@ -55,8 +47,8 @@ def test_initial_energy_refuses_another_cage(lmp_wheel, examples, tmp_path, char
         "group body molecule 1", f"set atom 26 charge {charge}\ngroup body molecule 1"
     )
     text = text.replace("include ../common/in.scene", scene)
-    result = lmp_wheel.run(text, {"steps": 0, "formulation": "rigid"}, folder=examples / "case1")
-    assert result.returncode == 0, result.output
+    variables = {"steps": 0, "formulation": "rigid"}
+    result = lmp_wheel.succeed(text, variables, folder=examples / "case1")
     assert result.thermo[-1]["v_total"][0] != pytest.approx(ENERGY[1], abs=5e-9)
 
 
@@ -71,15 +63,9 @@ def test_unrotated_is_another_body(run_case, formulation):
 
 
 @pytest.mark.parametrize("ranks", [2, 4])
-def test_ranks_agree(lmp_wheel, examples, ranks):
-    deck = examples / "case1" / "in.case1"
-    variables = {"dt": 0.02, "steps": 1000, "every": 500}
-    center = []
-    for n in (1, ranks):
-        result = lmp_wheel.run(deck, variables, ranks=n)
-        assert result.returncode == 0, result.output
-        center.append([result.thermo[-1][f"c_centre[{k}]"][-1] for k in (1, 2, 3)])
-    assert center[0] == pytest.approx(center[1], rel=1e-10, abs=1e-10)
+def test_ranks_agree(run_case, ranks):
+    ends = [run_case(1, ranks=n, dt=0.02, steps=1000, every=500).center[-1] for n in (1, ranks)]
+    assert ends[0] == pytest.approx(ends[1], rel=1e-10, abs=1e-10)
 
 
 # --- the free top -------------------------------------------------------------------------------
@@ -89,10 +75,8 @@ MOMENTS, OMEGA_BODY = np.array([19.5, 15.0, 7.5]), np.array([0.02, 1.0, 0.01])
 @pytest.fixture(scope="module")
 def top(examples):
     """Masses (6,), positions and velocities (6, 3) of data.top."""
-    text = (examples / "top" / "data.top").read_text()
-    atoms, velocities = text.partition("Atoms # full")[2].split("Velocities")
-    atoms = np.loadtxt(atoms.split("\n"))
-    return atoms[:, 2], atoms[:, 4:7], np.loadtxt(velocities.split("\n"))[:, 1:4]
+    atoms, velocities = read_atoms(examples / "top" / "data.top")
+    return atoms[:, 2], atoms[:, 4:7], velocities
 
 
 def test_top_is_as_generated(examples):
@@ -114,19 +98,14 @@ def test_top_is_a_rigid_body_at_rest(top):
     omega_space = np.linalg.solve(tensor, (mass[:, None] * np.cross(x, v)).sum(axis=0))
     assert np.cross(omega_space, x) == pytest.approx(v, abs=1e-13)
     assert abs(axes.T @ omega_space)[::-1] == pytest.approx(OMEGA_BODY, rel=1e-12)
-    assert abs(axes.T @ omega_space)[::-1] != pytest.approx(1.01 * OMEGA_BODY, rel=1e-3)
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_energy_of_the_top(lmp_wheel, examples, method):
+def test_energy_of_the_top(run_scene, method):
+    total = run_scene("top", method=method, steps=100, every=100)["v_total"]
     expected = (MOMENTS * OMEGA_BODY**2).sum() / 2
-    deck = examples / "top" / "in.top"
-    result = lmp_wheel.run(deck, {"method": method, "steps": 100, "every": 100})
-    assert result.returncode == 0, result.output
-    total = result.thermo[-1]["v_total"]
     assert total[0] == pytest.approx(expected, rel=1e-13)
     assert total[1] == pytest.approx(expected, rel=1e-4)
-    assert total[0] != pytest.approx(expected * 1.01, rel=1e-4)
 
 
 # --- the coated body ----------------------------------------------------------------------------
@@ -137,30 +116,26 @@ def coated_energy(generator, coat):
     """Total energy of the start of case 1 with epsilon ``coat`` on spheres 1 to 3."""
     start = generator["STARTS"]["case1"]
     sites, *_ = generator["motion"](start, "consistent")
-    total = 0.0
-    for site, charge, x in zip((1, 2, 3, 4), generator["SITE_CHARGE"], sites):
-        epsilon = np.sqrt(EPSILON["cage"] * (EPSILON[4] if site == 4 else coat))
-        for cage_charge, y in generator["cage"]():
-            r = np.linalg.norm(np.subtract(x, y))
-            sixth = (10.0 / r) ** 6
-            total += charge * cage_charge / r + 4 * epsilon * (sixth**2 - sixth)
+    epsilon = np.sqrt(EPSILON["cage"] * np.array([coat, coat, coat, EPSILON[4]]))[:, None]
+    cage_charges, cage = zip(*generator["cage"]())
+    r = np.linalg.norm(np.array(sites)[:, None] - cage, axis=2)
+    sixth = (10.0 / r) ** 6
+    coulomb = np.outer(generator["SITE_CHARGE"], cage_charges) / r
+    potential = (coulomb + 4 * epsilon * (sixth**2 - sixth)).sum()
     moments, _ = generator["principal_moments_and_axes"]()
     mass = sum(generator["SITE_MASS"])
     kinetic = mass * np.dot(start.velocity, start.velocity) + np.dot(
         moments, np.square(start.omega_body)
     )
-    return total + kinetic / 2
+    return potential + kinetic / 2
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_energy_of_the_coated_body(lmp_wheel, examples, generator, method):
+def test_energy_of_the_coated_body(run_scene, generator, method):
     """Below zero, so that the body stays; an independent sum."""
     expected = coated_energy(generator, EPSILON["coat"])
     assert expected == pytest.approx(-0.82575686, abs=5e-9)
-    deck = examples / "coated" / "in.coated"
-    result = lmp_wheel.run(deck, {"method": method, "steps": 0})
-    assert result.returncode == 0, result.output
-    total = result.thermo[-1]["v_total"][0]
+    total = run_scene("coated", method=method, steps=0)["v_total"][0]
     assert total == pytest.approx(expected, rel=1e-12)
     assert total != pytest.approx(coated_energy(generator, 1.01 * EPSILON["coat"]), rel=1e-4)
 
@@ -181,10 +156,10 @@ def test_what_is_set_reaches_the_fix(lmp_wheel, examples):
     """values, passes and compensate are given to the fix only if set; more adds columns."""
     deck = examples / "case1" / "in.case1"
     named = {"steps": 0, "values": 8, "passes": 2, "compensate": "yes", "more": "f_move[1] pe"}
-    log = lmp_wheel.run(deck, named).log
+    log = lmp_wheel.succeed(deck, named).log
     assert "fix move body gear/quat molecule formulation second start bootstrap" in log
     assert "c0 position values 8 passes 2 compensate yes" in log
-    log = lmp_wheel.run(deck, {"steps": 0}).log
+    log = lmp_wheel.succeed(deck, {"steps": 0}).log
     assert not any(
         f" {word} " in line
         for line in log.splitlines()
