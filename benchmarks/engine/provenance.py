@@ -4,6 +4,7 @@ import datetime
 import os
 import platform
 import re
+import shutil
 import subprocess
 from importlib import metadata
 from pathlib import Path
@@ -31,6 +32,9 @@ def system():
 
 def commit(*paths):
     """The last commit that changed ``paths``, and whether they are changed since; "" without git."""
+
+    if not shutil.which("git"):
+        return ""
 
     def git(*words):
         done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)

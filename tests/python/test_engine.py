@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from benchmarks import __main__ as command
-from benchmarks.engine import conduct, publish
+from benchmarks.engine import conduct, provenance, publish
 from benchmarks.engine.lab import Job, Lab
 from benchmarks.engine.logs import Log
 from benchmarks.engine.panels import Bars, Curve, Panel
@@ -302,3 +302,8 @@ def test_every_study_is_listed_with_its_duration():
     assert done.exit_code == 0
     for study in conduct.all_studies().values():
         assert study.title in done.output
+
+
+def test_measurements_name_no_commit_where_git_is_not_installed(monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    assert provenance.commit("src") == ""
