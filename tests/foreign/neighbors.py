@@ -15,8 +15,8 @@ itself does not keep is no fault of fix gear/quat, and is counted apart.
 
 import re
 import subprocess
-from collections import Counter
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,12 +36,13 @@ SAME = 2e-9
 WITHIN = 4.0
 #: error of fix rigid at step DT in the plain scene, in units of that at DT/4 to DT/8
 BROAD = 1e-5
+REFUSES = re.compile(r"[Ff]ix gear/quat")
 
 
 def listed(executable, kind):
     """Names of all styles of a kind, "fix" or "compute", in `lmp -h`."""
     text = subprocess.run([str(executable), "-h"], capture_output=True, text=True).stdout
-    title = {"fix": r"\* Fix styles:?", "compute": r"\* Compute styles:?"}[kind]
+    title = rf"\* {kind.capitalize()} styles:?"
     block = re.search(rf"^{title}\n\n(.*?)\n\n\*", text, re.MULTILINE | re.DOTALL)
     return sorted(set(block[1].split()))
 
@@ -83,14 +84,13 @@ def script(kind, style, a_try, method="gear", order="after", divide=1, restart=F
 # --- comparing ------------------------------------------------------------------------------------
 def _distance(a, b):
     """Largest difference in units of the largest value; infinite if shapes or NaN differ."""
-    if a.shape != b.shape or (np.isnan(a) != np.isnan(b)).any():
+    if a.shape != b.shape:
         return np.inf
-    finite = np.isfinite(a) & np.isfinite(b)
-    if (a[~finite & ~np.isnan(a)] != b[~finite & ~np.isnan(b)]).any():
+    finite = np.isfinite(a)
+    others = (np.where(np.isfinite(values), 0.0, values) for values in (a, b))
+    if not np.array_equal(*others, equal_nan=True):
         return np.inf
-    if not finite.any():
-        return 0.0
-    scale = max(np.abs(a[finite]).max(), np.abs(b[finite]).max())
+    scale = max(np.abs(values[finite]).max(initial=0.0) for values in (a, b))
     return np.abs(a[finite] - b[finite]).max() / scale if scale > 1e-9 else 0.0
 
 
@@ -145,8 +145,6 @@ class Outcome:
     result: str = ""
     faults: list = field(default_factory=list)
     excused: list = field(default_factory=list)
-    message: str = ""
-    ranks: tuple = (1,)
 
     @property
     def name(self):
@@ -154,33 +152,34 @@ class Outcome:
         return f"{self.kind} {self.a_try.group} {self.style}{words}"
 
 
-REFUSES = re.compile(r"[Ff]ix gear/quat")
+class Run(NamedTuple):
+    """One run of the scene with that number."""
+
+    scene: int
+    order: str = "after"
+    ranks: int = 1
+    restart: bool = False
+    method: str = "gear"
+    divide: int = 1
+
+    def __str__(self):
+        many, restart = "s" * (self.ranks > 1), ", restart" * self.restart
+        return f"{self.order}, {self.ranks} rank{many}{restart}"
+
+    def rigid(self):
+        """The same with fix rigid/nve/small."""
+        return self._replace(method="rigid")
 
 
-FIRST = ("after", 1, False)
-#: how the reference is run: a rigid fix takes its first forces from the fixes that are defined before
-REFERENCE = ("before", 1, False)
-
-
-def reference(a_try):
-    return FIRST if a_try.behind else REFERENCE
-
-
-def variants(a_try, ranks):
-    """(order, ranks, restart) of the runs of a scene; the first is what others are compared with."""
-    found = [FIRST, ("before", 1, False)]
+def variants(n, a_try, ranks):
+    """The runs of scene ``n`` that have to agree; the first is what others are compared with."""
+    found, several = [Run(n), Run(n, "before")], [number for number in ranks if number > 1]
     if a_try.kind in (INTEGRATES, BOX, RIGID_ONLY):
-        return found + [("after", r, False) for r in ranks if r > 1]
-    found += [("after", 1, True), ("before", 1, True)]
-    for r in ranks:
-        if r > 1:
-            found += [("after", r, False), ("before", r, True)]
+        return found + [Run(n, ranks=number) for number in several]
+    found += [Run(n, restart=True), Run(n, "before", restart=True)]
+    for number in several:
+        found += [Run(n, "after", number), Run(n, "before", number, restart=True)]
     return found
-
-
-def named(variant):
-    order, ranks, restart = variant
-    return f"{order}, {ranks} rank{'s' * (ranks > 1)}{', restart' * restart}"
 
 
 class Campaign:
@@ -190,71 +189,47 @@ class Campaign:
         self.scenes, self.ranks, self.run_jobs = scenes, ranks, run
         self.answers = {}
 
-    def _need(self, wanted):
-        """Runs what has not been run: keys (scene, method, order, ranks, divide, restart)."""
+    def _answers(self, *runs):
+        """Answers of these runs; those that have not been made are made first, all together."""
         for ranks in self.ranks:
-            jobs = {}
-            for key in wanted:
-                if key in self.answers or key[3] != ranks:
-                    continue
-                number, method, order, _, divide, restart = key
-                kind, style, a_try = self.scenes[number]
-                jobs[key] = script(kind, style, a_try, method, order, divide, restart)
+            jobs = {
+                run: script(*self.scenes[run.scene], run.method, run.order, run.divide, run.restart)
+                for run in runs
+                if run.ranks == ranks and run not in self.answers
+            }
             if jobs:
                 self.answers |= self.run_jobs(jobs, ranks)
+        return [self.answers[run] for run in runs]
 
-    def _key(self, number, variant, method="gear", divide=1):
-        order, ranks, restart = variant
-        return (number, method, order, ranks, divide, restart)
+    def _references(self, n):
+        """Runs in which scene ``n`` is compared with fix rigid: ours, and then with fix rigid."""
+        a_try = self.scenes[n][2]
+        # a rigid fix takes its first forces from the fixes that are defined before
+        rigid = Run(n, "after" if a_try.behind else "before").rigid()
+        if a_try.kind in (PASSIVE, FORCE, TAKEN):
+            return [Run(n, divide=4), rigid._replace(divide=4), rigid._replace(divide=8)]
+        return [Run(n), rigid] if a_try.kind == COUNT else []
 
     def outcomes(self):
         numbers = range(len(self.scenes))
-        self._need(
-            [self._key(n, v) for n in numbers for v in variants(self.scenes[n][2], self.ranks)]
-        )
-        smaller = []
-        for n in numbers:
-            a_try = self.scenes[n][2]
-            if a_try.kind in (PASSIVE, FORCE, TAKEN):
-                smaller += [self._key(n, FIRST, "gear", 4)]
-                smaller += [self._key(n, reference(a_try), "rigid", d) for d in (4, 8)]
-            elif a_try.kind in (COUNT, CHANCE, MOVES):
-                smaller += [self._key(n, reference(a_try), "rigid")]
-        self._need(smaller)
-        found = [self._judge(n) for n in numbers if self.scenes[n][1]]
-        return found
-
-    def _plain(self, atoms):
-        for n, (_, style, a_try) in enumerate(self.scenes):
-            if not style and a_try.atoms == atoms:
-                return n
-        raise KeyError(atoms)
+        for runs_of in (lambda n: variants(n, self.scenes[n][2], self.ranks), self._references):
+            self._answers(*(run for n in numbers for run in runs_of(n)))
+        return [self._judge(n) for n in numbers if self.scenes[n][1]]
 
     def _judge(self, n):
-        kind, style, a_try = self.scenes[n]
-        outcome = Outcome(kind, style, a_try, ranks=self.ranks)
-        answers = {v: self.answers[self._key(n, v)] for v in variants(a_try, self.ranks)}
-        errors = {v: answer.error for v, answer in answers.items() if answer.error}
-        if a_try.kind in (INTEGRATES, BOX, MOVES, RIGID_ONLY):
+        outcome = Outcome(*self.scenes[n])
+        kind, runs = outcome.a_try.kind, variants(n, outcome.a_try, self.ranks)
+        answers = dict(zip(runs, self._answers(*runs)))
+        if kind in (INTEGRATES, BOX, MOVES, RIGID_ONLY):
             self._refused(outcome, answers)
             return outcome
-        errors = self._without_refusals_of_lammps(n, outcome, answers, errors)
-        if errors:
-            self._broken(n, outcome, errors)
-            return outcome
-        self._consistent(n, outcome, answers)
-        if a_try.kind == PASSIVE:
-            plain = self.answers[self._key(self._plain(a_try.atoms), FIRST)]
-            wrong = worst(distances(plain, answers[FIRST]), SAME)
-            if wrong:
-                outcome.faults.append(f"alone: {wrong}")
-        if a_try.kind in (PASSIVE, FORCE, TAKEN):
-            self._converges(n, outcome)
-        elif a_try.kind in (COUNT, CHANCE):
-            self._like_rigid(n, outcome)
-        outcome.result = {PASSIVE: "same"}.get(a_try.kind, "acts")
-        if outcome.faults:
-            outcome.result = "DIFFERS"
+        self._without_refusals_of_lammps(outcome, answers)
+        if not outcome.faults:
+            self._consistent(outcome, answers)
+            if kind == PASSIVE:
+                self._as_without(outcome, answers[Run(n)])
+            self._like_rigid(outcome, self._answers(*self._references(n)))
+        outcome.result = "DIFFERS" if outcome.faults else "same" if kind == PASSIVE else "acts"
         return outcome
 
     def _refused(self, outcome, answers):
@@ -263,88 +238,79 @@ class Campaign:
 
         def said(answer):
             """What the fix, or else LAMMPS, has against the neighbor."""
-            if answer.error:
-                return answer.error.splitlines()[0]
-            lines = [line for line in answer.warnings if REFUSES.search(line) and name.search(line)]
-            return next((line for line in lines if "WARNING" in line), "")
+            warnings = (
+                line
+                for line in answer.warnings
+                if "WARNING" in line and REFUSES.search(line) and name.search(line)
+            )
+            return answer.first_line if answer.error else next(warnings, "")
 
-        first = answers[FIRST]
-        outcome.message = said(first)
+        first = next(iter(answers.values()))
         if not all(map(said, answers.values())):
             outcome.result = "DIFFERS"
             outcome.faults.append("neither refused nor warned of")
-        elif not REFUSES.search(outcome.message):
+        elif not REFUSES.search(said(first)):
             outcome.result = "LAMMPS refuses"
         else:
             outcome.result = "refused" if first.error else "warned"
 
-    def _without_refusals_of_lammps(self, n, outcome, answers, errors):
-        """Errors but those that LAMMPS ends the same variant with beside fix rigid, such as a style that does
-        not run on several ranks: these variants leave ``answers``.  A crash is never excused."""
-        left = {}
-        for variant, error in errors.items():
-            key = self._key(n, variant, "rigid")
-            self._need([key])
-            if error.startswith("crash") or self.answers[key].error != error or variant == FIRST:
-                left[variant] = error
-                continue
-            del answers[variant]
-            outcome.excused.append(f"{named(variant)}: {error.strip().splitlines()[0]}")
-        return left
+    def _without_refusals_of_lammps(self, outcome, answers):
+        """Excuses errors that LAMMPS ends the same variant with beside fix rigid, such as a style that does
+        not run on several ranks: these leave ``answers``.  Any other is a fault; a crash is never excused."""
+        errors = {run: answer for run, answer in answers.items() if answer.error}
+        for run, answer in errors.items():
+            (rigid,) = self._answers(run.rigid())
+            told = f"{run}: {answer.first_line}"
+            first = run == next(iter(answers))
+            if answer.error.startswith("crash") or rigid.error != answer.error or first:
+                same = f"with fix rigid: {rigid.first_line}" if rigid.error else "fix rigid runs"
+                outcome.faults.append(f"{told} ({same})")
+            else:
+                del answers[run]
+                outcome.excused.append(told)
 
-    def _broken(self, n, outcome, errors):
-        variant, error = next(iter(errors.items()))
-        outcome.result = "DIFFERS"
-        key = self._key(n, variant, "rigid")
-        self._need([key])
-        same = self.answers[key].error
-        outcome.faults.append(
-            f"{named(variant)}: {error.strip().splitlines()[0]}"
-            + (f" (with fix rigid: {same.splitlines()[0]})" if same else " (fix rigid runs)")
-        )
-
-    def _consistent(self, n, outcome, answers):
-        for variant, answer in answers.items():
-            if variant[1] > 1 and outcome.a_try.kind == CHANCE:
+    def _consistent(self, outcome, answers):
+        first = next(iter(answers))
+        for run, answer in answers.items():
+            if run.ranks > 1 and outcome.a_try.kind == CHANCE:
                 continue  # each rank draws its own numbers
-            ours = distances(answers[FIRST], answer)
+            ours = distances(answers[first], answer)
             wrong = worst(ours, SAME)
             if not wrong:
                 continue
-            keys = [self._key(n, v, "rigid") for v in (FIRST, variant)]
-            self._need(keys)
-            control = distances(*(self.answers[key] for key in keys))
+            control = distances(*self._answers(first.rigid(), run.rigid()))
             bad = [name for name, value in ours.items() if not value <= SAME]
             if all(control.get(name, 0.0) >= 0.1 * ours[name] for name in bad):
-                outcome.excused.append(f"{named(variant)}: {wrong}")
+                outcome.excused.append(f"{run}: {wrong}")
             else:
                 rigid = worst(control, SAME) or "same"
-                outcome.faults.append(f"{named(variant)}: {wrong} (with fix rigid: {rigid})")
+                outcome.faults.append(f"{run}: {wrong} (with fix rigid: {rigid})")
 
-    def _converges(self, n, outcome):
-        """Against fix rigid at small steps."""
-        ours, coarse, fine = (
-            self.answers[key]
-            for key in (
-                self._key(n, FIRST, "gear", 4),
-                self._key(n, reference(outcome.a_try), "rigid", 4),
-                self._key(n, reference(outcome.a_try), "rigid", 8),
-            )
+    def _as_without(self, outcome, answer):
+        """Against the same atoms without a neighbor."""
+        (plain,) = (
+            n
+            for n, (_, style, a_try) in enumerate(self.scenes)
+            if not style and a_try.atoms == outcome.a_try.atoms
         )
-        if ours.error or fine.error:
-            outcome.faults.append(f"rigid: {(ours.error or fine.error).splitlines()[0]}")
-            return
-        wrong = beyond(ours, coarse, fine, outcome.a_try)
+        wrong = worst(distances(*self._answers(Run(plain)), answer), SAME)
         if wrong:
-            outcome.faults.append(f"rigid: {wrong}")
+            outcome.faults.append(f"alone: {wrong}")
 
-    def _like_rigid(self, n, outcome):
-        """Against fix rigid at the same step: its error at that step is known to be below BROAD."""
-        ours = self.answers[self._key(n, FIRST)]
-        rigid = self.answers[self._key(n, reference(outcome.a_try), "rigid")]
-        wrong = worst(distances(ours, rigid), dict.fromkeys(distances(ours, rigid), BROAD))
-        if wrong and outcome.a_try.kind != CHANCE:
-            outcome.faults.append(f"rigid at the same step: {wrong}")
+    def _like_rigid(self, outcome, answers):
+        """Against fix rigid at small steps, or at the same: its error at that step is below BROAD."""
+        errors = [answer.first_line for answer in answers if answer.error]
+        if errors:
+            outcome.faults.append(f"rigid: {errors[0]}")
+        elif len(answers) == 3:
+            wrong = beyond(*answers, outcome.a_try)
+            if wrong:
+                outcome.faults.append(f"rigid: {wrong}")
+        elif answers:
+            apart = distances(*answers)
+            wrong = worst(apart, dict.fromkeys(apart, BROAD))
+            if wrong:
+                outcome.faults.append(f"rigid at the same step: {wrong}")
 
 
 # --- all ------------------------------------------------------------------------------------------
@@ -364,7 +330,3 @@ def scenes_of(executable, only=None):
             else:
                 scenes += [(kind, style, a_try) for a_try in found]
     return scenes, reasons, unknown
-
-
-def counted(outcomes):
-    return Counter(outcome.result for outcome in outcomes)

@@ -5,6 +5,7 @@ styles that look at topology have some to look at; the forces are smooth.
 """
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 MOLECULES, FREE, SIDE = 27, 8, 3.2
 #: sites of a molecule: type, place, charge
@@ -21,74 +22,62 @@ FORMATS = {
     "hybrid full sphere": "{id} {type} {x} {mol} {q} 0.6 {density}",
     "hybrid full sphere dipole": "{id} {type} {x} {mol} {q} 0.6 {density} {mu}",
 }
+#: sections of topology: atoms of each entry, counted from 1 in each molecule
+TOPOLOGY = {
+    "bond": ((1, 2), (1, 3), (1, 4)),
+    "angle": ((2, 1, 3),),
+    "dihedral": ((2, 1, 3, 4),),
+    "improper": ((2, 1, 3, 4),),
+}
 
 
-def _rotation(rng):
-    q = rng.normal(size=4)
-    w, x, y, z = q / np.linalg.norm(q)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def _atoms(rng):
+def _atoms():
     """(type, molecule, charge, place, velocity, angular velocity) of all atoms, molecules first."""
+    rng = np.random.default_rng(7)
     sites = np.array([place for _, place, _ in SITES])
     masses = np.array([MASSES[kind - 1] for kind, _, _ in SITES])
     arm = sites - masses @ sites / masses.sum()
-    nodes = [SIDE * (np.array(n) + 0.5) for n in np.ndindex(3, 3, 3)]
-    found = []
-    for number, node in enumerate(nodes):
-        turned = arm @ _rotation(rng).T
+    atoms = []
+    for number, node in enumerate(np.ndindex(3, 3, 3)):
+        turned = Rotation.from_quat(np.roll(rng.normal(size=4), -1)).apply(arm)
         velocity, omega = 0.4 * rng.normal(size=3), rng.normal(size=3)
-        place = node + 0.1 * rng.normal(size=3)
+        place = SIDE * (np.array(node) + 0.5) + 0.1 * rng.normal(size=3)
         for (kind, _, charge), r in zip(SITES, turned):
-            found.append(
+            atoms.append(
                 (kind, number + 1, charge, place + r, velocity + np.cross(omega, r), omega)
             )
-    for n in np.ndindex(2, 2, 2):
-        place = SIDE * (np.array(n) + 1.0) + 0.1 * rng.normal(size=3)
-        found.append((4, 0, 0.0, place, 0.5 * rng.normal(size=3), np.zeros(3)))
-    return found
+    for node in np.ndindex(2, 2, 2):
+        place = SIDE * (np.array(node) + 1.0) + 0.1 * rng.normal(size=3)
+        atoms.append((4, 0, 0.0, place, 0.5 * rng.normal(size=3), np.zeros(3)))
+    return atoms
+
+
+def _numbers(values):
+    return " ".join(f"{value:.15g}" for value in values)
 
 
 def data(atom_style):
     """Text of a data file."""
-    atoms, edge = _atoms(np.random.default_rng(7)), 3 * SIDE
-    bonds = [(4 * m + 1, 4 * m + n) for m in range(MOLECULES) for n in (2, 3, 4)]
-    angles = [(4 * m + 2, 4 * m + 1, 4 * m + 3) for m in range(MOLECULES)]
-    four = [(4 * m + 2, 4 * m + 1, 4 * m + 3, 4 * m + 4) for m in range(MOLECULES)]
-    lines = ["27 molecules and 8 atoms", ""]
-    lines += [f"{len(atoms)} atoms", f"{len(bonds)} bonds", f"{len(angles)} angles"]
-    lines += [f"{len(four)} dihedrals", f"{len(four)} impropers", "4 atom types", "1 bond types"]
-    lines += ["1 angle types", "1 dihedral types", "1 improper types"]
-    lines += [f"0 {edge} {axis}lo {axis}hi" for axis in "xyz"] + [""]
-    if "sphere" not in atom_style:
-        lines += ["Masses", "", *(f"{n + 1} {m}" for n, m in enumerate(MASSES)), ""]
-    lines += [f"Atoms # {atom_style}", ""]
+    atoms, spheres = _atoms(), "sphere" in atom_style
+    lines = ["27 molecules and 8 atoms", "", f"{len(atoms)} atoms", "4 atom types"]
+    for what, entries in TOPOLOGY.items():
+        lines += [f"{MOLECULES * len(entries)} {what}s", f"1 {what} types"]
+    lines += [f"0 {3 * SIDE} {axis}lo {axis}hi" for axis in "xyz"]
+    if not spheres:
+        lines += ["", "Masses", "", *(f"{n + 1} {m}" for n, m in enumerate(MASSES))]
+    lines += ["", f"Atoms # {atom_style}", ""]
     for n, (kind, mol, q, x, _, _) in enumerate(atoms):
-        density = MASSES[kind - 1] / (np.pi / 6 * 0.6**3)
-        mu = f"{0.3 * np.cos(n):.15g} {0.3 * np.sin(n):.15g} 0.1"
-        place = " ".join(f"{value:.15g}" for value in x)
-        words = {"id": n + 1, "mol": mol, "type": kind, "q": q, "x": place}
-        lines.append(FORMATS[atom_style].format(**words, density=density, mu=mu))
-    spins = "sphere" in atom_style
+        words = {"id": n + 1, "mol": mol, "type": kind, "q": q, "x": _numbers(x)}
+        words["density"] = MASSES[kind - 1] / (np.pi / 6 * 0.6**3)
+        words["mu"] = _numbers((0.3 * np.cos(n), 0.3 * np.sin(n), 0.1))
+        lines.append(FORMATS[atom_style].format(**words))
     lines += ["", "Velocities", ""]
     for n, (*_, v, omega) in enumerate(atoms):
-        values = [*v, *omega] if spins else v
-        lines.append(f"{n + 1} " + " ".join(f"{value:.15g}" for value in values))
-    for title, entries in (
-        ("Bonds", bonds),
-        ("Angles", angles),
-        ("Dihedrals", four),
-        ("Impropers", four),
-    ):
-        lines += ["", title, ""]
-        lines += [f"{n + 1} 1 {' '.join(map(str, e))}" for n, e in enumerate(entries)]
+        lines.append(f"{n + 1} {_numbers([*v, *omega] if spheres else v)}")
+    for what, entries in TOPOLOGY.items():
+        lines += ["", f"{what.capitalize()}s", ""]
+        ids = np.concatenate([np.array(entries) + 4 * m for m in range(MOLECULES)])
+        lines += [f"{n + 1} 1 {' '.join(map(str, row))}" for n, row in enumerate(ids)]
     return "\n".join(lines) + "\n"
 
 
@@ -101,9 +90,8 @@ def write_files(folder):
     folder.mkdir(parents=True, exist_ok=True)
     for style in FORMATS:
         (folder / file_name(style)).write_text(data(style))
-    atoms = _atoms(np.random.default_rng(7))
-    rows = [f"{n + 1} {' '.join(map(str, atom[3] + 0.5))}" for n, atom in enumerate(atoms)]
-    (folder / "target").write_text("\n".join(rows) + "\n")  # for fix tmd
+    rows = [f"{n + 1} {_numbers(atom[3] + 0.5)}\n" for n, atom in enumerate(_atoms())]
+    (folder / "target").write_text("".join(rows))  # for fix tmd
 
 
 FORCES = """pair_style lj/charmm/coul/charmm 2.0 3.0

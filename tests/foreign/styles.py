@@ -7,6 +7,7 @@ time step is divided.
 
 import re
 from dataclasses import dataclass
+from functools import partial
 
 #: what a neighbor does to atoms
 PASSIVE = "passive"  # nothing
@@ -54,39 +55,22 @@ NO_DIHEDRALS = ("dihedral_style none", "improper_style none")
 SLAB = ("region slab block INF INF INF INF 0 3",)
 
 
-def passive(args="", **words):
-    return (Try(PASSIVE, args, **words),)
+def _one(kind, args="", group="all", **words):
+    return (Try(kind, args, group, **words),)
 
 
-def force(args="", **words):
-    return (Try(FORCE, args, **words),)
+passive, force, chance, count, integrates, box = (
+    partial(_one, kind) for kind in (PASSIVE, FORCE, CHANCE, COUNT, INTEGRATES, BOX)
+)
 
 
-def chance(args="", **words):
-    return (Try(CHANCE, args, **words),)
-
-
-def count(args="", **words):
-    return (Try(COUNT, args, **words),)
-
-
-def integrates(args="", **words):
-    return (Try(INTEGRATES, args, **words),)
-
-
-def box(args="", **words):
-    return (Try(BOX, args, **words),)
-
-
-def taken(args, pieces, free=COUNT, **words):
-    """The same for changes that bodies take over."""
-    return (Try(TAKEN, args, pieces=pieces, **words), Try(free, args, **{**words, "group": "free"}))
-
-
-def moves(args="", free=COUNT, **words):
+def moves(args="", free=COUNT, kind=MOVES, pieces=0, **words):
     """On all atoms, and (of another kind) on those only that are in no body."""
-    found = (Try(MOVES, args, **words),)
-    return found + ((Try(free, args, **{**words, "group": "free"}),) if free else ())
+    both = _one(kind, args, pieces=pieces, **words)
+    return both + (_one(free, args, "free", **words) if free else ())
+
+
+taken = partial(moves, kind=TAKEN)
 
 
 ENERGY = "energy yes virial yes"
@@ -159,10 +143,10 @@ FIXES = {
         atoms=SPHERES,
         before=("region slab block -20 20 -20 20 0.5 20",),
     ),
-    "wall/harmonic": force("zlo -1.0 1.0 1.0 2.5", once=WALLS, modify=ENERGY),
-    "wall/lj1043": force("zlo -1.0 1.0 1.0 2.5", once=WALLS, modify=ENERGY),
-    "wall/lj126": force("zlo -1.0 1.0 1.0 2.5", once=WALLS, modify=ENERGY),
-    "wall/lj93": force("zlo -1.0 1.0 1.0 2.5", once=WALLS, modify=ENERGY),
+    **{
+        f"wall/{name}": force("zlo -1.0 1.0 1.0 2.5", once=WALLS, modify=ENERGY)
+        for name in ("harmonic", "lj1043", "lj126", "lj93")
+    },
     "wall/morse": force("zlo -1.0 1.0 1.0 1.0 2.5", once=WALLS, modify=ENERGY),
     "wall/lepton": force('zlo -1.0 "(r-2.5)^2" 2.5', once=WALLS, modify=ENERGY),
     "wall/region": force(
@@ -199,17 +183,17 @@ FIXES = {
         free=None,
     ),
     "ffl": moves("1.0 1.0 1.0 1234", free=None),
-    "heat": taken("<5> 0.1", 5),
-    "momentum": taken("<5> linear 1 1 1", 5),
+    "heat": taken("<5> 0.1", pieces=5),
+    "momentum": taken("<5> linear 1 1 1", pieces=5),
     "momentum/chunk": (Try(TAKEN, "<5> cc linear 1 1 1", before=CHUNKS, pieces=5),),
     "oneway": moves("1 whole -x", before=WHOLE),
     "rattle": moves("0.0001 20 0 b 1", free=None),
     "recenter": moves("INIT INIT INIT", free=None),
     "shake": moves("0.0001 20 0 b 1", free=None),
-    "temp/berendsen": taken("1 1 0.5", 1),
+    "temp/berendsen": taken("1 1 0.5", pieces=1),
     "temp/csld": moves("1 1 0.5 1234", free=CHANCE),
     "temp/csvr": (Try(CHANCE, "1 1 0.5 1234"), Try(CHANCE, "1 1 0.5 1234", "free")),
-    "temp/rescale": taken("<5> 1 1 0.01 1.0", 5),
+    "temp/rescale": taken("<5> 1 1 0.01 1.0", pieces=5),
     "thermal/conductivity": moves("5 z 4"),
     "viscosity": moves("5 x z 4"),
     "wall/flow": moves("x 1.0 1.0 1234 2 2.0 5.0", free=None),
@@ -232,17 +216,6 @@ FIXES = {
     "nvt/sphere": integrates("temp 1 1 1", atoms=SPHERES),
     "poems": integrates("molecule", group="bodies"),
     "tfmc": integrates("0.1 1.0 1234"),
-    **{
-        f"rigid{name}": integrates(f"molecule{words}", group="bodies")
-        for name, words in (
-            ("", ""),
-            ("/nve", ""),
-            ("/small", ""),
-            ("/nve/small", ""),
-            ("/nvt", " temp 1 1 1"),
-            ("/nvt/small", " temp 1 1 1"),
-        )
-    },
     # --- changes the box ---
     "box/relax": box("iso 0.0"),
     "deform": box("1 x erate 0.01"),
@@ -257,67 +230,72 @@ FIXES = {
     "nvt/sllod": integrates("temp 1 1 1"),
     "press/berendsen": box("iso 1 1 1"),
     "press/langevin": box("iso 1 1 1 temp 1 1 1234"),
+    # --- rigid fixes ---
     **{
-        f"rigid/{name}": box(f"molecule {words}", group="bodies")
-        for name, words in (
-            ("nph", "iso 1 1 1"),
-            ("npt", "temp 1 1 1 iso 1 1 1"),
-            ("nph/small", "iso 1 1 1"),
-            ("npt/small", "temp 1 1 1 iso 1 1 1"),
+        f"rigid{name}{small}": found
+        for small in ("", "/small")
+        for name, found in (
+            ("", integrates("molecule", "bodies")),
+            ("/nve", integrates("molecule", "bodies")),
+            ("/nvt", integrates("molecule temp 1 1 1", "bodies")),
+            ("/nph", box("molecule iso 1 1 1", "bodies")),
+            ("/npt", box("molecule temp 1 1 1 iso 1 1 1", "bodies")),
         )
     },
 }
 
-_CHUNK = dict(before=CHUNKS)
+#: compute styles that differ in nothing but their name
+WITHOUT_ARGUMENTS = """
+    ackland/atom com dipole displace/atom fragment/atom gyration hexorder/atom ke ke/atom
+    momentum msd/nongauss orientorder/atom pe pe/atom temp temp/com temp/deform temp/rotate
+    vacf voronoi/atom
+""".split()
+OF_CHUNKS = """
+    angmom/chunk com/chunk dipole/chunk gyration/chunk inertia/chunk msd/chunk omega/chunk
+    torque/chunk vacf/chunk vcm/chunk
+""".split()
+OF_SPHERES = """
+    contact/atom erotate/sphere erotate/sphere/atom temp/sphere
+""".split()
+OF_A_GROUP = """
+    force/tally group/group pe/tally stress/tally
+""".split()
 COMPUTES = {
-    "ackland/atom": passive(),
+    **dict.fromkeys(WITHOUT_ARGUMENTS, passive()),
+    **dict.fromkeys(OF_CHUNKS, passive("cc", before=CHUNKS)),
+    **dict.fromkeys(OF_SPHERES, passive(atoms=SPHERES)),
+    **dict.fromkeys(OF_A_GROUP, passive("free")),
     "adf": passive("10 1 1 1 0 3 0 3"),
     "aggregate/atom": passive("1.0"),
     "angle/local": passive("theta eng"),
-    "angmom/chunk": passive("cc", **_CHUNK),
     "ave/sphere/atom": passive("cutoff 2.5"),
     "bond/local": passive("dist engpot force velvib omega"),
     "born/matrix": passive("numdiff 0.0001 vv", before=("compute vv all pressure NULL virial",)),
     "centro/atom": passive("12"),
-    "centroid/stress/atom": (
-        Try(PASSIVE, "NULL virial"),
-        Try(PASSIVE, "NULL fix"),
-        Try(PASSIVE, "NULL"),
+    "centroid/stress/atom": tuple(
+        Try(PASSIVE, args) for args in ("NULL virial", "NULL fix", "NULL")
     ),
     "chunk/atom": passive("molecule"),
     "chunk/spread/atom": passive("cc c_cm[*]", before=(*CHUNKS, "compute cm all com/chunk cc")),
     "cluster/atom": passive("1.0"),
     "cna/atom": passive("1.5"),
     "cnp/atom": passive("1.5"),
-    "com": passive(),
-    "com/chunk": passive("cc", **_CHUNK),
-    "contact/atom": passive(atoms=SPHERES),
     "coord/atom": passive("cutoff 1.5"),
     "count/type": passive("atom"),
     "dihedral/local": passive("phi"),
-    "dipole": passive(),
-    "dipole/chunk": passive("cc", **_CHUNK),
-    "displace/atom": passive(),
     "efield/wolf/atom": passive("0.2"),
     "entropy/atom": passive("0.25 3.0"),
-    "erotate/sphere": passive(atoms=SPHERES),
-    "erotate/sphere/atom": passive(atoms=SPHERES),
     "event/displace": passive("0.5"),
     "fabric": passive("type contact", atoms=SPHERES),
-    "force/tally": passive("free"),
-    "fragment/atom": passive(),
     "gaussian/grid/local": passive("grid 2 2 2 2.0 0.5 0.5 0.5 0.5 1 1 1 1"),
     "global/atom": passive(
         "c_ch c_cm[1]",
         before=(
-            "compute cc all chunk/atom molecule",
+            *CHUNKS,
             "compute ch all chunk/atom type",
             "compute cm all com/chunk cc",
         ),
     ),
-    "group/group": passive("free"),
-    "gyration": passive(),
-    "gyration/chunk": passive("cc", **_CHUNK),
     "gyration/shape": passive("gg", before=("compute gg all gyration",)),
     "gyration/shape/chunk": passive(
         "gg", before=(*CHUNKS, "compute gg all gyration/chunk cc tensor")
@@ -336,27 +314,13 @@ COMPUTES = {
     ),
     "heat/flux/tally": passive("all"),
     "heat/flux/virial/tally": passive("free", group="bodies"),
-    "hexorder/atom": passive(),
     "improper/local": passive("chi"),
-    "inertia/chunk": passive("cc", **_CHUNK),
-    "ke": passive(),
-    "ke/atom": passive(),
-    "momentum": passive(),
     "msd": (Try(PASSIVE), Try(PASSIVE, "com yes")),
-    "msd/chunk": passive("cc", before=CHUNKS),
-    "msd/nongauss": passive(),
-    "omega/chunk": passive("cc", **_CHUNK),
-    "orientorder/atom": passive(),
     "pair": passive("lj/charmm/coul/charmm"),
     "pair/local": passive("dist eng force"),
-    "pe": passive(),
-    "pe/atom": passive(),
     "pe/mol/tally": passive("all"),
-    "pe/tally": passive("free"),
-    "pressure": (
-        Try(PASSIVE, "thermo_temp"),
-        Try(PASSIVE, "NULL virial"),
-        Try(PASSIVE, "NULL fix"),
+    "pressure": tuple(
+        Try(PASSIVE, args) for args in ("thermo_temp", "NULL virial", "NULL fix")
     ),
     "property/atom": passive("xu yu zu vx fx"),
     "property/chunk": passive(
@@ -377,28 +341,17 @@ COMPUTES = {
     "stress/mop": passive("x 4.8 kin conf", before=NO_DIHEDRALS),
     "stress/mop/profile": passive("x 0 2.4 kin conf", before=NO_DIHEDRALS),
     "stress/spherical": passive("5 5 5 0.5 4.0"),
-    "stress/tally": passive("free"),
-    "temp": passive(),
-    "temp/chunk": passive("cc temp com yes", **_CHUNK),
-    "temp/com": passive(),
-    "temp/deform": passive(),
+    "temp/chunk": passive("cc temp com yes", before=CHUNKS),
     "temp/partial": passive("1 1 0"),
     "temp/profile": passive("1 1 1 z 4"),
     "temp/ramp": passive("vx 0 1 z 0 9"),
     "temp/region": passive("slab", before=SLAB),
-    "temp/rotate": passive(),
-    "temp/sphere": passive(atoms=SPHERES),
-    "torque/chunk": passive("cc", **_CHUNK),
-    "vacf": passive(),
-    "vacf/chunk": passive("cc", **_CHUNK),
-    "vcm/chunk": passive("cc", **_CHUNK),
     "viscosity/cos": passive(before=("fix ac free accelerate/cos 0.0",)),
-    "voronoi/atom": passive(),
     "xrd": passive("1.5 C C C C 2Theta 10 100 c 4 4 4 LP 1"),
     "fep/ta": passive("1.0 xy 1.0001 tail no"),
-    "erotate/rigid": (Try(RIGID_ONLY, "m"),),
-    "ke/rigid": (Try(RIGID_ONLY, "m"),),
-    "rigid/local": (Try(RIGID_ONLY, "m x y z"),),
+    "erotate/rigid": _one(RIGID_ONLY, "m"),
+    "ke/rigid": _one(RIGID_ONLY, "m"),
+    "rigid/local": _one(RIGID_ONLY, "m x y z"),
 }
 #: styles that are not tried: pattern and reason
 _REAX = "reads or needs a reactive or charge-equilibration force field"
@@ -463,13 +416,8 @@ NOT_TRIED = {
 
 def known(kind, style):
     """The Try entries of a style; a reason (text) if it is not tried; None if it is not known."""
-    table = {"fix": FIXES, "compute": COMPUTES}[kind]
-    if style in table:
-        return table[style]
-    for pattern, reason in NOT_TRIED[kind]:
-        if re.fullmatch(pattern, style):
-            return reason
-    return None
+    reasons = (why for pattern, why in NOT_TRIED[kind] if re.fullmatch(pattern, style))
+    return {"fix": FIXES, "compute": COMPUTES}[kind].get(style) or next(reasons, None)
 
 
 def scaled(text, divide):

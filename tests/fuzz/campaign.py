@@ -2,19 +2,15 @@
 
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
-import sysconfig
 import time
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 
-from running import MPI_ENVIRONMENT, ONLY_TREE, OPEN_MPI_ENVIRONMENT, TREE_BUILD, UNDEFINED
+from running import ONLY_TREE, TREE_BUILD, UNDEFINED, python_environment
 
-TESTS = Path(__file__).resolve().parents[1]
 IN_A_PROCESS = 1000
 
 
@@ -33,27 +29,16 @@ class Outcome:
 
 
 def surroundings():
-    """Environment in which `import lammps` finds the LAMMPS to try: the plugin's, or one with sanitizers."""
-    libraries, modules, more = Path(sysconfig.get_path("data")) / "lib", [TESTS], {}
-    if ONLY_TREE:
-        cache = (TREE_BUILD / "CMakeCache.txt").read_text()
-        source = Path(re.search(r"^lammps_SOURCE_DIR:STATIC=(.*)$", cache, re.MULTILINE)[1])
-        libraries, modules = TREE_BUILD, [TESTS, source.parent / "python"]
-        found = [
-            subprocess.check_output(["gcc", f"-print-file-name={name}"], text=True).strip()
-            for name in ("libasan.so", "libubsan.so")
-        ]
-        # Python itself was not built with them, and leaks
-        options = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
-        more = {**OPEN_MPI_ENVIRONMENT, "LD_PRELOAD": " ".join(found), "ASAN_OPTIONS": options}
-    return {
-        **os.environ,
-        "PYTHONPATH": os.pathsep.join(map(str, modules)),
-        "LD_LIBRARY_PATH": str(libraries),
-        "OMP_NUM_THREADS": "1",
-        **MPI_ENVIRONMENT,
-        **more,
-    }
+    """Environment of the LAMMPS to try: the plugin's, or one with sanitizers."""
+    if not ONLY_TREE:
+        return python_environment()
+    found = [
+        subprocess.check_output(["gcc", f"-print-file-name={name}"], text=True).strip()
+        for name in ("libasan.so", "libubsan.so")
+    ]
+    # Python itself was not built with them, and leaks
+    options = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
+    return python_environment(TREE_BUILD, LD_PRELOAD=" ".join(found), ASAN_OPTIONS=options)
 
 
 def run_worker(kind, seed, count, folder):

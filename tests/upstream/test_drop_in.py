@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from running import OPEN_MPI_ENVIRONMENT, ROOT, Lammps, tree_source
+from running import OPEN_MPI_ENVIRONMENT, OPEN_MPI_LAUNCHER, ROOT, Lammps, tree_source
 from thrown import DECK, assert_thrown
 
 INSTALL = (ROOT / "doc" / "install.md").read_text()
@@ -65,8 +65,8 @@ def test_cmake_with_one_line_added(folder):
     }
     told = do(folder, lines, **settings)
     assert re.search(r"Enabled packages:\s+GEARQUAT$", told, re.M)
-    launcher = ["mpirun.openmpi", "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n"]
-    lmp = Lammps("cmake", folder / "build" / "lmp", launcher, folder, OPEN_MPI_ENVIRONMENT)
+    executable = folder / "build" / "lmp"
+    lmp = Lammps("cmake", executable, OPEN_MPI_LAUNCHER, folder, OPEN_MPI_ENVIRONMENT)
     for ranks in (1, 2):
         assert_thrown(lmp.run(DECK.format(load=""), ranks=ranks))
     # one way at a time
