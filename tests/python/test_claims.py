@@ -1,8 +1,8 @@
 """Verdicts follow from the numbers: made-up results, and the same ones spoilt."""
 
+import itertools
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -16,73 +16,105 @@ from benchmarks.studies.cases.claims import EXPLAINED, NOT, REPRODUCED
 
 def spoil(results, change, **chosen):
     """Results whose runs with the chosen attributes are changed."""
-    found = replace(results, series=dict(results.series))
+    spoilt = replace(results, series=dict(results.series))
     for run in plan.planned_runs(results.step):
         if all(getattr(run, name) == value for name, value in chosen.items()):
-            found.series[run.name] = change(results.series[run.name])
-    return found
+            spoilt.series[run.name] = change(results.series[run.name])
+    return spoilt
 
 
-def verdict(results, measure, **which):
-    """The verdict on the claim that ``measure`` is about; ``which`` tells claims of a kind apart."""
+def judge(results, measure, which=None):
+    """The claim that ``measure`` is about, judged; ``which`` tells claims of a kind apart."""
     (claim,) = (
         claim
         for claim in claims.CLAIMS
-        if (measure == claim.measure)
-        or isinstance(claim.measure, partial)
-        and claim.measure.func == measure
-        and which.items() <= claim.measure.keywords.items()
+        if claim.measure == measure
+        or getattr(claim.measure, "func", None) == measure
+        and (which or {}).items() <= claim.measure.keywords.items()
     )
     return claims.Judged(claim, tuple(claim.measure(results)))
 
 
+# --- changes of a run ---------------------------------------------------------------------------
 def scaled(name, factor):
-    """A change that multiplies a column."""
-    return lambda values: replace(values, **{name: getattr(values, name) * factor})
+    """Multiplies a column."""
+    return lambda run: replace(run, **{name: getattr(run, name) * factor})
 
 
-def drifting(values):
-    """A change that lets the energy rise by 1 % of its swing per 100 units of time."""
-    rise = 1e-4 * values.time * np.ptp(values.potential)
-    return replace(values, total=values.total + rise)
+def drifting(run):
+    """The energy rises by 1 % of its swing per 100 units of time."""
+    return replace(run, total=run.total + 1e-4 * run.time * np.ptp(run.potential))
+
+
+def level(run):
+    """The energy stays at its start."""
+    return replace(run, total=np.full_like(run.total, run.total[0]))
+
+
+def mirrored(run):
+    """The body leaves in the opposite direction along another axis."""
+    return replace(run, center=-run.center[:, [0, 2, 1]])
+
+
+def roaming(run):
+    """The body goes away along the diagonal."""
+    return replace(run, center=run.center - 0.02 * run.time[:, None])
+
+
+def shifted(run):
+    """The body is elsewhere."""
+    return replace(run, center=run.center + 9.0)
 
 
 def test_the_paper_reproduces_itself(results):
-    found = claims.all_claims(results)
-    wrong = [
-        c for c in found if c.verdict != REPRODUCED and c.claim.measure != claims.similar_curve
-    ]
-    assert [(c.claim.source, c.claim.paper, c.measured) for c in wrong] == []
-    assert len({(c.claim.source, c.claim.paper) for c in found}) == len(found) == 22
+    judged = claims.all_claims(results)
+    wrong = [c for c in judged if c.verdict != REPRODUCED]
+    assert [c.claim.measure for c in wrong] == [claims.similar_curve]
+    assert len({(c.claim.source, c.claim.paper) for c in judged}) == len(judged) == 22
+
+
+FIRST, SECOND = {"formulation": "first"}, {"formulation": "second"}
+CASE_1, CASE_2, CASE_3 = {"case": 1}, {"case": 2}, {"case": 3}
+LOST, MOVED = scaled("center", 0.0), scaled("center", 1.02)
+
+
+@pytest.mark.parametrize(
+    "measure, which, change, chosen, verdict",
+    [
+        (claims.energy_error, CASE_1 | FIRST, drifting, FIRST, NOT),
+        (claims.late_drift, None, drifting, CASE_2 | FIRST, EXPLAINED),
+        (claims.late_drift, None, level, CASE_2, NOT),
+        (claims.no_late_drift, None, drifting, SECOND, NOT),
+        (claims.parting, CASE_3, LOST, CASE_3, NOT),
+        (claims.leaving_direction, None, mirrored, FIRST, NOT),
+        (claims.leaving_direction, None, scaled("center", -1.0), CASE_3, EXPLAINED),
+        (claims.potential_vanishes, None, LOST, CASE_3, NOT),
+        (claims.potential_vanishes, None, LOST, CASE_3 | FIRST, EXPLAINED),
+        (claims.bounded, None, roaming, CASE_1, NOT),
+        (claims.observable, None, LOST, CASE_1, NOT),
+        (claims.translation_begins, None, scaled("translation", 0.1), CASE_3, EXPLAINED),
+        (claims.translation_begins, None, scaled("translation", 0.0), CASE_3, NOT),
+        (claims.omega_first, None, shifted, {"omega": "corrected"}, NOT),
+        (claims.same_solution, CASE_3, MOVED, {"dt": 0.001, "row": plan.AS_PRINTED[1]}, EXPLAINED),
+        (claims.same_solution, CASE_3, MOVED, {"dt": 0.001}, NOT),
+        (claims.same_solution, {"other": 2}, MOVED, CASE_2, NOT),
+    ],
+)
+def test_verdict_on_spoilt_runs(results, measure, which, change, chosen, verdict):
+    assert judge(spoil(results, change, **chosen), measure, which).verdict == verdict
 
 
 @pytest.mark.parametrize("case", [1, 3])
 def test_energy_is_judged_by_every_printed_digit(results, case):
-    judge = partial(verdict, measure=claims.initial_energy, case=case)
-    assert judge(results).verdict == REPRODUCED
-    for factor in (1.01, 0.99):
-        assert judge(spoil(results, scaled("total", factor), case=case)).verdict == NOT
-    for row in plan.AS_PRINTED:  # both bodies count
-        assert judge(spoil(results, scaled("total", 1.01), case=case, row=row)).verdict == NOT
+    for row, factor in itertools.product(plan.AS_PRINTED, (1.01, 0.99)):  # both bodies count
+        spoilt = spoil(results, scaled("total", factor), case=case, row=row)
+        assert judge(spoilt, claims.initial_energy, {"case": case}).verdict == NOT
 
 
-def test_held_energy(results):
-    judge = partial(verdict, measure=claims.energy_error, case=1, formulation="first")
-    assert judge(results).verdict == REPRODUCED
-    one = judge(spoil(results, drifting, row="consistent-zero-free"))
-    assert one.verdict == REPRODUCED and one.why == "but not with the consistent body"
-    assert judge(spoil(results, drifting, formulation="first")).verdict == NOT
-
-
-def test_late_drift(results):
-    judge = partial(verdict, measure=claims.late_drift)
-    assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, drifting, case=2, formulation="first")).verdict == EXPLAINED
-    level = spoil(results, lambda v: replace(v, total=v.total * 0 + v.total[0]), case=2)
-    assert judge(level).verdict == NOT
-    judge = partial(verdict, measure=claims.no_late_drift)
-    assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, drifting, formulation="second")).verdict == NOT
+def test_one_body_is_enough_and_the_other_is_named(results):
+    spoilt = spoil(results, drifting, row="consistent-zero-free")
+    judged = judge(spoilt, claims.energy_error, CASE_1 | FIRST)
+    assert judged.verdict == REPRODUCED and judged.why == "but not with the consistent body"
 
 
 def test_times():
@@ -93,66 +125,11 @@ def test_times():
     assert [claims.is_between(pair, 800, 800) for pair in times] == [True, True, False, False]
 
 
-def test_parting(results):
-    judge = partial(verdict, measure=claims.parting, case=3)
-    assert judge(results).verdict == REPRODUCED
-    later = spoil(results, scaled("center", 0.0), case=3)
-    assert judge(later).verdict == NOT
+def test_parting_is_explained_where_the_times_enclose_it(results):
     early = spoil(results, scaled("center", 0.001), case=3)
     for row, factor in zip(plan.ROWS, (1e3, 1e3, 0.0, 0.0)):
         early = spoil(early, scaled("center", factor), case=3, row=row, formulation="second")
-    assert judge(early).verdict == EXPLAINED
-
-
-def test_leaving(results):
-    judge = partial(verdict, measure=claims.leaving_direction)
-    assert judge(results).verdict == REPRODUCED
-    same = spoil(results, lambda v: replace(v, center=-v.center[:, [0, 2, 1]]), formulation="first")
-    assert judge(same).verdict == NOT
-    assert judge(spoil(results, scaled("center", -1.0), case=3)).verdict == EXPLAINED
-    judge = partial(verdict, measure=claims.potential_vanishes)
-    assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, scaled("center", 0.0), case=3)).verdict == NOT
-    inside = spoil(results, scaled("center", 0.0), case=3, formulation="first")
-    assert judge(inside).verdict == EXPLAINED
-
-
-def test_bounded(results):
-    judge = partial(verdict, measure=claims.bounded)
-    assert judge(results).verdict == REPRODUCED
-    roaming = spoil(results, lambda v: replace(v, center=v.center - 0.02 * v.time[:, None]), case=1)
-    assert judge(roaming).verdict == NOT
-
-
-def test_observable(results):
-    judge = partial(verdict, measure=claims.observable)
-    assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, scaled("center", 0.0), case=1)).verdict == NOT
-
-
-def test_translation(results):
-    judge = partial(verdict, measure=claims.translation_begins)
-    assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, scaled("translation", 0.1), case=3)).verdict == EXPLAINED
-    assert judge(spoil(results, scaled("translation", 0.0), case=3)).verdict == NOT
-
-
-def test_omega(results):
-    judge = partial(verdict, measure=claims.omega_first)
-    assert judge(results).verdict == REPRODUCED  # 3 against 1
-    shifted = spoil(results, lambda v: replace(v, center=v.center + 9.0), omega="corrected")
-    assert judge(shifted).verdict == NOT
-
-
-def test_step_independence(results):
-    judge = partial(verdict, measure=claims.same_solution, case=3)
-    assert judge(results).verdict == REPRODUCED
-    moved = scaled("center", 1.02)
-    assert judge(spoil(results, moved, dt=0.001, row="unrotated-zero-free")).verdict == EXPLAINED
-    assert judge(spoil(results, moved, dt=0.001)).verdict == NOT
-    judge = partial(verdict, measure=claims.same_solution, other=2)
-    assert judge(results).verdict == REPRODUCED
-    assert judge(spoil(results, moved, case=2)).verdict == NOT
+    assert judge(early, claims.parting, CASE_3).verdict == EXPLAINED
 
 
 def exact(results):
