@@ -62,10 +62,11 @@ def second_order_step(values, omega_h, c0="position"):
     return predict + np.outer(c, residual)
 
 
-def first_order_step(values, omega_h):
+def first_order_step(values, omega_h, momentum="corrected"):
     """Matrix (2N, 2N) of one step of the first formulation at omega h.
 
-    Histories of position and of velocity; the position is corrected with the corrected velocity.
+    Histories of position and of velocity; the position is corrected with the corrected velocity, or
+    with the predicted one.
     """
     n = values
     predict = np.kron(np.eye(2), _pascal(n))
@@ -73,7 +74,8 @@ def first_order_step(values, omega_h):
     step = predict.copy()
     # units: velocity history in omega times length, so that only omega h appears
     step[n:] += np.outer(c, -omega_h * predict[0] - predict[n + 1])
-    step[:n] += np.outer(c, omega_h * step[n] - predict[1])
+    velocity = step[n] if momentum == "corrected" else predict[n]
+    step[:n] += np.outer(c, omega_h * velocity - predict[1])
     return step
 
 

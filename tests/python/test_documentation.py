@@ -1,7 +1,8 @@
 """The manual says what the fix accepts, its examples run, its numbers are right; so is the first script."""
 
 import re
-from math import comb
+from functools import partial
+from importlib import metadata
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from benchmarks.reference import stability
 from lammps_gearquat import keywords
 from pages import first_script
-from running import ROOT
+from running import ROOT, tree_source
 
 SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
@@ -192,21 +193,25 @@ def test_every_link_leads_somewhere(page):
     assert [link for link in links if not (path.parent / link).exists()] == []
 
 
-def test_the_tests_that_decisions_name_exist():
-    text = (ROOT / "doc" / "decisions.md").read_text()
-    names = set(re.findall(r"`((?:tests/\w+/)?(?:test_\w+|\w+)\.(?:py|cpp|sh|yaml))`", text))
-    names -= {"run_tests.py"}  # LAMMPS' own
-    assert len(names) > 30
-    folders = [ROOT / "tests" / "lammps", ROOT]
-    assert [n for n in names if not any((folder / n).exists() for folder in folders)] == []
+def test_every_file_that_a_page_names_exists():
+    """Tests and sources; names without a folder are of tests/lammps or of the package."""
+    folders = [ROOT, ROOT / "tests" / "lammps", SOURCES, tree_source() / "src"]
+    folders.append(tree_source() / "tools" / "regression-tests")
+    for page in PAGES:
+        names = set(re.findall(r"`([\w/*-][\w./*-]*\.(?:py|cpp|h|sh|yaml))`", (ROOT / page).read_text()))
+        missing = {name for name in names if not any(any(f.glob(name)) for f in folders)}
+        assert missing <= {"test_....py"}, page
 
 
-def test_what_is_cited_is_this_version():
-    project, citation = (
-        re.search(r'^version(?: = |: )"?([\d.]+)"?$', (ROOT / name).read_text(), re.M)[1]
-        for name in ("pyproject.toml", "CITATION.cff")
-    )
-    assert citation == project
+def test_a_release_has_one_number():
+    patterns = {
+        "pyproject.toml": r'^version = "(.*)"',
+        "CHANGELOG.md": r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$",
+        "CITATION.cff": r"^version: (.*)",
+    }
+    for name, pattern in patterns.items():
+        number = re.search(pattern, (ROOT / name).read_text(), re.M)[1]
+        assert number == metadata.version("lammps-gearquat"), name
 
 
 # --- what LAMMPS' own manual asks of a page, from the Makefile of its doc folder ---------------------
@@ -229,42 +234,12 @@ def test_the_page_is_written_as_the_manual_of_lammps(what):
 
 
 # --- numbers -------------------------------------------------------------------------------------
-def first_c(values):
-    return np.array([float(c) for c in stability.first_order_coefficients(values)])
-
-
-def second_c(values, c0="position"):
-    return np.array([float(c) for c in stability.second_order_coefficients(values, c0)])
-
-
-def pascal(n):
-    return np.array([[comb(j, i) for j in range(n)] for i in range(n)], dtype=float)
-
-
-def second(z, coefficients):
-    """One step of x'' = -x with step z, as a matrix on the rows of the history."""
-    n = len(coefficients)
-    residual = np.zeros(n)
-    residual[0], residual[2] = -z * z / 2, -1
-    return (np.eye(n) + np.outer(coefficients, residual)) @ pascal(n)
-
-
-def first(z, coefficients, predicted):
-    """The same for x' = p, p' = -x; time in units of the step, so that p' = -z^2 x."""
-    n = len(coefficients)
-    rows = np.kron(np.eye(2), pascal(n))
-    x, p = rows[:n], rows[n:]
-    corrected = p + np.outer(coefficients, -z * z * x[0] - p[1])
-    momentum = p[0] if predicted else corrected[0]
-    return np.vstack([x + np.outer(coefficients, momentum - x[1]), corrected])
-
-
 #: column of the manual's table -> numbers of values, one step of the test equation
 COLUMNS = {
-    "second": (range(4, 13), lambda n: lambda z: second(z, second_c(n))),
-    "c0 velocity": (range(4, 13), lambda n: lambda z: second(z, second_c(n, "velocity"))),
-    "first": (range(3, 9), lambda n: lambda z: first(z, first_c(n), False)),
-    "momentum predicted": (range(3, 9), lambda n: lambda z: first(z, first_c(n), True)),
+    "second": (range(4, 13), stability.second_order_step),
+    "c0 velocity": (range(4, 13), partial(stability.second_order_step, c0="velocity")),
+    "first": (range(3, 9), stability.first_order_step),
+    "momentum predicted": (range(3, 9), partial(stability.first_order_step, momentum="predicted")),
 }
 
 
@@ -278,11 +253,18 @@ def stability_limit(step):
     return np.inf
 
 
-def growth(step, z):
-    """Growth of the amplitude of the oscillation in a period."""
-    modes = np.linalg.eigvals(step(z))
-    own = np.abs(modes[np.abs(modes - np.exp(1j * z)).argmin()])
-    return own ** (2 * np.pi / z) - 1
+def growth(values, z):
+    """Growth of the amplitude of the oscillation in a period, by formulation."""
+    steps = {"second": stability.second_order_step, "first": stability.first_order_step}
+    found = []
+    for formulation, number in values.items():
+        modes = np.linalg.eigvals(steps[formulation](number, z))
+        own = np.abs(modes[np.abs(modes - np.exp(1j * z)).argmin()])
+        found.append(own ** (2 * np.pi / z) - 1)
+    return np.array(found)
+
+
+DEFAULTS = {"second": 8, "first": 6}
 
 
 def documented_limits():
@@ -305,25 +287,25 @@ def test_stability_limits_of_the_manual(name):
     limits = documented_limits()[name]
     assert list(limits) == list(values)
     for n in values:
-        assert limits[n] == pytest.approx(stability_limit(step(n)), abs=0.01)
+        assert limits[n] == pytest.approx(stability_limit(partial(step, n)), abs=0.01)
 
 
 def test_growth_of_the_manual():
     text = " ".join(section("Choosing the time step").split())
     found = [float(x) for x in re.findall(r"\d\.\de-\d+", text)]
-    methods = ((second, second_c(8)), (lambda z, c: first(z, c, False), first_c(6)))
-    expected = [abs(growth(lambda z: step(z, c), z)) for z in (0.2, 0.1) for step, c in methods]
-    assert found == pytest.approx(expected, rel=0.02)
-    assert (
-        growth(lambda z: second(z, second_c(8)), 0.2)
-        < 0
-        < growth(lambda z: first(z, first_c(6), False), 0.2)
-    )
+    large, small = growth(DEFAULTS, 0.2), growth(DEFAULTS, 0.1)
+    assert found == pytest.approx(np.abs([*large, *small]), rel=0.02)
+    assert large[0] < 0 < large[1]
 
 
-def test_a_coefficient_wrong_by_one_percent_shows():
-    right = second_c(8)
-    for row in range(1, 8):
-        wrong = right * np.where(np.arange(8) == row, 1.01, 1.0)
-        found = growth(lambda z, wrong=wrong: second(z, wrong), 0.2)
-        assert found != pytest.approx(growth(lambda z: second(z, right), 0.2), rel=2e-3)
+@pytest.mark.parametrize("row", range(1, 8))
+def test_a_coefficient_wrong_by_one_percent_shows(monkeypatch, row):
+    right, (found, _) = stability.second_order_coefficients, growth(DEFAULTS, 0.2)
+
+    def wrong(*words):
+        coefficients = right(*words)
+        coefficients[row] *= 1.01
+        return coefficients
+
+    monkeypatch.setattr(stability, "second_order_coefficients", wrong)
+    assert growth(DEFAULTS, 0.2)[0] != pytest.approx(found, rel=2e-3)
