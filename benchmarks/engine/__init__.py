@@ -3,14 +3,9 @@
 A study is a module or a package of ``benchmarks/studies`` with a ``STUDY``, and a template
 ``benchmarks/templates/PAGE.md.j2``.  Nothing else has to be touched: ``benchmarks/run`` finds it.
 
-    STUDY = Study(
-        key="drift",                    # benchmarks/run drift
-        title="Energy over long runs",  # heading of the page
-        page="drift",                   # doc/drift.md, its pictures in doc/drift, templates/drift.md.j2
-        seconds=600.0,                  # shown by --list
-        measure=measure,                # Lab -> data
-        find=find,                      # data -> Finding
-    )
+    from benchmarks.engine import Curve, Finding, Job, Measurement, Panel, Study, Table, deck
+
+    STUDY = Study("drift", "Energy over long runs", 600.0, measure, find)  # see study.py
 
 ``measure(lab)`` runs LAMMPS and returns plain data: numbers, arrays, dictionaries (their keys may be
 tuples) and dataclasses of these.  It judges nothing.  The data are kept as JSON, and ``--render`` makes
@@ -25,20 +20,19 @@ the page from them again.  The Lab (lab.py) runs decks:
 Where starting LAMMPS would take longer than the run, session.py keeps it in a process, times the ``run``
 command alone, and repeats competitors in turn until their medians are steady.
 
-A Finished has ``log.thermo`` (columns as arrays), ``log.tables`` (of every run), ``log.timers``,
-``log.seconds``, ``log.text``, ``sites`` (of the dump) and ``error``.
+``find(data)`` returns a Finding: measurements with uncertainties, tables, pictures and further names for
+the template.  It runs nothing, so that tests can feed it data that must be refused.  A bound belongs to
+its Measurement; ``--check`` compares with it, pages do not show it.  Pictures are tuples of Panels
+(panels.py), or functions that draw into a path.  Statistics are in statistics.py.
 
-``find(data)`` returns a Finding (study.py): measurements with uncertainties, tables, pictures and further
-names for the template.  It runs nothing, so that tests can feed it data that must be refused.  A bound
-(``least``, ``most``) belongs to its Measurement; ``--check`` compares with it, pages do not show it.
-
-Pictures are tuples of Panels (panels.py), or functions that draw into a path.  Statistics are in
-statistics.py.  Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and, see
-page.py,
+Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and what page.py defines:
 
     {{ table("name") }}  {{ measured(measurements) }}  {{ picture("name", "Caption.") }}
     {{ x | to(".1e") }}  {{ n | grouped }}
-
-``publish.py`` copies the page to doc and writes blocks into pages that people write, such as README.md:
-``blocks={"README.md": "drift_readme.md.j2"}``.
 """
+
+from .decks import EXAMPLES, FORMULATIONS, ROOT, deck  # noqa: F401
+from .lab import Job, Lab  # noqa: F401
+from .panels import Bars, Curve, Panel, draw, floor  # noqa: F401
+from .runner import LammpsError  # noqa: F401
+from .study import Finding, Measurement, Study, Table  # noqa: F401

@@ -3,6 +3,8 @@
 import importlib
 import json
 import pkgutil
+import threading
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,14 +37,32 @@ class Origin:
     whole: bool
 
 
+@contextmanager
+def ticking(tick):
+    """Within this context, call ``tick`` every second: the bar shows that time passes."""
+    ended = threading.Event()
+
+    def work():
+        while not ended.wait(1.0):
+            tick()
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
 def measure(study, out, **options):
     """Measure and keep data and their origin in ``out``; ``options`` are those of Lab."""
     out.mkdir(parents=True, exist_ok=True)
     at = provenance.commit("src", "benchmarks", "examples")
-    with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar:
+    with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar, ticking(bar.refresh):
         data = study.measure(Lab(out, advance=bar.update, **options))
     whole = not options.get("quick") and not options.get("parts")
-    origin = {"sentence": provenance.sentence(out, study.packages, at), "whole": whole}
+    origin = {"sentence": provenance.sentence(out, at), "whole": whole}
     write_data(out / DATA, data)
     (out / ORIGIN).write_text(json.dumps(origin, indent=1), encoding="utf-8")
 
@@ -72,18 +92,13 @@ def write(study, out, finding, origin):
         (out / f"{study.page}.md").write_text(text, encoding="utf-8")
 
 
-def prepare_publication(study, quick, parts):
-    """Raise PublishError where the results of such a run could not be published."""
-    if quick or parts:
-        raise PublishError("--publish needs the whole study: leave out --quick and name no part")
-    check_places(study)
-
-
 def conduct(study, out, render_only=False, publish_it=False, **options):
     """Do all of it; returns the Finding."""
     out = Path(out).resolve()
     if publish_it:
-        prepare_publication(study, options.get("quick"), options.get("parts"))
+        if options.get("quick") or options.get("parts"):
+            raise PublishError("--publish needs the whole study: leave out --quick and name no part")
+        check_places(study)
     if not render_only:
         measure(study, out, **options)
     finding, origin = results(study, out)

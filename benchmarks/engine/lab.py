@@ -2,6 +2,7 @@
 
 import itertools
 import threading
+from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 
 from .logs import Log
-from .runner import Interrupted, LammpsError, find_lmp, find_mpiexec, run
+from .runner import Interrupted, LammpsError, find_lmp, run
 from .sites import read_sites
 
 
@@ -55,7 +56,8 @@ class Lab:
 
     def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, parts=(), advance=None):
         self.out, self.jobs, self.quick, self.full, self.parts = Path(out), jobs, quick, full, parts
-        self._lmp, self._weight, self._lock = lmp, 1.0, threading.Lock()
+        self._lmp, self._lock = lmp, threading.Lock()
+        self._weight = self._left = 1.0
         self._advance = advance or (lambda part: None)
 
     @property
@@ -70,16 +72,21 @@ class Lab:
 
     @contextmanager
     def share(self, part):
-        """Within this context, all work counts as ``part`` of the work of the study."""
-        before, self._weight = self._weight, self._weight * part
-        try:
-            yield
-        finally:
-            self._weight = before
+        """Within this context, all work counts as ``part`` of the work of the study.
+
+        At its end the bar has moved by that part, whether the work was as much as expected or not.
+        """
+        weight, left = self._weight, self._left
+        self._weight, self._left = weight * part, 1.0
+        yield
+        self.advance(self._left)
+        self._weight, self._left = weight, left - part
 
     def advance(self, part):
-        """Tell that ``part`` of the work of the current share is done."""
+        """Tell that ``part`` of the work of the current share is done, or what is left if that is less."""
         with self._lock:
+            part = min(part, self._left)
+            self._left -= part
             self._advance(part * self._weight)
 
     def dump(self, name):
@@ -115,13 +122,13 @@ class Lab:
 
         Every round begins with another job.  Returns name -> list of Finished, one per round.
         """
-        finished_runs, names = {name: [] for name in jobs}, list(jobs)
+        finished_runs, names = {name: [] for name in jobs}, deque(jobs)
         total = rounds * sum(job.steps for job in jobs.values())
-        for number in range(rounds):
-            at = number % len(names)
-            for name in names[at:] + names[:at]:
-                finished = self._run(f"{name}.{number + 1}", jobs[name], False, None, total)
+        for number in range(1, rounds + 1):
+            for name in names:
+                finished = self._run(f"{name}.{number}", jobs[name], False, threading.Event(), total)
                 finished_runs[name].append(finished)
+            names.rotate(-1)
         return finished_runs
 
     def sweep(self, name, deck, axes, read, settings=None, may_fail=False):
@@ -131,11 +138,10 @@ class Lab:
         them; "steps" must be among all of them.  Returns tuple of values -> ``read(finished)``; a tuple
         of one value is that value.
         """
-        settings = settings or {}
         jobs, keys = {}, {}
         for values in itertools.product(*axes.values()):
             variables = dict(zip(axes, values))
-            variables |= settings(variables) if callable(settings) else settings
+            variables |= settings(variables) if callable(settings) else settings or {}
             of_run = "_".join([name, *map(str, values)])
             jobs[of_run] = Job(deck, variables, int(variables["steps"]))
             keys[of_run] = values if len(values) > 1 else values[0]
@@ -143,12 +149,11 @@ class Lab:
         return {keys[of_run]: read(finished) for of_run, finished in finished_runs.items()}
 
     def _run(self, name, job, may_fail, stop, total):
-        if stop is not None and stop.is_set():
+        if stop.is_set():
             raise Interrupted(name)
         log, dump = self.out / "logs" / f"log.{name}", self.dump(name)
         dump.parent.mkdir(parents=True, exist_ok=True)
         variables = job.variables | {"out": dump.with_suffix("").resolve()}
-        launcher = [find_mpiexec(self.lmp), "-n", str(job.ranks)] if job.ranks > 1 else []
         done, error = 0, ""
 
         def on_step(step):
@@ -158,14 +163,13 @@ class Lab:
                 done = step
 
         try:
-            run(job.deck, log, variables, self.lmp, launcher, on_step=on_step, stop=stop)
+            run(job.deck, log, variables, self.lmp, job.ranks, on_step, stop)
         except Interrupted:
             raise
         except LammpsError as failure:
             error = str(failure)
             if not (may_fail(error) if callable(may_fail) else may_fail):
-                if stop is not None:
-                    stop.set()
+                stop.set()
                 raise
         self.advance((job.steps - done) / total)
         return Finished(Log(log), dump, error)

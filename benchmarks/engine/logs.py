@@ -78,8 +78,3 @@ class Log:
     def start_evaluations(self):
         """Force evaluations that fix gear/quat made to start; 0 without a start."""
         return sum(map(int, _START.findall(self.text)))
-
-    @property
-    def version(self):
-        """The LAMMPS that wrote the log, as its first line says it."""
-        return self.text.partition("\n")[0].strip()

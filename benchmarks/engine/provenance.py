@@ -11,6 +11,9 @@ from pathlib import Path
 
 from .decks import ROOT
 
+#: packages whose versions pages name
+PACKAGES = ("lammps-gearquat", "numpy", "scipy")
+
 
 def processor():
     """Name of the processor, as Linux tells it."""
@@ -50,10 +53,10 @@ def lammps_of(logs):
     return ", ".join(sorted(first)) or "LAMMPS of unknown version"
 
 
-def sentence(out, packages, at):
+def sentence(out, at):
     """One sentence: what measured, where, when and at which commit.  ``out``: folder of the run."""
     cores = len(os.sched_getaffinity(0))
-    versions = [f"{name} {metadata.version(name)}" for name in packages]
+    versions = [f"{name} {metadata.version(name)}" for name in PACKAGES]
     return (
         f"It was measured with {lammps_of(Path(out) / 'logs')}, {', '.join(versions)} and Python "
         f"{platform.python_version()} on {system()}, {processor()} ({cores} cores), on "

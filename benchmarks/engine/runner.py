@@ -11,8 +11,8 @@ import shutil
 import signal
 import subprocess
 import sys
-import threading
 from collections import deque
+from contextlib import suppress
 from pathlib import Path
 
 
@@ -45,39 +45,26 @@ def find_mpiexec(lmp):
     return program
 
 
-def command_line(deck, log, variables, lmp, launcher=()):
-    """Arguments of the process that runs ``deck``."""
-    command = [*launcher, lmp, "-in", deck.name, "-log", str(log.resolve()), "-nocite"]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
-    return command
-
-
 def _step_of(line):
     """Time step of a line of thermo output, None for any other line."""
     match = re.match(r"\s*(\d+)(?:\s+[-+.\dinfa]\S*){2,}\s*$", line)
     return int(match[1]) if match else None
 
 
-def _end_group(process):
-    """End a process and everything it started."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
-
-
-def run(deck, log, variables=None, lmp=None, launcher=(), timeout=None, on_step=None, stop=None):
+def run(deck, log, variables, lmp, ranks=1, on_step=None, stop=None):
     """Run ``deck`` in its folder and leave ``log``; raise LammpsError if the run fails.
 
-    ``variables`` are given as ``-var name value``; ``launcher`` comes before ``lmp`` (for example
-    ``["mpiexec", "-n", "2"]``); ``timeout`` is in seconds; ``on_step(step)`` is called for each line of
-    thermo output; ``stop`` is an Event that ends the run.  Afterwards the log is complete and no process
-    of the run is left.
+    ``variables`` are given as ``-var name value``; ``on_step(step)`` is called for each line of thermo
+    output; ``stop`` is an Event that ends the run, which raises Interrupted.  Afterwards the log is
+    complete and no process of the run is left.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
+    command = [find_mpiexec(lmp), "-n", str(ranks)] if ranks > 1 else []
+    command += [lmp, "-in", deck.name, "-log", str(log.resolve()), "-nocite"]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
     process = subprocess.Popen(
-        command_line(deck, log, variables or {}, find_lmp(lmp), launcher),
+        command,
         cwd=deck.parent,
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         stdin=subprocess.DEVNULL,
@@ -87,32 +74,19 @@ def run(deck, log, variables=None, lmp=None, launcher=(), timeout=None, on_step=
         errors="replace",
         start_new_session=True,
     )
-    late = threading.Event()
-
-    def expire():
-        late.set()
-        _end_group(process)
-
-    timer = threading.Timer(timeout, expire) if timeout else None
     tail = deque(maxlen=15)
-    try:
-        if timer:
-            timer.start()
-        for line in process.stdout:
-            tail.append(line)
-            step = _step_of(line)
-            if on_step and step is not None:
-                on_step(step)
-            if stop is not None and stop.is_set():
-                raise Interrupted(log.name)
-        process.wait()
-    finally:
-        if timer:
-            timer.cancel()
-        _end_group(process)
-        process.stdout.close()
-        process.wait()
-    if late.is_set():
-        raise LammpsError(f"{log.name}: not finished after {timeout:g} s")
+    with process:
+        try:
+            for line in process.stdout:
+                tail.append(line)
+                step = _step_of(line)
+                if on_step and step is not None:
+                    on_step(step)
+                if stop is not None and stop.is_set():
+                    raise Interrupted(log.name)
+            process.wait()
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
     if process.returncode != 0:
         raise LammpsError(f"{log.name}: exit code {process.returncode}\n" + "".join(tail))

@@ -1,6 +1,6 @@
 """Time series of one body, as the decks under ``examples`` print them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -45,31 +45,18 @@ class Series:
     def until(self, time):
         """The samples up to and including ``time``."""
         kept = self.time <= time * (1 + 1e-12)
-        return Series(*(getattr(self, name)[kept] for name in self.__dataclass_fields__))
+        return Series(*(getattr(self, field.name)[kept] for field in fields(self)))
 
     def at(self, time):
         """Index of the sample nearest to ``time``."""
         return int(np.argmin(np.abs(self.time - time)))
 
 
-def from_table(table):
-    """Series of an array of shape (n, 10), columns as in COLUMNS."""
-    step, time, x, y, z, potential, translation, rotation, total, q_error = np.asarray(table).T
-    center = np.column_stack([x, y, z])
-    return Series(step, time, center, potential, translation, rotation, total, q_error)
-
-
-def to_table(series):
-    """Array of shape (n, 10) of a series, columns as in COLUMNS."""
-    s = series
-    return np.column_stack(
-        [s.step, s.time, s.center, s.potential, s.translation, s.rotation, s.total, s.q_error]
-    )
-
-
 def from_thermo(thermo):
     """Series of one run's thermo output: dictionary column name -> n values."""
-    return from_table(np.column_stack([thermo[name] for name in COLUMNS]))
+    columns = (np.asarray(thermo[name], dtype=float) for name in COLUMNS)
+    step, time, x, y, z, *others = columns
+    return Series(step, time, np.column_stack([x, y, z]), *others)
 
 
 def of_log(log):
@@ -79,5 +66,6 @@ def of_log(log):
 
 def write_csv(path, series):
     """Write a series with 17 significant digits."""
+    table = np.column_stack([getattr(series, field.name) for field in fields(series)])
     header = ",".join(COLUMNS.values())
-    np.savetxt(path, to_table(series), fmt="%.17g", delimiter=",", header=header, comments="")
+    np.savetxt(path, table, fmt="%.17g", delimiter=",", header=header, comments="")

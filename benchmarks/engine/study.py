@@ -70,23 +70,25 @@ class Finding:
     summary: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Study:
     """A study: how it measures, how it judges, and where its results are shown.
 
-    ``key``: its name on the command line.  ``page``: the page doc/PAGE.md, written from the template
-    PAGE.md.j2; its pictures go to doc/PAGE.  ``blocks``: file of the checkout -> template of the block
-    that the study writes there.  ``seconds``: duration on two quiet cores.  ``measure(lab)`` returns
-    plain data, ``find(data)`` a Finding.  ``parts``: what can be run alone, as KEY/PART.  ``packages``:
-    whose versions the page names.
+    ``key``: its name on the command line.  ``title``: the heading of its page.  ``seconds``: duration on
+    two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``page``: the page
+    doc/PAGE.md (default: the key), written from the template PAGE.md.j2; its pictures go to doc/PAGE.
+    ``parts``: what can be run alone, as KEY/PART.  ``blocks``: file of the checkout -> template of the
+    block that the study writes there.
     """
 
     key: str
     title: str
-    page: str
     seconds: float
     measure: Callable = field(repr=False)
     find: Callable = field(repr=False)
+    page: str = ""
     parts: tuple = ()
     blocks: dict = field(default_factory=dict)
-    packages: tuple = ("lammps-gearquat", "numpy")
+
+    def __post_init__(self):
+        self.page = self.page or self.key

@@ -237,11 +237,4 @@ def panels_of(title, runs, dts):
     )
 
 
-STUDY = Study(
-    key="drift",
-    title="Energy over long runs",
-    page="drift",
-    seconds=900.0,
-    measure=measure,
-    find=find,
-)
+STUDY = Study("drift", "Energy over long runs", 900.0, measure, find)

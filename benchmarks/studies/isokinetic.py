@@ -361,12 +361,4 @@ def find(results):
     return Finding(measurements(results), tables, {"isokinetic": picture}, context)
 
 
-STUDY = Study(
-    key="isokinetic",
-    title="Constant kinetic energy",
-    page="isokinetic",
-    seconds=360.0,
-    measure=measure,
-    find=find,
-    packages=("lammps-gearquat", "numpy", "scipy"),
-)
+STUDY = Study("isokinetic", "Constant kinetic energy", 360.0, measure, find)

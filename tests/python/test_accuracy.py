@@ -223,7 +223,7 @@ def test_unsteady_runs_go_on():
 
 
 def test_quartiles():
-    found = session.timing_of([5.0, 1.0, 2.0, 3.0, 4.0])
+    found = session.Timing.of([5.0, 1.0, 2.0, 3.0, 4.0])
     assert found == session.Timing(5, 2.0, 3.0, 4.0)
 
 

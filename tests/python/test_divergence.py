@@ -90,4 +90,4 @@ def test_a_series_is_read_and_written_with_every_digit(tmp_path):
     values.total[1] = -1 / 3
     series.write_csv(tmp_path / "series.csv", values)
     table = np.loadtxt(tmp_path / "series.csv", delimiter=",", skiprows=1)
-    assert (table == series.to_table(values)).all()
+    assert (table[:, 2:5] == values.center).all() and (table[:, 8] == values.total).all()

@@ -67,13 +67,12 @@ def find(results):
 
 
 STUDY = Study(
-    key="accuracy",
-    title="What accuracy costs",
+    "accuracy",
+    "What accuracy costs",
+    2400.0,
+    measure,
+    find,
     page="accuracy_cost",
-    seconds=2400.0,
-    measure=measure,
-    find=find,
     parts=tuple(plan.scenes(False)),
     blocks={"README.md": "accuracy_cost.readme.md.j2"},
-    packages=("lammps-gearquat", "numpy", "scipy"),
 )

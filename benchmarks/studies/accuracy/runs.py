@@ -1,8 +1,7 @@
 """The references, the errors of runs, and everything that is run, in order."""
 
 import math
-from collections import Counter
-from dataclasses import asdict, dataclass, field
+from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
@@ -43,7 +42,7 @@ class Errors:
     tangency: float
 
 
-LOST = Errors(np.inf, np.inf, np.inf, np.inf, np.nan, np.nan)
+LOST = Errors(*[np.inf] * 4, np.nan, np.nan)
 
 
 @dataclass(frozen=True)
@@ -239,62 +238,75 @@ def timed(session, run, outcome):
 def point_of(run, outcome, errors, timing=None):
     """The Point of a run."""
     start = 0 if isinstance(outcome, RunError) else outcome.start
-    names = {"scene": run.scene.key, "method": run.method.key, "steps": run.steps, "dt": run.dt}
-    names |= {"start": start, "evaluations": 1 + start + run.steps}
-    if timing:
-        names |= {"timings": timing.count, "low": timing.low}
-        names |= {"seconds": timing.median, "high": timing.high}
-    return Point(**asdict(errors), **names)
+    times = (timing.count, timing.low, timing.median, timing.high) if timing else ()
+    facts = run.scene.key, run.method.key, run.steps, run.dt, start, 1 + start + run.steps
+    return Point(*astuple(errors), *facts, *times)
 
 
 # --- everything -----------------------------------------------------------------------------------
-def solver_rows(scene, reference, solver):
-    """Rows of Results.solvers of one SciPy solver."""
-    task = reference.problem, scene.end, reference.state, solver, scene.tolerances
-    return [
-        (found.tolerance, found.evaluations, found.errors.rms_center, found.errors.rms_angle)
-        for found in solvers.work_precision(*task)
-    ]
+def judge_all(lab, session, scene, reference):
+    """Run -> (Outcome, Errors) of all runs; refuses a scene in which no run of the fix ends."""
+    runs, outcomes = plan.scene_runs(scene), {}
+    for run in runs:
+        outcomes[run] = judged(session, run, reference)
+        lab.advance(run.cost / sum(run.cost for run in runs))
+    mine = [outcome for run, (outcome, _) in outcomes.items() if run.method.gear]
+    if all(isinstance(outcome, RunError) for outcome in mine):  # the deck or the fix is at fault
+        raise LammpsError(str(mine[-1]))
+    return outcomes
+
+
+def time_all(lab, session, outcomes):
+    """Run -> Timing of all runs that have ended."""
+    ended = [run for run, (outcome, _) in outcomes.items() if not isinstance(outcome, RunError)]
+    rounds, total = QUICK_ROUNDS if lab.quick else ROUNDS, sum(run.cost for run in ended)
+
+    def once(run):
+        lab.advance(run.cost / total / rounds)
+        return timed(session, run, outcomes[run][0])
+
+    return time_in_turn(ended, rounds, once, rounds if lab.quick else MOST_ROUNDS)
+
+
+def run_solvers(lab, scene, reference):
+    """Solver -> rows of Results.solvers."""
+    rows = {}
+    for solver in solvers.METHODS if scene.tolerances else ():
+        share = 1 / len(solvers.METHODS) / len(scene.tolerances)
+        task = reference.problem, scene.end, reference.state, solver, scene.tolerances
+        found = solvers.work_precision(*task, progress=lambda _: lab.advance(share))
+        rows[solver] = [
+            (p.tolerance, p.evaluations, p.errors.rms_center, p.errors.rms_angle) for p in found
+        ]
+    return rows
 
 
 def run_scene(lab, session, results, scene, reference):
     """Errors of all methods, their largest steps, timings in turn, and SciPy's solvers."""
-    runs, rounds = plan.scene_runs(scene), QUICK_ROUNDS if lab.quick else ROUNDS
-    total, outcomes = sum(run.cost for run in runs) * (1 + rounds), {}
-    for run in runs:
-        outcomes[run] = judged(session, run, reference)
-        lab.advance(run.cost / total)
-    mine = [outcome for run, (outcome, _) in outcomes.items() if run.method.gear]
-    if all(isinstance(outcome, RunError) for outcome in mine):  # the deck or the fix is at fault
-        raise LammpsError(str(mine[-1]))
-    for method in scene.methods if scene.smooth else ():
-        results.limits[scene.key, method.key] = largest_step(session, scene, method)
-
-    counts = Counter()
-
-    def once(run):
-        counts[run] += 1
-        if counts[run] <= rounds:
-            lab.advance(run.cost / total)
-        return timed(session, run, outcomes[run][0])
-
-    ended = [run for run, (outcome, _) in outcomes.items() if not isinstance(outcome, RunError)]
-    times = time_in_turn(ended, rounds, once, rounds if lab.quick else MOST_ROUNDS)
+    with lab.share(0.1):
+        outcomes = judge_all(lab, session, scene, reference)
+    with lab.share(0.1):
+        for method in scene.methods if scene.smooth else ():
+            results.limits[scene.key, method.key] = largest_step(session, scene, method)
+            lab.advance(1 / len(scene.methods))
+    with lab.share(0.4):
+        times = time_all(lab, session, outcomes)
     results.runs += [point_of(run, *own, times.get(run)) for run, own in outcomes.items()]
-    for solver in solvers.METHODS if scene.tolerances else ():
-        results.solvers[scene.key, solver] = solver_rows(scene, reference, solver)
+    with lab.share(0.3):
+        for solver, rows in run_solvers(lab, scene, reference).items():
+            results.solvers[scene.key, solver] = rows
 
 
 def run_further(lab, session, results, scene, reference):
     """Orders, rounding and time in the fix, all in test case 1."""
 
-    def errors(runs):
-        return [(run.dt, judged(session, run, reference)[1].position) for run in runs]
-
-    for key, runs in plan.order_runs(scene, lab.quick).items():
-        results.orders[key] = errors(runs)
-    for key, runs in plan.rounding_runs(scene, lab.quick).items():
-        results.rounding[key] = errors(runs)
+    for kept, planned in (
+        (results.orders, plan.order_runs(scene, lab.quick)),
+        (results.rounding, plan.rounding_runs(scene, lab.quick)),
+    ):
+        for key, runs in planned.items():
+            kept[key] = [(run.dt, judged(session, run, reference)[1].position) for run in runs]
+            lab.advance(0.03 / len(planned))
 
     def once(run):
         return run.perform(session, timers=True).modify / run.steps
@@ -310,9 +322,9 @@ def measure(lab):
     results = Results(lab.quick)
     with Session(lab.out / "logs") as session:
         for scene in scenes:
-            reference = reference_of(scene, lab.out / "reference", session)
             with lab.share(scene.minutes / sum(scene.minutes for scene in scenes)):
+                reference = reference_of(scene, lab.out / "reference", session)
                 run_scene(lab, session, results, scene, reference)
-            if scene.key == "case1":
-                run_further(lab, session, results, scene, reference)
+                if scene.key == "case1":
+                    run_further(lab, session, results, scene, reference)
     return results

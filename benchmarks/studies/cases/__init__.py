@@ -130,11 +130,5 @@ def find(results):
     return Finding(found, tables, pictures(results), context, summary(claims))
 
 
-STUDY = Study(
-    key="cases",
-    title="The paper's claims and what was measured",
-    page="results",
-    seconds=180.0,
-    measure=measure,
-    find=find,
-)
+TITLE = "The paper's claims and what was measured"
+STUDY = Study("cases", TITLE, 180.0, measure, find, page="results")

@@ -144,12 +144,4 @@ def find(results):
     return Finding([*idle, more], tables, {"effects": panels(results)}, context)
 
 
-STUDY = Study(
-    key="effects",
-    title="What each effect costs",
-    page="effects",
-    seconds=300.0,
-    measure=measure,
-    find=find,
-    packages=("lammps-gearquat",),
-)
+STUDY = Study("effects", "What each effect costs", 300.0, measure, find)

@@ -51,12 +51,5 @@ def find(results):
     return whole
 
 
-STUDY = Study(
-    key="hard",
-    title="Hard cases",
-    page="hard_cases",
-    seconds=sum(case.SECONDS for case in CASES.values()),
-    measure=measure,
-    find=find,
-    parts=tuple(CASES),
-)
+SECONDS = sum(case.SECONDS for case in CASES.values())
+STUDY = Study("hard", "Hard cases", SECONDS, measure, find, page="hard_cases", parts=tuple(CASES))

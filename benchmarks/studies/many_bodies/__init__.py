@@ -280,12 +280,4 @@ def find(results):
     return Finding(measurements_of(results), tables, {"many_bodies": picture}, context)
 
 
-STUDY = Study(
-    key="many_bodies",
-    title="Many bodies",
-    page="many_bodies",
-    seconds=720.0,
-    measure=measure,
-    find=find,
-    packages=("lammps-gearquat", "numpy", "scipy"),
-)
+STUDY = Study("many_bodies", "Many bodies", 720.0, measure, find)

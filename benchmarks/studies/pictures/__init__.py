@@ -72,12 +72,4 @@ def find(scenes):
     return Finding(pictures=drawn | {"leaving.gif": partial(draw_film, scene=scenes[3])})
 
 
-STUDY = Study(
-    key="pictures",
-    title="Pictures for a talk",
-    page="pictures",
-    seconds=60.0,
-    measure=measure,
-    find=find,
-    packages=("lammps-gearquat", "matplotlib"),
-)
+STUDY = Study("pictures", "Pictures for a talk", 60.0, measure, find)
