@@ -116,7 +116,7 @@ def page(commits, tried, verdicts, units):
         excused=not_kept(every) or "nothing.",
         reasons=reasons_table(reasons),
         oldest=RELEASES["oldest"],
-        units=", ".join(f"{number} {what}" for what, number in counts) or "none was run",
+        units=", ".join(f"*{what}* ({number})" for what, number in counts) or "none was run",
         others=len(units[1]),
         unit_reasons=reasons_table(units[1]),
     ) + "\n"
