@@ -182,36 +182,32 @@ class Problem:
         """The same bodies and start in another field."""
         return Problem(name or self.name, self.bodies, field.astype(self.dtype), self.start)
 
-    def arms_space(self, y):
-        """Sites from their centers of mass in space axes, shape (S, 3), of a packed state."""
-        rotation = qt.rotation_space_body(y[:, PARTS["q"]])[self.bodies.body]
-        return (rotation * self.bodies.sites_body[:, None, :]).sum(axis=2)
+    def _arms_space(self, rotation):
+        """Sites from their centers of mass in space axes, (S, 3), of matrices body -> space (B, 3, 3)."""
+        return (rotation[self.bodies.body] * self.bodies.sites_body[:, None, :]).sum(axis=2)
 
     def site_positions(self, state):
         """Site positions in space, shape (S, 3), of a State."""
-        y = state.packed()
-        return y[self.bodies.body, PARTS["center"]] + self.arms_space(y)
+        arms = self._arms_space(qt.rotation_space_body(state.q))
+        return state.center[self.bodies.body] + arms
 
     def rates(self, _time, y):
         """Time derivative of a packed state, shape (B, 13)."""
-        bodies, omega = self.bodies, y[:, PARTS["omega_body"]]
-        q = y[:, PARTS["q"]]
+        bodies, state = self.bodies, State.of(y)
+        q, omega = state.q, state.omega_body
         rotation = qt.rotation_space_body(q)
-        arms = (rotation[bodies.body] * bodies.sites_body[:, None, :]).sum(axis=2)
-        _, site_forces = self.field.energy_and_forces(y[bodies.body, PARTS["center"]] + arms)
+        arms = self._arms_space(rotation)
+        _, site_forces = self.field.energy_and_forces(state.center[bodies.body] + arms)
         site_forces = np.asarray(site_forces, dtype=y.dtype)
         force = np.add.reduceat(site_forces, self._first, axis=0)
         torque_space = np.add.reduceat(qt.cross(arms, site_forces), self._first, axis=0)
         torque_body = (torque_space[:, :, None] * rotation).sum(axis=1)
         factor = y.dtype.type(self.field.force_to_acceleration)
         gyroscopic = qt.cross(omega, bodies.moments * omega)
-        rates = np.empty_like(y)
-        rates[:, PARTS["center"]] = y[:, PARTS["velocity"]]
-        rates[:, PARTS["velocity"]] = factor * force / bodies.masses[:, None]
         spin = np.concatenate([omega, np.zeros_like(omega[:, :1])], axis=1)
-        rates[:, PARTS["q"]] = qt.product(q, spin) / 2
-        rates[:, PARTS["omega_body"]] = (factor * torque_body - gyroscopic) / bodies.moments
-        return rates
+        acceleration = factor * force / bodies.masses[:, None]
+        omega_rate = (factor * torque_body - gyroscopic) / bodies.moments
+        return State(state.velocity, acceleration, qt.product(q, spin) / 2, omega_rate).packed()
 
     def energies(self, state):
         """Potential, translational and rotational kinetic energy of all bodies, in energy units."""

@@ -13,11 +13,12 @@ of a small number, and the sum of a long run keeps the digits of the float type.
 W. B. Gragg, SIAM J. Numer. Anal. 2, 384 (1965); R. Bulirsch and J. Stoer, Numer. Math. 8, 1 (1966).
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 
 import numpy as np
+
+from .equations import State
 
 #: columns K of the extrapolation, order 2K; its weights enlarge rounding of the rates 56 times ...
 COLUMNS = 7
@@ -35,23 +36,9 @@ class NotReached(RuntimeError):
     """The tolerance is below what the float type or the forces can give."""
 
 
-@dataclass(frozen=True)
-class Solution:
-    """Packed states (T, B, 13) at ``times``; what they cost."""
-
-    times: tuple
-    states: np.ndarray
-    evaluations: int
-    steps: int
-    rejected: int
-
-
 def extrapolation_weights(counts):
     """Weights w_n, as Fractions, that take T_n(h = H/n), even in h, to h = 0."""
-    return [
-        prod(Fraction(n * n, n * n - m * m) for m in counts if m != n) if len(counts) > 1 else 1
-        for n in counts
-    ]
+    return [prod(Fraction(n * n, n * n - m * m) for m in counts if m != n) for n in counts]
 
 
 def _as_float(fraction, dtype):
@@ -74,9 +61,9 @@ class GraggBulirschStoer:
         self.rates, self.scales, self.tolerance = rates, scales, tolerance
         self.counts, self.order = counts, 2 * columns
         self.weights = np.array([_as_float(w, dtype) for w in extrapolation_weights(counts)])
-        lower = [_as_float(w, dtype) for w in extrapolation_weights(counts[1:])]
-        self.judging = self.weights - np.array([dtype(0), *lower])
-        self.evaluations = self.steps = self.rejected = 0
+        lower = [_as_float(w, dtype) for w in (0, *extrapolation_weights(counts[1:]))]
+        self.judging = self.weights - np.array(lower)
+        self.evaluations = 0
 
     def _rates(self, t, y):
         self.evaluations += 1
@@ -135,11 +122,9 @@ class GraggBulirschStoer:
                     carry = change - (after - y)
                     y, t = after, stop if parts == 1 else t + h
                     slope = self._rates(t, y)
-                    self.steps += 1
                     # a step cut short to meet a time says little of how long one may be
                     step = max(following, step) if error <= 1e-3 else following
                 else:
-                    self.rejected += 1
                     step = following
                 if step < SMALLEST * first:
                     raise NotReached(
@@ -151,7 +136,7 @@ class GraggBulirschStoer:
 
 
 def integrate(problem, times, tolerance=None, columns=None, fixed_step=None):
-    """Solution of a Problem at ``times``, which rise from 0 or fall from it; 0 need not be listed.
+    """States of a Problem at ``times``, which rise from 0 or fall from it; 0 need not be listed.
 
     Everything is done in the float type of the problem.  ``tolerance`` bounds the error estimate of
     every step, relative to the largest position, velocity, ... of any body; it and ``columns``
@@ -171,8 +156,7 @@ def integrate(problem, times, tolerance=None, columns=None, fixed_step=None):
         tolerance = TOLERANCE if extended else TOLERANCE_DOUBLE_FORCES
     if columns is None:
         columns = COLUMNS if extended else COLUMNS_DOUBLE_FORCES
-    solver = GraggBulirschStoer(
-        problem.rates, problem.scales, tolerance, dtype, columns, fixed_step
-    )
+    scales = problem.scales
+    solver = GraggBulirschStoer(problem.rates, scales, tolerance, dtype, columns, fixed_step)
     states = solver.advance(problem.start.packed(), [dtype(0), *times])[1:]
-    return Solution(tuple(times), states, solver.evaluations, solver.steps, solver.rejected)
+    return [State.of(packed) for packed in states]

@@ -42,7 +42,6 @@ class Errors:
 class WorkPoint:
     """One run of a solver: ``tolerance`` asked, ``evaluations`` made, and ``errors``."""
 
-    method: str
     tolerance: float
     evaluations: int
     errors: Errors
@@ -90,13 +89,10 @@ def solve(problem, time, method, tolerance):
     return State.of(solution.y[:, -1].reshape(start.shape)), evaluations
 
 
-def work_precision(problem, time, reference, method, tolerances, progress=None):
-    """A WorkPoint for each of ``tolerances``; ``progress(1)`` is called after each."""
+def work_precision(problem, time, reference, method, tolerances):
+    """A WorkPoint for each of ``tolerances``."""
     points = []
     for tolerance in tolerances:
         state, evaluations = solve(problem, time, method, tolerance)
-        errors = state_errors(problem, reference, state)
-        points.append(WorkPoint(method, tolerance, evaluations, errors))
-        if progress:
-            progress(1)
+        points.append(WorkPoint(tolerance, evaluations, state_errors(problem, reference, state)))
     return points

@@ -6,13 +6,12 @@ is another entry, so a folder of them never has to be cleared.
 
 import hashlib
 import os
-import zipfile
 from pathlib import Path
 
 import numpy as np
 
 from . import integrators
-from .equations import PARTS, State
+from .equations import State
 from .fields import FreeField
 
 #: number in the key; to be raised when a change of the code changes the states
@@ -48,21 +47,18 @@ def _key(problem, time, accuracy):
 def _load(path, dtype):
     """State of a file, None if there is none that can be read."""
     try:
-        with np.load(path) as stored:
-            return State(*(stored[f"{n}_high"].astype(dtype) + stored[f"{n}_low"] for n in PARTS))
-    except (OSError, KeyError, ValueError, zipfile.BadZipFile):
+        packed = np.load(path)
+    except (OSError, EOFError, ValueError):
         return None
+    return State.of(packed) if packed.dtype == dtype else None
 
 
 def _save(path, state):
     """Write a state; a reader never sees half a file."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    arrays = {}
-    for name in PARTS:
-        arrays[f"{name}_high"], arrays[f"{name}_low"] = _halves(getattr(state, name))
     part = path.with_name(f"{path.name}.{os.getpid()}")
     with open(part, "wb") as file:
-        np.savez(file, **arrays)
+        np.save(file, state.packed())
     os.replace(part, path)
 
 
@@ -89,7 +85,7 @@ def reference_states(problem, times, folder=None, tolerance=None, fixed_step=Non
     keys = [_key(problem, time, accuracy) for time in times]
     if folder is not None:
         for key in set(keys) - set(_memory):
-            stored = _load(Path(folder) / f"{key}.npz", problem.dtype)
+            stored = _load(Path(folder) / f"{key}.npy", problem.dtype)
             if stored is not None:
                 _memory[key] = stored
     missing = {key: time for key, time in zip(keys, times) if key not in _memory}
@@ -98,7 +94,7 @@ def reference_states(problem, times, folder=None, tolerance=None, fixed_step=Non
         for key, state in zip(missing, states):
             _memory[key] = state
             if folder is not None:
-                _save(Path(folder) / f"{key}.npz", state)
+                _save(Path(folder) / f"{key}.npy", state)
     return [_memory[key] for key in keys]
 
 
@@ -108,8 +104,7 @@ def _compute(problem, times, accuracy):
         from .free_top import exact_state  # needs mpmath
 
         return [exact_state(problem, time) for time in times]
-    solution = integrators.integrate(problem, times, **accuracy)
-    return [State.of(packed) for packed in solution.states]
+    return integrators.integrate(problem, times, **accuracy)
 
 
 def reference_state(problem, time, **options):

@@ -12,14 +12,11 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.engine import series
-from benchmarks.engine.decks import deck
-from benchmarks.engine.lab import Job
+from benchmarks.engine import Curve, Finding, Job, Measurement, Panel, Study, Table, deck, series
 from benchmarks.engine.methods import gear, looks, rigid
 from benchmarks.engine.page import grouped
-from benchmarks.engine.panels import Curve, Panel, draw
+from benchmarks.engine.panels import draw
 from benchmarks.engine.statistics import slope
-from benchmarks.engine.study import Finding, Measurement, Study, Table
 
 STEPS, QUICK_STEPS, SAMPLES = 10_000_000, 100_000, 2000
 #: LAMMPS' word for coordinates and energies that are not finite any more, and the fix's own

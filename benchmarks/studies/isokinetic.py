@@ -5,17 +5,16 @@ is kept; short ones of rigid water (``in.isokinetic``) show what configurations 
 fix rigid/nvt/small.
 """
 
+import itertools
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
+from benchmarks.engine import EXAMPLES, Curve, Finding, Job, Measurement, Panel, Study, Table
 from benchmarks.engine import statistics
-from benchmarks.engine.decks import EXAMPLES
-from benchmarks.engine.lab import Job
-from benchmarks.engine.panels import Curve, Panel, draw, floor
+from benchmarks.engine.panels import draw, floor
 from benchmarks.engine.statistics import Mean, blocks_of, deviation, mean_of_blocks, slope
-from benchmarks.engine.study import Finding, Measurement, Study, Table
 
 CONSTRAINTS, THERMOSTAT = ("total", "separate"), "nvt"
 METHODS = (*CONSTRAINTS, THERMOSTAT)
@@ -170,15 +169,9 @@ def read_distribution(path):
 
 def measure_water(lab, plan):
     """(method, seed) -> Water."""
-    settings = {
-        "values": plan.values,
-        "dt": f"{plan.water_dt:.17g}",
-        "equilibrate": plan.block,
-        "steps": plan.water_steps,
-        "every": plan.every,
-        "block": plan.block,
-        "temperature": TEMPERATURE,
-    }
+    settings = {"values": plan.values, "dt": f"{plan.water_dt:.17g}", "temperature": TEMPERATURE}
+    settings |= {"equilibrate": plan.block, "steps": plan.water_steps}
+    settings |= {"every": plan.every, "block": plan.block}
 
     def read(finished):
         c, file = finished.thermo, finished.dump.with_suffix("")
@@ -190,23 +183,16 @@ def measure_water(lab, plan):
 
 def measure_kept(lab, plan):
     """(constraint, whether rescaled, step) -> Kept: every step without rescaling, the largest with."""
-    keys = [(constraint, False, dt) for constraint in CONSTRAINTS for dt in plan.dts]
-    keys += [(constraint, True, plan.rescaled_dt) for constraint in CONSTRAINTS]
-    jobs = {}
-    for constraint, rescaled, dt in keys:
-        variables = {
-            "constraint": constraint,
-            "rescale": "yes" if rescaled else "no",
-            "values": plan.values,
-            "dt": f"{dt:.17g}",
-            "steps": plan.drift_steps,
-            "every": max(1, plan.drift_steps // SAMPLES),
-        }
+    steps = {"values": plan.values, "steps": plan.drift_steps}
+    steps["every"] = max(1, plan.drift_steps // SAMPLES)
+    settings = [(False, dt) for dt in plan.dts] + [(True, plan.rescaled_dt)]
+    jobs, names = {}, {}
+    for constraint, (rescaled, dt) in itertools.product(CONSTRAINTS, settings):
+        own = {"constraint": constraint, "rescale": "yes" if rescaled else "no", "dt": f"{dt:.17g}"}
         name = f"{constraint}_{'rescaled' if rescaled else 'free'}_dt{dt:g}"
-        deck = EXAMPLES / "isokinetic" / "in.tethered"
-        jobs[name] = Job(deck, variables, plan.drift_steps)
-    runs = lab.many(jobs)
-    return {key: read_kept(run, key[0]) for key, run in zip(keys, runs.values())}
+        jobs[name] = Job(EXAMPLES / "isokinetic" / "in.tethered", own | steps, plan.drift_steps)
+        names[name] = constraint, rescaled, dt
+    return {names[name]: read_kept(run, names[name][0]) for name, run in lab.many(jobs).items()}
 
 
 def measure(lab, plan=None):
@@ -219,47 +205,54 @@ def measure(lab, plan=None):
 
 
 # --- judging ------------------------------------------------------------------------------------
-@dataclass(frozen=True)
-class Distance:
-    """How far g(r) is from the thermostat's: largest and root mean square deviation, in standard
-    errors; ``difference``: the largest itself; ``most``: what Student's t allows."""
-
-    largest: float
-    rms: float
-    difference: float
-    most: float
+def energy_deviation(results, constraint):
+    """Mean energy less that of the thermostat, in standard errors; what is allowed."""
+    ours, theirs = results.energy(constraint), results.energy(THERMOSTAT)
+    most = statistics.largest_deviation(ours, theirs, len(CONSTRAINTS))
+    return float(deviation(ours, theirs)), most
 
 
-def compare_distributions(results, method):
-    """g(r) of a constraint against that of the thermostat, where there are pairs."""
-    (_, ours), (_, theirs) = (results.distribution(of) for of in (method, THERMOSTAT))
+def compare_distributions(results, constraint):
+    """g(r) less that of the thermostat where there are pairs, (bins,); in standard errors; allowed."""
+    (_, ours), (_, theirs) = (results.distribution(of) for of in (constraint, THERMOSTAT))
     there = np.minimum(ours.value, theirs.value) > LEAST_DISTRIBUTION
     ours, theirs = (Mean(m.value[there], m.error[there], m.freedoms) for m in (ours, theirs))
-    z = deviation(ours, theirs)
-    difference = float(np.abs(ours.value - theirs.value).max())
     most = statistics.largest_deviation(ours, theirs, int(there.sum()))
-    return Distance(float(np.abs(z).max()), float(np.sqrt(np.mean(z**2))), difference, most)
+    return ours.value - theirs.value, deviation(ours, theirs), most
 
 
 def measurements(results):
     """Measurements with their bounds."""
-    plan, rows = results.plan, []
+    plan, rows, errors = results.plan, [], {"spec": ".1f", "unit": "standard errors"}
     for constraint in CONSTRAINTS:
-        what = f"{constraint}: order of the drift of the kinetic energy"
-        least = plan.values - ORDER_SLACK
-        rows.append(Measurement(what, results.order(constraint), spec=".2f", least=least))
-        what = f"{constraint}, rescaled: largest relative change of the kinetic energy"
         change = results.kept[constraint, True, plan.rescaled_dt].largest
-        rows.append(Measurement(what, change, most=MOST_RESCALED))
-        ours, theirs = results.energy(constraint), results.energy(THERMOSTAT)
-        z = float(abs(deviation(ours, theirs)))
-        what = f"{constraint}: mean energy of water, deviation from the thermostat"
-        most = statistics.largest_deviation(ours, theirs, len(CONSTRAINTS))
-        errors = {"spec": ".1f", "unit": "standard errors"}
-        rows.append(Measurement(what, z, most=most, **errors))
-        d = compare_distributions(results, constraint)
-        what = f"{constraint}: g(r) of water, largest deviation from the thermostat"
-        rows.append(Measurement(what, d.largest, most=d.most, **errors))
+        energy, most_energy = energy_deviation(results, constraint)
+        _, distribution, most = compare_distributions(results, constraint)
+        rows += [
+            Measurement(
+                f"{constraint}: order of the drift of the kinetic energy",
+                results.order(constraint),
+                spec=".2f",
+                least=plan.values - ORDER_SLACK,
+            ),
+            Measurement(
+                f"{constraint}, rescaled: largest relative change of the kinetic energy",
+                change,
+                most=MOST_RESCALED,
+            ),
+            Measurement(
+                f"{constraint}: mean energy of water, deviation from the thermostat",
+                abs(energy),
+                most=most_energy,
+                **errors,
+            ),
+            Measurement(
+                f"{constraint}: g(r) of water, largest deviation from the thermostat",
+                float(np.abs(distribution).max()),
+                most=most,
+                **errors,
+            ),
+        ]
     return rows
 
 
@@ -289,17 +282,12 @@ def water_table(results):
         mean = results.energy(method)
         value, error = KILOJOULES * float(mean.value), KILOJOULES * float(mean.error)
         kinetic, scatter = (KILOJOULES * number for number in results.kinetic(method))
-        row = [
-            TITLES[method],
-            f"{value:.3f} ± {error:.3f}",
-            f"{kinetic:.4f} ± {scatter:.1g}",
-            "",
-            "",
-        ]
+        row = [TITLES[method], f"{value:.3f} ± {error:.3f}", f"{kinetic:.4f} ± {scatter:.1g}"]
+        row += ["", ""]
         if method != THERMOSTAT:
-            z = float(deviation(mean, results.energy(THERMOSTAT)))
-            d = compare_distributions(results, method)
-            row[3:] = [f"{z:+.1f}", f"{d.largest:.1f} ({d.difference:.2g}), rms {d.rms:.2f}"]
+            off, z, _ = compare_distributions(results, method)
+            row[3] = f"{energy_deviation(results, method)[0]:+.1f}"
+            row[4] = f"{abs(z).max():.1f} ({abs(off).max():.2g}), rms {np.sqrt(np.mean(z**2)):.2f}"
         rows.append(row)
     header = (
         "water",

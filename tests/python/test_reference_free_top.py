@@ -42,7 +42,7 @@ def test_start_is_the_start(omega):
 @pytest.mark.parametrize("omega", OMEGAS)
 def test_agrees_with_the_integrator(omega, wrong):
     problem = top(omega)
-    state = State.of(integrate(problem, (40,)).states[-1])
+    state = integrate(problem, (40,))[-1]
     exact = exact_state(problem, wrong * 40)
     assert (qt.angle_between(exact.q, state.q).max() < 1e-15) == (wrong == 1)
     assert np.abs(exact.center - state.center).max() < (1e-16 if wrong == 1 else 1)

@@ -93,9 +93,9 @@ def show_time(time):
     return "never" if math.isinf(time) else f"{time:.0f}"
 
 
-def parting_times(results, case, row):
-    """Times at which the two formulations part, one for each of THRESHOLDS."""
-    pair = [results.get(case, row, formulation) for formulation in FORMULATIONS]
+def parting_times(results, case, row, names=FORMULATIONS):
+    """Times at which two runs of a row part, one for each of THRESHOLDS."""
+    pair = [results.get(case, row, name) for name in names]
     return tuple(dv.parting_time(*pair, threshold) for threshold in THRESHOLDS)
 
 

@@ -59,12 +59,12 @@ def paper_figure(results, number):
     what, ylabel, case, formulation = FIGURES[number]
     formulations = (formulation,) if formulation else FORMULATIONS
     dt, panels = results.fine if case == 1 else None, []
-    words = f"Fig. {number}, test case {case}, " + (
-        f"{formulation} formulation, " if formulation else ""
-    )
+    words = f"Fig. {number}, test case {case}"
+    if formulation:
+        words += f", {formulation} formulation"
     for row in AS_PRINTED:
         runs = {form: results.get(case, row, form, dt) for form in formulations}
-        title, label = f"{words}{ROWS[row].body} body", "" if panels else ylabel
+        title, label = f"{words}, {ROWS[row].body} body", "" if panels else ylabel
         panels.append(Panel(title, "time", label, curves(what, runs), log="", legend=False))
     return partial(draw, panels=panels, note=AS_PAPER, share_y=True)
 
@@ -79,9 +79,8 @@ def parting_figure(results):
             gap = dv.separation(*pair)
             shown.append(Curve(row.label, pair[0].time[: len(gap)][1:], gap[1:], color))
         ends = np.array([0.0, shown[0].x[-1]])
-        shown += [
-            Curve("", ends, 0 * ends + apart, "#888888", ":", width=0.6) for apart in THRESHOLDS
-        ]
+        for apart in THRESHOLDS:
+            shown.append(Curve("", ends, 0 * ends + apart, "#888888", ":", width=0.6))
         label = "" if panels else "distance between the centers of mass"
         title = f"case {case}, step {dt:g}"
         panels.append(Panel(title, "time", label, tuple(shown), ylim=(1e-15, 1e4), legend=False))

@@ -4,11 +4,10 @@ Source: R. M. Pratt and K. M. Bin Mohamad Zaini, "General Algorithms for 3-D Mot
 Body in a Steady-State Force Field".  Every run is sampled once per unit of time.
 """
 
+import itertools
 from dataclasses import dataclass
 
-from benchmarks.engine import series
-from benchmarks.engine.decks import deck
-from benchmarks.engine.lab import Job
+from benchmarks.engine import Job, deck, series
 
 FORMULATIONS = ("first", "second")
 
@@ -93,30 +92,21 @@ class Run:
 
 def planned_runs(step, full=False):
     """All runs behind the tables and the figures; ``step``: that of each case."""
-    runs = [
-        Run(case, row, formulation, dt)
-        for case, dt in step.items()
-        for row in ROWS
-        for formulation in FORMULATIONS
-    ]
-    runs += [Run(case, ACCURATE, "rigid", dt) for case, dt in step.items()]
-    runs += [
-        Run(case, row, formulation, step[case] * part, end)
-        for case, (part, end) in OTHER_STEP.items()
-        for row in AS_PRINTED
-        for formulation in FORMULATIONS
-    ]
-    runs += [
-        Run(1, ACCURATE, "first", OMEGA_STEP, OMEGA_END, omega)
-        for omega in ("corrected", "predicted")
-    ]
+    rigid, runs = (ACCURATE, "rigid"), []
+    every = [*itertools.product(ROWS, FORMULATIONS), rigid]
+    both = list(itertools.product(AS_PRINTED, FORMULATIONS))
+    for case, dt in step.items():
+        runs += [Run(case, *method, dt) for method in every]
+    for case, (part, end) in OTHER_STEP.items():
+        runs += [Run(case, *method, step[case] * part, end) for method in both]
+    for omega in ("corrected", "predicted"):
+        runs.append(Run(1, ACCURATE, "first", OMEGA_STEP, OMEGA_END, omega))
+    compared = [*itertools.product((AS_PRINTED[0], ACCURATE), FORMULATIONS), rigid]
     for dt in (*ACCURACY_STEPS, *COARSE_STEPS):
         end = END if dt in COARSE_STEPS else ACCURACY_END
-        for formulation in FORMULATIONS:
-            runs += [Run(1, row, formulation, dt, end) for row in (AS_PRINTED[0], ACCURATE)]
-        runs.append(Run(1, ACCURATE, "rigid", dt, end))
+        runs += [Run(1, *method, dt, end) for method in compared]
     if full:
-        runs += [Run(1, row, form, FINE_STEP) for row in AS_PRINTED for form in FORMULATIONS]
+        runs += [Run(1, *method, FINE_STEP) for method in both]
     return runs
 
 

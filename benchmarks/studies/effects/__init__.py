@@ -8,8 +8,7 @@ import re
 
 import numpy as np
 
-from benchmarks.engine.panels import Bars, Panel
-from benchmarks.engine.study import Finding, Measurement, Study, Table
+from benchmarks.engine import Bars, Finding, Measurement, Panel, Study, Table
 
 from . import plan
 from .runs import measure

@@ -12,7 +12,7 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.engine.runner import LammpsError
+from benchmarks.engine import LammpsError
 from .scenes import write_molecules
 
 INSTALL = "sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"

@@ -3,9 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from benchmarks.engine.decks import EXAMPLES, ROOT, deck
-from benchmarks.engine.lab import Job
-from benchmarks.engine.runner import LammpsError
+from benchmarks.engine import EXAMPLES, ROOT, Job, LammpsError, deck
 
 from . import count, plan
 from .scenes import write_molecules

@@ -5,7 +5,7 @@ Every module is a case: ``TITLE``, ``SECONDS`` on two quiet cores, ``measure(lab
 
 from dataclasses import replace
 
-from benchmarks.engine.study import Finding, Study
+from benchmarks.engine import Finding, Study
 
 from . import (
     boundaries,

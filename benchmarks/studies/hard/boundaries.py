@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel, floor
-from benchmarks.engine.study import Finding, Measurement
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck, floor
 
 TITLE, SECONDS = "Periodic and triclinic boundaries", 20.0
 MOST = 1e-10

@@ -4,10 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.engine.decks import deck
-from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine import Curve, Finding, Measurement, Panel, deck
 from benchmarks.engine.statistics import slope
-from benchmarks.engine.study import Finding, Measurement
 
 TITLE, SECONDS = "500 water molecules with a plain cut-off", 60.0
 STEP, STEPS, EVERY = 2.0, 2500, 10
@@ -69,37 +67,33 @@ def measure(lab, methods=tuple(METHODS), steps=STEPS, **options):
     """method -> Water."""
     names = tuple(METHODS)
     settings = {"dt": STEP, "steps": steps, "every": EVERY} | options
-    runs = lab.sweep(
-        "cutoff",
-        deck("hard/cutoff"),
-        {"method_number": [names.index(method) for method in methods]},
-        read,
-        lambda run: METHODS[names[run["method_number"]]] | settings,
-        may_fail=True,
-    )
+
+    def of_method(run):
+        return METHODS[names[run["method_number"]]] | settings
+
+    axes = {"method_number": [names.index(method) for method in methods]}
+    runs = lab.sweep("cutoff", deck("hard/cutoff"), axes, read, of_method, may_fail=True)
     return {names[number]: water for number, water in runs.items()}
 
 
 def find(results):
     """Finding of what ``measure`` returns."""
-    measurements, rigid = [], results[RIGID]
-    for method, water in results.items():
-        if method in TOO_MANY:
-            continue
-        what = f"{method}: mean temperature of the second half"
-        if water.lost:
-            measurements.append(
-                Measurement(what, np.inf, remark=f"lost by {water.end:g} ps", most=0)
-            )
-            continue
-        most = None if method == RIGID else HOTTER * rigid.hot
-        measurements.append(Measurement(what, water.hot, spec=".0f", unit="K", most=most))
-        what = f"{method}: drift of the energy in the second half"
-        measurements.append(Measurement(what, *water.drift, spec=".0f", unit="kcal/mol/ps"))
+    measurements, hottest = [], HOTTER * results[RIGID].hot
     colors = dict(zip(METHODS, ("rigid", "second", "translation", "first", "rotation")))
     hot, energy = [], []
-    for method in (method for method in colors if method in results):
-        water, color = results[method], colors[method]
+    for method, color in colors.items():
+        if method not in results:
+            continue
+        water = results[method]
+        what = f"{method}: mean temperature of the second half"
+        if water.lost:
+            lost = f"lost by {water.end:g} ps"
+            measurements.append(Measurement(what, np.inf, remark=lost, most=0))
+        else:
+            most = None if method == RIGID else hottest
+            measurements.append(Measurement(what, water.hot, spec=".0f", unit="K", most=most))
+            what = f"{method}: drift of the energy in the second half"
+            measurements.append(Measurement(what, *water.drift, spec=".0f", unit="kcal/mol/ps"))
         time = water.time / 1000
         hot.append(Curve(method, time, water.temperature, color))
         energy.append(Curve(method, time, (water.total - water.total[0]) / 1000, color))
@@ -107,9 +101,6 @@ def find(results):
         Panel("step 2 fs", "time, ps", "temperature, K", tuple(hot), log=""),
         Panel("step 2 fs", "time, ps", "energy - start, 1000 kcal/mol", tuple(energy), log=""),
     )
-    return Finding(measurements, pictures={"cutoff": panels}, context=_context(results))
-
-
-def _context(results):
     many = {method: results[method] for method in TOO_MANY if method in results}
-    return {"many": many, "picoseconds": STEPS * STEP / 1000, "step": STEP}
+    context = {"many": many, "picoseconds": STEPS * STEP / 1000, "step": STEP}
+    return Finding(measurements, pictures={"cutoff": panels}, context=context)

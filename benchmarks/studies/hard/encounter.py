@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel, floor
-from benchmarks.engine.study import Finding, Measurement
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck, floor
 
 TITLE, SECONDS = "Near-singular encounter", 8.0
 #: error with a tolerance is at most this, with a fixed step more
@@ -50,19 +48,21 @@ def measure(lab, distances=DISTANCES, **options):
 def find(results):
     """Finding of what ``measure`` returns."""
     measurements = []
-    for distance, method in results:
-        adaptive = "tolerance" in METHODS[method] and METHODS[method]["tolerance"] > 0
+    for (distance, method), table in results.items():
         error = relative_error(results, distance, method).max()
-        bounds = {"most": BOUND} if adaptive else {} if method == RIGID else {"least": BOUND}
-        name = f"`tolerance`, {method.split(', ')[1]} formulation" if adaptive else method
-        name = f"step {STEP:g}, `{RIGID}`" if method == RIGID else name
-        steps = len(results[distance, method]["Step"]) - 1 if adaptive else round(END / STEP)
+        steps, bounds = round(END / STEP), {"least": BOUND}
+        name = method
+        if METHODS[method]["tolerance"]:
+            steps, bounds = len(table["Step"]) - 1, {"most": BOUND}
+            name = f"`tolerance`, {method.split(', ')[1]} formulation"
+        elif method == RIGID:
+            name, bounds = f"step {STEP:g}, `{RIGID}`", {}
         what = f"distance {distance}, {name}: largest error of the energy over the depth"
         measurements.append(Measurement(what, error, remark=f"{steps} steps", **bounds))
     distances = tuple(dict.fromkeys(distance for distance, _ in results))
     panels = tuple(_panel(results, distance) for distance in distances)
-    context = {"depths": [depth(results, distance) for distance in distances]}
-    context |= {"tolerance": TOLERANCE}
+    depths = [depth(results, distance) for distance in distances]
+    context = {"depths": depths, "tolerance": TOLERANCE}
     return Finding(measurements, pictures={"encounter": panels}, context=context)
 
 

@@ -9,9 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel, floor
-from benchmarks.engine.study import Finding, Measurement
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck, floor
 
 TITLE, SECONDS = "Collision with a steep wall, and a very fast spin", 8.0
 MOST = 100.0
@@ -70,10 +68,8 @@ def find(results):
     for event, formulation in dict.fromkeys(key[:2] for key in results):
         runs = [results[event, formulation, dt] for dt in steps]
         errors = [np.abs(run.error).max() for run in runs]
-        what = (
-            f"{EVENTS[event]}, {formulation} formulation: error of the energy over the worth of the"
-        )
-        what += f" estimates, at the worst of {len(steps)} steps"
+        what = f"{EVENTS[event]}, {formulation} formulation: error of the energy over the worth"
+        what += f" of the estimates, at the worst of {len(steps)} steps"
         remark = f"error of the energy at step {steps[-1]:g}: {errors[-1]:.1e}"
         worst = max(run.ratio for run in runs)
         measurements.append(Measurement(what, worst, spec=".2g", remark=remark, most=MOST))
@@ -86,13 +82,9 @@ def find(results):
     panels = (Panel("largest error of the energy", "step", "energy", tuple(curves), **largest),)
     if ("wall", "second", STEPS[1]) in results:
         panels += (_collision(results["wall", "second", STEPS[1]]),)
-    context = {"end": END, "steps": STEPS, "spin": _spin(results)}
+    spins = [run.kinetic for (event, *_), run in results.items() if event == "spin"]
+    context = {"end": END, "steps": STEPS, "spin": spins[0] if spins else None}
     return Finding(measurements, pictures={"fast": panels}, context=context)
-
-
-def _spin(results):
-    """Rotational energy of the fast spin, None if it was not run."""
-    return next((run.kinetic for (event, *_), run in results.items() if event == "spin"), None)
 
 
 def _collision(hit):

@@ -2,10 +2,7 @@
 
 import numpy as np
 
-from benchmarks.engine import series
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel, floor
-from benchmarks.engine.study import Finding, Measurement
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck, floor, series
 
 TITLE, SECONDS = "The paper's 50 million steps", 100.0
 #: largest error of the energy by ``compensate``, and deviation of the squared length of q from 1

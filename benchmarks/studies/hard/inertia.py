@@ -10,11 +10,9 @@ from dataclasses import dataclass
 import mpmath as mp
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck
 from benchmarks.engine.sites import pose_errors
-from benchmarks.engine.study import Finding, Measurement
-from benchmarks.reference import Problem, State, integrators
+from benchmarks.reference import Problem, integrators
 from benchmarks.reference.fields import LennardJonesUnits
 
 TITLE, SECONDS = "Small, equal and vanishing moments of inertia", 45.0
@@ -88,8 +86,7 @@ def exact(body, sites, time):
     shapes, start = sites.start()
     field = Springs(sites.positions[0].astype(np.longdouble))
     problem = Problem(body, shapes, field, start)
-    packed = integrators.integrate(problem, [time]).states[0]
-    return problem.site_positions(State.of(packed)).astype(float)
+    return problem.site_positions(integrators.integrate(problem, [time])[0]).astype(float)
 
 
 def off(masses, positions, others):

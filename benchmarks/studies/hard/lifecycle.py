@@ -4,9 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel, floor
-from benchmarks.engine.study import Finding, Measurement
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck, floor
 
 TITLE, SECONDS = "Life cycle, in the middle of an encounter", 6.0
 STEPS, MIDDLE, EVERY = 2000, 660, 20
@@ -83,13 +81,14 @@ def find(results):
         pairs = [(results["whole", f], results[life, f]) for f in FORMULATIONS]
         worst = max(np.abs(a.positions - b.positions).max() for a, b in pairs)
         what = f"{words}: largest difference of a position at the end"
+        alike = all(a.text == b.text for a, b in pairs)  # -0 and 0 differ, too
         if not same:
-            measurements.append(Measurement(what, worst, most=MOST_ANEW))
-            continue
-        if not all(a.text == b.text for a, b in pairs):  # -0 and 0 differ, too
-            measurements.append(Measurement(what, max(worst, 5e-324), most=0.0))
-            continue
-        measurements.append(Measurement(what, 0.0, spec=".0f", remark="the same digits", most=0.0))
+            own = {"value": worst, "most": MOST_ANEW}
+        elif alike:
+            own = {"value": 0.0, "spec": ".0f", "remark": "the same digits", "most": 0.0}
+        else:
+            own = {"value": max(worst, 5e-324), "most": 0.0}
+        measurements.append(Measurement(what, **own))
     again = [lived.rerun for (life, _), lived in results.items() if life == "rerun-yes"]
     if again:
         what = "`rerun`: largest difference of the total energy at dumped poses"
@@ -110,10 +109,8 @@ def _panels(results, lives):
         of_whole = results["whole", formulation].positions
         y = [np.abs(of_whole - results[life, formulation].positions).max() for life in lives]
         curves.append(Curve(formulation, np.arange(len(y)), floor(y), formulation, "", "o"))
-    title, ticks = (
-        "against the run in one go; 1e-17: the same digits",
-        tuple(LIVES[l][1] for l in lives),
-    )
+    title = "against the run in one go; 1e-17: the same digits"
+    ticks = tuple(LIVES[life][1] for life in lives)
     return (
         Panel("second formulation", "time", "energy", hit, log=""),
         Panel(title, "", "distance of a site", tuple(curves), ticks=ticks),

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel
-from benchmarks.engine.study import Finding, Measurement
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck
 
 TITLE, SECONDS = "Case 1 to t = 50 000", 100.0
 #: energy sampled about every 10, at every step, and evaluations of the forces

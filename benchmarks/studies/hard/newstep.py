@@ -8,10 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck
 from benchmarks.engine.sites import read_sites
-from benchmarks.engine.study import Finding, Measurement
 from benchmarks.reference import Cage, Problem, paper_problem, reference_state
 
 TITLE, SECONDS = "A change of the step in mid-run", 10.0
@@ -71,31 +69,22 @@ def measure(lab, changes=tuple(CHANGES), **options):
 
 def find(results):
     """Finding of what ``measure`` returns."""
-    measurements = []
+    measurements, panels = [], []
+    changes = list(dict.fromkeys(change for change, *_ in results))
+    ticks = tuple(CHANGES[change][0] for change in changes)
     for part, words in PARTS.items():
-        for change in dict.fromkeys(change for change, *_ in results):
-            pairs = [
-                [getattr(results[change, f, history], part) for history in HISTORIES]
-                for f in FORMULATIONS
-            ]
+        errors = {key: getattr(run, part) for key, run in results.items()}
+        for change, step in zip(changes, ticks):
+            pairs = [[errors[change, f, history] for history in HISTORIES] for f in FORMULATIONS]
             worst = max(kept / anew for kept, anew in pairs)
             remark = "; ".join("{:.1e} and {:.1e}".format(*pair) for pair in pairs)
-            what = f"step {CHANGES[change][0]}: {words}, over that of a run started anew"
+            what = f"step {step}: {words}, over that of a run started anew"
             measurements.append(Measurement(what, worst, spec=".3g", remark=remark, most=MOST))
-    changes = {words: (first, then, back) for words, first, then, back in CHANGES.values()}
-    panels = tuple(_panel(results, part) for part in PARTS)
-    context = {"span": SPAN, "changes": changes}
-    return Finding(measurements, pictures={"newstep": panels}, context=context)
-
-
-def _panel(results, part):
-    """Errors of all runs, kept beside anew."""
-    changes = list(dict.fromkeys(change for change, *_ in results))
-    curves = []
-    for formulation in FORMULATIONS:
-        for history, marker in zip(HISTORIES, "ox"):
-            y = [getattr(results[change, formulation, history], part) for change in changes]
-            label = f"{formulation}, {HISTORIES[history]}"
-            curves.append(Curve(label, np.arange(len(y)), np.array(y), formulation, "", marker))
-    ticks = tuple(CHANGES[change][0] for change in changes)
-    return Panel(PARTS[part], "change", "distance of a site", tuple(curves), ticks=ticks)
+        curves = []
+        for f in FORMULATIONS:
+            for (history, label), marker in zip(HISTORIES.items(), "ox"):
+                y = np.array([errors[change, f, history] for change in changes])
+                curves.append(Curve(f"{f}, {label}", np.arange(len(y)), y, f, "", marker))
+        panels.append(Panel(words, "change", "distance of a site", tuple(curves), ticks=ticks))
+    context = {"span": SPAN, "changes": {words: steps for words, *steps in CHANGES.values()}}
+    return Finding(measurements, pictures={"newstep": tuple(panels)}, context=context)

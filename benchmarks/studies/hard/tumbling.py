@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from benchmarks.engine.decks import FORMULATIONS, deck
-from benchmarks.engine.panels import Curve, Panel, floor
-from benchmarks.engine.study import Finding, Measurement
+from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck, floor
 from benchmarks.reference import quaternion as qt
 from benchmarks.reference.free_top import FreeTop
 from lammps_gearquat.analysis import Poses, open_dump
