@@ -5,10 +5,9 @@ from pathlib import Path
 
 import click
 
+from benchmarks.engine import ROOT, LammpsError
 from benchmarks.engine.conduct import all_studies, conduct
-from benchmarks.engine.decks import ROOT
 from benchmarks.engine.publish import PublishError
-from benchmarks.engine.runner import LammpsError
 
 
 def list_studies(_context, _option, wanted):

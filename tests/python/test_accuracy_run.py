@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.engine.lab import Lab
-from benchmarks.engine import session
-from benchmarks.engine.runner import LammpsError
+from benchmarks.engine import Lab, LammpsError, session
 from benchmarks.studies import accuracy as study
 from benchmarks.studies.accuracy import plan, runs
 from benchmarks.studies.cases import accuracy

@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine.lab import Lab
+from benchmarks.engine import Lab
 from benchmarks.engine.page import file_of, render
 from benchmarks.studies import pictures
 from benchmarks.studies.pictures import film

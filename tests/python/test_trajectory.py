@@ -35,9 +35,7 @@ def test_reference_trajectory(run_case, formulation, body):
 @pytest.mark.parametrize("formulation", LIMIT)
 def test_reference_check_can_fail(run_case, formulation):
     """A step that does not reach t = 200 but 1 % less."""
-    error = errors(run_case, (100, 200), 0.02, formulation=formulation)
     found = run_case(1, formulation=formulation, dt=0.02 * 0.99, steps=10000, every=10000)
-    assert max(error) < LIMIT[formulation]
     assert np.linalg.norm(found.center[-1] - REFERENCE["consistent", 200]) > LIMIT[formulation]
 
 

@@ -7,7 +7,7 @@ tables.py    tables and measurements
 figures.py   the pictures
 """
 
-from benchmarks.engine.study import Finding, Study
+from benchmarks.engine import Finding, Study
 
 from . import evaluate, figures, plan, tables
 from .runs import measure

@@ -5,8 +5,8 @@ from functools import partial
 import matplotlib.pyplot as plt
 import numpy as np
 
+from benchmarks.engine import Curve, Panel, draw
 from benchmarks.engine.methods import looks
-from benchmarks.engine.panels import Curve, Panel, draw
 from lammps_gearquat.style import COLOUR, RECONSTRUCTED, STYLE
 
 from . import plan, tables

@@ -5,7 +5,7 @@ from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
-from benchmarks.engine.runner import LammpsError
+from benchmarks.engine import LammpsError
 from benchmarks.engine.session import MOST_ROUNDS, RunError, Session, time_in_turn
 from benchmarks.engine.sites import pose_errors
 from benchmarks.reference import FreeField, paper_problem, reference_state, solvers

@@ -7,9 +7,9 @@ from dataclasses import fields
 
 import numpy as np
 
+from benchmarks.engine import Measurement, Table
 from benchmarks.engine.page import grouped
 from benchmarks.engine.statistics import order
-from benchmarks.engine.study import Measurement, Table
 from benchmarks.reference.solvers import METHODS as SOLVERS
 from benchmarks.reference.stability import first_order_step, linear_limit, second_order_step
 

@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.engine.decks import EXAMPLES
-from benchmarks.engine.lab import Job
+from benchmarks.engine import EXAMPLES, Job, LammpsError
 from benchmarks.engine.methods import Method
-from benchmarks.engine.runner import LammpsError
 
 #: molecules in examples/water/data.water, before it is replicated
 MOLECULES = 500

@@ -9,10 +9,7 @@ from functools import partial
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine import series
-from benchmarks.engine.decks import deck
-from benchmarks.engine.lab import Job
-from benchmarks.engine.study import Finding, Study
+from benchmarks.engine import Finding, Job, Study, deck, series
 from lammps_gearquat.analysis import Poses, open_dump
 
 from .figures import draw_energy, draw_orbit, draw_tumbling

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 import matplotlib.pyplot as plt
 import numpy as np
 
-from benchmarks.engine.panels import floor
+from benchmarks.engine import floor
 from benchmarks.reference import Cage
 from lammps_gearquat.style import COLOUR, RECONSTRUCTED, STYLE
 
