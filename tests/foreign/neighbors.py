@@ -148,7 +148,7 @@ class Outcome:
 
     @property
     def name(self):
-        words = f" {self.a_try.args}" if self.a_try.args else ""
+        words = f" {styles.scaled(self.a_try.args, 1)}" if self.a_try.args else ""
         return f"{self.kind} {self.a_try.group} {self.style}{words}"
 
 
