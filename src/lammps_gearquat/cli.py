@@ -3,7 +3,7 @@
 import cloup
 
 from .commands.analyze import analyze
-from .commands.common import HELP
+from .commands.common import HELP, epilog
 from .commands.cost import cost
 from .commands.horizon import horizon
 
@@ -11,9 +11,10 @@ from .commands.horizon import horizon
 @cloup.group(
     sections=[cloup.Section("Before a long run", [cost, horizon]), cloup.Section("After it", [analyze])],
     context_settings=HELP,
-    epilog="\b\nExamples, to be run in a checkout of the repository:\n"
-    "  gearquat cost examples/water/in.water --var method rigid --budget 30\n"
-    "  gearquat horizon examples/case1/in.case1 --time 100",
+    epilog=epilog(
+        "gearquat cost examples/water/in.water --var method rigid --budget 30",
+        "gearquat horizon examples/case1/in.case1 --time 100",
+    ),
 )
 @cloup.version_option(package_name="lammps-gearquat", message="%(version)s")
 def main():

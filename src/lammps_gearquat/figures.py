@@ -11,7 +11,7 @@ import numpy as np  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 from .style import COLOUR, STYLE  # noqa: E402
-from .trials.cost import NORMS  # noqa: E402
+from .trials import NORMS  # noqa: E402
 
 OWN = "#666666"
 FAINT = "#888888"
@@ -42,7 +42,6 @@ def _ticks(axis):
 
 
 def _named(quantity, unit):
-    """Label of an axis."""
     return f"{quantity} ({unit})" if unit else quantity
 
 
@@ -123,7 +122,7 @@ def draw_horizon(path, deck, horizon):
     title = f"{deck.path.name}: {first}\nagainst {second}"
     curves = {"largest": "#0072b2", "rms": "#56b4e9", "angle": "#d55e00"}
     labels = {"largest": "largest distance", "rms": "rms distance", "angle": "largest angle (rad)"}
-    with _picture(path, title, figsize=(8, 4.6)) as (_, axis):
+    with _picture(path, title, figsize=(8, 5)) as (figure, axis):
         for name, color in curves.items():
             axis.semilogy(time, getattr(horizon, name), color=color, label=labels[name])
         if growth:
@@ -131,16 +130,20 @@ def draw_horizon(path, deck, horizon):
             label = f"Lyapunov time {growth.lyapunov_time:.3g} {deck.time_unit}"
             axis.semilogy(fitted, growth.at(fitted), color="black", linestyle="--", label=label)
         line = {"color": FAINT, "linewidth": 0.6, "linestyle": ":"}
-        note = {"fontsize": 7, "color": OWN, "va": "bottom"}
+        note = {"fontsize": 7, "color": OWN, "va": "bottom", "transform": axis.get_yaxis_transform()}
         for level, parted in horizon.parting:
             axis.axhline(level, **line)
             threshold = f"threshold {level:g} {deck.length_unit}"
-            axis.text(0.0, level, threshold, transform=axis.get_yaxis_transform(), **note)
             if np.isfinite(parted):
                 axis.axvline(parted, **line)
+                threshold += f", passed at {parted:.6g} {deck.time_unit}"
+            axis.text(0.01, level, threshold, **note)
+        axis.set_ylim(top=3 * max(axis.get_ylim()[1], horizon.parting[-1][0]))  # room for the last note
         axis.set_xlabel(_named("time", deck.time_unit))
-        axis.set_ylabel(_named("difference of the positions", deck.length_unit))
-        axis.legend(fontsize=8, loc="lower right")
+        axis.set_ylabel(
+            _named("difference of the two runs", ", ".join(filter(None, [deck.length_unit, "rad"])))
+        )
+        figure.legend(fontsize=8, loc="outside lower center", ncols=4)
 
 
 # --- analyze --------------------------------------------------------------------------------------
@@ -174,29 +177,28 @@ def draw_correlations(path, functions):
     lag = functions["lag"]
     # at later lags there are too few origins
     shown = slice(1, max(2, 2 * len(lag) // 3))
-    with _picture(path, ncols=3, figsize=(12, 3.8)) as (_, axes):
-        squares = {"displacement": ("length²", "translation"), "rotation": ("rad²", "rotation")}
-        for name, (unit, kind) in squares.items():
-            values = functions.get(f"mean_square_{name}")
-            if values is not None:
-                axes[0].loglog(lag[shown], values[shown], color=COLOUR[kind], label=f"{name} ({unit})")
-        axes[0].set_title("mean square", fontsize=10, loc="left")
-        velocities = {"velocity": "translation", "omega_space": "rotation"}
-        for name, kind in velocities.items():
-            values = functions.get(f"{name}_autocorrelation")
-            if values is not None and values[0] > 0:
-                label = "angular velocity" if kind == "rotation" else "velocity"
-                axes[1].plot(lag[shown], values[shown] / values[0], color=COLOUR[kind], label=label)
-        axes[1].set_title("normalized autocorrelation", fontsize=10, loc="left")
-        for name in functions:
-            if name.startswith("axis"):
-                number, order = name[4], name[-1]
-                look = {"color": PRINCIPAL_AXES[int(number) - 1], "linestyle": "-" if order == "1" else "--"}
-                label = f"axis {number}, P{order}"
-                axes[2].plot(lag[shown], functions[name][shown], label=label, **look)
-        axes[2].set_title("correlation of the principal axes", fontsize=10, loc="left")
-        for axis in axes:
+    panels = {"mean square": [], "normalized autocorrelation": [], "correlation of the principal axes": []}
+    squares, velocities, axes_in_space = panels.values()
+    for name, values in functions.items():
+        kind = COLOUR["rotation" if "rotation" in name or "omega" in name else "translation"]
+        if name.startswith("mean_square"):
+            unit = "rad²" if "rotation" in name else "length²"
+            squares.append((values, {"color": kind, "label": f"{name.split('_')[-1]} ({unit})"}))
+        elif name.endswith("autocorrelation") and values[0] > 0:
+            label = "angular velocity" if "omega" in name else "velocity"
+            velocities.append((values / values[0], {"color": kind, "label": label}))
+        elif name.startswith("axis"):
+            number, order = name[4], name[-1]
+            look = {"color": PRINCIPAL_AXES[int(number) - 1], "linestyle": "-" if order == "1" else "--"}
+            axes_in_space.append((values, {"label": f"axis {number}, P{order}", **look}))
+    panels = {title: curves for title, curves in panels.items() if curves}
+    shape = {"ncols": len(panels), "figsize": (4 * len(panels), 3.8), "squeeze": False}
+    with _picture(path, **shape) as (_, axes):
+        for axis, (title, curves) in zip(axes[0], panels.items()):
+            for values, look in curves:
+                axis.plot(lag[shown], values[shown], **look)
+            axis.set_title(title, fontsize=10, loc="left")
             axis.set_xscale("log")
+            axis.set_yscale("log" if curves is squares else "linear")
             axis.set_xlabel("lag")
-            if axis.get_legend_handles_labels()[0]:
-                axis.legend(fontsize=8)
+            axis.legend(fontsize=8)

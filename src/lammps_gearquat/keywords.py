@@ -49,14 +49,14 @@ class Keyword:
     @property
     def ranges(self):
         """Formulation -> (fewest, most) of an integer; the formulation is empty if there is one range."""
-        found = re.findall(r"(\d+) to (\d+)(?: \((\w+)\))?", self.values)
-        return {formulation: (int(low), int(high)) for low, high, formulation in found}
+        limits = re.findall(r"(\d+) to (\d+)(?: \((\w+)\))?", self.values)
+        return {formulation: (int(low), int(high)) for low, high, formulation in limits}
 
     @property
     def most_with_tolerance(self):
         """The largest value of an integer beside keyword tolerance, None without such a limit."""
-        found = re.search(r"at most (\d+) \(tolerance\)", self.values)
-        return int(found[1]) if found else None
+        limit = re.search(r"at most (\d+) \(tolerance\)", self.values)
+        return int(limit[1]) if limit else None
 
     @property
     def of_one_formulation(self):

@@ -1,7 +1,10 @@
 """Made-up dumps of rigid bodies whose motion is known."""
 
 import numpy as np
+from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
+
+from lammps_gearquat.cli import main
 
 COLUMNS = "id mol type mass xu yu zu vx vy vz"
 
@@ -63,3 +66,13 @@ def write(path, motion, times, change=None, **header):
         "".join(frame(k, change(t, motion.rows(t)), **header) for k, t in enumerate(times))
     )
     return path
+
+
+def analyze(path, out, *arguments):
+    """What ``gearquat analyze`` does with a dump."""
+    return CliRunner().invoke(main, ["analyze", *map(str, [path, "--out", out, *arguments])])
+
+
+def columns(path):
+    """Columns of a CSV file, by their names."""
+    return np.genfromtxt(path, delimiter=",", names=True)

@@ -9,13 +9,17 @@ import MDAnalysis
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from dumps import analyze, columns
 from scipy.spatial.transform import Rotation
 
 from lammps_gearquat.analysis import Poses, TablePoses, open_dump, open_table
-from lammps_gearquat.analysis.poses import KINETIC_TO_ENERGY
 from lammps_gearquat.cli import main
+from lammps_gearquat.units import UNITS
 from benchmarks.reference import paper_problem, reference_state
 from benchmarks.reference import quaternion as qt
+from benchmarks.reference.lammps_forces import _open_lammps
+from pages import blocks
+from running import EXAMPLES, ROOT, make_lmp_wheel
 
 BODIES = paper_problem(1, dtype=np.float64).bodies
 SITES = BODIES.sites_body
@@ -77,8 +81,6 @@ dump_modify table format float %.17g
 @pytest.fixture(scope="module")
 def water(tmp_path_factory):
     """Folder with water.dump and water.table: 500 molecules, 5 frames of 20 fs."""
-    from running import EXAMPLES, make_lmp_wheel
-
     folder = tmp_path_factory.mktemp("water")
     motion = (EXAMPLES / "common" / "in.motion").read_text()
     # the run comes after the second dump
@@ -132,31 +134,20 @@ def test_bodies_without_images_are_followed_as_with_them(water):
 
 def test_units_are_those_of_lammps():
     """The factors are what LAMMPS itself uses."""
-    from benchmarks.reference.lammps_forces import _open_lammps
-
     lmp = _open_lammps(["-screen", "none", "-log", "none"])
     try:
-        for units, factor in KINETIC_TO_ENERGY.items():
-            lmp.commands_list(["clear", f"units {units}"])
-            assert lmp.extract_global("mvv2e") == factor, units
+        for style, units in UNITS.items():
+            lmp.commands_list(["clear", f"units {style}"])
+            assert lmp.extract_global("mvv2e") == units.energy, style
     finally:
         lmp.close()
 
 
 # --- the command ---------------------------------------------------------------------------------
-def run(*arguments):
-    return CliRunner().invoke(main, ["analyze", *map(str, arguments)])
-
-
-def columns(path):
-    return np.genfromtxt(path, delimiter=",", names=True)
-
-
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
-    result = run(
-        water / "water.dump", "--out", tmp_path, "--units", "real", "--csv", "--jobs", jobs
-    )
+    arguments = ["--units", "real", "--csv", "--jobs", jobs]
+    result = analyze(water / "water.dump", tmp_path, *arguments)
     assert result.exit_code == 0, result.output
     assert "5 frames of 500 bodies were read, from time 0 to 80." in result.output
     exact = Poses(open_dump(water / "water.dump").atoms, "principal", units="real").run()
@@ -175,7 +166,7 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
 
 
 def test_command_takes_the_table_of_the_fix(water, tmp_path):
-    result = run(water / "water.table", "--out", tmp_path, "--units", "real")
+    result = analyze(water / "water.table", tmp_path, "--units", "real")
     assert result.exit_code == 0, result.output
     assert "velocity" in np.load(tmp_path / "poses.npy").dtype.names
     assert "mean_square_rotation" in columns(tmp_path / "correlations.csv").dtype.names
@@ -189,9 +180,8 @@ def test_command_converts(water, tmp_path, suffix, wrap):
     """Read again by MDAnalysis: the same molecules, whole, in the same frames."""
     path = tmp_path / f"water.{suffix}"
     options = ["--units", "real", "--timestep", "1", *(["--wrap"] if wrap else [])]
-    result = run(
-        water / "water.dump", "--out", tmp_path, "--convert", path, "--frames", "::2", *options
-    )
+    options += ["--convert", path, "--frames", "::2"]
+    result = analyze(water / "water.dump", tmp_path, *options)
     assert result.exit_code == 0, result.output
     topology = path if suffix in ("xyz", "pdb") else path.with_suffix(".pdb")
     other = MDAnalysis.Universe(str(topology), str(path))
@@ -215,7 +205,7 @@ def test_command_tells_of_stays(tmp_path):
     motion.center, motion.velocity = np.array([[0.0, 0, 0], [20, 0, 0]]), np.eye(3)[[0, 0]] * 0.5
     path = dumps.write(tmp_path / "stay.dump", motion, np.arange(8.0))
     (tmp_path / "places").write_text("0 0 0\n20 0 0\n")
-    result = run(path, "--out", tmp_path, "--near", tmp_path / "places", "--radius", 1.75)
+    result = analyze(path, tmp_path, "--near", tmp_path / "places", "--radius", 1.75)
     assert result.exit_code == 0, result.output
     assert "Bodies made 2 stays within 1.75 of 2 places, in 50.0% of the time." in result.output
     rows = columns(tmp_path / "stays.csv")
@@ -225,7 +215,7 @@ def test_command_tells_of_stays(tmp_path):
 def test_command_says_when_frames_are_too_far_apart(tmp_path):
     for omega, said in ((2.0, True), (0.02, False)):
         path = dumps.write(tmp_path / "far.dump", dumps.Motion([4], omega=omega), np.arange(8.0))
-        result = run(path, "--out", tmp_path)
+        result = analyze(path, tmp_path)
         assert result.exit_code == 0, result.output
         assert ("dump more often" in result.output) == said
 
@@ -247,14 +237,13 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
 )
 def test_command_refuses_clearly(tmp_path, arguments, text):
     path = dumps.write(tmp_path / "made.dump", dumps.Motion([3]), [0.0, 1.0])
-    result = run(path, "--out", tmp_path, *arguments)
+    result = analyze(path, tmp_path, *arguments)
     assert result.exit_code != 0 and text in result.output
     assert "Traceback" not in result.output
 
 
-def test_commands_of_the_page_run_as_they_stand(water, tmp_path, monkeypatch):
-    from running import ROOT
-
+def test_the_page_runs_as_it_stands(water, tmp_path, monkeypatch):
+    """The commands and the Python of doc/analysis.md."""
     page = (ROOT / "doc" / "analysis.md").read_text()
     lines = re.findall("^    (gearquat analyze .*)$", page, re.M)
     assert len(lines) == 2
@@ -264,15 +253,5 @@ def test_commands_of_the_page_run_as_they_stand(water, tmp_path, monkeypatch):
         result = CliRunner().invoke(main, shlex.split(line)[1:])
         assert result.exit_code == 0, result.output
     assert (tmp_path / "water.dcd").exists()
-
-
-def test_the_how_to_works(water, tmp_path, monkeypatch):
-    """The Python of doc/analysis.md runs as it stands."""
-    from running import ROOT
-
-    text = (ROOT / "doc" / "analysis.md").read_text()
-    code = text.partition("```python\n")[2].partition("```")[0]
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "water.dump").symlink_to(water / "water.dump")
-    exec(compile(code, "doc/analysis.md", "exec"), {})
+    exec(compile(*blocks("../analysis", "python"), "doc/analysis.md", "exec"), {})
     assert len(columns(tmp_path / "poses.csv")) == 50

@@ -133,11 +133,10 @@ def test_stays_are_those_made_up():
     assert residence.stays(center, PLACES, 0.05, time).body.tolist() == []
 
 
-def test_the_nearest_place_counts_and_boxes_are_periodic():
+def test_the_nearest_place_counts():
     points = np.array([[4.0, 0, 0], [6.0, 0, 0], [-9.5, 0, 0], [0, 30, 0]])
-    assert residence.nearest(points, PLACES, 7.0).tolist() == [0, 1, -1, -1]
-    box = [20, 20, 20, 90, 90, 90]
-    assert residence.nearest(points, PLACES, 7.0, box).tolist() == [0, 1, 1, -1]
+    found = residence.stays(points[None], PLACES, 7.0, [0.0])
+    assert (found.body.tolist(), found.place.tolist()) == ([0, 1], [0, 1])
 
 
 def test_survival_of_many_is_that_of_mdanalysis():

@@ -135,15 +135,6 @@ def test_principal_frame_does_not_depend_on_the_pose():
     assert again.shape == pytest.approx(bodies.shape, abs=1e-12)
 
 
-def test_division_by_inertia():
-    bodies = bodies_of([4] * 20)
-    q = Rotation.random(20, RNG).as_quat(scalar_first=True)
-    omega = RNG.normal(size=(20, 3))
-    arms = rotate(q[bodies.of], bodies.shape)
-    momentum = bodies.sum(bodies.masses[:, None] * np.cross(arms, np.cross(omega[bodies.of], arms)))
-    assert bodies.divided_by_inertia(q, momentum) == pytest.approx(omega, abs=1e-12)
-
-
 def test_bodies_of_atoms_in_any_order():
     bodies = Bodies([0, 2, 1, 2, 0, 1], [9.0, 1.0, 2.0, 3.0, 9.0, 4.0])
     assert bodies.ids.tolist() == [1, 2] and bodies.index.tolist() == [2, 5, 1, 3]

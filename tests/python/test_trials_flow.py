@@ -1,6 +1,8 @@
-"""Decks with loops, branches, files and second thoughts: the trials end where LAMMPS ends."""
+"""Decks with loops, branches, files and second thoughts, and those of LAMMPS: trials end where LAMMPS ends."""
 
+import os
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +11,8 @@ from clumps import FIX, SITES
 
 from lammps_gearquat.commands.cost import cost
 from lammps_gearquat.commands.horizon import horizon
+from lammps_gearquat.trials import script
+from lammps_gearquat.trials.cost import Budget, measure
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
 
@@ -222,3 +226,67 @@ def test_earlier_runs_are_announced(make_deck, tmp_path):
     arguments = ["--time", "0.04", "--var", "soft", "1", "--out", str(tmp_path / "out")]
     result = CliRunner().invoke(horizon, [str(path), *arguments])
     assert result.exit_code == 0 and f"in.clumps: 'run 10' {said_of}" in result.output
+
+
+# --- LAMMPS' own examples ----------------------------------------------------------------------------
+@pytest.fixture
+def rigid_examples():
+    """The folder examples of a LAMMPS source tree."""
+    cache = Path(os.environ.get("GEARQUAT_CACHE", Path.home() / ".cache" / "gearquat"))
+    trees = [Path(os.environ.get("LAMMPS_SOURCE_DIR", "/nowhere")), *sorted(cache.glob("lammps-*"))]
+    folders = [tree / "examples" for tree in trees if (tree / "examples/rigid").is_dir()]
+    assert folders, "no source tree of LAMMPS: run `tests/run build`, or set LAMMPS_SOURCE_DIR"
+    return folders[0]
+
+
+VARIANTS = ".small .nve .early .atomfile .atomvar .property .infile .small.infile .molecule".split()
+
+
+@pytest.mark.parametrize("name", ["", *VARIANTS])
+def test_examples_of_fix_rigid_run(rigid_examples, name):
+    with Deck(rigid_examples / "rigid" / f"in.rigid{name}") as deck:
+        own = deck.run_to(None, 0.01, 1000)
+        gear = deck.run_to("formulation second values 8", 0.01, 1000)
+        assert len(deck.scene.bodies) == 9
+        assert 0 < np.abs(own.center - gear.center).max() < 3e-4
+
+
+@pytest.mark.parametrize(
+    "name, options, said",
+    [
+        ("rigid/in.rigid.tnr", {"which": 1}, "fix 3 langevin: .* --without 3"),
+        ("rigid/in.rigid.gravity", {"without": ["pourfix"]}, "disable of fix gravity"),
+        ("micelle/in.micelle-rigid", {"which": 1}, "temp/rescale"),
+        ("ASPHERE/line/in.line", {"without": ["3"]}, "keyword langevin"),
+        ("melt/in.melt", {}, "no fix that moves rigid bodies"),
+        ("deposit/in.deposit.molecule.rigid-nve-small", {"without": ["2", "4"]}, "no atoms"),
+    ],
+)
+def test_examples_that_cannot_be_measured_say_why(rigid_examples, name, options, said):
+    with pytest.raises(DeckError, match=f"(?s){said}"), Deck(rigid_examples / name, **options):
+        pass
+
+
+def test_the_first_run_that_can_be_measured_is_found(rigid_examples):
+    """In the two runs before it a thermostat acts on the bodies, or there are none."""
+    with Deck(rigid_examples / "micelle" / "in.micelle-rigid") as deck:
+        assert deck.fix_lines(None) == ["fix 5 solute rigid/small molecule"]
+        assert deck.start.checkpoints and deck.start.steps == 500
+
+
+def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
+    """What the sources of LAMMPS compare arguments with."""
+    folder = rigid_examples.parent / "src" / "RIGID"
+    text = "".join((folder / f"fix_rigid{name}.cpp").read_text() for name in ("", "_small"))
+    known = set(re.findall(r'strcmp\(arg\[iarg\], *"(\w+)"\)', text))
+    assert len(known) > 10 and known == set(script.RIGID_KEYWORDS)
+
+
+def test_cost_of_an_example_of_lammps(rigid_examples):
+    """Each answer is less than fix rigid takes, as far as the cut-off of its potential allows."""
+    with Deck(rigid_examples / "rigid" / "in.rigid") as deck:
+        costs = measure(deck, Budget(20.0), errors=[1e-3], time=0.05, timings=2)
+    own, best = costs.rows[0].own, costs.rows[0].best
+    assert own.evaluations > 5 * best.evaluations
+    (line,) = deck.fix_lines(best.method)
+    assert line.startswith("fix 1 all gear/quat group 9")

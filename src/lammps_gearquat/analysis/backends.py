@@ -26,7 +26,6 @@ class Processes(BackendBase):
         self._progress = progress
 
     def apply(self, func, computations):
-        """Results of all computations, in their order."""
         with Pool(self.n_workers) as pool:
             parts = pool.imap(functools.partial(_outcome, func), computations)
             return list(self._progress(parts, len(computations)) if self._progress else parts)

@@ -9,6 +9,13 @@ LINEAR_FRACTION = 1.0e-7
 ON_AXIS = 1.0e-6
 
 
+def places(ids, wanted):
+    """Index (m,) of each of the ``wanted`` (m,) among ``ids`` (n,), whole numbers; -1 if it is not there."""
+    order = np.argsort(ids)
+    nearest = np.append(order, -1)[np.searchsorted(ids, wanted, sorter=order)]
+    return np.where(np.append(ids, -1)[nearest] == wanted, nearest, -1)
+
+
 class Bodies:
     """B bodies of n sites, with a reference shape each.
 

@@ -12,19 +12,9 @@ import MDAnalysis
 import numpy as np
 from MDAnalysis.lib.util import guess_format
 
+from ..units import UNITS
 from .bodies import Bodies
 
-#: LAMMPS' units of length in Å, and of time in ps; velocities are the one by the other
-ANGSTROM_AND_PS = {
-    "lj": (1.0, 1.0),
-    "real": (1.0, 1e-3),
-    "metal": (1.0, 1.0),
-    "si": (1e10, 1e12),
-    "cgs": (1e8, 1e12),
-    "electron": (0.529177210544, 1e-3),
-    "micro": (1e4, 1e6),
-    "nano": (10.0, 1e3),
-}
 #: formats that say themselves what their atoms are
 SELF_CONTAINED = {"PDB", "ENT", "XYZ"}
 #: formats with one distance of time for all frames
@@ -42,7 +32,7 @@ MOST = 2**31 - 1
 
 def remark(units):
     """What one unit of LAMMPS is in the files written."""
-    length, time = ANGSTROM_AND_PS[units]
+    length, time = UNITS[units].angstrom, UNITS[units].ps
     length_name, time_name = ("1 sigma", "1 tau") if units == "lj" else ("length 1", "time 1")
     return f"LAMMPS units {units}: {length_name} is {length:g} Angstrom here, {time_name} is {time:g} ps"
 
@@ -65,7 +55,7 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
     frames that it cannot hold.
     """
     path, trajectory = Path(path), atoms.universe.trajectory
-    length, time = ANGSTROM_AND_PS[units]
+    length, time = UNITS[units].angstrom, UNITS[units].ps
     iterator = trajectory[frames or slice(None)]
     kind = guess_format(str(path))
     options = {REMARK[kind]: remark(units)} if kind in REMARK else {}
@@ -96,7 +86,6 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
 
 
 def _writer(path, number, options):
-    """MDAnalysis' writer of the format that the suffix names."""
     try:
         return MDAnalysis.Writer(str(path), n_atoms=number, multiframe=True, **options)
     except (TypeError, ValueError) as error:
@@ -115,7 +104,6 @@ def _rescale(ts, length, time):
 
 
 def _first_frame(atoms, path, units):
-    """The file that tells a viewer what the atoms are."""
     pdb, xyz = path.with_suffix(".pdb"), path.with_suffix(".xyz")
     try:
         atoms.write(str(pdb), remarks=remark(units))

@@ -78,14 +78,12 @@ def rotation_path(q, axis=None):
     Eq. 10).  Along space axes.  ``q`` (F, b, 4); ``axis`` (b, 3): axes in the body frame of linear
     bodies, whose turn is the shortest one of the axis; NaN for the others.
     """
-    turn = Rotation.from_quat(q.reshape(-1, 4), scalar_first=True)
     frames, bodies = q.shape[:2]
-    matrices = turn.as_matrix().reshape(frames, bodies, 3, 3)
-    steps = Rotation.from_matrix((matrices[1:] @ np.swapaxes(matrices[:-1], -1, -2)).reshape(-1, 3, 3))
-    steps = steps.as_rotvec().reshape(frames - 1, bodies, 3)
+    turn = Rotation.from_quat(q.reshape(-1, 4), scalar_first=True)
+    steps = (turn[bodies:] * turn[:-bodies].inv()).as_rotvec().reshape(-1, bodies, 3)
     if axis is not None:
         linear = np.isfinite(axis[:, 0])
-        along = np.einsum("fbij,bj->fbi", matrices[:, linear], axis[linear])
+        along = turn.apply(np.tile(axis, (frames, 1))).reshape(frames, bodies, 3)[:, linear]
         cross = np.cross(along[:-1], along[1:])
         sine = np.linalg.norm(cross, axis=-1, keepdims=True)
         angle = np.arctan2(sine, np.einsum("fbi,fbi->fb", along[:-1], along[1:])[..., None])

@@ -20,6 +20,8 @@ from MDAnalysis.guesser.tables import masses as MASSES
 from MDAnalysis.lib.mdamath import triclinic_box
 from MDAnalysis.lib.util import anyopen
 
+from .bodies import places
+
 #: columns of positions, the most useful first: which way they are unwrapped, scaled or not
 POSITIONS = {
     "unwrapped": ("xu", "yu", "zu"),
@@ -160,15 +162,8 @@ class DumpFrames(DumpReader):
                 here = file.tell()
         self._rows, self.unit_style, self.timed = first.rows, first.units, first.time is not None
 
-    @property
-    def n_atoms(self):
-        """Number of rows of a frame."""
-        return self._rows
-
-    @property
-    def n_frames(self):
-        """Number of frames."""
-        return len(self._offsets)
+    n_atoms = property(lambda self: self._rows)
+    n_frames = property(lambda self: len(self._offsets))
 
     def _columns(self, header):
         """Index of each column that is read; the kind of its positions."""
@@ -210,9 +205,7 @@ class DumpFrames(DumpReader):
         return ts
 
     def _fill(self, table, kind, frame):
-        """One frame into the Timestep."""
-        ts = self.ts
-        step, origin, box, periodic = frame.step, frame.origin, frame.box, frame.periodic
+        ts, step, origin, box, periodic = self.ts, frame.step, frame.origin, frame.box, frame.periodic
         order = np.argsort(table["id"], kind="stable")
         table = {name: column[order] for name, column in table.items()}
         self._check_ids(table["id"], step)
@@ -245,6 +238,11 @@ class DumpFrames(DumpReader):
                 " atoms stay"
             )
 
+    def pop_columns(self, names):
+        """The additional columns with these names, name -> (n,), which are not read from now on."""
+        self._additional_columns = [name for name in self._additional_columns if name not in names]
+        return {name: self.ts.data.pop(name) for name in names}
+
     @property
     def ids(self):
         """IDs (n,) of the rows, rising."""
@@ -262,20 +260,22 @@ def _names(masses, types):
     return np.array([f"T{kind}" for kind in types], dtype=object), None
 
 
-def _universe(reader_arguments, ids, bodies, masses, types):
-    """A Universe whose residues are the bodies."""
+def _universe(reader, bodies, masses, types):
+    """A Universe of what ``reader`` reads, whose residues are the bodies."""
     numbers, residue = np.unique(bodies, return_inverse=True)
-    universe = MDAnalysis.Universe.empty(len(ids), n_residues=len(numbers), atom_resindex=residue, trajectory=False)
-    universe.add_TopologyAttr("ids", ids)
-    universe.add_TopologyAttr("resids", numbers)
-    universe.add_TopologyAttr("masses", masses)
-    universe.add_TopologyAttr("types", types.astype(str))
+    universe = MDAnalysis.Universe.empty(len(residue), len(numbers), atom_resindex=residue)
     names, elements = _names(masses, types)
-    universe.add_TopologyAttr("names", names)
-    if elements is not None:
-        universe.add_TopologyAttr("elements", elements)
-    path, arguments = reader_arguments
-    universe.load_new(str(path), format=DumpFrames, **arguments)
+    attributes = {
+        "ids": reader.ids,
+        "resids": numbers,
+        "masses": masses,
+        "types": types.astype(str),
+        "names": names,
+    }
+    attributes |= {} if elements is None else {"elements": elements}
+    for name, values in attributes.items():
+        universe.add_TopologyAttr(name, values)
+    universe.trajectory = reader
     return universe
 
 
@@ -285,13 +285,10 @@ def _from_data_file(data, atom_style, ids):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         known = MDAnalysis.Universe(str(data), topology_format="DATA", format="DATA", **style).atoms
-    order = np.argsort(known.ids)
-    place = np.searchsorted(known.ids[order], ids)
-    nearest = known.ids[order][np.minimum(place, len(known) - 1)]
-    if not np.array_equal(nearest, ids):
-        lost = ids[nearest != ids][0]
-        raise DumpError(f"{data}: no atom {lost}, which the dump has")
-    known = known[order][place]
+    place = places(known.ids, ids)
+    if (place < 0).any():
+        raise DumpError(f"{data}: no atom {ids[place < 0][0]}, which the dump has")
+    known = known[place]
     return known.masses, known.resids, known.types
 
 
@@ -311,24 +308,19 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_st
     if local:
         raise DumpError(f"{path}: a dump local of the fix; open it with open_table")
     extra = [name for name in (body, "mass", "type") if name in columns]
-    extra += [potential] if potential else []
-    arguments = {"additional_columns": extra, "dt": timestep}
-    with DumpFrames(str(path), **arguments) as reader:
-        ids, first = reader.ids, reader.ts.data
+    potentials = [potential] if potential else []
+    reader = DumpFrames(str(path), additional_columns=extra + potentials, dt=timestep)
+    known = reader.pop_columns(extra)
     if data is not None:
-        masses, bodies, types = _from_data_file(data, atom_style, ids)
+        masses, bodies, types = _from_data_file(data, atom_style, reader.ids)
     else:
-        masses, bodies, types = first.get("mass"), None, np.ones(len(ids), int)
+        masses, bodies, types = known.get("mass"), None, np.ones(reader.n_atoms, int)
     if masses is None:
         raise DumpError(f"{path}: no column mass; dump it, or name the data file")
-    if body in first:
-        bodies = first[body].astype(int)
-    elif bodies is None or body != "mol":
+    if body not in known and (bodies is None or body != "mol"):
         raise DumpError(f"{path}: no column {body}; it says which atoms make which body")
-    if "type" in first:
-        types = first["type"].astype(int)
-    kept = {"additional_columns": [potential] if potential else [], "dt": timestep}
-    return _universe((path, kept), ids, bodies, masses, types)
+    bodies = known.get(body, bodies).astype(int)
+    return _universe(reader, bodies, masses, known["type"].astype(int) if "type" in known else types)
 
 
 def open_table(path, timestep=1.0):
@@ -342,12 +334,13 @@ def open_table(path, timestep=1.0):
     names = {c: TABLE.get(int(match[1]), c) for c, match in numbers.items() if match}
     missing = sorted(set(TABLE) - {int(match[1]) for match in numbers.values() if match})
     if missing:
-        raise DumpError(f"{path}: the dump local of the fix's table lacks column(s) {' '.join(map(str, missing))}")
+        raise DumpError(
+            f"{path}: the dump local of the fix's table lacks column(s) {' '.join(map(str, missing))}"
+        )
     extra = [name for name in TABLE.values() if name[0] in "qwl"]
-    arguments = {"additional_columns": extra, "names": names, "dt": timestep}
-    with DumpFrames(str(path), **arguments) as reader:
-        ids = reader.ids
-    return _universe((path, arguments), ids, ids, np.full(len(ids), np.nan), np.ones(len(ids), int))
+    reader = DumpFrames(str(path), additional_columns=extra, names=names, dt=timestep)
+    number = reader.n_atoms
+    return _universe(reader, reader.ids, np.full(number, np.nan), np.ones(number, int))
 
 
 def open_any(path, timestep=1.0, **options):

@@ -18,6 +18,7 @@ import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
 from MDAnalysis.analysis.results import ResultsGroup
 
+from ..units import UNITS
 from . import mapped
 from .bodies import Bodies
 from .superposition import rotate, superpose
@@ -35,18 +36,6 @@ MOTION = {
 TABLE_MOTION = ("velocity", "omega_space", "angular_momentum_space", "ke_rotation")
 POTENTIAL = {"potential": ONE}
 
-#: mass x velocity^2 -> energy in the units of LAMMPS (mvv2e in its update.cpp)
-KINETIC_TO_ENERGY = {
-    "lj": 1.0,
-    "real": 48.88821291**2,
-    "metal": 1.0364269e-4,
-    "si": 1.0,
-    "cgs": 1.0,
-    "electron": 1.06657236,
-    "micro": 1.0,
-    "nano": 1.0,
-}
-
 
 class _FrameTable(AnalysisBase):
     """A structured array (F, B), filled frame by frame, in memory or in a file."""
@@ -59,12 +48,12 @@ class _FrameTable(AnalysisBase):
         return ("serial", "multiprocessing", "dask")
 
     def __init__(self, atoms, ids, fields, units, out, **kwargs):
-        if units is not None and units not in KINETIC_TO_ENERGY:
-            raise ValueError(f"units {units}: one of {', '.join(KINETIC_TO_ENERGY)} is required")
+        if units is not None and units not in UNITS:
+            raise ValueError(f"units {units}: one of {', '.join(UNITS)} is required")
         super().__init__(atoms.universe.trajectory, **kwargs)
         self.atoms, self.ids = atoms, ids
         self.units = units
-        self._energy = KINETIC_TO_ENERGY[units or "lj"]
+        self._energy = UNITS[units or "lj"].energy
         self._dtype = np.dtype([(name, *kind) for name, kind in fields.items()])
         self._out = None if out is None else str(out)
 
@@ -136,7 +125,21 @@ class _FrameTable(AnalysisBase):
 
         ``momentum`` and ``angular_momentum_space`` (about the origin) need masses, so a table of sites.
         """
-        return totals(self.results.table, getattr(self, "mass", None))
+        table, mass = self.results.table, getattr(self, "mass", None)
+        names, known = table.dtype.names, mass is not None and "velocity" in table.dtype.names
+        scalars = [n for n in names if n.startswith(("ke_", "potential")) or n.endswith("residual")]
+        vectors = ["momentum", "angular_momentum_space"] if known else []
+        sums = {name: np.empty(len(table)) for name in scalars}
+        sums |= {name: np.empty((len(table), 3)) for name in vectors}
+        for k in mapped.rows(table):
+            frame = table[k]
+            for name in set(sums) & set(names):
+                sums[name][k] = (np.max if name.endswith("residual") else np.sum)(frame[name], axis=0)
+            if known:
+                momentum = mass[:, None] * frame["velocity"]
+                sums["momentum"][k] = momentum.sum(axis=0)
+                sums["angular_momentum_space"][k] += np.cross(frame["center"], momentum).sum(axis=0)
+        return sums
 
     def columns(self):
         """Every field as a flat column: name -> (F * B,), frame by frame; for pandas.DataFrame."""
@@ -174,25 +177,6 @@ def _flat(records):
             parts = "xyz" if values.shape[1] == 3 else "0123"
             columns |= {f"{name}_{part}": values[:, k] for k, part in enumerate(parts)}
     return columns
-
-
-def totals(table, mass=None):
-    """Sums over the bodies of a table (F, B), see ``_FrameTable.totals``; ``mass`` (B,)."""
-    names = table.dtype.names
-    sums = {n: np.empty(len(table)) for n in names if n.startswith(("ke_", "potential"))}
-    sums |= {n: np.empty(len(table)) for n in names if n.endswith("residual")}
-    known = mass is not None and "velocity" in names
-    sums |= {n: np.empty((len(table), 3)) for n in ("momentum", "angular_momentum_space") if known}
-    for k in mapped.rows(table):
-        frame = table[k]
-        for name in set(sums) & set(names):
-            values = frame[name]
-            sums[name][k] = values.max() if name.endswith("residual") else values.sum(axis=0)
-        if known:
-            momentum = mass[:, None] * frame["velocity"]
-            sums["momentum"][k] = momentum.sum(axis=0)
-            sums["angular_momentum_space"][k] += np.cross(frame["center"], momentum).sum(axis=0)
-    return sums
 
 
 class Poses(_FrameTable):

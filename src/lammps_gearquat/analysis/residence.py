@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from MDAnalysis.lib.distances import capped_distance
+from scipy.spatial import cKDTree
 
 from . import mapped
 
@@ -26,7 +26,6 @@ class Stays:
 
     @property
     def frames(self):
-        """Length of each stay, (K,)."""
         return self.end - self.begin
 
     @property
@@ -48,48 +47,34 @@ class Stays:
         # a stay of n frames lasts a lag from n - lag origins; sums over longer stays, twice
         longer = np.cumsum(np.bincount(self.frames, minlength=frames + 1)[::-1])[::-1]
         lasting = np.cumsum(longer[1:][::-1])[::-1].astype(float)
-        change = np.bincount(self.begin, minlength=frames + 1)
-        change = change - np.bincount(self.end, minlength=frames + 1)
+        change = np.bincount(self.begin, minlength=frames + 1) - np.bincount(self.end, minlength=frames + 1)
         asked = np.cumsum(np.cumsum(change)[:frames])[::-1]
         return np.divide(lasting, asked, out=np.full(frames, np.nan), where=asked > 0)
 
 
-def stays(center, places, radius, time, box=None, progress=iter):
+def stays(center, places, radius, time, progress=iter):
     """Stays of centers (F, B, 3) within ``radius`` of the nearest of ``places`` (S, 3).
 
-    ``time`` (F,); ``box`` (6,): lengths and angles of a periodic box, as MDAnalysis has them.  Distances are those
-    of MDAnalysis, in single precision.  ``progress`` wraps the iteration over frames.  Raises ValueError for a radius that is not above zero and places
-    that are not points.
+    ``time`` (F,); ``progress`` wraps the iteration over frames.  Raises ValueError for a radius that is
+    not above zero and places that are not points.
     """
     places = np.atleast_2d(np.asarray(places, dtype=float))
     if places.shape[1] != 3 or not np.isfinite(places).all():
         raise ValueError("places: three coordinates each are required")
     if not radius > 0.0:
         raise ValueError(f"radius {radius:g}: it must be above zero")
+    tree, nowhere = cKDTree(places), len(places)
     frames, bodies = center.shape[:2]
-    at = np.full(bodies, -1)
-    since = np.zeros(bodies, dtype=int)
-    rows = []
+    at, since, rows = np.full(bodies, nowhere), np.zeros(bodies, dtype=int), []
 
     def change(k, now):
-        left = np.flatnonzero((now != at) & (at >= 0))
+        left = np.flatnonzero((now != at) & (at < nowhere))
         rows.append(np.column_stack([left, at[left], since[left], np.full(len(left), k)]))
         since[now != at] = k
         at[:] = now
 
     for k in progress(mapped.rows(center)):
-        change(k, nearest(center[k], places, radius, box))
-    change(frames, np.full(bodies, -1))
+        change(k, tree.query(center[k], distance_upper_bound=radius)[1])
+    change(frames, np.full(bodies, nowhere))
     columns = np.concatenate(rows).T
     return Stays(*columns, np.asarray(time, dtype=float), bodies, len(places))
-
-
-def nearest(points, places, radius, box=None):
-    """Number (B,) of the nearest of places (S, 3) within ``radius`` of points (B, 3); -1 for none."""
-    pairs, distances = capped_distance(
-        np.asarray(points, dtype=np.float32), places.astype(np.float32), radius, box=box
-    )
-    place = np.full(len(points), -1)
-    order = np.argsort(-distances, kind="stable")  # the nearest is written last
-    place[pairs[order, 0]] = pairs[order, 1]
-    return place

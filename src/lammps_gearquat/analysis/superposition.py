@@ -1,9 +1,9 @@
 """Superposition of many bodies at once: the rotation that carries reference shapes onto sites.
 
-The rotation with the least mass-weighted squares is the eigenvector to the largest eigenvalue of a symmetric
-4 x 4 matrix (B. K. P. Horn, J. Opt. Soc. Am. A 4, 629 (1987), Sec. 4; Eq. numbers are his).  It is proper
-by construction.  A step of Newton's method follows: the eigenvalues of a thin body are close to each other,
-and the eigenvector alone has as many digits less than the positions allow as its width has less than its length.
+The rotation with the least mass-weighted squares follows from a singular value decomposition (W. Kabsch,
+Acta Cryst. A 34, 827 (1978)).  A step of Newton's method follows: two singular values of a thin body are
+small, and the decomposition alone has as many digits less than the positions allow as its width has less
+than its length.
 
 Quaternions (B, 4): scalar first, as in the fix's own array; body -> space.
 """
@@ -12,22 +12,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 
-def horn_matrix(s):
-    """The 4 x 4 matrices (B, 4, 4) of Horn's Eq. 47, of s (B, 3, 3) = sum m shape_a arm_b."""
-    n = np.empty((len(s), 4, 4))
-    n[:, 0, 0] = np.trace(s, axis1=1, axis2=2)
-    for k, (a, b) in enumerate(((1, 2), (2, 0), (0, 1)), 1):
-        n[:, 0, k] = n[:, k, 0] = s[:, a, b] - s[:, b, a]
-        for m in range(1, 4):
-            n[:, k, m] = s[:, k - 1, m - 1] + s[:, m - 1, k - 1]
-        n[:, k, k] -= n[:, 0, 0]
-    return n
-
-
 def rotate(q, vectors):
     """Vectors (B, 3) turned by quaternions (B, 4)."""
-    u, t = q[:, 1:], 2.0 * np.cross(q[:, 1:], vectors)
-    return vectors + q[:, :1] * t + np.cross(u, t)
+    return Rotation.from_quat(q, scalar_first=True).apply(vectors)
 
 
 def shortest_turn(before, after):
@@ -57,7 +44,9 @@ def superpose(bodies, arms):
     """
     shape, mass = bodies.shape, bodies.masses[:, None]
     s = bodies.sum((mass * shape)[:, :, None] * arms[:, None, :])
-    q = np.linalg.eigh(horn_matrix(s))[1][:, :, -1]
+    u, _, vt = np.linalg.svd(s)
+    u[:, :, 2] *= np.linalg.det(u @ vt)[:, None]  # proper
+    q = Rotation.from_matrix(np.swapaxes(u @ vt, 1, 2)).as_quat(scalar_first=True)
     linear, point = bodies.linear, bodies.point
     if linear.any():
         axis = bodies.axes[linear, 2]
@@ -65,7 +54,8 @@ def superpose(bodies, arms):
         along = np.einsum("bij,bi->bj", s[linear], axis)
         q[linear] = shortest_turn(axis, along / np.linalg.norm(along, axis=1, keepdims=True))
     q[point] = [1.0, 0.0, 0.0, 0.0]
-    q = _composed(bodies.divided_by_inertia(q, _torque(bodies, q, arms)), q)
+    further = Rotation.from_rotvec(bodies.divided_by_inertia(q, _torque(bodies, q, arms)))
+    q = (further * Rotation.from_quat(q, scalar_first=True)).as_quat(scalar_first=True)
     residual = np.linalg.norm(arms - rotate(q[bodies.of], shape), axis=1)
     return np.where(q[:, :1] < 0.0, -q, q), bodies.largest(residual)
 
@@ -94,9 +84,3 @@ def _torque(bodies, q, arms):
     measured = np.einsum("nij,nj->ni", axes[bodies.of], arms)
     torque = bodies.sum(bodies.masses[:, None] * np.cross(own, measured))
     return np.einsum("bij,bi->bj", axes, torque)
-
-
-def _composed(rotvec, q):
-    """Quaternions of a further, small rotation by ``rotvec`` (B, 3), radians."""
-    turn = Rotation.from_rotvec(rotvec) * Rotation.from_quat(q, scalar_first=True)
-    return turn.as_quat(scalar_first=True)

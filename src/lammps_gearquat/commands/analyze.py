@@ -6,9 +6,8 @@ from pathlib import Path
 import cloup
 from cloup.constraints import all_or_none
 
-from .common import FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
-
-UNITS = ("lj", "real", "metal", "si", "cgs", "electron", "micro", "nano")
+from ..units import UNITS
+from .common import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
 
 
 def _frames(_context, _option, text):
@@ -20,29 +19,30 @@ def _frames(_context, _option, text):
 
 
 @command(
-    [
-        "cd examples/water",
-        "lmp -in in.water -var dump 10",
-        "gearquat analyze out.water.dump --units real --timestep 1.0 --convert out.water.dcd",
-    ]
+    "cd examples/water",
+    "lmp -in in.water -var dump 10",
+    "gearquat analyze out.water.dump --units real --timestep 1.0 --convert out.water.dcd",
 )
 @cloup.argument("dump", type=FILE, help="Trajectory written by LAMMPS.")
 @cloup.option_group(
     "Atoms and bodies",
+    cloup.option("--body", default="mol", help="Column with the ID of the body; atoms with 0 are in none."),
     cloup.option(
-        "--body", default="mol", show_default=True, help="Column with the ID of the body; atoms with 0 are in none."
+        "--select",
+        default="all",
+        show_default=False,
+        help="Atoms, in MDAnalysis' words, such as 'resid 1-500'.",
     ),
-    cloup.option("--select", default="all", help="Atoms, in MDAnalysis' words, such as 'resid 1-500'."),
     cloup.option(
         "--reference",
         default="principal",
-        show_default=True,
         help="Frame of the body: 'principal', that of the fix; 'first', its first pose; or a file with x"
         " y z of the selected atoms by ID.",
     ),
     cloup.option("--data", type=FILE, help="Data file with masses and molecules, if not in the dump."),
     cloup.option(
-        "--atom-style", help="Columns of the data file, such as 'id type x y z', if not those of full or molecular."
+        "--atom-style",
+        help="Columns of the data file, such as 'id type x y z', if not those of full or molecular.",
     ),
     cloup.option("--potential", help="Column with potential energies of atoms."),
 )
@@ -51,7 +51,7 @@ def _frames(_context, _option, text):
     cloup.option(
         "--units",
         type=cloup.Choice(UNITS),
-        help="LAMMPS' units, unless the dump has them (dump_modify units yes); for energies and" " --convert.",
+        help="LAMMPS' units, unless the dump has them (dump_modify units yes); for energies and --convert.",
     ),
     cloup.option(
         "--timestep",
@@ -78,9 +78,7 @@ def _frames(_context, _option, text):
         help="Also write the trajectory, in Å and ps: .dcd, .xtc, .trr, .nc, .xyz, .pdb, ...",
     ),
     cloup.option("--wrap", is_flag=True, help="With --convert, put bodies back into the box."),
-    cloup.option(
-        "--jobs", type=cloup.IntRange(min=1), default=1, show_default=True, metavar="N", help="Processes that read."
-    ),
+    cloup.option("--jobs", type=COUNT, default=1, metavar="N", help="Processes that read."),
 )
 @failing_clearly(ValueError)
 def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options):
@@ -108,11 +106,12 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     cloup.echo(report.summary(poses, totals))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     memory += options["jobs"] * (resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
-    cloup.echo(f"The analysis took at most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}")
+    cloup.echo(
+        f"The analysis took at most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}"
+    )
 
 
 def _bar(what, unit):
-    """Function that wraps an iterable into a progress bar."""
     return lambda iterable, total=None: progress_bar(iterable, total=total, desc=what, unit=unit)
 
 
@@ -128,7 +127,7 @@ def _settle(trajectory, converted, options):
         cloup.echo("The last frame of the dump is not whole, and is left out.")
     if converted and not options["units"]:
         raise ValueError(
-            "--convert needs the units of the dump: give --units, or write the dump with dump_modify" " units yes"
+            "--convert needs the units of the dump: give --units, or write the dump with dump_modify units yes"
         )
     if trajectory.timed and timestep is not None:
         cloup.echo("The dump has times of its own; --timestep is not used.")
@@ -143,7 +142,6 @@ def _settle(trajectory, converted, options):
 
 
 def _run(dump, out, frames, converted, options):
-    """Finished Poses or TablePoses."""
     import numpy as np
 
     from ..analysis import Poses, TablePoses, open_any
@@ -218,7 +216,6 @@ def _stay(out, poses, near, radius):
 
 
 def _convert(poses, path, wrap, frames):
-    """Write the trajectory in another format."""
     from ..analysis.convert import convert, remark
 
     bar = _bar("writing", "frame")

@@ -5,30 +5,27 @@ from pathlib import Path
 
 import cloup
 
-HELP = {"help_option_names": ["-h", "--help"]}
+HELP = {"help_option_names": ["-h", "--help"], "show_default": True}
 POSITIVE = cloup.FloatRange(min=0, min_open=True)
+COUNT = cloup.IntRange(min=1)
 FILE = cloup.Path(exists=True, dir_okay=False, path_type=Path)
 #: modules of the extra [analysis], which commands import only when they are run
 ANALYSIS = ("numpy", "scipy", "matplotlib", "MDAnalysis", "tqdm")
 
 
-def command(examples):
-    """Decorator of a command; ``examples``: lines that can be pasted into a shell in a checkout."""
-    epilog = "\b\nExamples, to be run in a checkout of the repository:\n" + "\n".join(
-        f"  {line}" for line in examples
-    )
-    return cloup.command(epilog=epilog, show_constraints=True, context_settings=HELP)
+def epilog(*examples):
+    """The end of a help page: ``examples`` are lines that can be pasted into a shell in a checkout."""
+    return "\n  ".join(["\b\nExamples, to be run in a checkout of the repository:", *examples])
+
+
+def command(*examples):
+    return cloup.command(epilog=epilog(*examples), show_constraints=True, context_settings=HELP)
 
 
 def out_option(name, holds):
     """Option --out: the folder for the results; ``holds``: what it gets."""
-    return cloup.option(
-        "--out",
-        type=cloup.Path(file_okay=False, path_type=Path),
-        default=Path(name),
-        show_default=True,
-        help=f"Folder for {holds}.",
-    )
+    folder = cloup.Path(file_okay=False, path_type=Path)
+    return cloup.option("--out", type=folder, default=Path(name), help=f"Folder for {holds}.")
 
 
 def deck_options(function):
@@ -54,18 +51,13 @@ def deck_options(function):
         cloup.option(
             "--run",
             "which",
-            type=cloup.IntRange(min=1),
+            type=COUNT,
             metavar="N",
             help="Measure the Nth of the runs in which the deck moves rigid bodies.  Default: the first that"
             " can be measured, where no thermostat and no random force acts on the bodies.",
         ),
         cloup.option(
-            "--ranks",
-            type=cloup.IntRange(min=1),
-            default=1,
-            show_default=True,
-            metavar="N",
-            help="Run LAMMPS on N ranks, started with mpiexec.",
+            "--ranks", type=COUNT, default=1, metavar="N", help="Run LAMMPS on N ranks, started with mpiexec."
         ),
     )
     @functools.wraps(function)

@@ -4,18 +4,24 @@ from time import monotonic
 
 import cloup
 
+from ..trials import NORMS
 from ..trials.script import DeckError, pairs
 from ..trials.worker import TrialError
-from .common import POSITIVE, announce, command, deck_options, failing_clearly, out_option, progress_bar
-
-NORMS = ["largest position", "rms position", "largest orientation", "rms orientation"]
+from .common import (
+    COUNT,
+    POSITIVE,
+    announce,
+    command,
+    deck_options,
+    failing_clearly,
+    out_option,
+    progress_bar,
+)
 
 
 @command(
-    [
-        "gearquat cost examples/water/in.water --var method rigid --budget 30",
-        "gearquat cost examples/case1/in.case1 --error 1e-3 --error 1e-6 --time 20",
-    ]
+    "gearquat cost examples/water/in.water --var method rigid --budget 30",
+    "gearquat cost examples/case1/in.case1 --error 1e-3 --error 1e-6 --time 20",
 )
 @deck_options
 @cloup.option_group(
@@ -33,7 +39,6 @@ NORMS = ["largest position", "rms position", "largest orientation", "rms orienta
         "norm",
         type=cloup.Choice(NORMS),
         default=NORMS[0],
-        show_default=True,
         help="Quantity that the error is of, over all bodies.",
     ),
     cloup.option(
@@ -55,16 +60,9 @@ NORMS = ["largest position", "rms position", "largest orientation", "rms orienta
         "--budget",
         type=POSITIVE,
         default=180.0,
-        show_default=True,
         help="Seconds of wall time for everything, runs before the measured one included.",
     ),
-    cloup.option(
-        "--timings",
-        type=cloup.IntRange(min=1),
-        default=5,
-        show_default=True,
-        help="Timings of each trial that matters, interleaved.",
-    ),
+    cloup.option("--timings", type=COUNT, default=5, help="Timings of each trial that matters, interleaved."),
     out_option("gearquat-cost", "cost.csv, trials.csv and cost.png"),
 )
 @failing_clearly(DeckError, TrialError)

@@ -8,16 +8,16 @@ from .common import POSITIVE, announce, command, deck_options, failing_clearly, 
 
 
 @command(
-    [
-        "gearquat horizon examples/case1/in.case1 --time 100",
-        "gearquat horizon examples/case2/in.case2 --var choices paper --time 500 --every 1 \\",
-        '    --a "formulation first values 5 momentum predicted" --b "formulation second"',
-    ]
+    "gearquat horizon examples/case1/in.case1 --time 100",
+    "gearquat horizon examples/case2/in.case2 --var choices paper --time 500 --every 1 \\",
+    '    --a "formulation first values 5 momentum predicted" --b "formulation second"',
 )
 @deck_options
 @cloup.option_group(
     "What is measured",
-    cloup.option("--time", type=POSITIVE, help="Time to follow.  Default: that of the deck's run, if affordable."),
+    cloup.option(
+        "--time", type=POSITIVE, help="Time to follow.  Default: that of the deck's run, if affordable."
+    ),
     cloup.option(
         "--threshold",
         "thresholds",
@@ -34,7 +34,8 @@ from .common import POSITIVE, announce, command, deck_options, failing_clearly, 
         "--a",
         "first",
         metavar="KEYWORDS",
-        help="First run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as" " it is.",
+        help="First run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as"
+        " it is.",
     ),
     cloup.option(
         "--b",
@@ -47,7 +48,9 @@ from .common import POSITIVE, announce, command, deck_options, failing_clearly, 
         "--step-b", type=POSITIVE, help="Second time step.  Default: half of the first, or with --b the same."
     ),
 )
-@cloup.option_group("What it leaves", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png"))
+@cloup.option_group(
+    "What it leaves", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png")
+)
 @failing_clearly(DeckError, TrialError)
 def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
     """Measure until what time the trajectory of DECK can be trusted.

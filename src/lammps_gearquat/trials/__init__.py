@@ -10,3 +10,6 @@ evaluate        prices and growth: arrays in, numbers out
 cost, horizon   the two questions
 report          the answers as text and tables
 """
+
+#: what an error is of, over all bodies
+NORMS = ("largest position", "rms position", "largest orientation", "rms orientation")

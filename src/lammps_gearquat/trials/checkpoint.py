@@ -12,17 +12,11 @@ import os
 
 import numpy as np
 
+from ..analysis.bodies import places
 from .script import DeckError
 
 #: arrays of atoms that a run may change, as far as the atom style has them
 ATOM_DATA = ("x", "v", "image", "omega", "angmom", "mu", "q", "radius", "rmass")
-
-
-def _step_pointer(lammps):
-    """Pointer to LAMMPS' counter of time steps."""
-    extract = lammps.lib.lammps_extract_global
-    extract.restype = ctypes.POINTER(ctypes.c_int64)
-    return extract(lammps.lmp, b"ntimestep")
 
 
 def save(lammps, prefix):
@@ -44,10 +38,11 @@ def restore(lammps, prefix):
     over the state before it is restored for good.  Raises DeckError if the atoms are others.
     """
     parts = [np.load(path) for path in sorted(glob.glob(f"{glob.escape(str(prefix))}.*.npz"))]
-    order = np.argsort(np.concatenate([part["id"] for part in parts]))
     names = set(parts[0]) - {"box", "step"}
-    state = {name: np.concatenate([part[name] for part in parts])[order] for name in names}
-    _step_pointer(lammps)[0] = int(parts[0]["step"])
+    state = {name: np.concatenate([part[name] for part in parts]) for name in names}
+    extract = lammps.lib.lammps_extract_global
+    extract.restype = ctypes.POINTER(ctypes.c_int64)
+    extract(lammps.lmp, b"ntimestep")[0] = int(parts[0]["step"])
     _restore_box(lammps, parts[0]["box"])
     _restore_atoms(lammps, state)
     if lammps.extract_setting("world_size") > 1:
@@ -62,8 +57,8 @@ def _restore_atoms(lammps, state):
     local = lammps.extract_global("nlocal")
     ids = lammps.numpy.extract_atom("id")
     ids = np.empty(0, dtype=int) if ids is None else ids[:local]
-    place = np.minimum(np.searchsorted(state["id"], ids), len(state["id"]) - 1)
-    if lammps.get_natoms() != len(state["id"]) or not np.array_equal(state["id"][place], ids):
+    place = places(state["id"], ids)
+    if lammps.get_natoms() != len(state["id"]) or (place < 0).any():
         raise DeckError("the atoms have changed")
     for name, values in state.items():
         if name != "id" and local:

@@ -24,8 +24,6 @@ METHODS = (
     *(f"formulation second values {n}" for n in (8, 5, 6, 10, 12)),
     *(f"formulation first values {n}" for n in (5, 6, 8)),
 )
-#: what an error is of: name -> (which bodies, of what)
-NORMS = ("largest position", "rms position", "largest orientation", "rms orientation")
 #: default errors, in powers of ten of the size of the bodies
 DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 
@@ -131,7 +129,6 @@ class Budget:
         return self.seconds - min(CLOSING, 0.1 * self.seconds) - self.spent()
 
     def say(self, text):
-        """Show what is being done now."""
         if self.progress is not None:
             self.progress.set_description(text)
 
@@ -163,7 +160,6 @@ class Study:
         return trial
 
     def expected(self, keywords, steps):
-        """Seconds that a trial will take."""
         pace = self.pace.get(keywords, max(self.pace.values(), default=0.0))
         return self.overhead + steps * pace
 
@@ -232,22 +228,15 @@ class Study:
     def gap(self, first, second):
         """Difference of two sampled trials in the chosen norm, shape (S,)."""
         frames = zip(first.positions, first.center, second.positions, second.center)
-        return np.array([self.error(*frame) for frame in frames])
+        return np.array([self.errors(*frame)[self.norm] for frame in frames])
 
     def rounding(self, trial):
         """What rounding of the positions alone can make of the error."""
         scale = np.abs(trial.center).max() if self.norm < 2 else 1.0
         return float(np.finfo(float).eps * scale)
 
-    def error(self, positions, center, reference, reference_center):
-        """The error in the chosen norm, of sites (n, 3) and centers (B, 3)."""
-        if self.norm < 2:
-            shift = np.linalg.norm(center - reference_center, axis=1)
-            return (float(shift.max()), evaluate.rms(shift))[self.norm]
-        return self.errors(positions, center, reference, reference_center)[self.norm]
-
     def errors(self, positions, center, reference, reference_center):
-        """One error for each of NORMS."""
+        """One error for each of NORMS, of sites (n, 3) and centers (B, 3)."""
         shift = np.linalg.norm(center - reference_center, axis=1)
         turn = angles(self.deck.scene.bodies, reference, positions)
         return float(shift.max()), evaluate.rms(shift), float(turn.max()), evaluate.rms(turn)

@@ -14,7 +14,6 @@ def decade(value):
 
 
 def rms(values):
-    """Root of the mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
@@ -122,7 +121,6 @@ class Growth:
         return math.exp(self.rate * (self.end - self.begin))
 
     def at(self, time):
-        """The fitted difference, shape of ``time``."""
         return self.level * time**self.power * np.exp(self.rate * time)
 
 

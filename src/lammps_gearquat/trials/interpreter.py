@@ -17,7 +17,7 @@ from .script import DeckError
 #: commands that only write, print or time
 SILENT = set("""dump dump_modify undump restart write_dump write_coeff
     thermo log echo info print timer bond_write angle_write dihedral_write
-    pair_write processors balance""".split())
+    pair_write processors balance label""".split())
 SILENT_FIXES = ("ave/", "print", "vector", "halt", "balance")
 SILENT_COMPUTES = ("ke/rigid", "erotate/rigid", "rigid/local")
 #: commands that move atoms and are no run
@@ -26,6 +26,8 @@ OTHER_MOTION = set("""rerun temper temper/grem temper/npt neb neb/spin tad prd h
 #: commands that do not look at the positions of atoms
 BLIND = set("""next variable timestep thermo_style thermo_modify neighbor neigh_modify comm_modify
     suffix package shell label jump unfix uncompute""".split())
+#: commands that change or end a fix or compute, and how its ID begins among those that were left out
+CHANGES = {"fix_modify": "f_", "unfix": "f_", "compute_modify": "c_", "uncompute": "c_"}
 #: keywords of thermo_modify that decide whether a run goes on
 RUNS_ON = ("temp", "press", "lost", "lost/bond")
 MARK = "gearquat_branch"
@@ -171,7 +173,6 @@ class Interpreter:
         return path, deque(lines)
 
     def execute(self, line):
-        """Follow or pass on one command."""
         line = script.strip_comment(line)
         if self.label:
             words = script.split(line)
@@ -186,7 +187,10 @@ class Interpreter:
             return
         name = words[0]
         handler = getattr(self, "_do_" + name, None)
-        if handler:
+        left_out = CHANGES.get(name, "") + "".join(words[1:2])
+        if name in CHANGES and left_out in self.silenced:
+            self.silenced -= {left_out} if name.startswith("un") else set()
+        elif handler:
             handler(words, line)
         elif name in OTHER_MOTION:
             raise DeckError(f"the deck uses the command {name}; only run can be measured")
@@ -208,7 +212,6 @@ class Interpreter:
         self.start.commands.append(Command(line, **facts))
 
     def _pass_and_move(self, line):
-        """Pass on a command that takes time and moves atoms."""
         if self.moved:
             self.moved.superseded = True
         self._lammps("command", line)
@@ -224,9 +227,6 @@ class Interpreter:
 
     def _do_include(self, words, line):
         self._file(self._lammps("expand", words[1]))
-
-    def _do_label(self, words, line):
-        pass
 
     def _do_jump(self, words, line):
         if self.skip_jump:
@@ -301,12 +301,10 @@ class Interpreter:
             self.silenced.add("f_" + id_)
             return
         self._retire(id_)
+        self._pass(line)
         if script.moves_bodies(style):
-            self._pass(line)
             self.movers[id_] = self.start.commands[-1]
             self.movers[id_].mover = script.parse_fix(words)
-        else:
-            self._pass(line)
         self.start.fixes[id_] = style
 
     def _retire(self, id_):
@@ -337,8 +335,6 @@ class Interpreter:
                 self.start.lost += [key, value] if key.startswith("lost") else []
 
     def _do_fix_modify(self, words, line):
-        if "f_" + words[1] in self.silenced:
-            return
         self._pass(line, modifies=words[1] if words[1] in self.movers else "")
         if words[1] in self.movers and "early" in words:
             self.start.notes.append(
@@ -347,22 +343,9 @@ class Interpreter:
             )
 
     def _do_unfix(self, words, line):
-        if "f_" + words[1] in self.silenced:
-            self.silenced.discard("f_" + words[1])
-            return
         self._retire(words[1])
         self.start.fixes.pop(words[1], None)
         self._pass(line)
-
-    def _do_compute_modify(self, words, line):
-        if "c_" + words[1] not in self.silenced:
-            self._pass(line)
-
-    def _do_uncompute(self, words, line):
-        if "c_" + words[1] in self.silenced:
-            self.silenced.discard("c_" + words[1])
-        else:
-            self._pass(line)
 
     def _do_velocity(self, words, line):
         """Some depend on the fix: on its bodies, or on the degrees of freedom it takes off by now."""

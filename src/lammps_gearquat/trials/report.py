@@ -3,16 +3,14 @@
 import math
 
 from ..tables import aligned, write_rows
-from .cost import NORMS
+from . import NORMS
 
 
 def _quantity(value, unit, digits=3):
-    """A number with its unit."""
     return f"{value:.{digits}g}" + (f" {unit}" if unit else "")
 
 
 def _scene(deck):
-    """What is in the deck, in a few lines."""
     bodies, end = len(deck.scene.bodies), _quantity(deck.end, deck.time_unit, 6)
     many = "body" if bodies == 1 else "bodies"
     return [
@@ -60,7 +58,6 @@ def cost_text(deck, costs):
 
 
 def _cost_cells(costs, row):
-    """The cells of one row of the table of costs."""
     price, cells = row.choice, [f"{row.error:.1e}"]
     if price is None:
         known = "is not reached" if row.error > costs.doubt_limit else "cannot be judged"
@@ -79,12 +76,11 @@ def _cost_cells(costs, row):
 
 
 def _explained(costs):
-    """What the numbers in the table are."""
     lines = [
         "Every method evaluates the forces once per step.  Seconds are wall times of the steps.  The start,",
         "which is LAMMPS' set-up and, with fix gear/quat, the evaluations of the forces that its first"
         " derivatives",
-        "take, is paid once per run and stands apart.  Speed-up is over the deck's own fix at the same" " error;",
+        "take, is paid once per run and stands apart.  Speed-up is over the deck's own fix at the same error;",
         "~ marks one whose own cost is extrapolated, <= a coarsest trial that was better than required.",
     ]
     starts = {p.method: p for row in costs.rows for p in (row.own, row.best) if p}

@@ -163,7 +163,6 @@ class FixLine:
     keywords: tuple = ()
 
     def text(self):
-        """The command."""
         words = ["fix", self.id, self.group, self.style, *self.body]
         for key, values in self.keywords:
             words += [key, *values]
@@ -311,38 +310,15 @@ _UNUSABLE = (
 _RANDOM_PAIR = re.compile(r"^(dpd|[emt]dpd|brownian)(/|$)")
 
 
-def why_not(style):
-    """Why there is nothing to compare in a scene with a fix of this style; None if there is."""
-    for pattern, reason in _UNUSABLE:
-        if re.fullmatch(pattern, base_style(style)):
-            return reason
-    return None
-
-
 def check_scene(fixes, pair_style):
     """Refuse what has no trajectory: ``fixes`` is a dictionary ID -> style, ``pair_style`` words."""
     faults = []
     for id_, style in fixes.items():
-        reason = why_not(style)
-        if reason:
-            faults.append(f"fix {id_} {style}: {reason}; --without {id_} leaves it out")
+        reasons = [why for pattern, why in _UNUSABLE if re.fullmatch(pattern, base_style(style))]
+        faults += [f"fix {id_} {style}: {why}; --without {id_} leaves it out" for why in reasons[:1]]
     for word in pair_style:
         if _RANDOM_PAIR.match(base_style(word)):
             faults.append(f"pair_style {word}: {_RANDOM}")
     if faults:
         faults.append("(--run N measures a later run of the deck, which may be without)")
         raise DeckError("\n".join(faults))
-
-
-# --- units ----------------------------------------------------------------------------------------
-#: unit of time and of length by LAMMPS' units command
-UNITS = {
-    "lj": ("", ""),
-    "real": ("fs", "Å"),
-    "metal": ("ps", "Å"),
-    "si": ("s", "m"),
-    "cgs": ("s", "cm"),
-    "electron": ("fs", "bohr"),
-    "micro": ("µs", "µm"),
-    "nano": ("ns", "nm"),
-}

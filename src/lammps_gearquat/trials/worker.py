@@ -92,7 +92,7 @@ def _drain(connection):
 
 
 class Worker:
-    """Processes that run LAMMPS, begun anew when they are gone; to be used in a with statement.
+    """Processes that run LAMMPS, begun anew when they are gone, until ``end``.
 
     ``on_news`` is called with what a request tells while it is at work, ``on_wait`` every now and then.
     """
@@ -102,12 +102,6 @@ class Worker:
         self.output = self.folder / "output"
         self.process, self.connections, self.pids = None, [], []
         self.on_news = self.on_wait = None
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.end()
 
     def end(self):
         """End all processes, and return when they have ended."""
