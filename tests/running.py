@@ -128,7 +128,6 @@ class Lammps:
         ranks: int = 1,
         timeout: float = 120.0,
         folder: Path | None = None,
-        arguments: Sequence[str] = (),
         environment: Mapping[str, str] | None = None,
         meanwhile: Callable[[int], None] | None = None,
     ) -> Result:
@@ -149,7 +148,7 @@ class Lammps:
         log.touch()
 
         command = [*self.launcher, str(ranks)] if ranks > 1 else []
-        command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite", *arguments]
+        command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite"]
         for key, value in (variables or {}).items():
             values = value if isinstance(value, (list, tuple)) else [value]
             command += ["-var", key, *map(str, values)]

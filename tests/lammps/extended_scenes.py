@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 DECK = """
 units lj
@@ -17,6 +18,7 @@ region box block {box}
 create_box 2 box
 {atoms}
 {masses}
+{pair}
 {before}
 fix move all gear/quat {fix}
 fix_modify move energy yes
@@ -26,6 +28,7 @@ thermo_style custom step pe f_move[1] f_move[2]
 thermo_modify norm no format float %.17g lost error
 thermo {steps}
 {outputs}
+{flat}
 dump poses all custom {steps} {dump} {columns}
 dump_modify poses sort id format float %.17g
 {run}
@@ -57,19 +60,20 @@ STYLES = {
 }
 
 
+def words(*values) -> str:
+    """Numbers of a command, with all their digits."""
+    return " ".join(f"{value:.17g}" for value in values)
+
+
 def rotation(axis, degrees: float) -> np.ndarray:
     """Matrix that turns by ``degrees`` about ``axis``, shape (3, 3)."""
-    x, y, z = np.array(axis) / np.linalg.norm(axis)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    angle = np.deg2rad(degrees)
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    unit = np.array(axis) / np.linalg.norm(axis)
+    return Rotation.from_rotvec(degrees * unit, degrees=True).as_matrix()
 
 
 def matrix(wxyz) -> np.ndarray:
     """Rotation matrix body -> space of a quaternion, scalar first."""
-    w, v = wxyz[0], np.array(wxyz[1:])
-    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return (w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * cross
+    return Rotation.from_quat(wxyz, scalar_first=True).as_matrix()
 
 
 @dataclass
@@ -82,56 +86,50 @@ class Atom:
     moments: tuple = (0.0, 0.0, 0.0)
     turn: np.ndarray = field(default_factory=lambda: np.eye(3))
     charge: float = 0.0
-    kind: int = 1
 
     @property
     def inertia(self) -> np.ndarray:
-        """Tensor about its own centre, space frame, shape (3, 3)."""
+        """Tensor about its own center, space frame, shape (3, 3)."""
         return self.turn @ np.diag(self.moments) @ self.turn.T
 
 
 AXIS, TURN = (1.0, -2.0, 0.5), 70.0
 
 
+def shaped(x, mass, moments, turn, *shape):
+    """An atom that is ``set`` each of the words of ``shape``."""
+    commands = "\n".join(f"set atom {{i}} {w}" for w in (shape[0], f"mass {words(mass)}", *shape[1:]))
+    return Atom(x, mass, commands, moments, turn)
+
+
 def quat(axis, degrees: float) -> str:
     """Words of ``set quat``, which takes the axis as it is."""
-    unit = np.array(axis) / np.linalg.norm(axis)
-    return "quat " + " ".join(f"{c:.17g}" for c in unit) + f" {degrees:.17g}"
+    return f"quat {words(*(np.array(axis) / np.linalg.norm(axis)), degrees)}"
 
 
 def sphere(x, mass, radius):
-    commands = f"set atom {{i}} diameter {2 * radius:.17g}\nset atom {{i}} mass {mass:.17g}"
-    return Atom(x, mass, commands, (0.4 * mass * radius**2,) * 3)
+    moments = (0.4 * mass * radius**2,) * 3
+    return shaped(x, mass, moments, np.eye(3), f"diameter {words(2 * radius)}")
 
 
 def ellipsoid(x, mass, axes, axis=AXIS, degrees=TURN):
     a, b, c = np.array(axes) ** 2
-    commands = (
-        "set atom {i} shape " + " ".join(f"{2 * s:.17g}" for s in axes) + f"\n"
-        f"set atom {{i}} mass {mass:.17g}\n"
-        f"set atom {{i}} {quat(axis, degrees)}"
-    )
     moments = tuple(mass / 5 * np.array([b + c, a + c, a + b]))
-    return Atom(x, mass, commands, moments, rotation(axis, degrees))
+    shape = f"shape {words(*(2 * np.array(axes)))}"
+    return shaped(x, mass, moments, rotation(axis, degrees), shape, quat(axis, degrees))
 
 
 def triangle(x, mass, side, axis=AXIS, degrees=TURN):
     """Equilateral."""
-    commands = (
-        f"set atom {{i}} tri {side:.17g}\nset atom {{i}} mass {mass:.17g}\n"
-        f"set atom {{i}} {quat(axis, degrees)}"
-    )
     plane = mass * side**2 / 24
-    return Atom(x, mass, commands, (plane, plane, 2 * plane), rotation(axis, degrees))
+    moments = (plane, plane, 2 * plane)
+    return shaped(x, mass, moments, rotation(axis, degrees), f"tri {words(side)}", quat(axis, degrees))
 
 
 def line(x, mass, length, degrees):
-    commands = (
-        f"set atom {{i}} length {length:.17g}\nset atom {{i}} theta {degrees}\n"
-        f"set atom {{i}} mass {mass:.17g}"
-    )
     moment = mass * length**2 / 12
-    return Atom(x, mass, commands, (0.0, moment, moment), rotation((0, 0, 1), degrees))
+    moments, turn = (0.0, moment, moment), rotation((0, 0, 1), degrees)
+    return shaped(x, mass, moments, turn, f"length {words(length)}", f"theta {degrees}")
 
 
 def equivalent_points(atom: Atom) -> list[Atom]:
@@ -146,40 +144,38 @@ def equivalent_points(atom: Atom) -> list[Atom]:
     ]
 
 
+def center(atoms: list[Atom]) -> np.ndarray:
+    """Of mass, shape (3,)."""
+    return np.average([a.x for a in atoms], axis=0, weights=[a.mass for a in atoms])
+
+
 def inertia(atoms: list[Atom]) -> np.ndarray:
-    """Tensor of a body about its centre of mass, shape (3, 3)."""
-    centre = sum(a.mass * np.array(a.x) for a in atoms) / sum(a.mass for a in atoms)
+    """Tensor of a body about its center of mass, shape (3, 3)."""
     total = np.zeros((3, 3))
     for a in atoms:
-        arm = np.array(a.x) - centre
+        arm = a.x - center(atoms)
         total += a.inertia + a.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     return total
 
 
-def moving(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0)) -> tuple[str, str]:
-    """Commands that make the atoms of one body, moving as such, and those for masses by type."""
+def body_deck(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0), **settings) -> str:
+    """A deck of one body that moves as such; settings: those of DECK."""
     _, columns, point = STYLES[style]
-    centre = sum(a.mass * np.array(a.x) for a in atoms) / sum(a.mass for a in atoms)
-    lines = []
-    for i, a in enumerate(atoms, 1):
-        lines.append(f"create_atoms {a.kind} single " + " ".join(f"{c:.17g}" for c in a.x))
+    lines = [f"create_atoms 1 single {words(*a.x)}" for a in atoms]
     for i, a in enumerate(atoms, 1):
         lines.append((a.commands or point).format(i=i, m=a.mass))
-        v = np.array(velocity) + np.cross(omega, np.array(a.x) - centre)
-        lines.append(f"set atom {i} vx {v[0]:.17g} vy {v[1]:.17g} vz {v[2]:.17g}")
+        vx, vy, vz = velocity + np.cross(omega, a.x - center(atoms))
+        lines.append(f"set atom {i} vx {words(vx)} vy {words(vy)} vz {words(vz)}")
         if a.charge:
-            lines.append(f"set atom {i} charge {a.charge:.17g}")
+            lines.append(f"set atom {i} charge {words(a.charge)}")
         if any(a.moments):
-            word, rate = ("omega", omega)
-            if "angmom" in columns:
-                word, rate = ("angmom", a.inertia @ omega)
-            lines.append(f"set atom {i} {word} " + " ".join(f"{w:.17g}" for w in rate))
-    kinds = {a.kind: a.mass for a in atoms}
-    masses = "\n".join(f"mass {k} {kinds.get(k, 1.0):.17g}" for k in (1, 2))
-    return "\n".join(lines), masses if "dipole" in style else ""
+            rate = f"angmom {words(*(a.inertia @ omega))}"
+            lines.append(f"set atom {i} {rate if 'angmom' in columns else 'omega ' + words(*omega)}")
+    masses = "mass * 1.0" if "dipole" in style else ""
+    return deck(style, "\n".join(lines), masses, **settings)
 
 
-def deck(style, atoms, masses="", columns="", before="", after="", **settings) -> str:
+def deck(style, atoms, masses="", columns="", **settings) -> str:
     """A deck of bodies in a box; settings: those of DECK."""
     outputs, own_columns, _ = STYLES[style]
     chosen = dict(
@@ -188,9 +184,11 @@ def deck(style, atoms, masses="", columns="", before="", after="", **settings) -
         masses=masses,
         outputs=outputs,
         columns=f"id x y z vx vy vz {own_columns} {columns}",
-        before="pair_style zero 2.0\npair_coeff * *\n" + before,
-        after=after,
+        pair="pair_style zero 2.0\npair_coeff * *",
+        before="",
+        after="",
         dimension=3,
+        flat="",
         boundary="f f f",
         box="-20 20 -20 20 -20 20",
         fix="single",
@@ -200,7 +198,8 @@ def deck(style, atoms, masses="", columns="", before="", after="", **settings) -
         run="run {steps}",
     )
     if settings.get("dimension") == 2:
-        chosen |= dict(boundary="f f p", box="-20 20 -20 20 -0.5 0.5")
+        box = "-20 20 -20 20 -0.5 0.5"
+        chosen |= dict(boundary="f f p", box=box, flat="fix flat all enforce2d")
     chosen |= settings
     chosen["run"] = chosen["run"].format(**chosen)
     return DECK.format(**chosen)

@@ -95,6 +95,30 @@ WATER_SITES = np.array(
 )
 WATER_SITES -= WATER_MASSES @ WATER_SITES / WATER_MASSES.sum()
 
+# the same molecule for LAMMPS' command molecule
+SPCE = """rigid water
+
+3 atoms
+
+Coords
+
+1 0 0 0
+2 0.81649658092772603 0.57735026918962576 0
+3 -0.81649658092772603 0.57735026918962576 0
+
+Types
+
+1 1
+2 2
+3 2
+
+Charges
+
+1 -0.8476
+2 0.4238
+3 0.4238
+"""
+
 
 def random_rotation(rng: np.random.Generator) -> np.ndarray:
     """Rotation matrix, shape (3, 3)."""
@@ -246,7 +270,7 @@ def frames(path: Path) -> dict[int, np.ndarray]:
         words = text.split()
         rows = re.split("ITEM: (?:ATOMS|ENTRIES).*\n", text)[-1].partition("ITEM:")[0]
         if rows.count("\n") == int(words[words.index("OF") + 2]):
-            found[int(words[0])] = np.loadtxt(rows.splitlines(), ndmin=2)
+            found[int(words[0])] = np.array([row.split() for row in rows.splitlines()], float)
     return found
 
 

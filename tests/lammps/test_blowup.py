@@ -4,15 +4,15 @@ import re
 
 import numpy as np
 import pytest
-from scenes import two_molecules, water, water_data, whole_deck
+from scenes import frames, two_molecules, water, water_data, whole_deck
 
 # Forces on chosen atoms from step 5 on; before it exp(0) * 0.
 PUSH = """
 variable on equal step>=5
 variable push equal {size}*v_on
 variable pull equal -({size})*v_on
-group pushed id {pushed}
-group pulled id {pulled}
+group pushed {pushed}
+group pulled {pulled}
 fix push pushed addforce 0 0 v_push
 fix pull pulled addforce 0 0 v_pull
 thermo 1
@@ -29,49 +29,36 @@ WHERE = re.compile(
 )
 
 
-def message(result):
-    """What the fix says of the blow-up, once and in one piece: groups of WHERE."""
-    assert result.returncode != 0
+def blow_up(lmp, deck, ranks=1):
+    """What the fix says of it, once and in one piece: groups of WHERE; and the result."""
+    result = lmp.refuse(deck, "blow-up", ranks=ranks)
     assert result.output.count("blow-up") == 1, result.output
     assert len(result.errors) == 1, result.output
     found = WHERE.search(" ".join(result.errors[0].split()))
     assert found, result.output
-    return found.groups()
+    return found.groups(), result
 
 
-def frames(path):
-    """Arrays (atoms, 7) of a dump by step; without a last one that the end of the run has cut off."""
-    table = {}
-    for text in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
-        head, _, rows = text.partition("ITEM: ATOMS")
-        rows = rows.splitlines(keepends=True)[1:]
-        if len(rows) == int(head.split()[5]) and rows[-1].endswith("\n"):
-            table[int(head.split()[0])] = np.loadtxt(rows, ndmin=2)
-    return table
-
-
-def pushed(size, pushed=5, pulled="none", style="", fix="molecule", **options):
-    before = "group none empty\n" if pulled == "none" else ""
+def pushed(size, pushed="id 5", pulled="empty", style="", fix="molecule"):
     after = PUSH.format(size=size, pushed=pushed, pulled=pulled, style=style)
-    if pulled == "none":
-        after = after.replace("id none", "empty")
-    return two_molecules(fix, before=before, after=after, **options)
+    return two_molecules(fix, after=after)
 
 
 # size of the force, atoms it acts on, atoms its opposite acts on, what is said
+NO_NUMBER = "meets a force that is not a finite number"
 ABSURD = {
-    "force": (TOO_MUCH, "5", "none", "meets a force that is not a finite number"),
-    "forces": (TOO_MUCH, "5", "6", "meets a force that is not a finite number"),
-    "way": ("1e9", "4 5 6", "none", "moves by"),
-    "turn": ("1e7", "5", "4", "moves by"),
+    "force": (TOO_MUCH, "id 5", "empty", NO_NUMBER),
+    "forces": (TOO_MUCH, "id 5", "id 6", NO_NUMBER),
+    "way": ("1e9", "id 4 5 6", "empty", "moves by"),
+    "turn": ("1e7", "id 5", "id 4", "moves by"),
 }
 
 
 @pytest.mark.parametrize("name, ranks", [*zip(ABSURD, [1] * 4), *zip(ABSURD, [2, 4, 2, 4])])
 def test_an_absurd_force(lmp_tree, name, ranks):
     size, on, against, what = ABSURD[name]
-    result = lmp_tree.run(pushed(size, on, against, fix="molecule values 7"), ranks=ranks)
-    step, time, body, said, atom, away, other, _, h, values = message(result)
+    deck = pushed(size, on, against, fix="molecule values 7")
+    (step, time, body, said, atom, away, other, _, h, values), result = blow_up(lmp_tree, deck, ranks)
     assert (step, float(time), body, float(h), values) == ("5", 0.05, "2", 0.01, "7")
     assert what in said
     assert atom in (("5", "6") if size == TOO_MUCH else ("4", "5", "6"))
@@ -85,8 +72,8 @@ def test_an_absurd_force(lmp_tree, name, ranks):
 @pytest.mark.parametrize("style", ["", "run_style respa 2 1 pair 1"])
 def test_in_every_way_to_run(lmp, style):
     for words in ("formulation first start bootstrap", "start zero", "passes 3"):
-        result = lmp.run(pushed(TOO_MUCH, style=style, fix=f"molecule {words}"))
-        assert message(result)[:3] == ("5", "0.05", "2")
+        deck = pushed(TOO_MUCH, style=style, fix=f"molecule {words}")
+        assert blow_up(lmp, deck)[0][:3] == ("5", "0.05", "2")
 
 
 @pytest.mark.parametrize("start, ranks", [("zero", 1), ("bootstrap", 2)])
@@ -99,7 +86,7 @@ def test_atoms_on_top_of_each_other(lmp_tree, distance, start, ranks):
     deck = two_molecules(f"molecule start {start}", before=overlap)
     deck = deck.replace("pair_style zero 2.0", "pair_style lj/cut 2.0")
     deck = deck.replace("pair_coeff * *", "pair_coeff * * 1.0 1.0")
-    *said, atom, away, other, _, _, _ = message(lmp_tree.run(deck, ranks=ranks))
+    *said, atom, away, other, _, _, _ = blow_up(lmp_tree, deck, ranks)[0]
     assert said[0] == "1" and said[2] in "12"
     assert {atom, other} == {"2", "4"} and float(away) == pytest.approx(distance, abs=1e-15)
 
@@ -120,8 +107,9 @@ region put block -8 -6 -8 -6 -8 -6
 fix put all deposit 1 0 3 4711 region put mol two rigid move near 0.5
 run 9
 """
-    result = lmp_tree.run(two_molecules(after=after))
-    assert len(result.errors) == 1 and "blow-up in step 1, time 0.01: body 1 meets" in result.output
+    message = "blow-up in step 1, time 0.01: body 1 meets"
+    result = lmp_tree.refuse(two_molecules(after=after), message)
+    assert len(result.errors) == 1
     assert "; the force on its atom 2 is no number. Use" in result.output  # nobody else is there
 
 
@@ -132,11 +120,8 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
     still = "velocity all set 0 0 0"  # who turns so fast already is refused
     fix = f"gear/quat molecule values {values}"
     deck = water(data, fix, dt=dt, thermo=1, steps=100, after=still)
-    result = lmp_tree.run(
-        deck.replace("dump poses all custom 100", "dump poses all custom 1"), ranks=ranks
-    )
-    assert result.returncode != 0
-    assert set(re.findall(r"Fix gear/quat: blow-up", result.output)), result.output
+    deck = deck.replace("dump poses all custom 100", "dump poses all custom 1")
+    result = lmp_tree.refuse(deck, "Fix gear/quat: blow-up", ranks=ranks)
     assert all("blow-up" in error for error in result.errors), result.output
     whole = frames(lmp_tree.folder / "poses.dump")
     assert whole and all(np.isfinite(frame).all() for frame in whole.values())
@@ -148,8 +133,5 @@ def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, ch
     """Their energy is lost, their bodies are not: |q|^2 is off by a factor of two in some."""
     scene = whole_deck(examples / "case1" / "in.case1")
     for dt in (0.25, 1.0) if choices == "accurate" or formulation == "second" else (0.25,):
-        variables = dict(
-            formulation=formulation, choices=choices, dt=dt, steps=2000, every=1000, out="none"
-        )
-        result = lmp_tree.run(scene, variables)
-        assert result.returncode == 0, result.output
+        settings = dict(formulation=formulation, choices=choices, dt=dt, out="none")
+        lmp_tree.succeed(scene, settings | dict(steps=2000, every=1000))

@@ -1,8 +1,8 @@
-"""Boxes without periods: fixed, and following the atoms."""
+"""Boxes without periods: fixed, and following the atoms; and a box that becomes triclinic."""
 
 import numpy as np
 import pytest
-from scenes import last_frame, restarted, water, water_data
+from scenes import difference, last_frame, restarted, water, water_data
 
 STEPS = 400
 SPACING = 3.3
@@ -16,15 +16,8 @@ def cluster(boundary, fix, dt, steps, dump, run="run {steps}"):
 
 
 def frame(lmp, deck, dump, ranks=1):
-    result = lmp.run(deck, ranks=ranks)
-    assert result.returncode == 0, result.output
-    return last_frame(lmp.folder / dump)[:, 1:]
-
-
-def difference(one, other):
-    """Of positions and of velocities, each relative to the largest."""
-    parts = (slice(0, 3), slice(3, 6))
-    return max(np.abs((one - other)[:, k]).max() / np.abs(one[:, k]).max() for k in parts)
+    lmp.succeed(deck, ranks=ranks)
+    return last_frame(lmp.folder / dump)
 
 
 @pytest.fixture
@@ -52,3 +45,22 @@ def test_a_restart_in_such_a_box(lmp_tree, data):
     rest = cluster("s s m", "gear/quat molecule", 0.1, STEPS // 2, "rest")
     again = frame(lmp_tree, restarted(rest, "half"), "rest", ranks=2)
     assert difference(whole, again) < 1e-11
+
+
+DUMP = """
+dump poses all custom 20 poses.dump id xu yu zu vx vy vz
+dump_modify poses sort id format float %.17g
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_box_may_become_triclinic_between_runs(lmp_tree, ranks):
+    """The same box, and the same motion; all molecules lie inside."""
+    data = water_data(lmp_tree.folder / "data.water", spacing=4.5, shift=2.25)
+    ends = []
+    for change in ("", f"undump poses\nchange_box all triclinic\n{DUMP}"):
+        deck = water(data, dt=1.0, steps=20, run=f"run 20\n{change}\nrun 20")
+        lmp_tree.succeed(deck, ranks=ranks)
+        ends.append(last_frame(lmp_tree.folder / "poses.dump")[:, 1:7])
+    scale = np.abs(ends[0]).max(axis=0)
+    assert (np.abs(ends[0] - ends[1]) < 1e-11 * scale).all()

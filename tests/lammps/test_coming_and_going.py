@@ -1,37 +1,22 @@
 """Bodies that are removed or inserted while the fix exists, and what velocity does to bodies."""
 
-import re
-
 import numpy as np
 import pytest
-from scenes import last_frame, two_molecules, water, water_data
+from scenes import (
+    SPCE,
+    WATER_MASSES,
+    frames,
+    last_frame,
+    last_numbers,
+    restarted,
+    two_molecules,
+    water,
+    water_data,
+)
 
 N = 27  # molecules of the water box
 BOLTZMANN = 0.0019872067  # kcal/mol/K
 OXYGEN = 5 * 3 - 2  # of molecule 5
-
-SPCE = """rigid water
-
-3 atoms
-
-Coords
-
-1 0 0 0
-2 0.81649658092772603 0.57735026918962576 0
-3 -0.81649658092772603 0.57735026918962576 0
-
-Types
-
-1 1
-2 2
-3 2
-
-Charges
-
-1 -0.8476
-2 0.4238
-3 0.4238
-"""
 
 SHOW = """
 compute_modify thermo_temp dynamic/dof yes
@@ -48,34 +33,32 @@ def show(every=1, rows=()):
     return SHOW.format(every=every, rows=" ".join(f"f_move[{row}][28]" for row in rows))
 
 
-def run_water(lmp, commands, ranks=1, fix="gear/quat molecule", before="", dt=1.0):
-    """27 molecules in a box of 13.5 Angstrom, a femtosecond a step."""
+def liquid(lmp, commands, fix="gear/quat molecule", before="", dt=1.0):
+    """A deck of 27 molecules in a box of 13.5 Angstrom, a femtosecond a step."""
     (lmp.folder / "molecule.spce").write_text(SPCE)
     data = water_data(lmp.folder / "data.water", spacing=4.5)
-    deck = water(data, fix, dt=dt, steps=20, before=before, run=commands)
-    return lmp.run(deck, ranks=ranks)
+    return water(data, fix, dt=dt, steps=20, before=before, run=commands)
 
 
-def bodies(lmp):
-    """Frames of the local dump: arrays (bodies, 4), sorted by ID."""
-    frames = []
-    for text in (lmp.folder / "bodies.dump").read_text().split("ITEM: ENTRIES")[1:]:
-        lines = text.partition("ITEM:")[0].splitlines()[1:]
-        table = np.array([[float(word) for word in line.split()] for line in lines])
-        frames.append(table[table[:, 0].argsort()])
-    return frames
+def poses(lmp):
+    return last_frame(lmp.folder / "poses.dump")
 
 
-def temperature(thermo, row, molecules, freedoms=6):
-    """What the kinetic energies of the fix and the freedoms of that many molecules make of it."""
-    kinetic = thermo["f_move[1]"][row] + thermo["f_move[2]"][row]
-    return 2 * kinetic / ((freedoms * molecules - 3) * BOLTZMANN)
+def ids(lmp):
+    """Of the bodies in each frame of the local dump, sorted."""
+    return [sorted(frame[:, 0]) for frame in frames(lmp.folder / "bodies.dump").values()]
 
 
 def expect_temperature(thermo, row, molecules):
+    """It is that of the fix's kinetic energies with the freedoms of so many molecules."""
+
+    def temperature(molecules):
+        kinetic = thermo["f_move[1]"][row] + thermo["f_move[2]"][row]
+        return 2 * kinetic / ((6 * molecules - 3) * BOLTZMANN)
+
     assert thermo["v_atoms"][row] == 3 * molecules
-    assert thermo["Temp"][row] == pytest.approx(temperature(thermo, row, molecules), rel=1e-6)
-    assert thermo["Temp"][row] != pytest.approx(temperature(thermo, row, molecules + 1), rel=1e-3)
+    assert thermo["Temp"][row] == pytest.approx(temperature(molecules), rel=1e-6)
+    assert thermo["Temp"][row] != pytest.approx(temperature(molecules + 1), rel=1e-3)
 
 
 def close(a, b, tolerance):
@@ -88,49 +71,49 @@ def close(a, b, tolerance):
 EVAPORATE = """
 group some {members}
 region everywhere block INF INF INF INF INF INF
-fix out some evaporate 5 1 everywhere 4711 molecule {molecule}
+fix out some evaporate 5 {number} everywhere 4711 molecule {molecule}
 """
+
+
+def evaporating(members="molecule 5 17", molecule="yes", number=1):
+    return EVAPORATE.format(members=members, molecule=molecule, number=number)
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_molecule_evaporates(lmp_tree, ranks):
-    """As if it had been deleted between two runs, on any number of ranks, but for the histories: within a
-    run they go on across the jump of the forces, which leaves an error of a velocity that grows with the step."""
-    evaporate = EVAPORATE.format(members="molecule 5 17", molecule="yes")
-    evaporate += show(rows=[5, 26]) + "run {steps}"
-    result = run_water(lmp_tree, evaporate, ranks, dt=0.001)
-    assert result.returncode == 0, result.output
-    thermo = result.thermo[-1]
+    """As if it had been deleted between two runs, on any number of ranks, but for the histories.
+
+    Within a run they go on across the jump of the forces, which leaves an error that grows with the step.
+    """
+    commands = evaporating() + show(rows=[5, 26]) + "run {steps}"
+    thermo = lmp_tree.succeed(liquid(lmp_tree, commands, dt=0.001), ranks=ranks).thermo[-1]
     present = [N] * 5 + [N - 1] * 5 + [N - 2] * 11
     for row, molecules in enumerate(present):
         expect_temperature(thermo, row, molecules)
-    assert [len(frame) for frame in bodies(lmp_tree)] == present
-    gone = sorted({5, 17} - set(bodies(lmp_tree)[5][:, 0]))
-    assert len(gone) == 1
+    assert [len(frame) for frame in ids(lmp_tree)] == present
+    (gone,) = {5, 17} - set(ids(lmp_tree)[5])
     # the array is sorted by ID and ends earlier now
-    first = 5 if gone == [17] else 6
+    first = 5 if gone == 17 else 6
     assert thermo["f_move[5][28]"] == [5] * 5 + [first] * 5 + [6] * 11
     assert thermo["f_move[26][28]"] == [26] * 5 + [27] * 5 + [0] * 11
-    dumped = last_frame(lmp_tree.folder / "poses.dump")
+    dumped = poses(lmp_tree)
 
     between = f"""
 run 4
-group first molecule {gone[0]}
+group first molecule {gone}
 delete_atoms group first compress no
 run 5
 group second molecule 5 17
 delete_atoms group second compress no
 run 11
 """
-    result = run_water(lmp_tree, between, dt=0.001)
-    assert result.returncode == 0, result.output
-    close(dumped, last_frame(lmp_tree.folder / "poses.dump"), 1e-6)
+    lmp_tree.succeed(liquid(lmp_tree, between, dt=0.001))
+    close(dumped, poses(lmp_tree), 1e-6)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_rows_of_bodies_that_are_gone_read_as_zeros(lmp_tree, ranks):
     """In thermo, in variables, in averages and in sums over a column."""
-    evaporate = EVAPORATE.format(members="molecule 5 17", molecule="yes")
     commands = """
 variable id equal f_move[27][28]
 variable ids equal sum(f_move[28])
@@ -142,51 +125,43 @@ variable second equal f_move[27][28]
 thermo_style custom step v_second
 run 0
 """
-    result = run_water(lmp_tree, evaporate + commands, ranks)
-    assert result.returncode == 0, result.output
+    result = lmp_tree.succeed(liquid(lmp_tree, evaporating() + commands), ranks=ranks)
     thermo = result.thermo[0]
     assert thermo["f_move[27][28]"] == thermo["v_id"] == [27] * 5 + [0] * 16
     everyone = N * (N + 1) // 2
     assert thermo["v_ids"][4] == everyone and thermo["v_ids"][-1] == everyone - 5 - 17
     assert result.thermo[1]["v_second"] == [0]
-    assert (lmp_tree.folder / "mean").read_text().split()[-4:] == ["26", "0", "27", "0"]
+    assert list(last_numbers(lmp_tree.folder / "mean", 4)) == [26, 0, 27, 0]
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 @pytest.mark.parametrize("atom", [OXYGEN, OXYGEN + 1, OXYGEN + 2])
 def test_a_broken_body_is_noticed_in_a_run(lmp_tree, ranks, atom):
-    commands = EVAPORATE.format(members=f"id {atom}", molecule="no") + "thermo 1\nrun {steps}"
-    result = run_water(lmp_tree, commands, ranks)
-    assert result.returncode != 0
-    assert any("body 5 has 2 of its" in e and "removed as a whole" in e for e in result.errors)
-    assert result.thermo[-1]["Step"][-1] == 4
+    deck = liquid(lmp_tree, evaporating(f"id {atom}", "no") + "thermo 1\nrun {steps}")
+    left = "atoms left, without its owner atom" if atom == OXYGEN else "3 atoms left"
+    message = f"body 5 has 2 of its {left}; a body must be removed as a whole"
+    assert lmp_tree.refuse(deck, message, ranks=ranks).thermo[-1]["Step"][-1] == 4
 
 
 def test_two_bodies_broken_at_once(lmp_tree):
     """One lost its owner, another one an atom: what is left adds up, and is noticed all the same."""
     for members in (f"id {OXYGEN} {OXYGEN + 4}", f"id {OXYGEN + 1} {OXYGEN + 3}"):
-        commands = EVAPORATE.format(members=members, molecule="no").replace(
-            "5 1 every", "5 2 every"
-        )
-        result = run_water(lmp_tree, commands + "run {steps}", 2)
-        assert any("2 of its" in error for error in result.errors)
+        commands = evaporating(members, "no", number=2) + "run {steps}"
+        lmp_tree.refuse(liquid(lmp_tree, commands), "2 of its", ranks=2)
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_molecules_deleted_between_runs(lmp, ranks):
-    commands = (
-        show(20, rows=[24])
-        + "run {steps}\ngroup gone molecule 1 9 27\ndelete_atoms group gone compress no\nrun {steps}"
-    )
-    result = run_water(lmp, commands, ranks)
-    assert result.returncode == 0, result.output
+    delete = "group gone molecule 1 9 27\ndelete_atoms group gone compress no"
+    commands = show(20, rows=[24]) + f"run 20\n{delete}\nrun 20"
+    result = lmp.succeed(liquid(lmp, commands), ranks=ranks)
     expect_temperature(result.thermo[0], -1, N)
     for row in (0, 1):
         expect_temperature(result.thermo[1], row, N - 3)
         assert result.thermo[1]["f_move[24][28]"][row] == 26
     # nothing was done to the others: those that stayed go on with their histories
     assert "atoms were changed" not in result.stdout
-    assert len(bodies(lmp)[-1]) == N - 3
+    assert len(ids(lmp)[-1]) == N - 3
 
 
 # Dumbbells of an atomic system; body 3 goes.
@@ -222,17 +197,10 @@ run 100
 def test_bodies_go_on_when_atoms_get_other_ids(lmp_tree, ranks):
     """delete_atoms as it is by default gives new IDs in an atomic system, reset_atoms in all systems."""
     columns = " ".join(f"f_move[{row}][{k}]" for row in (1, 2, 3, 4) for k in (1, 2, 3, 16, 28))
-    changes = [
-        "delete_atoms group three compress no",
-        "delete_atoms group three",
-        "delete_atoms group three compress no\nreset_atoms id",
-        "delete_atoms group three\nwrite_restart renumbered",
-    ]
     ends = []
-    for change in changes:
-        deck = DUMBBELLS.format(columns=columns, change=change)
-        result = lmp_tree.run(deck, ranks=ranks)
-        assert result.returncode == 0, result.output
+    for change in (" compress no", "", " compress no\nreset_atoms id", "\nwrite_restart renumbered"):
+        deck = DUMBBELLS.format(columns=columns, change=f"delete_atoms group three{change}")
+        result = lmp_tree.succeed(deck, ranks=ranks)
         assert "bodies start" not in result.output
         ends.append([result.thermo[-1][column][-1] for column in columns.split()])
     for end in ends[1:]:
@@ -242,7 +210,7 @@ def test_bodies_go_on_when_atoms_get_other_ids(lmp_tree, ranks):
 
 def test_all_bodies_may_go(lmp_tree):
     after = "run 2\ndelete_atoms group all compress no\nrun 2"
-    assert lmp_tree.run(two_molecules(after=after), ranks=2).returncode == 0
+    lmp_tree.succeed(two_molecules(after=after), ranks=2)
 
 
 # --- inserted ------------------------------------------------------------------------------------
@@ -259,26 +227,22 @@ MOL = "gear/quat molecule mol spce"
 @pytest.mark.parametrize("formulation", ["first", "second"])
 def test_molecules_are_inserted(lmp, ranks, formulation):
     """With their own bodies, and the same trajectory on any number of ranks."""
-    fix = f"{MOL} formulation {formulation}"
-    commands = INSERT.format(count=3) + show(rows=[28, 30]) + "run {steps}"
+    commands = INSERT.format(count=3) + show() + "run {steps}"
     # rows 28 to 30 are not there yet when thermo_style is read
-    commands = commands.replace(" f_move[28][28] f_move[30][28]", "")
     commands += "\nthermo_style custom step f_move[28][28] f_move[30][28] f_move[30][1]\nrun 0"
     ends = []
     for number in {1, ranks}:
-        result = run_water(lmp, commands, number, fix, TEMPLATE)
-        assert result.returncode == 0, result.output
-        thermo = result.thermo[0]
+        deck = liquid(lmp, commands, f"{MOL} formulation {formulation}", TEMPLATE)
+        result = lmp.succeed(deck, ranks=number)
         present = [N + min((step + 4) // 5, 3) for step in range(21)]
         for row, molecules in enumerate(present):
-            expect_temperature(thermo, row, molecules)
-        frames = bodies(lmp)
-        assert [len(frame) for frame in frames[:21]] == present
-        assert frames[20][:, 0] == pytest.approx(range(1, N + 4))
+            expect_temperature(result.thermo[0], row, molecules)
+        assert [len(frame) for frame in ids(lmp)] == present
+        assert ids(lmp)[20] == pytest.approx(range(1, N + 4))
         after = result.thermo[1]
         assert [after[f"f_move[{row}][28]"][-1] for row in (28, 30)] == [28, 30]
         assert "created after the fix" not in result.output
-        ends.append(last_frame(lmp.folder / "poses.dump"))
+        ends.append(poses(lmp))
     close(ends[0], ends[-1], 1e-9)
 
 
@@ -295,17 +259,32 @@ pair_style zero 2.0
 pair_coeff * *
 neigh_modify every 1 delay 0 check yes
 {atoms}
-fix move all gear/quat molecule mol spce {words}
+fix move all {fix}
 variable fx atom -0.5*x
 variable fy atom -1.5*y-0.2*z
 variable fz atom -0.8*z-0.2*y
-fix field all addforce v_fx v_fy v_fz
+fix field all addforce {force}
 timestep {dt}
 {commands}
+thermo_style custom step {columns}
+thermo_modify format float %.17g
+thermo 1
 dump poses all custom 1 poses.dump id xu yu zu vx vy vz
-dump_modify poses sort id time yes format float %.17g
+dump_modify poses sort id format float %.17g
 run {steps}
 """
+THROW = """
+region here block 1 2 1 2 1 2
+fix in all deposit 1 0 1 4711 region here near 0.5 mol spce rigid move &
+  vx 0.3 0.3 vy -0.2 -0.2 vz 0.4 0.4
+"""
+
+
+def in_field(lmp, dt, steps, fix=MOL, force="v_fx v_fy v_fz", commands=THROW, header="", **more):
+    """A deck: a molecule is thrown into a field, or ``atoms`` begin there; ``header`` of the template."""
+    (lmp.folder / "molecule.spce").write_text(SPCE.replace("3 atoms", f"3 atoms\n{header}"))
+    chosen = dict(fix=fix, force=force, commands=commands, atoms="", columns="time") | more
+    return FIELD.format(dt=dt, steps=steps, **chosen)
 
 
 def insertion_error(lmp, dt, words, steps=None):
@@ -313,22 +292,11 @@ def insertion_error(lmp, dt, words, steps=None):
 
     The exact motion is that of a body which has it from the start, with steps of 0.01.
     """
-    (lmp.folder / "molecule.spce").write_text(SPCE)
     steps = steps or round(2.0 / dt)
-    insert = (
-        "region here block 1 2 1 2 1 2\n"
-        "fix in all deposit 1 0 1 4711 region here near 0.5 mol spce rigid move "
-        "vx 0.3 0.3 vy -0.2 -0.2 vz 0.4 0.4"
-    )
-    deck = FIELD.format(atoms="", words=words, dt=dt, commands=insert, steps=steps + 1)
-    result = lmp.run(deck)
-    assert result.returncode == 0, result.output
-    frames = (lmp.folder / "poses.dump").read_text().split("ITEM: TIME\n")[1:]
-    begin, finish = (float(frames[k].split(None, 1)[0]) for k in (1, -1))
-    start, end = (
-        np.loadtxt(frame.split("ITEM: ATOMS")[1].splitlines()[1:4])
-        for frame in (frames[1], frames[-1])
-    )
+    result = lmp.succeed(in_field(lmp, dt, steps + 1, f"{MOL} {words}"))
+    begin, finish = (result.thermo[0]["Time"][k] for k in (1, -1))
+    thrown = frames(lmp.folder / "poses.dump")
+    start, end = thrown[1], thrown[steps + 1]
     assert len(start) == 3
     atoms = [
         f"create_atoms {1 + (i > 0)} single {x:.17g} {y:.17g} {z:.17g}"
@@ -336,10 +304,8 @@ def insertion_error(lmp, dt, words, steps=None):
     ]
     atoms.append("set atom 1*3 mol 1\nvelocity all set 0.3 -0.2 0.4")
     step = (finish - begin) / 200
-    deck = FIELD.format(atoms="\n".join(atoms), words="", dt=step, commands="", steps=200)
-    result = lmp.run(deck)
-    assert result.returncode == 0, result.output
-    return np.abs(end - last_frame(lmp.folder / "poses.dump"))[:, 1:].max()
+    lmp.succeed(in_field(lmp, step, 200, atoms="\n".join(atoms), commands=""))
+    return np.abs(end - poses(lmp))[:, 1:].max()
 
 
 @pytest.mark.parametrize("formulation", ["first", "second"])
@@ -364,101 +330,81 @@ def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
 
 
 def test_a_restart_with_an_inserted_body(lmp_tree):
-    insert = INSERT.format(count=1)
-    whole = run_water(lmp_tree, insert + "run 10\nwrite_restart half\nrun 10", 2, MOL, TEMPLATE)
-    assert whole.returncode == 0, whole.output
-    dumped = last_frame(lmp_tree.folder / "poses.dump")
-    deck = water("half", MOL, dt=1.0, steps=10, before=TEMPLATE)
-    for word in ("atom_style", "pair_style", "pair_coeff"):
-        deck = deck.replace(word, "#")
-    result = lmp_tree.run(deck.replace("read_data", "read_restart"), ranks=2)
-    assert result.returncode == 0, result.output
-    close(dumped, last_frame(lmp_tree.folder / "poses.dump"), 1e-12)
+    commands = INSERT.format(count=1) + "run 10\nwrite_restart half\nrun 10"
+    lmp_tree.succeed(liquid(lmp_tree, commands, MOL, TEMPLATE), ranks=2)
+    dumped = poses(lmp_tree)
+    lmp_tree.succeed(restarted(liquid(lmp_tree, "run 10", MOL, TEMPLATE), "half"), ranks=2)
+    close(dumped, poses(lmp_tree), 1e-12)
 
 
-@pytest.mark.parametrize("created", ["create_atoms", "deposit"])
-def test_other_new_atoms_are_reported_once(lmp_tree, created):
-    commands = {
-        "create_atoms": "create_atoms 1 single 2 2 2\ncreate_atoms 1 single 2 2 7",
-        "deposit": "region within block 0 13 0 13 0 13\n"
-        "fix in all deposit 2 1 1 4711 region within near 2.0 attempt 2000",
-    }[created]
-    result = run_water(lmp_tree, f"run 5\n{commands}\nthermo 1\nrun 5\nrun 5", 2)
-    assert result.returncode == 0, result.output
-    number = {"create_atoms": 2, "deposit": 1}[created]  # the second one comes later
-    assert result.log.count("belong to no body") == 1
-    assert f"{number} atoms of the fix group were created" in result.log
+@pytest.mark.parametrize(
+    "commands, number",
+    [
+        ("create_atoms 1 single 2 2 2\ncreate_atoms 1 single 2 2 7", 2),
+        # the second one comes later
+        (
+            "region within block 0 13 0 13 0 13\n"
+            "fix in all deposit 2 1 1 4711 region within near 2.0 attempt 2000",
+            1,
+        ),
+    ],
+)
+def test_other_new_atoms_are_reported_once(lmp_tree, commands, number):
+    deck = liquid(lmp_tree, f"run 5\n{commands}\nthermo 1\nrun 5\nrun 5")
+    log = lmp_tree.succeed(deck, ranks=2).log
+    assert log.count("belong to no body") == 1
+    assert f"{number} atoms of the fix group were created" in log
 
 
 @pytest.mark.parametrize(
     "words, message",
-    {
-        "molecule mol nosuch": "molecule template ID nosuch does not exist",
-        "single mol spce": "keyword mol requires bodystyle molecule",
-        "molecule": "rigid fix are not using the same molecule template",
-    }.items(),
+    [
+        ("molecule mol nosuch", "molecule template ID nosuch does not exist"),
+        ("molecule", "rigid fix are not using the same molecule template"),
+    ],
 )
 def test_wrong_templates(lmp, words, message):
-    commands = INSERT.format(count=1) + "run 1"
-    result = run_water(lmp, commands, 2, f"gear/quat {words}", TEMPLATE)
-    assert result.returncode != 0
-    assert any(message in error for error in result.errors)
+    deck = liquid(lmp, INSERT.format(count=1) + "run 1", f"gear/quat {words}", TEMPLATE)
+    lmp.refuse(deck, message, ranks=2)
 
 
-STATED = {
-    "mass": "4.5 mass",
-    "all": "4.5 mass\n0.1 0.25 0.05 com\n2.0 1.5 3.0 0.1 0.05 -0.1 inertia",
-}
+MASS = "4.5 mass"
+ALL = "4.5 mass\n0.1 0.25 0.05 com\n2.0 1.5 3.0 0.1 0.05 -0.1 inertia"
+FALL = "0.5 -0.3 0.7"  # a constant field
 
 
-def inserted(lmp, header, fix, dt, steps):
-    """Velocities of the atoms of one molecule, `steps` after it came, in a constant field."""
-    (lmp.folder / "molecule.spce").write_text(SPCE.replace("3 atoms", f"3 atoms\n{header}"))
-    commands = (
-        "region here block 1 2 1 2 1 2\n"
-        "fix in all deposit 1 0 1 4711 region here near 0.5 mol spce rigid move "
-        "vx 0.3 0.3 vy -0.2 -0.2 vz 0.4 0.4"
-    )
-    deck = FIELD.format(atoms="", words="", dt=dt, commands=commands, steps=steps + 1)
-    deck = deck.replace("fix move all gear/quat molecule mol spce", f"fix move all {fix} mol spce")
-    deck = re.sub("(?m)^variable f.*\n", "", deck).replace("v_fx v_fy v_fz", "0.5 -0.3 0.7")
-    result = lmp.run(deck.replace("dump poses all custom 1 ", f"dump poses all custom {steps + 1} "))
-    return result, lambda: last_frame(lmp.folder / "poses.dump")[:, 1:]
-
-
-@pytest.mark.parametrize("header", STATED)
+@pytest.mark.parametrize("header", [MASS, ALL])
 def test_a_template_that_states_its_mass(lmp_tree, header):
-    """Centre and inertia too, turned as it is inserted: as rigid/small at a step ten times smaller."""
-    result, frame = inserted(lmp_tree, STATED[header], "gear/quat molecule", 0.005, 200)
-    assert result.returncode == 0, result.output
-    assert "template spce states mass, center of mass or inertia other than" in result.output
-    mine = frame()
-    result, frame = inserted(lmp_tree, STATED[header], "rigid/nve/small molecule", 0.0005, 2000)
-    assert result.returncode == 0, result.output
-    assert mine == pytest.approx(frame(), abs=2e-3)
-    result, frame = inserted(lmp_tree, "", "gear/quat molecule", 0.005, 200)
-    assert "template spce states" not in result.output
-    assert abs(mine - frame()).max() > 0.05  # what the atoms add up to moves otherwise
+    """Center and inertia too, turned as it is inserted: as rigid/small at a step ten times smaller."""
+    said = "template spce states mass, center of mass or inertia other than"
+
+    def move(header, fix=MOL, dt=0.005, steps=200):
+        result = lmp_tree.succeed(in_field(lmp_tree, dt, steps + 1, fix, FALL, header=header))
+        return poses(lmp_tree)[:, 1:], said in result.output
+
+    mine, told = move(header)
+    rigid, _ = move(header, "rigid/nve/small molecule mol spce", 0.0005, 2000)
+    of_atoms, told_of_atoms = move("")
+    assert told and not told_of_atoms
+    assert mine == pytest.approx(rigid, abs=2e-3)
+    assert abs(mine - of_atoms).max() > 0.05  # what the atoms add up to moves otherwise
 
 
 @pytest.mark.parametrize(
     "header, message",
-    {
-        "-1.0 mass": "mass",  # LAMMPS' own
-        "1 1 3 0 0 0 inertia": "states a principal moment that is more than the sum of the two",
-        "5 5 5 6 0 0 inertia": "states a negative principal moment",
-        "9 0 0 com": "states a center of mass that is far away from all its atoms",
-    }.items(),
+    [
+        ("-1.0 mass", "mass"),  # LAMMPS' own
+        ("1 1 3 0 0 0 inertia", "states a principal moment that is more than the sum of the two"),
+        ("5 5 5 6 0 0 inertia", "states a negative principal moment"),
+        ("9 0 0 com", "states a center of mass that is far away from all its atoms"),
+    ],
 )
 def test_a_template_that_no_body_is(lmp_tree, header, message):
-    result, _ = inserted(lmp_tree, header, "gear/quat molecule", 0.005, 5)
-    assert result.returncode != 0 and message in result.errors[0]
-    assert not result.thermo
+    assert not lmp_tree.refuse(in_field(lmp_tree, 0.005, 5, header=header), message).thermo
 
 
 def test_a_plugin_without_the_header_says_so(lmp_wheel):
-    result, _ = inserted(lmp_wheel, STATED["mass"], "gear/quat molecule", 0.005, 5)
-    assert result.returncode == 0, result.output
+    result = lmp_wheel.succeed(in_field(lmp_wheel, 0.005, 5, force=FALL, header=MASS))
     words = " ".join(result.output.split())
     assert "mass, com and inertia in the header of molecule template spce" in words
 
@@ -466,56 +412,37 @@ def test_a_plugin_without_the_header_says_so(lmp_wheel):
 # --- velocity ------------------------------------------------------------------------------------
 def test_velocities_given_between_runs(lmp_tree):
     """Bodies take momentum and angular momentum of their atoms; the rest cannot be."""
+    dump = "write_dump all custom {} id xu yu zu vx vy vz modify sort id format float %.17g\n"
     commands = show(5) + (
         "run 5\nvelocity all create 300.0 4711 mom yes rot no dist gaussian loop geom\n"
-        "write_data given.data nocoeff\nrun 0\n"
-        "write_dump all custom taken.dump id xu yu zu vx vy vz modify sort id format float %.17g\n"
-        "velocity all scale 250.0\nrun 5\n"
+        + dump.format("given.dump")
+        + "run 0\n"
+        + dump.format("taken.dump")
+        + "velocity all scale 250.0\nrun 5\n"
     )
+    mass = WATER_MASSES[:, None]
     for ranks in (1, 2):
-        result = run_water(lmp_tree, commands, ranks)
-        assert result.returncode == 0, result.output
+        result = lmp_tree.succeed(liquid(lmp_tree, commands), ranks=ranks)
         assert result.stdout.count("atoms were changed since the last run") == 1
         assert result.thermo[2]["Temp"][0] == pytest.approx(250.0, rel=1e-9)
         for row in (0, 1):
             expect_temperature(result.thermo[2], row, N)
-        lines = (lmp_tree.folder / "given.data").read_text().partition("Velocities")[2].split("\n")
-        given = np.array([[float(w) for w in line.split()] for line in lines if line.split()])
-        given = given[given[:, 0].argsort()][:, 1:].reshape(N, 3, 3)
-        taken = last_frame(lmp_tree.folder / "taken.dump")
-        x, v = taken[:, 1:4].reshape(N, 3, 3), taken[:, 4:7].reshape(N, 3, 3)
-        mass = np.array([15.9994, 1.008, 1.008])[:, None]
-        center = (mass * x).sum(1, keepdims=True) / mass.sum()
-        close((mass * v).sum(1), (mass * given).sum(1), 1e-12)
-        close(
-            (mass * np.cross(x - center, v)).sum(1),
-            (mass * np.cross(x - center, given)).sum(1),
-            1e-12,
+        given, taken = (
+            last_frame(lmp_tree.folder / f"{name}.dump")[:, 1:].reshape(N, 3, 6)
+            for name in ("given", "taken")
         )
-        assert np.abs(v - given).max() > 1e-3  # and the rest is gone
-
-
-EMPTY = """
-units real
-atom_style full
-atom_modify map array
-region box block 0 13 0 13 0 13
-create_box 2 box
-mass * 10.0
-pair_style zero 4.0
-pair_coeff * *
-molecule spce molecule.spce
-fix move all gear/quat molecule mol spce
-variable id equal f_move[1][28]
-thermo_style custom step v_id f_move[2][28]
-thermo 1
-"""
+        arms = taken[..., :3] - (mass * taken[..., :3]).sum(1, keepdims=True) / mass.sum()
+        given, taken = given[..., 3:], taken[..., 3:]
+        close((mass * taken).sum(1), (mass * given).sum(1), 1e-12)
+        momenta = ((mass * np.cross(arms, v)).sum(1) for v in (taken, given))
+        close(*momenta, 1e-12)
+        assert np.abs(taken - given).max() > 1e-3  # and the rest is gone
 
 
 def test_rows_may_be_asked_for_before_a_body_is_there(lmp_tree):
     """An empty box into which a molecule comes."""
-    (lmp_tree.folder / "molecule.spce").write_text(SPCE)
-    result = lmp_tree.run(EMPTY + INSERT.format(count=1) + "thermo_modify lost ignore\nrun 3\n")
-    assert result.returncode == 0, result.output
-    assert result.thermo[-1]["v_id"] == [0, 1, 1, 1]
-    assert result.thermo[-1]["f_move[2][28]"] == [0, 0, 0, 0]
+    commands = THROW + "variable id equal f_move[1][28]"
+    deck = in_field(lmp_tree, 0.005, 3, commands=commands, columns="v_id f_move[2][28]")
+    thermo = lmp_tree.succeed(deck).thermo[-1]
+    assert thermo["v_id"] == [0, 1, 1, 1]
+    assert thermo["f_move[2][28]"] == [0, 0, 0, 0]

@@ -6,13 +6,12 @@ import pytest
 
 from benchmarks.studies import effects
 from benchmarks.studies.effects import count, plan, runs
+from running import make_lmp_tree
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     """Counts of all scenes, no times."""
-    from running import make_lmp_tree
-
     folder = tmp_path_factory.mktemp("effects")
     sizes = runs.Sizes(counted=(2, 3), counted_steps=4)
     lmp = str(make_lmp_tree(folder).executable)

@@ -5,14 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import water, water_data
-from test_coming_and_going import SPCE
-from test_plugin import tree_source
+from scenes import SPCE, WATER_MASSES, WATER_SITES, water, water_data
 
-from running import ROOT
+from running import ROOT, tree_source
 
 N = 27
-MASSES = np.array([15.9994, 1.008, 1.008])
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +24,7 @@ def command() -> Path:
 
 
 def moments():
-    half = np.deg2rad(109.47 / 2)
-    site = np.array([[0, 0, 0], [np.sin(half), 0, np.cos(half)], [-np.sin(half), 0, np.cos(half)]])
-    site -= MASSES @ site / MASSES.sum()
-    square = np.einsum("i,ij,ik->jk", MASSES, site, site)
+    square = np.einsum("i,ij,ik->jk", WATER_MASSES, WATER_SITES, WATER_SITES)
     return np.sort(np.linalg.eigvalsh(np.trace(square) * np.eye(3) - square))[::-1]
 
 
@@ -45,12 +39,11 @@ def test_what_is_extracted(lmp_tree, command, ranks, mol):
     )
     before = "molecule spce molecule.spce"
     fix = f"gear/quat molecule {mol}"
-    result = lmp_tree.run(water(data, fix, dt=1.0, before=before, run=run), ranks=ranks)
-    assert result.returncode == 0, result.output
+    result = lmp_tree.succeed(water(data, fix, dt=1.0, before=before, run=run), ranks=ranks)
     line = next(line for line in result.log.splitlines() if line.startswith("extracted"))
     found = [float(word) for word in line.split()[1:]]
     thermo = result.thermo[-1]
-    right = [3 * N, 3 * N, 3 * N * MASSES.sum(), *(3 * N * moments())]
+    right = [3 * N, 3 * N, 3 * N * WATER_MASSES.sum(), *(3 * N * moments())]
     right += [thermo["f_move[1]"][-1], thermo["f_move[2]"][-1], 1, 1]
     assert found == pytest.approx(right, rel=1e-9)
     assert found[6] == pytest.approx(right[6], rel=1e-13) and found[6] > 0.1

@@ -4,8 +4,7 @@ import re
 
 import numpy as np
 import pytest
-
-FORMULATIONS = ["first", "second"]
+from scenes import FORMULATIONS
 
 
 @pytest.fixture
@@ -15,8 +14,7 @@ def fields(lmp_tree, examples):
     def run(effect, **variables):
         deck = (examples / "fields" / "in.fields").read_text()
         deck = deck.replace(" molecule.body", f" {examples / 'fields' / 'molecule.body'}")
-        result = lmp_tree.run(deck, {"effect": effect, **variables})
-        assert result.returncode == 0, result.output
+        result = lmp_tree.succeed(deck, {"effect": effect, **variables})
         return result, {name: np.array(column) for name, column in result.thermo[-1].items()}
 
     return run

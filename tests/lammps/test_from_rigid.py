@@ -8,6 +8,19 @@ from scenes import one_after_the_other, two_molecules
 
 PAGE = ROOT / "doc/howto/from_rigid.md"
 
+
+def modified(words, message=""):
+    return "", "molecule", f"fix_modify move {words}" + ("" if message else "\nrun 1"), message
+
+
+def shown(columns):
+    return "", "molecule", f"thermo_style custom step {columns}\nrun 1", ""
+
+
+def computed(words):
+    return "", "molecule", f"compute k all {{word}} move {words}\nrun 1", "ompute"
+
+
 # the words of a row -> commands before the fix, its words, commands after it, and what LAMMPS says
 # where the row says "not there"; None for a row that other tests are about, with their file
 TRIED = {
@@ -27,40 +40,20 @@ TRIED = {
     "temp": ("", "molecule {word} 1 1 1", "", "define fix temp/csvr or temp/berendsen"),
     "iso": ("", "molecule {word} 1 1 1", "", "there is no barostat"),
     "gravity": ("", "molecule gravity pull", "", "leave out its keyword disable"),
-    "fix_modify bodyforces late": ("", "molecule", "fix_modify move bodyforces late\nrun 1", ""),
-    "fix_modify bodyforces early": (
-        "",
-        "molecule",
-        "fix_modify move bodyforces early",
-        "has no fix_modify bodyforces early",
-    ),
-    "fix_modify temp": (
-        "",
-        "molecule",
-        "fix_modify move {word} thermo_temp",
-        "Fix gear/quat has no fix_modify",
-    ),
+    "fix_modify bodyforces late": modified("bodyforces late"),
+    "fix_modify bodyforces early": modified("bodyforces early", "has no fix_modify bodyforces early"),
+    "fix_modify temp": modified("{word} thermo_temp", "Fix gear/quat has no fix_modify"),
     "fix_modify energy yes": "test_physics.py",
-    "fix_modify virial no": ("", "molecule", "fix_modify move virial no\nrun 1", ""),
+    "fix_modify virial no": modified("virial no"),
     "f_move": "test_outputs.py",
-    "f_move[i][1]": (
-        "",
-        "molecule",
-        "thermo_style custom step f_move[1][15] f_move[2][28]\nrun 1",
-        "",
-    ),
-    "f_move[i]": ("", "molecule", "thermo_style custom step f_move f_move[8]\nrun 1", ""),
+    "f_move[i][1]": shown("f_move[1][15] f_move[2][28]"),
+    "f_move[i]": shown("f_move f_move[8]"),
     "compute temp": "test_outputs.py",
     "compute stress/atom": "test_outputs.py",
-    "compute ke/rigid": ("", "molecule", "compute k all {word} move\nrun 1", "ompute"),
-    "compute erotate/rigid": ("", "molecule", "compute k all {word} move\nrun 1", "ompute"),
-    "compute rigid/local": ("", "molecule", "compute k all {word} move mol x\nrun 1", "ompute"),
-    "velocity ... rigid": (
-        "",
-        "molecule",
-        "velocity all zero linear rigid move",
-        "rigid",
-    ),
+    "compute ke/rigid": computed(""),
+    "compute erotate/rigid": computed(""),
+    "compute rigid/local": computed("mol x"),
+    "velocity ... rigid": ("", "molecule", "velocity all zero linear rigid move", "rigid"),
     "fix deposit": "test_coming_and_going.py",
     "fix hmc": "test_neighbors.py",
     "neigh_modify exclude molecule/intra": "test_report.py",
@@ -104,13 +97,14 @@ def test_every_row_is_tried_and_every_trial_is_a_row():
 
 
 def test_what_works(lmp_wheel):
-    decks = []
-    for cell, (words, says) in rows().items():
-        trial = tried(words, cell)
-        if not isinstance(trial, str) and says != "not there":
-            decks.append(two_molecules(trial[1], before=trial[0], after=trial[2]))
-    result = lmp_wheel.run(one_after_the_other(decks))
-    assert result.returncode == 0, result.output
+    trials = [
+        tried(words, cell) for cell, (words, says) in rows().items() if says != "not there"
+    ]
+    decks = [
+        two_molecules(fix, before=before, after=after)
+        for before, fix, after, _ in (trial for trial in trials if not isinstance(trial, str))
+    ]
+    lmp_wheel.succeed(one_after_the_other(decks))
 
 
 REFUSED = [
@@ -127,7 +121,4 @@ def test_what_is_not_there(lmp_wheel, word, cell):
     before, fix, after, message = tried(words, cell)
     style = word.split()[-1]
     deck = two_molecules(fix.format(word=style), before=before, after=after.format(word=style))
-    result = lmp_wheel.run(deck, ranks=2)
-    assert result.returncode != 0, result.output
-    assert message in " ".join(result.output.split()), result.output
-    assert len(set(result.errors)) == 1
+    assert len(set(lmp_wheel.refuse(deck, message, ranks=2).errors)) == 1

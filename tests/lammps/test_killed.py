@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from running import processes_of_session
+from scenes import restarted
 from test_infile_out import bodies_in
 from test_life_cycle import Case1, end
 
@@ -55,27 +56,21 @@ def newest_first(folder):
 def test_a_killed_rank(lmp_tree, examples, formulation, rank, delay):
     """Restart files every step, two in turn: the kill falls into the writing of one of them."""
     case1 = Case1(lmp_tree, examples, formulation, ranks=2)
-    case1.variables["dt"] = (
-        1e-4  # no atom goes over to the other rank, which changes the order of sums
-    )
+    # no atom goes over to the other rank, which changes the order of sums
+    case1.variables["dt"] = 1e-4
     folder = lmp_tree.folder
     result = lmp_tree.run(
         case1.scene.replace("run ${steps}", "restart 1 even odd\nrun 10000000"),
         case1.variables,
         ranks=2,
-        folder=folder,
         meanwhile=killer(folder, rank, delay),
     )
     assert result.returncode != 0
 
     # LAMMPS refuses a file that is not whole; then it is the one that was being written
     for name in newest_first(folder):
-        again = lmp_tree.run(
-            case1.restarted().replace("run ${steps}", f"run {AGAIN}"),
-            {**case1.variables, "restart": name},
-            ranks=2,
-            folder=folder,
-        )
+        scene = restarted(case1.scene.replace("run ${steps}", f"run {AGAIN}"), name)
+        again = lmp_tree.run(scene, case1.variables, ranks=2)
         if again.returncode == 0:
             break
         assert name == newest_first(folder)[0], again.output

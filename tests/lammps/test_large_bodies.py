@@ -10,7 +10,7 @@ import re
 import numpy as np
 import pytest
 from running import make_lmp_tree
-from scenes import last_frame, one_after_the_other, restarted
+from scenes import last_frame, one_after_the_other, random_rotation, restarted, write_data
 
 BOX, STEPS, DT = 20.0, 200, 0.002
 CELLS, SPACING = (12, 12, 2), 1.1
@@ -43,22 +43,17 @@ write_dump all custom {name}.end id xu yu zu vx vy vz proc modify sort id format
 """
 
 
-def rotation(rng):
-    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    return turn * np.linalg.det(turn)
-
-
 def slab_data(path, height=BOX, cells=CELLS, trimers=True):
     """A slab (molecule 1) and trimers in the lower 20 of a box that may be higher."""
     rng = np.random.default_rng(20251123)
     box = np.array([BOX, BOX, height])
     slab = (np.array(list(np.ndindex(*cells))) - (np.array(cells) - 1) / 2) * SPACING
-    slab = slab @ rotation(rng).T + [0.3 * BOX, 0.42 * BOX, 0.5 * BOX]
+    slab = slab @ random_rotation(rng).T + [0.3 * BOX, 0.42 * BOX, 0.5 * BOX]
     trimer = np.array([[0, 0, 0], [0.9, 0, 0], [0.2, 0.8, 0]])
     trimer -= trimer.mean(axis=0)
     molecules = [slab]
     for cell in np.ndindex(5, 5, 5) if trimers else ():
-        atoms = (np.array(cell) + 0.5) * 4.0 + trimer @ rotation(rng).T
+        atoms = (np.array(cell) + 0.5) * 4.0 + trimer @ random_rotation(rng).T
         apart = atoms[:, None] - slab
         apart -= BOX * np.round(apart / BOX)
         if np.linalg.norm(apart, axis=-1).min() > 1.2:
@@ -68,30 +63,23 @@ def slab_data(path, height=BOX, cells=CELLS, trimers=True):
         stream = np.array([9.0, 7.0, 0.0 if height > BOX else 5.0])
         velocity = stream + rng.normal(size=3) * (0.2 if number == 1 else 1.0)
         spin = rng.normal(size=3) * (0.1 if number == 1 else 1.0)
-        for x, v in zip(atoms, velocity + np.cross(spin, atoms - atoms.mean(axis=0))):
-            image = np.floor(x / box).astype(int)
-            words = [*(x - image * box), *image]
-            rows.append(f"{len(rows) + 1} {number} 1 0 " + " ".join(f"{w:.17g}" for w in words))
-            velocities.append(f"{len(rows)} " + " ".join(f"{w:.17g}" for w in v))
-    lines = ["slab and trimers", "", f"{len(rows)} atoms", "1 atom types", ""]
-    lines += [f"0 {length} {axis}lo {axis}hi" for length, axis in zip(box, "xyz")]
-    lines += ["", "Masses", "", "1 1", "", "Atoms # full", "", *rows]
-    path.write_text("\n".join([*lines, "", "Velocities", "", *velocities, ""]))
-    return path
+        image = np.floor(atoms / box)
+        rows += [[number, 1, 0, *x] for x in np.hstack([atoms - image * box, image])]
+        velocities += list(velocity + np.cross(spin, atoms - atoms.mean(axis=0)))
+    lines = [f"0 {length} {axis}lo {axis}hi" for length, axis in zip(box, "xyz")]
+    return write_data(path, lines, [1.0], rows, velocities)
 
 
 def deck(data, name, fix="", before="", after="", steps=STEPS, run="run {steps}", **settings):
-    known = dict(newton="on", processors="* * *", comm="brick", dt=DT) | settings
-    return DECK.format(
-        data=data,
-        name=name,
-        fix=f"gear/quat molecule {fix}",
-        before=before,
-        after=after,
-        steps=steps,
-        run=run.format(steps=steps),
-        **known,
-    )
+    known = dict(newton="on", processors="* * *", comm="brick", dt=DT, before=before, after=after)
+    known |= dict(data=data, name=name, fix=f"gear/quat molecule {fix}", steps=steps)
+    return DECK.format(run=run.format(steps=steps), **(known | settings))
+
+
+def end(lmp, text, name, ranks=1):
+    """The last frame of a deck of that name."""
+    lmp.succeed(text, ranks=ranks)
+    return last_frame(lmp.folder / f"{name}.end")
 
 
 def difference(one, other):
@@ -100,32 +88,36 @@ def difference(one, other):
     return max(moved[:, 1:4].max() / BOX, moved[:, 4:7].max() / np.abs(one[:, 4:7]).max())
 
 
-# what a run does beside the plain one, and the run (ranks, way) that it has to repeat
+# what a run does beside the plain one
 WAYS = {
-    "plain": (dict(), (1, "plain")),
-    "newton off": (dict(newton="off"), (1, "plain")),
-    "tiled": (dict(comm="tiled", after="fix cut all balance 10 1.0 rcb"), (1, "plain")),
-    "shifted": (dict(after="fix cut all balance 10 1.0 shift xyz 10 1.0"), (1, "plain")),
-    "respa": (dict(before="run_style respa 2 1"), (1, "plain")),
-    "wide": (dict(before="comm_modify cutoff 9.8"), (1, "plain")),
-    "first": (dict(fix="formulation first compensate yes"), (1, "first")),
-    "isokinetic": (dict(fix="formulation first isokinetic separate"), (1, "isokinetic")),
-    "masks": (dict(fix="force 1 off on on torque 1* on off on"), (1, "masks")),
-    "cooled": (dict(after="fix cool all temp/berendsen 100 10 0.1"), (1, "cooled")),
-    # rounding decides over the last digits of every step: on as many ranks, of small bodies alone
-    "tolerance": (dict(fix="tolerance 1e-9 dtmax 0.004"), (4, "wide tolerance")),
-    "wide tolerance": (
-        dict(fix="tolerance 1e-9 dtmax 0.004", before="comm_modify cutoff 9.8"),
-        (4, "wide tolerance"),
-    ),
+    "plain": dict(),
+    "newton off": dict(newton="off"),
+    "tiled": dict(comm="tiled", after="fix cut all balance 10 1.0 rcb"),
+    "shifted": dict(after="fix cut all balance 10 1.0 shift xyz 10 1.0"),
+    "respa": dict(before="run_style respa 2 1"),
+    "wide": dict(before="comm_modify cutoff 9.8"),
+    "first": dict(fix="formulation first compensate yes"),
+    "isokinetic": dict(fix="formulation first isokinetic separate"),
+    "masks": dict(fix="force 1 off on on torque 1* on off on"),
+    "cooled": dict(after="fix cool all temp/berendsen 100 10 0.1"),
+    "tolerance": dict(fix="tolerance 1e-9 dtmax 0.004"),
+    "wide tolerance": dict(fix="tolerance 1e-9 dtmax 0.004", before="comm_modify cutoff 9.8"),
     # the last, for it has two runs
-    "timestep": (dict(run="run 100\ntimestep 0.0015\nrun 100"), (1, "timestep")),
+    "timestep": dict(run="run 100\ntimestep 0.0015\nrun 100"),
 }
 RANKS = {
     1: ["plain", "first", "isokinetic", "masks", "cooled", "timestep"],
     2: ["plain", "tiled", "isokinetic"],
     4: list(WAYS),
 }
+
+
+def to_repeat(way):
+    """The run (ranks, way) whose trajectory that way has on any number of ranks."""
+    if "tolerance" in way:
+        # rounding decides over the last digits of every step: on as many ranks, of small bodies alone
+        return 4, "wide tolerance"
+    return 1, way if way in RANKS[1] else "plain"
 
 
 @pytest.fixture(scope="module")
@@ -136,9 +128,8 @@ def ends(tmp_path_factory):
     found = {}
     for ranks, ways in RANKS.items():
         names = [f"{ranks}-{way.replace(' ', '-')}" for way in ways]
-        decks = [deck(data, name, **WAYS[way][0]) for name, way in zip(names, ways)]
-        result = lmp.run(one_after_the_other(decks), ranks=ranks, timeout=300)
-        assert result.returncode == 0, result.output
+        decks = [deck(data, name, **WAYS[way]) for name, way in zip(names, ways)]
+        result = lmp.succeed(one_after_the_other(decks), ranks=ranks, timeout=300)
         logs = result.log.split("rigid bodies with")[1:]
         for name, way, log in zip(names, ways, logs):
             found[ranks, way] = last_frame(lmp.folder / f"{name}.end")
@@ -156,8 +147,9 @@ def ghosts(log):
 @pytest.mark.tree
 @pytest.mark.parametrize("ranks, way", [(n, way) for n in (2, 4) for way in RANKS[n]])
 def test_the_trajectory_is_that_of_one_rank(ends, ranks, way):
-    assert difference(ends[WAYS[way][1]], ends[ranks, way]) < 1e-12
-    one, many = ends[*WAYS[way][1], "thermo"], ends[ranks, way, "thermo"]
+    repeated = to_repeat(way)
+    assert difference(ends[repeated], ends[ranks, way]) < 1e-12
+    one, many = ends[*repeated, "thermo"], ends[ranks, way, "thermo"]
     assert np.abs(one - many).max() < 1e-10 * np.abs(one).max()
     large = "1 bodies reach further than ghost atoms" in ends[ranks, way, "log"]
     assert large == ("wide" not in way)
@@ -191,13 +183,12 @@ def test_single_and_group(lmp):
             groups = "group slab molecule 1\ngroup rest subtract all slab\n"
             text = text.replace("fix move all", f"{groups}fix move all")
             decks.append(text.replace("gear/quat molecule", f"gear/quat {style}"))
-        result = lmp.run(one_after_the_other(decks), ranks=n)
-        assert result.returncode == 0, result.output
+        lmp.succeed(one_after_the_other(decks), ranks=n)
         for name in words:
-            end = last_frame(lmp.folder / f"{name}.end")
-            assert len(set(end[:, 7])) == min(n, 2)
-            assert n == 1 or difference(ends[name], end) < 1e-12
-            ends[name] = end
+            frame = last_frame(lmp.folder / f"{name}.end")
+            assert len(set(frame[:, 7])) == min(n, 2)
+            assert n == 1 or difference(ends[name], frame) < 1e-12
+            ends[name] = frame
     assert difference(ends["group"], ends["molecule"]) > 1e-4
 
 
@@ -205,114 +196,81 @@ def test_restarts_on_any_number_of_ranks(lmp_tree):
     """On as many ranks the same to the last bit; on others to rounding."""
     data = slab_data(lmp_tree.folder / "data.slab")
     halves = f"run {STEPS // 2}\nwrite_restart {{name}}.restart\nrun {STEPS // 2}"
-    ends = {}
-
-    def runs(ranks, *decks):
-        result = lmp_tree.run(one_after_the_other(decks), ranks=ranks)
-        assert result.returncode == 0, result.output
-
+    whole = {}
     for ranks in (1, 2, 4):
-        runs(ranks, deck(data, f"whole{ranks}", run=halves.format(name=f"whole{ranks}")))
+        name = f"whole{ranks}"
+        whole[ranks] = end(lmp_tree, deck(data, name, run=halves.format(name=name)), name, ranks)
     for ranks in (1, 2, 4):
-        names = {before: f"{before}-{ranks}" for before in (1, 2, 4)}
-        runs(
-            ranks,
-            *(
-                restarted(deck(data, names[n], steps=STEPS // 2), f"whole{n}.restart")
-                for n in names
-            ),
-        )
-        for n, name in names.items():
-            ends[n, ranks] = last_frame(lmp_tree.folder / f"{name}.end")
-    for n, ranks in ends:
-        whole = last_frame(lmp_tree.folder / f"whole{n}.end")
-        assert difference(whole, ends[n, ranks]) < 1e-12
-        if n == ranks:
-            assert (whole == ends[n, ranks]).all()
+        rest = {n: deck(data, f"rest{n}", steps=STEPS // 2) for n in whole}
+        decks = [restarted(rest[n], f"whole{n}.restart") for n in whole]
+        lmp_tree.succeed(one_after_the_other(decks), ranks=ranks)
+        for n in whole:
+            again = last_frame(lmp_tree.folder / f"rest{n}.end")
+            assert difference(whole[n], again) < 1e-12
+            assert n != ranks or (whole[n] == again).all()
 
 
 def test_a_body_that_loses_sight_of_its_owner_becomes_large(lmp_tree):
     """In mode multi ghosts of type 1 are seen 1.4 away, though the longest ghost cutoff is 2.8."""
     data = slab_data(lmp_tree.folder / "data.slab", cells=(4, 4, 2))
-    data.write_text(data.read_text().replace("1 atom types", "2 atom types").replace("1 1\n", "1 1\n2 1\n"))
-    ends = {}
-    for ranks in (1, 4):
-        text = deck(data, f"multi{ranks}", before="comm_modify mode multi")
-        text = text.replace("neighbor 0.3 bin", "neighbor 0.3 multi")
-        text = re.sub(
-            "pair_style .*\npair_coeff .*",
-            "pair_style lj/cut 1.1\npair_modify shift yes\npair_coeff * * 1 0.98\npair_coeff 2 2 1 1 2.5",
-            text,
-        )
-        result = lmp_tree.run(text, ranks=ranks)
-        assert result.returncode == 0, result.output
-        ends[ranks] = last_frame(lmp_tree.folder / f"multi{ranks}.end")
-    assert "1 bodies reach further than ghost atoms" in result.log
-    assert difference(ends[1], ends[4]) < 1e-12
+    data.write_text(data.read_text().replace("1 atom types", "2 atom types").replace("Masses\n\n1 1", "Masses\n\n1 1\n2 1"))
+    text = deck(data, "multi", before="comm_modify mode multi")
+    text = text.replace("neighbor 0.3 bin", "neighbor 0.3 multi")
+    text = re.sub(
+        "pair_style .*\npair_coeff .*",
+        "pair_style lj/cut 1.1\npair_modify shift yes\npair_coeff * * 1 0.98\npair_coeff 2 2 1 1 2.5",
+        text,
+    )
+    one = end(lmp_tree, text, "multi")
+    log = lmp_tree.succeed(text, ranks=4).log
+    assert "1 bodies reach further than ghost atoms" in log
+    assert difference(one, last_frame(lmp_tree.folder / "multi.end")) < 1e-12
 
 
 def test_a_large_body_goes_astray(lmp_tree):
     """All ranks see it and say so once, with the site that is nearest to another atom, wherever that is."""
     data = slab_data(lmp_tree.folder / "data.slab")
+    throw = "group slab molecule 1\nvelocity slab set 20000 NULL NULL"
+    text = deck(data, "astray", before=throw)
     said = []
     for ranks in (1, 4):
-        throw = "group slab molecule 1\nvelocity slab set 20000 NULL NULL"
-        result = lmp_tree.run(deck(data, "astray", before=throw), ranks=ranks)
-        assert result.returncode != 0
-        said += result.errors
+        message = "blow-up in step 1, time 0.002: body 1 moves by 40"
+        said += lmp_tree.refuse(text, message, ranks=ranks).errors
     assert len(said) == 2
-    assert "blow-up in step 1, time 0.002: body 1 moves by 40" in said[0]
     assert re.search(r"its atom \d+ is 1\.\d+ away from atom \d+", said[0])
     assert said[0].partition(" (src")[0] == said[1].partition(" (src")[0]
 
 
-ROD = """
-9 atoms
-
-Coords
-
-""" + "\n".join(f"{k} {k - 5} 0 0" for k in range(1, 10)) + """
-
-Types
-
-""" + "\n".join(f"{k} 1" for k in range(1, 10)) + "\n"
+def numbered(row):
+    return "\n".join(f"{k} {row.format(k - 5)}" for k in range(1, 10))
 
 
-def test_large_bodies_are_inserted(lmp_tree):
-    """Rods of nine atoms come during the run, longer than ghost atoms are seen."""
-    data = slab_data(lmp_tree.folder / "data.slab", trimers=False)
-    (lmp_tree.folder / "rod.mol").write_text("rod\n" + ROD)
-    insert = (
-        "region top block 3 17 3 17 3 17\n"
-        "fix rain all deposit 3 0 30 4711 region top near 2.0 attempt 1000 mol rod rigid move "
-        "vx 8 9 vy 6 7"
-    )
-    ends = {}
-    for ranks in (1, 2, 4):
-        name = f"rain{ranks}"
-        text = deck(data, name, fix="mol rod", before="molecule rod rod.mol", after=insert)
-        result = lmp_tree.run(text, ranks=ranks)
-        assert result.returncode == 0, result.output
-        ends[ranks] = last_frame(lmp_tree.folder / f"{name}.end")
-    assert len(ends[1]) == np.prod(CELLS) + 27
-    for ranks in (2, 4):
-        assert difference(ends[1], ends[ranks]) < 1e-12
-
-
-def test_a_large_body_is_removed(lmp_tree):
-    """The slab evaporates halfway; the trimers go on, and no rank keeps a copy."""
-    data = slab_data(lmp_tree.folder / "data.slab")
-    remove = f"""
+ROD = f"rod\n\n9 atoms\n\nCoords\n\n{numbered('{} 0 0')}\n\nTypes\n\n{numbered('1')}\n"
+RAIN = """
+region top block 3 17 3 17 3 17
+fix rain all deposit 3 0 30 4711 region top near 2.0 attempt 1000 mol rod rigid move vx 8 9 vy 6 7
+"""
+REMOVE = f"""
 group slab molecule 1
 region box block EDGE EDGE EDGE EDGE EDGE EDGE
 fix remove slab evaporate {STEPS // 2} 1 box 4711 molecule yes
 compute_modify thermo_temp dynamic/dof yes
 """
-    ends = {}
-    for ranks in (1, 4):
-        text = deck(data, f"removed{ranks}", after=remove)
-        result = lmp_tree.run(text, ranks=ranks)
-        assert result.returncode == 0, result.output
-        ends[ranks] = last_frame(lmp_tree.folder / f"removed{ranks}.end")
-    assert ends[1][0, 0] == np.prod(CELLS) + 1
-    assert difference(ends[1], ends[4]) < 1e-12
+
+
+def test_large_bodies_are_inserted(lmp_tree):
+    """Rods of nine atoms come during the run, longer than ghost atoms are seen."""
+    data = slab_data(lmp_tree.folder / "data.slab", trimers=False)
+    (lmp_tree.folder / "rod.mol").write_text(ROD)
+    text = deck(data, "rain", fix="mol rod", before="molecule rod rod.mol", after=RAIN)
+    one, two, four = (end(lmp_tree, text, "rain", ranks) for ranks in (1, 2, 4))
+    assert len(one) == np.prod(CELLS) + 27
+    assert difference(one, two) < 1e-12 and difference(one, four) < 1e-12
+
+
+def test_a_large_body_is_removed(lmp_tree):
+    """The slab evaporates halfway; the trimers go on, and no rank keeps a copy."""
+    text = deck(slab_data(lmp_tree.folder / "data.slab"), "removed", after=REMOVE)
+    one, four = (end(lmp_tree, text, "removed", ranks) for ranks in (1, 4))
+    assert one[0, 0] == np.prod(CELLS) + 1
+    assert difference(one, four) < 1e-12
