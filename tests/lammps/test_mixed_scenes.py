@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from running import Lammps
-from scenes import last_frame, one_after_the_other, water, water_data
+from scenes import FORMULATIONS, WATER_MASSES, last_frame, one_after_the_other, water, water_data
 
-FORMULATIONS = ["first", "second"]
-RIGID = "rigid/nve/small molecule"
+RIGID, OURS = "rigid/nve/small molecule", "gear/quat molecule formulation "
 BODIES = "group bodies molecule 1:14\ngroup others subtract all bodies\n"
 SPACING, N = 3.3, 3
 SMOOTH = "pair_style lj/charmm/coul/charmm 2.7 3.9"
+STRONGER = [("0.1553", "0.156853")]
 NO_DISPERSION = "pair_coeff 2 2 0.0 1.0\npair_coeff 1 2 0.0 1.0\n"
 
 
@@ -28,9 +28,7 @@ class Box:
     data: Path
 
     def run(self, *decks, ranks=1):
-        result = self.lmp.run(one_after_the_other(decks), ranks=ranks)
-        assert result.returncode == 0, result.output
-        return result
+        return self.lmp.succeed(one_after_the_other(decks), ranks=ranks)
 
     def deck(self, name, fix, group="all", dt=0.01, steps=1000, replace=(), **settings):
         text = water(self.data, fix, dt=dt, steps=steps, dump=name, **settings)
@@ -63,20 +61,22 @@ def box(lmp_tree):
 
 # --- forces -----------------------------------------------------------------------------------
 
-WALLS = "zlo -1.5 {e} 2.5 7.0 zhi 11.4 {e} 2.5 7.0"
+
+def walls(style, strength, length="2.5"):
+    sides = (f"{side} {strength} {length} 7.0" for side in ("zlo -1.5", "zhi 11.4"))
+    return f"fix w all wall/{style} {' '.join(sides)}", []
+
+
 # what a strength s of 1 makes of the deck: commands, and replacements in it
 FORCES = {
     "pair": lambda s: ("", [("0.1553", f"{0.1553 * s}")]),
     "gravity": lambda s: (f"fix g all gravity {0.05 * s} vector 0.3 0.2 -1", []),
     "efield": lambda s: (f"fix e all efield {0.5 * s} {-0.8 * s} 0.3", []),
     "addforce": lambda s: (f"fix a all addforce {s} {0.5 * s} -0.3", []),
-    "wall/lj93": lambda s: ("fix w all wall/lj93 " + WALLS.format(e=2 * s), []),
-    "wall/lj126": lambda s: ("fix w all wall/lj126 " + WALLS.format(e=2 * s), []),
-    "wall/harmonic": lambda s: ("fix w all wall/harmonic " + WALLS.format(e=2 * s), []),
-    "wall/morse": lambda s: (
-        f"fix w all wall/morse zlo -1.5 {2 * s} 1.2 2.5 7.0 zhi 11.4 {2 * s} 1.2 2.5 7.0",
-        [],
-    ),
+    "wall/lj93": lambda s: walls("lj93", 2 * s),
+    "wall/lj126": lambda s: walls("lj126", 2 * s),
+    "wall/harmonic": lambda s: walls("harmonic", 2 * s),
+    "wall/morse": lambda s: walls("morse", 2 * s, "1.2 2.5"),
     "wall/region": lambda s: (
         "region inside sphere 5 5 5 11.0\n"
         f"fix w all wall/region inside harmonic {2 * s} 0.0 8.0",
@@ -109,12 +109,10 @@ def test_every_force_counts(box, kind, ranks):
             replace = [*replace, ("read_data", "boundary p p f\nread_data")]
         return box.deck(name, fix, before=before, replace=replace)
 
-    second = "gear/quat molecule formulation second"
     box.run(
         deck("rigid", RIGID),
-        deck("first", "gear/quat molecule formulation first"),
-        deck("second", second),
-        deck("stronger", second, 1.01),
+        *(deck(f, OURS + f) for f in FORMULATIONS),
+        deck("stronger", OURS + "second", 1.01),
         ranks=ranks,
     )
     for formulation in FORMULATIONS:
@@ -123,7 +121,7 @@ def test_every_force_counts(box, kind, ranks):
 
 
 FTM2V = 1 / 48.88821291**2  # kcal/mol/Angstrom/(g/mol) in Angstrom/fs^2
-MASS = np.tile([15.9994, 1.008, 1.008], N**3)
+MASS = np.tile(WATER_MASSES, N**3)
 DRAG = {  # rate in 1/fs, and how it is said
     "langevin": (1 / 30, "fix d all langevin 0 0 30 4711"),
     "viscous": (40 * FTM2V, f"fix d all viscous {40 * MASS[0]} scale 2 {MASS[1] / MASS[0]}"),
@@ -135,8 +133,7 @@ DRAG = {  # rate in 1/fs, and how it is said
 def test_a_drag_on_every_site_stops_the_whole(box, formulation, kind):
     """In proportion to masses: forces among the sites drop out, momentum falls as an exponential."""
     rate, drag = DRAG[kind]
-    fix = f"gear/quat molecule formulation {formulation}"
-    box.run(box.deck("end", fix, dt=0.1, steps=300, before=drag))
+    box.run(box.deck("end", OURS + formulation, dt=0.1, steps=300, before=drag))
     before, after = MASS @ box.start(), MASS @ box.end("end")[:, 4:7]
     exact = before * np.exp(-rate * 30.0)
     assert after == pytest.approx(exact, rel=1e-5)
@@ -148,8 +145,8 @@ def test_a_drag_on_every_site_stops_the_whole(box, formulation, kind):
 def test_what_pulls_the_whole_is_its_momentum(box, formulation, ranks):
     """Gravity and a constant force on the sites of some bodies: no step is too long for that sum."""
     pull = "fix g all gravity 0.5 vector 0 0 -1\nfix a bodies addforce 0.1 -0.2 0.3"
-    fix = f"gear/quat molecule formulation {formulation}"
-    box.run(box.deck("end", fix, dt=1.0, steps=100, before=BODIES + pull), ranks=ranks)
+    deck = box.deck("end", OURS + formulation, dt=1.0, steps=100, before=BODIES + pull)
+    box.run(deck, ranks=ranks)
     gained = MASS @ box.end("end")[:, 4:7] - MASS @ box.start()
     force = 14 * 3 * FTM2V * np.array([0.1, -0.2, 0.3])
     exact = 100.0 * (force + [0, 0, -0.5 * FTM2V * MASS.sum()])
@@ -201,7 +198,6 @@ def solution(request, box):
     if request.param == "flexible":
         box.data = with_bonds(box.data)
     box.before = SOLVENT[request.param] + "\nfix others others nve\n"
-    box.solvent = request.param
     return box
 
 
@@ -209,14 +205,12 @@ def solution(request, box):
 def test_bodies_and_solvent_move_each_other(solution, ranks):
     """At a tiny step as with fix rigid/nve/small; without the forces between them otherwise."""
     apart = "neigh_modify exclude group bodies others\n"
-    second = "gear/quat molecule formulation second"
     common = dict(group="bodies", before=solution.before)
     solution.run(
         solution.deck("rigid", RIGID, **common),
-        solution.deck("first", "gear/quat molecule formulation first", **common),
-        solution.deck("second", second, **common),
-        solution.deck("apart", second, group="bodies", before=solution.before + apart),
-        solution.deck("stronger", second, replace=[("0.1553", "0.156853")], **common),
+        *(solution.deck(f, OURS + f, **common) for f in FORMULATIONS),
+        solution.deck("apart", OURS + "second", "bodies", before=solution.before + apart),
+        solution.deck("stronger", OURS + "second", replace=STRONGER, **common),
         ranks=ranks,
     )
     bodies = solution.end("rigid")[:, 0] <= 3 * 14
@@ -231,7 +225,7 @@ def test_bodies_and_solvent_move_each_other(solution, ranks):
 def test_respa_with_forces_of_both_levels(box, formulation):
     """A bond pulls a body on one level, all pairs on the other: their sum moves it."""
     box.data = with_bonds(box.data)
-    fix = f"gear/quat molecule formulation {formulation}"
+    fix = OURS + formulation
     before = SOLVENT["flexible"] + "\nfix others others nve\n"
     common = dict(group="bodies", dt=0.2, steps=200)
     softer = [("bond_coeff 2 20.0", "bond_coeff 2 19.8")]
@@ -249,30 +243,20 @@ def test_respa_with_forces_of_both_levels(box, formulation):
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_momentum_and_energy_of_a_solution(solution, formulation):
     """What bodies lose the solvent gains: by the energy of all, and by the momentum of all."""
-    fix = f"gear/quat molecule formulation {formulation}"
     # nothing is cut off: forces are the derivatives of the energy everywhere
     room = "change_box all x delta -9 9 y delta -9 9 z delta -9 9 units box\n"
     whole = [
         ("read_data", "boundary f f f\nread_data"),
         (SMOOTH, "pair_style lj/cut/coul/cut 90.0"),
     ]
-    decks = {
-        dt: solution.deck(
-            f"dt{dt}",
-            fix,
-            "bodies",
-            dt,
-            round(50 / dt),
-            whole,
-            before=room + solution.before,
-            thermo=round(5 / dt),
-        )
-        for dt in (0.2, 0.1)
-    }
-    result = solution.run(*decks.values())
+    common = dict(group="bodies", replace=whole, before=room + solution.before)
+    result = solution.run(
+        solution.deck("coarse", OURS + formulation, dt=0.2, steps=250, thermo=25, **common),
+        solution.deck("fine", OURS + formulation, dt=0.1, steps=500, thermo=50, **common),
+    )
     drift, lost, wrong = [], [], []
-    for name, table in zip(decks, result.thermo):
-        frame = solution.end(f"dt{name}")
+    for name, table in zip(("coarse", "fine"), result.thermo):
+        frame = solution.end(name)
         atoms = frame[:, 0].astype(int) - 1
         gained = MASS[atoms, None] * (frame[:, 4:7] - solution.start()[atoms])
         exchanged = np.abs(gained[atoms < 3 * 14].sum(axis=0)).max()
@@ -295,15 +279,14 @@ def test_momentum_and_energy_of_a_solution(solution, formulation):
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_two_fixes_are_one(box, formulation, ranks):
     """The same motion, temperature and pressure; sums over bodies come in two parts."""
-    fix = f"gear/quat molecule formulation {formulation} start zero"
-    columns = [("temp pe ke", "temp pe ke f_move[1] f_move[2] ")]
+    fix = f"{OURS}{formulation} start zero"
+    sums, both = "f_move[1] f_move[2]", "f_move[1] f_move[2] f_rest[1] f_rest[2]"
     two = f"fix rest others {fix}\nfix_modify rest energy yes\n"
-    half = [("ke f_move[1]", "ke f_rest[1] f_rest[2] f_move[1]")]
     settings = dict(dt=0.2, steps=200, thermo=50)
     result = box.run(
-        box.deck("one", fix, replace=columns, **settings),
-        box.deck("two", fix, "bodies", before=BODIES + two, replace=columns + half, **settings),
-        box.deck("slower", fix, dt=0.198, steps=200, replace=columns),
+        box.deck("one", fix, columns=sums, **settings),
+        box.deck("two", fix, "bodies", before=BODIES + two, columns=both, **settings),
+        box.deck("slower", fix, dt=0.198, steps=200),
         ranks=ranks,
     )
     one, two = result.thermo[:2]
@@ -311,18 +294,18 @@ def test_two_fixes_are_one(box, formulation, ranks):
         assert two[column] == pytest.approx(one[column], rel=1e-11)
         assert two[column] != pytest.approx(1.01 * np.array(one[column]), rel=1e-11)
     for k in (1, 2):
-        both = np.add(two[f"f_move[{k}]"], two[f"f_rest[{k}]"])
-        assert both == pytest.approx(one[f"f_move[{k}]"], rel=1e-11)
+        whole = np.add(two[f"f_move[{k}]"], two[f"f_rest[{k}]"])
+        assert whole == pytest.approx(one[f"f_move[{k}]"], rel=1e-11)
         assert min(two[f"f_rest[{k}]"]) > 0
     assert box.difference("one", "two") < 1e-12
     assert box.difference("one", "slower") > 1e-4
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("beside", ["gear/quat molecule formulation first", RIGID])
+@pytest.mark.parametrize("beside", [OURS + "first", RIGID])
 def test_another_rigid_fix_beside(box, beside, ranks):
     """Of the other formulation, or fix rigid/nve/small: all as if rigid/nve/small moved all."""
-    fix = "gear/quat molecule formulation second"
+    fix = OURS + "second"
     one, two = (f"{BODIES}fix rest others {style}\n" for style in (RIGID, beside))
     # what another fix gear/quat moves is followed, for both start together; other fixes are not
     start = "start with known forces only (order 2), because fix rest"
@@ -332,7 +315,7 @@ def test_another_rigid_fix_beside(box, beside, ranks):
         box.deck("all", RIGID),
         box.deck("halves", RIGID, "bodies", before=one),
         box.deck("mixed", fix, "bodies", before=two),
-        box.deck("stronger", fix, "bodies", before=two, replace=[("0.1553", "0.156853")]),
+        box.deck("stronger", fix, "bodies", before=two, replace=STRONGER),
         ranks=ranks,
     )
     assert result.stdout.count(start) == 2
@@ -359,25 +342,19 @@ def test_langevin_keeps_bodies_at_its_temperature(lmp_tree):
         (NO_DISPERSION, ""),
         ("pair_coeff 1 1 0.1553 3.166\n", ""),
         ("every 1 delay 0 check yes", "every 200 delay 0 check no"),
-        ("ke etotal", "ke etotal {energies}"),
     ]
+    settings = dict(dt=dt, steps=steps, thermo=steps // rows, replace=free)
+    energies = "compute 1 all ke/rigid move\ncompute 2 all erotate/rigid move"
 
-    def deck(name, fix, energies, target=300.0):
-        kicks = f"velocity all create {target} 4712 loop geom\n"
-        kicks += f"fix l all langevin {target} {target} {damp} 4711"
-        replace = [(old, new.format(energies=energies)) for old, new in free]
-        return box.deck(
-            name, fix, dt=dt, steps=steps, thermo=steps // rows, before=kicks, replace=replace,
-            after="" if fix.startswith("gear") else
-            "compute 1 all ke/rigid move\ncompute 2 all erotate/rigid move",
-        )  # fmt: skip
+    def kicks(target):
+        langevin = f"fix l all langevin {target} {target} {damp} 4711"
+        return f"velocity all create {target} 4712 loop geom\n{langevin}"
 
-    fixes = {f: f"gear/quat molecule formulation {f}" for f in FORMULATIONS}
-    ours = "f_move[1] f_move[2]"
+    ours = dict(columns="f_move[1] f_move[2]", **settings)
     result = box.run(
-        deck("rigid", RIGID, "c_1 c_2"),
-        *(deck(name, fix, ours) for name, fix in fixes.items()),
-        deck("hotter", fixes["second"], ours, 303.0),
+        box.deck("rigid", RIGID, before=kicks(300), after=energies, columns="c_1 c_2", **settings),
+        *(box.deck(f, OURS + f, before=kicks(300), **ours) for f in FORMULATIONS),
+        box.deck("hotter", OURS + "second", before=kicks(303), **ours),
     )
 
     def temperature(table, energy):
@@ -387,7 +364,7 @@ def test_langevin_keeps_bodies_at_its_temperature(lmp_tree):
     # kinetic energies forget each other in damp / 2
     bar = 300.0 * np.sqrt(2.0 / (3 * n**3 * 0.75 * steps * dt / damp))
     for table in (first, second):
-        for energy in ours.split():
+        for energy in ("f_move[1]", "f_move[2]"):
             assert temperature(table, energy) == pytest.approx(300.0, abs=3 * bar)
     same = [
         temperature(t, "f_move[1]") / temperature(rigid, "c_1") for t in (first, second, hotter)

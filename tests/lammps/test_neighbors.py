@@ -5,67 +5,49 @@ import re
 import numpy as np
 import pytest
 from running import ROOT
-from scenes import last_frame, one_after_the_other, two_molecules, water, water_data
+from scenes import last_frame, one_after_the_other, placed, two_molecules, water, water_data
 
 SOURCE = ROOT / "src/GEARQUAT/gear_quat_neighbors.cpp"
 MANUAL = ROOT / "doc/src/fix_gear_quat.rst"
 
-COLUMNS = "step temp pe ke etotal econserve f_move[1] f_move[2]"
+# 27 molecules whose sites attract each other, smoothly cut off: the energy is kept
+FORCES = "pair_style lj/gromacs 3.0 4.0\npair_coeff * * 0.1 2.2\n"
 
 
-def molecules(
-    lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=200, thermo=None, run=None
-):
-    """27 molecules whose sites attract each other, smoothly cut off: the energy is kept."""
+def molecules(lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=200, **deck):
     data = water_data(lmp.folder / "data.water", shift=1.65)
-    deck = water(
-        data, fix=fix, dt=dt, steps=steps, after=after, thermo=thermo, run=run or "run {steps}"
-    )
-    deck = re.sub("pair_style.*", "pair_style lj/gromacs 3.0 4.0", deck)
-    deck = re.sub("pair_coeff 1 1.*", "pair_coeff * * 0.1 2.2", deck)
-    deck = re.sub("pair_coeff (2 2|1 2).*\n", "", deck)
-    if fix.startswith("gear/quat"):
-        deck = deck.replace(
-            "thermo_style custom step temp pe ke etotal press", f"thermo_style custom {COLUMNS}"
-        )
-    return deck
+    columns = "econserve f_move[1] f_move[2] " + ("f_move[9]" if "isokinetic" in fix else "")
+    deck = water(data, fix, dt=dt, steps=steps, after=after, columns=columns, **deck)
+    return re.sub("pair_style.*\n(pair_coeff.*\n)*", FORCES, deck)
 
 
 # --- the table -----------------------------------------------------------------------------------
 def rows_of_the_code():
-    """Pattern -> what happens, and whether whatever the group."""
-    found = re.findall(r'\{"(\^[^"]+)", NeighborRule::(\w+),\s*NeighborRule::(\w+),', SOURCE.read_text())
-    return {pattern: (what, where) for pattern, what, where in found}
+    """Pattern -> what happens."""
+    row = r'\{"(\^[^"]+)", NeighborRule::(\w+),'
+    return dict(re.findall(row, SOURCE.read_text()))
 
 
 def rows_of_the_manual():
-    """Styles of a row -> its second column."""
-    text = MANUAL.read_text()
-    table = text.split(".. neighbors: begin")[1].split(".. neighbors: end")[0]
+    """Style -> the second column of its row."""
+    table = MANUAL.read_text().split(".. neighbors: begin")[1].split(".. neighbors: end")[0]
     rows = re.findall(r"\* - (.*?)\n\s+- (.*?)(?=\n\s+\* -|\Z)", table, re.S)
-    return {
-        tuple(re.findall(r"\*([a-z_/]+)\*", styles)): " ".join(text.split())
-        for styles, text in rows
-    }
+    names = re.compile(r"\*([a-z_/]+)\*")
+    told = [(style, text) for styles, text in rows for style in names.findall(styles)]
+    assert len(dict(told)) == len(told)
+    return dict(told)
 
 
 def test_manual_and_code_have_the_same_table():
     words = {"TAKEN": "taken over", "WATCHED": "warned of", "REFUSED": "refused"}
-    told = {}
-    for styles, text in rows_of_the_manual().items():
-        for style in styles:
-            assert style not in told
-            told[style] = text
-    code = rows_of_the_code()
+    code, manual = rows_of_the_code(), rows_of_the_manual()
     assert len(code) > 25
-    for style, text in told.items():
-        first = next(
-            (what for pattern, (what, _) in code.items() if re.search(pattern, style)), None
-        )
-        assert first is not None, f"{style} is in the manual only"
-        assert text.startswith(words[first]), style
+    for style, text in manual.items():
+        rules = [rule for pattern, rule in code.items() if re.search(pattern, style)]
+        assert rules, f"{style} is in the manual only"
+        assert text.startswith(words[rules[0]]), style
     for pattern in code:
-        assert any(re.search(pattern, style) for style in told), f"{pattern} is not in the manual"
+        assert any(re.search(pattern, style) for style in manual), f"{pattern} is not in the manual"
 
 
 # --- taken over ----------------------------------------------------------------------------------
@@ -89,56 +71,57 @@ def test_thermostats_by_scaling_reach_the_bodies(lmp_wheel, formulation):
         molecules(lmp_wheel, f"fix bath all {words}", fix, dt=0.25, thermo=40, steps=800)
         for words in TAKEN.values()
     ]
-    result = lmp_wheel.run(one_after_the_other(decks))
-    assert result.returncode == 0, result.output
+    result = lmp_wheel.succeed(one_after_the_other(decks))
     for table in map(energies, result.thermo):
         bodies = table["f_move[1]"] + table["f_move[2]"]
         late = slice(len(bodies) // 2, None)
-        assert bodies[late] == pytest.approx(
-            table["KinEng"][late], rel=0.02
-        )  # but for the last scaling
+        # but for the last scaling
+        assert bodies[late] == pytest.approx(table["KinEng"][late], rel=0.02)
         assert 200 < table["Temp"][late].mean() < 420  # without: 1200
         taken = table["TotEng"][0] - table["TotEng"][-1]
         assert taken > 100
         assert abs(table["Econserve"] - table["Econserve"][0]).max() < 0.005 * taken
 
 
+MOMENTUM = """
+velocity all set 0.001 0.0 -0.002 sum yes
+fix still all momentum 10 linear 1 1 0 angular
+"""
+SHOW_MOMENTUM = """
+variable px equal vcm(all,x)
+variable pz equal vcm(all,z)
+thermo_style custom step v_px v_pz f_move[1][4]
+run 0
+"""
+
+
 def test_momentum_reaches_the_bodies(lmp_wheel):
     """And on several ranks the same; bodies that are taken over are what their atoms are."""
     ends = []
     for ranks in (1, 4):
-        velocity = "velocity all set 0.001 0.0 -0.002 sum yes"
-        after = f"{velocity}\nfix still all momentum 10 linear 1 1 0 angular"
-        deck = molecules(lmp_wheel, after, steps=35)
-        deck += "\nvariable px equal vcm(all,x)\nvariable pz equal vcm(all,z)\n"
-        deck += "thermo_style custom step v_px v_pz f_move[1][4]\nrun 0"
-        result = lmp_wheel.run(deck, ranks=ranks)
-        assert result.returncode == 0, result.output
-        end = {key: value[-1] for key, value in result.thermo[-1].items()}
-        assert abs(end["v_px"]) < 1e-15 and end["v_pz"] == pytest.approx(-0.002, abs=1e-4)
+        deck = molecules(lmp_wheel, MOMENTUM, steps=35, run="run 35\n" + SHOW_MOMENTUM)
+        end = lmp_wheel.succeed(deck, ranks=ranks).thermo[-1]
+        assert abs(end["v_px"][0]) < 1e-15 and end["v_pz"][0] == pytest.approx(-0.002, abs=1e-4)
         ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
     assert ends[1] == pytest.approx(ends[0], abs=1e-9)
 
 
 def test_heat_is_what_it_says(lmp_wheel):
     """One part in a thousand of the heat is seen."""
-    result = lmp_wheel.run(
-        molecules(lmp_wheel, "fix in all heat 1 0.1", dt=0.25, thermo=200, steps=400)
+    with_heat, plain = (
+        lmp_wheel.succeed(molecules(lmp_wheel, after, dt=0.25, steps=400)).thermo[0]["TotEng"]
+        for after in ("fix in all heat 1 0.1", "")
     )
-    assert result.returncode == 0, result.output
-    plain = lmp_wheel.run(molecules(lmp_wheel, "", dt=0.25, thermo=200, steps=400))
-    gained = result.thermo[0]["TotEng"][-1] - plain.thermo[0]["TotEng"][-1]
+    gained = with_heat[-1] - plain[-1]
     assert gained == pytest.approx(0.1 * 0.25 * 400, rel=1e-3)
 
 
 def test_the_last_scaling_of_a_run_is_not_lost_or_taken_twice(lmp_wheel):
     """run n + run n = run 2n, with a restart or pre no between."""
     bath = "fix bath all temp/berendsen 300 300 50"
-    fix = "gear/quat molecule report no"
     ends = []
     for run in ("run 40", "run 20\nrun 20", "run 20\nrun 20 pre no post no"):
-        result = lmp_wheel.run(molecules(lmp_wheel, bath, fix, steps=40, run=run))
-        assert result.returncode == 0, result.output
+        result = lmp_wheel.succeed(molecules(lmp_wheel, bath, steps=40, run=run))
         assert "anew" not in result.output and "WARNING: Fix" not in result.output
         ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
     for end in ends[1:]:
@@ -148,12 +131,8 @@ def test_the_last_scaling_of_a_run_is_not_lost_or_taken_twice(lmp_wheel):
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_a_scaling_that_tears_bodies_ends_the_run(lmp_wheel, ranks):
     group = "group oxygen type 1\nfix bath oxygen temp/rescale 1 300 300 1 1.0"
-    result = lmp_wheel.run(molecules(lmp_wheel, group, steps=20), ranks=ranks)
-    assert result.returncode != 0
-    assert (
-        "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 are not"
-        in result.errors[0]
-    )
+    message = "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 are not"
+    result = lmp_wheel.refuse(molecules(lmp_wheel, group, steps=20), message, ranks=ranks)
     assert len(set(result.errors)) == 1
 
 
@@ -174,69 +153,57 @@ NEEDS = "region half block 0 5 INF INF INF INF\n"
 @pytest.mark.parametrize("words", REFUSED)
 def test_refused_before_step_0(lmp_wheel, words):
     after = f"{NEEDS}fix other all {words}"
-    result = lmp_wheel.run(molecules(lmp_wheel, after, steps=5), ranks=4)
-    assert result.returncode != 0 and not result.thermo, result.output
-    assert len(set(result.errors)) == 1
-    assert REFUSED[words] in " ".join(result.output.split())
+    result = lmp_wheel.refuse(molecules(lmp_wheel, after, steps=5), REFUSED[words], ranks=4)
+    assert not result.thermo and len(set(result.errors)) == 1
     assert words.split()[0] in result.errors[0]
 
 
 def test_a_group_without_bodies_is_not_refused(lmp_wheel):
-    decks = []
-    for words in REFUSED:
-        if "recenter" in words or "gjf" in words:
-            continue
-        after = f"{NEEDS}group free id 1:3\ngroup bound subtract all free\nfix nve free nve\nfix other free {words}"
-        deck = molecules(lmp_wheel, after, steps=1).replace(
-            "fix move all", "group some id 4:81\nfix move some"
-        )
-        decks.append(deck)
-    result = lmp_wheel.run(one_after_the_other(decks))
+    groups = "group free id 1:3\ngroup bound subtract all free\nfix nve free nve\n"
+    decks = [
+        molecules(lmp_wheel, f"{NEEDS}{groups}fix other free {words}", steps=1)
+        for words in REFUSED
+        if "recenter" not in words and "gjf" not in words
+    ]
+    deck = one_after_the_other(decks).replace("fix move all", "group some id 4:81\nfix move some")
+    result = lmp_wheel.run(deck)
     assert "Fix gear/quat" not in " ".join(result.errors), result.output
 
 
-def test_constraints_on_atoms_of_bodies(lmp_tree):
-    """fix shake beside bodies is right, on their own atoms it is refused."""
-    # two diatomics with bonds, one of them a body
-    deck = """
-units lj
-atom_style molecular
-atom_modify map array
-region box block -5 5 -5 5 -5 5
-create_box 1 box bond/types 1 extra/bond/per/atom 1 extra/special/per/atom 2
-create_atoms 1 single 0.0 0.0 0.0
-create_atoms 1 single 1.0 0.0 0.0
-create_atoms 1 single 0.0 2.0 0.0
-create_atoms 1 single 1.0 2.0 0.0
-mass 1 1.0
-set atom 1*2 mol 1
-set atom 3*4 mol 2
+BONDS = """
 bond_style harmonic
 bond_coeff 1 100.0 1.0
-pair_style zero 2.0
-pair_coeff * *
 create_bonds single/bond 1 1 2
 create_bonds single/bond 1 3 4
 group body id 1 2
 group free id 3 4
-fix move body gear/quat molecule report no
-{shake}
-fix nve free nve
-run 1
 """
-    right = lmp_tree.run(deck.format(shake="fix hold free shake 1e-6 20 0 b 1"))
-    assert right.returncode == 0, right.output
-    wrong = lmp_tree.run(deck.format(shake="fix hold all shake 1e-6 20 0 b 1"))
-    assert "take the bonds and angles of bodies out of it" in wrong.errors[0]
+
+
+def test_constraints_on_atoms_of_bodies(lmp_tree):
+    """fix shake beside bodies is right, on their own atoms it is refused."""
+    diatomics = [[(0, 0, 0), (1, 0, 0)], [(0, 2, 0), (1, 2, 0)]]
+    room = "bond/types 1 extra/bond/per/atom 1 extra/special/per/atom 2"
+    beside, on_them = (
+        placed(
+            diatomics,
+            group="body",
+            room=room,
+            before=BONDS,
+            after=f"fix hold {group} shake 1e-6 20 0 b 1\nfix nve free nve",
+            steps=1,
+        )
+        for group in ("free", "all")
+    )
+    lmp_tree.succeed(beside)
+    lmp_tree.refuse(on_them, "take the bonds and angles of bodies out of it")
 
 
 def test_isokinetic_and_a_thermostat(lmp_wheel):
     fix = "gear/quat molecule report no formulation first isokinetic total"
-    result = lmp_wheel.run(molecules(lmp_wheel, "fix bath all temp/csvr 300 300 100 4711", fix))
-    assert (
-        "isokinetic keeps the kinetic energy, which fix bath (temp/csvr) changes"
-        in result.errors[0]
-    )
+    deck = molecules(lmp_wheel, "fix bath all temp/csvr 300 300 100 4711", fix)
+    message = "isokinetic keeps the kinetic energy, which fix bath (temp/csvr) changes"
+    lmp_wheel.refuse(deck, message)
 
 
 @pytest.mark.parametrize("mode", ["total", "separate"])
@@ -247,10 +214,7 @@ def test_isokinetic_and_momentum(lmp_wheel, mode):
     for still in ("", "\nfix still all momentum 20 linear 1 1 1"):
         after = f"velocity all zero linear\nvelocity all set 1e-9 0 0 sum yes{still}"
         deck = molecules(lmp_wheel, after, fix, dt=0.125, steps=80, thermo=10)
-        deck = deck.replace("econserve", "econserve f_move[9]")
-        result = lmp_wheel.run(deck)
-        assert result.returncode == 0, result.output
-        table = energies(result.thermo[0])
+        table = energies(lmp_wheel.succeed(deck).thermo[0])
         sums.append(table["TotEng"] + table["f_move[9]"])
         ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
     assert abs(sums[1] - sums[0]).max() < 1e-8 * abs(sums[0]).max()
@@ -261,44 +225,36 @@ def test_isokinetic_and_momentum(lmp_wheel, mode):
 def test_reflecting_walls(lmp):
     """A warning before the run, and the end of it in the step that moves an atom of a body."""
     fix = "fix wall all wall/reflect xlo -9.0 xhi {}\nvelocity all set 1.0 0 0\nrun {}"
-    far = lmp.run(two_molecules(after=fix.format(9.0, 50), boundary="f p p"))
-    assert far.returncode == 0, far.output
-    assert "fix wall (wall/reflect) moves single atoms" in " ".join(far.output.split())
-    near = lmp.run(two_molecules(after=fix.format(6.2, 50), boundary="f p p"), ranks=2)
-    assert near.returncode != 0
-    assert "fix wall (wall/reflect) has moved atom 5 of body 2 in step" in near.errors[0]
+    far = lmp.succeed(two_molecules(after=fix.format(9.0, 50), boundary="f p p"))
+    assert "fix wall (wall/reflect) moves single atoms" in far.words
+    near = two_molecules(after=fix.format(6.2, 50), boundary="f p p")
+    lmp.refuse(near, "fix wall (wall/reflect) has moved atom 5 of body 2 in step", ranks=2)
 
 
 def test_a_change_that_no_table_knows_is_told(lmp_wheel):
     """Velocities changed behind the fix, by a command before a run that prepares nothing."""
     after = "run 5\nvelocity all set 1.0 2.0 3.0\nrun 5 pre no"
-    result = lmp_wheel.run(two_molecules(after=after))
-    assert result.returncode == 0, result.output
-    words = " ".join(result.output.split())
-    assert "the velocity of atom 1 of body 1 was changed before step 6 by something else" in words
-    quiet = lmp_wheel.run(two_molecules(after="fix t all langevin 1 1 1 4711\nrun 5\nrun 5 pre no"))
-    assert "something else" not in quiet.output and quiet.returncode == 0
+    told = "the velocity of atom 1 of body 1 was changed before step 6 by something else"
+    assert told in lmp_wheel.succeed(two_molecules(after=after)).words
+    quiet = two_molecules(after="fix t all langevin 1 1 1 4711\nrun 5\nrun 5 pre no")
+    assert "something else" not in lmp_wheel.succeed(quiet).output
 
 
-def test_gravity_that_is_disabled(lmp_wheel):
+@pytest.mark.parametrize("words, told", [("", False), (" disable", True)])
+def test_gravity_that_is_disabled(lmp_wheel, words, told):
     """As rigid/small wants it: bodies would float."""
     warning = "fix pull (gravity) exerts no force on bodies; if it has the keyword disable"
-    for words, told in (("", False), (" disable", True)):
-        after = f"fix pull all gravity 1.0 vector 0 0 -1{words}\nrun 3"
-        result = lmp_wheel.run(two_molecules(after=after))
-        assert result.returncode == 0, result.output
-        assert (warning in " ".join(result.output.split())) == told
+    after = f"fix pull all gravity 1.0 vector 0 0 -1{words}\nrun 3"
+    assert (warning in lmp_wheel.succeed(two_molecules(after=after)).words) == told
 
 
-def test_gravity_on_masses_that_are_not_the_bodies(lmp_tree):
-    (lmp_tree.folder / "bodies").write_text("1\n1 {} 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0\n")
-    text = (lmp_tree.folder / "bodies").read_text()
-    for mass, told in ((3.0, False), (3.1, True)):
-        (lmp_tree.folder / "bodies").write_text(text.format(mass))
-        after = "fix pull all gravity 1.0 vector 0 0 -1\nrun 1"
-        result = lmp_tree.run(two_molecules("molecule infile bodies", after=after))
-        assert result.returncode == 0, result.output
-        assert ("pulls at the masses of atoms" in result.output) == told
+@pytest.mark.parametrize("mass, told", [(3.0, False), (3.1, True)])
+def test_gravity_on_masses_that_are_not_the_bodies(lmp_tree, mass, told):
+    line = f"1\n1 {mass} 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0\n"
+    (lmp_tree.folder / "bodies").write_text(line)
+    after = "fix pull all gravity 1.0 vector 0 0 -1\nrun 1"
+    result = lmp_tree.succeed(two_molecules("molecule infile bodies", after=after))
+    assert ("pulls at the masses of atoms" in result.output) == told
 
 
 SRD = """
@@ -341,21 +297,16 @@ run 3000
 
 def test_few_values_suit_srd(lmp_wheel):
     """Collisions are forces of a single step: a long history makes them heat, a short one does not."""
-    places = [(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]
     lines = []
-    for n, (x, y) in enumerate(places):
+    for n, (x, y) in enumerate([(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]):
         lines += [f"create_atoms 1 single {x} {y} 0", f"create_atoms 1 single {x + 1} {y} 0"]
         lines.append(f"set atom {2 * n + 1}*{2 * n + 2} mol {n + 1} diameter 1.0")
-    fixes = [
-        "gear/quat molecule " + words for words in ("values 4", "formulation first values 3", "")
-    ]
+    fixes = [f"gear/quat molecule {w}" for w in ("values 4", "formulation first values 3", "")]
     fixes.append("rigid/small molecule")
     decks = [SRD.format(atoms="\n".join(lines), fix=fix) for fix in fixes]
-    result = lmp_wheel.run(one_after_the_other(decks))
-    assert result.returncode == 0, result.output
+    result = lmp_wheel.succeed(one_after_the_other(decks))
     second, first, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
     assert [second, first] == pytest.approx([rigid, rigid], rel=0.25)
     assert many > 2 * rigid  # the default, which the log warns of
-    words = " ".join(result.output.split())
     told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4"
-    assert words.count("are random, and") == 1 and told in words
+    assert result.words.count("are random, and") == 1 and told in result.words

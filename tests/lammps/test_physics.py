@@ -7,6 +7,7 @@ from scenes import (
     UNITS,
     frames,
     last_frame,
+    placed,
     two_molecules,
     water,
     water_data,
@@ -22,46 +23,13 @@ def data(lmp_tree):
 
 # --- exact motions ----------------------------------------------------------------------------
 
-FREE = """
-units lj
-atom_style molecular
-atom_modify map array sort 0 0.0
-dimension {dimension}
-boundary f f p
-region box block -50 50 -50 50 -0.5 0.5
-create_box 1 box
-{atoms}
-mass 1 1.0
-set group all mol 1
-pair_style zero 2.0
-pair_coeff * *
-{before}
-fix move all gear/quat molecule formulation {formulation}
-timestep {dt}
-thermo_style custom step ke pe f_move[1] f_move[2]
-thermo_modify norm no format float %.17g
-dump poses all custom {steps} free.dump id xu yu zu vx vy vz
-dump_modify poses sort id format float %.17g
-thermo {steps}
-run {steps}
-"""
 
-
-def moving(velocities):
-    return "\n".join(
-        f"set atom {i} vx {x:.17g} vy {y:.17g} vz {z:.17g}"
-        for i, (x, y, z) in enumerate(velocities, 1)
-    )
-
-
-def free(lmp, atoms, velocities, formulation, steps, dt, before="", dimension=3):
-    text = "\n".join(f"create_atoms 1 single {x} {y} {z}" for x, y, z in atoms)
-    text += "\n" + moving(velocities)
-    deck = FREE.format(
-        atoms=text, formulation=formulation, steps=steps, dt=dt, before=before, dimension=dimension
-    )
+def free(lmp, atoms, velocities, formulation, steps, dt, **settings):
+    """Positions and velocities of one body at the end, and the thermo table."""
+    fix = f"gear/quat molecule formulation {formulation}"
+    deck = placed([atoms], velocities, fix=fix, steps=steps, dt=dt, **settings)
     table = lmp.succeed(deck).thermo[0]
-    return last_frame(lmp.folder / "free.dump")[:, 1:], table
+    return last_frame(lmp.folder / "poses.dump")[:, 1:], table
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
@@ -69,7 +37,7 @@ def test_a_point_in_a_spring(lmp_tree, formulation):
     """One atom alone is a body without rotation; its motion is a sine."""
     spring = "fix s all spring/self 4.0"
     x, v = np.array([[0.1, 0.2, 0.0]]), np.array([[1.0, -0.5, 0.2]])
-    end, table = free(lmp_tree, x, v, formulation, 2000, 0.001, spring)
+    end, table = free(lmp_tree, x, v, formulation, 2000, 0.001, before=spring)
     exact = x + v * np.sin(2.0 * 2.0) / 2.0
     assert np.abs(end[:, :3] - exact).max() < 1e-11
     assert np.abs(end[:, :3] - exact * 1.01).max() > 1e-4
@@ -97,8 +65,9 @@ def test_a_linear_body_turns_about_two_axes(lmp_tree, formulation, sites):
 def test_two_dimensions_stay_two_dimensions(lmp_tree, formulation):
     atoms = np.array([(0, 0, 0), (1, 0.2, 0), (0.3, 1.1, 0), (-0.4, 0.6, 0)])
     velocities = [(0.1, 0, 0), (0, 0.4, 0), (-0.7, 0, 0), (0, -0.3, 0)]
-    flat = "fix flat all enforce2d\nfix s all spring/self 0.7"
-    end, _ = free(lmp_tree, atoms, velocities, formulation, 500, 0.01, flat, dimension=2)
+    flat = dict(dimension=2, boundary="f f p", box="-20 20 -20 20 -0.5 0.5")
+    flat["before"] = "fix flat all enforce2d\nfix s all spring/self 0.7"
+    end, _ = free(lmp_tree, atoms, velocities, formulation, 500, 0.01, **flat)
     assert (end[:, [2, 5]] == 0.0).all()
     assert np.abs(end[:, :2] - atoms[:, :2]).max() > 0.1
 
@@ -249,16 +218,11 @@ def body_file(path, x, v, image=(0, 0, 0)):
 
 
 def infile_run(lmp, fix, dt=0.01):
-    """Positions and velocities of the first molecule at time 1."""
-    after = f"""
-dump d all custom {round(1 / dt)} end.dump id xu yu zu vx vy vz
-dump_modify d sort id format float %.17g
-timestep {dt}
-run {round(1 / dt)}
-"""
-    given = moving(np.cross(OMEGA, SITES) + [0.1, 0.2, 0.3])
-    lmp.succeed(two_molecules("x", before=given, after=after).replace("gear/quat x", fix))
-    return last_frame(lmp.folder / "end.dump")[:3, 1:]
+    """Positions and velocities of the first of two molecules at time 1."""
+    given = np.cross(OMEGA, SITES) + [0.1, 0.2, 0.3]
+    box = dict(box="-10 10 -10 10 -10 10", boundary="p p p")
+    lmp.succeed(placed([SITES, SITES + 5.0], given, fix=fix, dt=dt, steps=round(1 / dt), **box))
+    return last_frame(lmp.folder / "poses.dump")[:3, 1:]
 
 
 @pytest.mark.parametrize("image", [(0, 0, 0), (1, -2, 3)])

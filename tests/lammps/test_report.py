@@ -9,6 +9,7 @@ from scenes import (
     FORMULATIONS,
     frames,
     last_frame,
+    placed,
     two_molecules,
     water,
     water_data,
@@ -89,41 +90,23 @@ SHAPES = {
 }
 
 
-BODIES = """
-units lj
-atom_style {style}
-atom_modify map array
-boundary f f f
-region box block -10 30 -10 10 -10 10
-create_box 1 box
-{atoms}
-{mass}
-pair_style lj/cut 3.0
-pair_coeff * * 1.0 0.2
-neigh_modify exclude molecule/intra all
-fix move all gear/quat {fix}
-{after}
-"""
-
-
-def bodies(*shapes, style="molecular", mass="mass 1 1.0", after="run 0", fix="molecule", apart=5):
+def bodies(*shapes, fix="molecule", apart=5, run="run 0", before="", **settings):
     """A deck with one body of each of the shapes along x, in a box that is not periodic."""
-    lines, count = [], 0
-    for k, shape in enumerate(shapes):
-        sites = np.array([site.split() for site in SHAPES[shape][0].split(",")], float)
-        lines += [f"create_atoms 1 single {x + apart * k} {y} {z}" for x, y, z in sites]
-        lines.append(f"set atom {count + 1}* mol {k + 1}")
-        count += len(sites)
-    return BODIES.format(style=style, atoms="\n".join(lines), mass=mass, fix=fix, after=after)
+    sites = [np.array([site.split() for site in SHAPES[s][0].split(",")], float) for s in shapes]
+    sites = [arms + [apart * k, 0, 0] for k, arms in enumerate(sites)]
+    before = "pair_style lj/cut 3.0\npair_coeff * * 1.0 0.2\n" + before
+    settings = dict(box="-10 30 -10 10 -10 10") | settings
+    return placed(sites, fix=f"gear/quat {fix}", before=before, run=run, **settings)
 
 
 KINDS = bodies("points", "linear", "asymmetric tops")
 TOP = bodies("symmetric tops")
-FLAT = bodies("linear").replace("boundary f f f", "dimension 2\nboundary f f p")
-FLAT = FLAT.replace("-10 10 -10 10\n", "-10 10 -0.5 0.5\n")
+PLANE = dict(dimension=2, boundary="f f p", box="-10 30 -10 10 -0.5 0.5")
+FLAT = bodies("linear", **PLANE)
 SIZES = "set atom * mass 1.0\nset atom * diameter 0.0\nset atom 2 diameter "
 POINTS, SPHERE = (
-    bodies("asymmetric tops", style="hybrid sphere molecular", mass=SIZES + d) for d in ("0", "0.5")
+    bodies("asymmetric tops", style="hybrid sphere molecular", masses=SIZES + diameter)
+    for diameter in ("0", "0.5")
 )
 QUIET = two_molecules(after="fix_modify move virial no\nfix drag all viscous 0.1\nrun 1")
 APART = "processors 2 1 1\n" + two_molecules(boundary="f f f")
@@ -133,7 +116,7 @@ EFFECTS = [
     # the middle of the three in a line and the point are at their centers
     (KINDS, 1, "torques of forces", "on 5 sites are off the center of mass"),
     (TOP, 1, "rotation", "on symmetric tops: 1"),
-    (TOP.replace("single 1.0", "single 1.01"), 1, "rotation", "on asymmetric tops: 1"),
+    (TOP.replace("single 1 ", "single 1.01 "), 1, "rotation", "on asymmetric tops: 1"),
     (FLAT, 1, "rotation", "on in a plane: 1"),
     (two_molecules(boundary="f p f"), 1, "images", "on periodic in y;*"),
     (two_molecules(boundary="f f f"), 1, "images", "off no direction is periodic"),
@@ -231,7 +214,7 @@ def test_pairs_beyond_the_list_are_not_counted(lmp):
     deck = bodies("points", "points", "points")
     deck = deck.replace("fix move all", "group few id 1\nfix move few")
     assert counted(report(lmp, deck)) == {}  # two fixed atoms, 5 apart
-    near = deck.replace("single 10.0 0.0 0.0", "single 6.0 0.0 0.0")
+    near = deck.replace("single 10 0 0", "single 6 0 0")
     assert counted(report(lmp, near))["among"] == (1, 1)
 
 
@@ -255,28 +238,27 @@ def test_atoms_that_no_body_uses(lmp):
 
 
 # --- what is left out changes nothing ------------------------------------------------------------
-MIXED = """
-velocity all create 1.0 4711 loop geom
-timestep 0.002
-dump poses all custom 50 mixed.dump id x y z vx vy vz
-dump_modify poses sort id format float %.17g
-run 50
-"""
-
-
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_points_among_tops_on_several_ranks(lmp_tree, formulation):
     """On four ranks bodies have ghosts or not, on one none: the same to rounding."""
     # points, rods and an asymmetric body that attract each other
     shapes = "points", "linear", "asymmetric tops", "points", "linear"
-    deck = bodies(*shapes, after=MIXED, fix=f"molecule formulation {formulation}", apart=4)
-    deck = deck.replace("-10 30", "-10 20")  # four ranks: a border in a rod
-    deck = deck.replace("lj/cut 3.0", "lj/cut 50.0").replace("1.0 0.2", "1.0 1.5")
+    deck = bodies(
+        *shapes,
+        fix=f"molecule formulation {formulation}",
+        apart=4,
+        box="-10 20 -10 10 -10 10",  # four ranks: a border in a rod
+        before="pair_style lj/cut 50.0\npair_coeff * * 1.0 1.5",
+        after="velocity all create 1.0 4711 loop geom",
+        dt=0.002,
+        steps=50,
+        run="run 50",
+    )
     ends = []
     for ranks in (1, 4):
         rows = effects(report(lmp_tree, "processors * 1 1\n" + deck, ranks=ranks))
         assert rows["ghost bodies"].split()[0] == ("on" if ranks > 1 else "off")
-        start, end = frames(lmp_tree.folder / "mixed.dump").values()
+        start, end = frames(lmp_tree.folder / "poses.dump").values()
         ends.append(end)
     assert ends[1] == pytest.approx(ends[0], abs=1e-12)
     assert abs(end - start)[:, 1:].max(axis=1).min() > 1e-3  # all of them
@@ -284,10 +266,9 @@ def test_points_among_tops_on_several_ranks(lmp_tree, formulation):
 
 def test_a_lone_site_is_a_point_to_the_last_bit(lmp_tree):
     """An atom alone stays where it is placed: no rounding of its center, whatever its mass."""
-    deck = bodies("points", after=MIXED).replace("velocity", "#")
-    deck = deck.replace("single 0.0 0.0 0.0", "single 0.1 0.3 0.7")
-    lmp_tree.succeed(deck.replace("mass 1 1.0", "mass 1 0.3"))
-    assert list(last_frame(lmp_tree.folder / "mixed.dump")[0, 1:4]) == [0.1, 0.3, 0.7]
+    deck = bodies("points", masses="mass * 0.3", steps=50, run="run 50")
+    lmp_tree.succeed(deck.replace("single 0 0 0", "single 0.1 0.3 0.7"))
+    assert list(last_frame(lmp_tree.folder / "poses.dump")[0, 1:4]) == [0.1, 0.3, 0.7]
 
 
 # --- what is worth it ----------------------------------------------------------------------------

@@ -17,8 +17,7 @@ class Halves:
         self.data = water_data(lmp.folder / "data.water", spacing=spacing)
 
     def frame(self, deck, dump, ranks):
-        result = self.lmp.run(deck, ranks=ranks)
-        assert result.returncode == 0, result.output
+        result = self.lmp.succeed(deck, ranks=ranks)
         return last_frame(self.lmp.folder / dump)[:, :7], result.output
 
     def write(self, fix="gear/quat molecule", ranks=1, before="", between=""):
@@ -27,10 +26,8 @@ class Halves:
         return self.frame(deck, "whole", ranks)[0]
 
     def read(self, fix="gear/quat molecule", ranks=1, before="", name="move", group="all"):
-        deck = restarted(
-            water(self.data, fix, dt=1.0, steps=STEPS, before=before, dump="rest"), "half"
-        )
-        deck = deck.replace("fix move all", f"fix {name} {group}")
+        deck = water(self.data, fix, dt=1.0, steps=STEPS, before=before, dump="rest")
+        deck = restarted(deck, "half").replace("fix move all", f"fix {name} {group}")
         return self.frame(deck.replace("fix_modify move", f"fix_modify {name}"), "rest", ranks)
 
 
@@ -104,9 +101,8 @@ def test_bodies_that_are_left_go_on(lmp_tree, style, gone, ranks):
     halves = Halves(lmp_tree, 8.0)
     mark = NUMBERED.format(set="set group all i_number v_number")
     whole = halves.write(f"gear/quat {style}", before=mark, between=GO.format(gone))
-    found, said = halves.read(
-        f"gear/quat {style}", ranks, NUMBERED.format(set="") + GO.format(gone)
-    )
+    before = NUMBERED.format(set="") + GO.format(gone)
+    found, said = halves.read(f"gear/quat {style}", ranks, before)
     assert WARNING not in said and START not in said
     close(found, whole)
 

@@ -7,8 +7,8 @@ files they go on, on as many ranks or on others.  Steps are long, so that a hist
 
 from itertools import product
 
-import numpy as np
 import pytest
+import scenes
 from running import EXAMPLES, make_lmp_tree
 from scenes import last_frame, one_after_the_other, restarted, water, water_data, whole_deck
 
@@ -74,8 +74,7 @@ def reading_decks(scene, before, after, **settings):
 
 def run_all(lmp, decks, ranks):
     decks = list(decks)
-    result = lmp.run(one_after_the_other(decks), ranks=ranks)
-    assert result.returncode == 0, result.output
+    result = lmp.succeed(one_after_the_other(decks), ranks=ranks)
     reading = sum("read_restart" in deck for deck in decks)
     lost = sum("fix other" in deck for deck in decks)
     assert result.stdout.count("Resetting peratom fix info") == reading - lost
@@ -97,10 +96,7 @@ def runs(request, tmp_path_factory):
 
 
 def difference(folder, one, other):
-    """Largest difference of positions and of velocities, relative to the largest of each."""
-    one, other = (last_frame(folder / f"{name}.end")[:, 1:] for name in (one, other))
-    parts = (slice(0, 3), slice(3, 6))
-    return max(np.abs((one - other)[:, k]).max() / np.abs(one[:, k]).max() for k in parts)
+    return scenes.difference(*(last_frame(folder / f"{name}.end") for name in (one, other)))
 
 
 def every_digit(folder, *names):

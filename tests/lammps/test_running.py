@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -24,21 +25,17 @@ run 0
 
 
 def processes_that_mention(text: str) -> list[str]:
-    found = []
-    for command in Path("/proc").glob("[0-9]*/cmdline"):
-        try:
-            words = command.read_text().replace("\0", " ")
-        except OSError:
-            continue
-        if text in words:
-            found.append(words)
-    return found
+    """Command lines, but for processes that end meanwhile."""
+    commands = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        with suppress(OSError):
+            commands.append(path.read_text().replace("\0", " "))
+    return [command for command in commands if text in command]
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_run_gives_its_thermo(lmp, ranks):
-    result = lmp.run(DECK, variables={"steps": 7}, ranks=ranks)
-    assert result.returncode == 0, result.output
+    result = lmp.succeed(DECK, {"steps": 7}, ranks=ranks)
     assert f"on {ranks} procs" in result.log
     assert [table["Step"] for table in result.thermo] == [[0, 7], [7]]
     assert result.thermo[0]["TotEng"] == pytest.approx([0.25, 0.25])
@@ -46,14 +43,16 @@ def test_a_run_gives_its_thermo(lmp, ranks):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_an_error_is_found_with_its_text(lmp, ranks):
-    result = lmp.run(
-        DECK.replace("pair_style zero", "pair_style nonsense"), {"steps": 1}, ranks=ranks
-    )
-    assert result.returncode != 0, result.output
-    assert any(
-        "Unrecognized pair style 'nonsense'" in error for error in result.errors
-    ), result.output
+def test_a_wrong_expectation_fails(lmp, ranks):
+    wrong = DECK.replace("pair_style zero", "pair_style nonsense")
+    result = lmp.refuse(wrong, "Unrecognized pair style 'nonsense'", ranks=ranks)
+    assert "Unrecognized pair style 'nonsense'" in result.errors[0]
+    with pytest.raises(AssertionError):
+        lmp.succeed(wrong, ranks=ranks)
+    with pytest.raises(AssertionError):
+        lmp.refuse(wrong, "another message", ranks=ranks)
+    with pytest.raises(AssertionError):
+        lmp.refuse(DECK, "", variables={"steps": 1}, ranks=ranks)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -2,73 +2,41 @@
 
 import numpy as np
 import pytest
-from scenes import last_frame, two_molecules, water, water_data
+from scenes import FORMULATIONS, last_frame, placed, two_molecules, water, water_data
 
-FORMULATIONS = ["first", "second"]
 FALLBACK = "start with known forces only (order 2), because"
 
 # A dumbbell and a triangle in a field that is smooth: harmonic springs, gravity, a wall.
-FIELD = """
-units lj
-atom_style molecular
-atom_modify map array sort 0 0.0
-boundary f f f
-region box block -10 10 -10 10 -10 10
-create_box 2 box
-create_atoms 1 single 0.0 0.0 0.0
-create_atoms 1 single 1.0 0.0 0.0
-create_atoms 2 single 0.0 1.2 0.1
-create_atoms 1 single 3.0 3.0 3.0
-create_atoms 2 single 4.0 3.2 3.1
-mass 1 1.0
-mass 2 2.0
-set atom 1*3 mol 1
-set atom 4*5 mol 2
-velocity all set 0.3 0.2 -0.4
-set atom 2 vz 0.5
-set atom 4 vy -0.7
+BODIES = [[(0, 0, 0), (1, 0, 0), (0, 1.2, 0.1)], [(3, 3, 3), (4, 3.2, 3.1)]]
+KINDS = [1, 1, 2, 1, 2]
+VELOCITIES = np.full((5, 3), [0.3, 0.2, -0.4])
+VELOCITIES[1, 2], VELOCITIES[3, 1] = 0.5, -0.7
+SMOOTH = """
 pair_style lj/cut 9.0
 pair_coeff * * 1.0 1.5
 pair_modify shift yes
-neighbor {skin} bin
-neigh_modify every 1 delay 0 check yes exclude molecule/intra all
-{before}
-fix move all gear/quat molecule {fix}
-{after}
-timestep {dt}
-thermo_style custom step pe ke etotal {columns}
-thermo_modify norm no format float %.17g
-thermo {every}
-dump poses all custom {steps} {dump} id x y z vx vy vz
-dump_modify poses sort id format float %.17g
-run {steps}
+neighbor {} bin
 """
 
 
-def field(
-    lmp, dump, steps, dt, fix="", before="", after="", skin=2.0, ranks=1, every=None, columns=""
-):
-    deck = FIELD.format(
-        dump=dump,
-        steps=steps,
-        dt=dt,
-        fix=fix,
-        before=before,
-        after=after,
-        skin=skin,
-        every=every or steps,
-        columns=columns,
-    )
-    result = lmp.run(deck, ranks=ranks)
-    assert result.returncode == 0, result.output
-    return result, last_frame(lmp.folder / dump)[:, 1:4]
+def field(lmp, steps, dt, words="", before="", skin=2.0, ranks=1, **settings):
+    """The result and the positions of the last step; settings: those of `placed`."""
+    settings = dict(box="-10 10 -10 10 -10 10", masses="mass 1 1.0\nmass 2 2.0") | settings
+    settings |= dict(steps=steps, dt=dt, before=SMOOTH.format(skin) + before)
+    fix = f"gear/quat molecule {words}"
+    result = lmp.succeed(placed(BODIES, VELOCITIES, KINDS, fix=fix, **settings), ranks=ranks)
+    return result, last_frame(lmp.folder / "poses.dump")[:, 1:4]
 
 
-def slope(lmp, fix, before="", after=""):
+def slope(run):
     """Order of the error of positions at t = 2, against a run with steps eight times smaller."""
-    runs = {n: field(lmp, f"n{n}", n, 2.0 / n, fix, before, after)[1] for n in (25, 50, 400)}
-    errors = [np.abs(runs[n] - runs[400]).max() for n in (25, 50)]
+    ends = {n: run(n, 2.0 / n)[1] for n in (25, 50, 400)}
+    errors = [np.abs(ends[n] - ends[400]).max() for n in (25, 50)]
     return np.log2(errors[0] / errors[1])
+
+
+def order(lmp, fix="", **settings):
+    return slope(lambda n, dt: field(lmp, n, dt, fix, **settings))
 
 
 EXTERNAL = {
@@ -86,17 +54,15 @@ EXTERNAL = {
 @pytest.mark.parametrize("place", ["before", "after"])
 def test_full_order_with_external_forces(lmp_tree, formulation, name, place):
     """Fixes defined before and after ours: the start knows both."""
-    order = slope(lmp_tree, f"formulation {formulation}", **{place: EXTERNAL[name]})
-    assert order > 4.5, order
+    assert order(lmp_tree, f"formulation {formulation}", **{place: EXTERNAL[name]}) > 4.5
 
 
-def test_order_without_external_forces(lmp_tree):
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_order_without_external_forces(lmp_tree, formulation):
     """Full with the default start, one with the paper's."""
-    for formulation in FORMULATIONS:
-        assert slope(lmp_tree, f"formulation {formulation}") > 4.5
-        assert slope(lmp_tree, f"formulation {formulation} start zero") == pytest.approx(
-            1.0, abs=0.3
-        )
+    fix = f"formulation {formulation}"
+    assert order(lmp_tree, fix) > 4.5
+    assert order(lmp_tree, f"{fix} start zero") == pytest.approx(1.0, abs=0.3)
 
 
 NOT_FOLLOWED = {
@@ -108,7 +74,7 @@ NOT_FOLLOWED = {
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("name", NOT_FOLLOWED)
 def test_what_cannot_be_followed_is_said(lmp_tree, name, ranks):
-    result, _ = field(lmp_tree, "d", 10, 0.01, after=NOT_FOLLOWED[name], ranks=ranks)
+    result, _ = field(lmp_tree, 10, 0.01, after=NOT_FOLLOWED[name], ranks=ranks)
     assert result.stdout.count(FALLBACK) == 1
     assert {"langevin": "fix l (langevin)", "time": "depends on time"}[name] in result.stdout
     assert ("use values 4 to 6 instead of 8" in result.stdout) == (name == "langevin")
@@ -116,19 +82,14 @@ def test_what_cannot_be_followed_is_said(lmp_tree, name, ranks):
 
 def test_flexible_neighbours_are_not_followed(lmp_tree):
     before = "group moving id 5\ngroup bodies id 1 2 3 4\nfix nve moving nve"
-    deck = FIELD.replace("fix move all", "fix move bodies")
-    text = deck.format(
-        dump="d", steps=10, dt=0.01, fix="", before=before, after="", skin=2.0, every=10, columns=""
-    )
-    result = lmp_tree.run(text)
-    assert result.returncode == 0, result.output
+    result, _ = field(lmp_tree, 10, 0.01, group="bodies", before=before)
     assert FALLBACK + " fix nve (nve) moves atoms" in result.stdout
 
 
 def test_a_start_with_known_forces_has_order_two(lmp_tree):
     """The fallback honours the order it names."""
     nothing = "variable tiny equal 1e-15*step\nfix a all addforce v_tiny 0.0 0.0"
-    assert 1.7 < slope(lmp_tree, "", after=nothing) < 3.5
+    assert 1.7 < order(lmp_tree, after=nothing) < 3.5
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
@@ -139,54 +100,50 @@ fix s all spring/self 2.0
 fix a all addforce 0.1 0.2 -0.3
 fix_modify s energy yes
 """
-    rows = {}
-    for start in ("bootstrap", "zero"):
-        fix = f"formulation {formulation} start {start}"
-        result, _ = field(
-            lmp_tree, "d", 10, 0.01, fix, after=after, every=1, columns="f_s f_a f_a[1]"
-        )
-        rows[start] = result.thermo[0]
+    settings = dict(after=after, thermo=1, columns="f_s f_a f_a[1]")
+    fixes = (f"formulation {formulation} start {start}" for start in ("bootstrap", "zero"))
+    results = [field(lmp_tree, 10, 0.01, fix, **settings)[0] for fix in fixes]
+    with_start, without = (result.thermo[0] for result in results)
     for column in ("PotEng", "KinEng", "TotEng", "f_s", "f_a", "f_a[1]"):
-        assert rows["bootstrap"][column][0] == rows["zero"][column][0]
-    # and the second thermo row differs: the check can fail
-    assert rows["bootstrap"]["PotEng"][2] != rows["zero"]["PotEng"][2]
+        assert with_start[column][0] == without[column][0]
+    assert with_start["PotEng"][2] != without["PotEng"][2]  # the check can fail
 
 
-def test_the_trajectory_after_the_start_is_that_without_observers(lmp_tree):
-    """A first run of no steps, thermo, dumps: nothing of it changes the start."""
-    _, plain = field(lmp_tree, "a", 50, 0.01)
-    _, watched = field(
-        lmp_tree, "b", 50, 0.01, after="run 0\ncompute p all pressure thermo_temp", every=1
-    )
+@pytest.mark.parametrize(
+    "settings",
+    [
+        dict(after="run 0\ncompute p all pressure thermo_temp", thermo=1),
+        dict(before="reset_timestep 1000000"),
+    ],
+    ids=["observers", "another time"],
+)
+def test_the_trajectory_after_the_start_is_the_same(lmp_tree, settings):
+    """A first run of no steps, thermo, dumps, the time: nothing of it changes the start."""
+    _, plain = field(lmp_tree, 50, 0.01)
+    _, watched = field(lmp_tree, 50, 0.01, **settings)
     assert (plain == watched).all()
 
 
 @pytest.mark.parametrize("skin", [0.5, 0.1, 0.02])
 def test_a_thin_skin_needs_nodes_close_together(lmp_tree, skin):
-    _, wide = field(lmp_tree, "wide", 20, 0.02)
-    result, thin = field(lmp_tree, "thin", 20, 0.02, skin=skin)
+    _, wide = field(lmp_tree, 20, 0.02)
+    result, thin = field(lmp_tree, 20, 0.02, skin=skin)
     assert FALLBACK not in result.stdout
     assert np.abs(thin - wide).max() < 1e-9
 
 
-def test_any_start_time(lmp_tree):
-    _, early = field(lmp_tree, "early", 50, 0.01)
-    _, late = field(lmp_tree, "late", 50, 0.01, before="reset_timestep 1000000")
-    assert (early == late).all()
-
-
-def test_time_reversal(lmp_tree):
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_time_reversal(lmp_tree, formulation):
     """There with h and back with -h: the end of the way back is its beginning."""
-    for formulation in FORMULATIONS:
-        fix = f"formulation {formulation}"
-        _, begin = field(lmp_tree, "begin", 1, 1e-9, fix)
-        back = (
-            "run 100\nunfix move\nfix move all gear/quat molecule "
-            + fix
-            + "\ntimestep -0.01\nrun 99"
-        )
-        _, end = field(lmp_tree, "end", 1, -0.01, fix, after="timestep 0.01\n" + back)
-        assert np.abs(end - begin).max() < 2e-7
+    fix = f"formulation {formulation}"
+    _, begin = field(lmp_tree, 1, 1e-9, fix)
+    again = f"unfix move\nfix move all gear/quat molecule {fix}"
+    back = f"timestep 0.01\nrun 100\n{again}\ntimestep -0.01\nrun 99"
+    _, end = field(lmp_tree, 1, -0.01, fix, after=back)
+    assert np.abs(end - begin).max() < 2e-7
+
+
+LONG = "lj/charmm/coul/long 2.7 3.9 4.2\npair_modify table 0\nkspace_style pppm 1e-6"
 
 
 @pytest.mark.parametrize("ranks", [1, 4])
@@ -195,14 +152,9 @@ def test_water_with_kspace(lmp_tree, ranks):
     data = water_data(lmp_tree.folder / "data.water")
     ends = []
     for n in (20, 40, 160):
-        deck = water(data, steps=n, dt=40.0 / n, dump=f"n{n}").replace(
-            "lj/charmm/coul/charmm 2.7 3.9",
-            "lj/charmm/coul/long 2.7 3.9 4.2\npair_modify table 0\nkspace_style pppm 1e-6",
-        )
-        result = lmp_tree.run(deck, ranks=ranks)
-        assert result.returncode == 0, result.output
-        assert FALLBACK not in result.stdout
-        ends.append(last_frame(lmp_tree.folder / f"n{n}")[:, 1:4])
+        deck = water(data, steps=n, dt=40.0 / n).replace("lj/charmm/coul/charmm 2.7 3.9", LONG)
+        assert FALLBACK not in lmp_tree.succeed(deck, ranks=ranks).stdout
+        ends.append(last_frame(lmp_tree.folder / "poses.dump")[:, 1:4])
     assert np.abs(ends[1] - ends[2]).max() < np.abs(ends[0] - ends[2]).max() / 2**3
 
 
@@ -225,14 +177,8 @@ run 1
 TWO = "group left molecule 1\ngroup right molecule 2\nfix other left gear/quat molecule {}\n"
 
 
-def two_fixes(lmp, dump, steps, dt, first, second, after="", ranks=1):
-    deck = FIELD.replace("fix move all", "fix move right").format(
-        dump=dump, steps=steps, dt=dt, fix=second, before=TWO.format(first), after=after, skin=2.0,
-        every=steps, columns="",
-    )
-    result = lmp.run(deck, ranks=ranks)
-    assert result.returncode == 0, result.output
-    return result, last_frame(lmp.folder / dump)[:, 1:4]
+def two_fixes(lmp, steps, dt, first="", second="", **settings):
+    return field(lmp, steps, dt, second, before=TWO.format(first), group="right", **settings)
 
 
 PAIRS = {
@@ -246,27 +192,28 @@ PAIRS = {
 def test_two_fixes_start_together(lmp_tree, name):
     """With full order, and where both are alike as one fix with all bodies does."""
     first, second, orders = PAIRS[name]
-    runs = {}
-    for n in (25, 50, 400):
-        result, runs[n] = two_fixes(lmp_tree, f"n{n}", n, 2.0 / n, first, second)
+
+    def run(n, dt):
+        result, end = two_fixes(lmp_tree, n, dt, first, second)
         assert FALLBACK not in result.stdout
         assert f"Fix gear/quat other and move: start of {orders} from" in result.stdout
-    errors = [np.abs(runs[n] - runs[400]).max() for n in (25, 50)]
-    assert np.log2(errors[0] / errors[1]) > 4.5
+        return result, end
+
+    assert slope(run) > 4.5
     if name == "alike":
-        _, one = field(lmp_tree, "one", 50, 0.04)
-        assert np.abs(one - runs[50]).max() < 1e-12
+        _, one = field(lmp_tree, 50, 0.04)
+        assert np.abs(one - run(50, 0.04)[1]).max() < 1e-12
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
     """Both begin anew, with full order; where forces cannot be followed the other one goes on."""
-    again = "run 10\nunfix move\nfix move right gear/quat molecule\n"
-    result, _ = two_fixes(lmp_tree, "d", 10, 0.02, "", "", "timestep 0.02\n" + again, ranks)
+    again = "timestep 0.02\nrun 10\nunfix move\nfix move right gear/quat molecule\n"
+    result, _ = two_fixes(lmp_tree, 10, 0.02, after=again, ranks=ranks)
     said = "Fix gear/quat other and move: start of order 9 from"
     assert result.stdout.count(said) == 2 and FALLBACK not in result.stdout
-    noise = "fix noise all langevin 0.1 0.1 10.0 4711\ntimestep 0.02\n"
-    result, _ = two_fixes(lmp_tree, "d", 10, 0.02, "values 5", "values 5", noise + again, ranks)
+    noisy = "fix noise all langevin 0.1 0.1 10.0 4711\n" + again
+    result, _ = two_fixes(lmp_tree, 10, 0.02, "values 5", "values 5", after=noisy, ranks=ranks)
     assert result.stdout.count(FALLBACK) == 3
     assert result.stdout.count(f"Fix gear/quat other: {FALLBACK}") == 1
 
@@ -274,13 +221,13 @@ def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
 def test_a_fix_that_goes(lmp_tree):
     """Its bodies stop, which the derivatives of the forces on the others do not know."""
     after = "timestep 0.02\nfix_modify move energy yes\nthermo 10\nrun 20\nunfix other\nrun 20\n"
-    result, _ = two_fixes(lmp_tree, "d", 10, 0.02, "", "", after)
+    result, _ = two_fixes(lmp_tree, 10, 0.02, after=after)
     assert "Fix gear/quat move: other fixes move atoms than in the last steps" in result.stdout
     assert result.stdout.count("start of order 9 from") == 2
 
 
 def test_tolerance_beside_another_fix(lmp_tree):
     """The first step is made shorter before either has begun it."""
-    result, _ = two_fixes(lmp_tree, "d", 10, 0.5, "", "tolerance 1e-9")
+    result, _ = two_fixes(lmp_tree, 10, 0.5, second="tolerance 1e-9")
     assert "first step" in result.stdout and "WARNING" not in result.output
     assert "start of order 9 and 11 from" in result.stdout

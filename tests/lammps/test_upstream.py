@@ -93,17 +93,12 @@ def test_a_wrong_format_is_noticed(tmp_path):
 
 
 # --- what is in the package ----------------------------------------------------------------------
-def named_files(text):
-    """Names in the list of the package's README."""
-    table = text.partition("What is where\n")[2]
-    return set(re.findall(r"^  (\w+)  ", table, re.M))
-
-
 def test_readme_names_every_file():
     """A header without a .cpp belongs to the kernel, which README names as a whole."""
     text = (PACKAGE / "README").read_text()
     assert "gear_quat_*.h, no .cpp" in text
-    assert named_files(text) == {path.stem for path in PACKAGE.glob("*.cpp")}
+    named = set(re.findall(r"^  (\w+)  ", text.partition("What is where\n")[2], re.M))
+    assert named == {path.stem for path in PACKAGE.glob("*.cpp")}
 
 
 def test_the_kernel_needs_the_standard_library_only():

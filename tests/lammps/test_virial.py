@@ -29,27 +29,21 @@ run {steps}
 )
 def test_shares_of_atoms_add_up(lmp_tree, ranks, style):
     """Atoms change their ranks within the steps of the outputs; r-RESPA allows no other step than one."""
-    variables = [f"variable whole{k} equal -c_whole[{k}]*vol" for k in PARTS]
-    columns = [f"v_whole{k} c_shares[{k}] c_diagonal[{k}]" for k in PARTS]
+    names = ("v_whole{}", "c_shares[{}]", "c_diagonal[{}]")
+    columns = [[name.format(k) for k in PARTS] for name in names]
     run = SHARES.format(
-        variables="\n".join(variables),
-        columns=" ".join(columns),
+        variables="\n".join(f"variable whole{k} equal -c_whole[{k}]*vol" for k in PARTS),
+        columns=" ".join(sum(columns, [])),
         style=style,
         steps=3 * (OUTPUTS - 1),
     )
     data = water_data(lmp_tree.folder / "data.water")
-    result = lmp_tree.run(water(data, dt=1.0, run=run), ranks=ranks)
-    assert result.returncode == 0, result.output
-    thermo = result.thermo[-1]
-    assert len(thermo["Step"]) == OUTPUTS
-    whole, stress, centroid = (
-        np.array([thermo[name.format(k)] for k in PARTS])
-        for name in ("v_whole{}", "c_shares[{}]", "c_diagonal[{}]")
-    )
+    thermo = lmp_tree.succeed(water(data, dt=1.0, run=run), ranks=ranks).thermo[-1]
+    whole, stress, centroid = np.array([[thermo[column] for column in c] for c in columns])
+    assert whole.shape == (len(PARTS), OUTPUTS)
     scale = np.abs(whole).max()
     for shares in (stress, centroid):
-        differ = np.abs(shares - whole).max(axis=0) > 1e-10 * scale
-        assert differ.sum() == 0
+        assert np.abs(shares - whole).max() < 1e-10 * scale
     assert (np.abs(1.01 * stress - whole).max(axis=0) > 1e-10 * scale).all()
 
 
@@ -66,8 +60,7 @@ run {steps}
 
 def flux(lmp, fix, dt, steps, ranks=1):
     data = water_data(lmp.folder / "data.water")
-    result = lmp.run(water(data, fix, dt=dt, run=FLUX.format(steps=steps)), ranks=ranks)
-    assert result.returncode == 0, result.output
+    result = lmp.succeed(water(data, fix, dt=dt, run=FLUX.format(steps=steps)), ranks=ranks)
     return np.array([result.thermo[-1][f"c_flux[{k}]"][-1] for k in PARTS])
 
 
