@@ -75,16 +75,10 @@ def ladder_table(results):
     rows = []
     for rung in plan.LADDER:
         effect = row_of(rung)
-        rows.append(
-            [
-                rung.name,
-                number(results.fix(rung.on)),
-                number(results.fix(rung.on, rung.base)) if rung.base else "",
-                number(results.fix(effect.on, effect.base)) if effect else "",
-                f"{results.nanoseconds(rung.on):.0f}",
-                f"{results.nanoseconds(rung.on, part=1):.0f}",
-            ]
-        )
+        more = number(results.fix(rung.on, rung.base)) if rung.base else ""
+        alone = number(results.fix(effect.on, effect.base)) if effect else ""
+        times = [f"{results.nanoseconds(rung.on, part=part):.0f}" for part in (0, 1)]
+        rows.append([rung.name, number(results.fix(rung.on)), more, alone, *times])
     header = ("rung", "instructions in the fix", "more than below", "the effect alone")
     return Table((*header, "ns in the fix", "ns in the pair style"), rows)
 
@@ -125,9 +119,8 @@ def panels(results):
 def find(results):
     """Finding of runs.Results."""
     idle = idle_measurements(results)
-    more = Measurement(
-        "largest relative deviation from additivity", apart(results), most=MOST_APART
-    )
+    what = "largest relative deviation from additivity"
+    more = Measurement(what, apart(results), most=MOST_APART)
     tables = {
         "effects": effects_table(results),
         "ladder": ladder_table(results),

@@ -15,7 +15,7 @@ from pathlib import Path
 from benchmarks.engine import LammpsError
 from .scenes import write_molecules
 
-INSTALL = "sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
+INSTALL = "install it by\n  sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
 HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
 #: what the fix does for output, before the first step, and once a step however many bodies there are
 FIX = re.compile(r"LAMMPS_NS::FixGearQuat::")
@@ -44,11 +44,8 @@ class Profile:
 
     def inclusive(self, pattern, by=re.compile("")):
         """With all they call, of functions that match and are called by one that matches ``by``."""
-        return sum(
-            count
-            for (caller, name), count in self.called.items()
-            if pattern.search(name) and by.search(caller)
-        )
+        called = self.called.items()
+        return sum(n for (caller, name), n in called if pattern.search(name) and by.search(caller))
 
     def of(self, pattern):
         """Own instructions of functions that match a pattern."""
@@ -76,9 +73,7 @@ def find_valgrind():
     """The program, or an error with the line that installs it."""
     program = shutil.which("valgrind")
     if not program:
-        raise LammpsError(
-            f"valgrind, which counts instructions, is missing; install it by\n  {INSTALL}"
-        )
+        raise LammpsError(f"valgrind, which counts instructions, is missing; {INSTALL}")
     return program
 
 

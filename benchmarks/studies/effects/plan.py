@@ -4,6 +4,7 @@ An effect that the fix learns is one more Effect here, and one more Rung if it b
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 from .scenes import Scene
 
@@ -13,19 +14,18 @@ POINTS = replace(MOVED, shape="point")
 LINEAR = replace(MOVED, shape="linear")
 CHARGED = replace(MOVED, forces="charged")
 EACH, CHARGED_EACH = replace(MOVED, each=True), replace(CHARGED, each=True)
+#: MOVED, and everything on the ladder from the virial on, with further settings
+moved, charged_each = partial(replace, MOVED), partial(replace, CHARGED_EACH)
 #: control of the error with all its work, but nothing that changes: the same steps are compared
 FIXED = "values 5"
 TOLERANCE = f"{FIXED} tolerance 1e-20 dtmin 0.0005 dtmax 0.0005"
 #: Gauss's principle needs the first formulation, and a step of its own
 FIRST = "formulation first"
 ISOKINETIC = f"{FIRST} isokinetic total"
+SET = "set group all"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
-    replace(
-        FULL,
-        style="hybrid sphere full",
-        before=f"set group all mass 12.0\nset group all diameter {diameter}",
-    )
+    replace(FULL, style="hybrid sphere full", before=f"{SET} mass 12.0\n{SET} diameter {diameter}")
     for diameter in (0.0, 0.5)
 )
 
@@ -88,31 +88,31 @@ EFFECTS = (
         EACH,
         own=r"::(tally_virial|v_tally|constraint_force|spread_loads)\(",
         off=MOVED,
-        never=replace(MOVED, after="fix_modify move virial no"),
+        never=moved(after="fix_modify move virial no"),
     ),
     Effect(
         "ghost bodies", None, MOVED, own=r"GearQuat::Bodies::(un)?pack_|FixGearQuat::(un)?pack_"
     ),
-    Effect("predicted velocities", replace(MOVED, after="fix reads all viscous 0.0"), MOVED),
+    Effect("predicted velocities", moved(after="fix reads all viscous 0.0"), MOVED),
     Effect(
         "changing step",
-        replace(MOVED, words=TOLERANCE),
-        replace(MOVED, words=FIXED),
+        moved(words=TOLERANCE),
+        moved(words=FIXED),
         own=r"GearQuat::Tolerance::|GearQuat::VariableOrder::",
     ),
     Effect(
         "masks",
-        replace(MOVED, words="force * on on off"),
+        moved(words="force * on on off"),
         MOVED,
         own=r"correct_bodies<true>|GearQuat::Bodies::acting",
     ),
     Effect(
         "thermostat",
-        replace(MOVED, words=ISOKINETIC),
-        replace(MOVED, words=FIRST),
+        moved(words=ISOKINETIC),
+        moved(words=FIRST),
         own=r"GearQuat::IsokineticConstraint::|GearQuat::Motion::correct_together",
     ),
-    Effect("compensated sums", replace(MOVED, words="compensate yes"), MOVED),
+    Effect("compensated sums", moved(words="compensate yes"), MOVED),
 )
 
 LADDER = (
@@ -128,14 +128,14 @@ LADDER = (
     ),
     Rung(
         "virial",
-        replace(CHARGED_EACH, words=TOLERANCE, columns="press"),
-        replace(CHARGED_EACH, words=TOLERANCE),
+        charged_each(words=TOLERANCE, columns="press"),
+        charged_each(words=TOLERANCE),
         "virial",
     ),
     Rung(
         "thermostat",
-        replace(CHARGED_EACH, words=ISOKINETIC, columns="press"),
-        replace(CHARGED_EACH, words=FIRST, columns="press"),
+        charged_each(words=ISOKINETIC, columns="press"),
+        charged_each(words=FIRST, columns="press"),
         "thermostat",
     ),
 )
@@ -143,8 +143,6 @@ LADDER = (
 
 def scenes():
     """Every scene once, in their order."""
-    every = [
-        scene for effect in EFFECTS for scene in (effect.on, effect.base, effect.off, effect.never)
-    ]
-    every += [scene for rung in LADDER for scene in (rung.on, rung.base)]
-    return list(dict.fromkeys(scene for scene in every if scene))
+    every = [(effect.on, effect.base, effect.off, effect.never) for effect in EFFECTS]
+    every += [(rung.on, rung.base) for rung in LADDER]
+    return list(dict.fromkeys(scene for row in every for scene in row if scene))

@@ -84,20 +84,19 @@ class Results:
 
 def time_scenes(lab, sizes):
     """Scene -> [(seconds per step in the fix, in the pair style), ...], all scenes in turn."""
-    folder, jobs = lab.out / "time", {}
+    folder, scenes, jobs = lab.out / "time", {}, {}
     folder.mkdir(parents=True, exist_ok=True)
     write_molecules(folder)
     for number, scene in enumerate(plan.scenes(), 1):
         path = folder / f"in.time{number}"
         path.write_text(scene.deck(sizes.timed, sizes.timed_steps), encoding="utf-8")
-        jobs[scene] = Job(path, {})
-    names = {f"time{number}": scene for number, scene in enumerate(jobs, 1)}
-    runs = lab.in_turn({name: jobs[scene] for name, scene in names.items()}, sizes.rounds)
+        scenes[f"time{number}"], jobs[f"time{number}"] = scene, Job(path, {})
+    runs = lab.in_turn(jobs, sizes.rounds)
 
     def per_step(run):
         return tuple(run.log.timers[-1][part] / sizes.timed_steps for part in ("Modify", "Pair"))
 
-    return {names[name]: [per_step(run) for run in of_scene] for name, of_scene in runs.items()}
+    return {scenes[name]: [per_step(run) for run in of_scene] for name, of_scene in runs.items()}
 
 
 _PAIRS = re.compile(r"^Total # of neighbors = (\d+)", re.MULTILINE)

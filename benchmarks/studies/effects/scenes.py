@@ -13,25 +13,27 @@ SPACING = 5.0
 
 _DECK = """\
 units metal
-atom_style {style}
+atom_style {scene.style}
 atom_modify map array sort 0 0.0
-boundary {boundary}
+boundary {scene.boundary}
 lattice sc {spacing}
 region box block 0 {side} 0 {side} 0 {side}
 create_box 1 box
-molecule body molecule.{shape}
+molecule body molecule.{scene.shape}
 lattice sc {spacing} origin {origin} {origin} {origin}
 create_atoms 0 box mol body 4711
 mass 1 12.0
-{before}
+{scene.before}
 velocity all create 300.0 4711 loop geom
 {forces}
 neigh_modify exclude molecule/intra all every 100000 delay 0 check no
 timestep 0.0005
-fix move all gear/quat molecule report no {words}
-{after}
-thermo_style custom step {columns}
+fix move all gear/quat molecule report no {scene.words}
+{scene.after}
+thermo_style custom step {scene.columns}
 thermo {every}
+run 1
+run {steps}
 """
 
 _FORCES = {
@@ -59,42 +61,28 @@ class Scene:
     each: bool = False
     crossing: bool = False
 
-    @property
-    def sites(self):
-        """Sites of a body."""
-        return len(SHAPES[self.shape])
-
     def deck(self, side, steps):
         """Script with side^3 bodies; its second run has ``steps`` steps, the first one the start."""
-        text = _DECK.format(
-            style=self.style,
-            boundary=self.boundary,
+        return _DECK.format(
+            scene=self,
             spacing=SPACING,
             side=side,
-            shape=self.shape,
             origin=0.0 if self.crossing else 0.4,
-            before=self.before,
             forces=_FORCES[self.forces],
-            words=self.words,
-            after=self.after,
-            columns=self.columns,
             every=1 if self.each else steps,
+            steps=steps,
         )
-        return text + f"run 1\nrun {steps}\n"
 
 
 def write_molecules(folder):
     """Templates that the decks read."""
     for shape, sites in SHAPES.items():
-        numbered = list(enumerate(sites, 1))
-        lines = [f"{shape} body", "", f"{len(sites)} atoms", "", "Coords", ""]
-        lines += [f"{k} {x} {y} {z}" for k, (x, y, z) in numbered]
-        lines += ["", "Types", "", *(f"{k} 1" for k, _ in numbered)]
-        lines += [
-            "",
-            "Charges",
-            "",
-            *(f"{k} {CHARGES[len(sites)][k - 1]}" for k, _ in numbered),
-            "",
-        ]
-        (folder / f"molecule.{shape}").write_text("\n".join(lines), encoding="utf-8")
+        sections = {
+            "Coords": [f"{x} {y} {z}" for x, y, z in sites],
+            "Types": [1] * len(sites),
+            "Charges": CHARGES[len(sites)],
+        }
+        lines = [f"{shape} body", "", f"{len(sites)} atoms"]
+        for name, values in sections.items():
+            lines += ["", name, "", *(f"{k} {value}" for k, value in enumerate(values, 1))]
+        (folder / f"molecule.{shape}").write_text("\n".join([*lines, ""]), encoding="utf-8")
