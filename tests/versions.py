@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from benchmarks.engine.page import markdown_table
 from benchmarks.engine.provenance import system
 from benchmarks.engine.publish import write_block
 
@@ -46,26 +47,20 @@ def cell(counts: tuple[int, int, int] | None) -> str:
     if counts is None:
         return ""
     passed, failed, skipped = counts
-    return (
-        f"{passed} passed"
-        + f", {failed} failed" * (failed > 0)
-        + f", {skipped} skipped" * (skipped > 0)
-    )
+    bad = f", {failed} failed" * bool(failed) + f", {skipped} skipped" * bool(skipped)
+    return f"{passed} passed{bad}"
 
 
-def table(rows: Path, versions: dict[str, str]) -> list[str]:
-    """Lines of Markdown."""
-    lines = [f"| LAMMPS | how | {' | '.join(PARTS.values())} |", "|---" * (2 + len(PARTS)) + "|"]
+def table(rows: Path, versions: dict[str, str]) -> str:
+    """In Markdown."""
+    lines = []
     for row, how in HOW.items():
         missing = rows / f"{row}.missing"
         if missing.exists():
-            lines.append(
-                f"| {missing.read_text().strip()} | could not be fetched |" + " |" * len(PARTS)
-            )
-            continue
-        cells = [cell(count(rows, row, part)) for part in PARTS]
-        lines.append(f"| {versions[row]} | {how} | {' | '.join(cells)} |")
-    return lines
+            lines.append([missing.read_text().strip(), "could not be fetched", *("" for _ in PARTS)])
+        else:
+            lines.append([versions[row], how, *(cell(count(rows, row, part)) for part in PARTS)])
+    return markdown_table(("LAMMPS", "how", *PARTS.values()), lines)
 
 
 def compiler() -> str:
@@ -81,8 +76,8 @@ def main() -> int:
     rows = arguments.rows
     present = [row for row in HOW if not (rows / f"{row}.missing").exists()]
     versions = {row: version_of(executable_of(row)) for row in present}
-    lines = table(rows, versions)
-    print("\n".join(lines), file=sys.stderr)
+    found = table(rows, versions)
+    print(found, file=sys.stderr)
     counts = [count(rows, row, part) or (0, 0, 0) for row in present for part in PARTS]
     total = [sum(column) for column in zip(*counts)]
     print(*total)  # passed failed skipped, for tests/run
@@ -91,8 +86,8 @@ def main() -> int:
             print("not published: not all tests passed", file=sys.stderr)
             return 1
         when = datetime.date.today().strftime("%d %b %Y")
-        block = [*lines, "", f"The same sources in each; on {system()}, {compiler()}, {when}."]
-        write_block(ROOT / "doc" / "install.md", COMMAND, "\n".join(block))
+        where = f"The same sources in each; on {system()}, {compiler()}, {when}."
+        write_block(ROOT / "doc" / "install.md", COMMAND, f"{found}\n\n{where}")
     return 0
 
 

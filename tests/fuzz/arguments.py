@@ -55,6 +55,9 @@ FILES = {
     "empty": "",
 }
 
+#: groups of bodies whose energies are measured before, a word of every refusal, errors that may follow
+ALONE, NAMED, PARDONED = {}, "ERROR", ()
+
 GROUPS = {"all": {1, 2, 3, 4, 5, 6}, "left": {1, 2, 3}, "right": {4, 5, 6}, "most": {1, 2, 3, 4}}
 GROUPS["nobody"] = set()
 APART = ("i_far", "v_wide", "v_huge")  # no integers, or too far apart to be numbered
@@ -145,8 +148,7 @@ def take_masks(words, bodies):
 
 def in_use(key, given, value=""):
     """Whether a keyword has a value, given or by default, or with an empty one any but none."""
-    default = TABLE[key].default if key in WORDS else ""
-    present = given.get(key, default)
+    present = given.get(key, TABLE[key].default if key in WORDS else "")
     return present == value if value else present not in ("", "none")
 
 
@@ -231,11 +233,8 @@ def valid(rng):
     given["formulation"] = choices["formulation"]
     given |= {key: "*" for key in MASKS if rng.random() < 0.2}
     given["bodystyle"] = words[0]
-    for key in [key for key in given if key in TABLE]:
-        if not agrees(key, given):  # it may have been what another one disagrees with
-            del given[key]
-    for key in [key for key in given if key in TABLE]:
-        if not agrees(key, given):
+    for key in 2 * [key for key in given if key in TABLE]:  # one may require what goes
+        if key in given and not agrees(key, given):
             del given[key]
     if rng.random() < 0.35:
         given["values"] = str(rng.randint(*bounds("values", given)))
@@ -265,6 +264,6 @@ def quoted(words):
 
 
 def judge(rng):
-    """An input: what LAMMPS is told, and whether it has to accept it."""
+    """An input: what LAMMPS is told, the file `bodies`, and whether it has to accept them."""
     words = make(rng)
-    return f"fix move all gear/quat {quoted(words)}", is_valid(words)
+    return f"fix move all gear/quat {quoted(words)}", FILES["bodies"], is_valid(words)

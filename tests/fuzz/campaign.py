@@ -50,15 +50,14 @@ def run_worker(kind, seed, count, folder):
     if done.returncode == 0:
         found = json.loads(done.stdout.splitlines()[-1])
         if UNDEFINED in done.stderr:
-            found["faults"].append({"input": f"{kind} {seed}", "fault": done.stderr[-3000:]})
+            found["faults"].append((f"{kind} {seed}", done.stderr[-3000:]))
         return found
     how = f"exit code {done.returncode}"
     if done.returncode < 0:
         number = signal.Signals(-done.returncode)
         how = "hangs" if number == signal.SIGALRM else f"crashes ({number.name})"
     text = last.read_text(encoding="utf-8", errors="replace")
-    fault = {"input": text, "fault": f"{how}: {done.stderr[-1000:]}"}
-    return {"counts": {"ended": 1}, "faults": [fault], "megabytes": 0.0}
+    return {"counts": {"ended": 1}, "faults": [(text, f"{how}: {done.stderr[-1000:]}")]}
 
 
 def run(kind, inputs, folder, seed=0):
@@ -67,7 +66,7 @@ def run(kind, inputs, folder, seed=0):
     for first in range(0, inputs, IN_A_PROCESS):
         found = run_worker(kind, seed + first, min(IN_A_PROCESS, inputs - first), folder)
         outcome.counts.update(found["counts"])
-        outcome.faults += [(fault["input"], fault["fault"]) for fault in found["faults"]]
-        outcome.megabytes = max(outcome.megabytes, found["megabytes"])
+        outcome.faults += found["faults"]
+        outcome.megabytes = max(outcome.megabytes, found.get("megabytes", 0.0))
     outcome.seconds = time.monotonic() - begin
     return outcome

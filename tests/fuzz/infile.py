@@ -20,6 +20,8 @@ ATOMS = {
     "1": np.array([[0, 0, 0], [1, 0, 0], [0, 1.2, 0.1]]),
     "2": np.array([[5, 5, 5], [6, 5, 5], [5, 6.2, 5.1]]),
 }
+ALONE = {"1": "left", "2": "right"}
+NAMED, PARDONED = "bod", ("blow-up", "values can follow")
 STYLES = ("molecule", "molecule formulation first", "group 2 left right")
 
 #: what a rounded tensor may be off by, and what no body has; between them either is right
@@ -52,6 +54,12 @@ def place_allowed(body, center):
     return False if nearest > 0.5 * BOX + 4.0 else UNSURE
 
 
+def tensor_of(words):
+    """Inertia (3, 3) of a line of 20 words."""
+    xx, yy, zz, xy, xz, yz = map(float, words[5:11])
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
 def body_allowed(words):
     """Whether a line of 20 words states a body, ternary."""
     numbers = [tokens.real(word) for word in words]
@@ -62,8 +70,7 @@ def body_allowed(words):
         return False
     if any(abs(flag) >= IMAGES for flag in whole[1:]) or min(numbers[5:8]) < 0.0:
         return False
-    xx, yy, zz, xy, xz, yz = numbers[5:11]
-    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    tensor = tensor_of(words)
     center = np.array(numbers[2:5]) + BOX * np.array(whole[1:])
     answers = [moments_allowed(tensor), place_allowed(words[0].lstrip("+0"), center)]
     if False in answers:
@@ -90,10 +97,8 @@ def is_valid(text):
     if tokens.integer(lines[0][0]) != len(bodies) or any(len(words) != 20 for words in bodies):
         return False
     answers = [body_allowed(words) for words in bodies]
-    if False in answers:
-        return False
-    ids = [tokens.integer(words[0]) for words in bodies]
-    if len(set(ids)) != len(ids):
+    ids = {tokens.integer(words[0]) for words in bodies}
+    if False in answers or len(ids) != len(bodies):
         return False
     return UNSURE if UNSURE in answers else True
 
@@ -107,11 +112,10 @@ def energies(text, others):
     stated = {words[0].lstrip("+0") for words in bodies}
     translation, rotation = sum((others[body] for body in ATOMS if body not in stated), np.zeros(2))
     for words in bodies:
-        mass, (xx, yy, zz, xy, xz, yz) = float(words[1]), map(float, words[5:11])
         velocity, momentum = np.array(words[11:14], float), np.array(words[14:17], float)
-        moments, axes = np.linalg.eigh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+        moments, axes = np.linalg.eigh(tensor_of(words))
         turns = moments > 1e-7 * moments.max()
-        translation += mass * velocity @ velocity / 2
+        translation += float(words[1]) * velocity @ velocity / 2
         rotation += ((axes.T @ momentum)[turns] ** 2 / moments[turns]).sum() / 2
     return np.array([translation, rotation])
 
@@ -130,11 +134,7 @@ def body_line(rng, body):
     image = [rng.choice((0, 0, 0, 1, -1)) for _ in range(3)]
     center = center - BOX * np.array(image)
     digits = rng.choice((4, 9, 17))
-    numbers = [
-        sum(masses),
-        *center,
-        *(tensor[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))),
-    ]
+    numbers = [sum(masses), *center, *np.diag(tensor), *tensor[np.triu_indices(3, 1)]]
     numbers += [rng.gauss(0, 1) for _ in range(6)]
     return [body, *(f"{number:.{digits}g}" for number in numbers), *map(str, image)]
 
@@ -156,15 +156,12 @@ def make(rng):
         text = rng.choice(("# comment\n", "\n\n", "\ufeff", "\r\n")) + text
     if rng.random() < 0.1:
         at = rng.randrange(len(text) + 1)
-        text = (
-            text[:at]
-            + rng.choice(("\0", "'", '"', "\\", "#", "\n", "\r", "\t", "\f", "\v", "\x1b", '"""'))
-            + text[at:]
-        )
+        alien = rng.choice((*"\0'\"\\#\n\r\t\f\v\x1b", '"""'))
+        text = text[:at] + alien + text[at:]
     return text
 
 
 def judge(rng):
-    """An input: the bodystyle, the file's text and whether it has to be accepted."""
+    """An input: what LAMMPS is told, the file `bodies`, and whether it has to be accepted."""
     text = make(rng)
-    return rng.choice(STYLES), text, is_valid(text)
+    return f"fix move all gear/quat {rng.choice(STYLES)} infile bodies", text, is_valid(text)
