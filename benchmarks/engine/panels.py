@@ -1,7 +1,6 @@
 """Pictures made of panels: a study says what is in them, and draw() draws them all alike."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import matplotlib
 
@@ -44,7 +43,7 @@ class Bars:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with ``curves``, or with Bars in their place.
+    """One pair of axes with ``curves``, a sequence, or with Bars in their place.
 
     ``log``: "x", "y" or "xy".  ``ticks``: words for x = 0, 1, 2, ...; ``xticks``: the values at which x
     is labeled.  ``xlim``, ``ylim``: ends of the axes.  ``lost``: (x, color) of runs that ended early,
@@ -54,7 +53,7 @@ class Panel:
     title: str
     xlabel: str
     ylabel: str
-    curves: tuple
+    curves: list
     log: str = "y"
     ticks: tuple = ()
     xticks: tuple = ()
@@ -70,13 +69,9 @@ def floor(values, least=1e-17):
 
 
 def _curve(axis, curve):
-    color = COLOUR.get(curve.color, curve.color)
-    look = {"linestyle": curve.line, "marker": curve.marker, "markersize": 3.5, "color": color}
-    look["label"] = curve.label
-    if curve.width is not None:
-        look["linewidth"] = curve.width
-    if curve.hollow:
-        look["markerfacecolor"] = "white"
+    look = {"color": COLOUR.get(curve.color, curve.color), "label": curve.label}
+    look |= {"linestyle": curve.line, "linewidth": curve.width, "marker": curve.marker}
+    look |= {"markersize": 3.5, "markerfacecolor": "white" if curve.hollow else None}
     if curve.error is None:
         axis.plot(curve.x, curve.y, **look)
     else:
@@ -119,9 +114,7 @@ def draw_panel(axis, panel):
     for curve in panel.curves:
         _curve(axis, curve)
     for x, color in panel.lost:
-        axis.plot(
-            x, 0.99, "x", color=COLOUR.get(color, color), transform=axis.get_xaxis_transform()
-        )
+        axis.plot(x, 0.99, "x", color=color, transform=axis.get_xaxis_transform())
     _scales(axis, panel)
     if panel.legend and any(curve.label for curve in panel.curves):
         place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 3}
@@ -134,19 +127,11 @@ def draw(path, panels, columns=None, note="", share_y=False):
     ``note``: a line below them; ``share_y``: whether they have one y axis.
     Panels without legends of their own share one, which has every label once.
     """
-    Path(path).parent.mkdir(parents=True, exist_ok=True)
     columns = columns or len(panels)
-    rows = -(-len(panels) // columns)
+    rows, shared = -(-len(panels) // columns), {}
+    look = {"figsize": (4.2 * columns + 0.4, 3.4 * rows), "layout": "constrained"}
     with plt.rc_context(STYLE | {"font.size": 8.5}):
-        figure, axes = plt.subplots(
-            rows,
-            columns,
-            figsize=(4.2 * columns + 0.4, 3.4 * rows),
-            layout="constrained",
-            squeeze=False,
-            sharey=share_y,
-        )
-        shared = {}
+        figure, axes = plt.subplots(rows, columns, squeeze=False, sharey=share_y, **look)
         for axis in axes.flat[len(panels) :]:
             axis.set_axis_off()
         for axis, panel in zip(axes.flat, panels):

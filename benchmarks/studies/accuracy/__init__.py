@@ -36,7 +36,7 @@ def _of_case1(results):
         "sample": tables.power(SAMPLE),
         "best": method.label if method else "",
         "times": [_milliseconds(cost) for cost in (best, default, theirs)],
-        "closest": [tables.closest(results, ours) for ours in (True, False)],
+        "closest": [tables.closest(results, m) for m in (tables.GEAR, {plan.RIGID_NVE.key})],
         "compensated": f"{min(exact):.1e}",
         "timings": min(point.timings for point in results.runs if point.timings),
     }

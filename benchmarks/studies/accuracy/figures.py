@@ -92,11 +92,7 @@ def _few(scene):
 def _curves(results, scene, unit, quantity, label=False):
     """One Curve per method of the panels."""
     return tuple(
-        Curve(
-            method.label if label else "",
-            *points(results, scene.key, method, unit, quantity),
-            **own,
-        )
+        Curve(method.label * label, *points(results, scene.key, method, unit, quantity), **own)
         for method, own in _few(scene).items()
     )
 
@@ -129,19 +125,19 @@ def top_panels(results, scene):
     )
     orientation = _curves(results, scene, "evaluations", "orientation", label=True)
     orientation += solvers + _fits(results, scene)
-    norms, tangents = (
-        [c for c in _curves(results, scene, "evaluations", name) if len(c.x)]
-        for name in ("norm", "tangency")
-    )
-    dots = [Curve("", c.x, c.y, c.color, "", "o") for c in norms]
-    dots += [Curve("", c.x, c.y, c.color, "", "s", hollow=True) for c in tangents]
+    dots = [
+        Curve("", curve.x, curve.y, curve.color, "", marker, hollow=name == "tangency")
+        for name, marker in (("norm", "o"), ("tangency", "s"))
+        for curve in _curves(results, scene, "evaluations", name)
+        if len(curve.x)
+    ]
     constraints = "constraints: ||q|² − 1| filled, |q·q̇| hollow, zero at the edge"
     return (
         Panel("error of the orientation, radians", calls, "", orientation, "xy", legend=False),
         panel("the same error against wall time", "orientation", "seconds"),
         panel("largest error of the energy", "energy"),
         panel("drift of the energy per unit of time", "drift"),
-        Panel(constraints, calls, "", tuple(dots), "xy", ylim=(TINY / 3, 1), legend=False),
+        Panel(constraints, calls, "", dots, "xy", ylim=(TINY / 3, 1), legend=False),
     )
 
 
@@ -162,19 +158,18 @@ def order_panels(results):
                 curves.append(Curve("", np.array([limit]), np.array([0.2]), own["color"], "", "v"))
         scales = {"log": "xy", "xticks": (1, 0.5, 0.2, 0.1, 0.05, 0.02), "ylim": (1e-14, 1)}
         title, error = f"{name} formulation, compensated sums", "error of the center of mass"
-        panels.append(Panel(title, "step", error, tuple(curves), **scales))
-    return tuple(panels)
+        panels.append(Panel(title, "step", error, curves, **scales))
+    return panels
 
 
 def cutoff_panels(results):
     """The same water with forces smooth at the cutoff, and with a plain cutoff."""
-    error = "error of the centers of mass (rms), Å"
+    error, panels = "error of the centers of mass (rms), Å", []
     look = {"log": "xy", "xticks": (5, 10, 20, 50, 100, 200, 400), "legend": False}
-    return tuple(
-        Panel(scene.heading, AXIS["evaluations"], error, curves, **look)
-        for scene in map(results.scenes.get, ("water", "water-plain"))
-        for curves in [_curves(results, scene, "evaluations", "position", label=True)]
-    )
+    for scene in map(results.scenes.get, ("water", "water-plain")):
+        curves = _curves(results, scene, "evaluations", "position", label=True)
+        panels.append(Panel(scene.heading, AXIS["evaluations"], error, curves, **look))
+    return panels
 
 
 def pictures(results):

@@ -200,22 +200,19 @@ def is_usable(session, run):
 def fewest_steps(usable, start, most, ratio=1.02):
     """Fewest steps n for which ``usable(n)``; None if not even ``most`` are enough.
 
-    Doubles from ``start`` until usable, then halves the gap in log n until it is below ``ratio``.
-    Assumes that more steps are usable if fewer are.
+    Doubles or halves from ``start``, then halves the gap in log n until it is below ``ratio``.  Assumes
+    that more steps are usable if fewer are.
     """
-    low, high = None, start
+    high = start
     while not usable(high):
-        low, high = high, 2 * high
+        high *= 2
         if high > most:
             return None
-    while low is None and high > 1:
-        if usable(high // 2):
-            high //= 2
-        else:
-            low = high // 2
-    while low is not None and high > low + 1 and high / low > ratio:
-        middle = round(math.sqrt(low * high))
-        middle = min(max(middle, low + 1), high - 1)
+    low = high // 2
+    while low and usable(low):
+        low, high = low // 2, low
+    while high > max(low + 1, ratio * low):
+        middle = min(max(round(math.sqrt(low * high)), low + 1), high - 1)
         low, high = (low, middle) if usable(middle) else (middle, high)
     return high
 

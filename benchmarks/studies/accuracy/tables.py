@@ -3,7 +3,7 @@
 Bounds stand here and nowhere else; every other number is measured.
 """
 
-from dataclasses import fields
+from dataclasses import astuple, fields
 
 import numpy as np
 
@@ -25,6 +25,7 @@ ORDER_MARGIN, LEAST_VALUES = 0.4, 5
 #: error of position at the smallest step of plain and of compensated sums; time in the fix
 MOST_ROUNDING, MOST_MODIFY = {False: 5e-11, True: 1e-12}, 1.0
 NONE = "–"
+GEAR = {method.key for method in plan.ALL_METHODS if method.gear}
 THEIRS = f"time of `{plan.RIGID_NVE.label}` relative to"
 ROWS = ("`fix gear/quat`, default settings", "`fix gear/quat`, cheapest settings")
 
@@ -67,9 +68,8 @@ def ratio_text(cost, error=True):
         return NONE
     sign = {"at least": "≥ ", "at most": "≤ "}.get(cost.kind, "")
     own = f" ± {significant(cost.error * cost.value, 1)}" if error and cost.error else ""
-    return f"{sign}{significant(cost.value)}×{own}" + " (extrapolated)" * (
-        cost.kind == "extrapolated"
-    )
+    remark = " (extrapolated)" if cost.kind == "extrapolated" else ""
+    return f"{sign}{significant(cost.value)}×{own}{remark}"
 
 
 def count_text(cost):
@@ -142,7 +142,7 @@ def order_fits(results):
 def orders(results):
     """Slope of each N beside the order, and the largest stable steps; table and measurements."""
     header = ["formulation", "N", "order", "slope", "ω Δt, linear"]
-    header += [f"largest usable step, {n} pass{'es' * (n > 1)}" for n in plan.PASSES]
+    header += ["largest usable step, 1 pass", "largest usable step, 2 passes"]
     rows, found = [], []
     for (name, n), (steps, errors, fit) in order_fits(results).items():
         expected, cancels = expected_order(name, n), sign_change(steps, errors)
@@ -150,12 +150,11 @@ def orders(results):
         remark = f"the error changes sign at step {cancels:.2g}" if cancels else ""
         least = expected - ORDER_MARGIN if n >= LEAST_VALUES else None
         what = f"{name} formulation, N = {n}: order of the error of position"
-        own = Measurement(what, slope, error, ".2f", remark=remark, least=least)
-        found.append(own)
+        found.append(Measurement(what, slope, error, ".2f", remark=remark, least=least))
         limits = [results.limits.get(("case1", plan.setting(name, n, p).key)) for p in plan.PASSES]
         steps = [NONE if limit is None else f"{limit:.2f}" for limit in limits]
-        slope = own.text if fit else NONE
-        rows.append([name, n, expected, slope, f"{limit_of(name, n):.2f}", *steps])
+        text = found[-1].text if fit else NONE
+        rows.append([name, n, expected, text, f"{limit_of(name, n):.2f}", *steps])
     return Table(header, rows), found
 
 
@@ -173,40 +172,36 @@ def rounding(results):
 def modify(results):
     """Time inside the fix, beside that of fix rigid/nve/small; table and measurements."""
     yard, rows, found = results.modify[plan.RIGID_NVE.key], [], []
+    relative = f"relative to {plan.RIGID_NVE.label}"
     for method in plan.MODIFY:
         own = results.modify[method.key]
-        share, error = own.median / yard.median, np.hypot(own.error, yard.error)
-        label = method.label + " (default)" * (method == plan.DEFAULT)
+        share = own.median / yard.median
+        error, label = share * np.hypot(own.error, yard.error), method.label
         times = f"{own.median * 1e9:.0f} ({own.low * 1e9:.0f} to {own.high * 1e9:.0f})"
-        cell = "1" if method == plan.RIGID_NVE else f"{share:.2f} ± {share * error:.2f}"
-        rows.append([label, times, cell])
         if method == plan.DEFAULT:
-            what = f"time inside the fix relative to {plan.RIGID_NVE.label}"
-            found.append(Measurement(what, share, share * error, ".2f", most=MOST_MODIFY))
-    header = ("", "nanoseconds per step (quartiles)", f"relative to {plan.RIGID_NVE.label}")
-    return Table(header, rows), found
+            what, label = f"time inside the fix {relative}", f"{label} (default)"
+            found.append(Measurement(what, share, error, ".2f", most=MOST_MODIFY))
+        cell = "1" if method == plan.RIGID_NVE else f"{share:.2f} ± {error:.2f}"
+        rows.append([label, times, cell])
+    return Table(("", "nanoseconds per step (quartiles)", relative), rows), found
 
 
 # --- numbers of the sentences ---------------------------------------------------------------------
 def constraints(results):
     """(largest | |q|^2 - 1 |, largest |q.qdot|) over all sampled runs with usable steps."""
     rows = [
-        p
+        (p.norm, p.tangency)
         for p in results.runs
-        if p.method in plan.METHODS and plan.METHODS[p.method].gear and np.isfinite(p.energy)
+        if p.method in GEAR and np.isfinite(p.energy)
         if p.dt <= results.limits.get((p.scene, p.method), 0.0)
     ]
-    return tuple(
-        max((getattr(p, name) for p in rows), default=0.0) for name in ("norm", "tangency")
-    )
+    return np.max(rows, axis=0, initial=0.0)
 
 
-def closest(results, ours):
-    """The Point of test case 1 with the smallest error, of fix gear/quat or of fix rigid/nve/small."""
-    points = [p for p in results.runs if p.scene == "case1"]
-    if ours:
-        return min((p for p in points if plan.METHODS[p.method].gear), key=lambda p: p.position)
-    return min((p for p in points if p.method == plan.RIGID_NVE.key), key=lambda p: p.position)
+def closest(results, methods):
+    """The Point of test case 1 with the smallest error of methods, of which these are the keys."""
+    points = [p for p in results.runs if p.scene == "case1" and p.method in methods]
+    return min(points, key=lambda p: p.position)
 
 
 def cutoff(results):
@@ -224,5 +219,4 @@ def cutoff(results):
 
 def of_runs(results):
     """All runs as a table."""
-    names = [f.name for f in fields(Point)]
-    return Table(names, [[getattr(p, name) for name in names] for p in results.runs])
+    return Table([f.name for f in fields(Point)], list(map(astuple, results.runs)))

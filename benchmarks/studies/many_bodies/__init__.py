@@ -42,15 +42,12 @@ def timing_measurements(results, method):
     plan, ratios = results.plan, of.memory_ratios(results, method)
     for ranks in plan.ranks:
         ratio, least, largest = of.time_ratio(results, method, ranks)
-        scene = f"{bodies_of(plan.headline)} molecules, {ranks_text(ranks)}"
+        what = f"{bodies_of(plan.headline)} molecules, {ranks_text(ranks)}: time in the fix {OVER}"
         remark = f"{least:.2f} to {largest:.2f} in {plan.rounds} rounds"
-        what = f"{scene}: time in the fix {OVER}"
         yield Measurement(what, ratio, spec=".2f", remark=remark, most=MOST_TIME)
     what, remark = f"largest memory of a body {OVER}, all sizes", f"least: {min(ratios):.2f}"
     yield Measurement(what, max(ratios), spec=".2f", remark=remark, most=MOST_MEMORY)
-    what = (
-        f"{', '.join(str(bodies_of(c)) for c in plan.growth)} bodies: deviation from linear scaling"
-    )
+    what = f"{', '.join(map(str, plan.sizes))} bodies: deviation from linear scaling"
     value = of.nonlinearity(results, method)
     yield Measurement(what, value, spec=".0%", most=MOST_GROWTH)
 
@@ -64,14 +61,12 @@ def pressure_measurements(results, method):
     yield Measurement(what, value, spec=".1f", most=allowed(len(dts), of.BLOCKS - 1))
     instants = of.instants(results, method)
     start, after = np.ptp(instants, axis=0)
-    most, what = (
-        ROUNDING * np.abs(instants[:, 0]).max(),
-        f"{steps}: range of the pressures of the start",
-    )
+    most = ROUNDING * np.abs(instants[:, 0]).max()
+    what = f"{steps}: range of the pressures of the start"
     yield Measurement(what, start, spec=".1g", unit="atm", most=most)
     _, theirs = np.ptp(of.instants(results, NVE_SMALL), axis=0)
-    what, remark = f"{steps}: range of the pressures after {interval:g} fs", f"{theirs:.2g} atm"
-    remark = f"{NVE_SMALL.label}: {remark}"
+    remark = f"{NVE_SMALL.label}: {theirs:.2g} atm"
+    what = f"{steps}: range of the pressures after {interval:g} fs"
     yield Measurement(what, after, spec=".2g", unit="atm", remark=remark, most=theirs)
 
 
@@ -85,10 +80,8 @@ def temperature_measurements(results, method):
     what = "relative difference of compute temp and 6N - 3 degrees of freedom"
     yield Measurement(what, of.kinetic_mismatch(thermo), spec=".0e", most=ROUNDING)
     off = of.warmer(results, method)
-    most, what = (
-        allowed(1, off.freedoms) * off.error,
-        f"mean temperature less that of {NVE_SMALL.label}",
-    )
+    most = allowed(1, off.freedoms) * off.error
+    what = f"mean temperature less that of {NVE_SMALL.label}"
     yield Measurement(what, off.value, off.error, ".1f", "K", least=-most, most=most)
 
 
@@ -147,12 +140,10 @@ def size_tables(results):
     header = [f"{bodies_of(c)} bodies, {of.MEMORY_KINDS[k]}" for c, k in memory[NVE_SMALL]]
     rows = [[m.label, *(f"{value:.0f}" for value in memory[m].values())] for m in RACE]
     tables = {"memory": Table(["bytes per body", *header], rows)}
-    sizes = [bodies_of(cells) for cells in results.plan.growth]
-    header = ["µs in the fix per body and step", *(f"{n} bodies" for n in sizes)]
+    header = ["µs in the fix per body and step", *(f"{n} bodies" for n in results.plan.sizes)]
     rows = []
     for method in RACE:
-        times = of.per_body(results, method).values()
-        cells = [f"{median:.3f} ({least:.3f} to {most:.3f})" for median, least, most in times]
+        cells = [ranged(times, 3) for times in of.per_body(results, method).values()]
         rows.append([method.label, *cells, f"{of.nonlinearity(results, method):.0%}"])
     return tables | {"growth": Table([*header, "deviation from linear scaling"], rows)}
 
@@ -193,9 +184,9 @@ def temperature_table(results):
 
 
 # --- picture --------------------------------------------------------------------------------------
-def _bars(spreads):
-    """Medians (n,) and error bars (2, n) to the least and the largest."""
-    median, least, largest = np.transpose(spreads)
+def _bars(samples):
+    """Medians (n,) and error bars (2, n) to the least and the largest, of n lists of values."""
+    median, least, largest = np.transpose([of.spread(values) for values in samples])
     return median, np.array([median - least, largest - median])
 
 
@@ -207,31 +198,24 @@ def _curve(method, x, y, error=None, line="-"):
 def _size_panels(results):
     """Time by ranks, time by bodies, memory by bodies."""
     plan, time, growth, memory = results.plan, [], [], []
-    sizes = [bodies_of(cells) for cells in plan.growth]
     for k, method in enumerate(RACE):
         seconds = [results.fix_seconds(method, plan.headline, n) for n in plan.ranks]
         at = np.arange(len(plan.ranks)) + 0.08 * (k - 1)
-        time.append(_curve(method, at, *_bars([of.spread(1e3 * s) for s in seconds]), line=""))
-        growth.append(_curve(method, sizes, *_bars(list(of.per_body(results, method).values()))))
+        time.append(_curve(method, at, *_bars([1e3 * s for s in seconds]), line=""))
+        per_body = of.per_body(results, method).values()
+        growth.append(_curve(method, plan.sizes, *_bars(per_body)))
         bytes_of = of.memory(results, method)
         for kind, line in (("reported", "--"), ("allocated", "-")):
             values = np.array([bytes_of[cells, kind] for cells in plan.growth])
-            memory.append(_curve(method, sizes, values, line=line))
+            memory.append(_curve(method, plan.sizes, values, line=line))
     title = f"Time in the fix, {bodies_of(plan.headline)} molecules"
     ticks = {"ticks": tuple(map(ranks_text, plan.ranks)), "ylim": (0, None)}
-    by_size = {"log": "x", "xticks": tuple(sizes), "ylim": (0, None), "legend": False}
+    by_size = {"log": "x", "xticks": plan.sizes, "ylim": (0, None), "legend": False}
+    heap, one_rank = "Memory: heap, dashed: LAMMPS' sum", "Time in the fix, one rank"
     return (
-        Panel(title, "", "ms per step", tuple(time), log="", legend=False, **ticks),
-        Panel(
-            "Time in the fix, one rank", "bodies", "µs per body and step", tuple(growth), **by_size
-        ),
-        Panel(
-            "Memory: heap, dashed: LAMMPS' sum",
-            "bodies",
-            "bytes per body",
-            tuple(memory),
-            **by_size,
-        ),
+        Panel(title, "", "ms per step", time, log="", legend=False, **ticks),
+        Panel(one_rank, "bodies", "µs per body and step", growth, **by_size),
+        Panel(heap, "bodies", "bytes per body", memory, **by_size),
     )
 
 
@@ -250,17 +234,16 @@ def _sample_panels(results):
     for k, method in enumerate(GEAR):
         means = of.partition(results.temperatures[method.key])
         values, errors = np.transpose([(mean.value, mean.error) for mean in means.values()])
-        parts.append(
-            _curve(method, np.arange(len(means)) + 0.16 * (k - 0.5), values, errors, line="")
-        )
+        at = np.arange(len(means)) + 0.16 * (k - 0.5)
+        parts.append(_curve(method, at, values, errors, line=""))
     zero = Curve("", np.array([-0.4, len(means) - 0.6]), np.zeros(2), "#222222")
     names = tuple(n.removeprefix("axis ").replace(" the ", "\nthe ") for n in means)
     by_step = {"log": "xy", "xticks": dts, "legend": False}
     shift = f"Mean pressure: difference from step {dts[0]:g} fs"
     after = f"Pressure after {plan.interval:g} fs: difference from second, step {dts[0]:g} fs"
     return (
-        Panel(shift, "step, fs", "atm", tuple(shifts), **(by_step | {"xticks": dts[1:]})),
-        Panel(after, "step, fs", "atm", tuple(instants), **by_step),
+        Panel(shift, "step, fs", "atm", shifts, **(by_step | {"xticks": dts[1:]})),
+        Panel(after, "step, fs", "atm", instants, **by_step),
         Panel("Temperature less that of all", "", "K", (zero, *parts), "", names, legend=False),
     )
 
@@ -273,7 +256,7 @@ def find(results):
     tables["temperature"] = temperature_table(results)
     panels = _size_panels(results) + _sample_panels(results)
     note = "bars: least and largest (time), one standard error (pressure, temperature)"
-    sizes = {bodies_of(cells): steps for cells, steps in plan.growth.items()}
+    sizes = dict(zip(plan.sizes, plan.growth.values()))
     context = {"plan": plan, "sizes": sizes, "bodies": bodies_of(plan.headline)}
     context |= {"molecules": MOLECULES, "blocks": of.BLOCKS}
     picture = partial(draw, panels=panels, columns=3, note=note)

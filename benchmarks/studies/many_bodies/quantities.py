@@ -65,17 +65,17 @@ def memory_ratios(results, method):
 
 
 def per_body(results, method):
-    """Microseconds in the fix per body and step: bodies -> (median, least, largest)."""
+    """Microseconds in the fix per body and step: bodies -> values by round."""
     return {
-        bodies_of(cells): spread(1e6 * results.fix_seconds(method, cells) / bodies_of(cells))
+        bodies_of(cells): 1e6 * results.fix_seconds(method, cells) / bodies_of(cells)
         for cells in results.plan.growth
     }
 
 
 def nonlinearity(results, method):
     """Largest relative deviation of the time in the fix from the best linear law."""
-    times = [median for median, _, _ in per_body(results, method).values()]
-    return (max(times) - min(times)) / (max(times) + min(times))
+    times = [np.median(values) for values in per_body(results, method).values()]
+    return float((max(times) - min(times)) / (max(times) + min(times)))
 
 
 # --- pressure -------------------------------------------------------------------------------------

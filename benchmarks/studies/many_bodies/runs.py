@@ -1,5 +1,6 @@
 """What is run to compare fix gear/quat with LAMMPS' own fixes in water, and what it leaves."""
 
+import itertools
 import math
 import re
 from dataclasses import dataclass, field
@@ -59,6 +60,11 @@ class Plan:
     temperature_interval: float = 10.0
 
     @property
+    def sizes(self):
+        """Numbers of bodies of ``growth``."""
+        return tuple(map(bodies_of, self.growth))
+
+    @property
     def interval(self):
         """Time between samples of the pressure: the largest step, so all runs share the samples."""
         return self.pressure_dts[-1]
@@ -66,9 +72,8 @@ class Plan:
     @property
     def scenes(self):
         """Timed scenes: (cells, ranks)."""
-        return [(cells, 1) for cells in self.growth] + [
-            (self.headline, ranks) for ranks in self.ranks if ranks > 1
-        ]
+        more = [(self.headline, ranks) for ranks in self.ranks if ranks > 1]
+        return [(cells, 1) for cells in self.growth] + more
 
 
 QUICK = Plan(
@@ -157,9 +162,8 @@ def read_timing(log, steps, ranks, started):
         first, timed = log.timers
         times = timed["Loop"], timed["Comm"], timed["Modify"]
     except (ValueError, KeyError) as error:
-        raise LammpsError(
-            f"{log.path}: not a finished timing with all sections: {error}"
-        ) from error
+        text = f"{log.path}: not a finished timing with all sections: {error}"
+        raise LammpsError(text) from error
     if timed["Ranks"] != ranks:
         raise LammpsError(f"{log.path}: it ran on {timed['Ranks']} ranks, not {ranks}")
     memory = _only(_REPORTED, log, "sum of memory"), _only(_ALLOCATED, log, "size of the heap")
@@ -175,36 +179,26 @@ def _deck(name):
     return Path(__file__).with_name(f"in.{name}")
 
 
-def timing_jobs(plan):
-    """(key of the method, cells, ranks) -> Job.
+def time_all(lab, plan):
+    """``timings`` of Results: one run at a time, every round in another order.
 
     For growth, where only steps count, the start of fix gear/quat is left out.
     """
-    jobs = {}
-    for cells, ranks in plan.scenes:
-        steps = plan.growth[cells]
-        for method in TIMED:
-            motion = method.variables["motion"]
-            if method.gear and cells != plan.headline:
-                motion += " start zero"
-            variables = {"water": EXAMPLES / "water", "cells": " ".join(map(str, cells))}
-            variables |= {"motion": motion, "dt": plan.timing_dt, "steps": steps}
-            jobs[method.key, cells, ranks] = Job(_deck("timing"), variables, steps, ranks)
-    return jobs
-
-
-def time_all(lab, plan):
-    """``timings`` of Results: one run at a time, every round in another order."""
-    jobs = timing_jobs(plan)
-    names = {key: f"time_{key[0]}_{bodies_of(key[1])}_{key[2]}" for key in jobs}
-    runs = lab.in_turn({names[key]: job for key, job in jobs.items()}, plan.rounds)
-    gear = {method.key for method in GEAR}
-
-    def read(key, run):
-        started = key[0] in gear and key[1] == plan.headline
-        return read_timing(run.log, jobs[key].steps, key[2], started)
-
-    return {key: [read(key, run) for run in runs[names[key]]] for key in jobs}
+    jobs, keys, timings = {}, {}, {}
+    for (cells, ranks), method in itertools.product(plan.scenes, TIMED):
+        motion, steps = method.variables["motion"], plan.growth[cells]
+        if method.gear and cells != plan.headline:
+            motion += " start zero"
+        variables = {"water": EXAMPLES / "water", "cells": " ".join(map(str, cells))}
+        variables |= {"motion": motion, "dt": plan.timing_dt, "steps": steps}
+        name = f"time_{method.key}_{bodies_of(cells)}_{ranks}"
+        jobs[name], keys[name] = Job(_deck("timing"), variables, steps, ranks), (method, cells, ranks)
+    for name, runs in lab.in_turn(jobs, plan.rounds).items():
+        (method, cells, ranks), steps = keys[name], jobs[name].steps
+        started = method.gear and cells == plan.headline
+        rounds = [read_timing(run.log, steps, ranks, started) for run in runs]
+        timings[method.key, cells, ranks] = rounds
+    return timings
 
 
 def _sampling(method, dt, time, interval, columns):
@@ -220,11 +214,10 @@ def sample_all(lab, plan):
     times = plan.temperature_dt, plan.temperature_time, plan.temperature_interval
     jobs = {f"temperature_{m.key}": _sampling(m, *times, KINETIC[m.gear]) for m in SAMPLED}
     keys = {}
-    for dt in plan.pressure_dts:
-        for method in COMPARED:
-            name = f"pressure_{method.key}_dt{dt:g}"
-            keys[name] = method.key, dt
-            jobs[name] = _sampling(method, dt, plan.pressure_time, plan.interval, "temp press")
+    for dt, method in itertools.product(plan.pressure_dts, COMPARED):
+        name = f"pressure_{method.key}_dt{dt:g}"
+        keys[name] = method.key, dt
+        jobs[name] = _sampling(method, dt, plan.pressure_time, plan.interval, "temp press")
     runs = lab.many(jobs)
     pressures = {key: runs[name].thermo["Press"] for name, key in keys.items()}
     return pressures, {m.key: runs[f"temperature_{m.key}"].thermo for m in SAMPLED}
