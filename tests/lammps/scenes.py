@@ -102,10 +102,7 @@ newton {newton}
 processors {processors}
 comm_style {comm}
 read_data {data}
-pair_style lj/charmm/coul/charmm {inner} {outer}
-pair_coeff 1 1 {epsilon} {sigma}
-pair_coeff 2 2 0.0 1.0
-pair_coeff 1 2 0.0 1.0
+{pair}
 neighbor {skin} bin
 neigh_modify every 1 delay 0 check yes exclude molecule/intra all
 atom_modify sort 0 0.0
@@ -116,9 +113,15 @@ fix move all {fix}
 thermo_style custom step temp pe ke etotal press {columns}
 thermo_modify norm no format float %.17g
 thermo {thermo}
-dump poses all custom {steps} {dump} id xu yu zu vx vy vz
+dump poses all custom {steps} {dump} id xu yu zu vx vy vz {dumped}
 dump_modify poses sort id format float %.17g
 {run}
+"""
+SPCE_PAIRS = """
+pair_style lj/charmm/coul/charmm {inner} {outer}
+pair_coeff 1 1 {epsilon} {sigma}
+pair_coeff 2 2 0.0 1.0
+pair_coeff 1 2 0.0 1.0
 """
 
 # length in Angstrom, mass in g/mol, charge in e, energy in kcal/mol, time in fs -> other units
@@ -267,11 +270,23 @@ def water(
     processors="* * *",
     comm="brick",
     columns="",
+    pair=SPCE_PAIRS,
+    skin=0.9,
+    dumped="",
 ) -> str:
-    """A deck; dt in fs whatever the units, ``columns`` of thermo behind the usual ones."""
-    scale = UNITS[units]
+    """A deck; dt in fs whatever the units, ``columns`` of thermo behind the usual ones.
+
+    With other pairs (style and coefficients) and units lj it serves for any data of atom style full.
+    """
+    scale = UNITS["real" if units == "lj" else units]
     if fix.startswith("gear/quat"):
         after = "fix_modify move energy yes\n" + after
+    pair = pair.format(
+        inner=2.7 * scale["length"],
+        outer=3.9 * scale["length"],
+        epsilon=0.1553 * scale["energy"],
+        sigma=3.166 * scale["length"],
+    )
     return WATER.format(
         units=units,
         data=data,
@@ -284,13 +299,11 @@ def water(
         processors=processors,
         comm=comm,
         columns=columns,
+        pair=pair,
+        dumped=dumped,
         thermo=thermo or steps,
         dt=f"{dt * scale['time']:.17g}",
-        inner=2.7 * scale["length"],
-        outer=3.9 * scale["length"],
-        skin=0.9 * scale["length"],
-        epsilon=0.1553 * scale["energy"],
-        sigma=3.166 * scale["length"],
+        skin=skin * scale["length"],
         run=run.format(steps=steps),
     )
 

@@ -1,8 +1,11 @@
-"""Keyword isokinetic: constant kinetic energy, the heat it takes, ranks, restart, what is refused."""
+"""Keyword isokinetic: constant kinetic energy, the heat it takes, restart, what is refused.
+
+That the trajectory is the same on any ranks is tested in test_large_bodies.py.
+"""
 
 import numpy as np
 import pytest
-from scenes import difference, last_frame, one_after_the_other, two_molecules, water, water_data
+from scenes import last_frame, one_after_the_other, two_molecules
 
 MODES = ["total", "separate"]
 PARTS = ["f_move[1]", "f_move[2]"]  # of translation and rotation
@@ -120,19 +123,7 @@ def test_points_have_one_multiplier(lmp_tree):
     assert largest_change(table, "v_all") < 1e-4 * largest_change(table, "TotEng")
 
 
-# --- runs, ranks, restart ---------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("mode", MODES)
-def test_ranks(lmp_tree, mode):
-    data = water_data(lmp_tree.folder / "data.water")
-    fix = f"gear/quat molecule formulation first isokinetic {mode}"
-    ends = []
-    for ranks in (1, 2, 4):
-        run(lmp_tree, [water(data, fix, 0.1, 300)], ranks)
-        ends.append(last_frame(lmp_tree.folder / "poses.dump"))
-    for other in ends[1:]:
-        assert difference(ends[0], other) < 1e-12
+# --- runs, restart ---------------------------------------------------------------------
 
 
 END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"

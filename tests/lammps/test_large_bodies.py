@@ -10,36 +10,26 @@ import re
 import numpy as np
 import pytest
 from running import make_lmp_tree
-from scenes import last_frame, one_after_the_other, random_rotation, restarted, write_data
+from scenes import (
+    frames,
+    last_frame,
+    one_after_the_other,
+    random_rotation,
+    restarted,
+    water,
+    write_data,
+)
 
 BOX, STEPS, DT = 20.0, 200, 0.002
 CELLS, SPACING = (12, 12, 2), 1.1
 
-DECK = """
-units lj
-atom_style full
-newton {newton}
-processors {processors}
-comm_style {comm}
-read_data {data}
+PAIRS = """
 pair_style lj/charmm/coul/charmm 1.8 2.5
 pair_coeff * * 1.0 1.0
-neighbor 0.3 bin
-neigh_modify every 1 delay 0 check yes exclude molecule/intra all
-atom_modify sort 0 0.0
-timestep {dt}
-{before}
-fix move all {fix}
-fix_modify move energy yes
-{after}
+"""
+STRESS = """
 compute stress all centroid/stress/atom NULL fix
 compute sum all reduce sum c_stress[*]
-thermo_style custom step ke etotal press f_move c_sum[*]
-thermo_modify norm no format float %.17g
-thermo {steps}
-write_dump all custom {name}.begin id proc modify sort id
-{run}
-write_dump all custom {name}.end id xu yu zu vx vy vz proc modify sort id format float %.17g
 """
 
 
@@ -70,16 +60,16 @@ def slab_data(path, height=BOX, cells=CELLS, trimers=True):
     return write_data(path, lines, [1.0], rows, velocities)
 
 
-def deck(data, name, fix="", before="", after="", steps=STEPS, run="run {steps}", **settings):
-    known = dict(newton="on", processors="* * *", comm="brick", dt=DT, before=before, after=after)
-    known |= dict(data=data, name=name, fix=f"gear/quat molecule {fix}", steps=steps)
-    return DECK.format(run=run.format(steps=steps), **(known | settings))
+def deck(data, name, fix="", after="", steps=STEPS, **settings):
+    settings = dict(units="lj", dt=DT, pair=PAIRS, skin=0.3, dumped="proc") | settings
+    settings |= dict(steps=steps, dump=f"{name}.dump", columns="f_move c_sum[*]")
+    return water(data, f"gear/quat molecule {fix}", after=after + STRESS, **settings)
 
 
 def end(lmp, text, name, ranks=1):
     """The last frame of a deck of that name."""
     lmp.succeed(text, ranks=ranks)
-    return last_frame(lmp.folder / f"{name}.end")
+    return last_frame(lmp.folder / f"{name}.dump")
 
 
 def difference(one, other):
@@ -97,7 +87,8 @@ WAYS = {
     "respa": dict(before="run_style respa 2 1"),
     "wide": dict(before="comm_modify cutoff 9.8"),
     "first": dict(fix="formulation first compensate yes"),
-    "isokinetic": dict(fix="formulation first isokinetic separate"),
+    "total": dict(fix="formulation first isokinetic total"),
+    "separate": dict(fix="formulation first isokinetic separate"),
     "masks": dict(fix="force 1 off on on torque 1* on off on"),
     "cooled": dict(after="fix cool all temp/berendsen 100 10 0.1"),
     "tolerance": dict(fix="tolerance 1e-9 dtmax 0.004"),
@@ -106,8 +97,8 @@ WAYS = {
     "timestep": dict(run="run 100\ntimestep 0.0015\nrun 100"),
 }
 RANKS = {
-    1: ["plain", "first", "isokinetic", "masks", "cooled", "timestep"],
-    2: ["plain", "tiled", "isokinetic"],
+    1: ["plain", "first", "total", "separate", "masks", "cooled", "timestep"],
+    2: ["plain", "tiled", "total", "separate"],
     4: list(WAYS),
 }
 
@@ -132,8 +123,8 @@ def ends(tmp_path_factory):
         result = lmp.succeed(one_after_the_other(decks), ranks=ranks, timeout=300)
         logs = result.log.split("rigid bodies with")[1:]
         for name, way, log in zip(names, ways, logs):
-            found[ranks, way] = last_frame(lmp.folder / f"{name}.end")
-            found[ranks, way, "begin"] = last_frame(lmp.folder / f"{name}.begin")
+            dumped = frames(lmp.folder / f"{name}.dump")
+            found[ranks, way, "begin"], found[ranks, way] = dumped[0], dumped[STEPS]
             found[ranks, way, "log"] = log
         for way, table in zip(ways, result.thermo):
             found[ranks, way, "thermo"] = np.array([values[-1] for values in table.values()])
@@ -161,12 +152,12 @@ def test_the_scene_tells(ends):
     begin, end = ends[4, "plain", "begin"], ends[4, "plain"]
     slab = end[: np.prod(CELLS), 1:4]
     middle = np.linalg.norm(slab - slab.mean(axis=0), axis=1) < 1.0
-    assert (begin[: len(slab), 1] != end[: len(slab), 7])[middle].all()
+    assert (begin[: len(slab), 7] != end[: len(slab), 7])[middle].all()
     assert set(end[:, 7]) == {0, 1, 2, 3}
     assert ghosts(ends[4, "plain", "log"]) < 0.5 * ghosts(ends[4, "wide", "log"])
     assert int(re.findall(r"Neighbor list builds = (\d+)", ends[4, "plain", "log"])[-1]) > 10
     assert difference(ends[1, "plain"], ends[1, "first"]) < 1e-6  # two ways to follow one motion
-    for way in ("isokinetic", "masks", "cooled", "timestep"):
+    for way in ("total", "separate", "masks", "cooled", "timestep"):
         assert difference(ends[1, "plain"], ends[1, way]) > 1e-5
 
 
@@ -185,7 +176,7 @@ def test_single_and_group(lmp):
             decks.append(text.replace("gear/quat molecule", f"gear/quat {style}"))
         lmp.succeed(one_after_the_other(decks), ranks=n)
         for name in words:
-            frame = last_frame(lmp.folder / f"{name}.end")
+            frame = last_frame(lmp.folder / f"{name}.dump")
             assert len(set(frame[:, 7])) == min(n, 2)
             assert n == 1 or difference(ends[name], frame) < 1e-12
             ends[name] = frame
@@ -205,7 +196,7 @@ def test_restarts_on_any_number_of_ranks(lmp_tree):
         decks = [restarted(rest[n], f"whole{n}.restart") for n in whole]
         lmp_tree.succeed(one_after_the_other(decks), ranks=ranks)
         for n in whole:
-            again = last_frame(lmp_tree.folder / f"rest{n}.end")
+            again = last_frame(lmp_tree.folder / f"rest{n}.dump")
             assert difference(whole[n], again) < 1e-12
             assert n != ranks or (whole[n] == again).all()
 
@@ -224,7 +215,7 @@ def test_a_body_that_loses_sight_of_its_owner_becomes_large(lmp_tree):
     one = end(lmp_tree, text, "multi")
     log = lmp_tree.succeed(text, ranks=4).log
     assert "1 bodies reach further than ghost atoms" in log
-    assert difference(one, last_frame(lmp_tree.folder / "multi.end")) < 1e-12
+    assert difference(one, last_frame(lmp_tree.folder / "multi.dump")) < 1e-12
 
 
 def test_a_large_body_goes_astray(lmp_tree):
