@@ -8,7 +8,6 @@ from synthetic import line, make
 
 from benchmarks.engine import series
 from benchmarks.engine.logs import Log
-from benchmarks.engine.statistics import order
 from benchmarks.studies.cases import divergence as dv
 
 
@@ -19,17 +18,12 @@ def test_parting_time_is_the_first_sample_beyond_the_threshold():
     assert math.isinf(dv.parting_time(still, moving, 5.01))
 
 
-def test_parting_is_where_it_first_happens():
-    """Coming back does not undo a parting."""
+@pytest.mark.parametrize("there", [2.0, np.nan])
+def test_parting_is_where_it_first_happens(there):
+    """Coming back does not undo a parting; what is no number has parted."""
     gap = np.zeros((101, 3))
-    gap[30, 1] = 2.0
+    gap[30, 1] = there
     assert dv.parting_time(line(), make(np.arange(101.0), gap), 1.0) == 30.0
-
-
-def test_not_a_number_is_a_parting():
-    broken = line()
-    broken.center[40] = np.nan
-    assert dv.parting_time(line(), broken, 1.0) == 40.0
 
 
 def test_shorter_series_sets_the_end_and_times_have_to_agree():
@@ -43,14 +37,14 @@ def test_drift_onset():
     time = np.arange(101.0)
     potential = np.where(time % 2 == 0, -1.0, 0.0)  # swing 1, limit 0.02
     error = np.where(time < 60, 0.0, 0.03)
-    rising = make(time, np.zeros((101, 3)), potential, error=error)
-    assert dv.drift_onset(rising) == (60.0, 1)
-    falling = make(time, np.zeros((101, 3)), potential, error=-error)
-    assert dv.drift_onset(falling) == (60.0, -1)
-    level = make(time, np.zeros((101, 3)), potential, error=0.5 * error)
-    assert dv.drift_onset(level) == (math.inf, 0)
-    error[10] = 0.03  # an excursion that comes back is no drift
-    assert dv.drift_onset(make(time, np.zeros((101, 3)), potential, error=error)) == (60.0, 1)
+    excursion = np.where(time == 10, 0.03, error)  # it comes back, so it is no drift
+    for error, expected in (
+        (error, (60.0, 1)),
+        (-error, (60.0, -1)),
+        (0.5 * error, (math.inf, 0)),
+        (excursion, (60.0, 1)),
+    ):
+        assert dv.drift_onset(make(time, np.zeros((101, 3)), potential, error=error)) == expected
 
 
 @pytest.mark.parametrize(
@@ -63,12 +57,6 @@ def test_leaving(rate, axis):
     assert dv.leaving_time(gone) == math.floor(dv.OUTSIDE / speed) + 1
     inside = line(rate=np.array(rate) / 3)
     assert dv.leaving_axis(inside) == "" and math.isinf(dv.leaving_time(inside))
-
-
-def test_order_of_a_power_law_and_of_a_wrong_one():
-    steps = np.array([0.1, 0.05, 0.02])
-    assert order(steps, 3.0 * steps**5) == pytest.approx(5.0)
-    assert order(steps, 3.0 * steps**5.05) != pytest.approx(5.0)
 
 
 LOG = """LAMMPS (22 Jul 2025)

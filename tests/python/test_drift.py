@@ -4,6 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
+from scipy.stats import linregress
 
 from benchmarks.engine import series
 from benchmarks.engine.lab import Lab
@@ -20,36 +22,19 @@ NVE, VERLET = "fix rigid/nve", drift.VERLET.label
 
 
 # --- the slope ----------------------------------------------------------------------------------
-def test_slope_of_a_line():
-    found, uncertainty = slope(TIME, 3e-9 * TIME - 1.0)
-    assert found == pytest.approx(3e-9, rel=1e-6)
-    assert found != pytest.approx(1.01 * 3e-9, rel=1e-3)
-    assert uncertainty < 1e-6 * found
-
-
 def test_slope_does_not_see_an_oscillation():
-    error = np.sin(TIME * 0.7)
-    found, uncertainty = slope(TIME, error)
-    assert abs(found) < drift.SIGNIFICANT * uncertainty
-    found, uncertainty = slope(TIME, error + 1e-3 * TIME)
-    assert found == pytest.approx(1e-3, abs=drift.SIGNIFICANT * uncertainty)
-    assert abs(found) > drift.SIGNIFICANT * uncertainty
+    rate, error = slope(TIME, 3e-9 * TIME - 1.0)
+    assert rate == pytest.approx(3e-9, rel=1e-6) and error < 1e-6 * rate
+    for expected in (0.0, 1e-3):
+        rate, error = slope(TIME, np.sin(TIME * 0.7) + expected * TIME)
+        assert abs(rate - expected) < drift.SIGNIFICANT * error
+        assert (abs(rate) > drift.SIGNIFICANT * error) == (expected > 0)
 
 
 def correlated(rng, memory):
     """Noise of variance 1 whose correlation falls by ``memory`` from sample to sample."""
-    noise = np.empty(len(TIME))
-    noise[0] = rng.normal()
-    for k, kick in enumerate(rng.normal(size=len(TIME) - 1), start=1):
-        noise[k] = memory * noise[k - 1] + np.sqrt(1 - memory**2) * kick
-    return noise
-
-
-def independent(error):
-    """Standard error of the slope as if all samples were independent."""
-    x = TIME - TIME.mean()
-    rest = error - np.polyval(np.polyfit(TIME, error, 1), TIME)
-    return np.sqrt(rest @ rest / (len(TIME) - 2) / (x @ x))
+    kicks = np.sqrt(1 - memory**2) * rng.normal(size=len(TIME))
+    return lfilter([1.0], [1.0, -memory], kicks, zi=[memory * rng.normal()])[0]
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.95])
@@ -59,7 +44,7 @@ def test_uncertainty_is_the_scatter_of_repeated_slopes(memory):
     series_of_noise = [correlated(rng, memory) for _ in range(200)]
     found, told = np.array([slope(TIME, noise) for noise in series_of_noise]).T
     assert np.mean(told) == pytest.approx(np.std(found), rel=0.3)
-    naive = np.mean([independent(noise) for noise in series_of_noise])
+    naive = np.mean([linregress(TIME, noise).stderr for noise in series_of_noise])
     assert (naive == pytest.approx(np.std(found), rel=0.3)) == (memory == 0.0)
     significant = np.abs(found) > drift.SIGNIFICANT * told
     assert significant.mean() < 0.03
@@ -76,9 +61,7 @@ def test_judging_a_series():
     run = drift.Run(TIME, total, kinetic=1.0)
     assert run.slope[0] == pytest.approx(1e-6, rel=1e-2)
     assert run.largest == pytest.approx(np.abs(total + 2.0).max())
-    assert run.largest != pytest.approx(1.01 * np.abs(total + 2.0).max())
     assert not run.spoiled and drift.show_largest(run) == "2.1e-03"
-    assert drift.Run(TIME, total, kinetic=0.01).spoiled
     assert drift.show_largest(drift.Run(TIME, total, kinetic=0.01)).endswith("*")
     assert not drift.show_slope(run).startswith("(")
     calm = drift.Run(TIME, 1e-4 * np.sin(0.7 * TIME), kinetic=1.0)

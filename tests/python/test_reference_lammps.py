@@ -110,20 +110,14 @@ def test_forces_follow_the_atoms_anywhere(small):
 
 
 def test_whole_periods_make_no_difference(small):
-    start = molecules()
-    _, forces = small.energy_and_forces(start)
-    periods = np.random.default_rng(1).integers(-50, 50, size=start.shape) * BOX
-    _, shifted = small.energy_and_forces(start + periods)
-    assert np.abs(shifted - forces).max() < 1e-11 * np.abs(forces).max()
-
-
-def test_extended_positions_are_rounded_in_the_box(small):
-    """A position far away keeps the digits that double precision would have lost there."""
+    """A long double far away keeps the digits that double precision would have lost there."""
     start = molecules().astype(np.longdouble)
     _, forces = small.energy_and_forces(start)
-    far = np.longdouble(2) ** 40 * BOX
-    _, shifted = small.energy_and_forces(start + far)
-    assert np.abs(shifted - forces).max() < 1e-6 * np.abs(forces).max()
+    random = np.random.default_rng(1).integers(-50, 50, size=start.shape)
+    for periods, tolerance in ((random, 1e-11), (np.longdouble(2) ** 40, 1e-6)):
+        _, shifted = small.energy_and_forces(start + periods * BOX)
+        assert np.abs(shifted - forces).max() < tolerance * np.abs(forces).max()
+    far = periods * BOX
     assert np.abs(((start + far).astype(float) - far) - start).max() > 1e-5
 
 
@@ -228,18 +222,32 @@ def test_fixes_that_leave_no_reference_are_refused(write_deck, fixes):
         LammpsForces(write_deck(fixes))
 
 
-def test_other_decks_that_cannot_serve_are_refused(write_deck, tmp_path):
-    with pytest.raises(DeckError, match="in.nowhere: an input script of LAMMPS is required"):
-        LammpsForces(tmp_path / "in.nowhere")
-    (tmp_path / "in.empty").write_text("units lj\n")
-    with pytest.raises(
-        DeckError, match="in.empty: a script that makes a box and atoms is required"
-    ):
-        LammpsForces(tmp_path / "in.empty")
+ATOMIC = """units lj
+atom_style atomic
+region b block 0 9 0 9 0 9
+create_box 1 b
+mass 1 1
+create_atoms 1 single 1 1 1
+pair_style lj/cut 2.5
+pair_coeff 1 1 1 1
+"""
+
+
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        (None, "in.other: an input script of LAMMPS is required"),
+        ("units lj\n", "in.other: a script that makes a box and atoms is required"),
+        (ATOMIC, "an atom style with the property molecule is required"),
+    ],
+)
+def test_other_decks_that_cannot_serve_are_refused(tmp_path, text, message):
+    if text:
+        (tmp_path / "in.other").write_text(text)
+    with pytest.raises(DeckError, match=message):
+        deck_problem(tmp_path / "in.other")
+
+
+def test_a_deck_without_molecules_is_refused(write_deck):
     with pytest.raises(DeckError, match="atoms with a molecule ID above 0 are required"):
         deck_problem(write_deck("fix move all nve", lines=["create_atoms 1 random 9 1 box"]))
-    atomic = "units lj\natom_style atomic\nregion b block 0 9 0 9 0 9\ncreate_box 1 b\nmass 1 1\n"
-    atomic += "create_atoms 1 single 1 1 1\npair_style lj/cut 2.5\npair_coeff 1 1 1 1\n"
-    (tmp_path / "in.atomic").write_text(atomic)
-    with pytest.raises(DeckError, match="an atom style with the property molecule is required"):
-        deck_problem(tmp_path / "in.atomic")
