@@ -1,7 +1,5 @@
 """The study of effects: reading of profiles, judging of made-up counts; real counts are in tests/lammps."""
 
-from dataclasses import replace
-
 import pytest
 
 from benchmarks.engine.page import render
@@ -56,7 +54,9 @@ def made_up(cost=lambda scene, number: 100 * number + 7):
 
 
 def broken(results):
-    return [m.what for m in effects.idle_measurements(results) if not m.holds]
+    """Names of the effects that are not free."""
+    measurements = effects.idle_measurements(results)
+    return [m.what.partition(",")[0] for m in measurements if not m.holds]
 
 
 def test_numbers_are_those_of_a_body_and_a_step():
@@ -77,26 +77,25 @@ def test_results_come_back_from_their_file(tmp_path):
     assert effects.find(again).tables == effects.find(results).tables
 
 
+def effect(name):
+    return next(effect for effect in plan.EFFECTS if effect.name == name)
+
+
 def test_an_effect_that_is_not_free_is_named():
     even = made_up(lambda scene, number: 1000)
     assert broken(even) == [] and effects.find(even).context["not_free"] == []
-    virial = next(effect for effect in plan.EFFECTS if effect.name == "virial")
-    dear = made_up(lambda scene, number: 1001 if scene == virial.off else 1000)
-    assert [what.partition(",")[0] for what in broken(dear)] == ["virial"]
-    assert "although they are off: virial." in render(
-        "effects.md.j2", effects.STUDY, effects.find(dear), ""
-    )
+    off = effect("virial").off
+    dear = made_up(lambda scene, number: 1001 if scene == off else 1000)
+    assert broken(dear) == ["virial"]
+    page = render("effects.md.j2", effects.STUDY, effects.find(dear), "")
+    assert "although they are off: virial." in page
 
 
 def test_own_functions_where_an_effect_is_off_are_named():
     results = made_up(lambda scene, number: 1000)
-    effect = next(effect for effect in plan.EFFECTS if effect.name == "finite size")
-    key = effect.idle, results.sizes.counted[1]
-    own = results.profiles[key].own + type(results.profiles[key].own)(
-        {"GearQuat::Extended::place": 9}
-    )
-    results.profiles[key] = replace(results.profiles[key], own=own)
-    assert [what.partition(",")[0] for what in broken(results)] == ["finite size"]
+    key = effect("finite size").idle, results.sizes.counted[1]
+    results.profiles[key].own["GearQuat::Extended::place"] = 9
+    assert broken(results) == ["finite size"]
 
 
 def test_without_valgrind_the_line_that_installs_it_is_told(monkeypatch, tmp_path):

@@ -103,10 +103,8 @@ def test_a_distribution_is_read_block_by_block(tmp_path):
 
 # --- a small run --------------------------------------------------------------------------------
 def test_a_small_run(lmp_wheel, tmp_path):
-    plan = runs.Plan(
-        drift_steps=4000, dts=(0.05, 0.1), water_steps=30, every=2, blocks=3,
-        seeds=(1,),
-    )  # fmt: skip
+    small = {"drift_steps": 4000, "water_steps": 30, "every": 2, "blocks": 3}
+    plan = runs.Plan(**small, dts=(0.05, 0.1), seeds=(1,))
     done = []
     lab = Lab(tmp_path, str(lmp_wheel.executable), 1, advance=done.append)
     results = runs.measure(lab, plan)
