@@ -1,13 +1,10 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Small tools of the tests: distances, slopes, derivatives, and the 1 % error every check must
    see. */
 
-#ifndef GEAR_QUAT_TEST_CHECKS_H
-#define GEAR_QUAT_TEST_CHECKS_H
+#pragma once
+
+#include "gear_quat_quaternion.h"
+#include "oracles/euler_angles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +24,11 @@ inline double largest_difference(const double *a, const double *b, int n)
   return largest;
 }
 
+inline double largest_difference(const std::vector<double> &a, const std::vector<double> &b)
+{
+  return largest_difference(a.data(), b.data(), int(a.size()));
+}
+
 /// q and -q are the same orientation.
 inline double quaternion_distance(const double *a, const double *b)
 {
@@ -35,13 +37,50 @@ inline double quaternion_distance(const double *a, const double *b)
   return same < opposite ? same : opposite;
 }
 
-/// Exponent p of error ~ h^p between neighbouring runs.
+/// Largest difference of the rotation matrices, whatever the lengths of the quaternions.
+inline double attitude_distance(const double *p, const double *q)
+{
+  using namespace LAMMPS_NS::GearQuat;
+  double a[9], b[9];
+  rotation_matrix(p, dot4(p, p), a);
+  rotation_matrix(q, dot4(q, q), b);
+  return largest_difference(a, b, 9);
+}
+
+inline double attitude_distance(const double *q, const Oracle::Matrix &m)
+{
+  double a[9], b[9];
+  LAMMPS_NS::GearQuat::rotation_matrix(q, LAMMPS_NS::GearQuat::dot4(q, q), a);
+  for (int i = 0; i < 9; ++i) b[i] = double(m.m[i / 3][i % 3]);
+  return largest_difference(a, b, 9);
+}
+
+/// By how much a matrix fails to be a right-handed rotation.
+inline double not_orthogonal(const double *a)
+{
+  using namespace LAMMPS_NS::GearQuat;
+  double third[3];
+  cross3(a, a + 3, third);
+  double worst = largest_difference(third, a + 6, 3);
+  for (int i = 0; i < 9; ++i)
+    worst = std::max(worst, std::fabs(dot3(a + i / 3 * 3, a + i % 3 * 3) - (i / 3 == i % 3)));
+  return worst;
+}
+
+/// Exponent p of error ~ h^p between neighboring runs.
 inline std::vector<double> slopes(const std::vector<double> &h, const std::vector<double> &error)
 {
   std::vector<double> p;
   for (std::size_t i = 1; i < h.size(); ++i)
     p.push_back(std::log(error[i - 1] / error[i]) / std::log(h[i - 1] / h[i]));
   return p;
+}
+
+inline std::vector<double> halvings(double h, int n)
+{
+  std::vector<double> list = {h};
+  while (int(list.size()) <= n) list.push_back(list.back() / 2);
+  return list;
 }
 
 inline double smallest(const std::vector<double> &v)
@@ -74,6 +113,48 @@ template <class F> void holds_and_refuses_one_percent(std::vector<double> values
   }
 }
 
+/// The values agree to the tolerance, and none agrees any more when it is 1 % off.
+template <int N>
+void near_and_refuses_one_percent(const double (&values)[N], const double *expected,
+                                  double tolerance)
+{
+  holds_and_refuses_one_percent({values, values + N}, [&](const std::vector<double> &v) {
+    return largest_difference(v.data(), expected, N) <= tolerance;
+  });
+}
+
+/// The same for each value relative to its own size.
+template <int N>
+void relatively_near_and_refuses_one_percent(const double (&values)[N], const double (&expected)[N],
+                                             double tolerance)
+{
+  for (int i = 0; i < N; ++i)
+    if (expected[i] == 0.0)
+      EXPECT_EQ(values[i], 0.0);
+    else
+      near_and_refuses_one_percent({values[i]}, expected + i, tolerance * std::fabs(expected[i]));
+}
+
+/// Rows of a history at time t, step h, of polynomials with these coefficients: `width` of them for
+/// each power of the time.
+inline std::vector<double> polynomial_rows(const std::vector<double> &a, int width, double t,
+                                           double h)
+{
+  const int n = int(a.size()) / width;
+  std::vector<double> rows(a.size(), 0.0);
+  double hj = 1.0;
+  for (int j = 0; j < n; ++j, hj *= h)
+    for (int c = 0; c < width; ++c) {
+      double tk = 1.0, binomial = 1.0;    // t^(k-j), k over j
+      for (int k = j; k < n; ++k) {
+        rows[j * width + c] += hj * binomial * a[k * width + c] * tk;
+        binomial = binomial * (k + 1) / (k + 1 - j);
+        tk *= t;
+      }
+    }
+  return rows;
+}
+
 /// Reproducible numbers in (-1, 1), the same with every standard library.
 class Numbers {
  public:
@@ -92,7 +173,7 @@ class Numbers {
   std::vector<double> unit_quaternion()
   {
     std::vector<double> q = list(4);
-    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const double norm = std::sqrt(LAMMPS_NS::GearQuat::dot4(q.data(), q.data()));
     for (double &x : q) x /= norm;
     return q;
   }
@@ -102,5 +183,3 @@ class Numbers {
 };
 
 }    // namespace Check
-
-#endif

@@ -1,17 +1,12 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* The host's part, for one body and a load that is a function of its state: start a history, then
    predict - evaluate - correct.  LAMMPS takes this place in the fix. */
 
-#ifndef GEAR_QUAT_TEST_DRIVE_H
-#define GEAR_QUAT_TEST_DRIVE_H
+#pragma once
 
 #include "gear_quat_startup.h"
 
 #include <functional>
+#include <ostream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -30,34 +25,49 @@ inline Load free_of_load(const BodyState &, double)
   return Load{};
 }
 
-inline Scheme scheme_of(Formulation formulation, int values = 0)
+inline Scheme scheme_of(Formulation formulation, int values = 0, int passes = 1,
+                        bool compensate = false)
 {
   Scheme scheme;
   scheme.formulation = formulation;
   scheme.rows = values;
+  scheme.passes = passes;
+  scheme.compensate = compensate;
   return scheme;
 }
 
+constexpr Formulation FIRST = Formulation::FIRST, SECOND = Formulation::SECOND;
+
+constexpr int fewest(Formulation f)
+{
+  return f == FIRST ? FIRST_FEWEST : SECOND_FEWEST;
+}
+constexpr int most(Formulation f)
+{
+  return f == FIRST ? FIRST_MOST : SECOND_MOST;
+}
+
 /// Every number of values of one formulation.
-inline std::vector<Scheme> schemes_of(Formulation formulation)
+inline std::vector<Scheme> schemes_of(Formulation formulation, int passes = 1,
+                                      bool compensate = false)
 {
-  const bool first = formulation == Formulation::FIRST;
   std::vector<Scheme> list;
-  for (int n = first ? FIRST_FEWEST : SECOND_FEWEST; n <= (first ? FIRST_MOST : SECOND_MOST); ++n)
-    list.push_back(scheme_of(formulation, n));
+  for (int n = fewest(formulation); n <= most(formulation); ++n)
+    list.push_back(scheme_of(formulation, n, passes, compensate));
   return list;
 }
 
-inline std::vector<Scheme> every_scheme()
+inline std::vector<Scheme> every_scheme(int passes = 1, bool compensate = false)
 {
-  std::vector<Scheme> list = schemes_of(Formulation::FIRST);
-  for (const Scheme &s : schemes_of(Formulation::SECOND)) list.push_back(s);
+  std::vector<Scheme> list = schemes_of(FIRST, passes, compensate);
+  for (const Scheme &s : schemes_of(SECOND, passes, compensate)) list.push_back(s);
   return list;
 }
 
-inline const char *name(const Scheme &scheme)
+inline Scheme with_velocity_c0(Scheme scheme)
 {
-  return scheme.first() ? "first" : scheme.velocity_c0 ? "second, velocity c0" : "second";
+  scheme.velocity_c0 = true;
+  return scheme;
 }
 
 // The start as the host finds it (gear_quat_bootstrap.cpp).
@@ -172,8 +182,17 @@ struct Motion {
   {
     for (int i = 0; i < n; ++i) step();
   }
+  void run(double time) { steps(int(std::lround(time / h))); }
 };
 
 }    // namespace Drive
 
-#endif
+/// In the messages of tests.
+namespace LAMMPS_NS::GearQuat {
+inline std::ostream &operator<<(std::ostream &out, const Scheme &scheme)
+{
+  return out << (scheme.first() ? "first" : "second") << (scheme.velocity_c0 ? ", velocity c0" : "")
+             << ", " << scheme.values() << " values, " << scheme.passes << " passes"
+             << (scheme.compensate ? ", compensated" : "");
+}
+}    // namespace LAMMPS_NS::GearQuat

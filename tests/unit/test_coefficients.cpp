@@ -1,11 +1,7 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* gear_quat_coefficients.h: every entry as an exact fraction, derived again, compared with the
    printed tables, and judged by what the corrector must do.  A slope would not notice an entry that
-   is wrong by 1 %; these do. */
+   is wrong by 1 %; these do.  The derivation and the criteria are judged too, for more rows than the
+   kernel uses. */
 
 #include "gear_quat_coefficients.h"
 #include "oracles/gear_coefficients.h"
@@ -15,8 +11,8 @@
 #include <gtest/gtest.h>
 
 using namespace LAMMPS_NS::GearQuat;
-using Oracle::Exact;
-using R = Oracle::Rational;
+using namespace Oracle;
+using R = Rational;
 
 namespace {
 
@@ -32,59 +28,70 @@ Exact exact(const Fractions &table)
   return c;
 }
 
-Exact first(int values)
-{
-  return exact(first_order_coefficients(values));
-}
-Exact second(int values, bool velocity_c0)
-{
-  return exact(second_order_coefficients(values, velocity_c0));
-}
+/// The coefficients of the kernel, the derivation of the oracle, and what a corrector of this kind
+/// must do.
+struct FirstOrder {
+  static constexpr int ORDER = 1, FEWEST = FIRST_FEWEST, MOST = FIRST_MOST;
+  static Exact kernel(int n) { return exact(first_order_coefficients(n)); }
+  static Exact derived(int n) { return first_order(n); }
+  template <class T> static bool judge(const Row<T> &c) { return is_first_order_corrector(c); }
+};
+struct SecondOrderPosition {
+  static constexpr int ORDER = 2, FEWEST = SECOND_FEWEST, MOST = SECOND_MOST;
+  static Exact kernel(int n) { return exact(second_order_coefficients(n, false)); }
+  static Exact derived(int n) { return second_order(n, position_c0(n)); }
+  template <class T> static bool judge(const Row<T> &c) { return is_position_corrector(c); }
+};
+struct SecondOrderVelocity : SecondOrderPosition {
+  static Exact kernel(int n) { return exact(second_order_coefficients(n, true)); }
+  static Exact derived(int n) { return second_order(n, velocity_c0(n)); }
+  template <class T> static bool judge(const Row<T> &c) { return is_velocity_corrector(c); }
+};
 
-template <class Check> void expect_each_entry_to_matter(const Exact &good, Check check)
-{
-  ASSERT_TRUE(check(good)) << good.size();
-  for (std::size_t j = 0; j < good.size(); ++j)
-    for (int percent : {99, 101}) {
-      Exact bad = good;
-      bad[j] = bad[j] * R(percent, 100);
-      EXPECT_FALSE(check(bad)) << good.size() << ", entry " << j << " at " << percent << " %";
-    }
-}
-
-/// The same for a criterion of predict_correct.h: it holds exactly, and is refuted modulo a prime.
-template <class Check> void expect_criterion(const Exact &good, Check check)
-{
-  ASSERT_TRUE(check(good)) << good.size();
-  const Oracle::Row<Oracle::Modular> same(good.begin(), good.end());
-  ASSERT_TRUE(check(same)) << good.size();
-  for (std::size_t j = 0; j < good.size(); ++j)
-    for (int percent : {99, 101}) {
-      Oracle::Row<Oracle::Modular> bad = same;
-      bad[j] = bad[j] * Oracle::Modular(percent, 100);
-      EXPECT_FALSE(check(bad)) << good.size() << ", entry " << j << " at " << percent << " %";
-    }
-}
+template <class Kind> class Coefficients : public testing::Test {
+};
+using Kinds = testing::Types<FirstOrder, SecondOrderPosition, SecondOrderVelocity>;
+TYPED_TEST_SUITE(Coefficients, Kinds);
 
 }    // namespace
 
-TEST(Coefficients, EqualTheExactDerivation)
+TYPED_TEST(Coefficients, EqualTheExactDerivation)
 {
-  for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n)
-    expect_each_entry_to_matter(first(n), [&](const Exact &c) {
-      return c == Oracle::first_order(n);
-    });
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n) {
-    expect_each_entry_to_matter(second(n, false), [&](const Exact &c) {
-      return c == Oracle::second_order(n, Oracle::position_c0(n));
-    });
-    expect_each_entry_to_matter(second(n, true), [&](const Exact &c) {
-      return c == Oracle::second_order(n, Oracle::velocity_c0(n));
-    });
+  for (int n = TypeParam::FEWEST; n <= TypeParam::MOST; ++n)
+    EXPECT_EQ(TypeParam::kernel(n), TypeParam::derived(n)) << n;
+}
+
+TYPED_TEST(Coefficients, DoWhatTheCorrectorMust)
+{
+  for (int n = 4; n <= 12; ++n) EXPECT_TRUE(TypeParam::judge(TypeParam::derived(n))) << n;
+  for (int n = TypeParam::FEWEST; n <= TypeParam::MOST; ++n) {
+    const Exact good = TypeParam::kernel(n);
+    ASSERT_TRUE(TypeParam::judge(good)) << n;
+    // a wrong entry is refuted modulo a prime, where fractions do not grow too long
+    const Row<Modular> same(good.begin(), good.end());
+    ASSERT_TRUE(TypeParam::judge(same)) << n;
+    for (int j = 0; j < n; ++j)
+      for (int percent : {99, 101}) {
+        Row<Modular> bad = same;
+        bad[j] = bad[j] * Modular(percent, 100);
+        EXPECT_FALSE(TypeParam::judge(bad)) << n << ", entry " << j << " at " << percent << " %";
+      }
   }
 }
 
-TEST(Coefficients, EqualTheTablesOfTheLiteratureForFirstOrder)
+// from exact rows nothing at all is lost up to degree N - 1: the predictor alone sees to it
+
+TYPED_TEST(Coefficients, PolynomialsBelowDegreeNStayExact)
+{
+  for (int n = TypeParam::FEWEST; n <= TypeParam::MOST; ++n) {
+    const Exact c = TypeParam::kernel(n), none(n);
+    for (int degree = 0; degree < n; ++degree)
+      EXPECT_EQ(error_after(c, TypeParam::ORDER, degree, 0, 5, none), none) << n << ' ' << degree;
+    EXPECT_NE(error_after(c, TypeParam::ORDER, n, 0, 5, none), none) << n;
+  }
+}
+
+TEST(Tables, OfTheLiteratureForFirstOrder)
 {
   const Exact table[] = {
       {{5, 12}, 1, {1, 2}},
@@ -93,10 +100,10 @@ TEST(Coefficients, EqualTheTablesOfTheLiteratureForFirstOrder)
       {{95, 288}, 1, {25, 24}, {35, 72}, {5, 48}, {1, 120}},
       {{19087, 60480}, 1, {137, 120}, {5, 8}, {17, 96}, {1, 40}, {1, 720}},
       {{5257, 17280}, 1, {49, 40}, {203, 270}, {49, 192}, {7, 144}, {7, 1440}, {1, 5040}}};
-  for (int n = 3; n <= 8; ++n) EXPECT_EQ(first(n), table[n - 3]) << n;
+  for (int n = 3; n <= 8; ++n) EXPECT_EQ(FirstOrder::kernel(n), table[n - 3]) << n;
 }
 
-TEST(Coefficients, EqualTheTablesOfTheLiteratureForSecondOrder)
+TEST(Tables, OfTheLiteratureForSecondOrder)
 {
   const Exact table[] = {
       {{1, 6}, {5, 6}, 1, {1, 3}},
@@ -107,73 +114,67 @@ TEST(Coefficients, EqualTheTablesOfTheLiteratureForSecondOrder)
   const R velocity_c0[] = {{1, 4}, {19, 90}, {3, 16}, {863, 5040}, {275, 1728}};
   for (int n = 4; n <= 8; ++n) {
     Exact expected = table[n - 4];
-    EXPECT_EQ(second(n, false), expected) << n;
+    EXPECT_EQ(SecondOrderPosition::kernel(n), expected) << n;
     expected[0] = velocity_c0[n - 4];
-    EXPECT_EQ(second(n, true), expected) << n;
+    EXPECT_EQ(SecondOrderVelocity::kernel(n), expected) << n;
   }
 }
 
-TEST(Coefficients, FirstOrderIsNilpotentAndKeepsDegreeN)
-{
-  for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n)
-    expect_criterion(first(n), [](const auto &c) {
-      return Oracle::is_first_order_corrector(c);
-    });
-}
-
-TEST(Coefficients, SecondOrderPositionIsNilpotentAndKeepsDegreeNPlus1)
-{
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
-    expect_criterion(second(n, false), [](const auto &c) {
-      return Oracle::is_position_corrector(c);
-    });
-}
-
-TEST(Coefficients, SecondOrderVelocityIsNilpotentAndKeepsDegreeN)
-{
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
-    expect_criterion(second(n, true), [](const auto &c) {
-      return Oracle::is_velocity_corrector(c);
-    });
-}
-
-// from exact rows nothing at all is lost up to degree N - 1: the predictor alone sees to it
-
-TEST(Coefficients, PolynomialsBelowDegreeNStayExact)
-{
-  auto judge = [](const Exact &c, int order) {
-    const int n = int(c.size());
-    const Exact none(n);
-    for (int degree = 0; degree < n; ++degree)
-      EXPECT_EQ(Oracle::error_after(c, order, degree, 0, 5, none), none) << n << ' ' << degree;
-    EXPECT_NE(Oracle::error_after(c, order, n, 0, 5, none), none) << n;
-  };
-  for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n) judge(first(n), 1);
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
-    for (bool velocity_c0 : {false, true}) judge(second(n, velocity_c0), 2);
-}
-
-TEST(Coefficients, ErrorWeightsAreThoseOfTheOracle)
-{
-  for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n)
-    expect_each_entry_to_matter({exact(first_order_error_weight(n))}, [&](const Exact &w) {
-      return w[0] == Oracle::first_order_error(n);
-    });
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
-    expect_each_entry_to_matter({exact(second_order_error_weight(n))}, [&](const Exact &w) {
-      return w[0] == Oracle::second_order_local_error(n);
-    });
-}
-
-TEST(Coefficients, WeightsOfAdamsAndMoulton)
+TEST(Tables, OfAdamsAndMoulton)
 {
   const R known[] = {{1, 2}, {1, 12}, {1, 24}, {19, 720}, {3, 160}, {863, 60480}, {275, 24192}};
   for (int k = 1; k <= 7; ++k) EXPECT_EQ(exact(adams_moulton(k)), known[k - 1]) << k;
 }
 
-TEST(Coefficients, AsDoublesTheyAreRoundedOnce)
+TEST(Tables, AsDoublesTheyAreRoundedOnce)
 {
   EXPECT_EQ(first_order_coefficients(5)[0].value(), 251.0 / 720.0);
   EXPECT_EQ(second_order_coefficients(6, false)[0].value(), 0.15);
   EXPECT_EQ(second_order_coefficients(6, true)[0].value(), 0.1875);
+}
+
+TEST(ErrorWeights, AreThoseOfTheDerivationAndDifferencesOfNeighboringC0)
+{
+  for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n)
+    EXPECT_EQ(exact(first_order_error_weight(n)), first_order_error(n)) << n;
+  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
+    EXPECT_EQ(exact(second_order_error_weight(n)), second_order_local_error(n)) << n;
+  for (int n = 3; n <= 12; ++n)
+    EXPECT_EQ(first_order_error(n), first_order(n - 1)[0] - first_order(n)[0]) << n;
+  EXPECT_EQ(first_order_error(4), R(5, 12) - R(3, 8));    // of the printed table
+  EXPECT_EQ(first_order_error(5), R(3, 8) - R(251, 720));
+  EXPECT_EQ(second_order_local_error(5), R(2) * (R(3, 8) - R(251, 720)));
+}
+
+TEST(Criteria, TellTheKindsApart)
+{
+  for (int n = 4; n <= 12; ++n) {
+    EXPECT_FALSE(is_velocity_corrector(SecondOrderPosition::derived(n))) << n;
+    EXPECT_FALSE(is_position_corrector(SecondOrderVelocity::derived(n))) << n;
+  }
+  // Adams-Moulton with as many values as its order is another method, and refused
+  EXPECT_FALSE(is_first_order_corrector(Exact{{3, 8}, 1, {11, 12}, {1, 3}, {1, 24}}));
+}
+
+TEST(Rational, IsExactAndRefusesOverflow)
+{
+  EXPECT_EQ(R(1, 3) + R(1, 6), R(1, 2));
+  EXPECT_EQ(R(-2, 4), R(1, -2));
+  EXPECT_EQ(R(3, 7) / R(9, 14), R(2, 3));
+  EXPECT_NE(R(251, 720), R(251, 720) * R(101, 100));
+  EXPECT_DOUBLE_EQ(R(-3, 8).value(), -0.375);
+  R large(1, 3);
+  EXPECT_THROW(for (int i = 0; i < 9; ++i) large = large * large, std::overflow_error);
+  EXPECT_THROW(R(1, 0), std::domain_error);
+}
+
+TEST(Modular, CalculatesAsFractionsDo)
+{
+  using M = Modular;
+  EXPECT_TRUE(M(1, 3) + M(1, 6) == M(1, 2));
+  EXPECT_TRUE(M(-2, 4) == M(1, -2));
+  EXPECT_TRUE(M(3, 7) * M(14, 9) - M(2, 3) == M(0));
+  EXPECT_TRUE(-M(5, 8) + M(5, 8) == M(0));
+  EXPECT_TRUE(M(251, 720) != M(251, 720) * M(101, 100));
+  EXPECT_THROW(M(1, (1LL << 61) - 1), std::domain_error);
 }

@@ -1,17 +1,9 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Compensated histories: a row stands for row + carry.  Judged in 113 bits, and by what is left
    after a million small steps, in both formulations. */
 
-#include "checks.h"
-#include "drive.h"
-#include "oracles/swinging_top.h"
+#include "scenes.h"
 
 using namespace Drive;
-using std::vector;
 
 namespace {
 
@@ -88,62 +80,6 @@ template <int CARRIES> void expect_predict_to_keep_digits()
     }
   }
 }
-
-/// Columns of x alone: a body that flies freely, in 1e6 steps; error relative to the way.
-struct Flight {
-  double error, of_one_percent;
-};
-
-Flight free_flight(Scheme scheme, bool compensate)
-{
-  scheme.compensate = compensate;
-  const RigidBody body = {3.0, {1.0, 1.0, 1.0}};
-  BodyState start = {};
-  start.q[3] = 1.0;
-  start.center[0] = 1000.1;
-  start.velocity[0] = 0.7;
-  const double h = 1e-4;
-  const int n = 1000000;
-  Motion motion(body, start, free_of_load, scheme, h, Start::FORCES, h);
-  // the way of one step as the start has rounded it: first p/m is one, second row 1
-  const Quad step = motion.rows[scheme.width()];
-  const Quad end = Quad(motion.rows[0]) + n * step;
-  motion.steps(n);
-  return {magnitude(motion.rows[0] - end), magnitude(0.01 * n * step)};
-}
-
-double oscillation(Scheme scheme, bool compensate, double k)
-{
-  scheme.compensate = compensate;
-  const RigidBody body = {1.0, {1.0, 1.0, 1.0}};
-  BodyState start = {};
-  start.q[3] = start.center[0] = start.velocity[1] = 1.0;
-  auto spring = [k](const BodyState &s, double) {
-    Load l = {};
-    for (int i = 0; i < 2; ++i) l.force[i] = -k * s.center[i];
-    return l;
-  };
-  const double h = 0.00048828125;    // 2^-11: times are exact
-  const int n = 1000000;
-  Motion motion(body, start, spring, scheme, h, Start::BOOTSTRAP, 0.0625);
-  motion.steps(n);
-  const long double t = (long double) h * n;
-  return std::max(std::fabs(double(motion.rows[0] - std::cos(t))),
-                  std::fabs(double(motion.rows[1] - std::sin(t))));
-}
-
-double spin(Scheme scheme, bool compensate)
-{
-  scheme.compensate = compensate;
-  static const BodyState end = Oracle::top_state(24.0);
-  const int n = 200000;
-  Motion motion(Oracle::TOP, Oracle::top_state(0.0), free_of_load, scheme, 24.0 / n,
-                Start::BOOTSTRAP, 0.06);
-  motion.steps(n);
-  return Check::quaternion_distance(motion.q(), end.q);
-}
-
-const Scheme BOTH[] = {scheme_of(Formulation::FIRST), scheme_of(Formulation::SECOND)};
 
 }    // namespace
 
@@ -242,35 +178,37 @@ TEST(Compensated, PlainHistoriesHaveNoCarries)
 
 TEST(Compensated, MillionStepsOfFreeFlight)
 {
-  for (const Scheme &scheme : BOTH) {
-    const Flight plain = free_flight(scheme, false), kept = free_flight(scheme, true);
-    std::printf("1e6 steps of free flight, %-6s: %.1e, compensated %.1e\n", name(scheme),
-                plain.error, kept.error);
-    EXPECT_LE(kept.error, 1000.1 * HALF_ULP * 1.1);    // the position's own last digit
-    EXPECT_GT(plain.error, 1e-11);
-    EXPECT_GT(kept.of_one_percent, 0.5);
+  const RigidBody body = {3.0, {1.0, 1.0, 1.0}};
+  const BodyState start = {{1000.1, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}, {0.7, 0.0, 0.0}, {}};
+  const double h = 1e-4;
+  const int n = 1000000;
+  for (Formulation formulation : {FIRST, SECOND}) {
+    double error[2];
+    for (bool compensate : {false, true}) {
+      Motion motion(body, start, free_of_load, scheme_of(formulation, 0, 1, compensate), h,
+                    Start::FORCES, h);
+      // the way of one step as the start has rounded it: first p/m is one, second row 1
+      const Quad step = motion.rows[motion.scheme.width()], end = motion.rows[0] + n * step;
+      motion.steps(n);
+      error[compensate] = magnitude(motion.rows[0] - end);
+      EXPECT_GT(magnitude(0.01 * n * step), 0.5);    // 1 % of the way
+    }
+    EXPECT_LE(error[1], 1000.1 * HALF_ULP * 1.1);    // the position's own last digit
+    EXPECT_GT(error[0], 1e-11);
   }
 }
 
-TEST(Compensated, MillionStepsOfAnOscillator)
+TEST(Compensated, ManyStepsOfAnOscillatorAndOfTheFreeTop)
 {
-  for (const Scheme &scheme : BOTH) {
-    const double plain = oscillation(scheme, false, 1.0), kept = oscillation(scheme, true, 1.0);
-    std::printf("1e6 steps of an oscillator, %-6s: %.1e, compensated %.1e\n", name(scheme), plain,
-                kept);
-    EXPECT_LT(kept, 1e-13);
-    EXPECT_GT(plain, 5 * kept);
+  const double h = 0.00048828125;    // 2^-11: times are exact
+  for (Formulation formulation : {FIRST, SECOND}) {
+    const Scheme plain = scheme_of(formulation), kept = scheme_of(formulation, 0, 1, true);
+    const double swings = error(oscillator(1000000 * h), kept, h, 0.0625);
+    EXPECT_LT(swings, 1e-13);
+    EXPECT_GT(error(oscillator(1000000 * h), plain, h, 0.0625), 5 * swings);
+    const double spins = error(free_top(), kept, 24.0 / 200000, 0.06);
+    EXPECT_LT(spins, 4e-15);    // of the matrix: the quaternion's is half of it
+    EXPECT_GT(error(free_top(), plain, 24.0 / 200000, 0.06), 5 * spins);
   }
-  EXPECT_GT(oscillation(BOTH[1], true, 1.01), 0.1);
-}
-
-TEST(Compensated, ManyStepsOfTheFreeTop)
-{
-  for (const Scheme &scheme : BOTH) {
-    const double plain = spin(scheme, false), kept = spin(scheme, true);
-    std::printf("2e5 steps of the free top, %-6s: %.1e, compensated %.1e\n", name(scheme), plain,
-                kept);
-    EXPECT_LT(kept, 2e-15);
-    EXPECT_GT(plain, 5 * kept);
-  }
+  EXPECT_GT(error(oscillator(1000000 * h, 1.01), scheme_of(SECOND, 0, 1, true), h, 0.0625), 0.1);
 }

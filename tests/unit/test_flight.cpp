@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* gear_quat_flight.h: what a flight on trial loses is what a long one loses, and little more. */
 
 #include "drive.h"
@@ -21,15 +16,6 @@ BodyState spinning(double omega)
   return {{0, 0, 0}, {0, 0, 0, 1}, {0.1, 0, 0}, {0.0, 0.002, omega}};
 }
 
-Scheme of_values(Formulation formulation, int n)
-{
-  Scheme scheme;
-  scheme.formulation = formulation;
-  scheme.rows = n;
-  scheme.passes = 2;
-  return scheme;
-}
-
 /// Radians in a step of the slowest spin that is lost, to 1 %.
 double limit(const Scheme &scheme, double h)
 {
@@ -45,13 +31,14 @@ double limit(const Scheme &scheme, double h)
 
 TEST(Flight, MoreValuesFollowSlowerSpins)
 {
-  for (const Formulation formulation : {Formulation::FIRST, Formulation::SECOND}) {
+  for (const Formulation formulation : {FIRST, SECOND}) {
     double last = 4.0;
-    for (int n = 5; n <= (formulation == Formulation::FIRST ? 8 : 12); ++n) {
-      const double now = limit(of_values(formulation, n), 1.0);
-      EXPECT_LT(now, 1.02 * last) << n;
-      EXPECT_GT(now, FLIGHT_SLOW) << n;    // what is not flown is never lost
-      EXPECT_NEAR(limit(of_values(formulation, n), -0.5), now, 0.02 * now);
+    for (const Scheme &scheme : schemes_of(formulation, 2)) {
+      if (scheme.values() < 5) continue;
+      const double now = limit(scheme, 1.0);
+      EXPECT_LT(now, 1.02 * last) << scheme;
+      EXPECT_GT(now, FLIGHT_SLOW) << scheme;    // what is not flown is never lost
+      EXPECT_NEAR(limit(scheme, -0.5), now, 0.02 * now);
       last = now;
     }
   }
@@ -59,7 +46,7 @@ TEST(Flight, MoreValuesFollowSlowerSpins)
 
 TEST(Flight, EightValuesFollowAlmostHalfARadian)
 {
-  const Scheme scheme = of_values(Formulation::SECOND, 8);
+  const Scheme scheme = scheme_of(SECOND, 8, 2);
   const double lost = limit(scheme, 1.0);
   EXPECT_GT(lost, 0.4);
   EXPECT_LT(lost, 0.55);
@@ -67,7 +54,7 @@ TEST(Flight, EightValuesFollowAlmostHalfARadian)
 
 TEST(Flight, TheLongestStepIsOneThatIsFollowed)
 {
-  const Scheme scheme = of_values(Formulation::SECOND, 8);
+  const Scheme scheme = scheme_of(SECOND, 8, 2);
   for (const double omega : {0.6, 2.7, 100.0}) {
     const BodyState state = spinning(omega);
     const double step = longest_step(scheme, CARBON_DIOXIDE, state, 1.0);

@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* gear_quat_limits.h: what is beyond the limits, and what no number is. */
 
 #include "checks.h"

@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* gear_quat_nordsieck.h: the history is a polynomial, and prediction moves along it exactly. */
 
 #include "checks.h"
@@ -16,21 +11,9 @@ namespace {
 constexpr int N = 6, WIDTH = 3;
 using Rows = Nordsieck<WIDTH>;
 
-/// Rows at time t, step h, of polynomials of degree N - 1 with the given coefficients (per column).
 std::vector<double> rows_of(const std::vector<double> &a, double t, double h)
 {
-  std::vector<double> rows(N * WIDTH, 0.0);
-  double hj = 1.0;
-  for (int j = 0; j < N; ++j, hj *= h)
-    for (int c = 0; c < WIDTH; ++c) {
-      double tk = 1.0, binomial = 1.0;    // t^(k-j), k over j
-      for (int k = j; k < N; ++k) {
-        rows[j * WIDTH + c] += hj * binomial * a[k * WIDTH + c] * tk;
-        binomial = binomial * (k + 1) / (k + 1 - j);
-        tk *= t;
-      }
-    }
-  return rows;
+  return Check::polynomial_rows(a, WIDTH, t, h);
 }
 
 }    // namespace
@@ -50,15 +33,9 @@ TEST(Nordsieck, PredictIsTaylorsSeriesExactly)
 TEST(Nordsieck, PredictWorksForEveryNumberOfRows)
 {
   for (int n = 3; n <= 12; ++n) {
-    std::vector<double> rows(n, 1.0), expected(n, 0.0);
+    std::vector<double> rows(n, 1.0);
+    const std::vector<double> expected = Check::polynomial_rows(rows, 1, 1.0, 1.0);
     Nordsieck<1>::predict(rows.data(), n);
-    for (int j = 0; j < n; ++j) {
-      double binomial = 1.0;
-      for (int k = j; k < n; ++k) {
-        expected[j] += binomial;
-        binomial = binomial * (k + 1) / (k + 1 - j);
-      }
-    }
     EXPECT_EQ(rows, expected) << n;
   }
 }
@@ -72,7 +49,7 @@ TEST(Nordsieck, PredictBackwardsReturns)
     Rows::rescale(rows.data(), N, ratio);
     Rows::predict(rows.data(), N);
     Rows::rescale(rows.data(), N, 1.0 / ratio);
-    return largest_difference(rows.data(), start.data(), N * WIDTH);
+    return largest_difference(rows, start);
   };
   EXPECT_LT(there_and_back(-1.0), 1e-14);
   EXPECT_GT(there_and_back(-1.01), 1e-3);

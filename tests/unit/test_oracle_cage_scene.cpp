@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* The scene the paper's runs are made in, checked before anything moves in it: both printed
    energies, the body, the symmetry of the charges, forces and torques as gradients. */
 

@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* The extrapolated flow, checked against the exact free top and an oscillator. */
 
 #include "checks.h"

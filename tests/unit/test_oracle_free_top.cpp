@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* The exact free top, checked against something much simpler: Runge-Kutta of fourth order in
    extended precision with very many steps, on omega and on the nine elements of A. */
 

@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* gear_quat_integrator.h, one step, against the paper's equations written down literally a second
    time; every choice of the scheme, and every number that enters. */
 
@@ -12,6 +7,7 @@
 #include "oracles/paper_step.h"
 
 using namespace Drive;
+using Check::largest_difference;
 using std::vector;
 
 namespace {
@@ -96,84 +92,64 @@ vector<double> literal_step(const Scheme &scheme, const vector<long double> &tab
   return out;
 }
 
-double distance(const vector<double> &a, const vector<double> &b)
-{
-  return Check::largest_difference(a.data(), b.data(), int(a.size()));
-}
-
 /// The literal step agrees with the kernel's; 1 % in a coefficient, or in anything given, does not.
 void expect_literal(const Scheme &scheme, const vector<long double> &table)
 {
   const vector<double> kernel = kernel_step(scheme, GIVEN), paper = literal_step(scheme, table);
-  EXPECT_LT(distance(kernel, paper), 2e-15);
+  EXPECT_LT(largest_difference(kernel, paper), 2e-15);
   for (std::size_t j = 0; j < table.size(); ++j) {
     vector<long double> bad = table;
     bad[j] *= 1.01L;
-    EXPECT_GT(distance(kernel, literal_step(scheme, bad)), 2e-11) << "coefficient " << j;
+    EXPECT_GT(largest_difference(kernel, literal_step(scheme, bad)), 2e-11) << "coefficient " << j;
   }
   Check::holds_and_refuses_one_percent(GIVEN, [&](const vector<double> &given) {
-    return distance(kernel_step(scheme, given), paper) <= 2e-15;
+    return largest_difference(kernel_step(scheme, given), paper) <= 2e-15;
   });
 }
 
 }    // namespace
 
-TEST(PaperStep, FirstFormulationWithEveryChoice)
+TEST(PaperStep, EveryChoiceIsAnotherStep)
 {
-  vector<vector<double>> results;
-  for (int choice = 0; choice < 8; ++choice) {
-    Scheme scheme;
-    scheme.formulation = Formulation::FIRST;
-    scheme.predicted_omega = choice & 1;
-    scheme.predicted_momentum = choice & 2;
-    scheme.project = choice & 4;
-    expect_literal(scheme, TABLE_1);
-    results.push_back(kernel_step(scheme, GIVEN));
+  for (Formulation formulation : {FIRST, SECOND}) {
+    vector<vector<double>> results;
+    for (int choice = 0; choice < (formulation == FIRST ? 8 : 4); ++choice) {
+      Scheme scheme = scheme_of(formulation);
+      vector<long double> table = TABLE_1;
+      scheme.project = choice & 1;
+      if (formulation == FIRST) {
+        scheme.predicted_omega = choice & 2;
+        scheme.predicted_momentum = choice & 4;
+      } else {
+        scheme.velocity_c0 = choice & 2;
+        table = TABLE_2;
+        if (!scheme.velocity_c0) table[0] = 3.0L / 20;
+      }
+      expect_literal(scheme, table);
+      const vector<double> result = kernel_step(scheme, GIVEN);
+      for (const auto &other : results)
+        EXPECT_GT(largest_difference(result, other), 1e-5) << choice;
+      results.push_back(result);
+    }
   }
-  for (int i = 0; i < 8; ++i)    // each choice is another step
-    for (int k = 0; k < i; ++k) EXPECT_GT(distance(results[i], results[k]), 1e-5) << i << k;
-}
-
-TEST(PaperStep, SecondFormulationWithEveryChoice)
-{
-  vector<vector<double>> results;
-  for (int choice = 0; choice < 4; ++choice) {
-    Scheme scheme;
-    scheme.formulation = Formulation::SECOND;
-    scheme.velocity_c0 = choice & 1;
-    scheme.project = choice & 2;
-    vector<long double> table = TABLE_2;
-    if (!scheme.velocity_c0) table[0] = 3.0L / 20;
-    expect_literal(scheme, table);
-    results.push_back(kernel_step(scheme, GIVEN));
-  }
-  for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < i; ++k) EXPECT_GT(distance(results[i], results[k]), 1e-5) << i << k;
 }
 
 TEST(PaperStep, EveryNumberOfValuesAndPasses)
 {
-  vector<Scheme> schemes = every_scheme();
-  for (Scheme s : schemes_of(Formulation::SECOND)) {
-    s.velocity_c0 = true;
-    schemes.push_back(s);
-  }
-  for (Scheme scheme : schemes)
-    for (int passes : {1, 2, 3})
-      for (bool compensate : {false, true}) {
-        scheme.passes = passes;
-        scheme.compensate = compensate;
+  for (int passes : {1, 2, 3})
+    for (bool compensate : {false, true}) {
+      for (const Scheme &scheme : every_scheme(passes, compensate))
         expect_literal(scheme, table_of(scheme));
-      }
+      for (const Scheme &scheme : schemes_of(SECOND, passes, compensate))
+        expect_literal(with_velocity_c0(scheme), table_of(with_velocity_c0(scheme)));
+    }
 }
 
 TEST(PaperStep, ChoicesOfTheOtherFormulationChangeNothing)
 {
-  Scheme plain, other;
+  Scheme plain = scheme_of(SECOND), other = plain;
   other.predicted_omega = other.predicted_momentum = true;
   EXPECT_EQ(kernel_step(plain, GIVEN), kernel_step(other, GIVEN));
-  plain.formulation = Formulation::FIRST;
-  other = plain;
-  other.velocity_c0 = true;
-  EXPECT_EQ(kernel_step(plain, GIVEN), kernel_step(other, GIVEN));
+  plain = scheme_of(FIRST);
+  EXPECT_EQ(kernel_step(plain, GIVEN), kernel_step(with_velocity_c0(plain), GIVEN));
 }

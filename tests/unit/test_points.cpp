@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* A body without moments of inertia: what is left out of a step changes no bit of its motion. */
 
 #include "drive.h"
@@ -34,10 +29,8 @@ std::vector<double> history(const Scheme &scheme, double h)
 TEST(Points, MoveToTheBitAsWithRotation)
 {
   const double h = 0.03;
-  for (Scheme scheme : every_scheme())
-    for (const bool compensate : {false, true}) {
-      scheme.compensate = compensate;
-      scheme.passes = 2;
+  for (const bool compensate : {false, true})
+    for (const Scheme &scheme : every_scheme(2, compensate)) {
       const Integrator integrator(scheme, h);
       std::vector<double> whole = history(scheme, h), center = whole, changed = whole;
       BodyState kept = integrator.body_state(POINT, center.data());

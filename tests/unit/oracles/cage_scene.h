@@ -1,23 +1,15 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* The paper's scene: one body of four sites in a cage of 26 fixed spheres (Pratt & Bin Mohamad
    Zaini, Tables 3 to 6).  The charges of the cage are not printed: the pattern here is
    RECONSTRUCTED; it reproduces both total energies the paper prints. */
 
-#ifndef GEAR_QUAT_ORACLE_CAGE_SCENE_H
-#define GEAR_QUAT_ORACLE_CAGE_SCENE_H
+#pragma once
 
 #include "euler_angles.h"
 #include "gear_quat_rigid_body.h"
 
 namespace Oracle {
 
-using LAMMPS_NS::GearQuat::BodyState;
-using LAMMPS_NS::GearQuat::Load;
-using LAMMPS_NS::GearQuat::RigidBody;
+using namespace LAMMPS_NS::GearQuat;
 
 struct CageScene {
   RigidBody body;
@@ -41,11 +33,11 @@ struct CageScene {
     const double degree = std::acos(-1.0) / 180.0;
     double q_site[4], site_axes[9], a[9] = {};
     euler_quaternion(40.0 * degree, 100.0 * degree, 85.0 * degree, q_site);
-    LAMMPS_NS::GearQuat::rotation_matrix(q_site, 1.0, site_axes);    // space -> the axes of the sites
+    rotation_matrix(q_site, 1.0, site_axes);    // space -> the axes of the sites
     for (int i = 0; i < 9; ++i)
       for (int k = 0; k < 3; ++k) a[i] += axes[3 * (i / 3) + k] * site_axes[3 * k + i % 3];
     start = BodyState{};
-    LAMMPS_NS::GearQuat::quaternion_from_matrix(a, start.q);
+    quaternion_from_matrix(a, start.q);
     start.center[0] = test_case == 3 ? 70.0 : 84.0;
     start.velocity[0] = test_case == 3 ? 0.0 : 0.2;
     const double w = (test_case == 3 ? 0.08 : 0.05) * 180.0 * degree;
@@ -60,39 +52,57 @@ struct CageScene {
     potential(state, norm2, &total);
     return total;
   }
+  Load operator()(const BodyState &state, double norm2) const { return load(state, norm2); }
 
   double total_energy(const BodyState &state) const
   {
-    return potential(state, LAMMPS_NS::GearQuat::dot4(state.q, state.q)) +
-        translational_energy(body, state.velocity) + rotational_energy(body, state.omega_body);
+    return potential(state, dot4(state.q, state.q)) + translational_energy(body, state.velocity) +
+        rotational_energy(body, state.omega_body);
   }
 
   double potential(const BodyState &state, double norm2, Load *total = nullptr) const
   {
     double a[9], energy = 0.0;
-    LAMMPS_NS::GearQuat::rotation_matrix(state.q, norm2, a);
+    rotation_matrix(state.q, norm2, a);
     for (int k = 0; k < 4; ++k) {
       double arm[3], force[3] = {0.0, 0.0, 0.0}, torque[3];
-      LAMMPS_NS::GearQuat::to_space(a, site_body[k], arm);
+      to_space(a, site_body[k], arm);
       const double sigma = 0.5 * (site_sigma[k] + CAGE_SIGMA);    // Lorentz-Berthelot, Eq. 19a
       const double epsilon = std::sqrt(site_epsilon[k] * CAGE_EPSILON);
       for (int c = 0; c < 26; ++c) {
         double d[3];
         for (int i = 0; i < 3; ++i) d[i] = state.center[i] + arm[i] - cage[c][i];
-        const double r2 = LAMMPS_NS::GearQuat::dot3(d, d), s2 = sigma * sigma / r2, s6 = s2 * s2 * s2;
+        const double r2 = dot3(d, d), s2 = sigma * sigma / r2, s6 = s2 * s2 * s2;
         const double coulomb = site_charge[k] * cage_charge[c] / std::sqrt(r2);
         energy += 4.0 * epsilon * (s6 * s6 - s6) + coulomb;    // Eq. 19
         const double over_r = (24.0 * epsilon * (2.0 * s6 * s6 - s6) + coulomb) / r2;
         for (int i = 0; i < 3; ++i) force[i] += over_r * d[i];
       }
       if (!total) continue;
-      LAMMPS_NS::GearQuat::cross3(arm, force, torque);    // Eq. 12
+      cross3(arm, force, torque);    // Eq. 12
       for (int i = 0; i < 3; ++i) {
         total->force[i] += force[i];
         total->torque_space[i] += torque[i];
       }
     }
     return energy;
+  }
+
+  /// Sites from their center of mass, in the axes they are listed in, and their tensor of inertia.
+  static void listed_sites(double offset[4][3], double tensor[9])
+  {
+    const double site[4][3] = {{3, -4, 0}, {-3, -4, 0}, {0, 0, 0}, {0, 0, 12}};
+    const double mass[4] = {2, 2, 10, 50};
+    double center[3] = {0, 0, 0};
+    for (int k = 0; k < 4; ++k)
+      for (int i = 0; i < 3; ++i) center[i] += mass[k] * site[k][i] / 64.0;
+    for (int i = 0; i < 9; ++i) tensor[i] = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      double *d = offset[k];
+      for (int i = 0; i < 3; ++i) d[i] = site[k][i] - center[i];
+      for (int i = 0; i < 9; ++i)
+        tensor[i] += mass[k] * ((i % 4 == 0) * dot3(d, d) - d[i / 3] * d[i % 3]);
+    }
   }
 
  private:
@@ -114,29 +124,17 @@ struct CageScene {
   /// axes: rows are the axes of site_body in those the sites are listed in.
   void build_body(bool consistent, double axes[9])
   {
-    const double site[4][3] = {{3, -4, 0}, {-3, -4, 0}, {0, 0, 0}, {0, 0, 12}};
-    const double mass[4] = {2, 2, 10, 50};
-    double center[3] = {0, 0, 0}, offset[4][3], tensor[9] = {};
+    double offset[4][3], tensor[9];
     body.mass = 64.0;
-    for (int k = 0; k < 4; ++k)
-      for (int i = 0; i < 3; ++i) center[i] += mass[k] * site[k][i] / body.mass;
-    for (int k = 0; k < 4; ++k) {
-      for (int i = 0; i < 3; ++i) offset[k][i] = site[k][i] - center[i];
-      for (int i = 0; i < 9; ++i)
-        tensor[i] += mass[k] *
-            ((i % 4 == 0) * LAMMPS_NS::GearQuat::dot3(offset[k], offset[k]) -
-             offset[k][i / 3] * offset[k][i % 3]);
-    }
-    LAMMPS_NS::GearQuat::principal_axes(tensor, body.inertia, axes);
+    listed_sites(offset, tensor);
+    principal_axes(tensor, body.inertia, axes);
     for (int k = 0; k < 3; ++k)    // the axes near +x, +y, +z: omega is listed along them
       if (axes[4 * k] < 0.0)
         for (int i = 0; i < 3; ++i) axes[3 * k + i] = -axes[3 * k + i];
     if (!consistent)
       for (int i = 0; i < 9; ++i) axes[i] = i % 4 == 0;
-    for (int k = 0; k < 4; ++k) LAMMPS_NS::GearQuat::to_body(axes, offset[k], site_body[k]);
+    for (int k = 0; k < 4; ++k) to_body(axes, offset[k], site_body[k]);
   }
 };
 
 }    // namespace Oracle
-
-#endif

@@ -1,13 +1,7 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Rotation matrices from Euler angles, Goldstein's x-convention (phi about z, theta about the new
    x, psi about the new z), as a product of three plane rotations: no quaternion is used. */
 
-#ifndef GEAR_QUAT_ORACLE_EULER_ANGLES_H
-#define GEAR_QUAT_ORACLE_EULER_ANGLES_H
+#pragma once
 
 #include <cmath>
 
@@ -62,5 +56,3 @@ inline void euler_quaternion(double phi, double psi, double theta, double *q)
 }
 
 }    // namespace Oracle
-
-#endif

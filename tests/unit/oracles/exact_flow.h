@@ -1,26 +1,20 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Where a body is after a time h, from any state and under any load, to the digits of the load:
    modified midpoint steps extrapolated to none (Gragg, Bulirsch & Stoer), extended precision.  The
    equations of motion are written down here once more; nothing of the kernel integrates. */
 
-#ifndef GEAR_QUAT_ORACLE_EXACT_FLOW_H
-#define GEAR_QUAT_ORACLE_EXACT_FLOW_H
+#pragma once
 
 #include "gear_quat_rigid_body.h"
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <functional>
 #include <vector>
 
 namespace Oracle {
 
-using LAMMPS_NS::GearQuat::BodyState;
-using LAMMPS_NS::GearQuat::Load;
-using LAMMPS_NS::GearQuat::RigidBody;
+using namespace LAMMPS_NS::GearQuat;
 
 class ExactFlow {
  public:
@@ -49,55 +43,50 @@ class ExactFlow {
 
  private:
   static constexpr int SIZE = 13, COLUMNS = 9;
-  using Vector = std::array<long double, SIZE>;    // x, v, q, omega_body
+  using Vector = std::array<long double, SIZE>;    // x, q, v, omega_body: the order of BodyState
+  static_assert(sizeof(BodyState) == SIZE * sizeof(double), "a state is 13 numbers");
 
   RigidBody body;
   LoadOf load;
 
   static Vector packed(const BodyState &s)
   {
+    std::array<double, SIZE> numbers;
+    std::memcpy(numbers.data(), &s, sizeof s);
     Vector y;
-    for (int i = 0; i < 3; ++i) {
-      y[i] = s.center[i];
-      y[3 + i] = s.velocity[i];
-      y[10 + i] = s.omega_body[i];
-    }
-    for (int i = 0; i < 4; ++i) y[6 + i] = s.q[i];
+    std::copy(numbers.begin(), numbers.end(), y.begin());
     return y;
   }
 
   static BodyState unpacked(const Vector &y)
   {
+    std::array<double, SIZE> numbers;
+    std::copy(y.begin(), y.end(), numbers.begin());
     BodyState s;
-    for (int i = 0; i < 3; ++i) {
-      s.center[i] = double(y[i]);
-      s.velocity[i] = double(y[3 + i]);
-      s.omega_body[i] = double(y[10 + i]);
-    }
-    for (int i = 0; i < 4; ++i) s.q[i] = double(y[6 + i]);
+    std::memcpy(&s, numbers.data(), sizeof s);
     return s;
   }
 
   Vector rates(const Vector &y) const
   {
     const BodyState s = unpacked(y);
-    const double norm2 = LAMMPS_NS::GearQuat::dot4(s.q, s.q);
+    const double norm2 = dot4(s.q, s.q);
     const Load l = load(s, norm2);
     double a[9], torque[3];
-    LAMMPS_NS::GearQuat::rotation_matrix(s.q, norm2, a);
-    LAMMPS_NS::GearQuat::to_body(a, l.torque_space, torque);
-    const long double *q = &y[6], *w = &y[10];
+    rotation_matrix(s.q, norm2, a);
+    to_body(a, l.torque_space, torque);
+    const long double *q = &y[3], *v = &y[7], *w = &y[10];
     Vector d;
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
-      d[i] = y[3 + i];
-      d[3 + i] = l.force[i] / (long double) body.mass;
-      d[6 + i] = 0.5L * (q[3] * w[i] + q[j] * w[k] - q[k] * w[j]);
+      d[i] = v[i];
+      d[7 + i] = l.force[i] / (long double) body.mass;
+      d[3 + i] = 0.5L * (q[3] * w[i] + q[j] * w[k] - q[k] * w[j]);
       const long double gyroscopic =
           ((long double) body.inertia[j] - body.inertia[k]) * w[j] * w[k];
       d[10 + i] = (torque[i] + gyroscopic) / body.inertia[i];
     }
-    d[9] = -0.5L * (q[0] * w[0] + q[1] * w[1] + q[2] * w[2]);
+    d[6] = -0.5L * (q[0] * w[0] + q[1] * w[1] + q[2] * w[2]);
     return d;
   }
 
@@ -120,5 +109,3 @@ class ExactFlow {
 };
 
 }    // namespace Oracle
-
-#endif

@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* The free asymmetric top, exactly: angular velocity by Jacobi's elliptic functions, attitude by
    Euler angles about the fixed angular momentum and one quadrature (Landau & Lifshitz, Mechanics,
    section 37; Goldstein, x-convention).  Extended precision; moments all different, separatrix
@@ -11,8 +6,7 @@
    Roles: a = the extreme axis omega never leaves (dn), b = the other extreme (cn), m = the middle
    one (sn).  2 E I_m < L^2: a is the largest moment; otherwise the smallest. */
 
-#ifndef GEAR_QUAT_ORACLE_FREE_TOP_H
-#define GEAR_QUAT_ORACLE_FREE_TOP_H
+#pragma once
 
 #include "euler_angles.h"
 
@@ -38,24 +32,10 @@ inline void jacobi(long double u, long double k2, long double &sn, long double &
   dn = std::sqrt(1.0L - k2 * sn * sn);
 }
 
-/// Carlson's R_F by duplication.
-inline long double carlson_rf(long double x, long double y, long double z)
-{
-  for (int n = 0; n < 60; ++n) {
-    const long double l = std::sqrt(x * y) + std::sqrt(y * z) + std::sqrt(z * x);
-    x = 0.25L * (x + l);
-    y = 0.25L * (y + l);
-    z = 0.25L * (z + l);
-  }
-  return 1.0L / std::sqrt((x + y + z) / 3.0L);
-}
-
 /// The u with sn u = s, cn u = c.
 inline long double inverse_jacobi(long double s, long double c, long double k2)
 {
-  const long double f = s * carlson_rf(c * c, 1.0L - k2 * s * s, 1.0L);
-  if (c >= 0.0L) return f;
-  return std::copysign(2.0L * carlson_rf(0.0L, 1.0L - k2, 1.0L), s) - f;
+  return std::ellint_1(std::sqrt(k2), std::atan2(s, c));
 }
 
 class FreeTop {
@@ -157,5 +137,3 @@ class FreeTop {
 };
 
 }    // namespace Oracle
-
-#endif

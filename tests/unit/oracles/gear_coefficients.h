@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Gear's corrector coefficients derived from what they are for, in exact fractions.
 
    The higher rows come from the roots of the corrector's polynomial: -1, -2, ..., -(N-2) for the
@@ -12,8 +7,7 @@
 
    What a set of coefficients must do is stated apart from these closed forms: predict_correct.h. */
 
-#ifndef GEAR_QUAT_ORACLE_GEAR_COEFFICIENTS_H
-#define GEAR_QUAT_ORACLE_GEAR_COEFFICIENTS_H
+#pragma once
 
 #include "rational.h"
 
@@ -120,5 +114,3 @@ inline Rational second_order_local_error(int values)
 }
 
 }    // namespace Oracle
-
-#endif

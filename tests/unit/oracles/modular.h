@@ -1,13 +1,7 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Fractions modulo the prime 2^61 - 1.  What is not zero here is not zero: unlike exact fractions
    they never grow, so a wrong set of coefficients can be refuted after any number of steps. */
 
-#ifndef GEAR_QUAT_ORACLE_MODULAR_H
-#define GEAR_QUAT_ORACLE_MODULAR_H
+#pragma once
 
 #include "rational.h"
 
@@ -58,5 +52,3 @@ class Modular {
 };
 
 }    // namespace Oracle
-
-#endif

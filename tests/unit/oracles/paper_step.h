@@ -1,16 +1,11 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* One step of the paper, literally: derivatives instead of a Nordsieck history, Taylor's series
    with factorials (Eq. 11), corrections as printed (Eqs. 13 to 18 and the lines below them), W and
    A as matrices.  Further passes begin from what is corrected so far, with the force and the torque
    along the body axes of the first.  Extended precision, no kernel header. */
 
-#ifndef GEAR_QUAT_ORACLE_PAPER_STEP_H
-#define GEAR_QUAT_ORACLE_PAPER_STEP_H
+#pragma once
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -47,27 +42,41 @@ struct PaperStep {
     return project ? q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] : 1.0L;
   }
 
+  /// W(q) of Eqs. 5 and 6, its last row corrected.
+  template <class T> static std::array<std::array<T, 4>, 4> w(const T *q)
+  {
+    return {{{q[3], -q[2], q[1], q[0]},
+             {q[2], q[3], -q[0], q[1]},
+             {-q[1], q[0], q[3], q[2]},
+             {-q[0], -q[1], -q[2], q[3]}}};
+  }
+
   static void half_w_times(const Real *q, const Real *v, Real *out)
   {
-    const Real w[4][4] = {{q[3], -q[2], q[1], q[0]},
-                          {q[2], q[3], -q[0], q[1]},
-                          {-q[1], q[0], q[3], q[2]},
-                          {-q[0], -q[1], -q[2], q[3]}};
+    const auto rows = w(q);
     for (int i = 0; i < 4; ++i)
-      out[i] = 0.5L * (w[i][0] * v[0] + w[i][1] * v[1] + w[i][2] * v[2] + w[i][3] * v[3]);
+      out[i] =
+          0.5L * (rows[i][0] * v[0] + rows[i][1] * v[1] + rows[i][2] * v[2] + rows[i][3] * v[3]);
+  }
+
+  /// A(q)/2 of Eq. 8 as corrected, n = |q|^2.
+  template <class T> static std::array<T, 9> half_a(const T *q, T n)
+  {
+    const T x = q[0], y = q[1], z = q[2], s = q[3];
+    return {x * x + s * s - n / 2, x * y + z * s,         x * z - y * s,
+            x * y - z * s,         y * y + s * s - n / 2, y * z + x * s,
+            x * z + y * s,         y * z - x * s,         z * z + s * s - n / 2};
   }
 
   /// Eqs. 8, 10 and 7; q: the pose at which the torque was met.
   void angular_acceleration(const Real *q, const Real *w, Real *wdot) const
   {
-    const Real x = q[0], y = q[1], z = q[2], s = q[3], n = norm2(q);
-    const Real a[3][3] = {{x * x + s * s - n / 2, x * y + z * s, x * z - y * s},
-                          {x * y - z * s, y * y + s * s - n / 2, y * z + x * s},
-                          {x * z + y * s, y * z - x * s, z * z + s * s - n / 2}};
+    const Real n = norm2(q);
+    const auto a = half_a(q, n);
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
       Real torque = 0.0L;
-      for (int c = 0; c < 3; ++c) torque += 2.0L / n * a[i][c] * torque_space[c];
+      for (int c = 0; c < 3; ++c) torque += 2.0L / n * a[3 * i + c] * torque_space[c];
       wdot[i] = torque / inertia[i] + (inertia[j] - inertia[k]) / inertia[i] * w[j] * w[k];
     }
   }
@@ -132,5 +141,3 @@ struct PaperStep {
 };
 
 }    // namespace Oracle
-
-#endif

@@ -1,8 +1,3 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Predict-correct in exact fractions: what a set of corrector coefficients does, and the judgement
    whether it does what the method promises.  Nothing here knows the right coefficients.
 
@@ -12,8 +7,7 @@
 
    R: Rational proves what holds; Modular proves what does not, where fractions grow too long. */
 
-#ifndef GEAR_QUAT_ORACLE_PREDICT_CORRECT_H
-#define GEAR_QUAT_ORACLE_PREDICT_CORRECT_H
+#pragma once
 
 #include "rational.h"
 
@@ -142,5 +136,3 @@ template <class R> bool is_velocity_corrector(const Row<R> &c)
 }
 
 }    // namespace Oracle
-
-#endif

@@ -1,12 +1,6 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Exact fractions of 128-bit integers.  An overflow throws: a result is exact or there is none. */
 
-#ifndef GEAR_QUAT_ORACLE_RATIONAL_H
-#define GEAR_QUAT_ORACLE_RATIONAL_H
+#pragma once
 
 #include <ostream>
 #include <stdexcept>
@@ -75,5 +69,3 @@ class Rational {
 };
 
 }    // namespace Oracle
-
-#endif

@@ -1,13 +1,7 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* A free asymmetric top whose center of mass swings, x'' = -x: everything about it is known, and so
    are the exact rows of a history. */
 
-#ifndef GEAR_QUAT_ORACLE_SWINGING_TOP_H
-#define GEAR_QUAT_ORACLE_SWINGING_TOP_H
+#pragma once
 
 #include "free_top.h"
 #include "gear_quat_integrator.h"
@@ -17,10 +11,7 @@
 
 namespace Oracle {
 
-using LAMMPS_NS::GearQuat::BodyState;
-using LAMMPS_NS::GearQuat::Load;
-using LAMMPS_NS::GearQuat::RigidBody;
-using LAMMPS_NS::GearQuat::Scheme;
+using namespace LAMMPS_NS::GearQuat;
 
 constexpr long double MOMENTS[3] = {3.0L, 2.0L, 1.2L};
 inline const RigidBody TOP = {2.0, {3.0, 2.0, 1.2}};
@@ -30,8 +21,8 @@ inline BodyState top_state(double t)
 {
   const double q0[4] = {0.1, -0.3, 0.5, 0.8}, w0[3] = {1.0, 0.4, 0.5};
   double unit[4] = {q0[0], q0[1], q0[2], q0[3]}, a[9];
-  LAMMPS_NS::GearQuat::project_norm(unit);
-  LAMMPS_NS::GearQuat::rotation_matrix(unit, 1.0, a);
+  project_norm(unit);
+  rotation_matrix(unit, 1.0, a);
   Matrix start;
   for (int i = 0; i < 9; ++i) start.m[i / 3][i % 3] = a[i];
   const long double w[3] = {w0[0], w0[1], w0[2]};
@@ -42,8 +33,8 @@ inline BodyState top_state(double t)
   exact.omega(t, omega);
   const Matrix m = exact.attitude(t);
   for (int i = 0; i < 9; ++i) a[i] = double(m.m[i / 3][i % 3]);
-  LAMMPS_NS::GearQuat::quaternion_from_matrix(a, s.q);
-  if (LAMMPS_NS::GearQuat::dot4(s.q, unit) < 0.0 && std::fabs(t) < 1.0)
+  quaternion_from_matrix(a, s.q);
+  if (dot4(s.q, unit) < 0.0 && std::fabs(t) < 1.0)
     for (double &x : s.q) x = -x;
   for (int i = 0; i < 3; ++i) {
     s.omega_body[i] = double(omega[i]);
@@ -84,5 +75,3 @@ inline std::vector<double> exact_rows(const Scheme &scheme, double h)
 }
 
 }    // namespace Oracle
-
-#endif

@@ -1,13 +1,7 @@
-/* ----------------------------------------------------------------------
-   GEARQUAT - accurate motion of rigid bodies in LAMMPS
-   This software is distributed under the GNU General Public License, version 2.
-------------------------------------------------------------------------- */
-
 /* Taylor coefficients of a free body's attitude and angular velocity, from the recurrences that
    Euler's equations and qdot = 1/2 q omega give; extended precision, no kernel header. */
 
-#ifndef GEAR_QUAT_ORACLE_TAYLOR_TOP_H
-#define GEAR_QUAT_ORACLE_TAYLOR_TOP_H
+#pragma once
 
 namespace Oracle {
 
@@ -37,5 +31,3 @@ struct TaylorTop {
 };
 
 }    // namespace Oracle
-
-#endif
