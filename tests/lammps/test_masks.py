@@ -2,16 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import (
-    FORMULATIONS,
-    frames,
-    last_frame,
-    one_after_the_other,
-    placed,
-    restarted,
-    water,
-    water_data,
-)
+from scenes import frames, last_frame, one_after_the_other, placed, restarted, water, water_data
 from scipy.special import ellipj, ellipk
 
 PRESSURE = 68568.415  # kcal/mol/Angstrom^3 in atm, LAMMPS' value in real units
@@ -52,7 +43,6 @@ def held_rotor(time):
     return np.hstack([x, np.cross([0, 0, rate], x)])
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_a_held_body_spins_as_a_pendulum(lmp_tree, formulation):
     exact = held_rotor(4.0)
     end, table = rotor(lmp_tree, formulation)
@@ -65,7 +55,6 @@ def test_a_held_body_spins_as_a_pendulum(lmp_tree, formulation):
     assert np.abs(free - exact).max() > 0.1
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
     end, table = rotor(lmp_tree, formulation, f"{HELD} tolerance 1e-13")
     time = table["Time"][-1]
@@ -153,10 +142,8 @@ def test_bodies_are_numbered_by_their_ids(lmp_tree, ranks):
 SOME = "force 1*9 off on off torque 5*20 off off on force 27 off off off"
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
-def test_fix_rigid_converges_to_the_same_motion(lmp_tree, formulation):
+def test_fix_rigid_converges_to_the_same_motion(lmp_tree, data, formulation):
     """Their difference is the error of velocity Verlet, of second order in the step."""
-    data = water_data(lmp_tree.folder / "data.water")
     fix = f"gear/quat molecule formulation {formulation}"
     steps = (0.2, 0.1, 0.05)
     decks = [water(data, fix, dump="free"), water(data, f"{fix} {SOME}", dump="ours")]
@@ -179,8 +166,7 @@ def test_fix_rigid_converges_to_the_same_motion(lmp_tree, formulation):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_masks_outlive_a_restart(lmp_tree, ranks):
-    data = water_data(lmp_tree.folder / "data.water")
+def test_masks_outlive_a_restart(lmp_tree, data, ranks):
     words = f"gear/quat molecule {SOME}"
 
     def deck(dump, fix=words, run="run 40"):
@@ -239,9 +225,8 @@ def test_what_holds_a_body_is_outside_of_it(lmp_tree):
     assert pressures[0] == pytest.approx(pressures[1], rel=1e-12)
 
 
-def test_degrees_of_freedom_are_those_of_fix_rigid(lmp_tree):
+def test_degrees_of_freedom_are_those_of_fix_rigid(lmp_tree, data):
     """Masks are not accounted for: the user subtracts them, see the manual."""
-    data = water_data(lmp_tree.folder / "data.water")
     fixes = ("gear/quat molecule", f"gear/quat molecule {SOME}", f"rigid molecule {SOME}")
     decks = one_after_the_other(water(data, fix, run="run 0") for fix in fixes)
     temperatures = [table["Temp"][0] for table in lmp_tree.succeed(decks).thermo]

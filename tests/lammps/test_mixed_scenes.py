@@ -129,7 +129,6 @@ DRAG = {  # rate in 1/fs, and how it is said
 
 
 @pytest.mark.parametrize("kind", DRAG)
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_a_drag_on_every_site_stops_the_whole(box, formulation, kind):
     """In proportion to masses: forces among the sites drop out, momentum falls as an exponential."""
     rate, drag = DRAG[kind]
@@ -141,7 +140,6 @@ def test_a_drag_on_every_site_stops_the_whole(box, formulation, kind):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_what_pulls_the_whole_is_its_momentum(box, formulation, ranks):
     """Gravity and a constant force on the sites of some bodies: no step is too long for that sum."""
     pull = "fix g all gravity 0.5 vector 0 0 -1\nfix a bodies addforce 0.1 -0.2 0.3"
@@ -221,7 +219,6 @@ def test_bodies_and_solvent_move_each_other(solution, ranks):
             assert solution.difference("rigid", other, atoms) > 1e-5
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_respa_with_forces_of_both_levels(box, formulation):
     """A bond pulls a body on one level, all pairs on the other: their sum moves it."""
     box.data = with_bonds(box.data)
@@ -240,7 +237,6 @@ def test_respa_with_forces_of_both_levels(box, formulation):
     assert box.difference("verlet", "softer", body) > 1e-5
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_momentum_and_energy_of_a_solution(solution, formulation):
     """What bodies lose the solvent gains: by the energy of all, and by the momentum of all."""
     # nothing is cut off: forces are the derivatives of the energy everywhere
@@ -276,7 +272,6 @@ def test_momentum_and_energy_of_a_solution(solution, formulation):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_two_fixes_are_one(box, formulation, ranks):
     """The same motion, temperature and pressure; sums over bodies come in two parts."""
     fix = f"{OURS}{formulation} start zero"

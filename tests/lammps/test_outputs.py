@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS, WATER_MASSES, last_frame, water, water_data
+from scenes import WATER_MASSES, last_frame, water, water_data
 from scipy.spatial.transform import Rotation
 
 BODIES = 27
@@ -44,7 +44,6 @@ def expect(found, right, tolerance):
     assert np.abs(1.01 * found - right).max() > 100 * tolerance * scale
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_rows_are_those_of_the_sites(lmp, formulation):
     table, sites, _ = bodies_of(lmp, fix=f"gear/quat molecule formulation {formulation}")
     assert (table[:, ID] == np.arange(1, BODIES + 1)).all()
@@ -68,10 +67,9 @@ def test_rows_are_those_of_the_sites(lmp, formulation):
     assert (table[:, ERRORS] > 0).all()
 
 
-def test_the_first_columns_are_those_of_fix_rigid(lmp_tree):
+def test_the_first_columns_are_those_of_fix_rigid(lmp_tree, data):
     """Forces and torques too: after one tiny step both have the same sites."""
     columns = shown((1, 14, 27), range(1, 16))
-    data = water_data(lmp_tree.folder / "data.water")
     rows = []
     for fix in ("gear/quat molecule", "rigid/nve molecule"):
         deck = water(data, fix, steps=1, dt=1e-4, columns=" ".join(columns))
@@ -142,12 +140,11 @@ dump_modify places sort id format float %.17g
 """
 
 
-def test_other_atoms_see_a_body_where_it_is(lmp_tree):
+def test_other_atoms_see_a_body_where_it_is(lmp_tree, data):
     """Ghost atoms are at the corrected pose when output or another fix reads them, on any number of ranks.
 
     In every seventh step the energy is that of the atoms as they are dumped.
     """
-    data = water_data(lmp_tree.folder / "data.water")
     names = ("v_energy", "v_force", "v_distance")
     deck = water(data, dt=2.0, steps=21, after=NEIGHBORS, columns=" ".join(names))
     tables = []

@@ -2,23 +2,9 @@
 
 import numpy as np
 import pytest
-from scenes import (
-    FORMULATIONS,
-    UNITS,
-    frames,
-    last_frame,
-    placed,
-    two_molecules,
-    water,
-    water_data,
-)
+from scenes import UNITS, frames, last_frame, placed, two_molecules, water, water_data
 
 BOLTZMANN = 0.0019872067  # kcal/mol/K, LAMMPS' value in real units
-
-
-@pytest.fixture
-def data(lmp_tree):
-    return water_data(lmp_tree.folder / "data.water")
 
 
 # --- exact motions ----------------------------------------------------------------------------
@@ -32,7 +18,6 @@ def free(lmp, atoms, velocities, formulation, steps, dt, **settings):
     return last_frame(lmp.folder / "poses.dump")[:, 1:], table
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_a_point_in_a_spring(lmp_tree, formulation):
     """One atom alone is a body without rotation; its motion is a sine."""
     spring = "fix s all spring/self 4.0"
@@ -46,7 +31,6 @@ def test_a_point_in_a_spring(lmp_tree, formulation):
     assert table["f_move[1]"][-1] == pytest.approx(energy, rel=1e-10)
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("sites", [(0.0, 1.0), (-0.7, 0.1, 1.1)])
 def test_a_linear_body_turns_about_two_axes(lmp_tree, formulation, sites):
     axis, sideways = np.array([2.0, -1.0, 2.0]) / 3, np.array([1.0, 2.0, 0.0]) / np.sqrt(5)
@@ -61,7 +45,6 @@ def test_a_linear_body_turns_about_two_axes(lmp_tree, formulation, sites):
     assert total == pytest.approx(table["KinEng"], rel=1e-12)
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_two_dimensions_stay_two_dimensions(lmp_tree, formulation):
     atoms = np.array([(0, 0, 0), (1, 0.2, 0), (0.3, 1.1, 0), (-0.4, 0.6, 0)])
     velocities = [(0.1, 0, 0), (0, 0.4, 0), (-0.7, 0, 0), (0, -0.3, 0)]
@@ -93,7 +76,6 @@ run 50
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_the_scalar_takes_the_energy_to_the_dumped_pose(lmp_tree, data, formulation, ranks):
     """Large shifts (zero start, long steps): right to 0.1 %, what is left is of second order."""
     fix = f"gear/quat molecule formulation {formulation} start zero"
@@ -110,7 +92,6 @@ def test_the_scalar_takes_the_energy_to_the_dumped_pose(lmp_tree, data, formulat
         assert abs(corrected - at_the_pose) < 1e-3 * abs(raw - at_the_pose)
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_kinetic_energies(lmp_tree, data, formulation):
     """The vector against LAMMPS' kinetic energy of the sites, after collisions and migration."""
     fix = f"gear/quat molecule formulation {formulation}"
@@ -155,7 +136,6 @@ def test_temperature_before_the_first_run_is_that_after_it(lmp_tree, data):
     assert 2 * table["KinEng"][0] / (freedoms * BOLTZMANN) == pytest.approx(300.0, rel=1e-6)
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_pressure_does_not_depend_on_the_time_step(lmp_tree, data, formulation):
     def pressure(fix, dt):
         deck = water(data, fix, dt=dt, steps=round(8 / dt), thermo=round(4 / dt))
@@ -226,7 +206,6 @@ def infile_run(lmp, fix, dt=0.01):
 
 
 @pytest.mark.parametrize("image", [(0, 0, 0), (1, -2, 3)])
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_a_true_infile_changes_nothing(lmp_tree, formulation, image):
     """Stated as it is, the body moves as without a file; the other molecule is not in the file."""
     body_file(lmp_tree.folder / "true", SITES, np.cross(OMEGA, SITES) + [0.1, 0.2, 0.3], image)
@@ -235,7 +214,6 @@ def test_a_true_infile_changes_nothing(lmp_tree, formulation, image):
     assert np.abs(plain - stated).max() < 1e-12
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_an_infile_serves_fix_rigid_too(lmp_tree, formulation):
     """Another inertia than that of the sites: the same motion as fix rigid's with the same file."""
     tilted = SITES @ np.array([[1.0, 0.2, 0], [0, 1, 0.3], [0.1, 0, 1]])
@@ -251,7 +229,6 @@ def test_an_infile_serves_fix_rigid_too(lmp_tree, formulation):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("levels", ["1", "2 1 bond 1 pair 2", "3 1 1 bond 1 angle 2 pair 3"])
 def test_respa_with_equal_steps(lmp_tree, data, formulation, levels, ranks):
     ends = []

@@ -16,26 +16,23 @@ from scenes import (
 )
 
 
-def run(lmp, name, ranks=1, **settings):
-    deck = water(lmp.folder / "data.water", dump=f"{name}.dump", **settings)
-    result = lmp.succeed(deck, ranks=ranks)
-    return last_frame(lmp.folder / f"{name}.dump"), result.thermo[0]
+def run(lmp, data, ranks=1, **settings):
+    """The last frame, and the thermo table."""
+    table = lmp.succeed(water(data, **settings), ranks=ranks).thermo[0]
+    return last_frame(lmp.folder / "poses.dump"), table
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
-def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, formulation):
-    water_data(lmp_tree.folder / "data.water")
+def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, data, formulation):
     settings = dict(fix=f"gear/quat molecule formulation {formulation}", steps=1000)
-    one, table = run(lmp_tree, "one", **settings)
+    one, table = run(lmp_tree, data, **settings)
     for ranks in (2, 4):
-        assert difference(one, run(lmp_tree, f"ranks{ranks}", ranks, **settings)[0]) < 1e-12
+        assert difference(one, run(lmp_tree, data, ranks, **settings)[0]) < 1e-12
 
     # bodies did meet and migrate, and a difference of 1 % would have been seen
     assert table["Temp"][-1] > 2.0 * table["Temp"][0]
     assert difference(one, one * 1.01) > 5e-3
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize(
     "settings",
     [
@@ -46,11 +43,10 @@ def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, formulation):
     ],
     ids=["tiled rcb", "brick shift", "newton off", "sorted slabs"],
 )
-def test_decompositions(lmp_tree, formulation, settings):
-    water_data(lmp_tree.folder / "data.water")
+def test_decompositions(lmp_tree, data, formulation, settings):
     common = dict(fix=f"gear/quat molecule formulation {formulation}", steps=200)
-    one, _ = run(lmp_tree, "one", **common)
-    other, _ = run(lmp_tree, "other", 4, **common, **settings)
+    one, _ = run(lmp_tree, data, **common)
+    other, _ = run(lmp_tree, data, 4, **common, **settings)
     assert difference(one, other) < 1e-12
 
 
@@ -59,19 +55,17 @@ def test_triclinic_box(lmp_tree, ranks):
     """Tilted by a whole period the box is the same crystal as the orthogonal one, by half not."""
     ends = {}
     for tilt in (0.0, 9.9, 4.95):
-        water_data(lmp_tree.folder / "data.water", tilt=tilt)
-        ends[tilt], _ = run(lmp_tree, "end", ranks)
+        data = water_data(lmp_tree.folder / "data.water", tilt=tilt)
+        ends[tilt], _ = run(lmp_tree, data, ranks)
     assert difference(ends[0.0], ends[9.9]) < 1e-12
     assert difference(ends[0.0], ends[4.95]) > 1e-6
 
 
-def test_wheel_with_mpich(lmp_wheel):
-    water_data(lmp_wheel.folder / "data.water")
-    one, two = (run(lmp_wheel, "end", ranks, steps=200)[0] for ranks in (1, 2))
+def test_wheel_with_mpich(lmp_wheel, data):
+    one, two = (run(lmp_wheel, data, ranks, steps=200)[0] for ranks in (1, 2))
     assert difference(one, two) < 1e-12
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_the_papers_case(lmp_tree, examples, formulation):
     variables = dict(formulation=formulation, dt=0.02, steps=1000, every=1000)
     ends = []
@@ -128,7 +122,6 @@ def seen_from_the_stream(frame):
     return np.hstack([frame[:, :4], frame[:, 4:7] - frame[:, 4:7].mean(axis=0)])
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("scene", SCENES)
 def test_bodies_that_change_their_ranks_all_the_time(lmp_tree, scene, formulation):
     folder = lmp_tree.folder

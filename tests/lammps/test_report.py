@@ -5,16 +5,7 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 import pytest
-from scenes import (
-    FORMULATIONS,
-    frames,
-    last_frame,
-    placed,
-    two_molecules,
-    water,
-    water_data,
-    whole_deck,
-)
+from scenes import frames, last_frame, placed, two_molecules, water, water_data, whole_deck
 
 TITLE = re.compile(r"^Fix gear/quat (\S+): (\d+) bodies of (.+) sites, (\d+) degrees of freedom$")
 ROW = re.compile(r"^  (\S.{19}) (on |off)  (\S.*)$")
@@ -238,7 +229,6 @@ def test_atoms_that_no_body_uses(lmp):
 
 
 # --- what is left out changes nothing ------------------------------------------------------------
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_points_among_tops_on_several_ranks(lmp_tree, formulation):
     """On four ranks bodies have ghosts or not, on one none: the same to rounding."""
     # points, rods and an asymmetric body that attract each other

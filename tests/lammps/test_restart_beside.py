@@ -7,7 +7,7 @@ steps over those before it by the number that stands first in each.
 import struct
 
 import pytest
-from scenes import restarted, water, water_data
+from scenes import restarted, water
 
 # A fix each that keeps numbers of atoms: springs, positions at the start, marks and velocities.
 KEEPERS = """
@@ -35,8 +35,7 @@ def keeping(data, order, commands, restart=None):
 
 @pytest.mark.parametrize("order", ["before", "after"])
 @pytest.mark.parametrize("ranks", [1, 4])
-def test_other_fixes_find_their_data(lmp_tree, order, ranks):
-    data = water_data(lmp_tree.folder / "data.water")
+def test_other_fixes_find_their_data(lmp_tree, data, order, ranks):
     runs = "run 50\nwrite_restart half\nrun 50"
     whole = lmp_tree.succeed(keeping(data, order, runs), ranks=ranks)
     again = lmp_tree.succeed(keeping(data, order, "run 50", "half"), ranks=ranks)
@@ -54,9 +53,8 @@ MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
 @pytest.mark.parametrize(
     "number, other, whose", [(0, 1.0, "an older (0.2.0 or before)"), (1, 99.0, "a newer")]
 )
-def test_files_of_other_releases_are_refused(lmp_tree, ranks, number, other, whose):
+def test_files_of_other_releases_are_refused(lmp_tree, data, ranks, number, other, whose):
     """Files of 0.2.0 begin with the formulation, 0 or 1, those of today with a magic number."""
-    data = water_data(lmp_tree.folder / "data.water")
     file = lmp_tree.folder / "file.restart"
     lmp_tree.succeed(water(data, run=f"run 1\nwrite_restart {file}"))
     content = file.read_bytes()

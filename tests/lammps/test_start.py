@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS, last_frame, placed, two_molecules, water, water_data
+from scenes import last_frame, placed, two_molecules, water
 
 FALLBACK = "start with known forces only (order 2), because"
 
@@ -49,7 +49,6 @@ EXTERNAL = {
 }
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("name", EXTERNAL)
 @pytest.mark.parametrize("place", ["before", "after"])
 def test_full_order_with_external_forces(lmp_tree, formulation, name, place):
@@ -57,7 +56,6 @@ def test_full_order_with_external_forces(lmp_tree, formulation, name, place):
     assert order(lmp_tree, f"formulation {formulation}", **{place: EXTERNAL[name]}) > 4.5
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_order_without_external_forces(lmp_tree, formulation):
     """Full with the default start, one with the paper's."""
     fix = f"formulation {formulation}"
@@ -92,7 +90,6 @@ def test_a_start_with_known_forces_has_order_two(lmp_tree):
     assert 1.7 < order(lmp_tree, after=nothing) < 3.5
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_the_start_leaves_everything_else_alone(lmp_tree, formulation):
     """Thermo of step 0 and what other fixes report there are those of a run without it."""
     after = """
@@ -132,7 +129,6 @@ def test_a_thin_skin_needs_nodes_close_together(lmp_tree, skin):
     assert np.abs(thin - wide).max() < 1e-9
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_time_reversal(lmp_tree, formulation):
     """There with h and back with -h: the end of the way back is its beginning."""
     fix = f"formulation {formulation}"
@@ -147,9 +143,8 @@ LONG = "lj/charmm/coul/long 2.7 3.9 4.2\npair_modify table 0\nkspace_style pppm 
 
 
 @pytest.mark.parametrize("ranks", [1, 4])
-def test_water_with_kspace(lmp_tree, ranks):
+def test_water_with_kspace(lmp_tree, data, ranks):
     """Full order where forces come from pairs, bonds' exclusions and pppm."""
-    data = water_data(lmp_tree.folder / "data.water")
     ends = []
     for n in (20, 40, 160):
         deck = water(data, steps=n, dt=40.0 / n).replace("lj/charmm/coul/charmm 2.7 3.9", LONG)

@@ -43,7 +43,6 @@ def off(run, column="v_total"):
     return np.abs(run[column] - run[column][0]).max()
 
 
-@pytest.mark.parametrize("formulation", ["second", "first"])
 def test_the_energy_error_follows_eps(lmp_tree, formulation):
     eps = [1e-8, 1e-10, 1e-12]
     settings = dict(until=1000, steps=100000, formulation=formulation)
@@ -182,7 +181,6 @@ def test_two_controls_are_refused(lmp_tree):
         lmp_tree.refuse(two_molecules("molecule tolerance 1e-8", before), message)
 
 
-@pytest.mark.parametrize("formulation", ["second", "first"])
 @pytest.mark.parametrize("distance", [0.02, 0.002])
 def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, formulation):
     def run(**settings):
@@ -198,7 +196,6 @@ def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, formulat
     assert off(run(tolerance=0, dt=0.001, steps=8000, more="")) > 1e-8 * depth
 
 
-@pytest.mark.parametrize("formulation", ["second", "first"])
 def test_case_1_for_long(lmp_tree, formulation):
     variables = dict(formulation=formulation, shift="3e-9", until=2500)
     result = lmp_tree.succeed(EXAMPLES / "hard" / "long" / "in.long", variables)

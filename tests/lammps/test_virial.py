@@ -27,7 +27,7 @@ run {steps}
     "ranks, style",
     [(1, "run_style verlet"), (4, "run_style verlet"), (4, "run_style respa 2 1 pair 2")],
 )
-def test_shares_of_atoms_add_up(lmp_tree, ranks, style):
+def test_shares_of_atoms_add_up(lmp_tree, data, ranks, style):
     """Atoms change their ranks within the steps of the outputs; r-RESPA allows no other step than one."""
     names = ("v_whole{}", "c_shares[{}]", "c_diagonal[{}]")
     columns = [[name.format(k) for k in PARTS] for name in names]
@@ -37,7 +37,6 @@ def test_shares_of_atoms_add_up(lmp_tree, ranks, style):
         style=style,
         steps=3 * (OUTPUTS - 1),
     )
-    data = water_data(lmp_tree.folder / "data.water")
     thermo = lmp_tree.succeed(water(data, dt=1.0, run=run), ranks=ranks).thermo[-1]
     whole, stress, centroid = np.array([[thermo[column] for column in c] for c in columns])
     assert whole.shape == (len(PARTS), OUTPUTS)

@@ -1,0 +1,20 @@
+"""What most tests of the fix run with: either formulation, and a box of rigid water."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scenes import FORMULATIONS, water_data
+
+
+@pytest.fixture(params=FORMULATIONS)
+def formulation(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    """27 molecules over all boundaries, in the folder where the test's LAMMPS runs."""
+    return water_data(tmp_path / "data.water")
