@@ -10,18 +10,23 @@ def write_rows(path, header, rows):
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(header)
-        for row in rows:
-            writer.writerow([value.item() if isinstance(value, np.generic) else value for value in row])
+        writer.writerows(rows)
+
+
+def flat(columns):
+    """Columns (n,), (n, 3) or (n, 4) by their names as columns (n,); parts are named by their axes."""
+    parts = {}
+    for name, values in columns.items():
+        values = np.asarray(values)
+        letters = {3: "xyz", 4: "0123"}[values.shape[1]] if values.ndim == 2 else ""
+        parts |= {f"{name}_{letter}": part for letter, part in zip(letters, values.T)} or {name: values}
+    return parts
 
 
 def write_columns(path, columns):
-    """Columns of equal length as CSV, name -> (F,) or (F, 3); parts are named by their axes."""
-    flat = {}
-    for name, values in columns.items():
-        values = np.asarray(values)
-        parts = {name: values} if values.ndim == 1 else dict(zip("xyz", values.T))
-        flat |= {part if part == name else f"{name}_{part}": column for part, column in parts.items()}
-    write_rows(path, flat, zip(*flat.values()))
+    """Columns of equal length as CSV, as ``flat`` has them."""
+    columns = flat(columns)
+    write_rows(path, columns, zip(*columns.values()))
 
 
 def aligned(header, rows):

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sysconfig
+from pathlib import Path
 
-from running import ROOT
+from running import MPI_ENVIRONMENT, ROOT
 
 INSTALL = (ROOT / "doc" / "install.md").read_text()
 
@@ -18,6 +22,21 @@ def blocks(page: str, language: str) -> list[str]:
     """Texts of the fenced blocks of a how-to page that are in a language."""
     text = (ROOT / "doc" / "howto" / f"{page}.md").read_text()
     return re.findall(rf"^```{language}\n(.*?)^```", text, re.M | re.S)
+
+
+def paste(text: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """What a shell says in ``folder`` if ``text`` is pasted into it."""
+    path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", text],
+        cwd=folder,
+        env={**os.environ, **MPI_ENVIRONMENT, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=200,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done
 
 
 def _subject(line: str) -> list[str]:

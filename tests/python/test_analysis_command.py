@@ -112,26 +112,6 @@ def test_poses_are_those_of_the_fixs_own_array(water):
         assert found != pytest.approx(1.01 * expected, abs=1e-3 * np.abs(expected).max()), name
 
 
-def test_bodies_without_images_are_followed_as_with_them(water):
-    """Wrapped positions, molecules cut by the boundary: the same motion from 20 fs to 20 fs."""
-    text = (water / "water.dump").read_text()
-    universe = open_dump(water / "water.dump")
-    frames = []
-    for ts in universe.trajectory:
-        rows = np.column_stack(
-            [universe.atoms.ids, universe.atoms.resids, universe.atoms.masses]
-            + [np.mod(ts.data["x"], ts.data["box"].diagonal())]
-        )
-        edge = text.splitlines()[5]
-        frames.append(dumps.frame(ts.data["step"], rows, "id mol mass x y z", edge))
-    (water / "wrapped.dump").write_text("".join(frames))
-    exact = Poses(universe.atoms).run().results
-    found = Poses(open_dump(water / "wrapped.dump").atoms).run().results
-    moved = found.center - found.center[0]
-    assert moved == pytest.approx(exact.center - exact.center[0], abs=1e-12)
-    assert found.residual.max() < 1e-12
-
-
 def test_units_are_those_of_lammps():
     """The factors are what LAMMPS itself uses."""
     lmp = _open_lammps(["-screen", "none", "-log", "none"])

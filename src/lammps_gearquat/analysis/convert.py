@@ -141,17 +141,13 @@ def _bodies(atoms):
 
 def _placed(ts, bodies, wrap):
     """Positions of all atoms, bodies whole, from the corner of the box."""
-    box = ts.data.get("box", ts.triclinic_dimensions)
-    periodic = ts.data.get("periodic", np.ones(3))
-    if "x" in ts.data:
-        x = ts.data["x"] - ts.data["origin"] * periodic
-    else:
-        x = ts.positions.astype(float)
-    if box is None or not periodic.any():
+    box, periodic = ts.data["box"], ts.data["periodic"]
+    x = ts.data["x"] - ts.data["origin"] * periodic
+    if not periodic.any():
         ts.dimensions = None
         return x
     own = x[bodies.index]
-    if not ts.data.get("whole", False):
+    if not ts.data["whole"]:
         own = bodies.whole(own, box, periodic)
     if wrap:
         images = np.floor(bodies.center(own) @ np.linalg.inv(box)) * periodic

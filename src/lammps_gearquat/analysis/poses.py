@@ -18,6 +18,7 @@ import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
 from MDAnalysis.analysis.results import ResultsGroup
 
+from ..tables import flat
 from ..units import UNITS
 from . import mapped
 from .bodies import Bodies
@@ -160,23 +161,14 @@ class _FrameTable(AnalysisBase):
             names = _flat(self.results.table[0])
             csv.writer(file).writerow(["step", "time", "body", *names])
             for k in progress(mapped.rows(self.results.table)):
-                frame, step, time = (self.results[name][k] for name in ("table", "step", "time"))
-                values = np.column_stack(list(_flat(frame).values()))
-                keys = np.column_stack([np.full((len(frame), 2), (step, time)), self.ids])
-                np.savetxt(file, np.hstack([keys, values]), fmt="%.17g", delimiter=",")
+                keys = [np.full(len(self.ids), self.results[name][k]) for name in ("step", "time")]
+                values = np.column_stack([*keys, self.ids, *_flat(self.results.table[k]).values()])
+                np.savetxt(file, values, fmt="%.17g", delimiter=",")
 
 
 def _flat(records):
-    """Fields of records (n,) as columns; parts of a vector get the names of their axes."""
-    columns = {}
-    for name in records.dtype.names:
-        values = records[name]
-        if values.ndim == 1:
-            columns[name] = values
-        else:
-            parts = "xyz" if values.shape[1] == 3 else "0123"
-            columns |= {f"{name}_{part}": values[:, k] for k, part in enumerate(parts)}
-    return columns
+    """Fields of records (n,) as columns."""
+    return flat({name: records[name] for name in records.dtype.names})
 
 
 class Poses(_FrameTable):

@@ -1,6 +1,8 @@
 """What the commands have in common: options, progress bars, and errors that say what to do."""
 
 import functools
+import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import cloup
@@ -68,27 +70,20 @@ def deck_options(function):
     return collect
 
 
+@contextmanager
 def failing_clearly(*errors):
     """Decorator: ``errors``, which a user can mend, and missing modules become messages of the command."""
-
-    def decorate(function):
-        @functools.wraps(function)
-        def run(*args, **kwargs):
-            try:
-                return function(*args, **kwargs)
-            except ModuleNotFoundError as error:
-                if (error.name or "").split(".")[0] not in ANALYSIS:
-                    raise
-                raise cloup.ClickException(
-                    f"this command needs {error.name}, which the extra [analysis] brings: run"
-                    " pip install '.[analysis]' in a checkout of the repository"
-                ) from error
-            except errors as error:
-                raise cloup.ClickException(str(error)) from error
-
-        return run
-
-    return decorate
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] not in ANALYSIS:
+            raise
+        raise cloup.ClickException(
+            f"this command needs {error.name}, which the extra [analysis] brings: run"
+            " pip install '.[analysis]' in a checkout of the repository"
+        ) from error
+    except errors as error:
+        raise cloup.ClickException(str(error)) from error
 
 
 def progress_bar(iterable=None, **options):
@@ -100,10 +95,4 @@ def progress_bar(iterable=None, **options):
 
 def announce(path, progress):
     """Function that says what is done with a deck before its trials, above a progress bar."""
-
-    def say(text):
-        progress.clear()
-        cloup.echo(f"{path.name}: {text}", err=True)
-        progress.refresh()
-
-    return say
+    return lambda text: progress.write(f"{path.name}: {text}", file=sys.stderr)

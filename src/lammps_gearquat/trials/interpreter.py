@@ -73,12 +73,8 @@ class Start:
 
 #: how the text of a deck speaks of a variable
 _NAMES = re.compile(r"\bvariable\s+(\w+)|\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
-
-
 #: without any of these words a deck cannot define a fix that moves rigid bodies
 _HOPE = re.compile(r"rigid|gear/quat|\binclude\b|\bjump\s+(?!SELF)")
-
-
 #: what may bring a further run
 _LATER = re.compile(r"^\s*(run|include|jump)\b")
 

@@ -42,14 +42,8 @@ def strip_comment(line):
 
 def split(line):
     """Words of a line without comment; quoted text is one word, its quotes removed."""
-    words = []
-    for word in re.findall(rf"{_QUOTED}|\S+", line, re.DOTALL):
-        for quote in ('"""', '"', "'"):
-            if word.startswith(quote) and word.endswith(quote) and len(word) >= 2 * len(quote):
-                word = word[len(quote) : -len(quote)]
-                break
-        words.append(word)
-    return words
+    words = re.findall(rf"{_QUOTED}|\S+", line, re.DOTALL)
+    return [re.sub(r"""\A("{3}|"|')(.*)\1\Z""", r"\2", word, flags=re.DOTALL) for word in words]
 
 
 def quote(text):
