@@ -52,10 +52,7 @@ def looks(methods):
     for kind, (colors, marker) in _LOOKS.items():
         members = [method for method in methods if method.kind == kind]
         for method, shade in zip(members, np.linspace(0.45, 0.95, len(members))):
+            color = to_hex(matplotlib.colormaps[colors](shade))
             line = "--" if "compensate" in method.variables else "-"
-            styles[method] = {
-                "color": to_hex(matplotlib.colormaps[colors](shade)),
-                "marker": marker,
-                "line": line,
-            }
+            styles[method] = {"color": color, "marker": marker, "line": line}
     return styles

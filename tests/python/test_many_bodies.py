@@ -23,56 +23,53 @@ PLAN = runs.Plan(
 )
 
 # --- reading logs -------------------------------------------------------------------------------
-SECTIONS = """\
-Loop time of {loop} on {ranks} procs for {steps} steps with 3000 atoms
-
-Section |  min time  |  avg time  |  max time  |%varavg| %total
----------------------------------------------------------------
-Pair    | 0.75       | 0.8        | 0.85       |   0.0 | 70.00
-Comm    | 0.01       | 0.02       | {comm}     |   0.0 |  2.00
-Modify  | 0.1        | 0.2        | {modify}   |   0.0 | 20.00
-Other   |            | 0.007      |            |       |  0.28
-
-Nlocal:           1500 ave        1510 max        1490 min
-"""
+START = "Fix gear/quat move: start of order 9 from 48 force evaluations\n"
 MEMORY = """\
 Total dynamically allocated memory: 50.41 Mbyte
 Current reserved memory pool size: 56.07 Mbyte
 """
-START = "Fix gear/quat move: start of order 9 from 48 force evaluations\n"
+SECTIONS = """\
+Loop time of {loop} on 2 procs for {steps} steps with 3000 atoms
+Section |  min time  |  avg time  |  max time  |%varavg| %total
+Comm    | 0.01       | 0.02       | {comm}     |   0.0 |  2.00
+Modify  | 0.1        | 0.2        | {modify}   |   0.0 | 20.00
+Other   |            | 0.007      |            |       |  0.28
+Nlocal:           1500 ave        1510 max        1490 min
+"""
+FIRST_RUN = SECTIONS.format(loop=6.1, steps=1, comm=0.001, modify=5.53)
+LOG = START + FIRST_RUN + MEMORY + SECTIONS.format(loop=1.2, steps=10, comm=0.03, modify=0.3)
 
 
 @pytest.fixture
-def log(tmp_path):
-    """A maker of Logs of two runs."""
+def read(tmp_path):
+    """Reads the Timing of a text."""
 
-    def make(start=START, modify=0.3, memory=MEMORY):
-        first = SECTIONS.format(loop=6.1, ranks=2, steps=1, comm=0.001, modify=5.53)
-        timed = SECTIONS.format(loop=1.2, ranks=2, steps=10, comm=0.03, modify=modify)
-        (tmp_path / "log.made").write_text("LAMMPS\n" + start + first + memory + timed)
-        return Log(tmp_path / "log.made")
+    def timing(text, ranks=2, started=True):
+        (tmp_path / "log").write_text(text)
+        return runs.read_timing(Log(tmp_path / "log"), 10, ranks, started)
 
-    return make
+    return timing
 
 
-def test_a_timing_is_that_of_the_slowest_rank(log):
-    timing = runs.read_timing(log(), 10, 2, True)
-    assert timing == runs.Timing(10, 1.2, 0.03, 0.3, 50.41, 56.07, 48, pytest.approx(5.5))
-    assert runs.read_timing(log(start=""), 10, 2, False).seconds is None
+def test_a_timing_is_that_of_the_slowest_rank(read):
+    expected = runs.Timing(10, 1.2, 0.03, 0.3, 50.41, 56.07, 48, pytest.approx(5.5))
+    assert read(LOG) == expected
+    assert read(LOG.replace(START, ""), started=False).seconds is None
 
 
-def test_an_incomplete_timing_is_refused(log, tmp_path):
-    with pytest.raises(LammpsError, match="no number of evaluations of the start"):
-        runs.read_timing(log(start=""), 10, 2, True)
-    with pytest.raises(LammpsError, match="no size of the heap"):
-        runs.read_timing(log(memory=MEMORY.splitlines()[0] + "\n"), 10, 2, True)
-    with pytest.raises(LammpsError, match="on 2 ranks, not 1"):
-        runs.read_timing(log(), 10, 1, True)
-    text = log().text
-    for wrong in (text.replace("Modify ", "Nothing"), text.rpartition("Loop time")[0]):
-        (tmp_path / "log.made").write_text(wrong)
-        with pytest.raises(LammpsError, match="not a finished timing"):
-            runs.read_timing(Log(tmp_path / "log.made"), 10, 2, True)
+@pytest.mark.parametrize(
+    "old, new, ranks, said",
+    [
+        (START, "", 2, "no number of evaluations of the start"),
+        ("Current reserved", "Other", 2, "no size of the heap"),
+        (START, START, 1, "on 2 ranks, not 1"),
+        ("Modify ", "Nothing", 2, "not a finished timing"),
+        ("Loop time of 1.2", "Lost after 1.2", 2, "not a finished timing"),
+    ],
+)
+def test_an_incomplete_timing_is_refused(read, old, new, ranks, said):
+    with pytest.raises(LammpsError, match=said):
+        read(LOG.replace(old, new), ranks)
 
 
 # --- made-up results ----------------------------------------------------------------------------
@@ -179,11 +176,6 @@ def off_freedoms():
     return made
 
 
-def uneven(part):
-    """Temperatures of which one part is 1 % too warm."""
-    return temperatures(second=kinetic_columns(300.0 * (1 + 0.01 * (np.arange(4) == part)), 5))
-
-
 LAW, WARM = 1.1 / 0.9, {NVE_SMALL.key: rigid_columns(303.0)}
 
 
@@ -215,8 +207,9 @@ def test_what_is_refused(changes, wrong):
 
 @pytest.mark.parametrize("part", range(4))
 def test_a_part_that_is_too_warm_is_refused(part):
-    found = [what for what in broken(made_up(temperatures=uneven(part))) if "equipartition" in what]
-    assert len(found) == 1 and "second" in found[0]
+    columns = kinetic_columns(300.0 + 3.0 * (np.arange(4) == part), 5)
+    wrong = broken(made_up(temperatures=temperatures(second=columns)))
+    assert ["second" in what for what in wrong if "equipartition" in what] == [True]
 
 
 def test_quantities_are_those_of_the_numbers():

@@ -27,15 +27,14 @@ def _of_case1(results):
         shown[name], found = getattr(tables, name)(results)
         measurements += found
     method, best = tables.cheapest_setting(results, "case1", SAMPLE)
-    default, theirs = (
-        evaluate.price(results, "case1", m, SAMPLE) for m in (plan.DEFAULT, plan.RIGID_NVE)
-    )
+    others = plan.DEFAULT, plan.RIGID_NVE
+    prices = [best, *(evaluate.price(results, "case1", m, SAMPLE) for m in others)]
     exact = [error for key, points in results.rounding.items() if key[1] for _, error in points]
     context = {
         "end": f"{results.scenes['case1'].end:g}",
         "sample": tables.power(SAMPLE),
         "best": method.label if method else "",
-        "times": [_milliseconds(cost) for cost in (best, default, theirs)],
+        "times": [_milliseconds(cost) for cost in prices],
         "closest": [tables.closest(results, m) for m in (tables.GEAR, {plan.RIGID_NVE.key})],
         "compensated": f"{min(exact):.1e}",
         "timings": min(point.timings for point in results.runs if point.timings),
@@ -51,12 +50,11 @@ def find(results):
     if scenes - {"case1", "water-plain"}:
         shown["other_speedups"] = tables.other_speedups(results)
     if "top" in scenes:
-        prices = [
-            tables.cheapest_setting(results, "top", FINE, "evaluations", n) for n in plan.PASSES
-        ]
-        if all(cost for _, cost in prices):
-            one, two = (cost.value for _, cost in prices)
-            context["passes"] = {"error": tables.power(FINE), "saved": 1 - two / one}
+        task = results, "top", FINE, "evaluations"
+        one, two = (tables.cheapest_setting(*task, passes)[1] for passes in plan.PASSES)
+        if one and two:
+            saved = 1 - two.value / one.value
+            context["passes"] = {"error": tables.power(FINE), "saved": saved}
     if {"water", "water-plain"} <= scenes:
         context["cutoff"] = tables.cutoff(results)
     # the fix reports as zero what is rounding

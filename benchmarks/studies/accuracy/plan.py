@@ -4,6 +4,7 @@ A method is a set of variables of the decks under ``examples``, so that every ru
 ``lmp -in DECK -var ...``.  A scene is a deck, how long it runs and with how many steps.
 """
 
+import itertools
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -179,15 +180,13 @@ def _water(quick, forces, **facts):
 @cache
 def scenes(quick):
     """Key -> Scene, all of them."""
-    tolerances = () if quick else (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
     cage = "One body in the cage (test case 1, consistent body)"
     smooth, plain = (f"500 SPC/E molecules, {how} cutoff" for how in ("smooth at the", "plain"))
+    few = {"methods": FEW_METHODS, "tolerances": () if quick else half_decades(4, 12)[::4]}
     found = (
         _one_body(quick, key="case1", title=cage),
         _one_body(quick, key="top", title="Free asymmetric top", measure="orientation"),
-        _water(
-            quick, "smooth", key="water", title=smooth, methods=FEW_METHODS, tolerances=tolerances
-        ),
+        _water(quick, "smooth", key="water", title=smooth, **few),
         _water(quick, "plain", key="water-plain", title=plain, methods=ROUGH_METHODS, smooth=False),
     )
     return {scene.key: scene for scene in found}
@@ -207,26 +206,20 @@ def scene_runs(scene):
 
 def order_runs(scene, quick):
     """(formulation, N) -> runs with compensated sums, so that rounding hides as little as possible."""
-    blocks = geometric(20, 400, 2**0.5 if quick else 2**0.125)
-    return {
-        (name, n): [
-            Run(scene, setting(name, n, compensate=True), b * scene.samples) for b in blocks
-        ]
-        for name in VALUES
-        for n in VALUES[name]
-    }
+    runs, blocks = {}, geometric(20, 400, 2**0.5 if quick else 2**0.125)
+    for name, n in ((name, n) for name in VALUES for n in VALUES[name]):
+        method = setting(name, n, compensate=True)
+        runs[name, n] = [Run(scene, method, block * scene.samples) for block in blocks]
+    return runs
 
 
 def rounding_runs(scene, quick):
     """(formulation, whether sums are compensated) -> runs with small steps."""
-    return {
-        (name, compensate): [
-            Run(scene, setting(name, values, compensate=compensate), round(scene.end / dt))
-            for dt in (ROUNDING_STEPS[:2] if quick else ROUNDING_STEPS)
-        ]
-        for name, values in DEFAULT_VALUES.items()
-        for compensate in (False, True)
-    }
+    runs, steps = {}, ROUNDING_STEPS[:2] if quick else ROUNDING_STEPS
+    for name, compensate in itertools.product(DEFAULT_VALUES, (False, True)):
+        method = setting(name, DEFAULT_VALUES[name], compensate=compensate)
+        runs[name, compensate] = [Run(scene, method, round(scene.end / dt)) for dt in steps]
+    return runs
 
 
 def modify_runs(scene, quick):

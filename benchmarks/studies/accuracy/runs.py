@@ -297,10 +297,8 @@ def run_scene(lab, session, results, scene, reference):
 def run_further(lab, session, results, scene, reference):
     """Orders, rounding and time in the fix, all in test case 1."""
 
-    for kept, planned in (
-        (results.orders, plan.order_runs(scene, lab.quick)),
-        (results.rounding, plan.rounding_runs(scene, lab.quick)),
-    ):
+    orders, rounding = (f(scene, lab.quick) for f in (plan.order_runs, plan.rounding_runs))
+    for kept, planned in ((results.orders, orders), (results.rounding, rounding)):
         for key, runs in planned.items():
             kept[key] = [(run.dt, judged(session, run, reference)[1].position) for run in runs]
             lab.advance(0.03 / len(planned))
