@@ -137,31 +137,31 @@ def show_slope(run):
     return text if abs(rate) > SIGNIFICANT * error else f"({text})"
 
 
-def ratio(runs, dt, ours, theirs):
-    """Largest error of the best of ``ours`` over that of the best of ``theirs``, labels of methods."""
-    own, other = (min(runs[label, dt].largest for label in labels) for labels in (ours, theirs))
-    return math.nan if math.isinf(own) and math.isinf(other) else own / other
+SQUISH_NAME = "NO_SQUISH (`fix rigid/nve/small`, `fix rigid/nve`)"
+SQUISH = [m.label for m in METHODS.values() if not m.gear and m is not VERLET]
+GEAR = [m.label for m in METHODS.values() if m.gear]
+#: ratios of errors that are shown: words -> (labels, labels they are compared with)
+CONTESTS = {
+    f"default of `fix gear/quat` over {SQUISH_NAME}": ([DEFAULT.label], SQUISH),
+    f"best setting of `fix gear/quat` over {SQUISH_NAME}": (GEAR, SQUISH),
+    "default with compensated sums over default": ([DEFAULT_COMPENSATED.label], [DEFAULT.label]),
+    f"`{VERLET.label}` over {SQUISH_NAME}": ([VERLET.label], SQUISH),
+}
 
 
-def contests(labels):
-    """Methods that are compared: words -> (labels, labels they are compared with)."""
-    best = [label for label in labels if METHODS[label].gear]
-    squish = [label for label in labels if label not in best and label != VERLET.label]
-    name = "NO_SQUISH (`fix rigid/nve/small`, `fix rigid/nve`)"
-    sets = {
-        f"default of `fix gear/quat` over {name}": ([DEFAULT.label], squish),
-        f"best setting of `fix gear/quat` over {name}": (best, squish),
-        "default with compensated sums over default": (
-            [DEFAULT_COMPENSATED.label],
-            [DEFAULT.label],
-        ),
-        f"`{VERLET.label}` over {name}": ([VERLET.label], squish),
-    }
-    return {
-        words: pair
-        for words, pair in sets.items()
-        if all(pair) and set(pair[0]) | set(pair[1]) <= set(labels)
-    }
+def ratios(runs, dts):
+    """Rows of CONTESTS between methods that were run: the best of some over the best of others."""
+    rows, labels = [], {label for label, _ in runs}
+    for words, pair in CONTESTS.items():
+        ours, theirs = (labels.intersection(some) for some in pair)
+        if ours and theirs:
+            own, other = (
+                np.array([min(runs[label, dt].largest for label in some) for dt in dts])
+                for some in (ours, theirs)
+            )
+            with np.errstate(invalid="ignore"):  # no ratio where all are lost
+                rows.append([words, *(f"{ratio:.1e}" for ratio in own / other)])
+    return rows
 
 
 def tables(scene, runs, dts):
@@ -172,14 +172,10 @@ def tables(scene, runs, dts):
     def table(first, show):
         return Table((first, *steps), [[m, *(show(runs[m, dt]) for dt in dts)] for m in labels])
 
-    ratios = [
-        [words, *(f"{ratio(runs, dt, *pair):.1e}" for dt in dts)]
-        for words, pair in contests(labels).items()
-    ]
     return {
         f"largest_{scene}": table("largest error of the energy", show_largest),
         f"drift_{scene}": table("drift, energy per unit of time", show_slope),
-        f"ratios_{scene}": Table(("ratio of largest errors", *steps), ratios),
+        f"ratios_{scene}": Table(("ratio of largest errors", *steps), ratios(runs, dts)),
     }
 
 
@@ -198,8 +194,8 @@ def find(results):
             if run.lost is None:
                 measurements.append(Measurement(f"{what}: drift of the energy", *run.slope))
     steps = round(max(run.time[-1] / dt for (*_, dt), run in results.items() if len(run.time)))
-    note = f"{grouped(steps)} steps; crosses: no longer finite; hollow: no drift, one standard error; "
-    note += "charges of the cage: reconstructed"
+    note = f"{grouped(steps)} steps; crosses: no longer finite; hollow: no drift, one standard "
+    note += "error; charges of the cage: reconstructed"
     picture = partial(draw, panels=panels, columns=3, note=note)
     context = {"scenes": scenes, "steps": steps, "significant": SIGNIFICANT, "spoils": SPOILS}
     return Finding(measurements, shown, {"drift": picture}, context)

@@ -73,8 +73,7 @@ def _line(sites, time):
     along, swing = arms[0] / place, relative[0] / place
     speed = np.linalg.norm(swing)
     k = mp.mpf(speed / rate) / 2
-    half = mp.asin(k * mp.ellipfun("sn", mp.mpf(rate * time), m=k * k))
-    angle = float(2 * half)
+    angle = float(2 * mp.asin(k * mp.ellipfun("sn", mp.mpf(rate * time), m=k * k)))
     turned = np.cos(angle) * along + np.sin(angle) * swing / speed
     return center_then + np.outer(arms @ along, turned)
 
@@ -87,14 +86,6 @@ def exact(body, sites, time):
     field = Springs(sites.positions[0].astype(np.longdouble))
     problem = Problem(body, shapes, field, start)
     return problem.site_positions(integrators.integrate(problem, [time])[0]).astype(float)
-
-
-def off(masses, positions, others):
-    """(distance of the centers of mass, angle in radians) between two poses of a body, (n, 3).
-
-    The angle of a linear body is that between its axes, a single site has none.
-    """
-    return pose_errors(masses, np.ones(len(masses), dtype=int), positions, others, positions)
 
 
 @dataclass(frozen=True)
@@ -112,21 +103,18 @@ class Measured:
         return max(self.promise) <= RIGHT
 
 
-def slopes(measured, k):
-    """Order of position (k = 0) or orientation (k = 1): slopes between halvings of the step.
+def order(measured, k):
+    """Order of position (k = 0) or orientation (k = 1): slope between the last two steps.
 
-    Only pairs count whose coarser step the estimates call right and whose errors are above rounding.
+    Only pairs count whose coarser step the estimates call right and whose errors are above rounding;
+    NaN if there are none.
     """
-    return [
+    slopes = [
         float(np.log2(coarse.error[k] / fine.error[k]))
         for coarse, fine in zip(measured, measured[1:])
         if coarse.right and fine.error[k] > ROUNDING[k]
     ]
-
-
-def order(measured, k):
-    """The finest of ``slopes``, NaN if there are none."""
-    return (slopes(measured, k) or [float("nan")])[-1]
+    return slopes[-1] if slopes else float("nan")
 
 
 def measure(lab, bodies=tuple(BODIES), **options):
@@ -139,14 +127,9 @@ def measure(lab, bodies=tuple(BODIES), **options):
         dt = f"{times[run['body']] / run['steps']:.17g}"
         return {"dt": dt, "every": 1, "dump": run["steps"], "more": " ".join(ESTIMATES)} | options
 
-    axes = {
-        "body": bodies,
-        "formulation": FORMULATIONS,
-        "steps": [COARSEST * 2**k for k in range(HALVINGS)],
-    }
-    runs = lab.sweep(
-        "inertia", deck("hard/inertia"), axes, lambda run: run, settings, may_fail=True
-    )
+    steps = [COARSEST * 2**k for k in range(HALVINGS)]
+    axes = {"body": bodies, "formulation": FORMULATIONS, "steps": steps}
+    runs = lab.sweep("inertia", deck("hard/inertia"), axes, lambda run: run, settings, True)
     results = {}
     for (body, formulation, steps), finished in runs.items():
         promise = error = (float("inf"), float("inf"))
@@ -155,7 +138,9 @@ def measure(lab, bodies=tuple(BODIES), **options):
             sites = finished.sites
             if body not in answers:
                 answers[body] = exact(body, sites, times[body])
-            error = off(sites.masses, answers[body], sites.positions[-1])
+            # the angle of a linear body is that between its axes, a single site has none
+            poses, one_body = (answers[body], sites.positions[-1]), np.ones(len(sites.masses), int)
+            error = pose_errors(sites.masses, one_body, *poses, answers[body])
         results.setdefault((body, formulation), []).append(Measured(steps, error, promise))
     return results
 
