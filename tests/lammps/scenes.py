@@ -354,9 +354,21 @@ def difference(one: np.ndarray, other: np.ndarray) -> float:
     return max(np.abs((one - other)[:, k]).max() / np.abs(one[:, k]).max() for k in parts)
 
 
+def expect(found: np.ndarray, right: np.ndarray, tolerance: float) -> None:
+    """Equal, relative to the largest number, and numbers that are 1 % off would not be."""
+    scale = np.abs(right).max()
+    assert np.abs(found - right).max() < tolerance * scale
+    assert np.abs(1.01 * found - right).max() > 100 * tolerance * scale
+
+
 def last_numbers(path: Path, count: int) -> np.ndarray:
     """The last numbers of a file, such as those that fix ave/time wrote, shape (count,)."""
     return np.array(path.read_text().split()[-count:], float)
+
+
+def assigned(values: dict) -> str:
+    """Commands that give index variables of a deck their values; variables outlive `clear`."""
+    return "".join(f'variable {k} delete\nvariable {k} index "{v}"\n' for k, v in values.items())
 
 
 def whole_deck(path: Path, files=("data", "infile")) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import WATER_MASSES, last_frame, water, water_data
+from scenes import WATER_MASSES, expect, last_frame, water, water_data
 from scipy.spatial.transform import Rotation
 
 BODIES = 27
@@ -35,13 +35,6 @@ def shown(bodies, columns):
 
 def last(thermo, columns):
     return np.array([thermo[column][-1] for column in columns])
-
-
-def expect(found, right, tolerance):
-    """Equal, and a table that is 1 % off would not be."""
-    scale = np.abs(right).max()
-    assert np.abs(found - right).max() < tolerance * scale
-    assert np.abs(1.01 * found - right).max() > 100 * tolerance * scale
 
 
 def test_rows_are_those_of_the_sites(lmp, formulation):

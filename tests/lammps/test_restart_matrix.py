@@ -10,7 +10,15 @@ from itertools import product
 import pytest
 import scenes
 from running import EXAMPLES, make_lmp_tree
-from scenes import last_frame, one_after_the_other, restarted, water, water_data, whole_deck
+from scenes import (
+    assigned,
+    last_frame,
+    one_after_the_other,
+    restarted,
+    water,
+    water_data,
+    whole_deck,
+)
 
 pytestmark = pytest.mark.tree  # made in a fixture of the module
 
@@ -40,11 +48,8 @@ def deck_of(scene, words, commands, end, stretch=1.0, grid="* * *"):
         fix = "gear/quat molecule " + " ".join(f"{key} {value}" for key, value in words.items())
         return water("data.water", fix, dt=dt, steps=STEPS, run=commands)
     known = dict(passes=2, compensate="no") | words | dict(dt=dt, every=STEPS, out="none")
-    variables = "".join(  # they outlive `clear`
-        f"variable {key} delete\nvariable {key} index {value}\n" for key, value in known.items()
-    )
-    text = whole_deck(EXAMPLES / scene / f"in.{scene}")
-    return f"{variables}processors {grid}\n" + text.replace("run ${steps}", commands)
+    text = whole_deck(EXAMPLES / scene / f"in.{scene}").replace("run ${steps}", commands)
+    return f"{assigned(known)}processors {grid}\n{text}"
 
 
 def writing_decks(scene, ranks, **settings):

@@ -10,6 +10,7 @@ import pytest
 from running import EXAMPLES
 from scenes import (
     UNITS,
+    assigned,
     one_after_the_other,
     placed,
     restarted,
@@ -26,11 +27,8 @@ NEXT, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST, HELD = (f"f_move[{k}]" for k
 def case1(run="run ${steps}", before="", **settings):
     """A deck; before: commands ahead of fix move."""
     known = dict(dt=0.1, every=1, out="none", more=COLUMNS, steps=1000, tolerance=1e-12) | settings
-    variables = "".join(
-        f'variable {key} delete\nvariable {key} index "{value}"\n' for key, value in known.items()
-    )
     text = whole_deck(EXAMPLES / "case1" / "in.case1").replace("run ${steps}", run)
-    return variables + text.replace("fix move body", f"{before}\nfix move body")
+    return assigned(known) + text.replace("fix move body", f"{before}\nfix move body")
 
 
 def tables(result):
