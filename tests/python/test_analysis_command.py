@@ -27,7 +27,7 @@ SITES = BODIES.sites_body
 
 @pytest.fixture(params=["first", "second", "rigid"])
 def dumped(request, run_case, tmp_path):
-    """Thermo series and analysed dump of the same steps of test case 1."""
+    """Thermo series and analyzed dump of the same steps of test case 1."""
     found = run_case(1, formulation=request.param, dt=0.01, steps=5000, every=1000, dump=1000)
     return found, open_dump(tmp_path / "poses.dump").atoms
 

@@ -64,8 +64,8 @@ def flights(tmp_path_factory):
     """Folder with STYLE.plain, .timed and .table of each style, written by LAMMPS."""
     folder = tmp_path_factory.mktemp("flights")
     script = "echo none\n"
-    for units, (metre, second) in SI.items():
-        angstrom, ps = 1e-10 / metre, 1e-12 / second
+    for units, (meter, second) in SI.items():
+        angstrom, ps = 1e-10 / meter, 1e-12 / second
         named = {"edge": EDGE, "a": 40.0, "b": 42.0, "cut": 12.0, "skin": 2.0}
         named = {name: value * angstrom for name, value in named.items()}
         named |= {"v": SPEED * angstrom / ps, "dt": STEP * ps, "every": EVERY, "first": FIRST}
@@ -115,8 +115,8 @@ def test_every_format_is_right_in_every_unit_style(flights, tmp_path, suffix, un
 
 def test_factors_are_those_of_lammps():
     assert set(UNITS) == set(SI)
-    for units, (metre, second) in SI.items():
-        assert UNITS[units].angstrom == pytest.approx(metre * 1e10, rel=1e-5)
+    for units, (meter, second) in SI.items():
+        assert UNITS[units].angstrom == pytest.approx(meter * 1e10, rel=1e-5)
         assert UNITS[units].ps == pytest.approx(second * 1e12)
 
 
@@ -124,7 +124,7 @@ LABEL = "LAMMPS units lj: 1 sigma is 1 Angstrom here, 1 tau is 1 ps"
 
 
 @pytest.mark.parametrize("suffix", ["dcd", "xyz", "pdb", "trr"])
-def test_lj_is_labelled(flights, tmp_path, suffix):
+def test_lj_is_labeled(flights, tmp_path, suffix):
     """In the file where it has room for text, in the one beside it, and by the command."""
     path = tmp_path / f"x.{suffix}"
     for units in ("real", "lj"):

@@ -24,6 +24,7 @@ def test_lines_are_joined_as_lammps_joins_them():
         ("if \"$x == 'y'\" then 'run 5'", ["if", "$x == 'y'", "then", "run 5"]),
         ('python f here """a "b" c"""', ["python", "f", "here", 'a "b" c']),
         ("it's one", ["it's", "one"]),
+        ("print \"\" ''", ["print", "", ""]),
     ],
 )
 def test_words(line, words):

@@ -227,8 +227,8 @@ class Study:
 
     def gap(self, first, second):
         """Difference of two sampled trials in the chosen norm, shape (S,)."""
-        frames = zip(first.positions, first.center, second.positions, second.center)
-        return np.array([self.errors(*frame)[self.norm] for frame in frames])
+        frames = first.positions, first.center, second.positions, second.center
+        return self.errors(*frames)[self.norm]
 
     def rounding(self, trial):
         """What rounding of the positions alone can make of the error."""
@@ -236,10 +236,10 @@ class Study:
         return float(np.finfo(float).eps * scale)
 
     def errors(self, positions, center, reference, reference_center):
-        """One error for each of NORMS, of sites (n, 3) and centers (B, 3)."""
-        shift = np.linalg.norm(center - reference_center, axis=1)
+        """One error (...) for each of NORMS, of sites (..., n, 3) and centers (..., B, 3)."""
+        shift = np.linalg.norm(center - reference_center, axis=-1)
         turn = angles(self.deck.scene.bodies, reference, positions)
-        return float(shift.max()), evaluate.rms(shift), float(turn.max()), evaluate.rms(turn)
+        return shift.max(axis=-1), evaluate.rms(shift), turn.max(axis=-1), evaluate.rms(turn)
 
     # --- 2. the methods -------------------------------------------------------------------------------
     def ladder(self, keywords, end, judge, errors, first, reserve):

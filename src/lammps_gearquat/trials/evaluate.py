@@ -14,7 +14,8 @@ def decade(value):
 
 
 def rms(values):
-    return float(np.sqrt(np.mean(np.square(values))))
+    """Root of the mean square over the last axis."""
+    return np.sqrt(np.mean(np.square(values), axis=-1))
 
 
 def parting_time(time, distance, threshold):

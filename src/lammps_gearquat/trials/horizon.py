@@ -108,7 +108,7 @@ def compare(deck, trials, thresholds, notes=()):
     return Horizon(
         trials,
         largest,
-        np.sqrt(np.mean(distance**2, axis=1)),
+        evaluate.rms(distance),
         angle.max(axis=1),
         parting,
         growth,
