@@ -114,17 +114,15 @@ def is_between(times, low, high):
     return min(times) <= high and max(times) >= low
 
 
-def printed(results, case, formulation, dt=None):
-    """(body, Series) of the runs made as the paper made them."""
-    return [(ROWS[row].body, results.get(case, row, formulation, dt)) for row in AS_PRINTED]
+def printed(results, case, *formulations, dt=None):
+    """[(body, Series)] of the runs made as the paper made them in one of the formulations.
 
-
-def printed_both(results, case, dt=None):
-    """(body and formulation, Series) of the same in both formulations."""
+    Without ``formulations`` in both: [(body and formulation, Series)].
+    """
     return [
-        (f"{ROWS[row].body} {formulation}", results.get(case, row, formulation, dt))
+        (ROWS[row].body + f" {name}" * (not formulations), results.get(case, row, name, dt))
         for row in AS_PRINTED
-        for formulation in FORMULATIONS
+        for name in formulations or FORMULATIONS
     ]
 
 
@@ -138,7 +136,7 @@ def initial_energy(results, case, energy, digits):
 
 def energy_error(results, case, formulation, fine=False):
     """The largest error of the total energy, in parentheses relative to the swing of the potential."""
-    for body, values in printed(results, case, formulation, results.fine if fine else None):
+    for body, values in printed(results, case, formulation, dt=results.fine if fine else None):
         error, swing = np.abs(dv.energy_error(values)).max(), dv.energy_scale(values)
         yield Reading(
             body, f"{error:.2g} ({100 * error / swing:.2g} %)", bool(error <= VISIBLE * swing)
@@ -188,7 +186,7 @@ def observable(results):
 def same_solution(results, case, until, other=None):
     """When a run parts by 1 from that of the ``other`` case, or from that with another step."""
     dt = None if other else results.other_step(case)
-    pairs = zip(printed_both(results, case), printed_both(results, other or case, dt))
+    pairs = zip(printed(results, case), printed(results, other or case, dt=dt))
     for (label, one), (_, another) in pairs:
         time = dv.parting_time(one, another, 1.0)
         holds = time >= until * (1 - TIME_TOLERANCE)
@@ -197,19 +195,18 @@ def same_solution(results, case, until, other=None):
 
 def similar_curve(results):
     """Cases 1 and 2, first formulation: when x differs by a quarter of its range."""
-    found = {}
+    times = {}
     for (body, one), (_, other) in zip(*(printed(results, case, "first") for case in (1, 2))):
         gap = np.abs(one.center[:, 0] - other.center[:, 0])
-        beyond = np.flatnonzero(gap > 0.25 * np.ptp(one.center[:, 0]))
-        found[body] = float(one.time[beyond[0]]) if len(beyond) else math.inf
-    among = is_between(found.values(), 1000, 1000)
-    for body, time in found.items():
+        times[body] = dv.first_time(one.time, gap > 0.25 * np.ptp(one.center[:, 0]))
+    among = is_between(times.values(), 1000, 1000)
+    for body, time in times.items():
         yield Reading(body, show_time(time), is_near(time, 1000, 1000), among)
 
 
 def bounded(results):
     """Case 1: the largest distance from the sphere where the body starts."""
-    for label, values in printed_both(results, 1):
+    for label, values in printed(results, 1):
         distance = np.linalg.norm(values.center[:, None, :] - CAGE.positions, axis=2)
         home = int(distance[0].argmin())
         stays = bool((distance.argmin(axis=1) == home).all())
@@ -221,15 +218,14 @@ def translation_begins(results, time=20.0):
     for body, values in printed(results, 3, "second"):
         part = values.translation / values.kinetic
         at = float(part[values.at(time)])
-        later = np.flatnonzero(part >= VISIBLE)
-        start = float(values.time[later[0]]) if len(later) else math.inf
+        start = dv.first_time(values.time, part >= VISIBLE)
         text = f"{100 * at:.2g} % at t = {time:g}, {100 * VISIBLE:g} % at t = {show_time(start)}"
         yield Reading(body, text, at >= VISIBLE, bool(values.translation[1] > 0))
 
 
 def potential_vanishes(results):
     """Case 3: when the body has left the cage, and the energies at the end."""
-    for label, values in printed_both(results, 3):
+    for label, values in printed(results, 3):
         left, end = dv.leaving_time(values), values.potential[-1]
         out = math.isfinite(left) and bool(abs(end / values.total[0]) < 0.05)
         text = f"outside from t = {show_time(left)}, potential {end:+.2g}, translation "

@@ -21,13 +21,21 @@ def separation(first, second):
     return np.linalg.norm(first.center[:n] - second.center[:n], axis=1)
 
 
-def parting_time(first, second, threshold):
-    """First sampled time at which the centers of mass are farther apart than ``threshold``.
+def first_time(time, condition):
+    """First of the times (n,) at which a condition (n,) holds; infinite if it never does."""
+    return float(time[condition.argmax()]) if condition.any() else float("inf")
 
-    Infinite if they never are.
-    """
-    apart = np.flatnonzero(~(separation(first, second) <= threshold))
-    return float(first.time[apart[0]]) if len(apart) else float("inf")
+
+def lasting_from(time, condition):
+    """First of the times (n,) from which a condition (n,) holds to the end; infinite if none."""
+    begin = len(time) - condition[::-1].cumprod().sum()
+    return float(time[begin]) if begin < len(time) else float("inf")
+
+
+def parting_time(first, second, threshold):
+    """First sampled time at which the centers of mass are farther apart than ``threshold``."""
+    apart = separation(first, second)
+    return first_time(first.time[: len(apart)], ~(apart <= threshold))
 
 
 def energy_error(series):
@@ -47,21 +55,13 @@ def drift_onset(series, fraction=0.02):
     the potential energy, the height of the paper's figures.
     """
     error = energy_error(series)
-    limit = fraction * energy_scale(series)
-    if not abs(error[-1]) > limit:
-        return float("inf"), 0
-    within = np.flatnonzero(np.abs(error) <= limit)
-    onset = series.time[within[-1] + 1] if len(within) else series.time[0]
-    return float(onset), int(np.sign(error[-1]))
+    beyond = np.abs(error) > fraction * energy_scale(series)
+    return lasting_from(series.time, beyond), int(np.sign(error[-1])) if beyond[-1] else 0
 
 
 def leaving_time(series):
     """Time after which the body stays outside the cage; infinite if it is inside at the end."""
-    distance = np.linalg.norm(series.center, axis=1)
-    if not distance[-1] > OUTSIDE:
-        return float("inf")
-    inside = np.flatnonzero(distance <= OUTSIDE)
-    return float(series.time[inside[-1] + 1]) if len(inside) else float(series.time[0])
+    return lasting_from(series.time, np.linalg.norm(series.center, axis=1) > OUTSIDE)
 
 
 def leaving_axis(series):

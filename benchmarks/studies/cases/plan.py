@@ -22,17 +22,14 @@ class Row:
     variables: dict
 
 
+PAPER = {"choices": "paper"}
+PROJECTED = PAPER | {"project": "yes"}
 ROWS = {
-    key: Row(key, body, f"{body} body, {label}", {"body": body} | variables)
-    for key, body, label, variables in (
-        ("consistent-zero-free", "consistent", "zero start, not projected", {"choices": "paper"}),
-        ("unrotated-zero-free", "unrotated", "zero start, not projected", {"choices": "paper"}),
-        (
-            "unrotated-zero-projected",
-            "unrotated",
-            "zero start, projected",
-            {"choices": "paper", "project": "yes"},
-        ),
+    key: Row(key, body, f"{body} body, {label}", {"body": body} | choices)
+    for key, body, label, choices in (
+        ("consistent-zero-free", "consistent", "zero start, not projected", PAPER),
+        ("unrotated-zero-free", "unrotated", "zero start, not projected", PAPER),
+        ("unrotated-zero-projected", "unrotated", "zero start, projected", PROJECTED),
         ("consistent-accurate", "consistent", "accurate start, projected", {}),
     )
 }
