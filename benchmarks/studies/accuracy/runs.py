@@ -1,5 +1,6 @@
 """The references, the errors of runs, and everything that is run, in order."""
 
+import itertools
 import math
 from dataclasses import astuple, dataclass, field
 
@@ -265,17 +266,15 @@ def time_all(lab, session, outcomes):
     return time_in_turn(ended, rounds, once, rounds if lab.quick else MOST_ROUNDS)
 
 
-def run_solvers(lab, scene, reference):
-    """Solver -> rows of Results.solvers."""
-    rows = {}
-    for solver in solvers.METHODS if scene.tolerances else ():
-        share = 1 / len(solvers.METHODS) / len(scene.tolerances)
-        task = reference.problem, scene.end, reference.state, solver, scene.tolerances
-        found = solvers.work_precision(*task, progress=lambda _: lab.advance(share))
-        rows[solver] = [
-            (p.tolerance, p.evaluations, p.errors.rms_center, p.errors.rms_angle) for p in found
-        ]
-    return rows
+def run_solvers(lab, results, scene, reference):
+    """SciPy's solvers with all tolerances of a scene."""
+    task = reference.problem, scene.end, reference.state
+    for solver, tolerance in itertools.product(solvers.METHODS, scene.tolerances):
+        (point,) = solvers.work_precision(*task, solver, [tolerance])
+        errors = point.errors.rms_center, point.errors.rms_angle
+        rows = results.solvers.setdefault((scene.key, solver), [])
+        rows.append((tolerance, point.evaluations, *errors))
+        lab.advance(1 / len(solvers.METHODS) / len(scene.tolerances))
 
 
 def run_scene(lab, session, results, scene, reference):
@@ -290,8 +289,7 @@ def run_scene(lab, session, results, scene, reference):
         times = time_all(lab, session, outcomes)
     results.runs += [point_of(run, *own, times.get(run)) for run, own in outcomes.items()]
     with lab.share(0.3):
-        for solver, rows in run_solvers(lab, scene, reference).items():
-            results.solvers[scene.key, solver] = rows
+        run_solvers(lab, results, scene, reference)
 
 
 def run_further(lab, session, results, scene, reference):
