@@ -15,6 +15,12 @@ def formulation(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture
+def fix(formulation: str) -> str:
+    """The words of a fix for molecules in either formulation."""
+    return f"gear/quat molecule formulation {formulation}"
+
+
+@pytest.fixture
 def data(tmp_path: Path) -> Path:
     """27 molecules over all boundaries, in the folder where the test's LAMMPS runs."""
     return water_data(tmp_path / "data.water")

@@ -142,9 +142,8 @@ def test_bodies_are_numbered_by_their_ids(lmp_tree, ranks):
 SOME = "force 1*9 off on off torque 5*20 off off on force 27 off off off"
 
 
-def test_fix_rigid_converges_to_the_same_motion(lmp_tree, data, formulation):
+def test_fix_rigid_converges_to_the_same_motion(lmp_tree, data, fix):
     """Their difference is the error of velocity Verlet, of second order in the step."""
-    fix = f"gear/quat molecule formulation {formulation}"
     steps = (0.2, 0.1, 0.05)
     decks = [water(data, fix, dump="free"), water(data, f"{fix} {SOME}", dump="ours")]
     decks += [

@@ -129,10 +129,10 @@ DRAG = {  # rate in 1/fs, and how it is said
 
 
 @pytest.mark.parametrize("kind", DRAG)
-def test_a_drag_on_every_site_stops_the_whole(box, formulation, kind):
+def test_a_drag_on_every_site_stops_the_whole(box, fix, kind):
     """In proportion to masses: forces among the sites drop out, momentum falls as an exponential."""
     rate, drag = DRAG[kind]
-    box.run(box.deck("end", OURS + formulation, dt=0.1, steps=300, before=drag))
+    box.run(box.deck("end", fix, dt=0.1, steps=300, before=drag))
     before, after = MASS @ box.start(), MASS @ box.end("end")[:, 4:7]
     exact = before * np.exp(-rate * 30.0)
     assert after == pytest.approx(exact, rel=1e-5)
@@ -140,10 +140,10 @@ def test_a_drag_on_every_site_stops_the_whole(box, formulation, kind):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_what_pulls_the_whole_is_its_momentum(box, formulation, ranks):
+def test_what_pulls_the_whole_is_its_momentum(box, fix, ranks):
     """Gravity and a constant force on the sites of some bodies: no step is too long for that sum."""
     pull = "fix g all gravity 0.5 vector 0 0 -1\nfix a bodies addforce 0.1 -0.2 0.3"
-    deck = box.deck("end", OURS + formulation, dt=1.0, steps=100, before=BODIES + pull)
+    deck = box.deck("end", fix, dt=1.0, steps=100, before=BODIES + pull)
     box.run(deck, ranks=ranks)
     gained = MASS @ box.end("end")[:, 4:7] - MASS @ box.start()
     force = 14 * 3 * FTM2V * np.array([0.1, -0.2, 0.3])
@@ -219,10 +219,9 @@ def test_bodies_and_solvent_move_each_other(solution, ranks):
             assert solution.difference("rigid", other, atoms) > 1e-5
 
 
-def test_respa_with_forces_of_both_levels(box, formulation):
+def test_respa_with_forces_of_both_levels(box, fix):
     """A bond pulls a body on one level, all pairs on the other: their sum moves it."""
     box.data = with_bonds(box.data)
-    fix = OURS + formulation
     before = SOLVENT["flexible"] + "\nfix others others nve\n"
     common = dict(group="bodies", dt=0.2, steps=200)
     softer = [("bond_coeff 2 20.0", "bond_coeff 2 19.8")]
@@ -237,7 +236,7 @@ def test_respa_with_forces_of_both_levels(box, formulation):
     assert box.difference("verlet", "softer", body) > 1e-5
 
 
-def test_momentum_and_energy_of_a_solution(solution, formulation):
+def test_momentum_and_energy_of_a_solution(solution, fix):
     """What bodies lose the solvent gains: by the energy of all, and by the momentum of all."""
     # nothing is cut off: forces are the derivatives of the energy everywhere
     room = "change_box all x delta -9 9 y delta -9 9 z delta -9 9 units box\n"
@@ -247,8 +246,8 @@ def test_momentum_and_energy_of_a_solution(solution, formulation):
     ]
     common = dict(group="bodies", replace=whole, before=room + solution.before)
     result = solution.run(
-        solution.deck("coarse", OURS + formulation, dt=0.2, steps=250, thermo=25, **common),
-        solution.deck("fine", OURS + formulation, dt=0.1, steps=500, thermo=50, **common),
+        solution.deck("coarse", fix, dt=0.2, steps=250, thermo=25, **common),
+        solution.deck("fine", fix, dt=0.1, steps=500, thermo=50, **common),
     )
     drift, lost, wrong = [], [], []
     for name, table in zip(("coarse", "fine"), result.thermo):
@@ -272,9 +271,9 @@ def test_momentum_and_energy_of_a_solution(solution, formulation):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_two_fixes_are_one(box, formulation, ranks):
+def test_two_fixes_are_one(box, fix, ranks):
     """The same motion, temperature and pressure; sums over bodies come in two parts."""
-    fix = f"{OURS}{formulation} start zero"
+    fix = f"{fix} start zero"
     sums, both = "f_move[1] f_move[2]", "f_move[1] f_move[2] f_rest[1] f_rest[2]"
     two = f"fix rest others {fix}\nfix_modify rest energy yes\n"
     settings = dict(dt=0.2, steps=200, thermo=50)

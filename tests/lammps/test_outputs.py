@@ -37,8 +37,8 @@ def last(thermo, columns):
     return np.array([thermo[column][-1] for column in columns])
 
 
-def test_rows_are_those_of_the_sites(lmp, formulation):
-    table, sites, _ = bodies_of(lmp, fix=f"gear/quat molecule formulation {formulation}")
+def test_rows_are_those_of_the_sites(lmp, fix):
+    table, sites, _ = bodies_of(lmp, fix=fix)
     assert (table[:, ID] == np.arange(1, BODIES + 1)).all()
     x, v = sites[..., :3], sites[..., 3:]
     center, velocity = (np.average(y, axis=1, weights=WATER_MASSES) for y in (x, v))

@@ -10,19 +10,18 @@ BOLTZMANN = 0.0019872067  # kcal/mol/K, LAMMPS' value in real units
 # --- exact motions ----------------------------------------------------------------------------
 
 
-def free(lmp, atoms, velocities, formulation, steps, dt, **settings):
+def free(lmp, atoms, velocities, fix, steps, dt, **settings):
     """Positions and velocities of one body at the end, and the thermo table."""
-    fix = f"gear/quat molecule formulation {formulation}"
     deck = placed([atoms], velocities, fix=fix, steps=steps, dt=dt, **settings)
     table = lmp.succeed(deck).thermo[0]
     return last_frame(lmp.folder / "poses.dump")[:, 1:], table
 
 
-def test_a_point_in_a_spring(lmp_tree, formulation):
+def test_a_point_in_a_spring(lmp_tree, fix):
     """One atom alone is a body without rotation; its motion is a sine."""
     spring = "fix s all spring/self 4.0"
     x, v = np.array([[0.1, 0.2, 0.0]]), np.array([[1.0, -0.5, 0.2]])
-    end, table = free(lmp_tree, x, v, formulation, 2000, 0.001, before=spring)
+    end, table = free(lmp_tree, x, v, fix, 2000, 0.001, before=spring)
     exact = x + v * np.sin(2.0 * 2.0) / 2.0
     assert np.abs(end[:, :3] - exact).max() < 1e-11
     assert np.abs(end[:, :3] - exact * 1.01).max() > 1e-4
@@ -32,27 +31,17 @@ def test_a_point_in_a_spring(lmp_tree, formulation):
 
 
 @pytest.mark.parametrize("sites", [(0.0, 1.0), (-0.7, 0.1, 1.1)])
-def test_a_linear_body_turns_about_two_axes(lmp_tree, formulation, sites):
+def test_a_linear_body_turns_about_two_axes(lmp_tree, fix, sites):
     axis, sideways = np.array([2.0, -1.0, 2.0]) / 3, np.array([1.0, 2.0, 0.0]) / np.sqrt(5)
     arms = 0.4 * (np.array(sites) - np.mean(sites))
     drift, spin, t = np.array([0.3, 0.1, 0.0]), 1.7, 2.0
     velocities = drift + np.outer(arms, sideways) * spin
-    end, table = free(lmp_tree, np.outer(arms, axis), velocities, formulation, 1000, 0.002)
+    end, table = free(lmp_tree, np.outer(arms, axis), velocities, fix, 1000, 0.002)
     exact = drift * t + np.outer(arms, np.cos(spin * t) * axis + np.sin(spin * t) * sideways)
     assert np.abs(end[:, :3] - exact).max() < 1e-11
     assert np.abs(end[:, :3] - exact * 1.01).max() > 1e-4
     total = np.add(table["f_move[1]"], table["f_move[2]"])
     assert total == pytest.approx(table["KinEng"], rel=1e-12)
-
-
-def test_two_dimensions_stay_two_dimensions(lmp_tree, formulation):
-    atoms = np.array([(0, 0, 0), (1, 0.2, 0), (0.3, 1.1, 0), (-0.4, 0.6, 0)])
-    velocities = [(0.1, 0, 0), (0, 0.4, 0), (-0.7, 0, 0), (0, -0.3, 0)]
-    flat = dict(dimension=2, boundary="f f p", box="-20 20 -20 20 -0.5 0.5")
-    flat["before"] = "fix flat all enforce2d\nfix s all spring/self 0.7"
-    end, _ = free(lmp_tree, atoms, velocities, formulation, 500, 0.01, **flat)
-    assert (end[:, [2, 5]] == 0.0).all()
-    assert np.abs(end[:, :2] - atoms[:, :2]).max() > 0.1
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -76,11 +65,10 @@ run 50
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_the_scalar_takes_the_energy_to_the_dumped_pose(lmp_tree, data, formulation, ranks):
+def test_the_scalar_takes_the_energy_to_the_dumped_pose(lmp_tree, data, fix, ranks):
     """Large shifts (zero start, long steps): right to 0.1 %, what is left is of second order."""
-    fix = f"gear/quat molecule formulation {formulation} start zero"
     for steps, dt in ((10, 0.4), (20, 0.2), (40, 0.1)):
-        deck = water(data, fix, dt=dt, steps=steps, run="run {steps}\nrun 0")
+        deck = water(data, f"{fix} start zero", dt=dt, steps=steps, run="run {steps}\nrun 0")
         # a style whose forces are the derivative of its energies
         deck = deck.replace("lj/charmm/coul/charmm 2.7 3.9", "lj/cut/coul/cut 3.9")
         plain = deck.replace("fix_modify move energy yes", "")
@@ -92,9 +80,8 @@ def test_the_scalar_takes_the_energy_to_the_dumped_pose(lmp_tree, data, formulat
         assert abs(corrected - at_the_pose) < 1e-3 * abs(raw - at_the_pose)
 
 
-def test_kinetic_energies(lmp_tree, data, formulation):
+def test_kinetic_energies(lmp_tree, data, fix):
     """The vector against LAMMPS' kinetic energy of the sites, after collisions and migration."""
-    fix = f"gear/quat molecule formulation {formulation}"
     columns = "f_move[1] f_move[2] f_move[3]"
     deck = water(data, fix, steps=400, thermo=100, columns=columns)
     table = lmp_tree.succeed(deck, ranks=2).thermo[0]
@@ -136,12 +123,11 @@ def test_temperature_before_the_first_run_is_that_after_it(lmp_tree, data):
     assert 2 * table["KinEng"][0] / (freedoms * BOLTZMANN) == pytest.approx(300.0, rel=1e-6)
 
 
-def test_pressure_does_not_depend_on_the_time_step(lmp_tree, data, formulation):
+def test_pressure_does_not_depend_on_the_time_step(lmp_tree, data, fix):
     def pressure(fix, dt):
         deck = water(data, fix, dt=dt, steps=round(8 / dt), thermo=round(4 / dt))
         return lmp_tree.succeed(deck).thermo[0]["Press"]
 
-    fix = f"gear/quat molecule formulation {formulation}"
     coarse, middle, fine = (pressure(fix, dt) for dt in (0.2, 0.1, 0.05))
     assert coarse == pytest.approx(fine, rel=1e-6)
     assert middle == pytest.approx(fine, rel=1e-7)
@@ -206,19 +192,17 @@ def infile_run(lmp, fix, dt=0.01):
 
 
 @pytest.mark.parametrize("image", [(0, 0, 0), (1, -2, 3)])
-def test_a_true_infile_changes_nothing(lmp_tree, formulation, image):
+def test_a_true_infile_changes_nothing(lmp_tree, fix, image):
     """Stated as it is, the body moves as without a file; the other molecule is not in the file."""
     body_file(lmp_tree.folder / "true", SITES, np.cross(OMEGA, SITES) + [0.1, 0.2, 0.3], image)
-    fix = f"gear/quat molecule formulation {formulation}"
     plain, stated = (infile_run(lmp_tree, fix + more) for more in ("", " infile true"))
     assert np.abs(plain - stated).max() < 1e-12
 
 
-def test_an_infile_serves_fix_rigid_too(lmp_tree, formulation):
+def test_an_infile_serves_fix_rigid_too(lmp_tree, fix):
     """Another inertia than that of the sites: the same motion as fix rigid's with the same file."""
     tilted = SITES @ np.array([[1.0, 0.2, 0], [0, 1, 0.3], [0.1, 0, 1]])
     body_file(lmp_tree.folder / "other", tilted, np.cross(OMEGA, tilted))
-    fix = f"gear/quat molecule formulation {formulation}"
     plain, stated = (infile_run(lmp_tree, fix + more) for more in ("", " infile other"))
     rigid = infile_run(lmp_tree, "rigid/nve/small molecule infile other", dt=0.001)
     assert np.abs(stated - rigid).max() < 1e-5
@@ -230,10 +214,9 @@ def test_an_infile_serves_fix_rigid_too(lmp_tree, formulation):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("levels", ["1", "2 1 bond 1 pair 2", "3 1 1 bond 1 angle 2 pair 3"])
-def test_respa_with_equal_steps(lmp_tree, data, formulation, levels, ranks):
+def test_respa_with_equal_steps(lmp_tree, data, fix, levels, ranks):
     ends = []
     for style in ("verlet", f"respa {levels}"):
-        fix = f"gear/quat molecule formulation {formulation}"
         lmp_tree.succeed(water(data, fix, after=f"run_style {style}"), ranks=ranks)
         ends.append(last_frame(lmp_tree.folder / "poses.dump"))
     assert np.abs(ends[0] - ends[1]).max() < 1e-12

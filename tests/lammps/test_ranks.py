@@ -22,8 +22,8 @@ def run(lmp, data, ranks=1, **settings):
     return last_frame(lmp.folder / "poses.dump"), table
 
 
-def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, data, formulation):
-    settings = dict(fix=f"gear/quat molecule formulation {formulation}", steps=1000)
+def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, data, fix):
+    settings = dict(fix=fix, steps=1000)
     one, table = run(lmp_tree, data, **settings)
     for ranks in (2, 4):
         assert difference(one, run(lmp_tree, data, ranks, **settings)[0]) < 1e-12
@@ -43,10 +43,9 @@ def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, data, formulation):
     ],
     ids=["tiled rcb", "brick shift", "newton off", "sorted slabs"],
 )
-def test_decompositions(lmp_tree, data, formulation, settings):
-    common = dict(fix=f"gear/quat molecule formulation {formulation}", steps=200)
-    one, _ = run(lmp_tree, data, **common)
-    other, _ = run(lmp_tree, data, 4, **common, **settings)
+def test_decompositions(lmp_tree, data, fix, settings):
+    one, _ = run(lmp_tree, data, fix=fix, steps=200)
+    other, _ = run(lmp_tree, data, 4, fix=fix, steps=200, **settings)
     assert difference(one, other) < 1e-12
 
 
