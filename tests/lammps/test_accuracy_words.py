@@ -4,16 +4,15 @@ import re
 
 import numpy as np
 import pytest
-from scenes import WATER_MASSES, last_frame, restarted, water, water_data, whole_deck
+from scenes import WATER_MASSES, last_frame, restarted, water, whole_deck
 
 LADDER = [("first", n) for n in range(3, 9)] + [("second", n) for n in range(4, 13)]
 ERRORS = "f_move[5] f_move[6] f_move[7] f_move[8]"
 
 
 @pytest.fixture
-def liquid(lmp):
+def liquid(lmp, data):
     """Run 27 water molecules: liquid(fix words, ...) -> result and last frame of the dump."""
-    data = water_data(lmp.folder / "data.water")
 
     def run(words, steps=20, dt=0.5, ranks=1, **more):
         fix, columns = f"gear/quat molecule {words}", f"{ERRORS} f_move[4]"

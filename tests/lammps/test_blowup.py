@@ -127,7 +127,6 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
     assert whole and all(np.isfinite(frame).all() for frame in whole.values())
 
 
-@pytest.mark.parametrize("formulation", ["first", "second"])
 @pytest.mark.parametrize("choices", ["accurate", "paper"])
 def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, choices):
     """Their energy is lost, their bodies are not: |q|^2 is off by a factor of two in some."""

@@ -8,6 +8,7 @@ from scenes import (
     frames,
     last_frame,
     last_numbers,
+    placed,
     restarted,
     two_molecules,
     water,
@@ -224,7 +225,6 @@ MOL = "gear/quat molecule mol spce"
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
-@pytest.mark.parametrize("formulation", ["first", "second"])
 def test_molecules_are_inserted(lmp, ranks, formulation):
     """With their own bodies, and the same trajectory on any number of ranks."""
     commands = INSERT.format(count=3) + show() + "run {steps}"
@@ -247,31 +247,10 @@ def test_molecules_are_inserted(lmp, ranks, formulation):
 
 
 FIELD = """
-units lj
-atom_style full
-atom_modify map array
-region box block -20 20 -20 20 -20 20
-create_box 2 box
-mass 1 4.0
-mass 2 1.0
-molecule spce molecule.spce
-pair_style zero 2.0
-pair_coeff * *
-neigh_modify every 1 delay 0 check yes
-{atoms}
-fix move all {fix}
 variable fx atom -0.5*x
 variable fy atom -1.5*y-0.2*z
 variable fz atom -0.8*z-0.2*y
 fix field all addforce {force}
-timestep {dt}
-{commands}
-thermo_style custom step {columns}
-thermo_modify format float %.17g
-thermo 1
-dump poses all custom 1 poses.dump id xu yu zu vx vy vz
-dump_modify poses sort id format float %.17g
-run {steps}
 """
 THROW = """
 region here block 1 2 1 2 1 2
@@ -280,11 +259,12 @@ fix in all deposit 1 0 1 4711 region here near 0.5 mol spce rigid move &
 """
 
 
-def in_field(lmp, dt, steps, fix=MOL, force="v_fx v_fy v_fz", commands=THROW, header="", **more):
-    """A deck: a molecule is thrown into a field, or ``atoms`` begin there; ``header`` of the template."""
+def in_field(lmp, dt, steps, bodies=(), force="v_fx v_fy v_fz", after=THROW, header="", **settings):
+    """A deck: a molecule is thrown into a field, or begins there; ``header`` of the template."""
     (lmp.folder / "molecule.spce").write_text(SPCE.replace("3 atoms", f"3 atoms\n{header}"))
-    chosen = dict(fix=fix, force=force, commands=commands, atoms="", columns="time") | more
-    return FIELD.format(dt=dt, steps=steps, **chosen)
+    common = dict(style="full", kinds=(1, 2, 2), masses=f"mass 1 4.0\nmass 2 1.0\n{TEMPLATE}")
+    common |= dict(fix=MOL, after=FIELD.format(force=force) + after, dt=dt, steps=1, thermo=1)
+    return placed(bodies, run=f"run {steps}", **(common | settings))
 
 
 def insertion_error(lmp, dt, words, steps=None):
@@ -293,22 +273,17 @@ def insertion_error(lmp, dt, words, steps=None):
     The exact motion is that of a body which has it from the start, with steps of 0.01.
     """
     steps = steps or round(2.0 / dt)
-    result = lmp.succeed(in_field(lmp, dt, steps + 1, f"{MOL} {words}"))
+    result = lmp.succeed(in_field(lmp, dt, steps + 1, fix=f"{MOL} {words}"))
     begin, finish = (result.thermo[0]["Time"][k] for k in (1, -1))
     thrown = frames(lmp.folder / "poses.dump")
     start, end = thrown[1], thrown[steps + 1]
     assert len(start) == 3
-    atoms = [
-        f"create_atoms {1 + (i > 0)} single {x:.17g} {y:.17g} {z:.17g}"
-        for i, (x, y, z) in enumerate(start[:, 1:4])
-    ]
-    atoms.append("set atom 1*3 mol 1\nvelocity all set 0.3 -0.2 0.4")
-    step = (finish - begin) / 200
-    lmp.succeed(in_field(lmp, step, 200, atoms="\n".join(atoms), commands=""))
+    step, velocities = (finish - begin) / 200, [(0.3, -0.2, 0.4)] * 3
+    deck = in_field(lmp, step, 200, [start[:, 1:4]], after="", velocities=velocities)
+    lmp.succeed(deck)
     return np.abs(end - poses(lmp))[:, 1:].max()
 
 
-@pytest.mark.parametrize("formulation", ["first", "second"])
 @pytest.mark.parametrize("start, order", [("bootstrap", 2), ("zero", 1)])
 def test_order_of_the_start_of_an_inserted_body(lmp_tree, formulation, start, order):
     """Forces at the insertion are known, nothing more; the first body of a fix may be inserted."""
@@ -318,7 +293,6 @@ def test_order_of_the_start_of_an_inserted_body(lmp_tree, formulation, start, or
     assert slopes == pytest.approx([order, order], abs=0.35)
 
 
-@pytest.mark.parametrize("formulation", ["first", "second"])
 def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
     """But for the first step of the inserted body, which is as long as it was before."""
 
@@ -379,7 +353,8 @@ def test_a_template_that_states_its_mass(lmp_tree, header):
     said = "template spce states mass, center of mass or inertia other than"
 
     def move(header, fix=MOL, dt=0.005, steps=200):
-        result = lmp_tree.succeed(in_field(lmp_tree, dt, steps + 1, fix, FALL, header=header))
+        deck = in_field(lmp_tree, dt, steps + 1, force=FALL, header=header, fix=fix)
+        result = lmp_tree.succeed(deck)
         return poses(lmp_tree)[:, 1:], said in result.output
 
     mine, told = move(header)
@@ -441,8 +416,8 @@ def test_velocities_given_between_runs(lmp_tree):
 
 def test_rows_may_be_asked_for_before_a_body_is_there(lmp_tree):
     """An empty box into which a molecule comes."""
-    commands = THROW + "variable id equal f_move[1][28]"
-    deck = in_field(lmp_tree, 0.005, 3, commands=commands, columns="v_id f_move[2][28]")
+    after = THROW + "variable id equal f_move[1][28]"
+    deck = in_field(lmp_tree, 0.005, 3, after=after, columns="v_id f_move[2][28]")
     thermo = lmp_tree.succeed(deck).thermo[-1]
     assert thermo["v_id"] == [0, 1, 1, 1]
     assert thermo["f_move[2][28]"] == [0, 0, 0, 0]

@@ -18,7 +18,7 @@ from extended_scenes import (
     triangle,
     words,
 )
-from scenes import FORMULATIONS, last_frame, last_numbers
+from scenes import last_frame, last_numbers
 from scipy.spatial.transform import Rotation
 
 OMEGA = np.array([0.7, -0.4, 1.1])
@@ -117,7 +117,6 @@ fix pull handle spring/self 3.0
 """
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @on_both("name", BODIES)
 def test_the_motion_is_that_of_equivalent_points(lmp, name, formulation):
     """A spring pulls at the point of the body, so its motion depends on the whole tensor."""
@@ -185,7 +184,6 @@ def charges_or_dipole(charge, radius):
     return [bearer, Atom(RIGHT, 1.0, charge=charge), Atom(ABOVE, 1.0, charge=-charge)]
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("radius", [0.0, 0.5])
 def test_a_dipole_is_torqued_as_a_pair_of_charges(lmp, radius, formulation):
     """In a uniform field; a point dipole and one in a sphere."""
@@ -269,7 +267,6 @@ def clustered(kind, n=4, cut=30.0, fix="custom v_pair", before="", **settings):
     return deck(style, "\n".join(lines), fix=fix, pair=pair, before=before, **settings)
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("kind", ["dipoles", "ellipsoids"])
 def test_energy_is_kept_with_the_methods_order(lmp_tree, kind, formulation):
     """The energy of everything at the end, against that of the start, at halved steps."""
@@ -322,7 +319,6 @@ def test_ranks(lmp, kind):
         assert np.abs(other - ends[0]).max() < 1e-10
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("ranks", [1, 2])
 @on_both("kind", ["dipoles", "ellipsoids"])
 def test_restart_is_exact(lmp, kind, ranks, formulation):

@@ -4,7 +4,6 @@ import re
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS
 
 
 @pytest.fixture
@@ -22,7 +21,6 @@ def fields(lmp_tree, examples):
 
 # acceleration of the common centre: g, and q E / m
 @pytest.mark.parametrize("effect, pull", [("gravity", -0.1), ("field", 0.5 * 0.2 / 4.0)])
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_constant_forces_give_the_exact_fall(fields, effect, pull, formulation):
     _, log = fields(effect, words=f"formulation {formulation}")
     fallen = log["c_centre[3]"] - 0.5 * pull * log["Time"] ** 2

@@ -35,7 +35,6 @@ def flight(tables):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("formulation", ["first", "second"])
 def test_a_body_flies_on(lmp_tree, formulation, ranks):
     result = run(lmp_tree, f"molecule formulation {formulation}", "run 8000", ranks)
     step, centre = flight(result.thermo)

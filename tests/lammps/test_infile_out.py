@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS, WATER_MASSES, frames, last_frame, two_molecules, water, water_data
+from scenes import WATER_MASSES, frames, last_frame, two_molecules, water, water_data
 from test_life_cycle import Case1, end
 
 BODIES = 27
@@ -49,7 +49,6 @@ def gap(case1, dt, body, mass=1.0):
 
 
 @pytest.mark.parametrize("body", ["consistent", "unrotated"])
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_a_run_goes_on_up_to_its_history(lmp_tree, examples, formulation, body):
     """The new start costs an error of the method's order; masses and moments of the file count."""
     case1 = Case1(lmp_tree, examples, formulation)

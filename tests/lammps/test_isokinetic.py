@@ -3,58 +3,45 @@
 That the trajectory is the same on any ranks is tested in test_large_bodies.py.
 """
 
+import re
+
 import numpy as np
 import pytest
-from scenes import last_frame, one_after_the_other, two_molecules
+from scenes import last_frame, one_after_the_other, placed, two_molecules
 
 MODES = ["total", "separate"]
 PARTS = ["f_move[1]", "f_move[2]"]  # of translation and rotation
 
 # Three triangles and a dumbbell that attract each other and hold together; nothing is cut off.
-CLUSTER = """
-units lj
-atom_style molecular
-atom_modify map array sort 0 0.0
-boundary f f f
-region box block -9 9 -9 9 -9 9
-create_box 1 box
-create_atoms 1 single 0.0 0.0 0.0
-create_atoms 1 single 0.7 0.0 0.1
-create_atoms 1 single 0.0 0.6 0.2
-create_atoms 1 single 2.0 0.3 0.0
-create_atoms 1 single 2.5 0.9 0.1
-create_atoms 1 single 2.6 0.0 0.6
-create_atoms 1 single 0.8 2.0 0.4
-create_atoms 1 single 1.4 2.3 0.0
-create_atoms 1 single 0.9 1.9 1.1
-create_atoms 1 single 1.0 0.6 -1.6
-create_atoms 1 single 1.4 1.1 -1.8
-mass 1 1.0
-set atom 1*3 mol 1
-set atom 4*6 mol 2
-set atom 7*9 mol 3
-set atom 10*11 mol 4
+MOLECULES = [
+    [(0.0, 0.0, 0.0), (0.7, 0.0, 0.1), (0.0, 0.6, 0.2)],
+    [(2.0, 0.3, 0.0), (2.5, 0.9, 0.1), (2.6, 0.0, 0.6)],
+    [(0.8, 2.0, 0.4), (1.4, 2.3, 0.0), (0.9, 1.9, 1.1)],
+    [(1.0, 0.6, -1.6), (1.4, 1.1, -1.8)],
+]
+BEFORE = """
 velocity all create 0.6 4711 loop geom
 pair_style lj/cut 40.0
-pair_coeff 1 1 0.3 1.0
-neigh_modify exclude molecule/intra all
-timestep {dt}
-{style}
-fix move all gear/quat molecule formulation first {words}
-fix_modify move energy yes
+pair_coeff * * 0.3 1.0
+"""
+ENERGIES = """
 variable k equal f_move[1]+f_move[2]
 variable all equal etotal+f_move[9]
-thermo_style custom step v_k f_move[1] f_move[2] pe etotal f_move[9] f_move[10] f_move[11] v_all
-thermo_modify norm no format float %.17g
-thermo {every}
-{run}
 """
 
 
 def cluster(words, dt=0.004, time=0.8, run=None, every=None, style=""):
     steps = round(time / dt)
-    return CLUSTER.format(
-        words=words, dt=dt, run=run or f"run {steps}", every=every or steps // 8, style=style
+    return placed(
+        MOLECULES,
+        box="-9 9 -9 9 -9 9",
+        before=BEFORE + style,
+        fix=f"gear/quat molecule formulation first {words}",
+        after=ENERGIES,
+        columns="v_k v_all f_move[9] f_move[10] f_move[11]",
+        dt=dt,
+        thermo=every or steps // 8,
+        run=run or f"run {steps}",
     )
 
 
@@ -131,7 +118,7 @@ END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format floa
 
 def continued(deck, file):
     """The deck with its atoms and potential from a restart file."""
-    rest = deck[deck.index("neigh_") :]
+    rest = re.sub("velocity all create.*", "", deck[deck.index("neigh_") :])
     return f"units lj\natom_modify sort 0 0.0\nread_restart {file}\n{rest}"
 
 

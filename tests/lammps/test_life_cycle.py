@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS, restarted, two_molecules, whole_deck
+from scenes import restarted, two_molecules, whole_deck
 
 COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot"]
 
@@ -27,9 +27,9 @@ def end(result, run=-1):
     return np.array([result.thermo[run][column][-1] for column in COLUMNS])
 
 
-@pytest.fixture(params=FORMULATIONS)
-def case1(request, lmp_tree, examples):
-    return Case1(lmp_tree, examples, request.param)
+@pytest.fixture
+def case1(lmp_tree, examples, formulation):
+    return Case1(lmp_tree, examples, formulation)
 
 
 def test_several_runs_are_one_run(case1):
