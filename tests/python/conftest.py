@@ -19,13 +19,13 @@ def results():
 
 @pytest.fixture
 def run_scene(lmp_wheel, tmp_path):
-    """``run_scene(scene, ranks=1, **variables)``: thermo output of a deck, column -> samples.
+    """``run_scene(scene, **variables)``: thermo output of a deck, column -> samples.
 
     A dump is tmp_path / "poses.dump".
     """
 
-    def run(scene, ranks=1, **variables):
-        result = lmp_wheel.succeed(deck(scene), {"out": tmp_path / "poses", **variables}, ranks)
+    def run(scene, **variables):
+        result = lmp_wheel.succeed(deck(scene), {"out": tmp_path / "poses", **variables})
         return {name: np.array(values) for name, values in result.thermo[-1].items()}
 
     return run

@@ -114,13 +114,8 @@ TYPICAL = {
 
 def test_ratios_say_who_holds_the_energy():
     finding = drift.find(made_up(TYPICAL))
-    shown = [row[1:] for row in finding.tables["ratios_top"].rows]
-    assert shown == [
-        ["1.0e-03", "inf"],
-        ["1.0e-06", "inf"],
-        ["1.0e-01", "nan"],
-        ["1.0e+01", "7.0e+02"],
-    ]
+    shown = [" ".join(row[1:]) for row in finding.tables["ratios_top"].rows]
+    assert shown == ["1.0e-03 inf", "1.0e-06 inf", "1.0e-01 nan", "1.0e+01 7.0e+02"]
     flipped = drift.find(made_up(TYPICAL | {DEFAULT: (1e-2, 1e-4)}))
     assert flipped.tables["ratios_top"].rows[0][1:] == ["1.0e+02", "1.0e-02"]
     rows = {row[0]: row[1:] for row in finding.tables["largest_top"].rows}

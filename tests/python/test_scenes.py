@@ -72,12 +72,6 @@ def test_unrotated_is_another_body(run_case, formulation):
     assert abs(end[0] - end[1]).max() > 0.01
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
-def test_ranks_agree(run_case, ranks):
-    ends = [run_case(1, ranks=n, dt=0.02, steps=1000, every=500).center[-1] for n in (1, ranks)]
-    assert ends[0] == pytest.approx(ends[1], rel=1e-10, abs=1e-10)
-
-
 # --- the free top -------------------------------------------------------------------------------
 MOMENTS, OMEGA_BODY = np.array([19.5, 15.0, 7.5]), np.array([0.02, 1.0, 0.01])
 
