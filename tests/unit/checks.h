@@ -113,6 +113,18 @@ template <class F> void holds_and_refuses_one_percent(std::vector<double> values
   }
 }
 
+/// The check holds, and fails as soon as one of the numbers it is about is 1 % off.
+template <class F> void holds_and_needs(const std::vector<double *> &numbers, F check)
+{
+  ASSERT_TRUE(check());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double right = *numbers[i];
+    *numbers[i] *= 1.01;
+    EXPECT_FALSE(check()) << "number " << i << " 1 % off";
+    *numbers[i] = right;
+  }
+}
+
 /// The values agree to the tolerance, and none agrees any more when it is 1 % off.
 template <int N>
 void near_and_refuses_one_percent(const double (&values)[N], const double *expected,

@@ -25,6 +25,13 @@ inline Load free_of_load(const BodyState &, double)
   return Load{};
 }
 
+inline LoadOf constant(const Load &load)
+{
+  return [load](const BodyState &, double) {
+    return load;
+  };
+}
+
 inline Scheme scheme_of(Formulation formulation, int values = 0, int passes = 1,
                         bool compensate = false)
 {
@@ -172,10 +179,13 @@ struct Motion {
   BodyState state() const { return integrator.body_state(body, rows); }
   const double *q() const { return rows + scheme.quaternion(); }
 
+  void predict() { integrator.predict(rows); }
+  Correction correct(const Load &met) { return integrator.correct(body, met, rows); }
+
   Correction step()
   {
-    integrator.predict(rows);
-    return integrator.correct(body, load(state(), scheme.norm2(q())), rows);
+    predict();
+    return correct(load(state(), scheme.norm2(q())));
   }
 
   void steps(int n)

@@ -76,9 +76,9 @@ TEST(ErrorEstimate, IsTheWeightTimesTheResiduals)
       scheme.project = false;
       Motion motion(TOP, top_state(0.0), swing, scheme, 0.2, Start::BOOTSTRAP, 0.1);
       motion.steps(5);
-      motion.integrator.predict(motion.rows);
+      motion.predict();
       const vector<double> before = motion.history;
-      const Correction c = motion.integrator.correct(TOP, swing(motion.state(), 1.0), motion.rows);
+      const Correction c = motion.correct(swing(motion.state(), 1.0));
       const int row = scheme.width() * (scheme.first() ? 1 : 2);
       double dx[3], dq[4];
       for (int i = 0; i < 3; ++i) dx[i] = motion.rows[row + i] - before[row + i];

@@ -167,9 +167,7 @@ TEST(Orders, RodTurnsUniformlyAndUnderTorque)
         rod.body.inertia[none] = 0.0;
         rod.start.q[3] = 1.0;
         rod.start.omega_body[0] = omega;
-        rod.load = [torque](const BodyState &, double) {
-          return Load{{}, {torque, 0.0, 0.0}};    // x of the body stays x of space
-        };
+        rod.load = constant({{}, {torque, 0.0, 0.0}});    // x of the body stays x of space
         rod.missed = [=](const BodyState &s) {
           const double angle = omega * time + 0.5 * torque / 2.0 * time * time;
           const double q[4] = {std::sin(angle / 2), 0.0, 0.0, std::cos(angle / 2)};

@@ -33,12 +33,12 @@ double missed(const RigidBody &judge, Scheme scheme, int passes, double h)
   scheme.project = false;
   Motion motion(TOP, top_state(0.0), some_load, passing(scheme, passes), h, Start::BOOTSTRAP, h);
   motion.steps(3);
-  motion.integrator.predict(motion.rows);
+  motion.predict();
   const Load load = some_load(motion.state(), 1.0);
   double a[9], torque_body[3], omegadot[3], rate[4], worst = 0.0;
   rotation_matrix(motion.q(), 1.0, a);
   to_body(a, load.torque_space, torque_body);
-  motion.integrator.correct(TOP, load, motion.rows);
+  motion.correct(load);
 
   const BodyState s = motion.state();
   const double *q = motion.q(), *next = q + scheme.width(), *second = next + scheme.width();

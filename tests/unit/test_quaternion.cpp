@@ -210,6 +210,10 @@ TEST(Quaternion, ProjectionsMeetTheirConstraintAndNothingElse)
   for (int i = 0; i < 4; ++i)    // along q
     EXPECT_NEAR(q[i] * std::sqrt(dot4(before.data(), before.data())), before[i], 1e-15);
 
+  double legal[4] = {0.5, -0.5, 0.5, 0.5}, same[4] = {0.5, -0.5, 0.5, 0.5};
+  project_norm(legal);
+  EXPECT_EQ(largest_difference(legal, same, 4), 0.0);
+
   double spin[3], spin_before[3];
   angular_velocity(q.data(), 1.0, rate.data(), spin_before);
   project_rate(q.data(), rate.data());

@@ -72,9 +72,7 @@ TEST(SetVelocities, RodUnderTorque)
   const RigidBody rod = {1.0, {2.0, 0.0, 2.0}};
   const double torque = 0.9;
   const BodyState start = {{}, {0.0, 0.0, 0.0, 1.0}, {}, {1.5, 0.0, 0.0}};
-  const auto load = [&](const BodyState &, double) {
-    return Load{{}, {torque, 0.0, 0.0}};
-  };
+  const LoadOf load = constant({{}, {torque, 0.0, 0.0}});
   double angle = 0.0, omega = start.omega_body[0];
   for (int n = 0; n < KICKS; ++n) {
     angle += omega * EVERY + 0.25 * torque * EVERY * EVERY;

@@ -153,29 +153,6 @@ TEST(StartupNodes, TruncationIsTheHighestTerm)
   }
 }
 
-TEST(StartupNodes, TruncationOfAKnownMotion)
-{
-  // x'' = -x: the highest of n terms of H^2 x'' is H^(n + 1)/(n - 1)! times a derivative, relative
-  // to the larger of H x' and H^2 x''
-  for (int pairs : {2, 3, 4}) {
-    const int n = 2 * pairs + 1;
-    const Collocation collocation(values_for(pairs));
-    auto estimate = [&](double H) {
-      Collocation::Workspace w = {};
-      for (int k = -pairs; k <= pairs; ++k) w.second[pairs + k][0] = -H * H * std::cos(k * H + 0.4);
-      w.start[1][0] = -H * std::sin(0.4);
-      return collocation.truncation(1.0, w);
-    };
-    auto exact = [&](double H) {
-      const double top = std::fabs(std::cos(0.4)) * std::pow(H, n + 1) / std::tgamma(double(n));
-      return top / std::max(H * std::sin(0.4), H * H * std::cos(0.4));
-    };
-    const double H = 0.05;    // off by terms of order H^2
-    EXPECT_NEAR(estimate(H), exact(H), 2e-3 * exact(H)) << pairs;
-    EXPECT_GT(std::fabs(estimate(1.01 * H) - exact(H)), 2e-2 * exact(H));
-  }
-}
-
 TEST(StartupNodes, ChangeIsRelativeToTheMotion)
 {
   // a point with x'' = F/m: what the node held before, what it holds now, and the scale
@@ -273,9 +250,7 @@ TEST(StartupNodes, HalvesTheSpacingUntilSweepsConverge)
   const Found wide = bootstrap(12, TOP, top_state(0.0), swing, 1.6);
   EXPECT_LT(wide.spacing, 1.6);
   EXPECT_GT(wide.evaluations, wide.sweeps * 12);
-  auto broken = [](const BodyState &, double) {
-    return Load{{std::nan(""), 0, 0}, {0, 0, 0}};
-  };
+  const LoadOf broken = constant({{std::nan(""), 0, 0}, {0, 0, 0}});
   EXPECT_THROW(bootstrap(6, TOP, top_state(0.0), broken, 0.1), std::runtime_error);
 }
 
