@@ -5,34 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from scenes import empty_box
 from scipy.spatial.transform import Rotation
-
-DECK = """
-units lj
-atom_style {style}
-atom_modify map array sort 0 0.0
-dimension {dimension}
-boundary {boundary}
-newton on
-region box block {box}
-create_box 2 box
-{atoms}
-{masses}
-{pair}
-{before}
-fix move all gear/quat {fix}
-fix_modify move energy yes
-{after}
-timestep {dt:.17g}
-thermo_style custom step pe f_move[1] f_move[2]
-thermo_modify norm no format float %.17g lost error
-thermo {steps}
-{outputs}
-{flat}
-dump poses all custom {steps} {dump} {columns}
-dump_modify poses sort id format float %.17g
-{run}
-"""
 
 # what an atom style needs to dump, and what its points need so that they are points
 STYLES = {
@@ -159,7 +133,7 @@ def inertia(atoms: list[Atom]) -> np.ndarray:
 
 
 def body_deck(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0), **settings) -> str:
-    """A deck of one body that moves as such; settings: those of DECK."""
+    """A deck of one body that moves as such; settings: those of `deck`."""
     _, columns, point = STYLES[style]
     lines = [f"create_atoms 1 single {words(*a.x)}" for a in atoms]
     for i, a in enumerate(atoms, 1):
@@ -172,34 +146,24 @@ def body_deck(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0), **settin
             rate = f"angmom {words(*(a.inertia @ omega))}"
             lines.append(f"set atom {i} {rate if 'angmom' in columns else 'omega ' + words(*omega)}")
     masses = "mass * 1.0" if "dipole" in style else ""
-    return deck(style, "\n".join(lines), masses, **settings)
+    return deck(style, "\n".join(lines), masses=masses, **settings)
 
 
-def deck(style, atoms, masses="", columns="", **settings) -> str:
-    """A deck of bodies in a box; settings: those of DECK."""
+def deck(style, atoms, columns="", fix="single", pair="", before="", after="", **settings) -> str:
+    """A deck of bodies in a box; columns: more of the dump, settings: those of scenes.empty_box."""
     outputs, own_columns, _ = STYLES[style]
-    chosen = dict(
-        style=style,
-        atoms=atoms,
-        masses=masses,
-        outputs=outputs,
-        columns=f"id x y z vx vy vz {own_columns} {columns}",
-        pair="pair_style zero 2.0\npair_coeff * *",
-        before="",
-        after="",
-        dimension=3,
-        flat="",
-        boundary="f f f",
-        box="-20 20 -20 20 -20 20",
-        fix="single",
-        dt=0.005,
-        steps=400,
-        dump="poses.dump",
-        run="run {steps}",
-    )
+    # no temperature: a single body has too few degrees of freedom for it
+    known = dict(masses="", exclude="", energies="pe", dt=0.005, steps=400)
     if settings.get("dimension") == 2:
-        box = "-20 20 -20 20 -0.5 0.5"
-        chosen |= dict(boundary="f f p", box=box, flat="fix flat all enforce2d")
-    chosen |= settings
-    chosen["run"] = chosen["run"].format(**chosen)
-    return DECK.format(**chosen)
+        known |= dict(boundary="f f p", box="-20 20 -20 20 -0.5 0.5")
+        after += "\nfix flat all enforce2d"
+    known |= settings
+    return empty_box(
+        atoms,
+        style=style,
+        fix=f"gear/quat {fix}",
+        before=f"{outputs}\n{pair}\n{before}",
+        after=after,
+        dumped=f"{own_columns} {columns}",
+        **known,
+    )

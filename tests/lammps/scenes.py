@@ -40,7 +40,7 @@ def two_molecules(fix="molecule", before="", after="run 2", boundary="p p p") ->
     return TWO_MOLECULES.format(fix=fix, before=before, after=after, boundary=boundary)
 
 
-# Bodies whose sites are given, in an empty box; what acts on them is in {before} and {after}.
+# Bodies in an empty box; what acts on them is in {before} and {after}.
 PLACED = """
 units {units}
 atom_style {style}
@@ -53,33 +53,39 @@ create_box 2 box {room}
 {masses}
 pair_style zero 3.0
 pair_coeff * *
-neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+neigh_modify every 1 delay 0 check yes {exclude}
 {before}
 fix move {group} {fix}
 {after}
 timestep {dt}
-thermo_style custom step time pe ke etotal {columns}
+thermo_style custom step {energies} {columns}
 thermo_modify norm no format float %.17g
 thermo {thermo}
-dump poses all custom {steps} {dump} id xu yu zu vx vy vz
+dump poses all custom {steps} {dump} id xu yu zu vx vy vz {dumped}
 dump_modify poses sort id format float %.17g
 {run}
 """
 
 
-def placed(bodies, velocities=(), kinds=None, molecules=None, steps=100, **settings) -> str:
-    """A deck with bodies whose sites are in rows of three numbers.
-
-    ``velocities``: a row for each atom, ``kinds``: its type, ``molecules``: an ID for each body;
-    settings: those of PLACED.
-    """
+def empty_box(atoms: str, steps=100, **settings) -> str:
+    """A deck of bodies that the commands ``atoms`` make; settings: those of PLACED."""
     known = dict(units="lj", style="molecular", dimension=3, boundary="f f f", group="all")
     known |= dict(box="-20 20 -20 20 -20 20", room="", masses="mass * 1.0", before="", after="")
-    known |= dict(fix="gear/quat molecule", dt=0.01, thermo=steps, columns="", dump="poses.dump")
-    known |= dict(steps=steps, run=f"run {steps}") | settings
+    known |= dict(fix="gear/quat molecule", dt=0.01, thermo=steps, columns="", run=f"run {steps}")
+    known |= dict(exclude="exclude molecule/intra all", dump="poses.dump", dumped="")
+    known |= dict(energies="time pe ke etotal") | settings
     if known["fix"].startswith("gear/quat"):
         known["after"] = "fix_modify move energy yes\n" + known["after"]
         known["columns"] += " f_move[1] f_move[2]"
+    return PLACED.format(atoms=atoms, steps=steps, **known)
+
+
+def placed(bodies, velocities=(), kinds=None, molecules=None, **settings) -> str:
+    """A deck with bodies whose sites are in rows of three numbers.
+
+    ``velocities``: a row for each atom, ``kinds``: its type, ``molecules``: an ID for each body;
+    settings: those of empty_box.
+    """
     lines, count = [], 0
     for k, sites in enumerate(bodies):
         for x, y, z in sites:
@@ -90,7 +96,7 @@ def placed(bodies, velocities=(), kinds=None, molecules=None, steps=100, **setti
         lines.append(f"set atom {count - len(sites) + 1}*{count} mol {ID}")
     for i, (x, y, z) in enumerate(velocities, 1):
         lines.append(f"set atom {i} vx {x:.17g} vy {y:.17g} vz {z:.17g}")
-    return PLACED.format(atoms="\n".join(lines), **known)
+    return empty_box("\n".join(lines), **settings)
 
 
 # SPC/E; dense enough to migrate and to collide, cut off smoothly so that rounding stays rounding.
