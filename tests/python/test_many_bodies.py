@@ -147,35 +147,19 @@ def broken(results):
 
 
 # --- data that must be refused --------------------------------------------------------------------
-def noisy():
-    """Timings in which noise has made the time of a fix negative."""
-    made = timings()
-    for key in made:
-        if key[0] == FIRST.key:
-            made[key] = [replace(t, comm=0.0, modify=0.0) for t in made[key]]
-    return made
+def changed(data, keys, change):
+    """Made-up data with a change of some of their values."""
+    return data | {key: change(data[key]) for key in keys}
 
 
-def leap():
-    """Timings with more memory in the heap at one size."""
-    made, key = timings(), ("first", (1, 1, 1), 1)
-    return made | {key: [replace(t, allocated=t.allocated + 1.0) for t in made[key]]}
-
-
-def late():
-    """Pressures that differ after the start at one step."""
-    made = pressures()
-    made["first", 1.0][1] += 31.0
-    return made
-
-
-def off_freedoms():
-    """Temperatures of which one has been divided by other degrees of freedom."""
-    made = temperatures()
-    made["first"]["Temp"] *= 1.0 + 3e-9
-    return made
-
-
+#: a time that noise has made negative; more memory at one size; a pressure that differs after the
+#: start; other degrees of freedom
+FIRSTS = [key for key in timings() if key[0] == "first"]
+NOISY = changed(timings(), FIRSTS, lambda own: [replace(t, comm=0.0, modify=0.0) for t in own])
+ONE_SIZE = [("first", (1, 1, 1), 1)]
+LEAP = changed(timings(), ONE_SIZE, lambda own: [replace(t, allocated=104.0) for t in own])
+LATE = changed(pressures(), [("first", 1.0)], lambda p: p + 31.0 * (np.arange(len(p)) == 1))
+FREEDOMS = changed(temperatures(), ["first"], lambda t: t | {"Temp": t["Temp"] * (1 + 3e-9)})
 LAW, WARM = 1.1 / 0.9, {NVE_SMALL.key: rigid_columns(303.0)}
 
 
@@ -185,17 +169,17 @@ LAW, WARM = 1.1 / 0.9, {NVE_SMALL.key: rigid_columns(303.0)}
         ({}, []),
         ({"timings": timings(FIX | {SECOND: 0.999})}, []),
         ({"timings": timings(FIX | {SECOND: 1.01})}, ["second.*time in the fix"] * 2),
-        ({"timings": noisy()}, ["first.*time in the fix"] * 2),
+        ({"timings": NOISY}, ["first.*time in the fix"] * 2),
         ({"timings": timings(memory=BYTES | {SECOND: 1499.0})}, []),
         ({"timings": timings(memory=BYTES | {SECOND: 1515.0})}, ["second.*memory"]),
-        ({"timings": leap()}, ["first.*memory"]),
+        ({"timings": LEAP}, ["first.*memory"]),
         ({"timings": timings(growth=0.99 * LAW)}, []),
         ({"timings": timings(growth=1.01 * LAW)}, ["linear scaling"] * 2),
         ({"timings": timings(growth=0.5)}, ["linear scaling"] * 2),
         ({"pressures": pressures(shift=10.0)}, ["of a mean pressure"] * 2),
         ({"pressures": pressures(instant=1e-5)}, ["second.*of the start", "first.*of the start"]),
-        ({"pressures": late()}, ["first.*after 2 fs"]),
-        ({"temperatures": off_freedoms()}, ["first.*6N - 3"]),
+        ({"pressures": LATE}, ["first.*after 2 fs"]),
+        ({"temperatures": FREEDOMS}, ["first.*6N - 3"]),
         ({"temperatures": temperatures(**WARM)}, ["mean temperature less"] * 2),
     ],
 )
