@@ -100,13 +100,12 @@ class Lab:
         Any other error ends all runs and is raised as LammpsError.
         """
         stop, total = threading.Event(), sum(job.steps for job in jobs.values())
-
-        def attempt(name):
-            return self._run(name, jobs[name], may_fail, stop, total)
-
         order = sorted(jobs, key=lambda name: -jobs[name].steps)
         with ThreadPoolExecutor(max_workers=self.jobs) as pool:
-            futures = {name: pool.submit(attempt, name) for name in order}
+            futures = {
+                name: pool.submit(self._run, name, jobs[name], may_fail, stop, total)
+                for name in order
+            }
             try:
                 errors = [future.exception() for future in futures.values()]
             except BaseException:  # Ctrl-C
