@@ -82,13 +82,11 @@ def reformatted(path):
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)
-def test_lammps_format(path):
-    assert reformatted(path) == path.read_text()
-
-
-def test_a_wrong_format_is_noticed(tmp_path):
-    wrong = tmp_path / "x.cpp"
-    wrong.write_text("int f(int  x)\n{\n    return x;\n}\n")
+def test_lammps_format(path, tmp_path):
+    text = path.read_text()
+    assert reformatted(path) == text
+    wrong = tmp_path / path.name
+    wrong.write_text(text + "int f(int  x);\n")
     assert reformatted(wrong) != wrong.read_text()
 
 
