@@ -18,12 +18,10 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
-#include "gear_quat_checks.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_neighbors.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_report.h"
-#include "gear_quat_respa.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_scene.h"
 #include "gear_quat_template.h"
@@ -38,7 +36,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -46,23 +43,18 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), met_atoms(false), reported(false), compared(false), velocities_read(true),
-    vflag_of_step(0)
+FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   add_citations(lmp);
   time_integrate = rigid_flag = 1;
-  scalar_flag = vector_flag = 1;
-  global_freq = 1;
+  scalar_flag = vector_flag = array_flag = local_flag = 1;
+  global_freq = local_freq = 1;
   extscalar = 1;
   extvector = -1;
-  array_flag = local_flag = 1;
   extarray = 0;
-  local_freq = 1;
   size_array_rows = 0;
   size_array_cols = size_local_cols = BodyTable::COLUMNS;
-  energy_global_flag = 1;
-  virial_global_flag = virial_peratom_flag = 1;
+  energy_global_flag = virial_global_flag = virial_peratom_flag = 1;
   centroidstressflag = CENTROID_AVAIL;
   thermo_virial = 1;
   dof_flag = 1;
@@ -70,10 +62,6 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   restart_global = restart_peratom = restart_file = 1;
 
   args.reset(new Arguments(lmp, narg, arg));
-  if (atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
-  if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
-
   bodies.reset(new Bodies(lmp, this, args->scheme));
   motion.reset(new Motion(lmp, this, *args, *bodies));
   neighbors.reset(new Neighbors(lmp, this, *bodies, *args));
@@ -82,8 +70,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   table.reset(new BodyTable(lmp, *bodies));
   sums.reset(new Sums(lmp, *bodies));
   size_vector = Sums::ELEMENTS + motion->elements();
-  find_template(lmp, args->mol);    // it has to exist
-  extracts.reset(new Extract(lmp, *bodies, args->mol));
+  extracts.reset(new Extract(lmp, *bodies, *sums, *motion, args->mol));
   readers.reset(new Readers);
   maxexchange = bodies->max_exchange();
   comm_forward = bodies->max_forward();
@@ -108,14 +95,11 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
 void FixGearQuat::create_bodies()
 {
-  GivenBodies given;
-  if (!args->infile.empty()) given = read_given_bodies(lmp, args->infile);
-  bodies->create(args->body_ids(lmp, groupbit), given);
+  bodies->create(args->body_ids(groupbit), read_given_bodies(lmp, args->infile));
 }
 
 FixGearQuat::~FixGearQuat()
 {
-  if (copymode) return;
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
   delete[] extlist;
@@ -143,21 +127,6 @@ void FixGearQuat::init()
   bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
 }
 
-bool FixGearQuat::moves(int i) const
-{
-  return bodies->in_body(i);
-}
-
-bool FixGearQuat::bootstraps() const
-{
-  return motion->bootstraps();
-}
-
-double FixGearQuat::last_error() const
-{
-  return motion->last_error();
-}
-
 void FixGearQuat::reset_dt()
 {
   motion->follow_time_step();
@@ -175,11 +144,8 @@ void FixGearQuat::setup_pre_neighbor()
   if (take_over && !bodies->atoms_match()) {
     bodies->recreate();
     bodies->update_ghosts();
-    if (motion->has_started() && comm->me == 0)
-      utils::logmesg(lmp,
-                     "Fix gear/quat: atoms were changed since the last run, bodies start "
-                     "anew from them\n");
-    motion->forget();
+    motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
+                   "them");
   }
   motion->impose_masks();
   met_atoms = compared = true;
@@ -244,12 +210,12 @@ void FixGearQuat::begin_steps(double **f, double **torque)
 {
   std::vector<Motion *> all;
   for (auto *other : modify->get_fix_list()) {
-    auto *same = dynamic_cast<FixGearQuat *>(other);
-    if (!same) continue;
-    same->take_velocities(update->ntimestep - 1, true);
-    same->bodies->spread_states();
-    same->bodies->gather_loads(f, torque);
-    all.push_back(same->motion.get());
+    if (auto *same = dynamic_cast<FixGearQuat *>(other)) {
+      same->take_velocities(update->ntimestep - 1, true);
+      same->bodies->spread_states();
+      same->bodies->gather_loads(f, torque);
+      all.push_back(same->motion.get());
+    }
   }
   Motion::begin_steps(all, f);
 }
@@ -303,19 +269,14 @@ void FixGearQuat::end_of_step()
 void FixGearQuat::tally_virial(double **f)
 {
   bodies->spread_loads();
-  std::vector<Load> centroids;
-  if (cvflag_atom) centroids = bodies->centroids();
+  const auto centroids = cvflag_atom ? bodies->centroids() : std::vector<Load>();
   for (size_t n = cvflag_atom ? 0 : bodies->first_arm(); n < bodies->sites.size(); ++n) {
     const auto &site = bodies->sites[n];
-    double arm[1][3], constraint[1][3], virial_i[6], centroid[3] = {0.0, 0.0, 0.0};
-    bodies->constraint_force(site, f, arm[0], constraint[0]);
-    for (int k = 0; k < 3; ++k) virial_i[k] = arm[0][k] * constraint[0][k];
-    virial_i[3] = arm[0][0] * constraint[0][1];
-    virial_i[4] = arm[0][0] * constraint[0][2];
-    virial_i[5] = arm[0][1] * constraint[0][2];
+    auto constraint = bodies->constraint_force(site, f);
+    double centroid[3] = {0.0, 0.0, 0.0};
     if (cvflag_atom) std::copy_n(centroids[site.body].force, 3, centroid);
     int i = site.atom;
-    v_tally(1, &i, 1.0, virial_i, arm, constraint, centroid);
+    v_tally(1, &i, 1.0, constraint.virial, constraint.arm, constraint.force, centroid);
   }
 }
 
@@ -404,10 +365,6 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *
 
 void *FixGearQuat::extract(const char *name, int &dim)
 {
-  if (std::strcmp(name, "tolerance") == 0) {
-    dim = 0;
-    return motion->changes_step() ? &args->control.eps : nullptr;
-  }
   return extracts->extract(name, dim);
 }
 
@@ -469,12 +426,7 @@ void FixGearQuat::resume()
   if (!restarts->was_read()) return;
   const bool others_come = !args->mol.empty();    // also from outside of the group
   met_atoms = restarts->resume(others_come ? groupbit : 0);
-  if (met_atoms) return;
-  create_bodies();
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: the bodies of this command consist of other atoms than those of "
-                   "the restart file; they begin anew from their atoms");
+  if (!met_atoms) create_bodies();
 }
 
 int FixGearQuat::pack_restart(int i, double *buf)

@@ -19,7 +19,6 @@ FixStyle(gear/quat,FixGearQuat);
 #define LMP_FIX_GEAR_QUAT_H
 
 #include "fix.h"
-#include "gear_quat_peer.h"
 
 #include <memory>
 #include <vector>
@@ -40,7 +39,7 @@ namespace GearQuat {
   struct StatedMolecule;
 }    // namespace GearQuat
 
-class FixGearQuat : public Fix, public GearQuat::Peer {
+class FixGearQuat : public Fix {
  public:
   FixGearQuat(class LAMMPS *, int, char **);
   ~FixGearQuat() override;
@@ -85,10 +84,6 @@ class FixGearQuat : public Fix, public GearQuat::Peer {
   void set_molecule(int, tagint, int, double *, double *, double *) override;
   void *extract(const char *, int &) override;
 
-  bool moves(int) const override;
-  bool bootstraps() const override;
-  double last_error() const override;
-
  private:
   // in the order in which they depend on each other; a constructor that ends in an error frees them
   std::unique_ptr<GearQuat::Arguments> args;
@@ -103,11 +98,11 @@ class FixGearQuat : public Fix, public GearQuat::Peer {
 
   std::vector<GearQuat::StatedMolecule> stated;    // by molecules of the template
 
-  bool met_atoms;          // bodies were compared with the atoms in a run before
-  bool reported;           // the scene, once
-  bool compared;           // bodies with the atoms, before this run
-  bool velocities_read;    // between prediction and correction, by others
-  int vflag_of_step;       // what LAMMPS asked of the virial when the step began
+  bool met_atoms = false;         // bodies were compared with the atoms in a run before
+  bool reported = false;          // the scene, once
+  bool compared = false;          // bodies with the atoms, before this run
+  bool velocities_read = true;    // between prediction and correction, by others
+  int vflag_of_step = 0;          // what LAMMPS asked of the virial when the step began
   std::unique_ptr<GearQuat::Readers> readers;    // other fixes at the end of a step
 
   void take_velocities(bigint step, bool end);

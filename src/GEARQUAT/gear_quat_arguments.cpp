@@ -5,33 +5,35 @@
 
 #include "gear_quat_arguments.h"
 
+#include "gear_quat_ranks.h"
+
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "group.h"
 #include "input.h"
-#include "lammps.h"
 #include "utils.h"
 #include "variable.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
 
-Arguments::Arguments(LAMMPS *lmp, int narg, char **arg)
+Arguments::Arguments(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp)
 {
-  const int used = parse_bodystyle(lmp, narg, arg);
-  parse_keywords(lmp, narg - used, arg + used);
+  const int used = parse_bodystyle(narg, arg);
+  parse_keywords(narg - used, arg + used);
 }
 
 /// Returns the number of words used so far.
-int Arguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
+int Arguments::parse_bodystyle(int narg, char **arg)
 {
-  Error *error = lmp->error;
   if (narg <= FIRST_WORD)
     error->all(FLERR,
                "Fix gear/quat: the body style is missing, which says what makes a body: single, "
@@ -39,7 +41,7 @@ int Arguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
   const std::string style = arg[FIRST_WORD];
   const int next = FIRST_WORD + 1;
   if (style == "keywords") {
-    if (lmp->comm->me == 0) utils::logmesg(lmp, list_of_keywords());
+    if (comm->me == 0) utils::logmesg(lmp, list_of_keywords());
     error->all(FLERR, "Fix gear/quat keywords only lists the keywords, and no fix was made");
   }
   given["bodystyle"].text = style;
@@ -68,7 +70,7 @@ int Arguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
       error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", n, narg - next - 1);
     for (int i = 0; i < n; ++i) {
       groups.emplace_back(arg[next + 1 + i]);
-      if (lmp->group->find(groups.back()) < 0)
+      if (group->find(groups.back()) < 0)
         error->all(FLERR, "Fix gear/quat group: group ID {} does not exist", groups.back());
     }
     return next + 1 + n;
@@ -82,23 +84,23 @@ int Arguments::parse_bodystyle(LAMMPS *lmp, int narg, char **arg)
    keywords
 ------------------------------------------------------------------------- */
 
-void Arguments::parse_keywords(LAMMPS *lmp, int narg, char **arg)
+void Arguments::parse_keywords(int narg, char **arg)
 {
   for (const auto &row : keyword_table())
     if (!row.standard.empty()) row.store(*this, {row.standard});
 
   for (int iarg = 0; iarg < narg; ++iarg) {
-    const Keyword &row = known_keyword(lmp, arg[iarg]);
+    const Keyword &row = find_keyword(lmp, arg[iarg]);
     if (row.kind != Keyword::MASK && given.count(row.name))
-      lmp->error->all(FLERR, "Fix gear/quat keyword {} is given twice", row.name);
+      error->all(FLERR, "Fix gear/quat keyword {} is given twice", row.name);
     KeywordValue value;
     iarg += row.read(lmp, narg - iarg, arg + iarg, value);
     row.store(*this, value);
     given[row.name] = value;
   }
-  check_conditions(lmp);
-  check_ranges(lmp);
-  if (is_on("tolerance", "")) check_control(lmp);
+  check_conditions();
+  check_ranges();
+  if (is_on("tolerance", "")) check_control();
   if (!infile.empty()) reinit = false;    // what a file states is not computed again from the atoms
 }
 
@@ -108,14 +110,14 @@ bool Arguments::is_on(const std::string &keyword, const std::string &value) cons
 {
   const auto place = given.find(keyword);
   if (keyword == "bodystyle") return place->second.text == value;
-  const Keyword &row = find_keyword(keyword);
+  const Keyword &row = find_keyword(lmp, keyword);
   const std::string &present = place == given.end() ? row.standard : place->second.text;
   if (!value.empty()) return present == value;
   return !present.empty() && !(row.kind == Keyword::WORD && present == "none");
 }
 
 /// What keywords require of each other and exclude.
-void Arguments::check_conditions(LAMMPS *lmp) const
+void Arguments::check_conditions() const
 {
   const auto because = [](const Keyword::Condition &condition) {
     return condition.reason.empty() ? "" : ": " + condition.reason;
@@ -124,22 +126,22 @@ void Arguments::check_conditions(LAMMPS *lmp) const
     if (!given.count(row.name) || !is_on(row.name, "")) continue;
     for (const auto &condition : row.needs)
       if (!is_on(condition.keyword, condition.value))
-        lmp->error->all(FLERR, "Fix gear/quat keyword {} requires {}{}", row.name,
-                        condition.value.empty() ? "keyword " + condition.keyword
-                                                : condition.keyword + " " + condition.value,
-                        because(condition));
+        error->all(FLERR, "Fix gear/quat keyword {} requires {}{}", row.name,
+                   condition.value.empty() ? "keyword " + condition.keyword
+                                           : condition.keyword + " " + condition.value,
+                   because(condition));
     for (const auto &condition : row.excludes)
       if (is_on(row.name, condition.value) && given.count(condition.keyword) &&
           is_on(condition.keyword, ""))
-        lmp->error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}{}",
-                        condition.value.empty() ? row.name
-                                                : row.name + std::string(" ") + condition.value,
-                        condition.keyword, because(condition));
+        error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}{}",
+                   condition.value.empty() ? row.name
+                                           : row.name + std::string(" ") + condition.value,
+                   condition.keyword, because(condition));
   }
 }
 
 /// Stores integers, the default ones too, and ends the run if one is outside of its range.
-void Arguments::check_ranges(LAMMPS *lmp)
+void Arguments::check_ranges()
 {
   const bool tolerance = is_on("tolerance", "");
   for (const auto &row : keyword_table()) {
@@ -151,63 +153,54 @@ void Arguments::check_ranges(LAMMPS *lmp)
     if (given.count(row.name)) value = given.at(row.name);
     row.store(*this, value);
     if (value.integer < range.fewest || value.integer > range.most)
-      lmp->error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.integer,
-                      range.fewest, range.most,
-                      row.ranges.size() == 1 ? ""
-                          : scheme.first()   ? ", as formulation first requires"
-                                             : ", as formulation second requires");
+      error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.integer,
+                 range.fewest, range.most,
+                 row.ranges.size() == 1 ? ""
+                     : scheme.first()   ? ", as formulation first requires"
+                                        : ", as formulation second requires");
     if (most && value.integer > row.most_with_tolerance)
-      lmp->error->all(FLERR,
-                      "Fix gear/quat tolerance: {} {} are more than {}, the largest number with "
-                      "which a step may shrink",
-                      value.integer, row.name, row.most_with_tolerance);
+      error->all(FLERR,
+                 "Fix gear/quat tolerance: {} {} are more than {}, the largest number with "
+                 "which a step may shrink",
+                 value.integer, row.name, row.most_with_tolerance);
   }
 }
 
-void Arguments::check_control(LAMMPS *lmp)
+void Arguments::check_control()
 {
   scheme.trial = true;
-  control.fewest = find_keyword("values").range(scheme.first()).fewest;
+  control.fewest = find_keyword(lmp, "values").range(scheme.first()).fewest;
   control.most = scheme.rows;
   if (control.longest > 0.0 && control.shortest > control.longest)
-    lmp->error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
-                    control.longest);
+    error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
+               control.longest);
 }
 
 /* ----------------------------------------------------------------------
    atoms to bodies
 ------------------------------------------------------------------------- */
 
-std::vector<tagint> Arguments::body_ids(LAMMPS *lmp, int groupbit) const
+std::vector<tagint> Arguments::body_ids(int groupbit) const
 {
   switch (bodystyle) {
     case BodyStyle::MOLECULE:
-      return molecule_ids(lmp, groupbit);
+      return molecule_ids(groupbit);
     case BodyStyle::GROUP:
-      return group_ids(lmp, groupbit);
+      return group_ids(groupbit);
     case BodyStyle::CUSTOM:
-      return custom_ids(lmp, groupbit);
+      return custom_ids(groupbit);
     default:
       break;
   }
-  std::vector<tagint> ids(lmp->atom->nlocal);
-  for (size_t i = 0; i < ids.size(); ++i) ids[i] = (lmp->atom->mask[i] & groupbit) ? 1 : 0;
+  std::vector<tagint> ids(atom->nlocal);
+  for (size_t i = 0; i < ids.size(); ++i) ids[i] = (atom->mask[i] & groupbit) ? 1 : 0;
   return ids;
 }
 
-/// The largest of a fault's atom IDs on all ranks, 0 for none.
-static tagint anywhere(LAMMPS *lmp, tagint tag)
+std::vector<tagint> Arguments::molecule_ids(int groupbit) const
 {
-  tagint all;
-  MPI_Allreduce(&tag, &all, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
-  return all;
-}
-
-std::vector<tagint> Arguments::molecule_ids(LAMMPS *lmp, int groupbit) const
-{
-  Atom *atom = lmp->atom;
   if (!atom->molecule_flag)
-    lmp->error->all(FLERR, "Fix gear/quat molecule requires an atom style with molecule IDs");
+    error->all(FLERR, "Fix gear/quat molecule requires an atom style with molecule IDs");
   std::vector<tagint> ids(atom->nlocal, 0);
   tagint without = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -215,22 +208,21 @@ std::vector<tagint> Arguments::molecule_ids(LAMMPS *lmp, int groupbit) const
     ids[i] = atom->molecule[i];
     if (ids[i] <= 0) without = atom->tag[i];
   }
-  if ((without = anywhere(lmp, without)))
-    lmp->error->all(FLERR,
-                    "Fix gear/quat molecule: atom {} of the fix group has molecule ID 0; "
-                    "take it out of the group or give it the ID of its body",
-                    without);
+  if ((without = over_ranks(MPI_MAX, without, world)))
+    error->all(FLERR,
+               "Fix gear/quat molecule: atom {} of the fix group has molecule ID 0; "
+               "take it out of the group or give it the ID of its body",
+               without);
   return ids;
 }
 
-std::vector<tagint> Arguments::group_ids(LAMMPS *lmp, int groupbit) const
+std::vector<tagint> Arguments::group_ids(int groupbit) const
 {
-  Atom *atom = lmp->atom;
   std::vector<tagint> ids(atom->nlocal, 0);
   tagint twice = 0;
   std::vector<int> used(groups.size(), 0), used_anywhere(groups.size(), 0);
   for (size_t g = 0; g < groups.size(); ++g) {
-    const int bit = lmp->group->bitmask[lmp->group->find(groups[g])];
+    const int bit = group->bitmask[group->find(groups[g])];
     for (int i = 0; i < atom->nlocal; ++i) {
       if (!(atom->mask[i] & bit) || !(atom->mask[i] & groupbit)) continue;
       if (ids[i] != 0) twice = atom->tag[i];
@@ -238,20 +230,18 @@ std::vector<tagint> Arguments::group_ids(LAMMPS *lmp, int groupbit) const
       used[g] = 1;
     }
   }
-  if ((twice = anywhere(lmp, twice)))
-    lmp->error->all(FLERR,
-                    "Fix gear/quat group: atom {} is in more than one of the groups; an "
-                    "atom belongs to one body at most",
-                    twice);
-  MPI_Allreduce(used.data(), used_anywhere.data(), (int) groups.size(), MPI_INT, MPI_MAX,
-                lmp->world);
+  if ((twice = over_ranks(MPI_MAX, twice, world)))
+    error->all(FLERR,
+               "Fix gear/quat group: atom {} is in more than one of the groups; an "
+               "atom belongs to one body at most",
+               twice);
+  MPI_Allreduce(used.data(), used_anywhere.data(), (int) groups.size(), MPI_INT, MPI_MAX, world);
   for (size_t g = 0; g < groups.size(); ++g)
     if (!used_anywhere[g])
-      lmp->error->all(
-          FLERR,
-          "Fix gear/quat group: no atom of the fix group is in group {}, which makes no "
-          "body; leave it out",
-          groups[g]);
+      error->all(FLERR,
+                 "Fix gear/quat group: no atom of the fix group is in group {}, which makes no "
+                 "body; leave it out",
+                 groups[g]);
   return ids;
 }
 
@@ -259,10 +249,8 @@ std::vector<tagint> Arguments::group_ids(LAMMPS *lmp, int groupbit) const
 static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
 
 /// Bodies are numbered from the smallest value in the group, as fix rigid numbers them.
-std::vector<tagint> Arguments::custom_ids(LAMMPS *lmp, int groupbit) const
+std::vector<tagint> Arguments::custom_ids(int groupbit) const
 {
-  Atom *atom = lmp->atom;
-  Error *error = lmp->error;
   std::vector<tagint> ids(atom->nlocal, 0);
 
   if (utils::strmatch(custom, "^i_")) {
@@ -275,7 +263,7 @@ std::vector<tagint> Arguments::custom_ids(LAMMPS *lmp, int groupbit) const
                  custom);
     std::copy_n(atom->ivector[index], atom->nlocal, ids.begin());
   } else if (utils::strmatch(custom, "^v_")) {
-    Variable *variable = lmp->input->variable;
+    Variable *variable = input->variable;
     const int index = variable->find(custom.c_str() + 2);
     if (index < 0 || !variable->atomstyle(index))
       error->all(FLERR,
@@ -292,23 +280,73 @@ std::vector<tagint> Arguments::custom_ids(LAMMPS *lmp, int groupbit) const
       else
         unusable = atom->tag[i];
     }
-    if ((unusable = anywhere(lmp, unusable)))
+    if ((unusable = over_ranks(MPI_MAX, unusable, world)))
       error->all(FLERR, "Fix gear/quat custom {}: the value of atom {} is no number below {:g}",
                  custom, unusable, MOST_CUSTOM);
   } else
     error->all(FLERR, "Fix gear/quat custom: {} is neither i_name nor v_name", custom);
 
-  bigint largest[2] = {-MAXBIGINT, -MAXBIGINT}, all[2];    // of the value, and of its negative
+  bigint largest[2] = {-MAXBIGINT, -MAXBIGINT};    // of the value, and of its negative
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit) {
       largest[0] = std::max(largest[0], (bigint) ids[i]);
       largest[1] = std::max(largest[1], -(bigint) ids[i]);
     }
-  MPI_Allreduce(largest, all, 2, MPI_LMP_BIGINT, MPI_MAX, lmp->world);
+  const auto all = over_ranks(MPI_MAX, largest, world);
   if ((double) all[0] + (double) all[1] >= MOST_CUSTOM)
     error->all(FLERR, "Fix gear/quat custom {}: values from {} to {} are too far apart", custom,
                -all[1], all[0]);
   for (int i = 0; i < atom->nlocal; ++i)
     ids[i] = (atom->mask[i] & groupbit) ? (tagint) (ids[i] + all[1] + 1) : 0;
   return ids;
+}
+
+/* ----------------------------------------------------------------------
+   bodies to masks
+------------------------------------------------------------------------- */
+
+/// n, *, *n, n* or m*n with 1 <= m <= n <= number; false if it is none of these.
+static bool parse_range(const std::string &text, tagint number, tagint &first, tagint &last)
+{
+  const size_t star = text.find('*');
+  const std::string left = text.substr(0, star);
+  const std::string right = star == std::string::npos ? left : text.substr(star + 1);
+  for (const auto &part : {left, right})
+    if (part.find_first_not_of("0123456789") != std::string::npos || part.size() > 18) return false;
+  if (star == std::string::npos && left.empty()) return false;
+  const bigint from = left.empty() ? 1 : std::atoll(left.c_str());
+  const bigint to = right.empty() ? number : std::atoll(right.c_str());
+  if (from < 1 || from > to || to > number) return false;
+  first = (tagint) from;
+  last = (tagint) to;
+  return true;
+}
+
+std::map<tagint, Mask> Arguments::masks_of(const std::vector<tagint> &ids) const
+{
+  std::map<tagint, Mask> off;
+  for (const auto &one : masks) {
+    const char *key = one.torque ? "torque" : "force";
+    tagint first, last;
+    if (!parse_range(one.range, (tagint) ids.size(), first, last))
+      error->all(FLERR,
+                 "Fix gear/quat {}: bodies {} are neither a number from 1 to {} nor a range of "
+                 "them with an asterisk",
+                 key, one.range, ids.size());
+    if (domain->dimension == 2 && (one.torque ? one.on[0] || one.on[1] : one.on[2]))
+      error->all(FLERR, "Fix gear/quat {}: the {} has to be off in a 2d simulation", key,
+                 one.torque ? "torque about x and y" : "force along z");
+    Mask bits = 0, wanted = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Mask bit = one.torque ? torque_off(k) : force_off(k);
+      bits |= bit;
+      if (!one.on[k]) wanted |= bit;
+    }
+    for (tagint m = first; m <= last; ++m) {
+      Mask &mask = off[ids[m - 1]];
+      mask = (mask & ~bits) | wanted;
+    }
+  }
+  for (auto it = off.begin(); it != off.end();) it = it->second ? std::next(it) : off.erase(it);
+  return off;
 }

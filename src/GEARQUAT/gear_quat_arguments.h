@@ -10,19 +10,15 @@
 
 #include "gear_quat_keywords.h"
 #include "gear_quat_step_control.h"
-#include "lmptype.h"
+#include "pointers.h"
 
 #include <map>
 #include <string>
 #include <vector>
 
-namespace LAMMPS_NS {
-class LAMMPS;
-}    // namespace LAMMPS_NS
-
 namespace LAMMPS_NS::GearQuat {
 
-struct Arguments {
+struct Arguments : protected Pointers {
   enum class BodyStyle { SINGLE, MOLECULE, GROUP, CUSTOM };
   enum class Start { BOOTSTRAP, ZERO };
   enum class Report { NO, SHORT, LONG };
@@ -49,20 +45,25 @@ struct Arguments {
   Arguments(LAMMPS *lmp, int narg, char **arg);
 
   /// Body of every owned atom, 0 for atoms in none; faults name the atom.  Collective.
-  std::vector<tagint> body_ids(LAMMPS *lmp, int groupbit) const;
+  std::vector<tagint> body_ids(int groupbit) const;
+
+  /// What keywords force and torque turn off, for bodies of which something is off; later keywords
+  /// replace earlier ones.  ids: of all bodies, sorted.  A range that is none, or has bodies that do
+  /// not exist, ends the run, and so does motion out of the plane in two dimensions.
+  std::map<tagint, Mask> masks_of(const std::vector<tagint> &ids) const;
 
  private:
   std::map<std::string, KeywordValue> given;    ///< of the command, its bodystyle among them
 
-  int parse_bodystyle(LAMMPS *lmp, int narg, char **arg);
-  void parse_keywords(LAMMPS *lmp, int narg, char **arg);
+  int parse_bodystyle(int narg, char **arg);
+  void parse_keywords(int narg, char **arg);
   bool is_on(const std::string &keyword, const std::string &value) const;
-  void check_conditions(LAMMPS *lmp) const;
-  void check_ranges(LAMMPS *lmp);
-  void check_control(LAMMPS *lmp);
-  std::vector<tagint> molecule_ids(LAMMPS *lmp, int groupbit) const;
-  std::vector<tagint> group_ids(LAMMPS *lmp, int groupbit) const;
-  std::vector<tagint> custom_ids(LAMMPS *lmp, int groupbit) const;
+  void check_conditions() const;
+  void check_ranges();
+  void check_control();
+  std::vector<tagint> molecule_ids(int groupbit) const;
+  std::vector<tagint> group_ids(int groupbit) const;
+  std::vector<tagint> custom_ids(int groupbit) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

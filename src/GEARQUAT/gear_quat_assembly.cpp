@@ -6,11 +6,11 @@
 #include "gear_quat_assembly.h"
 
 #include "gear_quat_images.h"
+#include "gear_quat_ranks.h"
 
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +18,13 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr int IRREGULAR = 0;
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
 static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
 
 /// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
 void Assembly::warn_of_clumps() const
 {
-  tagint here = in_clumps, any;
-  MPI_Allreduce(&here, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  const tagint any = over_ranks(MPI_MAX, in_clumps, world);
   if (any && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
@@ -36,24 +34,29 @@ void Assembly::warn_of_clumps() const
 }
 
 /* ----------------------------------------------------------------------
-   rendezvous: every site to the rank that its body's ID names, which makes the body and replies where
-   the site is in it; then the bodies to the ranks of their owners
+   every site goes to the rank that its body's ID names, which makes the body and replies where the
+   site is in it; then the bodies go to the ranks of their owners
 ------------------------------------------------------------------------- */
 
-std::vector<Assembly::PlacedSite> Assembly::place_sites(std::vector<Site> &sites)
+std::vector<Assembly::PlacedSite> Assembly::place_sites(const std::vector<Site> &mine)
 {
-  const int n = (int) sites.size();
   std::vector<int> ranks;
-  for (const auto &site : sites) ranks.push_back((int) (site.id % comm->nprocs));
-  sites.emplace_back();    // no null pointers on a rank without sites
-  ranks.push_back(0);
-  char *buffer = nullptr;
-  const int count =
-      comm->rendezvous(IRREGULAR, n, (char *) sites.data(), sizeof(Site), 0, ranks.data(),
-                       make_bodies, 0, buffer, sizeof(PlacedSite), this);
-  const auto *replies = (const PlacedSite *) buffer;
-  const std::vector<PlacedSite> placed(replies, replies + count);
-  memory->sfree(buffer);
+  for (const auto &site : mine) ranks.push_back((int) (site.id % comm->nprocs));
+  std::vector<Site> sites = send_to_ranks(comm, mine, ranks);
+  std::sort(sites.begin(), sites.end(), [](const Site &a, const Site &b) {
+    return a.id != b.id ? a.id < b.id : a.tag < b.tag;
+  });
+  const int n = (int) sites.size();
+  std::vector<PlacedSite> replies(n);
+  ranks.resize(n);
+  for (int first = 0, last; first < n; first = last) {
+    for (last = first; last < n && sites[last].id == sites[first].id; ++last) {
+      undo_image_flag_overflow(domain, sites[first].x, sites[last].x);
+      ranks[last] = sites[last].rank;
+    }
+    place(&sites[first], last - first, &replies[first]);
+  }
+  const std::vector<PlacedSite> placed = send_to_ranks(comm, replies, ranks);
   report_faults();
   warn_of_clumps();
   return placed;
@@ -61,46 +64,7 @@ std::vector<Assembly::PlacedSite> Assembly::place_sites(std::vector<Site> &sites
 
 std::vector<Assembly::OwnedBody> Assembly::owned_bodies()
 {
-  const int n = (int) made.size();
-  made.emplace_back();
-  owner_ranks.push_back(0);
-  char *unused = nullptr;
-  comm->rendezvous(IRREGULAR, n, (char *) made.data(), sizeof(OwnedBody), 0, owner_ranks.data(),
-                   receive_bodies, 0, unused, sizeof(OwnedBody), this);
-  return owned;
-}
-
-int Assembly::make_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
-{
-  auto *assembly = (Assembly *) self;
-  auto *sites = (Site *) in;
-  std::sort(sites, sites + n, [](const Site &a, const Site &b) {
-    return a.id != b.id ? a.id < b.id : a.tag < b.tag;
-  });
-
-  assembly->memory->create(ranks, n + 1, "gear/quat:ranks");
-  auto *replies =
-      (PlacedSite *) assembly->memory->smalloc((n + 1) * sizeof(PlacedSite), "gear/quat:replies");
-  for (int first = 0, last; first < n; first = last) {
-    for (last = first; last < n && sites[last].id == sites[first].id; ++last) {
-      undo_image_flag_overflow(assembly->domain, sites[first].x, sites[last].x);
-      ranks[last] = sites[last].rank;
-    }
-    assembly->place(sites + first, last - first, replies + first);
-  }
-  out = (char *) replies;
-  flag = 2;    // a second communication, with a new buffer
-  return n;
-}
-
-int Assembly::receive_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self)
-{
-  const auto *bodies = (const OwnedBody *) in;
-  ((Assembly *) self)->owned.assign(bodies, bodies + n);
-  flag = 0;    // no reply
-  ranks = nullptr;
-  out = nullptr;
-  return 0;
+  return send_to_ranks(comm, made, owner_ranks);
 }
 
 /// Make a body of its sites, and say where each of them is in it.
@@ -139,27 +103,19 @@ Assembly::OwnedBody Assembly::make_body(const Site *sites, int n, double axes[9]
       lo[k] = std::min(lo[k], sites[i].x[k]);
       hi[k] = std::max(hi[k], sites[i].x[k]);
     }
-  double nearest = -1.0;
+  const double middle[3] = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
   owner = 0;
-  for (int i = 0; i < n; ++i) {
-    double d2 = 0.0;
-    for (int k = 0; k < 3; ++k) d2 += std::pow(sites[i].x[k] - 0.5 * (lo[k] + hi[k]), 2);
-    if (nearest < 0.0 || d2 < nearest) {
-      nearest = d2;
-      owner = i;
-    }
-  }
+  for (int i = 1; i < n; ++i)
+    if (distance2(sites[i].x, middle) < distance2(sites[owner].x, middle)) owner = i;
 
   OwnedBody owned = OwnedBody();
   std::fill(axes, axes + 9, 0.0);
   owned.local = sites[owner].local;
   owned.body.id = sites[0].id;
   owned.body.natoms = n;
-  for (int i = 0; i < n; ++i) {
-    double d2 = 0.0;
-    for (int k = 0; k < 3; ++k) d2 += std::pow(sites[i].x[k] - sites[owner].x[k], 2);
-    owned.body.extent = std::max(owned.body.extent, std::sqrt(d2));
-  }
+  for (int i = 0; i < n; ++i)
+    owned.body.extent =
+        std::max(owned.body.extent, std::sqrt(distance2(sites[i].x, sites[owner].x)));
 
   const auto stated = given.find(owned.body.id);
   if (stated != given.end()) {
@@ -313,11 +269,8 @@ void Assembly::check_place(const Site *sites, int n, const OwnedBody &owned)
 {
   const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
   const double far = owned.body.extent + 0.5 * longest;
-  for (int i = 0; i < n; ++i) {
-    double d2 = 0.0;
-    for (int k = 0; k < 3; ++k) d2 += std::pow(sites[i].x[k] - owned.state.center[k], 2);
-    if (d2 <= far * far) return;
-  }
+  for (int i = 0; i < n; ++i)
+    if (distance2(sites[i].x, owned.state.center) <= far * far) return;
   faulty[APART] = owned.body.id;
 }
 
@@ -339,19 +292,14 @@ void Assembly::check_moments(const OwnedBody &owned)
 
 void Assembly::report_faults()
 {
-  tagint any[FAULTS];
-  MPI_Allreduce(faulty, any, FAULTS, MPI_LMP_TAGINT, MPI_MAX, world);
+  const auto any = over_ranks(MPI_MAX, faulty, world);
   for (int fault = 0; fault < FAULTS; ++fault)
     if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
 
-  int matched = (int) found.size(), all_matched = 0;
-  MPI_Allreduce(&matched, &all_matched, 1, MPI_INT, MPI_SUM, world);
-  if (all_matched == (int) given.size()) return;
+  if (over_ranks(MPI_SUM, (int) found.size(), world) == (int) given.size()) return;
   for (const auto &stated : given) {
-    int here = std::count(found.begin(), found.end(), stated.first) > 0;
-    int anywhere = 0;
-    MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
-    if (!anywhere)
+    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
+    if (!over_ranks(MPI_MAX, here, world))
       error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
   }
 }

@@ -5,16 +5,15 @@
 
 /* Assembly: from sites with positions and velocities to rigid bodies.
 
-   All sites of a body meet on one rank (a rendezvous keyed by the body's ID), which sorts them by
-   atom ID and computes owner, mass properties, pose and velocities.  Sums therefore run in the same
-   order on any number of ranks, and nothing is communicated between all bodies. */
+   All sites of a body meet on one rank, which the body's ID names.  It sorts them by atom ID and
+   computes owner, mass properties, pose and velocities.  Sums therefore run in the same order on any
+   number of ranks, and nothing is communicated between all bodies. */
 
 #ifndef LMP_GEAR_QUAT_ASSEMBLY_H
 #define LMP_GEAR_QUAT_ASSEMBLY_H
 
 #include "gear_quat_infile.h"
 #include "gear_quat_integrator.h"
-#include "gear_quat_mask.h"
 #include "gear_quat_rigid_body.h"
 #include "pointers.h"
 
@@ -74,7 +73,7 @@ class Assembly : protected Pointers {
   /// Makes the bodies, each on one rank, and returns where the sites of this rank are in them.
   /// Massless bodies, and bodies in the infile that no atom belongs to, end the run on all ranks.
   /// Collective.
-  std::vector<PlacedSite> place_sites(std::vector<Site> &sites);
+  std::vector<PlacedSite> place_sites(const std::vector<Site> &mine);
   /// The bodies whose owner atoms are on this rank.  Collective.
   std::vector<OwnedBody> owned_bodies();
 
@@ -103,10 +102,7 @@ class Assembly : protected Pointers {
 
   std::vector<OwnedBody> made;     ///< on this rank, whoever owns them
   std::vector<int> owner_ranks;    ///< of these
-  std::vector<OwnedBody> owned;    ///< by atoms of this rank
 
-  static int make_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self);
-  static int receive_bodies(int n, char *in, int &flag, int *&ranks, char *&out, void *self);
   void place(const Site *sites, int n, PlacedSite *replies);
 };
 

@@ -3,9 +3,11 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Ends a run at the step in which a body becomes unstable, before its atoms are placed, so before a
-   dump or another fix sees them.  The comparison is in gear_quat_limits.h and
-   is made by the fix for every body and step; what is here is for the run that has to end. */
+/* Ends a run before its first step if a body turns faster than the method can follow (mostly nearly
+   linear ones, whose smallest moment of inertia makes them spin about their axis), and at the step in
+   which a body becomes unstable, before its atoms are placed, so before a dump or another fix sees
+   them.  The comparison is in gear_quat_limits.h and is made by the fix for every body and step; what
+   is here is for the run that has to end. */
 
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
 #define LMP_GEAR_QUAT_BLOWUP_H
@@ -14,6 +16,10 @@
 #include "gear_quat_limits.h"
 
 namespace LAMMPS_NS::GearQuat {
+
+/// Ends the run on all ranks if a body turns faster than can be followed at a step h.  Rank 0 warns of
+/// a nearly linear one that will, once it has its share of the kinetic energy.  Collective.
+void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, double h);
 
 class Blowup : protected Pointers {
  public:

@@ -6,15 +6,14 @@
 #include "gear_quat_bodies.h"
 
 #include "gear_quat_images.h"
+#include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "memory.h"
 
 #include <algorithm>
-#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -22,21 +21,13 @@ using namespace GearQuat;
 /* ---------------------------------------------------------------------- */
 
 Bodies::Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme), nown(0), nmove(0), nbodies(0),
-    natoms(0), nlarge(0), strangers(0), warned_strangers(false), ncentered(0), wrapped(false),
-    any_ghosts(false), any_forces(true), nmax(0), body_id(nullptr), owner_tag(nullptr),
-    owned(nullptr), site_body(nullptr), forward(Forward::STATES), labels(nullptr)
+    Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme)
 {
+  if (atom->map_style == Atom::MAP_NONE)
+    error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
+  if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
   grow_arrays(atom->nmax);
   clear();
-}
-
-Bodies::~Bodies()
-{
-  memory->destroy(body_id);
-  memory->destroy(owner_tag);
-  memory->destroy(owned);
-  memory->destroy(site_body);
 }
 
 /* ----------------------------------------------------------------------
@@ -52,35 +43,35 @@ void Bodies::clear(bool with_extended)
   sites.clear();
   frame.clear();
   owner_atom.clear();
-  extended.reset(with_extended, nmax);
+  extended.reset(with_extended, (int) owned.size());
   box.clear();
-  for (int i = 0; i < nmax; ++i) set_arrays(i);
+  for (size_t i = 0; i < owned.size(); ++i) set_arrays(i);
 }
 
 void Bodies::create(const std::vector<tagint> &ids, const GivenBodies &given)
 {
   clear();
-  add(ids, given);
+  add(ids, given, false);
 }
 
 void Bodies::count()
 {
-  bigint here[2] = {nown, 0}, all[2];
+  bigint here[2] = {nown, 0};
   for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
-  MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  const auto all = over_ranks(MPI_SUM, here, world);
   nbodies = all[0];
   natoms = all[1];
   box.assign(domain->h, domain->h + 6);
 }
 
-void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
+void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh)
 {
   std::vector<int> atoms;
   for (int i = 0; i < atom->nlocal; ++i)
     if (ids[i] != 0) atoms.push_back(i);
   extended.refuse(atoms);
   const bool any_extended = extended.any(atoms);
-  if (any_extended && !extended.has_records()) extended.reset(true, nmax);
+  if (any_extended && !extended.has_records()) extended.reset(true, (int) owned.size());
 
   std::vector<Assembly::Site> sites;
   for (const int i : atoms) {
@@ -110,6 +101,7 @@ void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
   for (const auto &one : made) {
     const int ibody = add_owned(one.local);
     body[ibody] = one.body;
+    body[ibody].fresh = fresh;
     state[ibody] = one.state;
   }
   count();
@@ -117,7 +109,7 @@ void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given)
 
 void Bodies::recreate()
 {
-  create(std::vector<tagint>(body_id, body_id + atom->nlocal), GivenBodies());
+  create(std::vector<tagint>(body_id.begin(), body_id.begin() + atom->nlocal), GivenBodies());
   choose_large();
 }
 
@@ -262,13 +254,13 @@ tagint Bodies::id_of(int i) const
 bool Bodies::take_stock()
 {
   const bigint lost = (bigint) unseen.size();
-  bigint here[7] = {nown, 0, (bigint) sites.size() + lost, lost, strangers, 0, 0}, all[7];
+  bigint here[7] = {nown, 0, (bigint) sites.size() + lost, lost, strangers, 0, 0};
   for (int ibody = 0; ibody < nown; ++ibody) {
     here[1] += body[ibody].natoms;
     here[6] += is_large(ibody);
   }
   for (const Site &site : sites) here[5] += site.body >= nmove;
-  MPI_Allreduce(here, all, 7, MPI_LMP_BIGINT, MPI_SUM, world);
+  const auto all = over_ranks(MPI_SUM, here, world);
   nbodies = all[0];
   natoms = all[1];
   any_ghosts = all[5] > 0;
@@ -288,6 +280,25 @@ bool Bodies::take_stock()
                      all[4]);
   }
   return true;
+}
+
+std::vector<tagint> Bodies::all_ids() const
+{
+  std::vector<tagint> mine;
+  for (int ibody = 0; ibody < nown; ++ibody) mine.push_back(body[ibody].id);
+  return gather_sorted(mine, world);
+}
+
+bool Bodies::change_masks(const std::map<tagint, Mask> &masks)
+{
+  int changed = 0;
+  for (int ibody = 0; ibody < nmove; ++ibody) {
+    const auto place = masks.find(body[ibody].id);
+    const Mask wanted = place == masks.end() ? 0 : place->second;
+    if (body[ibody].off != wanted) changed = 1;
+    body[ibody].off = wanted;
+  }
+  return over_ranks(MPI_MAX, changed, world) != 0;
 }
 
 void Bodies::expect_forces(bool any)
@@ -310,21 +321,18 @@ void Bodies::spread_labels(std::vector<double> &label)
 
 void Bodies::grow_arrays(int n)
 {
-  const int old = nmax;
-  nmax = n;
-  memory->grow(body_id, nmax, "gear/quat:body_id");
-  memory->grow(owner_tag, nmax, "gear/quat:owner_tag");
-  memory->grow(owned, nmax, "gear/quat:owned");
-  memory->grow(site_body, nmax, 3, "gear/quat:site_body");
-  extended.grow(nmax);
-  for (int i = old; i < nmax; ++i) set_arrays(i);
+  body_id.resize(n);
+  owner_tag.resize(n);
+  owned.resize(n, -1);
+  site_body.resize(n);
+  extended.grow(n);
 }
 
 void Bodies::set_arrays(int i)
 {
   body_id[i] = owner_tag[i] = 0;
   owned[i] = -1;
-  site_body[i][0] = site_body[i][1] = site_body[i][2] = 0.0;
+  site_body[i] = {};
   extended.set(i);
 }
 
@@ -334,7 +342,7 @@ void Bodies::copy_arrays(int from, int to, int delflag)
   body_id[to] = body_id[from];
   owner_tag[to] = owner_tag[from];
   owned[to] = owned[from];
-  for (int k = 0; k < 3; ++k) site_body[to][k] = site_body[from][k];
+  site_body[to] = site_body[from];
   extended.copy(from, to);
   if (owned[to] >= 0) owner_atom[owned[to]] = to;
 }
@@ -342,10 +350,11 @@ void Bodies::copy_arrays(int from, int to, int delflag)
 double Bodies::memory_usage() const
 {
   const double per_atom = 2 * sizeof(tagint) + sizeof(int) + 3 * sizeof(double);
-  return nmax * per_atom + rows.capacity() * sizeof(double) + body.capacity() * sizeof(Body) +
-      state.capacity() * sizeof(BodyState) + load.capacity() * sizeof(Load) +
-      last.capacity() * sizeof(Correction) + frame.capacity() * sizeof(Frame) +
-      sites.capacity() * sizeof(Site) + large.capacity() * sizeof(Large) +
+  return owned.capacity() * per_atom + rows.capacity() * sizeof(double) +
+      body.capacity() * sizeof(Body) + state.capacity() * sizeof(BodyState) +
+      load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
+      frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
+      large.capacity() * sizeof(Large) +
       (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
       extended.memory_usage();

@@ -23,7 +23,6 @@
 #define LMP_GEAR_QUAT_BODIES_H
 
 #include "gear_quat_assembly.h"
-#include "gear_quat_census.h"
 #include "gear_quat_extended.h"
 #include "gear_quat_integrator.h"
 
@@ -33,14 +32,18 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
+struct Census;
+struct SiteCount;
+
 class Bodies : protected Pointers {
  public:
   Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme);
-  ~Bodies() override;
 
   // Owned bodies come first, then large ones of other ranks, then ghosts, which have no correction.
 
-  std::vector<Body> body;
+  int nhere() const { return (int) body.size(); }
+  const Body &body_at(int ibody) const { return body[ibody]; }
+  const RigidBody &rigid_of(int ibody) const { return body[ibody].rigid; }
   const BodyState &state_of(int ibody) const { return state[ibody]; }
   const Load &load_of(int ibody) const { return load[ibody]; }
   const Correction &last_of(int ibody) const { return last[ibody]; }
@@ -79,6 +82,9 @@ class Bodies : protected Pointers {
     double length, speed;    ///< what rounding of x and v is relative to
   };
   Placed placed(const Site &site) const;
+  // True if place or velocity of the atom are those of its body, up to rounding.
+  bool is_there(const Site &site) const;
+  bool is_as_fast(const Site &site) const;
   double atom_mass(int atom) const;
   std::vector<Site> sites;    ///< those at their center of mass, with arms of zero, come first
 
@@ -107,8 +113,8 @@ class Bodies : protected Pointers {
 
   /// Build all bodies anew from the atoms; ids: body of every owned atom, 0 for none.
   void create(const std::vector<tagint> &ids, const GivenBodies &given);
-  /// Build more bodies, of atoms that are in none.
-  void add(const std::vector<tagint> &ids, const GivenBodies &given);
+  /// Build more bodies, of atoms that are in none.  fresh: in a step, without histories.
+  void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
   /// Build the same bodies anew from the atoms' present masses, positions and velocities.
   void recreate();
   /// Bodies as a restart file has them, in place of those that the command has just made of the same
@@ -134,6 +140,10 @@ class Bodies : protected Pointers {
   bool atoms_match();
   /// Ends the run if a body has lost some of its atoms, and follows changed atom IDs; needs no ghosts.
   void check_whole();
+  /// The IDs of all bodies, sorted, on all ranks.  Collective.
+  std::vector<tagint> all_ids() const;
+  /// Gives these masks, by IDs, to all bodies.  True if one had another; collective.
+  bool change_masks(const std::map<tagint, Mask> &masks);
   /// Degrees of freedom that rigidity takes from the atoms of a group.
   bigint removed_freedoms(int groupbit);
   /// Bodies on all ranks and atoms in them, as of create() or update_ghosts().
@@ -163,8 +173,12 @@ class Bodies : protected Pointers {
   void spread_loads();
   /// Index of the first site that is not at its center of mass.
   size_t first_arm() const { return ncentered; }
-  /// Arm from the center of mass and constraint force m a - f of a site under the present loads.
-  void constraint_force(const Site &site, double **f, double *arm_space, double *force) const;
+  /// Constraint force m a - f of a site under the present loads, its arm from the center of mass, and
+  /// its virial: xx yy zz xy xz yz.
+  struct ConstraintForce {
+    double force[1][3], arm[1][3], virial[6];
+  };
+  ConstraintForce constraint_force(const Site &site, double **f) const;
   /// Mean of the arms of all sites of each body, owned and ghost, in `force`.  Collective.
   std::vector<Load> centroids();
 
@@ -185,6 +199,7 @@ class Bodies : protected Pointers {
   double memory_usage() const;
 
  private:
+  std::vector<Body> body;
   std::vector<BodyState> state;
   std::vector<Load> load;
   std::vector<Correction> last;    ///< what the last corrector has found
@@ -193,14 +208,14 @@ class Bodies : protected Pointers {
   Scheme scheme;
   Extended extended;
 
-  int nown, nmove;             ///< owned bodies; with copies of large ones
-  bigint nbodies, natoms;      ///< on all ranks: bodies, and atoms in them
-  bigint nlarge;               ///< on all ranks
-  std::vector<double> box;     ///< shape of the box that the bodies were last seen in; may be empty
-  int strangers;               ///< atoms created since the fix was defined, in no body
-  bool warned_strangers;       ///< that there are such atoms
-  std::vector<double> rows;    ///< histories of moved bodies
-  std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
+  int nown = 0, nmove = 0;           ///< owned bodies; with copies of large ones
+  bigint nbodies = 0, natoms = 0;    ///< on all ranks: bodies, and atoms in them
+  bigint nlarge = 0;                 ///< on all ranks
+  std::vector<double> box;    ///< shape of the box that the bodies were last seen in; may be empty
+  int strangers = 0;          ///< atoms created since the fix was defined, in no body
+  bool warned_strangers = false;    ///< that there are such atoms
+  std::vector<double> rows;         ///< histories of moved bodies
+  std::vector<int> owner_atom;      ///< local index of the owner atom of an owned body
 
   struct Large {
     tagint owner;    ///< atom ID of the owner atom
@@ -220,16 +235,18 @@ class Bodies : protected Pointers {
 
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
   std::vector<tagint> unseen;     ///< owner atoms that sites here do not see
-  size_t ncentered;               ///< sites at their center of mass
-  bool wrapped;       ///< a site is in another periodic image than its unwrapped position
-  bool any_ghosts;    ///< a site, on any rank, has its body on another one, which is not large
-  bool any_forces;
+  size_t ncentered = 0;           ///< sites at their center of mass
+  bool wrapped = false;    ///< a site is in another periodic image than its unwrapped position
+  bool any_ghosts =
+      false;    ///< a site, on any rank, has its body on another one, which is not large
+  bool any_forces = true;
 
-  int nmax;
-  tagint *body_id;       ///< per atom: the user's ID of its body, 0 for none
-  tagint *owner_tag;     ///< per atom: atom ID of the owner of its body
-  int *owned;            ///< per atom, ghosts too: the body it owns, or -1
-  double **site_body;    ///< per atom: from the center of mass, principal frame
+  // per atom, ghosts too
+
+  std::vector<tagint> body_id;                     ///< the user's ID of its body, 0 for none
+  std::vector<tagint> owner_tag;                   ///< atom ID of the owner of its body
+  std::vector<int> owned;                          ///< the body it owns, or -1
+  std::vector<std::array<double, 3>> site_body;    ///< from the center of mass, principal frame
 
   /// packed: IDs of body and owner, arm, size of history; behind the arm what `extended` has
   static constexpr int SITE_SIZE = 6;
@@ -239,8 +256,8 @@ class Bodies : protected Pointers {
   static constexpr int LAST_SIZE = sizeof(Correction) / sizeof(double);
 
   enum class Forward { GHOSTS, STATES, LOADS, LABELS };
-  Forward forward;    ///< what forward communication carries
-  double *labels;     ///< of all atoms, while these are sent
+  Forward forward = Forward::STATES;    ///< what forward communication carries
+  double *labels = nullptr;             ///< of all atoms, while these are sent
 
   void clear(bool extended = false);
   void count();

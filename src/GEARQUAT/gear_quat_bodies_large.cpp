@@ -12,7 +12,7 @@
 
 #include "gear_quat_bodies.h"
 
-#include "gear_quat_gather.h"
+#include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -46,7 +46,7 @@ void Bodies::count_large()
 {
   bigint here = 0;
   for (int ibody = 0; ibody < nown; ++ibody) here += body[ibody].large;
-  MPI_Allreduce(&here, &nlarge, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  nlarge = over_ranks(MPI_SUM, here, world);
 }
 
 /// A site does not see its owner atom, though that is there: from here on its body is large.

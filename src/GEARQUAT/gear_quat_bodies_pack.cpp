@@ -7,8 +7,6 @@
 
 #include "gear_quat_bodies.h"
 
-#include "atom.h"
-
 #include <algorithm>
 #include <cstring>
 
@@ -69,34 +67,6 @@ int Bodies::unpack_moved(int ibody, const double *buf, int size)
   m += LOAD_SIZE;
   if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
   return m + size;
-}
-
-Bodies::Resumed Bodies::resume(const std::vector<const double *> &packed, bool with_extended,
-                               int group)
-{
-  const std::vector<tagint> ids(body_id, body_id + atom->nlocal);    // as the command has them
-  const bigint expected = nbodies;
-  clear(with_extended);
-  int here[2] = {0, 0}, any[2];    // atoms that are in a body only here, only in the file
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (packed[i]) unpack_exchange(i, packed[i]);
-    if (group && !(atom->mask[i] & group)) continue;
-    if (body_id[i] == 0 && ids[i] != 0) here[0] = 1;
-    if (body_id[i] != 0 && ids[i] == 0) here[1] = 1;
-    body_id[i] = ids[i];
-    if (owned[i] >= 0) body[owned[i]].id = ids[i];
-  }
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_id[i] != 0) continue;    // left out, or in no body
-    if (owned[i] >= 0) remove_owned(owned[i]);
-    set_arrays(i);
-  }
-  count();
-  MPI_Allreduce(here, any, 2, MPI_INT, MPI_MAX, world);
-  if (!any[0] && !census(0).broken && (group || nbodies == expected))
-    return any[1] ? Resumed::FEWER : Resumed::ALL;
-  clear();
-  return Resumed::NONE;
 }
 
 int Bodies::pack_body(const Body &body, const BodyState &state, double *buf)

@@ -130,9 +130,10 @@ void Bodies::gather_loads(double **f, double **torque)
     }
 }
 
-void Bodies::constraint_force(const Site &site, double **f, double *arm_space,
-                              double *constraint) const
+Bodies::ConstraintForce Bodies::constraint_force(const Site &site, double **f) const
 {
+  ConstraintForce constraint;
+  double *arm_space = constraint.arm[0], *lacking = constraint.force[0];
   const Frame &fr = frame[site.body];
   const Load &l = load[site.body];
   const RigidBody &rigid = body[site.body].rigid;
@@ -147,7 +148,12 @@ void Bodies::constraint_force(const Site &site, double **f, double *arm_space,
   cross3(fr.omega_space, spin, radial);
   const double mass = atom_mass(site.atom) / force->ftm2v;
   for (int k = 0; k < 3; ++k)
-    constraint[k] = mass * (l.force[k] / rigid.mass + tangential[k] + radial[k]) - f[site.atom][k];
+    lacking[k] = mass * (l.force[k] / rigid.mass + tangential[k] + radial[k]) - f[site.atom][k];
+  for (int k = 0; k < 3; ++k) constraint.virial[k] = arm_space[k] * lacking[k];
+  constraint.virial[3] = arm_space[0] * lacking[1];
+  constraint.virial[4] = arm_space[0] * lacking[2];
+  constraint.virial[5] = arm_space[1] * lacking[2];
+  return constraint;
 }
 
 std::vector<Load> Bodies::centroids()

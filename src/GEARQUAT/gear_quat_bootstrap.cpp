@@ -5,11 +5,12 @@
 
 #include "gear_quat_bootstrap.h"
 
+#include "gear_quat_ranks.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "fix.h"
 #include "neighbor.h"
-#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -72,7 +73,7 @@ void Bootstrap::zero(Party party, double h)
 void Bootstrap::seed_body(Bodies &bodies, int ibody, const Load &acting, const Scheme &scheme,
                           double h, int terms)
 {
-  const RigidBody &rigid = bodies.body[ibody].rigid;
+  const RigidBody &rigid = bodies.rigid_of(ibody);
   auto series = local_series(rigid, bodies.state_of(ibody), acting, h);
   series.terms = terms;
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
@@ -167,13 +168,10 @@ double Bootstrap::first_spacing() const
           return party.bodies->in_body(i);
         }))
       continue;
-    double v2 = 0.0;
-    for (int k = 0; k < 3; ++k) v2 += atom->v[i][k] * atom->v[i][k];
-    fastest = std::max(fastest, v2);
+    fastest = std::max(fastest, dot3(atom->v[i], atom->v[i]));
   }
-  double all;
-  MPI_Allreduce(&fastest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  const double reach = 0.25 * neighbor->skin, way = span * std::sqrt(all);
+  const double way = span * std::sqrt(over_ranks(MPI_MAX, fastest, world));
+  const double reach = 0.25 * neighbor->skin;
   return way > reach ? h * reach / way : h;
 }
 
@@ -191,7 +189,7 @@ bool Bootstrap::collocate(Forces &forces, double spacing)
     const Bodies &bodies = *party.bodies;
     party.work.resize(bodies.nmoved());
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      collocation.begin(local_series(bodies.body[ibody].rigid, bodies.state_of(ibody),
+      collocation.begin(local_series(bodies.rigid_of(ibody), bodies.state_of(ibody),
                                      party.acting(ibody), spacing),
                         party.work[ibody]);
   }
@@ -224,8 +222,8 @@ void Bootstrap::seed_all(double spacing)
   for (auto &party : parties) {
     Bodies &bodies = *party.bodies;
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      seed(party.scheme, bodies.body[ibody].rigid, collocation.series(party.work[ibody]), spacing,
-           h, bodies.history(ibody));
+      seed(party.scheme, bodies.rigid_of(ibody), collocation.series(party.work[ibody]), spacing, h,
+           bodies.history(ibody));
     if (!party.isokinetic) continue;
     std::vector<double> heat(party.power.size() + 1);
     collocation.integrate(party.power.data(), spacing, heat.data());
@@ -236,13 +234,12 @@ void Bootstrap::seed_all(double spacing)
 /// The largest truncation error of all bodies.
 double Bootstrap::truncation() const
 {
-  double here = 0.0, all;
+  double here = 0.0;
   for (const auto &party : parties)
     for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody)
-      here = std::max(here,
-                      collocation.truncation(length(party.bodies->body[ibody]), party.work[ibody]));
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return all;
+      here = std::max(
+          here, collocation.truncation(length(party.bodies->body_at(ibody)), party.work[ibody]));
+  return over_ranks(MPI_MAX, here, world);
 }
 
 /// Forces at all nodes once, outwards.  False, with nothing evaluated there, if a site would leave
@@ -257,7 +254,7 @@ bool Bootstrap::sweep(Forces &forces, double spacing, bool first, double &change
       for (auto &party : parties)
         for (auto &one : party.work) collocation.foretell(pair, one);
   }
-  MPI_Allreduce(&here, &change, 1, MPI_DOUBLE, MPI_MAX, world);
+  change = over_ranks(MPI_MAX, here, world);
   return true;
 }
 
@@ -278,7 +275,7 @@ bool Bootstrap::visit(Forces &forces, int node, double spacing, double &change)
   measure(node);
   for (auto &party : parties)
     for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody) {
-      const Body &body = party.bodies->body[ibody];
+      const Body &body = party.bodies->body_at(ibody);
       change = std::max(change,
                         collocation.set_load(node, body.rigid, party.bodies->state_of(ibody),
                                              party.acting(ibody), spacing, length(body),

@@ -27,8 +27,8 @@ struct Party {
   Scheme scheme;
   bool needed;    ///< false if there are histories, to be kept where not all rows can be found
 
-  std::vector<Collocation::Workspace> work;
-  std::vector<double> power;    ///< of all forces at the nodes, where a constraint takes it
+  std::vector<Collocation::Workspace> work = {};
+  std::vector<double> power = {};    ///< of all forces at the nodes, where a constraint takes it
 
   /// The isokinetic constraint takes its sums from the present states and loads.
   void measure();

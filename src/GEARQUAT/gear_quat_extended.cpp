@@ -5,7 +5,7 @@
 
 #include "gear_quat_extended.h"
 
-#include "gear_quat_shapes.h"
+#include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -155,8 +155,8 @@ template <class A> static int has_superellipsoids(const A *, long)
 void Extended::refuse(const std::vector<int> &atoms) const
 {
   const bool superellipsoids = has_superellipsoids(atom, 0) != 0;
-  tagint here[3] = {0, 0, 0}, found[3];    // of style body, superellipsoids, without header
-  int shape = POINT, what;
+  tagint here[3] = {0, 0, 0};    // of style body, superellipsoids, without header
+  int shape = POINT;
   for (const int i : atoms) {
     const int one = shape_of(i);
     if (one == BODY)
@@ -168,8 +168,8 @@ void Extended::refuse(const std::vector<int> &atoms) const
       shape = one;
     }
   }
-  MPI_Allreduce(here, found, 3, MPI_LMP_TAGINT, MPI_MAX, world);
-  MPI_Allreduce(&shape, &what, 1, MPI_INT, MPI_MAX, world);
+  const auto found = over_ranks(MPI_MAX, here, world);
+  shape = over_ranks(MPI_MAX, shape, world);
   if (found[0])
     error->all(FLERR,
                "Fix gear/quat: atom {} is a particle of atom style body; the atoms of a rigid body "
@@ -185,7 +185,7 @@ void Extended::refuse(const std::vector<int> &atoms) const
                "Fix gear/quat: atom {} is {}, and the LAMMPS that this plugin was compiled for "
                "lacks the headers to turn it; compile GEARQUAT for the source tree of your LAMMPS: "
                "cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
-               found[2], SHAPES[what]);
+               found[2], SHAPES[shape]);
 }
 
 /* ----------------------------------------------------------------------
@@ -194,11 +194,10 @@ void Extended::refuse(const std::vector<int> &atoms) const
 
 bool Extended::any(const std::vector<int> &atoms) const
 {
-  int here = 0, all;
-  for (const int i : atoms)
-    if (shape_of(i) != POINT || has_dipole(i)) here = 1;
-  MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MAX, world);
-  return all;
+  const int here = std::any_of(atoms.begin(), atoms.end(), [this](int i) {
+    return shape_of(i) != POINT || has_dipole(i);
+  });
+  return over_ranks(MPI_MAX, here, world);
 }
 
 void Extended::reset(bool keep, int nmax)
@@ -264,7 +263,7 @@ Extended::Pose Extended::pose(const Record &record, int i, const BodyState &stat
   std::fill_n(made.mu, 3, 0.0);
   if (record.dipole) {    // of the length that the atom style states
     to_space(a, record.mu_body, made.mu);
-    const double factor = atom->mu[i][3] / std::sqrt(dot3(made.mu, made.mu));
+    const double factor = atom->mu[i][3] / length(made.mu);
     for (double &component : made.mu) component *= factor;
   }
   return made;

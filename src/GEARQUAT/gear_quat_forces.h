@@ -8,7 +8,9 @@
    Followed: pair, bonded and kspace forces of styles that depend on positions and velocities only,
    and the post_force() of the fixes in a list (external fields, walls, springs).  Not followed, so
    that reason() says why: anything that moves or draws by itself, and what depends on the time or on
-   energies and pressures, which LAMMPS knows in steps only. */
+   energies and pressures, which LAMMPS knows in steps only.
+
+   And the forces of a step of r-RESPA. */
 
 #ifndef LMP_GEAR_QUAT_FORCES_H
 #define LMP_GEAR_QUAT_FORCES_H
@@ -86,6 +88,34 @@ class Forces : protected Pointers {
   std::vector<double> external_forces(bigint step);
   void clear_forces();
   void compute_forces();
+};
+
+/// r-RESPA with one step for all levels: the forces of a step are the sum over the levels, each of
+/// which LAMMPS shows in atom->f when that level ends.
+class RespaForces : protected Pointers {
+ public:
+  RespaForces(LAMMPS *lmp);
+  ~RespaForces() override;
+
+  /// The time steps of all levels, the innermost first; none without r-RESPA.
+  static std::vector<double> steps(LAMMPS *lmp);
+  /// True for the level that begins and ends a step.
+  bool outermost(int level) const;
+  /// Before a step: the sum over the levels of what each has found last, all fixes included.
+  void sum_present();
+  /// The forces, and torques where atoms have some, of one level; level 0 begins a sum.
+  void add(int level);
+
+  double **forces() const { return f; }
+  double **torques() const { return torque; }    ///< null where atoms have none
+  double memory_usage() const;
+
+ private:
+  double **f, **torque;
+  int nmax;
+
+  int levels() const;
+  void begin();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

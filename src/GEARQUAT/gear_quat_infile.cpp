@@ -6,8 +6,8 @@
 #include "gear_quat_infile.h"
 
 #include "gear_quat_bodies.h"
-#include "gear_quat_gather.h"
 #include "gear_quat_outputs.h"
+#include "gear_quat_ranks.h"
 
 #include "comm.h"
 #include "error.h"
@@ -17,8 +17,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -31,13 +33,15 @@ static constexpr int COLUMNS = 20;
 
 namespace {
 
-/// A line of the file; body ID and image flags are integers, the numbers are those between them.
+/// A line of the file.
 struct Line {
-  enum { MASS, CENTER, INERTIA = 4, VELOCITY = 10, ANGULAR_MOMENTUM = 13, NUMBERS = 16 };
   tagint id;
-  int image[3];
-  double number[NUMBERS];
+  GivenBody body;
 };
+
+/// The numbers between ID and image flags, as the file and a GivenBody have them.
+enum { MASS, INERTIA = 4, NUMBERS = 16 };
+static_assert(offsetof(GivenBody, image) == NUMBERS * sizeof(double), "as many words in a line");
 
 /// A fault of the file, kept until all ranks can report it together.
 struct Fault {
@@ -84,17 +88,19 @@ Line parse_line(const std::vector<std::string> &words, const std::string &where)
     throw Fault{where + ": body ID " + words[0] + " is not positive or too large"};
   line.id = (tagint) id;
   for (int i = 0; i < 3; ++i) {
-    const std::string &word = words[1 + Line::NUMBERS + i];
-    line.image[i] = (int) integer(word, where, INTEGERS, IMGMAX - 1);
-    if (line.image[i] == IMGMAX) throw Fault{where + ": image flag " + word + " is too large"};
+    const std::string &word = words[1 + NUMBERS + i];
+    line.body.image[i] = (int) integer(word, where, INTEGERS, IMGMAX - 1);
+    if (line.body.image[i] == IMGMAX) throw Fault{where + ": image flag " + word + " is too large"};
   }
-  for (int i = 0; i < Line::NUMBERS; ++i) line.number[i] = number(words[1 + i], where);
-  if (line.number[Line::MASS] <= 0.0)
+  double numbers[NUMBERS];
+  for (int i = 0; i < NUMBERS; ++i) numbers[i] = number(words[1 + i], where);
+  if (numbers[MASS] <= 0.0)
     throw Fault{where + ": mass " + words[1] + " of body " + words[0] + " is not positive"};
-  for (int i = 0; i < 3; ++i)
-    if (line.number[Line::INERTIA + i] < 0.0)
+  for (int i = INERTIA; i < INERTIA + 3; ++i)
+    if (numbers[i] < 0.0)
       throw Fault{where + ": body " + words[0] + " has a negative diagonal moment of inertia " +
-                  words[1 + Line::INERTIA + i]};
+                  words[1 + i]};
+  std::memcpy(&line.body, numbers, sizeof(numbers));
   return line;
 }
 
@@ -140,6 +146,7 @@ std::vector<Line> parse_file(const std::string &filename)
 
 GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename)
 {
+  if (filename.empty()) return {};
   std::vector<Line> lines;
   std::string fault;
   if (lmp->comm->me == 0) {
@@ -152,30 +159,11 @@ GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename
     }
   }
 
-  int size[2] = {(int) fault.size(), (int) lines.size()};
-  MPI_Bcast(size, 2, MPI_INT, 0, lmp->world);
-  fault.resize(size[0]);
-  MPI_Bcast(&fault[0], size[0], MPI_CHAR, 0, lmp->world);
+  fault = broadcast(fault, lmp->world, 0);
   if (!fault.empty()) lmp->error->all(FLERR, "Fix gear/quat infile: {}", fault);
 
-  lines.resize(size[1]);
-  MPI_Datatype type;
-  MPI_Type_contiguous(sizeof(Line), MPI_BYTE, &type);
-  MPI_Type_commit(&type);
-  MPI_Bcast(lines.data(), size[1], type, 0, lmp->world);
-  MPI_Type_free(&type);
-
   GivenBodies bodies;
-  for (const auto &line : lines) {
-    GivenBody body;
-    body.mass = line.number[Line::MASS];
-    std::copy_n(line.number + Line::CENTER, 3, body.center);
-    std::copy_n(line.number + Line::INERTIA, 6, body.inertia);
-    std::copy_n(line.number + Line::VELOCITY, 3, body.velocity);
-    std::copy_n(line.number + Line::ANGULAR_MOMENTUM, 3, body.angular_momentum_space);
-    std::copy_n(line.image, 3, body.image);
-    bodies[line.id] = body;
-  }
+  for (const auto &line : gather(lines, lmp->world)) bodies[line.id] = line.body;
   return bodies;
 }
 
@@ -185,22 +173,15 @@ GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename
 
 namespace {
 
-/// A line of the file; the ID apart, for it is an integer of any size.
-struct BodyLine {
-  tagint id;
-  int image[3];
-  double mass, center[3], inertia_space[6], velocity[3], angular_momentum_space[3];
-};
-
-BodyLine line_of(const Body &body, const BodyState &state, const double *row)
+Line line_of(const Body &body, const BodyState &state, const double *row)
 {
-  BodyLine line = BodyLine();
-  line.id = body.id;
-  line.mass = body.rigid.mass;
-  std::copy_n(row + BodyTable::CENTER, 3, line.center);
-  std::copy_n(row + BodyTable::VELOCITY, 3, line.velocity);
-  std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, line.angular_momentum_space);
-  for (int k = 0; k < 3; ++k) line.image[k] = (int) row[BodyTable::IMAGE + k];
+  Line line = {body.id, GivenBody()};
+  GivenBody &written = line.body;
+  written.mass = body.rigid.mass;
+  std::copy_n(row + BodyTable::CENTER, 3, written.center);
+  std::copy_n(row + BodyTable::VELOCITY, 3, written.velocity);
+  std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, written.angular_momentum_space);
+  std::copy_n(row + BodyTable::IMAGE, 3, written.image);
 
   // A^T I A, the rows of A being the principal axes; xx yy zz xy xz yz
 
@@ -209,18 +190,17 @@ BodyLine line_of(const Body &body, const BodyState &state, const double *row)
   rotation_matrix(state.q, dot4(state.q, state.q), a);
   for (int m = 0; m < 6; ++m)
     for (int k = 0; k < 3; ++k)
-      line.inertia_space[m] += body.rigid.inertia[k] * a[3 * k + FIRST[m]] * a[3 * k + SECOND[m]];
+      written.inertia[m] += body.rigid.inertia[k] * a[3 * k + FIRST[m]] * a[3 * k + SECOND[m]];
   return line;
 }
 
-void print(FILE *file, const BodyLine &line)
+void print(FILE *file, const Line &line)
 {
-  fprintf(file, TAGINT_FORMAT " %.16e", line.id, line.mass);
-  for (const double value : line.center) fprintf(file, " %.16e", value);
-  for (const double value : line.inertia_space) fprintf(file, " %.16e", value);
-  for (const double value : line.velocity) fprintf(file, " %.16e", value);
-  for (const double value : line.angular_momentum_space) fprintf(file, " %.16e", value);
-  fprintf(file, " %d %d %d\n", line.image[0], line.image[1], line.image[2]);
+  double numbers[NUMBERS];
+  std::memcpy(numbers, &line.body, sizeof(numbers));
+  fprintf(file, TAGINT_FORMAT, line.id);
+  for (const double number : numbers) fprintf(file, " %.16e", number);
+  fprintf(file, " %d %d %d\n", line.body.image[0], line.body.image[1], line.body.image[2]);
 }
 
 }    // namespace
@@ -228,13 +208,13 @@ void print(FILE *file, const BodyLine &line)
 void GearQuat::write_given_bodies(LAMMPS *lmp, const std::string &filename,
                                   const std::string &fix_id, const Bodies &bodies, double **rows)
 {
-  std::vector<BodyLine> mine;
+  std::vector<Line> mine;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    mine.push_back(line_of(bodies.body[ibody], bodies.state_of(ibody), rows[ibody]));
-  const auto before = [](const BodyLine &a, const BodyLine &b) {
+    mine.push_back(line_of(bodies.body_at(ibody), bodies.state_of(ibody), rows[ibody]));
+  const auto before = [](const Line &a, const Line &b) {
     return a.id < b.id;
   };
-  const std::vector<BodyLine> all = gather_sorted(mine, lmp->world, before, 0);
+  const std::vector<Line> all = gather_sorted(mine, lmp->world, before, 0);
   if (lmp->comm->me != 0) return;
 
   const auto refuse = [&] {
@@ -248,7 +228,7 @@ void GearQuat::write_given_bodies(LAMMPS *lmp, const std::string &filename,
           "# fix %s gear/quat: mass, center of mass, inertia tensor and momenta of %zu bodies on "
           "timestep " BIGINT_FORMAT "\n\n%zu\n",
           fix_id.c_str(), all.size(), lmp->update->ntimestep, all.size());
-  for (const BodyLine &line : all) print(file, line);
+  for (const Line &line : all) print(file, line);
   const bool failed = ferror(file) != 0;
   if (fclose(file) != 0 || failed || rename(unfinished.c_str(), filename.c_str()) != 0) refuse();
 }

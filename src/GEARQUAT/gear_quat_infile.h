@@ -25,6 +25,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class Bodies;
 
+/// A body as a line of the file has it.
 struct GivenBody {
   double mass;
   double center[3];     ///< wrapped, as in the file
@@ -36,7 +37,7 @@ struct GivenBody {
 
 using GivenBodies = std::map<tagint, GivenBody>;
 
-/// Read on rank 0, return on all ranks.  Any fault of the file ends the run on all ranks with a
+/// Read on rank 0, return on all ranks; none for an empty filename.  Any fault of the file ends the run on all ranks with a
 /// message that names file and line.
 GivenBodies read_given_bodies(LAMMPS *lmp, const std::string &filename);
 

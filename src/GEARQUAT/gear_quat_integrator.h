@@ -19,7 +19,6 @@
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
 
-#include "gear_quat_coefficients.h"
 #include "gear_quat_gauss.h"
 #include "gear_quat_nordsieck.h"
 #include "gear_quat_rigid_body.h"
@@ -27,50 +26,6 @@
 #include <array>
 
 namespace LAMMPS_NS::GearQuat {
-
-enum class Formulation { FIRST, SECOND };
-
-/// What is the same for all bodies of a run.
-struct Scheme {
-  Formulation formulation = Formulation::SECOND;
-  int rows = 0;                    ///< values kept; 0: as many as the paper
-  int passes = 1;                  ///< corrections with the same forces
-  bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
-  bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
-  bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
-  bool project = true;                ///< keep |q| = 1 and q.qdot = 0
-  bool compensate = false;            ///< compensated sums of the rows that are integrated
-  bool trial = false;                 ///< one more row, see gear_quat_step_control.h
-
-  bool first() const { return formulation == Formulation::FIRST; }
-  int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
-  int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
-  int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
-  /// Doubles of a history: rows, carries, trial row.
-  int size() const { return (values() + carries() + trial) * width(); }
-  int trial_row() const { return (values() + carries()) * width(); }
-  /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N keep
-  /// N, and N - 1 with velocity_c0).
-  int order() const { return (velocity_c0 ? values() - 1 : values()) | 1; }
-
-  // columns of a row
-
-  static constexpr int FIRST_WIDTH = 13, SECOND_WIDTH = 7;
-  static constexpr int POSITION = 0;
-  static constexpr int MOMENTUM = 3;    ///< first only
-  int quaternion() const { return first() ? 6 : 3; }
-  static constexpr int OMEGA = 10;    ///< first only
-
-  /// What q is divided by where a unit quaternion is meant: unprojected, the paper's formulas are
-  /// taken as they stand, and a body is only as rigid as |q| = 1 holds.
-  double norm2(const double *q) const { return project ? dot4(q, q) : 1.0; }
-};
-
-/// Doubles of the longest history, compensated and with a trial row.
-constexpr int MAX_SIZE = (FIRST_MOST + 2) * Scheme::FIRST_WIDTH >
-        (SECOND_MOST + 3) * Scheme::SECOND_WIDTH
-    ? (FIRST_MOST + 2) * Scheme::FIRST_WIDTH
-    : (SECOND_MOST + 3) * Scheme::SECOND_WIDTH;
 
 /// What the corrector tells of a step.
 struct Correction {

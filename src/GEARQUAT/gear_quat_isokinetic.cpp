@@ -5,6 +5,8 @@
 
 #include "gear_quat_isokinetic.h"
 
+#include "gear_quat_ranks.h"
+
 #include "error.h"
 #include "force.h"
 
@@ -38,7 +40,7 @@ void IsokineticConstraint::measure()
 {
   KineticSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    here.add(bodies.body[ibody].rigid, bodies.load_of(ibody), bodies.state_of(ibody));
+    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody), bodies.state_of(ibody));
   sums = over_all(here);
   alpha = multipliers(mode, sums);
 }
@@ -55,10 +57,10 @@ void IsokineticConstraint::begin_run(bool afresh)
 /// Without kinetic energy there is no multiplier.
 void IsokineticConstraint::refuse_rest() const
 {
-  int turn_here = 0, turn;
+  int turn = 0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    if (bodies.body[ibody].rigid.rotational_freedoms() > 0) turn_here = 1;
-  MPI_Allreduce(&turn_here, &turn, 1, MPI_INT, MPI_MAX, world);
+    if (bodies.rigid_of(ibody).rotational_freedoms() > 0) turn = 1;
+  turn = over_ranks(MPI_MAX, turn, world);
 
   const char *missing = nullptr;
   if (sums.translation + sums.rotation <= 0.0)
@@ -84,7 +86,7 @@ KineticSums IsokineticConstraint::of_pending() const
   KineticSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
-    here.add(bodies.body[ibody].rigid, bodies.load_of(ibody).force, pending[ibody].torque_body,
+    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody).force, pending[ibody].torque_body,
              s.velocity, s.omega_body);
   }
   return over_all(here);
@@ -101,7 +103,7 @@ void IsokineticConstraint::correct(const Integrator &integrator)
   for (int pass = 0; pass < scheme.passes; ++pass) {
     alpha = multipliers(mode, of_pending());
     for (int ibody = 0; ibody < n; ++ibody) {
-      const RigidBody &rigid = bodies.body[ibody].rigid;
+      const RigidBody &rigid = bodies.rigid_of(ibody);
       double *rows = bodies.history(ibody);
       integrator.correct_pass(rigid, bodies.load_of(ibody), alpha, rows, pending[ibody]);
       bodies.change_state(ibody) = integrator.body_state(rigid, rows);
@@ -122,8 +124,8 @@ void IsokineticConstraint::correct(const Integrator &integrator)
   for (int ibody = 0; ibody < n; ++ibody) {
     double *rows = bodies.history(ibody);
     bodies.change_last(ibody) = integrator.finish(bodies.load_of(ibody), rows, pending[ibody]);
-    if (rescale) integrator.scale_momenta(bodies.body[ibody].rigid, factor, rows);
-    bodies.change_state(ibody) = integrator.body_state(bodies.body[ibody].rigid, rows);
+    if (rescale) integrator.scale_momenta(bodies.rigid_of(ibody), factor, rows);
+    bodies.change_state(ibody) = integrator.body_state(bodies.rigid_of(ibody), rows);
   }
 }
 

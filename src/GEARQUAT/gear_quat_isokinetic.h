@@ -41,7 +41,7 @@ class IsokineticConstraint : protected Pointers {
   /// The load on an owned body together with the forces of the constraint.
   Load acting(int ibody) const
   {
-    return damped_load(bodies.body[ibody].rigid, bodies.state_of(ibody), bodies.load_of(ibody),
+    return damped_load(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.load_of(ibody),
                        alpha);
   }
   /// The power of all forces and torques.

@@ -120,79 +120,69 @@ static std::vector<Keyword> make_table()
 
 // clang-format on
 
+/* ----------------------------------------------------------------------
+   words of the rigid fixes
+------------------------------------------------------------------------- */
+
+static constexpr char BAROSTAT[] =
+    "there is no barostat, the box does not change; use fix rigid/npt/small for that";
+
+/// doc/howto/from_rigid.md has the same table.
+static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {
+    {{"langevin"}, "define fix langevin on the same group, and use few values (values 4)"},
+    {{"temp", "tparam", "tchain"},
+     "define fix temp/csvr or temp/berendsen on the same group, or use keyword isokinetic"},
+    {{"iso", "aniso", "tri", "x", "y", "z", "xy", "yz", "xz", "couple", "pparam", "pchain",
+      "dilate", "fixedpoint", "scalexy", "scalexz", "scaleyz"},
+     BAROSTAT},
+    {{"gravity"},
+     "keep fix gravity, on a group with the bodies, and leave out its keyword disable"},
+    {{"bodyforces"}, "forces are always summed late, in the end of the step"},
+};
+
+/// What to write instead of a keyword of fix rigid and its kin; empty for any other word.
+static std::string instead_of_rigid_keyword(const std::string &keyword)
+{
+  for (const auto &[keywords, instead] : RIGID_WORDS)
+    if (std::count(keywords.begin(), keywords.end(), keyword)) return instead;
+  return "";
+}
+
+int GearQuat::modify_like_rigid(LAMMPS *lmp, int narg, char **arg)
+{
+  const std::string word = arg[0];
+  if (word == "temp" || word == "press")
+    lmp->error->all(FLERR, "Fix gear/quat has no fix_modify {}: it computes no {}", word,
+                    word == "temp" ? "temperature" : "pressure");
+  if (word != "bodyforces") return 0;
+  if (narg < 2) utils::missing_cmd_args(FLERR, "fix_modify bodyforces", lmp->error);
+  const std::string when = arg[1];
+  if (when != "late")
+    lmp->error->all(FLERR,
+                    "Fix gear/quat has no fix_modify bodyforces {}: {}; define fixes whose forces "
+                    "bodies should not feel on a group without them",
+                    when, instead_of_rigid_keyword(word));
+  return 2;
+}
+
+/* ----------------------------------------------------------------------
+   rows of the table
+------------------------------------------------------------------------- */
+
 const std::vector<Keyword> &GearQuat::keyword_table()
 {
   static const std::vector<Keyword> table = make_table();
   return table;
 }
 
-static const Keyword *row_of(const std::string &name)
+const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name)
 {
-  const auto &table = keyword_table();
-  const auto row = std::find_if(table.begin(), table.end(), [&name](const Keyword &one) {
-    return one.name == name;
-  });
-  return row == table.end() ? nullptr : &*row;
-}
-
-const Keyword &GearQuat::find_keyword(const std::string &name)
-{
-  return *row_of(name);
-}
-
-const Keyword &GearQuat::known_keyword(LAMMPS *lmp, const std::string &name)
-{
-  if (const Keyword *row = row_of(name)) return *row;
+  for (const auto &row : keyword_table())
+    if (row.name == name) return row;
   const std::string instead = instead_of_rigid_keyword(name);
   if (!instead.empty())
     lmp->error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", name, instead);
   lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}", name);
-  return keyword_table().front();    // never reached
-}
-
-/* ----------------------------------------------------------------------
-   rows
-------------------------------------------------------------------------- */
-
-Keyword &Keyword::word(std::vector<std::string> possible, const std::string &default_word)
-{
-  kind = WORD;
-  words = std::move(possible);
-  standard = default_word.empty() ? words.front() : default_word;
-  return *this;
-}
-
-Keyword &Keyword::integer(std::vector<Range> possible, int at_most_with_tolerance)
-{
-  kind = INTEGER;
-  ranges = std::move(possible);
-  most_with_tolerance = at_most_with_tolerance;
-  return *this;
-}
-
-Keyword &Keyword::number()
-{
-  kind = NUMBER;
-  return *this;
-}
-
-Keyword &Keyword::follows(Kind what, std::vector<std::string> names)
-{
-  kind = what;
-  words = std::move(names);
-  return *this;
-}
-
-Keyword &Keyword::requires_also(Condition condition)
-{
-  needs.push_back(std::move(condition));
-  return *this;
-}
-
-Keyword &Keyword::cannot_go_with(Condition condition)
-{
-  excludes.push_back(std::move(condition));
-  return *this;
 }
 
 std::string Keyword::possible_words() const
@@ -202,10 +192,6 @@ std::string Keyword::possible_words() const
     text += (n == 0 ? "" : n + 1 == words.size() ? " or " : ", ") + words[n];
   return text;
 }
-
-/* ----------------------------------------------------------------------
-   reading
-------------------------------------------------------------------------- */
 
 int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
 {
@@ -307,57 +293,4 @@ std::string GearQuat::list_of_keywords()
     text += line.back() + "\n";
   }
   return text;
-}
-
-/* ----------------------------------------------------------------------
-   words of the rigid fixes
-------------------------------------------------------------------------- */
-
-namespace {
-
-struct RigidWords {
-  std::vector<std::string> keywords;
-  const char *instead;
-};
-
-}    // namespace
-
-static constexpr char BAROSTAT[] =
-    "there is no barostat, the box does not change; use fix rigid/npt/small for that";
-
-/// doc/howto/from_rigid.md has the same table.
-static const std::vector<RigidWords> RIGID_WORDS = {
-    {{"langevin"}, "define fix langevin on the same group, and use few values (values 4)"},
-    {{"temp", "tparam", "tchain"},
-     "define fix temp/csvr or temp/berendsen on the same group, or use keyword isokinetic"},
-    {{"iso", "aniso", "tri", "x", "y", "z", "xy", "yz", "xz", "couple", "pparam", "pchain",
-      "dilate", "fixedpoint", "scalexy", "scalexz", "scaleyz"},
-     BAROSTAT},
-    {{"gravity"},
-     "keep fix gravity, on a group with the bodies, and leave out its keyword disable"},
-    {{"bodyforces"}, "forces are always summed late, in the end of the step"},
-};
-
-std::string GearQuat::instead_of_rigid_keyword(const std::string &keyword)
-{
-  for (const auto &row : RIGID_WORDS)
-    if (std::count(row.keywords.begin(), row.keywords.end(), keyword)) return row.instead;
-  return "";
-}
-
-int GearQuat::modify_like_rigid(LAMMPS *lmp, int narg, char **arg)
-{
-  const std::string word = arg[0];
-  if (word == "temp" || word == "press")
-    lmp->error->all(FLERR, "Fix gear/quat has no fix_modify {}: it computes no {}", word,
-                    word == "temp" ? "temperature" : "pressure");
-  if (word != "bodyforces") return 0;
-  if (narg < 2) utils::missing_cmd_args(FLERR, "fix_modify bodyforces", lmp->error);
-  const std::string when = arg[1];
-  if (when != "late")
-    lmp->error->all(FLERR,
-                    "Fix gear/quat has no fix_modify bodyforces {}: {}; define fixes whose forces "
-                    "bodies should not feel on a group without them",
-                    when, instead_of_rigid_keyword(word));
-  return 2;
 }

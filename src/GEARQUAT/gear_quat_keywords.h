@@ -11,8 +11,6 @@
 #ifndef LMP_GEAR_QUAT_KEYWORDS_H
 #define LMP_GEAR_QUAT_KEYWORDS_H
 
-#include "gear_quat_masks.h"
-
 #include <string>
 #include <vector>
 
@@ -23,6 +21,13 @@ class LAMMPS;
 namespace LAMMPS_NS::GearQuat {
 
 struct Arguments;
+
+/// Keyword force or torque with its words: which components act on which bodies.
+struct MaskWords {
+  bool torque;          ///< or force
+  std::string range;    ///< of bodies, counted from 1 in the order of their IDs
+  bool on[3];
+};
 
 /// The words behind a keyword, after they were read.
 struct KeywordValue {
@@ -67,12 +72,34 @@ struct Keyword {
 
   // what the rows of the table are written with; an empty default is the first word
 
-  Keyword &word(std::vector<std::string> possible, const std::string &default_word = "");
-  Keyword &integer(std::vector<Range> possible, int at_most_with_tolerance = 0);
-  Keyword &number();
-  Keyword &follows(Kind what, std::vector<std::string> names);
-  Keyword &requires_also(Condition condition);
-  Keyword &cannot_go_with(Condition condition);
+  Keyword &word(const std::vector<std::string> &possible, const std::string &default_word = "")
+  {
+    standard = default_word.empty() ? possible.front() : default_word;
+    return follows(WORD, possible);
+  }
+  Keyword &integer(const std::vector<Range> &possible, int at_most_with_tolerance = 0)
+  {
+    ranges = possible;
+    most_with_tolerance = at_most_with_tolerance;
+    return follows(INTEGER, {});
+  }
+  Keyword &number() { return follows(NUMBER, {}); }
+  Keyword &follows(Kind what, const std::vector<std::string> &names)
+  {
+    kind = what;
+    words = names;
+    return *this;
+  }
+  Keyword &requires_also(const Condition &condition)
+  {
+    needs.push_back(condition);
+    return *this;
+  }
+  Keyword &cannot_go_with(const Condition &condition)
+  {
+    excludes.push_back(condition);
+    return *this;
+  }
 
   /// Of the formulation, where there are two.
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
@@ -87,21 +114,15 @@ struct Keyword {
 /// All rows, in the order of the manual.
 const std::vector<Keyword> &keyword_table();
 
-/// The row of a keyword that is in the table.
-const Keyword &find_keyword(const std::string &name);
-
-/// The row of a word of the user.  An unknown one ends the run on all ranks, with what to write
+/// The row of a keyword.  An unknown one ends the run on all ranks, with what to write
 /// instead if it is a keyword of the rigid fixes.
-const Keyword &known_keyword(LAMMPS *lmp, const std::string &name);
+const Keyword &find_keyword(LAMMPS *lmp, const std::string &name);
 
 /// The table as text: a line of titles and a line for each row, whose columns are separated by two
 /// or more blanks; an empty cell is a hyphen.
 std::string list_of_keywords();
 
 // words of the rigid fixes that this fix does not have
-
-/// What to write instead of a keyword of fix rigid and its kin; empty for any other word.
-std::string instead_of_rigid_keyword(const std::string &keyword);
 
 /// The words of fix_modify that the rigid fixes have: returns how many were used, and ends the run
 /// on all ranks where this fix cannot do what they ask for.

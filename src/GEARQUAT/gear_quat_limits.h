@@ -8,12 +8,18 @@
    far from unit length that unprojected sites are a hundred times too far out or in, or whose motion
    is no number.  All are far outside of what is stable, so only runs that are lost end here: the
    quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h = 1.57,
-   and no method here is stable beyond 1.42. */
+   and no method here is stable beyond 1.42.
+
+   Which of the slower rotations a method follows at a given step depends on the number of values, on
+   the passes and on the moments: a free flight on trial tells, and needs no table. */
 
 #ifndef GEAR_QUAT_LIMITS_H
 #define GEAR_QUAT_LIMITS_H
 
-#include "gear_quat_rigid_body.h"
+#include "gear_quat_startup.h"
+
+#include <limits>
+#include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -55,6 +61,43 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
     s.omega_body[k] += h * omegadot_body[k];
   }
   return s;
+}
+
+constexpr int FLIGHT_STEPS = 100;
+
+/// Radians in a step; whatever the method, a slower rotation survives.
+constexpr double FLIGHT_SLOW = 0.1;
+
+/// False if the body goes astray within FLIGHT_STEPS steps without any load.
+inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const BodyState &state,
+                            double h)
+{
+  const Integrator integrator(scheme, h);
+  const MotionLimits limits(h, std::numeric_limits<double>::infinity());
+  const Load none = Load();
+  std::vector<double> history(scheme.size());    // an array would have to be as long as the longest
+  double *rows = history.data();
+  BodyState still = state;
+  for (double &component : still.velocity) component = 0.0;
+  if (!limits.keep(still)) return false;
+  seed(scheme, body, local_series(body, still, none, h), h, h, rows);
+  for (int step = 0; step < FLIGHT_STEPS; ++step) {
+    integrator.predict(rows);
+    if (!limits.keep_velocities(integrator.body_state(body, rows))) return false;
+    integrator.correct(body, none, rows);
+    if (!limits.keep(integrator.body_state(body, rows))) return false;
+  }
+  return true;
+}
+
+/// The longest step, of h and its halves, thirds, ..., that the flight survives.
+inline double longest_step(const Scheme &scheme, const RigidBody &body, const BodyState &state,
+                           double h)
+{
+  int parts = 1;
+  while (parts < 1000 && !survives_flight(scheme, body, state, h / parts))
+    parts += parts < 10 ? 1 : parts / 5;
+  return h / parts;
 }
 
 }    // namespace LAMMPS_NS::GearQuat

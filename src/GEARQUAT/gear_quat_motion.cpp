@@ -5,10 +5,9 @@
 
 #include "gear_quat_motion.h"
 
-#include "gear_quat_peer.h"
-#include "gear_quat_spins.h"
+#include "gear_quat_ranks.h"
+#include "gear_quat_scene.h"
 
-#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
@@ -40,8 +39,7 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 /* ---------------------------------------------------------------------- */
 
 Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
-    Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme),
-    started(false), set_up(false), last_step(0.0)
+    Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme)
 {
   if (args.control.eps > 0.0)
     tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, bodies));
@@ -52,7 +50,7 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
 
 void Motion::meet_bodies()
 {
-  masks.reset(new Masks(lmp, args.masks, bodies));
+  if (!args.masks.empty()) masks = args.masks_of(bodies.all_ids());
 }
 
 /* ----------------------------------------------------------------------
@@ -92,9 +90,16 @@ void Motion::follow_time_step()
   if (isokinetic) isokinetic->rescale_step(ratio);
 }
 
+void Motion::forget(const std::string &why)
+{
+  if (started && comm->me == 0) utils::logmesg(lmp, why + "\n");
+  started = false;
+}
+
 void Motion::impose_masks()
 {
-  if (!masks->impose(bodies) || !started) return;    // only those of a restart file can be others
+  if (!bodies.change_masks(masks) || !started)
+    return;    // only those of a restart file can be others
   started = false;
   if (comm->me == 0)
     error->warning(FLERR,
@@ -129,18 +134,12 @@ void Motion::begin_steps(const std::vector<Motion *> &all, double **f)
       one->begin(false);
     }
   }
-  if (std::none_of(needed.begin(), needed.end(), [](bool one) {
-        return one;
-      }))
-    return;
+  if (!std::count(needed.begin(), needed.end(), true)) return;
 
   // Histories that could continue start anew too if this gives the others a start of full order.
 
-  const bool some_go_on = !std::all_of(needed.begin(), needed.end(), [](bool one) {
-    return one;
-  });
-  const bool together = !some_go_on ||
-      Forces(full[0]->lmp, full[0]->starting_together()).reason().empty();
+  const bool some_go_on = std::count(needed.begin(), needed.end(), false) > 0;
+  const bool together = !some_go_on || full[0]->forces_can_be_followed();
   std::vector<Party> parties;
   for (size_t n = 0; n < full.size(); ++n)
     if (needed[n] || together) parties.push_back(full[n]->party(needed[n]));
@@ -173,55 +172,58 @@ std::string Motion::present_movers() const
 /// True if a new start would be of full order, and nothing but the histories would be new.
 bool Motion::can_start_anew() const
 {
-  return !tolerance && !isokinetic && args.start == Arguments::Start::BOOTSTRAP &&
-      Forces(lmp, starting_together()).reason().empty();
+  return !tolerance && !isokinetic && bootstraps() && forces_can_be_followed();
+}
+
+/// By a start of full order, of all fixes together.
+bool Motion::forces_can_be_followed() const
+{
+  std::vector<const Fix *> owners;
+  for (auto *other : modify->get_fix_list()) {
+    const Motion *same = motion_of(other);
+    if (same && (same->bootstraps() || same == this)) owners.push_back(other);
+  }
+  return Forces(lmp, owners).reason().empty();
 }
 
 /// True if the present loads leave a residual that the histories cannot have left.
 bool Motion::forces_changed(double **f)
 {
   if (isokinetic) isokinetic->measure();
-  double here[2] = {0.0, 0.0}, largest[2];    // error of the last step, force on an atom
-  for (const auto *other : modify->get_fix_list())
-    if (const auto *same = dynamic_cast<const Peer *>(other))
-      here[0] = std::max(here[0], same->last_error());
-  for (const auto &site : bodies.sites) {
-    const double *on_atom = f[site.atom];
-    here[1] = std::max(here[1], force->ftm2v * std::sqrt(dot3(on_atom, on_atom)));
-  }
-  MPI_Allreduce(here, largest, 2, MPI_DOUBLE, MPI_MAX, world);
+  double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
+  for (auto *other : modify->get_fix_list())
+    if (const Motion *same = motion_of(other)) here[0] = std::max(here[0], same->last_error());
+  for (const auto &site : bodies.sites)
+    here[1] = std::max(here[1], force->ftm2v * length(f[site.atom]));
+  const auto largest = over_ranks(MPI_MAX, here, world);
 
-  double here_ratio = 0.0, ratio;
+  double ratio = 0.0;
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) {
       double rows[MAX_SIZE];
       std::copy_n(bodies.history(ibody), args.scheme.size(), rows);
-      const RigidBody &rigid = bodies.body[ibody].rigid;
-      const Load load = isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
+      const Body &body = bodies.body_at(ibody);
       const Correction found = list == &bodies.points
-          ? integrator->correct_center(rigid, load, rows)
-          : integrator->correct(rigid, load, rows);
-      const double one =
-          bodies.body[ibody].length(found) / (largest[0] + rounding(ibody, largest[1]));
-      here_ratio = std::isfinite(one) ? std::max(here_ratio, one) : 2.0 * OTHER_NOISE;
+          ? integrator->correct_center(body.rigid, acting(ibody), rows)
+          : integrator->correct(body.rigid, acting(ibody), rows);
+      const double one = body.length(found) / (largest[0] + rounding(ibody, largest[1]));
+      ratio = std::isfinite(one) ? std::max(ratio, one) : 2.0 * OTHER_NOISE;
     }
-  MPI_Allreduce(&here_ratio, &ratio, 1, MPI_DOUBLE, MPI_MAX, world);
-  return ratio > OTHER_NOISE ||
-      (ratio > OTHER_FORCES && Forces(lmp, starting_together()).reason().empty());
+  ratio = over_ranks(MPI_MAX, ratio, world);
+  return ratio > OTHER_NOISE || (ratio > OTHER_FORCES && forces_can_be_followed());
 }
 
 /// The part of a residual that rounding explains, as a length.  force: the largest one on an atom.
 double Motion::rounding(int ibody, double force) const
 {
-  const Body &body = bodies.body[ibody];
+  const Body &body = bodies.body_at(ibody);
   const BodyState &s = bodies.state_of(ibody);
   const double size = std::fabs(step());
   double response = 1.0 / body.rigid.mass;
   for (const double moment : body.rigid.inertia)
     if (moment > 0.0) response = std::max(response, body.reach() * body.reach() / moment);
   const double noise = ROUNDING_OF_FORCES * std::sqrt((double) body.natoms) * force;
-  const double way = size * std::sqrt(dot3(s.velocity, s.velocity)) +
-      body.reach() * (1.0 + size * std::sqrt(dot3(s.omega_body, s.omega_body)));
+  const double way = size * length(s.velocity) + body.reach() * (1.0 + size * length(s.omega_body));
   return size * size * response * noise + ROUNDING_OF_MOTION * way;
 }
 
@@ -229,7 +231,7 @@ double Motion::last_error() const
 {
   double largest = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    largest = std::max(largest, bodies.body[ibody].length(bodies.last_of(ibody)));
+    largest = std::max(largest, bodies.body_at(ibody).length(bodies.last_of(ibody)));
   return largest;
 }
 
@@ -247,13 +249,8 @@ bool Motion::has_to_start(double **f)
 
 Party Motion::party(bool needed)
 {
-  return {fix,
-          &bodies,
-          isokinetic.get(),
-          tolerance ? tolerance->scheme_of_start() : args.scheme,
-          needed,
-          {},
-          {}};
+  return {fix, &bodies, isokinetic.get(), tolerance ? tolerance->scheme_of_start() : args.scheme,
+          needed};
 }
 
 /// Histories have started.  full: all their rows are known.
@@ -265,17 +262,6 @@ void Motion::begin(bool full)
   make_integrator(step());
 }
 
-/// The fixes whose histories a start of full order makes together with those of this fix.
-std::vector<const Fix *> Motion::starting_together() const
-{
-  std::vector<const Fix *> found;
-  for (const auto *other : modify->get_fix_list()) {
-    const auto *same = dynamic_cast<const Peer *>(other);
-    if (same && (same->bootstraps() || other == fix)) found.push_back(other);
-  }
-  return found;
-}
-
 /* ----------------------------------------------------------------------
    a step
 ------------------------------------------------------------------------- */
@@ -284,11 +270,9 @@ void Motion::take_velocities(const std::vector<int> &changed)
 {
   if (!started) return;
   if (isokinetic) isokinetic->measure();
-  for (const int ibody : changed) {
-    const Load load = isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
-    integrator->set_velocities(bodies.body[ibody].rigid, bodies.state_of(ibody), load,
+  for (const int ibody : changed)
+    integrator->set_velocities(bodies.rigid_of(ibody), bodies.state_of(ibody), acting(ibody),
                                bodies.history(ibody));
-  }
 }
 
 void Motion::predict(double **f)
@@ -304,13 +288,13 @@ void Motion::predict(double **f)
   for (const int ibody : bodies.points) {
     double *rows = bodies.history(ibody);
     integrator->predict_center(rows);
-    integrator->center_state(bodies.body[ibody].rigid, rows, bodies.change_state(ibody));
+    integrator->center_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody));
     check(ibody);
   }
   for (const int ibody : bodies.tops) {
     double *rows = bodies.history(ibody);
     integrator->predict(rows);
-    bodies.change_state(ibody) = integrator->body_state(bodies.body[ibody].rigid, rows);
+    bodies.change_state(ibody) = integrator->body_state(bodies.rigid_of(ibody), rows);
     check(ibody);
   }
 }
@@ -320,21 +304,20 @@ void Motion::correct(double **f)
   if (isokinetic)
     correct_together(f);
   else
-    masks->any() ? correct_bodies<true>(f) : correct_bodies<false>(f);
+    masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
 }
 
 /// MASKED: some components of the loads do not act.
 template <bool MASKED> void Motion::correct_bodies(double **f)
 {
-  const double h = step();
   const auto correct_all = [&](auto changing) {
     for (const int ibody : bodies.points) {
       correct_body<MASKED, true, changing>(ibody);
-      if (!limits.keep(bodies.state_of(ibody))) blowup.stop(ibody, bodies.state_of(ibody), h, f);
+      check_limits(ibody, f);
     }
     for (const int ibody : bodies.tops) {
       correct_body<MASKED, false, changing>(ibody);
-      if (!limits.keep(bodies.state_of(ibody))) blowup.stop(ibody, bodies.state_of(ibody), h, f);
+      check_limits(ibody, f);
     }
   };
   tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
@@ -345,7 +328,7 @@ template <bool MASKED> void Motion::correct_bodies(double **f)
 template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int ibody)
 {
   double *rows = bodies.history(ibody);
-  const RigidBody &rigid = bodies.body[ibody].rigid;
+  const RigidBody &rigid = bodies.rigid_of(ibody);
   const Load load = MASKED ? bodies.acting(ibody) : bodies.load_of(ibody);
   BodyState &state = bodies.change_state(ibody);
   const BodyState before = state;
@@ -365,11 +348,9 @@ template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int 
 /// The isokinetic constraint couples all bodies, so they are corrected pass by pass.
 void Motion::correct_together(double **f)
 {
-  const double h = step();
   isokinetic->correct(*integrator);
   for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list)
-      if (!limits.keep(bodies.state_of(ibody))) blowup.stop(ibody, bodies.state_of(ibody), h, f);
+    for (const int ibody : *list) check_limits(ibody, f);
 }
 
 /// The histories of bodies that came in this step begin with the derivatives that are known.

@@ -36,8 +36,8 @@ class Motion : protected Pointers {
   void init();
   /// LAMMPS' time step may have changed; histories keep their polynomials.
   void follow_time_step();
-  /// Histories have to be made anew.
-  void forget() { started = false; }
+  /// Histories have to be made anew.  Rank 0 says why if there are any.
+  void forget(const std::string &why);
   /// The masks of the command replace those of a restart file.  Collective.
   void impose_masks();
   /// Poses, velocities and loads are those of the first step.  Collective.
@@ -55,8 +55,10 @@ class Motion : protected Pointers {
   static void begin_steps(const std::vector<Motion *> &all, double **f);
   /// True if a start finds all derivatives, as far as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
-  /// The largest error that the last step reported here, as a length.
+  /// The largest error of a body here in the last step, as a length.
   double last_error() const;
+  /// True if this motion is that of the atom.
+  bool moves(int atom) const { return bodies.in_body(atom); }
   void predict(double **f);
   /// f: forces that the loads were gathered from.
   void correct(double **f);
@@ -90,16 +92,16 @@ class Motion : protected Pointers {
   const Arguments &args;
   Bodies &bodies;
   Blowup blowup;
-  std::unique_ptr<Masks> masks;
+  std::map<tagint, Mask> masks;                        ///< of the command, by the IDs of bodies
   std::unique_ptr<IsokineticConstraint> isokinetic;    ///< null without
   std::unique_ptr<Tolerance> tolerance;                ///< null: the step is LAMMPS' own
   std::unique_ptr<Integrator> integrator;
 
-  bool started;           ///< histories are those of the step of the integrator
-  bool set_up;            ///< LAMMPS has evaluated forces for a run, no step of it has begun
-  double last_step;       ///< the time step of the last step that was made
-  MotionLimits limits;    ///< of the present step
-  std::string movers;     ///< IDs of the other fixes that moved atoms in the last steps
+  bool started = false;      ///< histories are those of the step of the integrator
+  bool set_up = false;       ///< LAMMPS has evaluated forces for a run, no step of it has begun
+  double last_step = 0.0;    ///< the time step of the last step that was made
+  MotionLimits limits;       ///< of the present step
+  std::string movers;        ///< IDs of the other fixes that moved atoms in the last steps
 
   /// The time step of the histories; 0 before the first run.
   double step() const { return integrator ? integrator->step() : 0.0; }
@@ -108,12 +110,23 @@ class Motion : protected Pointers {
   bool has_to_start(double **f);
   Party party(bool needed);
   void begin(bool full);
-  std::vector<const Fix *> starting_together() const;
   const char *reason_to_start_anew(double **f);
   bool can_start_anew() const;
+  bool forces_can_be_followed() const;
   std::string present_movers() const;
   bool forces_changed(double **f);
   double rounding(int ibody, double force) const;
+  /// Of a corrected state.
+  void check_limits(int ibody, double **f) const
+  {
+    const BodyState &state = bodies.state_of(ibody);
+    if (!limits.keep(state)) blowup.stop(ibody, state, last_step, f);
+  }
+  /// The load that moves a body.
+  Load acting(int ibody) const
+  {
+    return isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
+  }
   template <bool MASKED> void correct_bodies(double **f);
   template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody);
   void correct_together(double **f);

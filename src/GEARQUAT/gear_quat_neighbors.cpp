@@ -6,6 +6,8 @@
 #include "gear_quat_neighbors.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_ranks.h"
+#include "gear_quat_scene.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -17,7 +19,7 @@
 #include "update.h"
 #include "utils.h"
 
-#include <cmath>
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -81,15 +83,12 @@ static const NeighborRule NEIGHBORS[] = {
     {"^ipi", NeighborRule::REFUSED, NeighborRule::ALWAYS, "unfix one of the two"},
 };
 
-// tolerances relative to the velocity of a site: for rounding, and for a motion to count as rigid
-
-static constexpr double SAME = 1.0e-11, RIGID = 1.0e-6;
+static constexpr double RIGID = 1.0e-6;    // of the velocity of a site, for a motion to be rigid
 
 /* ---------------------------------------------------------------------- */
 
 Neighbors::Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args) :
-    Pointers(lmp), fix(fix), bodies(bodies), args(args), sample(0), warned_noise(false),
-    warned_change(false)
+    Pointers(lmp), fix(fix), bodies(bodies), args(args)
 {
 }
 
@@ -151,12 +150,11 @@ void Neighbors::tell_noise(const Fix *other)
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
 tagint Neighbors::shared_atom(const Fix *other) const
 {
-  tagint shared = 0, any;
+  tagint shared = 0;
   for (int i = 0; i < atom->nlocal; ++i)
     if (bodies.in_body(i) && (atom->mask[i] & other->groupbit))
       shared = std::max(shared, atom->tag[i]);
-  MPI_Allreduce(&shared, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return any;
+  return over_ranks(MPI_MAX, shared, world);
 }
 
 void Neighbors::refuse(const Fix *other, const NeighborRule &row, tagint shared) const
@@ -203,20 +201,20 @@ void Neighbors::check_gravity()
     if (n) std::fill_n(atom->f[0], n, 0.0);
     other->post_force(0);
     bodies.gather_loads(atom->f, atom->torque);
-    int here[2] = {0, 0}, any[2];    // atoms that feel it, bodies that should feel more or less
+    int here[2] = {0, 0};    // atoms that feel it, bodies that should feel more or less
     for (const auto &site : bodies.sites) {
       const double *f = atom->f[site.atom];
       if (dot3(f, f) == 0.0) continue;
       here[0] = 1;
       if (site.body >= bodies.nmoved()) continue;
       const double factor =
-          force->ftm2v * bodies.body[site.body].rigid.mass / bodies.atom_mass(site.atom);
+          force->ftm2v * bodies.rigid_of(site.body).mass / bodies.atom_mass(site.atom);
       double off[3];
       for (int k = 0; k < 3; ++k) off[k] = factor * f[k] - bodies.load_of(site.body).force[k];
       if (dot3(off, off) > RIGID * RIGID * factor * factor * dot3(f, f)) here[1] = 1;
     }
     if (n) std::copy(forces.begin(), forces.end(), atom->f[0]);
-    MPI_Allreduce(here, any, 2, MPI_INT, MPI_MAX, world);
+    const auto any = over_ranks(MPI_MAX, here, world);
     if (comm->me != 0) continue;
     if (!any[0])
       error->warning(FLERR,
@@ -246,7 +244,7 @@ std::vector<int> Neighbors::take_velocities(bigint step, bool end)
   if (!gather_impulses()) return changed;
 
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const RigidBody &rigid = bodies.body[ibody].rigid;
+    const RigidBody &rigid = bodies.rigid_of(ibody);
     const Load &impulse = bodies.load_of(ibody);
     BodyState &state = bodies.change_state(ibody);
     if (dot3(impulse.force, impulse.force) + dot3(impulse.torque_space, impulse.torque_space) ==
@@ -263,21 +261,21 @@ std::vector<int> Neighbors::take_velocities(bigint step, bool end)
   bodies.put_back_loads(before);    // accelerations of bodies follow from them
   bodies.spread_states();
 
-  tagint torn = 0, any;
+  tagint torn = 0;
   for (const auto &site : bodies.sites) {
     const Bodies::Placed placed = bodies.placed(site);
     double off[3];
     for (int k = 0; k < 3; ++k) off[k] = atom->v[site.atom][k] - placed.v[k];
-    if (!(std::sqrt(dot3(off, off)) <= RIGID * placed.speed)) torn = bodies.body[site.body].id;
+    if (!(length(off) <= RIGID * placed.speed)) torn = bodies.body_at(site.body).id;
   }
-  MPI_Allreduce(&torn, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (!any) return changed;
+  torn = over_ranks(MPI_MAX, torn, world);
+  if (!torn) return changed;
   if (end)
     error->all(FLERR,
                "Fix gear/quat: the velocities that {} gave to atoms of body {} in step {} are not "
                "those of a rigid motion; whole bodies have to be in the group, without a region or "
                "a bias that divides them",
-               names(acted), any, step);
+               names(acted), torn, step);
   bodies.put_back_states(before);
   bodies.spread_states();
   return {};
@@ -287,11 +285,10 @@ std::vector<int> Neighbors::take_velocities(bigint step, bool end)
 /// there are none on any rank.  Collective.
 bool Neighbors::gather_impulses()
 {
-  int differs = 0, any;
+  int differs = 0;
   for (const auto &site : bodies.sites)
-    if (!is_as_fast(site)) differs = 1;
-  MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) return false;
+    if (!bodies.is_as_fast(site)) differs = 1;
+  if (!over_ranks(MPI_MAX, differs, world)) return false;
 
   double **impulse, **twist;
   memory->create(impulse, atom->nlocal + 1, 3, "gear/quat:impulse");
@@ -314,54 +311,38 @@ bool Neighbors::gather_impulses()
    changes that bodies do not follow
 ------------------------------------------------------------------------- */
 
-bool Neighbors::is_there(const Bodies::Site &site) const
-{
-  const Bodies::Placed placed = bodies.placed(site);
-  for (int k = 0; k < 3; ++k)
-    if (!(std::fabs(atom->x[site.atom][k] - placed.x[k]) <= SAME * placed.length)) return false;
-  return true;
-}
-
-bool Neighbors::is_as_fast(const Bodies::Site &site) const
-{
-  const Bodies::Placed placed = bodies.placed(site);
-  for (int k = 0; k < 3; ++k)
-    if (!(std::fabs(atom->v[site.atom][k] - placed.v[k]) <= SAME * placed.speed)) return false;
-  return true;
-}
-
 void Neighbors::check_velocities()
 {
   if (warned_change || bodies.sites.empty()) return;
   const auto &site = bodies.sites[++sample % bodies.sites.size()];
-  if (!is_as_fast(site)) tell(site, "velocity");
+  if (!bodies.is_as_fast(site)) tell(site, "velocity");
 }
 
 void Neighbors::check_places()
 {
   if (!watched.empty()) {
     for (const auto &site : bodies.sites)
-      if (!is_there(site))
+      if (!bodies.is_there(site))
         error->one(FLERR,
                    "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
                    "follow; " +
                        std::string(WALL),
-                   names(watched), atom->tag[site.atom], bodies.body[site.body].id,
+                   names(watched), atom->tag[site.atom], bodies.body_at(site.body).id,
                    update->ntimestep);
     return;
   }
   if (warned_change || bodies.sites.empty()) return;
   const auto &site = bodies.sites[sample % bodies.sites.size()];
-  if (!is_there(site)) tell(site, "place");
+  if (!bodies.is_there(site)) tell(site, "place");
 }
 
 void Neighbors::check_all()
 {
   for (const auto &site : bodies.sites) {
     if (warned_change) return;
-    if (!is_there(site))
+    if (!bodies.is_there(site))
       tell(site, "place");
-    else if (!is_as_fast(site))
+    else if (!bodies.is_as_fast(site))
       tell(site, "velocity");
   }
 }
@@ -375,13 +356,13 @@ void Neighbors::tell(const Bodies::Site &site, const char *what)
   error->warning(FLERR,
                  "Fix gear/quat: the {} of atom {} of body {} was changed before step {} by "
                  "something else, and bodies do not follow; other fixes are: {}",
-                 what, atom->tag[site.atom], bodies.body[site.body].id, update->ntimestep,
+                 what, atom->tag[site.atom], bodies.body_at(site.body).id, update->ntimestep,
                  others.empty() ? "none" : names(others));
 }
 
 std::string Neighbors::names(const std::vector<const Fix *> &fixes) const
 {
   std::vector<std::string> words;
-  for (const auto *one : fixes) words.push_back(fmt::format("fix {} ({})", one->id, one->style));
+  for (const auto *one : fixes) words.push_back(name_of(one));
   return utils::join_words(words, ", ");
 }

@@ -58,15 +58,13 @@ class Neighbors : protected Pointers {
   const Arguments &args;
   std::vector<const Fix *> taken;      ///< whose velocities bodies take over
   std::vector<const Fix *> watched;    ///< that may move single atoms
-  size_t sample;                       ///< the site that is looked at next
-  bool warned_noise;                   ///< of random forces
-  bool warned_change;                  ///< of a change by something unknown in this run
+  size_t sample = 0;                   ///< the site that is looked at next
+  bool warned_noise = false;           ///< of random forces
+  bool warned_change = false;          ///< of a change by something unknown in this run
 
   void tell_noise(const Fix *other);
   tagint shared_atom(const Fix *other) const;
   void refuse(const Fix *other, const NeighborRule &row, tagint atom) const;
-  bool is_there(const Bodies::Site &site) const;
-  bool is_as_fast(const Bodies::Site &site) const;
   bool gather_impulses();
   void tell(const Bodies::Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;

@@ -5,8 +5,7 @@
 
 #include "gear_quat_outputs.h"
 
-#include "gear_quat_gather.h"
-#include "gear_quat_template.h"
+#include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -29,15 +28,15 @@ static constexpr double NORM_ROUNDING = 1.0e-15;
 
 double Sums::energy_correction() const
 {
-  double here[2] = {0.0, 0.0}, all[2];
+  double here[2] = {0.0, 0.0};
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
     const Load &l = bodies.load_of(ibody);
     here[0] -= bodies.last_of(ibody).work;
-    here[1] += std::sqrt(dot3(l.force, l.force) * dot3(s.center, s.center)) +
-        std::sqrt(dot3(l.torque_space, l.torque_space));
+    here[1] +=
+        std::sqrt(dot3(l.force, l.force) * dot3(s.center, s.center)) + length(l.torque_space);
   }
-  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  const auto all = over_ranks(MPI_SUM, here, world);
   const double rounding = std::numeric_limits<double>::epsilon() * all[1];
   return std::fabs(all[0]) < rounding ? 0.0 : all[0] / force->ftm2v;
 }
@@ -45,7 +44,7 @@ double Sums::energy_correction() const
 /// The contribution of a body to a sum, or its candidate for a maximum, in the global vector.
 double Sums::of_body(int n, int ibody, const Integrator *integrator) const
 {
-  const RigidBody &rigid = bodies.body[ibody].rigid;
+  const RigidBody &rigid = bodies.rigid_of(ibody);
   const BodyState &s = bodies.state_of(ibody);
   const Correction &last = bodies.last_of(ibody);
   switch (n) {
@@ -71,12 +70,12 @@ double Sums::of_body(int n, int ibody, const Integrator *integrator) const
 double Sums::element(int n, const Integrator *integrator) const
 {
   const bool largest = n == NORM || n == RADIAL || n == MAX_POSITION || n == MAX_ANGLE;
-  double here = 0.0, all;
+  double here = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const double one = of_body(n, ibody, integrator);
     here = largest ? std::max(here, one) : here + one;
   }
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, largest ? MPI_MAX : MPI_SUM, world);
+  const double all = over_ranks(largest ? MPI_MAX : MPI_SUM, here, world);
   if (n == KE_TRANSLATION || n == KE_ROTATION) return all * force->mvv2e;
   if (n == NORM || n == RADIAL) return all < NORM_ROUNDING ? 0.0 : all;
   if (largest) return all;
@@ -122,7 +121,7 @@ void BodyTable::wrap(const double *center, double *wrapped, double *image) const
 /// Quaternions have the scalar first, as everywhere in LAMMPS.
 void BodyTable::fill_row(int ibody, double *row) const
 {
-  const Body &body = bodies.body[ibody];
+  const Body &body = bodies.body_at(ibody);
   const BodyState &s = bodies.state_of(ibody);
   const Load &l = bodies.load_of(ibody);
 
@@ -162,15 +161,16 @@ void BodyTable::gather_rows()
 void *Extract::extract(const std::string &name, int &dim)
 {
   dim = 0;
-  nbody = (int) bodies.body.size();
+  nbody = bodies.nhere();
   if (name == "nbody") return &nbody;
+  if (name == "motion") return &motion;
   if (name == "onemol") return find_template(lmp, template_id);
   if (name == "ke") {
-    ke = energy(false);
+    ke = sums.element(Sums::KE_TRANSLATION, nullptr);
     return &ke;
   }
   if (name == "erotational") {
-    erotational = energy(true);
+    erotational = sums.element(Sums::KE_ROTATION, nullptr);
     return &erotational;
   }
 
@@ -184,7 +184,7 @@ void *Extract::extract(const std::string &name, int &dim)
   if (name == "masstotal") {
     dim = 1;
     masstotal.resize(nbody + 1);
-    for (int i = 0; i < nbody; ++i) masstotal[i] = bodies.body[i].rigid.mass;
+    for (int i = 0; i < nbody; ++i) masstotal[i] = bodies.rigid_of(i).mass;
     return masstotal.data();
   }
   if (name == "inertia") {
@@ -193,19 +193,9 @@ void *Extract::extract(const std::string &name, int &dim)
     inertia_rows.resize(nbody + 1);
     for (int i = 0; i < nbody; ++i) {
       inertia_rows[i] = inertia.data() + 3 * i;
-      std::copy_n(bodies.body[i].rigid.inertia, 3, inertia_rows[i]);
+      std::copy_n(bodies.rigid_of(i).inertia, 3, inertia_rows[i]);
     }
     return inertia_rows.data();
   }
   return nullptr;
-}
-
-double Extract::energy(bool rotational) const
-{
-  double here = 0.0, all;
-  for (int i = 0; i < bodies.nowned(); ++i)
-    here += rotational ? rotational_energy(bodies.body[i].rigid, bodies.state_of(i).omega_body)
-                       : translational_energy(bodies.body[i].rigid, bodies.state_of(i).velocity);
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all * force->mvv2e;
 }

@@ -10,12 +10,15 @@
 #define LMP_GEAR_QUAT_OUTPUTS_H
 
 #include "gear_quat_bodies.h"
+#include "gear_quat_template.h"
 
 #include <array>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
+
+class Motion;
 
 /// The fix's scalar and vector.  All calls are collective.
 class Sums : protected Pointers {
@@ -98,9 +101,12 @@ class BodyTable : protected Pointers {
 class Extract : protected Pointers {
  public:
   /// template_id: that of keyword mol, or empty.
-  Extract(LAMMPS *lmp, const Bodies &bodies, const std::string &template_id) :
-      Pointers(lmp), bodies(bodies), template_id(template_id)
+  Extract(LAMMPS *lmp, const Bodies &bodies, const Sums &sums, Motion &motion,
+          const std::string &template_id) :
+      Pointers(lmp),
+      bodies(bodies), sums(sums), motion(motion), template_id(template_id)
   {
+    find_template(lmp, template_id);    // it has to exist
   }
 
   /// Null for an unknown name.  The result holds until atoms or bodies are exchanged, created or
@@ -111,11 +117,14 @@ class Extract : protected Pointers {
   ///   inertia      double **  the same: principal moments
   ///   ke           double *   translational kinetic energy of all bodies; collective
   ///   erotational  double *   rotational kinetic energy of all bodies; collective
+  ///   motion       Motion *   how this fix moves its bodies, see motion_of()
   ///   onemol       Molecule **  the molecules of the template of keyword mol, null without
   void *extract(const std::string &name, int &dim);
 
  private:
   const Bodies &bodies;
+  const Sums &sums;
+  Motion &motion;
   std::string template_id;
 
   std::vector<int> body;
@@ -123,8 +132,6 @@ class Extract : protected Pointers {
   std::vector<double> masstotal, inertia;
   std::vector<double *> inertia_rows;
   double ke = 0.0, erotational = 0.0;
-
-  double energy(bool rotational) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -28,6 +28,17 @@ inline double dot4(const double *a, const double *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
 
+inline double length(const double *a)
+{
+  return std::sqrt(dot3(a, a));
+}
+
+inline double distance2(const double *a, const double *b)
+{
+  const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  return dot3(d, d);
+}
+
 inline void cross3(const double *a, const double *b, double *out)
 {
   out[0] = a[1] * b[2] - a[2] * b[1];

@@ -7,8 +7,8 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
-#include "gear_quat_surroundings.h"
 
 #include "citeme.h"
 #include "comm.h"
@@ -16,14 +16,26 @@
 #include "fix.h"
 #include "utils.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 namespace {
+
+/// What bodies there are, the same on all ranks.
+struct Scene {
+  /// Bodies by their principal moments; two are equal that differ by less than 1e-7 of the largest.
+  enum Top { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
+  enum { BODIES = TOPS, FREEDOMS, SITES_OFF_CENTER, EXTENDED_SITES, SITES_OF_GHOSTS, COUNTS };
+
+  std::array<bigint, COUNTS> count;    ///< bodies of each kind, and of all that are named here
+  bigint fewest_sites, most_sites;     ///< of a body
+  bigint large;                        ///< bodies that every rank has
+  double farthest;                     ///< largest coordinate of a center of mass, unwrapped
+};
 
 /// A row of the report.  omits: the contributions that are left out, with a bound.
 struct Effect {
@@ -79,6 +91,52 @@ void GearQuat::add_citations(LAMMPS *lmp)
 }
 
 /* ----------------------------------------------------------------------
+   bodies
+------------------------------------------------------------------------- */
+
+static Scene::Top top_of(const RigidBody &rigid, int dimension)
+{
+  double i[3];
+  std::copy_n(rigid.inertia, 3, i);
+  std::sort(i, i + 3);
+  if (i[2] <= 0.0) return Scene::POINT;
+  if (dimension == 2) return Scene::PLANAR;
+  if (i[0] <= 0.0) return Scene::LINEAR;
+  const bool low = i[1] - i[0] < LINEAR_FRACTION * i[2],
+             high = i[2] - i[1] < LINEAR_FRACTION * i[2];
+  if (low && high) return Scene::SPHERICAL;
+  return low || high ? Scene::SYMMETRIC : Scene::ASYMMETRIC;
+}
+
+/// Collective; bodies: after their ghosts were updated.
+static Scene look_at(LAMMPS *lmp, const Bodies &bodies)
+{
+  const int dimension = lmp->domain->dimension;
+  bigint here[Scene::COUNTS] = {};
+  double largest_here[3] = {0.0, -(double) MAXTAGINT, 0.0};
+  here[Scene::BODIES] = bodies.nowned();
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    ++here[top_of(body.rigid, dimension)];
+    here[Scene::FREEDOMS] += body.rigid.freedoms(dimension);
+    for (const double x : bodies.state_of(ibody).center)
+      largest_here[0] = std::max(largest_here[0], std::fabs(x));
+    largest_here[1] = std::max(largest_here[1], -(double) body.natoms);
+    largest_here[2] = std::max(largest_here[2], (double) body.natoms);
+  }
+  for (const auto &site : bodies.sites) {
+    here[Scene::SITES_OFF_CENTER] += dot3(site.arm_body, site.arm_body) > 0.0;
+    here[Scene::SITES_OF_GHOSTS] += site.body >= bodies.nowned();
+  }
+  here[Scene::EXTENDED_SITES] = bodies.number_of_extended_here();
+  const auto count = over_ranks(MPI_SUM, here, lmp->world);
+  const auto largest = over_ranks(MPI_MAX, largest_here, lmp->world);
+  const bool any = count[Scene::BODIES] > 0;
+  return {count, any ? (bigint) -largest[1] : 0, any ? (bigint) largest[2] : 0,
+          bodies.number_of_large(), largest[0]};
+}
+
+/* ----------------------------------------------------------------------
    effects
 ------------------------------------------------------------------------- */
 
@@ -88,15 +146,15 @@ static std::string listed(const Scene &scene)
                                      "symmetric tops", "asymmetric tops", "in a plane"};
   std::vector<std::string> parts;
   for (int top = 0; top < Scene::TOPS; ++top)
-    if (scene.tops[top]) parts.push_back(fmt::format("{}: {}", TOPS[top], scene.tops[top]));
+    if (scene.count[top]) parts.push_back(fmt::format("{}: {}", TOPS[top], scene.count[top]));
   return utils::join_words(parts, ", ");
 }
 
 static Effect rotation(const Scene &scene)
 {
-  const bool on = scene.tops[Scene::POINT] < scene.bodies;
+  const bool on = scene.count[Scene::POINT] < scene.count[Scene::BODIES];
   std::string omits;
-  if (scene.tops[Scene::POINT] || scene.tops[Scene::LINEAR])
+  if (scene.count[Scene::POINT] || scene.count[Scene::LINEAR])
     omits =
         fmt::format("rotation about axes whose moment of inertia is below {:g} of the largest of "
                     "the body; of the energy of an equally fast one about that axis, less than "
@@ -107,10 +165,11 @@ static Effect rotation(const Scene &scene)
 
 static Effect torques(const Scene &scene, bool forces)
 {
-  const bool on = scene.arms > 0 && forces;
+  const bigint arms = scene.count[Scene::SITES_OFF_CENTER];
+  const bool on = arms > 0 && forces;
   return {"torques of forces", on,
           !forces  ? "nothing in the scene makes forces"
-              : on ? fmt::format("{} sites are off the center of mass", scene.arms)
+              : on ? fmt::format("{} sites are off the center of mass", arms)
                    : "every site is at its center of mass",
           NOTHING};
 }
@@ -129,13 +188,14 @@ static Effect images(const Domain *domain)
 
 static Effect ghost_bodies(const Scene &scene, int ranks)
 {
+  const bigint sites = scene.count[Scene::SITES_OF_GHOSTS];
   std::string reason = ranks == 1 ? "one rank"
-      : scene.ghosts ? fmt::format("{} sites have their body on another rank", scene.ghosts)
-                     : "every site is on the rank of its body";
+      : sites                     ? fmt::format("{} sites have their body on another rank", sites)
+                                  : "every site is on the rank of its body";
   if (scene.large)
     reason +=
         fmt::format("; {} bodies reach further than ghost atoms, all ranks have them", scene.large);
-  return {"ghost bodies", scene.ghosts > 0 || scene.large > 0, reason, NOTHING};
+  return {"ghost bodies", sites > 0 || scene.large > 0, reason, NOTHING};
 }
 
 static Effect compensation(const Arguments &args, const Scene &scene)
@@ -151,30 +211,23 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
                                    const Scene &scene)
 {
   const std::string reader = reader_of_predicted_velocities(lmp, fix);
-  const auto because = [](bool on, const std::string &yes, const std::string &no) {
-    return on ? yes : no;
-  };
+  const bigint extended = scene.count[Scene::EXTENDED_SITES];
+  const bool masks = !args.masks.empty(), isokinetic = args.isokinetic != Isokinetic::NONE;
   return {
       rotation(scene),
       torques(scene, makes_forces(lmp, fix)),
-      {"finite size", scene.extended > 0,
-       because(scene.extended, fmt::format("{} sites are more than points", scene.extended),
-               "all sites are points"),
+      {"finite size", extended > 0,
+       extended ? fmt::format("{} sites are more than points", extended) : "all sites are points",
        NOTHING},
       images(lmp->domain),
       ghost_bodies(scene, lmp->comm->nprocs),
-      {"masks", !args.masks.empty(),
-       because(!args.masks.empty(), "keywords force and torque", "no keyword force or torque"),
-       NOTHING},
-      {"isokinetic", args.isokinetic != Isokinetic::NONE,
-       because(args.isokinetic != Isokinetic::NONE, "keyword isokinetic", "isokinetic none"),
-       NOTHING},
+      {"masks", masks, masks ? "keywords force and torque" : "no keyword force or torque", NOTHING},
+      {"isokinetic", isokinetic, isokinetic ? "keyword isokinetic" : "isokinetic none", NOTHING},
       {"virial", fix->thermo_virial != 0,
-       because(fix->thermo_virial, "in steps that ask for pressure or stress",
-               "fix_modify virial no"),
+       fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no",
        "pressure and stress of the forces of constraint; of the trajectory nothing"},
-      {"predicted velocities", !reader.empty(),
-       because(!reader.empty(), reader, "nothing reads them"), NOTHING},
+      {"predicted velocities", !reader.empty(), reader.empty() ? "nothing reads them" : reader,
+       NOTHING},
       compensation(args, scene),
       {"changing step", args.control.eps > 0.0,
        args.control.eps > 0.0 ? fmt::format("tolerance {:g}", args.control.eps) : "no tolerance",
@@ -187,21 +240,22 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
 void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies)
 {
   if (args.report == Arguments::Report::NO) return;
-  const Scene scene(lmp, bodies);
-  const Surroundings surroundings(lmp, fix, args, bodies);
+  const Scene scene = look_at(lmp, bodies);
+  const auto advice = advice_on_surroundings(lmp, fix, args, bodies);
   const auto rows = effects(lmp, fix, args, scene);
   if (lmp->comm->me != 0) return;
 
   const std::string sites = scene.fewest_sites == scene.most_sites
       ? fmt::format("{}", scene.most_sites)
       : fmt::format("{} to {}", scene.fewest_sites, scene.most_sites);
-  std::string text = fmt::format("Fix gear/quat {}: {} bodies of {} sites, {} degrees of freedom\n",
-                                 fix->id, scene.bodies, sites, scene.freedoms);
+  std::string text =
+      fmt::format("Fix gear/quat {}: {} bodies of {} sites, {} degrees of freedom\n", fix->id,
+                  scene.count[Scene::BODIES], sites, scene.count[Scene::FREEDOMS]);
   for (const auto &row : rows) {
     text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);
     if (args.report == Arguments::Report::LONG && (!row.on || row.in_part) && !row.omits.empty())
       text += fmt::format("  {:<20}      leaves out {}\n", "", row.omits);
   }
-  for (const auto &line : surroundings.lines()) text += "  " + line + "\n";
+  for (const auto &line : advice) text += "  " + line + "\n";
   utils::logmesg(lmp, text);
 }

@@ -9,6 +9,9 @@
 #ifndef LMP_GEAR_QUAT_REPORT_H
 #define LMP_GEAR_QUAT_REPORT_H
 
+#include <string>
+#include <vector>
+
 namespace LAMMPS_NS {
 class Fix;
 class LAMMPS;
@@ -25,6 +28,12 @@ void add_citations(LAMMPS *lmp);
 /// Writes the report to screen and log on rank 0, as long as args.report wants it.  Collective; to be
 /// called in setup(), when neighbor lists are built and bodies have their ghosts.
 void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies);
+
+/// A part of the report: pairs of atoms that nothing moves, pairs within a body, and atoms of the fix
+/// group that no body uses, found in the neighbor lists of the pair styles.  A sentence each, below it
+/// the line of the input script that mends it; nothing is changed.  Collective.
+std::vector<std::string> advice_on_surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args,
+                                                Bodies &bodies);
 
 }    // namespace LAMMPS_NS::GearQuat
 

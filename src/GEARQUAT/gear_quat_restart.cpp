@@ -5,6 +5,8 @@
 
 #include "gear_quat_restart.h"
 
+#include "gear_quat_ranks.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
@@ -78,8 +80,7 @@ std::vector<const double *> Restart::packed_atoms() const
   };
 
   for (int i = 0; i < atom->nlocal; ++i) look(i);
-  bigint here = (bigint) without.size(), all;
-  MPI_Allreduce(&here, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  const bigint all = over_ranks(MPI_SUM, (bigint) without.size(), world);
   const bigint deleted = (bigint) block.natoms - atom->natoms;
   if (all > deleted) return packed;    // not only deleted: there may be no such rows
   for (int i = atom->nlocal; !without.empty() && i < atom->nlocal + deleted && i < atom->nmax; ++i)
@@ -92,15 +93,17 @@ bool Restart::resume(int group)
   waiting = false;
   using Resumed = Bodies::Resumed;
   const Resumed found = bodies.resume(packed_atoms(), block.extended != 0.0, group);
-  if (found == Resumed::NONE) return false;
-  motion.restore(block.motion);
-  if (found == Resumed::FEWER && motion.has_started()) {
-    motion.forget();    // forces have derivatives that the motion of the others made
+  if (found == Resumed::NONE) {
     if (comm->me == 0)
-      utils::logmesg(lmp,
-                     "Fix gear/quat {}: some bodies of the restart file are in no body of this "
-                     "command, histories start anew\n",
-                     fix->id);
+      error->warning(FLERR,
+                     "Fix gear/quat: the bodies of this command consist of other atoms than those "
+                     "of the restart file; they begin anew from their atoms");
+    return false;
   }
+  motion.restore(block.motion);
+  if (found == Resumed::FEWER)    // forces have derivatives that the motion of the others made
+    motion.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "
+                              "this command, histories start anew",
+                              fix->id));
   return true;
 }

@@ -3,7 +3,14 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Mass properties and Euler's equations of one rigid body.  Frames: see gear_quat_quaternion.h. */
+/* Mass properties and Euler's equations of one rigid body.  Frames: see gear_quat_quaternion.h.
+
+   Components of the total force and torque, along the axes of space, may be masked: what does not act
+   is taken by something outside of the body, which does no work on it where it stands still.  The
+   load that was met stays what it is for energy and virial, the load that acts moves the body.
+
+   Sites of finite size have moments of inertia about their own center, in their own frame: `own` in a
+   name stands for the frame of the site. */
 
 #ifndef GEAR_QUAT_RIGID_BODY_H
 #define GEAR_QUAT_RIGID_BODY_H
@@ -27,6 +34,11 @@ struct RigidBody {
   int rotational_freedoms() const
   {
     return (inertia[0] > 0.0) + (inertia[1] > 0.0) + (inertia[2] > 0.0);
+  }
+  /// With those of translation; in two dimensions the body turns about z alone.
+  int freedoms(int dimension) const
+  {
+    return dimension == 2 ? 2 + (inertia[2] > 0.0) : 3 + rotational_freedoms();
   }
 };
 
@@ -73,6 +85,42 @@ inline void angular_acceleration(const RigidBody &body, const BodyState &state, 
   double torque_body[3];
   torque_along_axes(state.q, norm2, load, torque_body);
   angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
+}
+
+/// A bit for each component that is off; 0: everything acts.
+using Mask = int;
+
+constexpr Mask force_off(int component)
+{
+  return 1 << component;
+}
+
+constexpr Mask torque_off(int component)
+{
+  return 1 << (3 + component);
+}
+
+/// What is left of a load.
+inline Load acting_load(const Load &met, Mask off)
+{
+  Load acting = met;
+  for (int k = 0; k < 3; ++k) {
+    if (off & force_off(k)) acting.force[k] = 0.0;
+    if (off & torque_off(k)) acting.torque_space[k] = 0.0;
+  }
+  return acting;
+}
+
+/// Work of a load met at the pose `before` along the small way to the pose `after`.
+inline double work_between(const Load &met, const BodyState &before, const BodyState &after)
+{
+  double torque_body[3], dx[3], dq[4], angle_body[3];
+  const double norm2 = dot4(before.q, before.q);
+  for (int i = 0; i < 3; ++i) dx[i] = after.center[i] - before.center[i];
+  for (int i = 0; i < 4; ++i) dq[i] = after.q[i] - before.q[i];
+  angular_velocity(before.q, norm2, dq, angle_body);
+  torque_along_axes(before.q, norm2, met, torque_body);
+  return dot3(met.force, dx) + dot3(torque_body, angle_body);
 }
 
 inline double translational_energy(const RigidBody &body, const double *velocity)
@@ -150,6 +198,85 @@ inline void drop_vanishing_moments(double moments[3])
   const double largest = std::max({moments[0], moments[1], moments[2]});
   for (int i = 0; i < 3; ++i)
     if (moments[i] < LINEAR_FRACTION * largest || moments[i] <= 0.0) moments[i] = 0.0;
+}
+
+// sites of finite size
+
+/// A solid sphere.
+inline void sphere_moments(double mass, double radius, double moments[3])
+{
+  for (int i = 0; i < 3; ++i) moments[i] = 0.4 * mass * radius * radius;
+}
+
+/// A solid ellipsoid with these semi-axes.
+inline void ellipsoid_moments(double mass, const double semi_axes[3], double moments[3])
+{
+  for (int i = 0; i < 3; ++i) {
+    const double b = semi_axes[(i + 1) % 3], c = semi_axes[(i + 2) % 3];
+    moments[i] = 0.2 * mass * (b * b + c * c);
+  }
+}
+
+/// A thin rod along its own x axis.
+inline void line_moments(double mass, double length, double moments[3])
+{
+  moments[0] = 0.0;
+  moments[1] = moments[2] = mass * length * length / 12.0;
+}
+
+/// A thin triangle with these corners about its center, along axes that are principal.
+inline void triangle_moments(double mass, const double *c1, const double *c2, const double *c3,
+                             double moments[3])
+{
+  double second[3];
+  for (int k = 0; k < 3; ++k)
+    second[k] = mass / 12.0 * (c1[k] * c1[k] + c2[k] * c2[k] + c3[k] * c3[k]);
+  for (int k = 0; k < 3; ++k) moments[k] = second[(k + 1) % 3] + second[(k + 2) % 3];
+}
+
+/// Adds the tensor with these moments along the rows of `a`, a rotation matrix space -> own.
+inline void add_tensor(const double moments[3], const double a[9], double tensor[9])
+{
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 9; ++i) tensor[i] += moments[k] * a[3 * k + i / 3] * a[3 * k + i % 3];
+}
+
+/// momentum_space = A^T I A omega_space of a site whose own frame is `a`.
+inline void own_angular_momentum(const double moments[3], const double a[9],
+                                 const double *omega_space, double *momentum_space)
+{
+  double own[3];
+  to_body(a, omega_space, own);
+  for (int k = 0; k < 3; ++k) own[k] *= moments[k];
+  to_space(a, own, momentum_space);
+}
+
+/// Orientation of a site in its body: q_own = q_body * relative.  Both are unit quaternions.
+inline void relative_orientation(const double *q_body, const double *q_own, double *relative)
+{
+  const double inverse[4] = {-q_body[0], -q_body[1], -q_body[2], q_body[3]};
+  w_times(inverse, q_own, relative);
+  project_norm(relative);
+}
+
+/// q_own = q_body * relative, of unit length whatever that of q_body.
+inline void site_orientation(const double *q_body, const double *relative, double *q_own)
+{
+  w_times(q_body, relative, q_own);
+  project_norm(q_own);
+}
+
+/// A turn about the z axis, and back; the angle is in (-pi, pi].
+inline void quaternion_about_z(double angle, double *q)
+{
+  q[0] = q[1] = 0.0;
+  q[2] = std::sin(0.5 * angle);
+  q[3] = std::cos(0.5 * angle);
+}
+
+inline double angle_about_z(const double *q)
+{
+  return q[3] < 0.0 ? 2.0 * std::atan2(-q[2], -q[3]) : 2.0 * std::atan2(q[2], q[3]);
 }
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -5,14 +5,17 @@
 
 #include "gear_quat_scene.h"
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_motion.h"
+#include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "compute.h"
-#include "domain.h"
+#include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -23,6 +26,107 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace GearQuat;
+
+std::string GearQuat::name_of(const Fix *fix)
+{
+  return fmt::format("fix {} ({})", fix->id, fix->style);
+}
+
+const Motion *GearQuat::motion_of(Fix *fix)
+{
+  int dim;
+  return utils::strmatch(fix->style, "^gear/quat") ? (const Motion *) fix->extract("motion", dim)
+                                                   : nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   what the fix refuses
+------------------------------------------------------------------------- */
+
+/// Forces are evaluated once per step, so all levels of r-RESPA need the same time step.
+static void refuse_respa_with_steps(LAMMPS *lmp)
+{
+  const std::vector<double> steps = RespaForces::steps(lmp);
+  for (size_t level = 1; level < steps.size(); ++level)
+    if (steps[level] != steps[0])
+      lmp->error->all(FLERR,
+                      "Fix gear/quat requires run_style respa to have the same step at all levels "
+                      "(loop factors of 1); levels 1 and {} have {} and {}",
+                      level + 1, steps[0], steps[level]);
+}
+
+/// A box that follows its atoms moves none of them, but a fix that changes the box does.
+static void refuse_box_changes(LAMMPS *lmp)
+{
+  for (const auto *other : lmp->modify->get_fix_list())
+    if (other->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE))
+      lmp->error->all(FLERR,
+                      "Fix gear/quat requires a box that does not change size or shape, and fix {} "
+                      "({}) changes it",
+                      other->id, other->style);
+}
+
+static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Bodies &bodies)
+{
+  for (auto *other : lmp->modify->get_fix_list()) {
+    if (other == fix || !other->time_integrate) continue;
+    const Motion *same = motion_of(other);
+    int dim;
+    const int *its_body =
+        utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
+        ? (int *) other->extract("body", dim)
+        : nullptr;
+    const Atom *atom = lmp->atom;
+    tagint shared = 0;
+    for (int i = 0; i < atom->nlocal; ++i) {
+      if (!bodies.in_body(i) || !(atom->mask[i] & other->groupbit)) continue;
+      if (same && !same->moves(i)) continue;
+      if (its_body && its_body[i] < 0) continue;
+      shared = atom->tag[i];
+    }
+    shared = over_ranks(MPI_MAX, shared, lmp->world);
+    if (shared)
+      lmp->error->all(FLERR,
+                      "Fix gear/quat: atom {} is also moved by fix {} ({}); take it out of the "
+                      "group of one of the two",
+                      shared, other->id, other->style);
+  }
+}
+
+/// Granular walls ask only the first rigid fix for the masses of its bodies; pair styles refuse a
+/// second one.
+static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
+{
+  const Fix *first = nullptr;
+  for (const auto *other : lmp->modify->get_fix_list())
+    if (!first && other->rigid_flag) first = other;
+  if (first == fix || lmp->comm->me != 0) return;
+  for (const auto *other : lmp->modify->get_fix_list())
+    if (utils::strmatch(other->style, "^wall/gran"))
+      lmp->error->warning(FLERR,
+                          "Fix gear/quat: fix {} ({}) knows the bodies of fix {} only and damps "
+                          "contacts of those of fix {} with the masses of atoms; use one fix for "
+                          "all bodies",
+                          other->id, other->style, first->id, fix->id);
+}
+
+void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Bodies &bodies)
+{
+  if (lmp->update->whichflag == 2)
+    lmp->error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
+  if (lmp->update->dt == 0.0 || !std::isfinite(lmp->update->dt))
+    lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}",
+                    lmp->update->dt);
+  refuse_box_changes(lmp);
+  bodies.refuse_atoms();
+  refuse_respa_with_steps(lmp);
+  refuse_other_integrators(lmp, fix, bodies);
+  warn_of_walls(lmp, fix);
+}
+
+/* ----------------------------------------------------------------------
+   who reads and who acts
+------------------------------------------------------------------------- */
 
 // where other fixes may read the velocities of predicted sites
 
@@ -35,7 +139,7 @@ std::string GearQuat::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *own
   if (lmp->comm->ghost_velocity) return "velocities are sent to ghost atoms";
   for (auto *other : lmp->modify->get_fix_list())
     if (other != owner && (lmp->modify->get_fix_mask(other) & WITHIN_STEP))
-      return std::string("fix ") + other->id + " (" + other->style + ") may read them";
+      return name_of(other) + " may read them";
   return "";
 }
 
@@ -92,59 +196,4 @@ bool GearQuat::is_due(const std::vector<int> &periods, bigint step)
   return std::any_of(periods.begin(), periods.end(), [step](int period) {
     return step % period == 0;
   });
-}
-
-/* ---------------------------------------------------------------------- */
-
-static Scene::Top top_of(const RigidBody &rigid, int dimension)
-{
-  double i[3];
-  std::copy_n(rigid.inertia, 3, i);
-  std::sort(i, i + 3);
-  if (i[2] <= 0.0) return Scene::POINT;
-  if (dimension == 2) return Scene::PLANAR;
-  if (i[0] <= 0.0) return Scene::LINEAR;
-  const bool low = i[1] - i[0] < LINEAR_FRACTION * i[2],
-             high = i[2] - i[1] < LINEAR_FRACTION * i[2];
-  if (low && high) return Scene::SPHERICAL;
-  return low || high ? Scene::SYMMETRIC : Scene::ASYMMETRIC;
-}
-
-Scene::Scene(LAMMPS *lmp, const Bodies &store)
-{
-  enum { SITES, ARMS, EXTENDED, GHOSTS, FREEDOMS, KINDS, COUNTS = KINDS + TOPS };
-  bigint here[COUNTS] = {}, all[COUNTS];
-  double largest_here[3] = {0.0, -(double) MAXTAGINT, 0.0}, largest[3];
-
-  for (int ibody = 0; ibody < store.nowned(); ++ibody) {
-    const Body &one = store.body[ibody];
-    ++here[KINDS + top_of(one.rigid, lmp->domain->dimension)];
-    here[FREEDOMS] += lmp->domain->dimension == 2 ? 2 + (one.rigid.inertia[2] > 0.0)
-                                                  : 3 + one.rigid.rotational_freedoms();
-    for (const double x : store.state_of(ibody).center)
-      largest_here[0] = std::max(largest_here[0], std::fabs(x));
-    largest_here[1] = std::max(largest_here[1], -(double) one.natoms);
-    largest_here[2] = std::max(largest_here[2], (double) one.natoms);
-  }
-  for (const auto &site : store.sites) {
-    ++here[SITES];
-    if (dot3(site.arm_body, site.arm_body) > 0.0) ++here[ARMS];
-    if (site.body >= store.nowned()) ++here[GHOSTS];
-  }
-  here[EXTENDED] = store.number_of_extended_here();
-
-  MPI_Allreduce(here, all, COUNTS, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
-  MPI_Allreduce(largest_here, largest, 3, MPI_DOUBLE, MPI_MAX, lmp->world);
-  sites = all[SITES];
-  arms = all[ARMS];
-  extended = all[EXTENDED];
-  ghosts = all[GHOSTS];
-  large = store.number_of_large();
-  freedoms = all[FREEDOMS];
-  for (int top = 0; top < TOPS; ++top) bodies += tops[top] = all[KINDS + top];
-  farthest = largest[0];
-  if (bodies) {
-    fewest_sites = (bigint) -largest[1];
-    most_sites = (bigint) largest[2];
-  }
 }

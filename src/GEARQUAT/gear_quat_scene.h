@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The look at the scene: what bodies there are, and what in the scene calls for which effect.
-   Taken once, before a run; nothing of it is done in a step. */
+/* The look at the scene before a run: what the fix refuses, and which other fixes and styles read
+   or move what bodies have.  Nothing of it is done in a step. */
 
 #ifndef LMP_GEAR_QUAT_SCENE_H
 #define LMP_GEAR_QUAT_SCENE_H
@@ -22,6 +22,19 @@ class LAMMPS;
 namespace LAMMPS_NS::GearQuat {
 
 class Bodies;
+class Motion;
+
+/// As messages name a fix: with ID and style.
+std::string name_of(const Fix *fix);
+
+/// The motion of a fix gear/quat, null for a fix of another style: what one fix gear/quat may ask
+/// another one in the same run.
+const Motion *motion_of(Fix *fix);
+
+/// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, a box
+/// that changes, r-RESPA with different steps, atoms of a kind that cannot be followed, atoms
+/// that another fix moves too.  Warns of granular walls that do not know the masses of the bodies.
+void refuse_scene(LAMMPS *lmp, const Fix *fix, const Bodies &bodies);
 
 /// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that asks.
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
@@ -38,25 +51,6 @@ Readers readers_at_end(LAMMPS *lmp, const Fix *owner);
 
 /// True if one of the periods ends with this step.
 bool is_due(const std::vector<int> &periods, bigint step);
-
-/// The same on all ranks.
-struct Scene {
-  /// Bodies by their principal moments; two are equal that differ by less than 1e-7 of the largest.
-  enum Top { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
-
-  bigint bodies = 0, sites = 0;
-  bigint freedoms = 0;                        ///< of all bodies, translation and rotation
-  bigint tops[TOPS] = {};                     ///< bodies of each kind
-  bigint fewest_sites = 0, most_sites = 0;    ///< of a body
-  bigint arms = 0;                            ///< sites away from the center of mass
-  bigint extended = 0;                        ///< sites that are more than points
-  bigint ghosts = 0;                          ///< sites whose body another rank owns
-  bigint large = 0;                           ///< bodies that every rank has
-  double farthest = 0.0;                      ///< largest coordinate of a center of mass, unwrapped
-
-  /// Collective; bodies: after their ghosts were updated.
-  Scene(LAMMPS *lmp, const Bodies &bodies);
-};
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -117,7 +117,7 @@ class VariableOrder {
   double size(const double *row, double reach) const
   {
     const double *x = row + Scheme::POSITION, *q = row + scheme.quaternion();
-    return std::max(std::sqrt(dot3(x, x)), 2.0 * reach * std::sqrt(dot4(q, q)));
+    return std::max(length(x), 2.0 * reach * std::sqrt(dot4(q, q)));
   }
 };
 

@@ -3,11 +3,11 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_surroundings.h"
+#include "gear_quat_report.h"
 
-#include "gear_quat_arguments.h"
-#include "gear_quat_bodies.h"
-#include "gear_quat_peer.h"
+#include "gear_quat_motion.h"
+#include "gear_quat_ranks.h"
+#include "gear_quat_scene.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -32,38 +32,51 @@ static constexpr double WORTH = 0.01;    // share of pairs that is worth a line 
 
 static constexpr int MOST_GROUPS = 8 * sizeof(int);    // a bit of the mask each
 
-/* ---------------------------------------------------------------------- */
+namespace {
 
-Surroundings::Surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies) :
-    Pointers(lmp), fix(fix), args(args), bodies(bodies)
-{
-  const auto label = labels();
-  count_pairs(label);
-  count_atoms(label);
-  propose(label);
-}
+class Surroundings : protected Pointers {
+ public:
+  Surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies) :
+      Pointers(lmp), fix(fix), args(args), bodies(bodies), label(labels())
+  {
+  }
+  std::vector<std::string> advice() const;
 
-/// What moves an atom, for owned and ghost atoms; the ID of the body is positive.
-std::vector<double> Surroundings::labels()
+ private:
+  const Fix *fix;
+  const Arguments &args;
+  Bodies &bodies;
+  const std::vector<double> label;    ///< of atoms, ghosts too: what moves them
+
+  std::vector<double> labels() const;
+  std::array<bigint, 3> count_pairs() const;
+  std::array<bigint, 3> count_atoms() const;
+  std::string exclude_still(bigint still) const;
+  std::string exclude_own() const;
+  bool meets_itself() const;
+};
+
+/// The ID of a body is positive.
+std::vector<double> Surroundings::labels() const
 {
-  std::vector<double> label(atom->nlocal + atom->nghost, STILL);
+  std::vector<double> made(atom->nlocal + atom->nghost, STILL);
   for (auto *other : modify->get_fix_list()) {
     if (!other->time_integrate || other == fix) continue;
-    const auto *same = dynamic_cast<const Peer *>(other);
+    const Motion *same = motion_of(other);
     for (int i = 0; i < atom->nlocal; ++i)
-      if ((atom->mask[i] & other->groupbit) && (!same || same->moves(i)))
-        label[i] = MOVED_BY_OTHERS;
+      if ((atom->mask[i] & other->groupbit) && (!same || same->moves(i))) made[i] = MOVED_BY_OTHERS;
   }
   for (int i = 0; i < atom->nlocal; ++i)
-    if (bodies.in_body(i)) label[i] = (double) bodies.id_of(i);
-  bodies.spread_labels(label);
-  return label;
+    if (bodies.in_body(i)) made[i] = (double) bodies.id_of(i);
+  bodies.spread_labels(made);
+  return made;
 }
 
-/// In the lists that pair styles run over in every step.
-void Surroundings::count_pairs(const std::vector<double> &label)
+/// Entries of the lists that pair styles run over in every step: all, between atoms that nothing moves,
+/// within bodies.
+std::array<bigint, 3> Surroundings::count_pairs() const
 {
-  bigint here[3] = {0, 0, 0}, all[3];
+  bigint here[3] = {0, 0, 0};
   for (int which = 0; which < neighbor->nlist; ++which) {
     const NeighList *list = neighbor->lists[which];
     if (!list || list->requestor_type != NeighList::PAIR || list->occasional || list->kokkos ||
@@ -80,38 +93,36 @@ void Surroundings::count_pairs(const std::vector<double> &label)
       }
     }
   }
-  MPI_Allreduce(here, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
-  pairs = all[0];
-  still_pairs = all[1];
-  own_pairs = all[2];
+  return over_ranks(MPI_SUM, here, world);
 }
 
-void Surroundings::count_atoms(const std::vector<double> &label)
+/// Atoms that nothing moves, atoms of the fix group in no body, those of the latter that nothing moves.
+std::array<bigint, 3> Surroundings::count_atoms() const
 {
-  bigint here[3] = {0, 0, 0}, all[3];
+  bigint here[3] = {0, 0, 0};
   for (int i = 0; i < atom->nlocal; ++i) {
     here[0] += label[i] == STILL;
     if (!(atom->mask[i] & fix->groupbit) || bodies.in_body(i)) continue;
     ++here[1];
     here[2] += label[i] == STILL;
   }
-  MPI_Allreduce(here, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
-  still = all[0];
-  unused = all[1];
-  unused_still = all[2];
+  return over_ranks(MPI_SUM, here, world);
 }
 
 /* ----------------------------------------------------------------------
    sentences and lines for the input script
 ------------------------------------------------------------------------- */
 
-void Surroundings::propose(const std::vector<double> &label)
+std::vector<std::string> Surroundings::advice() const
 {
-  const auto share = [this](bigint some) {
+  const auto [pairs, still_pairs, own_pairs] = count_pairs();
+  const auto [still, unused, unused_still] = count_atoms();
+  std::vector<std::string> text;
+  const auto share = [pairs = pairs](bigint some) {
     return fmt::format("{} of {} pairs in the neighbor lists ({:.0f} %)", some, pairs,
                        100.0 * (double) some / (double) pairs);
   };
-  const auto worth = [this](bigint some) {
+  const auto worth = [pairs = pairs](bigint some) {
     return (double) some >= WORTH * (double) pairs && some > 0;
   };
   const char *kspace = force->kspace
@@ -124,7 +135,7 @@ void Surroundings::propose(const std::vector<double> &label)
         fmt::format(" are among {} atoms that no fix moves; without them, and the constant "
                     "they add to the energy{}:",
                     still, kspace));
-    text.push_back("  " + exclude_still(label));
+    text.push_back("  " + exclude_still(still));
   }
   if (worth(own_pairs) && !meets_itself()) {
     text.push_back(
@@ -142,15 +153,16 @@ void Surroundings::propose(const std::vector<double> &label)
     text.push_back(fmt::format("  group bodies union {}; fix {} bodies gear/quat ...",
                                utils::join_words(args.groups, " "), fix->id));
   }
+  return text;
 }
 
 /// True if a body may be so large that it meets its own periodic image: that moves it.
 bool Surroundings::meets_itself() const
 {
-  double extent = 0.0, largest;
+  double extent = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    extent = std::max(extent, bodies.body[ibody].extent);
-  MPI_Allreduce(&extent, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+    extent = std::max(extent, bodies.body_at(ibody).extent);
+  const double largest = over_ranks(MPI_MAX, extent, world);
   for (int k = 0; k < 3; ++k)
     if (domain->periodicity[k] && domain->prd[k] < 2.0 * largest + neighbor->cutneighmax)
       return true;
@@ -158,16 +170,16 @@ bool Surroundings::meets_itself() const
 }
 
 /// An existing group of atoms that nothing moves, the largest, or one to be made.
-std::string Surroundings::exclude_still(const std::vector<double> &label) const
+std::string Surroundings::exclude_still(bigint still) const
 {
   std::string best;
   bigint most = 0;
   for (int g = 0; g < MOST_GROUPS; ++g) {
     if (!group->names[g] || group->dynamic[g]) continue;
-    bigint here[2] = {0, 0}, all[2];    // atoms of the group: that nothing moves, others
+    bigint here[2] = {0, 0};    // atoms of the group: that nothing moves, others
     for (int i = 0; i < atom->nlocal; ++i)
       if (atom->mask[i] & group->bitmask[g]) ++here[label[i] == STILL ? 0 : 1];
-    MPI_Allreduce(here, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+    const auto all = over_ranks(MPI_SUM, here, world);
     if (all[1] > 0 || all[0] <= most) continue;
     most = all[0];
     best = group->names[g];
@@ -200,4 +212,12 @@ std::string Surroundings::exclude_own() const
     default:
       return "neigh_modify exclude molecule/intra " + name + ", with a molecule ID for every body";
   }
+}
+
+}    // namespace
+
+std::vector<std::string> GearQuat::advice_on_surroundings(LAMMPS *lmp, const Fix *fix,
+                                                          const Arguments &args, Bodies &bodies)
+{
+  return Surroundings(lmp, fix, args, bodies).advice();
 }

@@ -6,6 +6,7 @@
 #include "gear_quat_template.h"
 
 #include "gear_quat_bodies.h"
+#include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -80,7 +81,7 @@ static std::string fault_of(const StatedMolecule &stated, double size)
   if (!(moments[0] >= -LINEAR_FRACTION * moments[2])) return "a negative principal moment";
   if ((1.0 - ROUNDED) * moments[2] > moments[0] + moments[1])
     return "a principal moment that is more than the sum of the two others";
-  if (!(std::sqrt(dot3(stated.center, stated.center)) <= 2.0 * size))
+  if (!(length(stated.center) <= 2.0 * size))
     return "a center of mass that is far away from all its atoms";
   return "";
 }
@@ -176,15 +177,13 @@ void GearQuat::add_molecule(LAMMPS *lmp, Bodies &bodies, int first, const Stated
                             const Insertion &insertion)
 {
   const Atom *atom = lmp->atom;
-  tagint smallest = MAXTAGINT, id;
+  tagint smallest = MAXTAGINT;
   for (int i = first; i < atom->nlocal; ++i) smallest = std::min(smallest, atom->molecule[i]);
-  MPI_Allreduce(&smallest, &id, 1, MPI_LMP_TAGINT, MPI_MIN, lmp->world);
+  const tagint id = over_ranks(MPI_MIN, smallest, lmp->world);
 
   GivenBodies given;
   if (stated && stated->differs) given[id] = given_at(*stated, insertion);
   std::vector<tagint> ids(atom->nlocal, 0);
   std::fill(ids.begin() + first, ids.end(), id);
-  const int before = bodies.nowned();
-  bodies.add(ids, given);
-  for (int ibody = before; ibody < bodies.nowned(); ++ibody) bodies.body[ibody].fresh = 1;
+  bodies.add(ids, given, true);
 }

@@ -5,6 +5,10 @@
 
 #include "gear_quat_tolerance.h"
 
+#include "gear_quat_motion.h"
+#include "gear_quat_ranks.h"
+#include "gear_quat_scene.h"
+
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
@@ -37,8 +41,7 @@ static Scheme with_trial_row(Scheme scheme)
 Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
                      Bodies &bodies) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present),
-    changing_step(false), fresh(false), warned_held(false), record()
+    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present)
 {
   record.values = present.values();
 }
@@ -51,9 +54,8 @@ void Tolerance::refuse_scene() const
                "steps of their own");
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
-    int dim;
-    if (utils::strmatch(other->style, "^dt/reset") ||
-        (utils::strmatch(other->style, "^gear/quat") && other->extract("tolerance", dim)))
+    const Motion *same = motion_of(other);
+    if (utils::strmatch(other->style, "^dt/reset") || (same && same->changes_step()))
       error->all(
           FLERR,
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
@@ -90,10 +92,10 @@ void Tolerance::begin(bool full)
 
 void Tolerance::shorten_first_step()
 {
-  double here[2] = {0.0, largest_speed()}, all[2];
+  double here[2] = {0.0, largest_speed()};
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    here[0] = std::max(here[0], order.error(bodies.history(ibody), bodies.body[ibody].reach()));
-  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_MAX, world);
+    here[0] = std::max(here[0], order.error(bodies.history(ibody), bodies.body_at(ibody).reach()));
+  const auto all = over_ranks(MPI_MAX, here, world);
   const double largest = all[0];
   const double ratio = std::min(1.0, control.allowed(largest, present.values()));
   const double size =
@@ -146,7 +148,7 @@ void Tolerance::set_begun_step(double step)
 Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
 {
   StepErrors one;
-  const Body &body = bodies.body[ibody];
+  const Body &body = bodies.body_at(ibody);
   const Correction correction = order.correct(integrator, body.rigid, body.reach(), load,
                                               bodies.axes(ibody), bodies.history(ibody), one);
   if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
@@ -160,8 +162,7 @@ double Tolerance::largest_speed() const
   double largest = 0.0;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
-    const double speed = std::sqrt(dot3(s.velocity, s.velocity)) +
-        bodies.body[ibody].reach() * std::sqrt(dot3(s.omega_body, s.omega_body));
+    const double speed = length(s.velocity) + bodies.body_at(ibody).reach() * length(s.omega_body);
     largest = std::max(largest, speed);
   }
   return largest;
@@ -177,10 +178,8 @@ double Tolerance::farthest_step(double speed) const
 
 double Tolerance::choose()
 {
-  double here[5] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0,
-                    largest_speed()};    // not const: STUBS
-  double all[5];
-  MPI_Allreduce(here, all, 5, MPI_DOUBLE, MPI_MAX, world);
+  double here[5] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0, largest_speed()};
+  const auto all = over_ranks(MPI_MAX, here, world);
   errors = StepErrors();
   fresh = false;
   if (std::isinf(all[1]))

@@ -75,10 +75,10 @@ class Tolerance : protected Pointers {
   StepControl control;
   VariableOrder order;
   StepErrors errors;    ///< of the bodies corrected so far
-  bool changing_step;
-  bool fresh;
-  bool warned_held;    ///< of a step held at its lower limit
-  Checkpoint record;
+  bool changing_step = false;
+  bool fresh = false;
+  bool warned_held = false;    ///< of a step held at its lower limit
+  Checkpoint record = {};
 
   void set_values(int values);
   void change_values(int values);

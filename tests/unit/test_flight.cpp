@@ -1,7 +1,7 @@
-/* gear_quat_flight.h: what a flight on trial loses is what a long one loses, and little more. */
+/* gear_quat_limits.h: what a flight on trial loses is what a long one loses, and little more. */
 
 #include "drive.h"
-#include "gear_quat_flight.h"
+#include "gear_quat_limits.h"
 
 #include <gtest/gtest.h>
 
