@@ -72,6 +72,5 @@ class Cage(LennardJonesUnits):
 
     def fingerprint(self):
         """Part of a cache's key."""
-        numbers = (self.positions, self.charges, self.site_charges)
-        text = [np.array2string(n.astype(np.float64), threshold=10**6) for n in numbers]
-        return " ".join([*text, str((self.SIGMA, self.EPSILON))]).encode()
+        numbers = (self.positions, self.charges, self.site_charges, (self.SIGMA, self.EPSILON))
+        return b"".join(np.asarray(n, dtype=np.float64).tobytes() for n in numbers)

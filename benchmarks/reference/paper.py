@@ -27,11 +27,6 @@ STARTS[2] = STARTS[1]
 _PI = "3.14159265358979323846264338327950288419717"
 
 
-def _centered_sites(dtype):
-    masses, sites = np.array(SITE_MASSES, dtype=dtype), np.array(SITES, dtype=dtype)
-    return masses, sites - (masses[:, None] * sites).sum(axis=0) / masses.sum()
-
-
 def _principal_frame(masses, sites):
     """Moments (3,), and axes (3, 3) as columns, in the order of the paper's list.
 
@@ -53,21 +48,16 @@ def quaternion_of_euler(phi, psi, theta):
     """Eq. 2; angles in radians.  Shape (4,)."""
     half_difference, half_sum = (phi - psi) / 2, (phi + psi) / 2
     s, c = np.sin(theta / 2), np.cos(theta / 2)
-    return np.array(
-        [
-            s * np.cos(half_difference),
-            s * np.sin(half_difference),
-            c * np.sin(half_sum),
-            c * np.cos(half_sum),
-        ]
-    )
+    vector = [s * np.cos(half_difference), s * np.sin(half_difference), c * np.sin(half_sum)]
+    return np.array([*vector, c * np.cos(half_sum)])
 
 
-def bodies_and_start(case=1, body="consistent", dtype=np.longdouble):
-    """(RigidBodies, State) of test case 1, 2 or 3; ``body`` is consistent or unrotated."""
+def paper_problem(case=1, body="consistent", dtype=np.longdouble):
+    """The Problem of test case 1, 2 or 3 in the cage; ``body`` is consistent or unrotated."""
     if case not in STARTS or body not in BODIES:
         raise ValueError(f"the case is 1, 2 or 3 and the body one of {BODIES}: not {case}, {body}")
-    masses, sites = _centered_sites(dtype)
+    masses, sites = np.array(SITE_MASSES, dtype=dtype), np.array(SITES, dtype=dtype)
+    sites = sites - (masses[:, None] * sites).sum(axis=0) / masses.sum()
     moments, axes = _principal_frame(masses, sites)
     pi = dtype(_PI)
     q = quaternion_of_euler(*(pi * degrees / 180 for degrees in EULER_DEGREES))
@@ -76,10 +66,5 @@ def bodies_and_start(case=1, body="consistent", dtype=np.longdouble):
         q = qt.product(q, qt.of_rotation(axes))
     center, velocity, turns = (np.array([dtype(t) for t in row]) for row in STARTS[case])
     shapes = RigidBodies(np.zeros(4, dtype=int), masses.sum()[None], moments[None], sites)
-    return shapes, State(center[None], velocity[None], q[None], pi * turns[None])
-
-
-def paper_problem(case=1, body="consistent", dtype=np.longdouble):
-    """The Problem of test case 1, 2 or 3 in the cage; ``body`` is consistent or unrotated."""
-    shapes, start = bodies_and_start(case, body, dtype)
+    start = State(center[None], velocity[None], q[None], pi * turns[None])
     return Problem(f"case {case}, {body} body", shapes, Cage(dtype), start)

@@ -81,9 +81,8 @@ def solve(problem, time, method, tolerance):
     scale = double.scales(start)
     absolute = np.broadcast_to(tolerance * np.where(scale > 0, scale, 1), start.shape).ravel()
     # no times in between are asked for: dense output would call the right-hand side for itself
-    solution = solve_ivp(
-        rates, (0.0, float(time)), start.ravel(), method, rtol=tolerance, atol=absolute
-    )
+    span, limits = (0.0, float(time)), {"rtol": tolerance, "atol": absolute}
+    solution = solve_ivp(rates, span, start.ravel(), method, **limits)
     if not solution.success:
         raise RuntimeError(f"{method} at tolerance {tolerance:g}: {solution.message}")
     return State.of(solution.y[:, -1].reshape(start.shape)), evaluations

@@ -17,6 +17,7 @@ import math
 from fractions import Fraction
 
 import numpy as np
+from scipy.linalg import pascal
 
 LARGEST_GROWTH = 1.01  # in a step
 
@@ -49,14 +50,9 @@ def second_order_coefficients(values, c0="position"):
     return [head * Fraction(values - 2, values - 1) if c0 == "position" else head, *tail]
 
 
-def _pascal(n):
-    """Matrix that predicts a history of n rows."""
-    return np.array([[math.comb(j, i) for j in range(n)] for i in range(n)], dtype=float)
-
-
 def second_order_step(values, omega_h, c0="position"):
     """Matrix (N, N) of one step of the second formulation at omega h."""
-    predict = _pascal(values)
+    predict = pascal(values, "upper").astype(float)
     c = np.array([float(x) for x in second_order_coefficients(values, c0)])
     residual = -0.5 * omega_h**2 * predict[0] - predict[2]
     return predict + np.outer(c, residual)
@@ -69,7 +65,7 @@ def first_order_step(values, omega_h, momentum="corrected"):
     with the predicted one.
     """
     n = values
-    predict = np.kron(np.eye(2), _pascal(n))
+    predict = np.kron(np.eye(2), pascal(n, "upper").astype(float))
     c = np.array([float(x) for x in first_order_coefficients(n)])
     step = predict.copy()
     # units: velocity history in omega times length, so that only omega h appears

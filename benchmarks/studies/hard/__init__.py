@@ -4,29 +4,13 @@ Every module is a case: ``TITLE``, ``SECONDS`` on two quiet cores, ``measure(lab
 """
 
 from dataclasses import replace
+from importlib import import_module
 
 from benchmarks.engine import Finding, Study
 
-from . import (
-    boundaries,
-    cutoff,
-    encounter,
-    fast,
-    fine,
-    inertia,
-    lifecycle,
-    long,
-    newstep,
-    poles,
-    tumbling,
-)
-
-#: key, which names the folder under examples/hard -> case, in the order of the page
-CASES = {
-    case.__name__.rpartition(".")[2]: case
-    for case in (encounter, long, fine, poles, tumbling, inertia, fast, newstep, lifecycle)
-    + (boundaries, cutoff)
-}
+#: the cases, which name their folders under examples/hard, in the order of the page
+KEYS = "encounter long fine poles tumbling inertia fast newstep lifecycle boundaries cutoff".split()
+CASES = {key: import_module(f"{__name__}.{key}") for key in KEYS}
 
 
 def measure(lab):
