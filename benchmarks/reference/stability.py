@@ -20,6 +20,8 @@ import numpy as np
 from scipy.linalg import pascal
 
 LARGEST_GROWTH = 1.01  # in a step
+#: values of omega h that are tried, and how close the limit is found between two of them
+SCAN, RESOLUTION = np.linspace(0.0, 4.0, 801), 1e-5
 
 
 def _rising(n):
@@ -75,21 +77,19 @@ def first_order_step(values, omega_h, momentum="corrected"):
     return step
 
 
-def linear_limit(step_matrix, highest=4.0, scan=800, digits=5):
+def linear_limit(step_matrix):
     """Largest omega h up to which ``step_matrix(omega_h)`` is stable, found by scan and bisection.
 
-    The scan goes up from zero, so that stable islands beyond the first limit do not count.
+    The scan goes up from zero, so that stable islands beyond the first limit do not count; infinite if
+    all of it is stable.
     """
 
     def stable(omega_h):
         return np.abs(np.linalg.eigvals(step_matrix(omega_h))).max() <= LARGEST_GROWTH
 
-    grid = np.linspace(0.0, highest, scan + 1)[1:]
-    first_bad = next((i for i, x in enumerate(grid) if not stable(x)), None)
-    if first_bad is None:
-        return math.inf
-    low, high = (grid[first_bad - 1] if first_bad else 0.0), grid[first_bad]
-    while high - low > 10.0**-digits:
+    high = next((x for x in SCAN[1:] if not stable(x)), math.inf)
+    low = high - SCAN[1]
+    while high - low > RESOLUTION:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if stable(middle) else (low, middle)
     return low
