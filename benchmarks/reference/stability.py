@@ -88,6 +88,8 @@ def linear_limit(step_matrix):
         return np.abs(np.linalg.eigvals(step_matrix(omega_h))).max() <= LARGEST_GROWTH
 
     high = next((x for x in SCAN[1:] if not stable(x)), math.inf)
+    if math.isinf(high):
+        return high
     low = high - SCAN[1]
     while high - low > RESOLUTION:
         middle = 0.5 * (low + high)
