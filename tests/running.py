@@ -16,6 +16,7 @@ import re
 import signal
 import subprocess
 import sysconfig
+import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -211,6 +212,9 @@ class Lammps:
 # Nor a /sys, where MPICH's UCX looks for networks: it would print an error, which LAMMPS' regression tests count.
 MPI_ENVIRONMENT = {"RES_OPTIONS": "attempts:0", "UCX_LOG_LEVEL": "fatal"}
 
+# Open MPI's folder for sessions: where all make the same one, two that begin at once fail.
+SESSIONS = tempfile.TemporaryDirectory(prefix="ompi-")
+
 # What Open MPI has to be told where there are fewer cores than ranks, or root in a container.
 OPEN_MPI_ENVIRONMENT = {
     **MPI_ENVIRONMENT,
@@ -219,6 +223,7 @@ OPEN_MPI_ENVIRONMENT = {
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OMPI_MCA_btl_base_warn_component_unused": "0",
+    "OMPI_MCA_orte_tmpdir_base": SESSIONS.name,
     "OMPI_MCA_plm_rsh_agent": "false",
     "OMPI_MCA_plm_rsh_no_tree_spawn": "1",
     "HWLOC_HIDE_ERRORS": "2",

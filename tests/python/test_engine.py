@@ -204,7 +204,8 @@ def templates(tmp_path, monkeypatch):
     return folder
 
 
-def test_a_study_leaves_its_results_and_is_rendered_again(templates, tmp_path):
+def test_a_study_leaves_its_results_and_is_rendered_again(templates, tmp_path, monkeypatch):
+    monkeypatch.setattr(provenance, "commit", lambda *_: "1a2b3c4")
     out = tmp_path / "out"
     conduct.conduct(made_up(), out)
     text = (out / "made_page.md").read_text()
@@ -212,7 +213,7 @@ def test_a_study_leaves_its_results_and_is_rendered_again(templates, tmp_path):
     assert "![Both.](made_page/both.png)" in text and "1 234 567" in text
     assert (out / "made_page" / "both.png").stat().st_size > 5000
     assert (out / "both.csv").read_text().split() == ["a,b|c", "1,x|y"]
-    assert "at commit " in json.loads((out / "origin.json").read_text())["sentence"]
+    assert "at commit 1a2b3c4" in json.loads((out / "origin.json").read_text())["sentence"]
     conduct.conduct(made_up(value=2e-13), out, render_only=True)
     assert "2.0e-13" in (out / "made_page.md").read_text()
     with pytest.raises(FileNotFoundError, match="measure first"):
