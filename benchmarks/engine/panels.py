@@ -9,14 +9,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from lammps_gearquat.style import COLOUR, STYLE  # noqa: E402
+from lammps_gearquat.style import COLOR, STYLE  # noqa: E402
 
 
 @dataclass(frozen=True)
 class Curve:
     """One line of a panel: ``x``, ``y`` and, for error bars, ``error``, each (n,).
 
-    ``color``: a name of style.COLOUR or a color of matplotlib; ``line`` ("" for none) and ``marker``
+    ``color``: a name of style.COLOR or a color of matplotlib; ``line`` ("" for none) and ``marker``
     are matplotlib's; ``width``: of the line; ``hollow``: markers are not filled.
     """
 
@@ -69,7 +69,7 @@ def floor(values, least=1e-17):
 
 
 def _curve(axis, curve):
-    look = {"color": COLOUR.get(curve.color, curve.color), "label": curve.label}
+    look = {"color": COLOR.get(curve.color, curve.color), "label": curve.label}
     look |= {"linestyle": curve.line, "linewidth": curve.width, "marker": curve.marker}
     look |= {"markersize": 3.5, "markerfacecolor": "white" if curve.hollow else None}
     if curve.error is None:
@@ -80,7 +80,7 @@ def _curve(axis, curve):
 
 def _bars(axis, bars):
     axis.barh(bars.names, bars.below, color="#cccccc")
-    axis.barh(bars.names, bars.more, left=bars.below, color=COLOUR[bars.color])
+    axis.barh(bars.names, bars.more, left=bars.below, color=COLOR[bars.color])
     for k, (start, length) in enumerate(zip(bars.below, bars.more)):
         text = f" {length:+.0f}" if k else f" {length:.0f}"
         axis.annotate(text, (start + max(length, 0), k), va="center")

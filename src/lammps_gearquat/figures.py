@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
-from .style import COLOUR, STYLE  # noqa: E402
+from .style import COLOR, STYLE  # noqa: E402
 from .trials import NORMS  # noqa: E402
 
 OWN = "#666666"
@@ -164,7 +164,7 @@ def draw_totals(path, poses, totals):
         for axis, (title, names, labels) in zip(axes[:, 0], panels):
             for name in names:
                 label = labels[name]
-                axis.plot(time, totals[name], color=COLOUR.get(label), label=label)
+                axis.plot(time, totals[name], color=COLOR.get(label), label=label)
             axis.set_ylabel(title)
             if labels is residuals:
                 axis.set_yscale("log")
@@ -180,7 +180,7 @@ def draw_correlations(path, functions):
     panels = {"mean square": [], "normalized autocorrelation": [], "correlation of the principal axes": []}
     squares, velocities, axes_in_space = panels.values()
     for name, values in functions.items():
-        kind = COLOUR["rotation" if "rotation" in name or "omega" in name else "translation"]
+        kind = COLOR["rotation" if "rotation" in name or "omega" in name else "translation"]
         if name.startswith("mean_square"):
             unit = "rad²" if "rotation" in name else "length²"
             squares.append((values, {"color": kind, "label": f"{name.split('_')[-1]} ({unit})"}))

@@ -1,6 +1,6 @@
 """How all pictures look: colors, matplotlib's settings, and what is said of the cage."""
 
-COLOUR = {
+COLOR = {
     "potential": "#0072b2",
     "kinetic": "#d55e00",
     "total": "#222222",

@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.engine import Curve, Panel, draw
 from benchmarks.engine.methods import looks
-from lammps_gearquat.style import COLOUR, RECONSTRUCTED, STYLE
+from lammps_gearquat.style import COLOR, RECONSTRUCTED, STYLE
 
 from . import plan, tables
 from .evaluate import fitted_order, price
@@ -52,8 +52,8 @@ def draw_main(path, results):
     """Error in test case 1 against wall time, and against force evaluations."""
     best, _ = tables.cheapest_setting(results, "case1", 1e-8)
     shown = {plan.RIGID_NVE: ("fix rigid/nve/small", "#444444", "D", 2e-7, (8, 6))}
-    shown[plan.DEFAULTS["first"]] = ("first\nformulation", COLOUR["first"], "s", 2e-9, (10, -8))
-    shown[plan.DEFAULT] = ("fix gear/quat,\ndefaults", COLOUR["second"], "o", 1e-11, (40, -24))
+    shown[plan.DEFAULTS["first"]] = ("first\nformulation", COLOR["first"], "s", 2e-9, (10, -8))
+    shown[plan.DEFAULT] = ("fix gear/quat,\ndefaults", COLOR["second"], "o", 1e-11, (40, -24))
     if best not in (None, plan.DEFAULT):
         shown[best] = ("cheapest\nsettings", "#56b4e9", "v", 3e-11, (-62, -26))
     with plt.rc_context(STYLE | {"font.size": 9.5, "lines.linewidth": 1.7}):

@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.engine import floor
 from benchmarks.reference import Cage
-from lammps_gearquat.style import COLOUR, RECONSTRUCTED, STYLE
+from lammps_gearquat.style import COLOR, RECONSTRUCTED, STYLE
 
 from .view import Camera, Stage
 
@@ -140,11 +140,11 @@ def draw_energy(path, scene, until=500.0):
         axes = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
         for kind, values in scene.energies.items():
             width = 2.2 if kind == "total" else 1.4
-            axes[0].plot(time, values[shown], color=COLOUR[kind], lw=width, label=kind)
+            axes[0].plot(time, values[shown], color=COLOR[kind], lw=width, label=kind)
         axes[0].set_ylabel("energy")
         axes[0].legend(ncols=4, loc="lower right", bbox_to_anchor=(1.0, 1.0))
         error = floor(scene.energies["total"] - scene.energies["total"][0])[shown]
-        axes[1].semilogy(time[1:], error[1:], color=COLOUR["total"], lw=0.8)
+        axes[1].semilogy(time[1:], error[1:], color=COLOR["total"], lw=0.8)
         axes[1].set_ylabel("error of the total")
         axes[1].set_xlabel("time")
         axes[1].margins(x=0.0)
