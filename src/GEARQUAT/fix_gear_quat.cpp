@@ -140,8 +140,7 @@ void FixGearQuat::setup_pre_neighbor()
   bodies->update_ghosts();
   if (met_atoms) take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
-  const bool take_over = from_atoms && (args->reinit || !met_atoms);
-  if (take_over && !bodies->atoms_match()) {
+  if (from_atoms && (args->reinit || !met_atoms) && !bodies->atoms_match()) {
     bodies->recreate();
     bodies->update_ghosts();
     motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
