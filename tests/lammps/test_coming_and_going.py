@@ -380,8 +380,7 @@ def test_a_template_that_no_body_is(lmp_tree, header, message):
 
 def test_a_plugin_without_the_header_says_so(lmp_wheel):
     result = lmp_wheel.succeed(in_field(lmp_wheel, 0.005, 5, force=FALL, header=MASS))
-    words = " ".join(result.output.split())
-    assert "mass, com and inertia in the header of molecule template spce" in words
+    assert "mass, com and inertia in the header of molecule template spce" in result.words
 
 
 # --- velocity ------------------------------------------------------------------------------------
