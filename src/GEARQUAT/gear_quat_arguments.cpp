@@ -56,18 +56,22 @@ int Arguments::parse_bodystyle(int narg, char **arg)
   }
   if (style == "custom") {
     bodystyle = BodyStyle::CUSTOM;
-    if (narg <= next) utils::missing_cmd_args(FLERR, "fix gear/quat custom", error);
+    if (narg <= next) error->all(FLERR, "Fix gear/quat custom: i_name or v_name is missing");
     custom = arg[next];
     return next + 1;
   }
   if (style == "group") {
     bodystyle = BodyStyle::GROUP;
-    if (narg <= next) utils::missing_cmd_args(FLERR, "fix gear/quat group", error);
-    const int n = utils::inumeric(FLERR, arg[next], false, lmp);
-    if (n <= 0)
-      error->all(FLERR, "Fix gear/quat group: number of groups is {} and must be positive", n);
+    if (narg <= next)
+      error->all(FLERR, "Fix gear/quat group: N is missing; required: N ID1 ID2 ...");
+    int n;
+    if (!read_integer(arg[next], n) || n <= 0)
+      error->all(FLERR,
+                 "Fix gear/quat group: number of groups is {} and must be a positive integer",
+                 arg[next]);
     if (narg - next - 1 < n)
-      error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", n, narg - next - 1);
+      error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", arg[next],
+                 narg - next - 1);
     for (int i = 0; i < n; ++i) {
       groups.emplace_back(arg[next + 1 + i]);
       if (group->find(groups.back()) < 0)
@@ -147,18 +151,17 @@ void Arguments::check_ranges()
   for (const auto &row : keyword_table()) {
     if (row.kind != Keyword::INTEGER) continue;
     const Keyword::Range &range = row.range(scheme.first());
-    const bool most = tolerance && row.most_with_tolerance;
     KeywordValue value;
-    value.integer = most ? std::min(range.most, row.most_with_tolerance) : range.standard;
+    value.integer = row.standard_of(range, tolerance);
     if (given.count(row.name)) value = given.at(row.name);
     row.store(*this, value);
     if (value.integer < range.fewest || value.integer > range.most)
-      error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.integer,
+      error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.text,
                  range.fewest, range.most,
                  row.ranges.size() == 1 ? ""
                      : scheme.first()   ? ", as formulation first requires"
                                         : ", as formulation second requires");
-    if (most && value.integer > row.most_with_tolerance)
+    if (tolerance && row.most_with_tolerance && value.integer > row.most_with_tolerance)
       error->all(FLERR,
                  "Fix gear/quat tolerance: {} {} are more than {}, the largest number with "
                  "which a step may shrink",

@@ -108,7 +108,7 @@ bool Bootstrap::run()
     if (!party.needed) continue;
     party.seed_local(3, h);
     const int values = party.scheme.values();
-    const int most = forces.most_values_with_noise([&party](int i) {
+    const int most = forces.most_values_with_noise(party.scheme, [&party](int i) {
       return party.bodies->in_body(i);
     });
     if (comm->me != 0) continue;
@@ -117,9 +117,9 @@ bool Bootstrap::run()
     if (most > 0 && values > most)
       utils::logmesg(
           lmp,
-          "Fix gear/quat {}: random forces heat bodies with many values; use values {} instead "
-          "of {}\n",
-          party.fix->id, most == 4 ? "4" : fmt::format("4 to {}", most), values);
+          "Fix gear/quat {}: random forces heat bodies with many values; use values {} at "
+          "most instead of {}\n",
+          party.fix->id, most, values);
   }
   return false;
 }

@@ -5,6 +5,7 @@
 
 #include "gear_quat_forces.h"
 
+#include "gear_quat_nordsieck.h"
 #include "gear_quat_quaternion.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
@@ -50,7 +51,6 @@ static const char *const UNFOLLOWED_PAIRS[] = {"dpd",      "gran",  "brownian", 
 static const char *const RANDOM_PAIRS[] = {"dpd", "brownian", "^dsmc"};
 static const char *const RANDOM_FIXES[] = {"langevin", "brownian", "^gle", "^gld", "^ttm"};
 static const char *const COLLISIONS[] = {"^srd"};
-static constexpr int MOST_WITH_NOISE = 6, MOST_WITH_COLLISIONS = 4;
 
 // bond styles that break or have a memory
 
@@ -95,18 +95,19 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
   if (why.empty()) look_at_time();
 }
 
-int Forces::most_values_with_noise(const std::function<bool(int)> &in_body) const
+int Forces::most_values_with_noise(const Scheme &scheme,
+                                   const std::function<bool(int)> &in_body) const
 {
   int most = 0;
   for (const auto *style : RANDOM_PAIRS)
-    if (force->pair && force->pair_match(style, 0, 1)) most = MOST_WITH_NOISE;
+    if (force->pair && force->pair_match(style, 0, 1)) most = scheme.most_with_noise(false);
   for (const auto *fix : modify->get_fix_list()) {
-    if (among(COLLISIONS, fix)) return MOST_WITH_COLLISIONS;
+    if (among(COLLISIONS, fix)) return scheme.most_with_noise(true);
     if (!among(RANDOM_FIXES, fix)) continue;
     int here = 0;
     for (int i = 0; i < atom->nlocal; ++i)
       if ((atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
-    if (over_ranks(MPI_MAX, here, world)) most = MOST_WITH_NOISE;
+    if (over_ranks(MPI_MAX, here, world)) most = scheme.most_with_noise(false);
   }
   return most;
 }

@@ -28,6 +28,8 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
+struct Scheme;
+
 /// What LAMMPS notes of computes: in which step each was evaluated last, for which steps it was asked,
 /// and in which step energies and virials were tallied.  A fix whose force is a variable of computes
 /// changes these notes whenever its force is evaluated, between steps too.
@@ -64,7 +66,7 @@ class Forces : protected Pointers {
 
   /// More values than these carry on the noise of random forces on the atoms that `in_body` tells; 0 if
   /// there are none.  Collective.
-  int most_values_with_noise(const std::function<bool(int)> &in_body) const;
+  int most_values_with_noise(const Scheme &scheme, const std::function<bool(int)> &in_body) const;
 
   /// Keep positions, velocities, forces and torques of all atoms, ghosts too.
   void save();

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -129,7 +130,8 @@ static constexpr char BAROSTAT[] =
 
 /// doc/howto/from_rigid.md has the same table.
 static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {
-    {{"langevin"}, "define fix langevin on the same group, and use few values (values 4)"},
+    {{"langevin"},
+     "define fix langevin on the same group, and use values 6 at most (formulation first: 4)"},
     {{"temp", "tparam", "tchain"},
      "define fix temp/csvr or temp/berendsen on the same group, or use keyword isokinetic"},
     {{"iso", "aniso", "tri", "x", "y", "z", "xy", "yz", "xz", "couple", "pparam", "pchain",
@@ -182,31 +184,61 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name)
   const std::string instead = instead_of_rigid_keyword(name);
   if (!instead.empty())
     lmp->error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", name, instead);
-  lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}", name);
+  std::vector<std::string> names;
+  for (const auto &row : keyword_table()) names.emplace_back(row.name);
+  lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}; the keywords are {}", name,
+                  utils::join_words(names, ", "));
 }
 
-std::string Keyword::possible_words() const
+/// In brackets, where there are two ranges, the formulation.
+template <typename Text> static std::string of_formulations(const Keyword &row, Text text)
 {
+  if (row.ranges.size() == 1) return text(row.ranges[0]);
+  return text(row.range(false)) + " (second), " + text(row.range(true)) + " (first)";
+}
+
+std::string Keyword::possible_values() const
+{
+  if (kind == NUMBER) return "a positive number";
+  if (kind != WORD && kind != INTEGER) return utils::join_words(words, " ");
   std::string text;
   for (size_t n = 0; n < words.size(); ++n)
     text += (n == 0 ? "" : n + 1 == words.size() ? " or " : ", ") + words[n];
+  if (kind == INTEGER)
+    text = of_formulations(*this, [](const Range &range) {
+      return fmt::format("{} to {}", range.fewest, range.most);
+    });
+  if (most_with_tolerance) text += fmt::format(", at most {} (tolerance)", most_with_tolerance);
   return text;
+}
+
+/// An integer that is too large for its type becomes the largest of it, which no range contains.
+bool GearQuat::read_integer(const std::string &text, int &integer)
+{
+  if (!utils::is_integer(text)) return false;
+  const long long number = std::strtoll(text.c_str(), nullptr, 10);
+  integer = (int) std::clamp(number, -(long long) MAXSMALLINT, (long long) MAXSMALLINT);
+  return true;
 }
 
 int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
 {
   Error *error = lmp->error;
   const int count = kind == MASK ? (int) words.size() : 1;
-  if (narg <= count) utils::missing_cmd_args(FLERR, std::string("fix gear/quat ") + name, error);
+  if (narg <= count)
+    error->all(FLERR, "Fix gear/quat {}: {} is missing; required: {}", name,
+               kind == MASK ? words[narg - 1] : "the value", possible_values());
   value.text = arg[1];
   if (value.text.empty()) error->all(FLERR, "Fix gear/quat {}: the value is an empty word", name);
 
   if (kind == WORD && !std::count(words.begin(), words.end(), value.text))
     error->all(FLERR, "Fix gear/quat {}: unknown value {} ({})", name, value.text,
-               possible_words());
-  if (kind == INTEGER) value.integer = utils::inumeric(FLERR, value.text, false, lmp);
+               possible_values());
+  if (kind == INTEGER && !read_integer(value.text, value.integer))
+    error->all(FLERR, "Fix gear/quat {}: {} is not an integer; required: {}", name, value.text,
+               possible_values());
   if (kind == NUMBER) {
-    value.number = utils::numeric(FLERR, value.text, false, lmp);
+    if (utils::is_double(value.text)) value.number = std::strtod(value.text.c_str(), nullptr);
     if (!(value.number > 0.0) || !std::isfinite(value.number))
       error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", name, value.text);
   }
@@ -228,34 +260,15 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
 
 namespace {
 
-/// In brackets, where there are two ranges, the formulation.
-template <typename Text> std::string of_formulations(const Keyword &row, Text text)
-{
-  if (row.ranges.size() == 1) return text(row.ranges[0]);
-  return text(row.range(false)) + " (second), " + text(row.range(true)) + " (first)";
-}
-
-std::string values_cell(const Keyword &row)
-{
-  if (row.kind == Keyword::WORD) return row.possible_words();
-  if (row.kind == Keyword::NUMBER) return "positive";
-  if (row.kind != Keyword::INTEGER) return utils::join_words(row.words, " ");
-  std::string cell = of_formulations(row, [](const Keyword::Range &range) {
-    return fmt::format("{} to {}", range.fewest, range.most);
-  });
-  if (row.most_with_tolerance)
-    cell += fmt::format(", at most {} (tolerance)", row.most_with_tolerance);
-  return cell;
-}
-
 std::string default_cell(const Keyword &row)
 {
   if (row.kind != Keyword::INTEGER) return row.standard;
-  std::string cell = of_formulations(row, [](const Keyword::Range &range) {
-    return std::to_string(range.standard);
-  });
-  if (row.most_with_tolerance) cell += ", most (tolerance)";
-  return cell;
+  const auto standard = [&row](bool tolerance) {
+    return of_formulations(row, [&row, tolerance](const Keyword::Range &range) {
+      return std::to_string(row.standard_of(range, tolerance));
+    });
+  };
+  return standard(false) + (row.most_with_tolerance ? ", with tolerance " + standard(true) : "");
 }
 
 /// excluded: a value belongs to the keyword of the row, otherwise to the other one.
@@ -280,7 +293,7 @@ std::string GearQuat::list_of_keywords()
   std::vector<std::vector<std::string>> lines = {
       {"keyword", "about", "kind", "values", "default", "requires", "excludes", "meaning"}};
   for (const auto &row : keyword_table())
-    lines.push_back({row.name, row.about, KINDS[row.kind], values_cell(row), default_cell(row),
+    lines.push_back({row.name, row.about, KINDS[row.kind], row.possible_values(), default_cell(row),
                      conditions_cell(row.needs, false), conditions_cell(row.excludes, true),
                      row.meaning});
   std::vector<size_t> width(lines[0].size(), 1);

@@ -11,6 +11,7 @@
 #ifndef LMP_GEAR_QUAT_KEYWORDS_H
 #define LMP_GEAR_QUAT_KEYWORDS_H
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -104,11 +105,18 @@ struct Keyword {
   /// Of the formulation, where there are two.
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
 
+  /// The default of an INTEGER.
+  int standard_of(const Range &range, bool tolerance) const
+  {
+    return tolerance && most_with_tolerance ? std::min(range.most, most_with_tolerance)
+                                            : range.standard;
+  }
+
   /// Reads the words behind arg[0] into value and returns how many they are.  Words that cannot be
   /// meant end the run on all ranks.
   int read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const;
-  /// The words that are possible, as a sentence has them: "no, short or long".
-  std::string possible_words() const;
+  /// What is possible, as a sentence has it: "no, short or long", "1 to 100", "M xflag yflag zflag".
+  std::string possible_values() const;
 };
 
 /// All rows, in the order of the manual.
@@ -117,6 +125,9 @@ const std::vector<Keyword> &keyword_table();
 /// The row of a keyword.  An unknown one ends the run on all ranks, with what to write
 /// instead if it is a keyword of the rigid fixes.
 const Keyword &find_keyword(LAMMPS *lmp, const std::string &name);
+
+/// Whether a word is an integer, and which.
+bool read_integer(const std::string &text, int &integer);
 
 /// The table as text: a line of titles and a line for each row, whose columns are separated by two
 /// or more blanks; an empty cell is a hyphen.

@@ -135,16 +135,14 @@ void Neighbors::tell_noise(const Fix *other)
 {
   const bool collides = utils::strmatch(other->style, "^srd");
   if (warned_noise || (!collides && !utils::strmatch(other->style, "^langevin"))) return;
-  const bool first = args.scheme.first();
-  const int most = first ? (collides ? 3 : 4) : (collides ? 4 : 6);
+  const int most = args.scheme.most_with_noise(collides);
   if (args.scheme.values() <= most || (!collides && !shared_atom(other))) return;
   warned_noise = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: forces of fix {} ({}) are random, and {} values make heat of "
-                   "them; use values {}{}",
-                   other->id, other->style, args.scheme.values(), most,
-                   most > (first ? 3 : 4) ? " or fewer" : "");
+                   "them; use values {} at most",
+                   other->id, other->style, args.scheme.values(), most);
 }
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.

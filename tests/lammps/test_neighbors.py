@@ -257,6 +257,15 @@ def test_gravity_on_masses_that_are_not_the_bodies(lmp_tree, mass, told):
     assert ("pulls at the masses of atoms" in result.output) == told
 
 
+@pytest.mark.parametrize("words, most", [("", 6), ("formulation first values 8", 4)])
+def test_log_and_warning_agree_on_random_forces(lmp_wheel, words, most):
+    after = "fix t all langevin 1 1 1 4711\nrun 1"
+    told = lmp_wheel.succeed(two_molecules(f"molecule {words}", after=after)).words
+    line = f"random forces heat bodies with many values; use values {most} at most instead of 8"
+    assert line in told and f"8 values make heat of them; use values {most} at most" in told
+    assert (line in (ROOT / "doc/howto/read_log.md").read_text()) == (most == 6)
+
+
 SRD = """
 units lj
 atom_style sphere
@@ -308,5 +317,5 @@ def test_few_values_suit_srd(lmp_wheel):
     second, first, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
     assert [second, first] == pytest.approx([rigid, rigid], rel=0.25)
     assert many > 2 * rigid  # the default, which the log warns of
-    told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4"
+    told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4 at most"
     assert result.words.count("are random, and") == 1 and told in result.words

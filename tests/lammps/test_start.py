@@ -75,7 +75,7 @@ def test_what_cannot_be_followed_is_said(lmp_tree, name, ranks):
     result, _ = field(lmp_tree, 10, 0.01, after=NOT_FOLLOWED[name], ranks=ranks)
     assert result.stdout.count(FALLBACK) == 1
     assert {"langevin": "fix l (langevin)", "time": "depends on time"}[name] in result.stdout
-    assert ("use values 4 to 6 instead of 8" in result.stdout) == (name == "langevin")
+    assert ("use values 6 at most instead of 8" in result.stdout) == (name == "langevin")
 
 
 def test_flexible_neighbours_are_not_followed(lmp_tree):
