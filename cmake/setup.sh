@@ -30,6 +30,14 @@ do_quietly() {
   printf '%d s\n' $((SECONDS - begin))
 }
 
+# answer_help ARGUMENT...: with --help among them, prints what stands at the head of the script, and ends
+answer_help() {
+  local word
+  for word in "$@"; do
+    case "$word" in -h | --help) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "$0"; exit ;; esac
+  done
+}
+
 have() { command -v "$1" >/dev/null 2>&1; }
 
 # --- system packages --------------------------------------------------------------------------

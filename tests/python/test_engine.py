@@ -1,6 +1,9 @@
 """The engine of the benchmarks: measurements, logs, many runs, data kept, pages, publishing, the command."""
 
 import json
+import re
+import shutil
+import subprocess
 import time
 from pathlib import Path
 
@@ -14,6 +17,7 @@ from benchmarks.engine import Study, Table, conduct, provenance, publish, runner
 from benchmarks.engine.logs import Log
 from benchmarks.engine.store import read_data, write_data
 from benchmarks.studies.hard.long import Long
+from running import ROOT
 
 PROGRAM = """#!/bin/sh
 # stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script
@@ -270,6 +274,37 @@ def test_check_refuses_what_is_out_of_bounds(run):
 def test_bad_options(run, words, said):
     done = run(*words)
     assert done.exit_code == 2 and said in done.output
+
+
+OPTIONS = {option for parameter in command.examples.params for option in parameter.opts}
+
+
+@pytest.mark.parametrize(
+    "name, options",
+    [
+        ("benchmarks/run", OPTIONS),
+        ("examples/run", OPTIONS - {"--list", "--publish"}),
+        ("tests/run", set()),
+    ],
+)
+def test_help_has_every_option_and_installs_nothing(tmp_path, name, options):
+    for script in (name, "cmake/setup.sh", "cmake/lammps-tree.sh", "tests/sanitize.sh"):
+        (tmp_path / script).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / script, tmp_path / script)
+    before = sorted(tmp_path.rglob("*"))
+    done = subprocess.run([tmp_path / name, "--help"], capture_output=True, text=True, check=True)
+    assert sorted(tmp_path.rglob("*")) == before and name in done.stdout
+    assert set(re.findall(r"^  (--\w+)", done.stdout, re.M)) == options
+
+
+def test_the_command_of_the_examples(monkeypatch):
+    """Its errors name its script, and it measures one study."""
+    done = CliRunner().invoke(command.examples, ["--nosuch"])
+    assert done.exit_code == 2 and "Usage: examples/run [OPTIONS]\n" in done.output
+    called = []
+    monkeypatch.setattr(command, "conduct", lambda study, *_, **__: called.append(study.key))
+    CliRunner().invoke(command.examples, ["--quick"])
+    assert called == ["cases"]
 
 
 def test_every_study_is_listed_with_its_duration():
