@@ -317,5 +317,5 @@ def test_few_values_suit_srd(lmp_wheel):
     second, first, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
     assert [second, first] == pytest.approx([rigid, rigid], rel=0.25)
     assert many > 2 * rigid  # the default, which the log warns of
-    told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4 at most"
+    told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4"
     assert result.words.count("are random, and") == 1 and told in result.words

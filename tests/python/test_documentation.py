@@ -241,16 +241,6 @@ COLUMNS = {
 }
 
 
-def stability_limit(step):
-    """Least z at which a mode other than the oscillation itself grows."""
-    for z in np.arange(0.01, 3.0, 0.005):
-        modes = np.linalg.eigvals(step(z))
-        others = [m for m in modes if min(abs(m - np.exp(s * z)) for s in (1j, -1j)) > 0.15]
-        if max(np.abs(others), default=0.0) > 1.0:
-            return z
-    return np.inf
-
-
 def growth(values, z):
     """Growth of the amplitude of the oscillation in a period, by formulation."""
     steps = {"second": stability.second_order_step, "first": stability.first_order_step}
@@ -285,7 +275,7 @@ def test_stability_limits_of_the_manual(name):
     limits = documented_limits()[name]
     assert list(limits) == list(values)
     for n in values:
-        assert limits[n] == pytest.approx(stability_limit(partial(step, n)), abs=0.01)
+        assert limits[n] == round(stability.linear_limit(partial(step, n)), 2)
 
 
 def test_growth_of_the_manual():
@@ -294,6 +284,21 @@ def test_growth_of_the_manual():
     large, small = growth(DEFAULTS, 0.2), growth(DEFAULTS, 0.1)
     assert found == pytest.approx(np.abs([*large, *small]), rel=0.02)
     assert large[0] < 0 < large[1]
+
+
+def test_growth_of_stable_steps():
+    text = " ".join(section("Choosing the time step").split())
+    bounds = re.search(r"up to (\d+) % .* up to (\d+) % .* less than (\S+) % with more", text)
+    changes = {"few": [], "several": [], "many": []}
+    for formulation in DEFAULTS:
+        for n, limit in documented_limits()[formulation].items():
+            of_n = changes["few" if n < 5 else "several" if n < 7 else "many"]
+            steps = np.linspace(0.3, 0.995, 200) * limit
+            of_n += [100.0 * growth({formulation: n}, step)[0] for step in steps]
+    few, several, many = map(float, bounds.groups())
+    assert max(changes["few"]) < 0 and 0.9 * few < -min(changes["few"]) < few
+    assert 0.9 * several < max(changes["several"]) < several
+    assert np.max(np.abs(changes["many"])) < many
 
 
 @pytest.mark.parametrize("row", range(1, 8))
