@@ -1,5 +1,7 @@
 """The study of effects: reading of profiles, judging of made-up counts; real counts are in tests/lammps."""
 
+import itertools
+
 import pytest
 
 from benchmarks.engine.page import render
@@ -66,7 +68,11 @@ def test_numbers_are_those_of_a_body_and_a_step():
     assert results.cage.speedup == 2.0
     finding = effects.find(results)
     assert len(finding.tables["effects"].rows) == len(plan.EFFECTS)
-    assert len(finding.tables["ladder"].rows) == len(plan.LADDER)
+    rows = finding.tables["ladder"].rows
+    assert len(rows) == len(plan.LADDER)
+    for below, above in itertools.pairwise(rows):
+        assert float(above[1]) - float(above[3]) == float(above[4])
+        assert (above[2] == "the row above") == (above[3] == below[1])
 
 
 def test_results_come_back_from_their_file(tmp_path):

@@ -71,15 +71,17 @@ def effects_table(results):
 
 
 def ladder_table(results):
-    """Rungs: what a body costs, how much more that is than below, and what the effect adds alone."""
+    """Rungs: what a body costs, beside the scene without the effect, and what the effect adds alone."""
     rows = []
     for rung in plan.LADDER:
         effect = row_of(rung)
+        there = (rung.against, number(results.fix(rung.base))) if rung.base else ("", "")
         more = number(results.fix(rung.on, rung.base)) if rung.base else ""
         alone = number(results.fix(effect.on, effect.base)) if effect else ""
         times = [f"{results.nanoseconds(rung.on, part=part):.0f}" for part in (0, 1)]
-        rows.append([rung.name, number(results.fix(rung.on)), more, alone, *times])
-    header = ("rung", "instructions in the fix", "more than below", "the effect alone")
+        rows.append([rung.name, number(results.fix(rung.on)), *there, more, alone, *times])
+    header = ("rung", "instructions in the fix", "compared with", "instructions there")
+    header += ("more", "the effect alone")
     return Table((*header, "ns in the fix", "ns in the pair style"), rows)
 
 

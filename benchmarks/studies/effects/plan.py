@@ -56,12 +56,14 @@ class Rung:
     """A rung: ``on`` is one effect more than ``base``, both with all that is below them.
 
     ``row``: name of the Effect that measures the same without what is below, "" if there is none.
+    ``against``: what ``base`` is, in words.
     """
 
     name: str
     on: Scene
     base: Scene = None
     row: str = ""
+    against: str = "the row above"
 
 
 EFFECTS = (
@@ -125,18 +127,21 @@ LADDER = (
         replace(CHARGED, words=TOLERANCE),
         replace(CHARGED, words=FIXED),
         "changing step",
+        f"charges with `{FIXED}`",
     ),
     Rung(
         "virial",
         charged_each(words=TOLERANCE, columns="press"),
         charged_each(words=TOLERANCE),
         "virial",
+        "the row above with output in every step",
     ),
     Rung(
         "thermostat",
         charged_each(words=ISOKINETIC, columns="press"),
         charged_each(words=FIRST, columns="press"),
         "thermostat",
+        f"charges and virial with `{FIRST}`",
     ),
 )
 
