@@ -203,15 +203,20 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (["--select", "resid 99"], "--select resid 99 selects no atom"),
+        (["--select", "resid 99"], "--select 'resid 99' selects no atom"),
+        (["--select", "foo 99"], "--select 'foo 99': Unknown selection token: 'foo'"),
+        (["--reference", "nofile"], "--reference nofile: 'principal', 'first' or a file with x"),
+        (["--timestep", "0"], "'--timestep': 0.0 is not in the range x>0"),
+        (["--near", __file__, "--radius", "1"], f"--near {__file__}: a file with x y z in each"),
+        (["--wrap"], "--wrap needs --convert"),
         (["--frames", "99:"], "no frame is left to analyze"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
         (["--near", __file__], "should be provided together"),
         (
             ["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"],
-            "MDAnalysis writes no such format",
+            "MDAnalysis writes no such format; one such as dcd, xtc,",
         ),
-        (["--body", "i_body"], "no column i_body"),
+        (["--body", "i_body"], "(--body), or give a data file with molecules (--data)"),
         (["--potential", "c_pe"], "no column c_pe"),
     ],
 )

@@ -145,6 +145,7 @@ def test_masses_and_molecules_of_a_data_file(write, tmp_path):
 def test_bodies_of_another_column(write):
     columns = dumps.COLUMNS.replace("mol", "i_body")
     assert centers(write(MOTION, TIMES, columns=columns), body="i_body").shape == (3, 3, 3)
+    assert centers(write(MOTION, TIMES), body="type").shape == (3, 1, 3)
 
 
 def test_atoms_in_no_body_are_left_out(write):
@@ -162,7 +163,7 @@ def test_atoms_in_no_body_are_left_out(write):
     [
         ("id", "no column id; without it a row cannot be followed"),
         ("mol", "no column mol; it says which atoms make which body"),
-        ("mass", "no column mass; dump it, or name the data file"),
+        ("mass", "no column mass; dump it, or give a data file .--data."),
         ("yu", "no positions; columns xu yu zu or x y z are required"),
     ],
 )
@@ -225,7 +226,7 @@ def test_a_table_with_too_few_columns(write):
     columns = "id mol type mass f_1[1] f_1[2] f_1[3] vx vy vz"
     path = write(MOTION, TIMES, columns=columns)
     path.write_text(path.read_text().replace("ITEM: ATOMS", "ITEM: ENTRIES"))
-    with pytest.raises(DumpError, match="lacks column\\(s\\) 4 5 6 13"):
+    with pytest.raises(DumpError, match="lacks these columns: 4 5 6 13"):
         open_table(path)
     with pytest.raises(DumpError, match="open it with open_table"):
         open_dump(path)

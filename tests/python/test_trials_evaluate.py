@@ -67,18 +67,20 @@ def curve(order, steps=(0.1, 0.05, 0.025), scale=1.0, floor=0.0, method="m"):
 
 @pytest.mark.parametrize("order", [2, 5, 9])
 def test_price_on_a_power_law(order):
+    """It is that of a trial, and aims at the step in between until a trial is close to that."""
     error = 0.06**order
     found = price(curve(order), error)
-    assert found.kind == "between"
-    assert found.dt == pytest.approx(0.06)
-    assert found.evaluations == pytest.approx(10 / 0.06)
-    assert found.seconds == pytest.approx(1e-3 / 0.06)
-    assert price(curve(order), 1.01**order * error).dt == pytest.approx(0.0606)
+    assert (found.kind, found.dt, found.evaluations, found.seconds) == ("at most", 0.05, 200, 0.02)
+    assert found.error == pytest.approx(0.05**order)
+    assert found.aim == pytest.approx(0.06)
+    assert price(curve(order), 1.01**order * error).aim == pytest.approx(0.0606)
+    close = price(curve(order, (0.1, 0.059, 0.025)), error)
+    assert (close.kind, close.dt) == ("measured", 0.059)
 
 
 def test_price_where_every_trial_is_better():
     found = price(curve(2), 0.5)
-    assert (found.kind, found.dt) == ("at most", 0.1)
+    assert (found.kind, found.dt, found.aim) == ("at most", 0.1, 0.1)
 
 
 def test_price_that_is_not_reached_or_extrapolated():
@@ -91,7 +93,10 @@ def test_price_that_is_not_reached_or_extrapolated():
 
 def test_a_limit_of_stability_is_not_interpolated():
     points = [Point("m", 0.1, 100, 1, 1e3), Point("m", 0.08, 125, 1, 1e-9)]
-    assert price(points, 1e-3).dt == 0.08
+    found = price(points, 1e-3)
+    assert (found.kind, found.dt) == ("at most", 0.08)
+    assert found.aim == pytest.approx(math.sqrt(0.1 * 0.08))
+    assert price([Point("m", 0.085, 100, 1, 1e3), *points[1:]], 1e-3).kind == "measured"
 
 
 def test_the_largest_step_below_which_all_are_good():
@@ -99,7 +104,7 @@ def test_the_largest_step_below_which_all_are_good():
     lucky = [*curve(2), Point("m", 0.2, 50, 5e-3, 1e-6)]
     assert price(lucky, 0.05**2 * 1.001).dt == pytest.approx(0.05, rel=1e-3)
     rounded = [Point("m", 0.001, 1e4, 1, 2e-3), *curve(2)]
-    assert price(rounded, 1e-3).dt == pytest.approx(math.sqrt(1e-3))
+    assert price(rounded, 1e-3).aim == pytest.approx(math.sqrt(1e-3))
 
 
 # --- growth -----------------------------------------------------------------------------------------

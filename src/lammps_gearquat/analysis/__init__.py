@@ -10,7 +10,12 @@ trajectories for other viewers.  Beneath them ``bodies`` (who is in which body) 
     squares = correlations.mean_square_displacement(poses.results.center)   # (F,)
 """
 
-import importlib
+import importlib.util
+
+from .. import EXTRA
+
+if importlib.util.find_spec("MDAnalysis") is None:
+    raise ModuleNotFoundError(f"lammps_gearquat.analysis needs MDAnalysis, {EXTRA}", name="MDAnalysis")
 
 _HOME = dict.fromkeys(("DumpError", "open_any", "open_dump", "open_table"), ".dump")
 _HOME |= dict.fromkeys(("Poses", "TablePoses"), ".poses")

@@ -89,7 +89,8 @@ def _writer(path, number, options):
     try:
         return MDAnalysis.Writer(str(path), n_atoms=number, multiframe=True, **options)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{path}: MDAnalysis writes no such format; dcd is one it does") from error
+        known = "one such as dcd, xtc, trr, nc, xyz or pdb is required"
+        raise ValueError(f"{path}: MDAnalysis writes no such format; {known}") from error
 
 
 def _rescale(ts, length, time):

@@ -307,7 +307,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_st
     columns, local = columns_of(path)
     if local:
         raise DumpError(f"{path}: a dump local of the fix; open it with open_table")
-    extra = [name for name in (body, "mass", "type") if name in columns]
+    extra = [name for name in dict.fromkeys((body, "mass", "type")) if name in columns]
     potentials = [potential] if potential else []
     reader = DumpFrames(str(path), additional_columns=extra + potentials, dt=timestep)
     known = reader.pop_columns(extra)
@@ -316,9 +316,12 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_st
     else:
         masses, bodies, types = known.get("mass"), None, np.ones(reader.n_atoms, int)
     if masses is None:
-        raise DumpError(f"{path}: no column mass; dump it, or name the data file")
+        raise DumpError(f"{path}: no column mass; dump it, or give a data file (--data)")
     if body not in known and (bodies is None or body != "mol"):
-        raise DumpError(f"{path}: no column {body}; it says which atoms make which body")
+        raise DumpError(
+            f"{path}: no column {body}; it says which atoms make which body: dump it, name another column"
+            " (--body), or give a data file with molecules (--data)"
+        )
     bodies = known.get(body, bodies).astype(int)
     return _universe(reader, bodies, masses, known["type"].astype(int) if "type" in known else types)
 
@@ -335,7 +338,7 @@ def open_table(path, timestep=1.0):
     missing = sorted(set(TABLE) - {int(match[1]) for match in numbers.values() if match})
     if missing:
         raise DumpError(
-            f"{path}: the dump local of the fix's table lacks column(s) {' '.join(map(str, missing))}"
+            f"{path}: the dump local of the fix's table lacks these columns: {' '.join(map(str, missing))}"
         )
     extra = [name for name in TABLE.values() if name[0] in "qwl"]
     reader = DumpFrames(str(path), additional_columns=extra, names=names, dt=timestep)

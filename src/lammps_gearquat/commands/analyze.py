@@ -55,7 +55,7 @@ def _frames(_context, _option, text):
     ),
     cloup.option(
         "--timestep",
-        type=float,
+        type=POSITIVE,
         help="LAMMPS' time step, unless the dump has times (dump_modify time yes).  Without either,"
         " tables have numbers of steps for times.",
     ),
@@ -82,15 +82,18 @@ def _frames(_context, _option, text):
 )
 @failing_clearly(ValueError)
 def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options):
-    """Compute poses, energies and correlations of the rigid bodies in a LAMMPS dump.
+    """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
-    the table of fix gear/quat.  The command leaves poses.npy (everything, by frame and body), bodies.csv,
-    totals.csv, correlations.csv and pictures of the latter two.
+    the table of fix gear/quat.  The command leaves poses.npy (poses and energies, by frame and body),
+    bodies.csv, totals.csv, correlations.csv and pictures of the latter two.
     """
     from .. import figures
     from ..analysis import report
 
+    if wrap and not converted:
+        raise ValueError("--wrap needs --convert, whose trajectory it is about")
+    places = near and _points("--near", near)
     out.mkdir(parents=True, exist_ok=True)
     poses = _run(dump, out, frames, converted, options)
     report.write_bodies(out / "bodies.csv", poses)
@@ -100,7 +103,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)
     if near:
-        _stay(out, poses, near, radius)
+        _stay(out, poses, places, radius)
     if converted:
         _convert(poses, converted, wrap, frames)
     cloup.echo(report.summary(poses, totals))
@@ -141,8 +144,21 @@ def _settle(trajectory, converted, options):
     cloup.echo("Neither the dump nor --timestep gives times: numbers of steps stand for them.")
 
 
-def _run(dump, out, frames, converted, options):
+def _points(option, path, others=""):
+    """The rows (n, 3) of the file that an option names; ``others`` is what it may name instead."""
     import numpy as np
+
+    try:
+        points, reason = np.loadtxt(path, ndmin=2), ""
+    except (OSError, ValueError) as error:
+        points, reason = np.empty((0, 0)), f": {error}"
+    if points.shape[1] != 3:
+        raise ValueError(f"{option} {path}: {others}a file with x y z in each line is required{reason}")
+    return points
+
+
+def _run(dump, out, frames, converted, options):
+    from MDAnalysis.exceptions import SelectionError
 
     from ..analysis import Poses, TablePoses, open_any
     from ..analysis.backends import Processes
@@ -151,16 +167,19 @@ def _run(dump, out, frames, converted, options):
     timestep = 1.0 if options["timestep"] is None else options["timestep"]
     universe, local = open_any(dump, timestep, **{name: options[name] for name in names})
     _settle(universe.trajectory, converted, options)
-    atoms = universe.select_atoms(options["select"])
+    try:
+        atoms = universe.select_atoms(options["select"])
+    except SelectionError as error:
+        raise ValueError(f"--select '{options['select']}': {error}") from error
     if not len(atoms):
-        raise ValueError(f"--select {options['select']} selects no atom")
+        raise ValueError(f"--select '{options['select']}' selects no atom")
     common = {"units": options["units"], "out": out / "poses.npy"}
     if local:
         poses = TablePoses(atoms, **common)
     else:
         reference = options["reference"]
         if reference not in ("principal", "first"):
-            reference = np.loadtxt(reference)
+            reference = _points("--reference", reference, "'principal', 'first' or ")
         poses = Poses(atoms, reference, potential=options["potential"], **common)
     span = {"start": frames.start, "stop": frames.stop, "step": frames.step}
     if options["jobs"] == 1:
@@ -196,14 +215,12 @@ def _correlate(out, poses):
     return figures.draw_correlations(out / "correlations.png", functions)
 
 
-def _stay(out, poses, near, radius):
+def _stay(out, poses, places, radius):
     """Write stays.csv and survival.csv, and say how long bodies stay."""
-    import numpy as np
-
     from ..analysis import report, residence
     from ..tables import write_columns
 
-    places, results = np.loadtxt(near, ndmin=2), poses.results
+    results = poses.results
     bar = _bar("finding stays", "frame")
     stays = residence.stays(results.center, places, radius, results.time, progress=bar)
     report.write_stays(out / "stays.csv", stays, results.ids)

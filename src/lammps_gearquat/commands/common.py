@@ -7,6 +7,8 @@ from pathlib import Path
 
 import cloup
 
+from .. import EXTRA
+
 HELP = {"help_option_names": ["-h", "--help"], "show_default": True}
 POSITIVE = cloup.FloatRange(min=0, min_open=True)
 COUNT = cloup.IntRange(min=1)
@@ -78,10 +80,7 @@ def failing_clearly(*errors):
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ANALYSIS:
             raise
-        raise cloup.ClickException(
-            f"this command needs {error.name}, which the extra [analysis] brings: run"
-            " pip install '.[analysis]' in a checkout of the repository"
-        ) from error
+        raise cloup.ClickException(f"this command needs {error.name}, {EXTRA}") from error
     except errors as error:
         raise cloup.ClickException(str(error)) from error
 

@@ -5,7 +5,8 @@
    part, nothing can be said about smaller errors; the time measured is cut so that the smallest
    error can be judged, if that leaves a tenth of it.
 2. Every method from coarse to fine steps, to the same time.
-3. Those that matter again and again, interleaved, for their wall time.
+3. Those that matter at the steps that interpolation promises: what is recommended has been tried.
+4. Those again and again, interleaved, for their wall time.
 """
 
 import math
@@ -37,6 +38,8 @@ FEWEST_STEPS, PROBE_STEPS = 8, 20
 PATIENCE = 30.0  # seconds that any trial may take beyond what was expected
 #: seconds of the budget for tables and pictures, and the part of it that may pass before the trials
 CLOSING, SHARE_BEFORE = 10.0, 0.8
+#: trials at interpolated steps, for each error and method
+ATTEMPTS = 3
 #: another fix pays if the deck's own takes longer by this factor
 WORTHWHILE = 1.05
 
@@ -55,9 +58,9 @@ class Row:
     @property
     def keep(self):
         """Whether the deck's own fix is as fast as any."""
-        if self.own is None or self.best is None:
-            return self.own is not None and self.own.kind != "extrapolated"
-        return self.own.seconds < WORTHWHILE * self.best.seconds
+        if self.own is None or self.own.kind == "extrapolated":
+            return False
+        return self.best is None or self.own.seconds < WORTHWHILE * self.best.seconds
 
     @property
     def choice(self):
@@ -90,18 +93,12 @@ class Costs:
         return MARGIN * self.doubt
 
     def points(self):
-        """Dictionary keywords -> list of evaluate.Point; no error is known better than ``doubt``."""
+        """Dictionary keywords -> list of evaluate.Point, with the largest errors that ``doubt`` allows."""
         points = {}
         for trial, errors in self.trials:
-            point = evaluate.Point(
-                trial.label,
-                trial.dt,
-                trial.steps,
-                trial.median,
-                max(errors[self.norm], self.doubt),
-                trial.start_evaluations,
-                trial.median_start,
-            )
+            cost = trial.steps, trial.median, errors[self.norm] + self.doubt
+            start = trial.start_evaluations, trial.median_start
+            point = evaluate.Point(trial.label, trial.dt, *cost, *start)
             points.setdefault(trial.keywords, []).append(point)
         return points
 
@@ -178,6 +175,13 @@ class Study:
             if trial.seconds[0] > 0.2 or steps >= self.deck.start.steps:
                 return
             steps = min(4 * steps, self.deck.start.steps)
+
+    def check(self, tries):
+        """Raise DeckError for keywords that the fix refuses: a step so short fails for no other reason."""
+        for keywords in tries:
+            if self.attempt(keywords, 1e-3 * self.deck.dt, 1) is None:
+                raise DeckError(f"--try '{keywords}': {self.failures[keywords]}")
+            del self.pace[keywords]
 
     def affordable_end(self):
         """(time, reason or ""): the deck's run, or as much of it as the budget allows."""
@@ -290,8 +294,8 @@ class Study:
                 costs.notes.append(f"the budget leaves no time for {keywords or 'the own fix'}")
                 continue
             first = own_steps if keywords is None else gear_steps
-            norm = self.norm
-            rungs = self.ladder(keywords, costs.end, lambda t: judge(t)[norm], errors, first, reserve)
+            known = lambda trial: judge(trial)[self.norm] + costs.doubt  # noqa: E731
+            rungs = self.ladder(keywords, costs.end, known, errors, first, reserve)
             if rungs and keywords is not None:  # the next method begins in the middle
                 near = min(rungs, key=lambda rung: abs(math.log(rung[1] + 1e-300) - middle))
                 gear_steps = near[0].steps
@@ -300,9 +304,24 @@ class Study:
                 reason = self.failures[keywords]
                 costs.notes.append(f"no trial of {keywords} came to its end: {reason}")
 
-    # --- 3. the wall time -----------------------------------------------------------------------------
+    # --- 3. the steps between -------------------------------------------------------------------------
+    def refine(self, costs, judge, errors):
+        """Further trials into ``costs``, at the steps that interpolation promises, as scripts have them."""
+        reserve, methods = SHARE_TIMING / 2 * self.budget.seconds, list(costs.points())
+        for error in ATTEMPTS * list(errors):
+            for keywords, price in candidates(costs.points(), error).items():
+                # not finer than what is recommended if this trial holds the error
+                steps = int(costs.end / evaluate.usable_step(price.aim))
+                loose = price.kind == "at most" and price.aim > evaluate.CLOSE * price.dt
+                if loose and steps and self.affords(keywords, steps, reserve):
+                    trial = self.attempt(keywords, costs.end, steps)
+                    costs.trials += [(trial, judge(trial))] if trial else []
+        costs.trials.sort(key=lambda pair: (methods.index(pair[0].keywords), pair[0].steps))
+
+    # --- 4. the wall time -----------------------------------------------------------------------------
     def repeat(self, trials):
         """Run trials again, interleaved, until each has ``timings`` wall times."""
+        trials = [trial for trial in trials if len(trial.seconds) < self.timings]
         for _ in range(self.timings - 1):
             for trial in trials:
                 if not self.affords(trial.keywords, trial.steps, runs=1.5):
@@ -326,6 +345,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     study = Study(deck, budget, timings, norm)
     before = budget.spent()
     study.probe()
+    study.check(tries)
     whole, reason = (time, "") if time else study.affordable_end()
     reference, confirmation = study.find_reference(whole, min(errors))
     doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
@@ -348,9 +368,11 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
         enough = before + RUNS_IN_BUDGET * study.expected(None, SAMPLES)
         raise DeckError(
             f"a step takes {study.pace[None]:.2g} s, so {budget.seconds:g} s are too few to compare methods:"
-            f" try --budget {enough:.2g}"
+            f" try --budget {float(f'{enough:.2g}'):g}"
         )
-    study.repeat(worth_timing(costs, wanted))
+    study.refine(costs, judge, wanted)
+    for _ in range(ATTEMPTS):  # other methods may matter when times are known better
+        study.repeat(worth_timing(costs, wanted))
     fill_rows(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
@@ -403,22 +425,27 @@ def cut_to(time, doubt, errors):
 
 
 def candidates(points, error):
-    """(own Price or None, Prices of the two methods that take the fewest evaluations)."""
+    """Keywords -> Price of ``error`` with the methods that matter, as far as they reach it.
+
+    The deck's own (None), and the two fastest by seconds and by evaluations at the interpolated steps.
+    """
     prices = {key: evaluate.price(own, error, key is None) for key, own in points.items()}
-    own = prices.pop(None, None)
-    ranked = sorted((item for item in prices.items() if item[1]), key=lambda i: i[1].evaluations)
-    return own, dict(ranked[:2])
+    prices = {key: price for key, price in prices.items() if price}
+    kept = {None}
+    for cost in ("seconds", "evaluations"):
+        at_aim = {key: getattr(p, cost) * p.dt / p.aim for key, p in prices.items() if key is not None}
+        kept.update(sorted(at_aim, key=at_aim.get)[:2])
+    return {key: prices[key] for key in prices if key in kept}
 
 
 def worth_timing(costs, errors):
-    """Trials beside the prices of ``errors``: of the deck's own method and of the best two."""
+    """Trials that the prices of ``errors`` are those of, or are extrapolated from."""
     chosen, points = {}, costs.points()
     for error in errors:
-        own, best = candidates(points, error)
-        for keywords, price in {None: own, **best}.items():
-            mine = [trial for trial, _ in costs.trials if trial.keywords == keywords and price]
-            for trial in sorted(mine, key=lambda t: abs(math.log(t.dt / price.dt)))[:2]:
-                chosen[id(trial)] = trial
+        for keywords, price in candidates(points, error).items():
+            mine = [trial for trial, _ in costs.trials if trial.keywords == keywords]
+            mine.sort(key=lambda trial: abs(math.log(trial.dt / price.dt)))
+            chosen |= {id(trial): trial for trial in mine[: 2 if price.kind == "extrapolated" else 1]}
     return list(chosen.values())
 
 
@@ -426,8 +453,7 @@ def fill_rows(costs, errors):
     """One row for each error: what it costs with the deck's own method, and at best."""
     points = costs.points()
     for error in errors:
-        own = best = None
-        if error > costs.doubt_limit:
-            own, prices = candidates(points, error)
-            best = min(prices.values(), key=lambda price: price.seconds, default=None)
+        prices = candidates(points, error) if error > costs.doubt_limit else {}
+        own = prices.pop(None, None)
+        best = min(prices.values(), key=lambda price: price.seconds, default=None)
         costs.rows.append(Row(error, own, best))

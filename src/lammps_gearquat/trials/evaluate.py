@@ -44,55 +44,65 @@ class Point:
 
 @dataclass(frozen=True)
 class Price(Point):
-    """What an error costs with one method, as a point of its own, and how it is known.
+    """What an error costs with one method, and how it is known.
 
-    ``kind``: "between" two trials, "at most" (the coarsest trial is better than required), or
-    "extrapolated" (no trial was as good as required).
+    ``kind``: "measured" in a trial, "at most" (of a trial whose next coarser one is far away or missing), or
+    "extrapolated" (no trial was as good as required).  ``aim`` is the step, not shorter than ``dt``,
+    that interpolation between trials promises.
     """
 
-    kind: str = "between"
+    kind: str = "measured"
+    aim: float = 0.0
 
 
 #: steeper than this, the error is not that of an order but of a limit of stability
 CLIFF = 16.0
+#: a step is close to another one that is larger by less than this factor
+CLOSE = 1.1
+
+
+def usable_step(dt):
+    """A time step cut to two digits, downwards, for a script: what is left is more than dt / CLOSE."""
+    unit = 10.0 ** (math.floor(math.log10(dt)) - 1)
+    return float(f"{math.floor(dt / unit * (1 + 1e-9)) * unit:.2g}")
 
 
 def price(points, error, extrapolate=False):
     """Price of ``error`` from the Points of one method, or None if it is not reached.
 
-    Between two trials logarithms are interpolated linearly.  The largest step counts below which
-    no finer trial is worse than required, up to where rounding begins.  With ``extrapolate`` the line
-    through the two finest trials is continued if none is good enough.
+    It is that of the coarsest trial below which no finer one is worse than required, up to where
+    rounding begins.  With ``extrapolate`` the line through the two finest trials is continued if none is
+    good enough.
     """
     points = sorted(points, key=lambda p: p.dt)
-    good = [i for i, point in enumerate(points) if point.error <= error]
-    if not good:
+    last = next((i for i, point in enumerate(points) if point.error <= error), None)
+    if last is None:
         if not extrapolate or len(points) < 2 or not points[0].error < points[1].error:
             return None
-        return _on_line(points[0], points[1], error, "extrapolated")
-    last = good[0]
+        return _extrapolated(*points[:2], error)
     while last + 1 < len(points) and points[last + 1].error <= error:
         last += 1
-    best = points[last]
-    if last + 1 < len(points):
-        coarser = points[last + 1]
-        slope = math.log(coarser.error / best.error) / math.log(coarser.dt / best.dt)
-        if slope < CLIFF:
-            return _on_line(best, coarser, error, "between")
-    return _on_line(best, best, best.error, "at most")
+    best, kind, aim = points[last], "at most", points[last].dt
+    for coarser in points[last + 1 : last + 2]:
+        ratio, rise = coarser.dt / best.dt, math.log(coarser.error / best.error)
+        smooth = rise < CLIFF * math.log(ratio)
+        aim *= ratio ** (math.log(error / best.error) / rise if smooth else 0.5)
+        if (aim if smooth else coarser.dt) < CLOSE * best.dt:
+            kind = "measured"
+    return Price(**vars(best), kind=kind, aim=aim)
 
 
-def _on_line(finer, coarser, error, kind):
+def _extrapolated(finer, coarser, error):
     """Price on the log-log line through two points."""
-    rise = math.log(coarser.error / finer.error)
-    share = math.log(error / finer.error) / rise if rise else 0.0
+    share = math.log(error / finer.error) / math.log(coarser.error / finer.error)
 
     def along(name):
         begin, end = getattr(finer, name), getattr(coarser, name)
         return begin * (end / begin) ** share
 
     starts = finer.start_evaluations, finer.start_seconds
-    return Price(finer.method, *map(along, ("dt", "evaluations", "seconds")), error, *starts, kind)
+    cost = along("evaluations"), along("seconds")
+    return Price(finer.method, along("dt"), *cost, error, *starts, "extrapolated", along("dt"))
 
 
 # --- how a difference grows -----------------------------------------------------------------------

@@ -47,7 +47,14 @@ def measure(deck, a=None, b=None, steps=(None, None), time=None, every=None, thr
     ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
     the deck as it is, and what is accurate there.  ``steps`` are their time steps; None: the deck's
     own, and half of that where nothing else differs.  ``every`` is the time between samples.
+    Raises DeckError if the steps of the deck as it is follow the error.
     """
+    if a is None and deck.own != deck.lines:
+        raise DeckError(
+            f"fix {deck.lines[0].id} gear/quat, keyword tolerance: its steps follow the error, and runs of"
+            " equal steps are compared: give keywords for such a run with --a, such as --a 'values 8', and"
+            " its step with --step-a"
+        )
     keywords = [None if a is None else deck.lines[0].numerics(a)]
     keywords += [deck.accurate if b is None else deck.lines[0].numerics(b)]
     dt_a = steps[0] or deck.dt
@@ -100,7 +107,7 @@ def compare(deck, trials, thresholds, notes=()):
     distance = np.linalg.norm(first.center - second.center, axis=-1)
     angle = angles(deck.scene.bodies, second.positions, first.positions)
     unit = evaluate.decade(deck.size)
-    thresholds = sorted(thresholds or [unit * factor for factor in THRESHOLDS])
+    thresholds = sorted(thresholds or [float(f"{unit * factor:.0e}") for factor in THRESHOLDS])
     largest = distance.max(axis=1)
     parting = [(level, evaluate.parting_time(first.time, largest, level)) for level in thresholds]
     floor = evaluate.ROUNDING * np.abs(second.center).max()

@@ -125,7 +125,8 @@ class Interpreter:
             quits = " before it quits"
         self._check_options()
         if self.runs:
-            raise DeckError(f"--run {self.which}: the deck moves rigid bodies in {self.runs} run(s) only{quits}")
+            runs = f"{self.runs} run" + "s" * (self.runs > 1)
+            raise DeckError(f"--run {self.which}: the deck moves rigid bodies in {runs} only{quits}")
         raise self._no_movers(quits)
 
     def _no_movers(self, quits=""):

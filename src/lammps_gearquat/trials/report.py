@@ -4,10 +4,15 @@ import math
 
 from ..tables import aligned, write_rows
 from . import NORMS
+from .evaluate import usable_step
 
 
 def _quantity(value, unit, digits=3):
     return f"{value:.{digits}g}" + (f" {unit}" if unit else "")
+
+
+def _count(number, word):
+    return f"{number} {word}" + "s" * (number != 1)
 
 
 def _scene(deck):
@@ -18,12 +23,6 @@ def _scene(deck):
         *(f"    {line}" for line in deck.fix_lines(None)),
         f"    timestep {deck.dt:g}, run {deck.start.steps} (t = {end})",
     ]
-
-
-def usable_step(dt):
-    """A time step cut to two digits, downwards, for a script."""
-    unit = 10.0 ** (math.floor(math.log10(dt)) - 1)
-    return float(f"{math.floor(dt / unit * (1 + 1e-9)) * unit:.2g}")
 
 
 # --- cost -----------------------------------------------------------------------------------------
@@ -46,7 +45,7 @@ def cost_text(deck, costs):
         f" {_quantity(costs.doubt, unit, 2)}.",
     ]
     lines += [f"Note: {note}" for note in costs.notes]
-    own = costs.points().get(None, [])
+    own = costs.points().get(None, []) if deck.own == deck.lines else []
     as_it_is = [point for point in own if abs(point.dt / deck.dt - 1) < 0.01]
     if as_it_is:
         lines.append(f"As it is, the deck ends with an error of {as_it_is[0].error:.2g}.")
@@ -64,8 +63,7 @@ def _cost_cells(costs, row):
         return cells + [known, "-", "-", "-", "-"]
     speed_up = "-"
     if row.own and not row.keep:
-        # ~ where the cost of the deck's own fix is extrapolated
-        speed_up = "~" * (row.own.kind == "extrapolated") + f"{row.own.seconds / price.seconds:.3g}"
+        speed_up = "~" * (row.own.kind != "measured") + f"{row.own.seconds / price.seconds:.3g}"
     return cells + [
         "keep your fix" if row.keep else "gear/quat " + price.method,
         f"{usable_step(price.dt):g}",
@@ -78,14 +76,16 @@ def _cost_cells(costs, row):
 def _explained(costs):
     lines = [
         "Every method evaluates the forces once per step.  Seconds are wall times of the steps.  The start,",
-        "which is LAMMPS' set-up and, with fix gear/quat, the evaluations of the forces that its first"
-        " derivatives",
-        "take, is paid once per run and stands apart.  Speed-up is over the deck's own fix at the same error;",
-        "~ marks one whose own cost is extrapolated, <= a coarsest trial that was better than required.",
+        "which is LAMMPS' set-up and, with fix gear/quat, the evaluations of the forces that its first",
+        "derivatives take, is paid once per run and stands apart.",
+        "Each timestep is measured: a trial at this step or a longer one held the error, with the doubt",
+        "about the reference added.  <= marks a cost where no step a little longer was tried.  Speed-up is",
+        "over the deck's own fix at the same error; ~ marks one where the own cost is not known closely.",
     ]
     starts = {p.method: p for row in costs.rows for p in (row.own, row.best) if p}
     words = [
-        f"{p.start_seconds:.2g} s and {p.start_evaluations} evaluations with {name}" for name, p in starts.items()
+        f"{p.start_seconds:.2g} s and {_count(p.start_evaluations, 'evaluation')} with {name}"
+        for name, p in starts.items()
     ]
     lines += [f"A start takes {', '.join(words)}."] if words else []
     timings = [trial.seconds for trial, _ in costs.trials if len(trial.seconds) > 1]
@@ -100,18 +100,24 @@ def _explained(costs):
 
 
 def _script_lines(deck, costs):
-    """What to put into the script, for each error that was reached."""
+    """What to put into the script for each error that was reached, and what to do about the others."""
     lines, reached = [], [row for row in costs.rows if row.choice]
     if deck.map_missing and not all(row.keep for row in reached):
         lines += ["Above the command that makes the box (read_data, create_box):"]
         lines += ["    atom_modify map yes", ""]
     for row in reached:
         lines.append(f"For an error of {row.error:.1e} at t = {costs.end:g}:")
-        keeping = ["# keep your fix: gear/quat is not faster"] if row.keep else []
+        keeping = ["# keep your fix: no other is faster"] if row.keep else []
         line = None if row.keep else row.best.method
         words = [*keeping, *deck.fix_lines(line), f"timestep {usable_step(row.choice.dt):g}"]
         lines += [f"    {word}" for word in words]
-    return lines or ["None of the errors was reached: try --budget, --time or a larger --error."]
+    for row in costs.rows:
+        if not row.choice and row.error > costs.doubt_limit:
+            remedy = "try a longer --budget, a shorter --time or a larger --error."
+            lines.append(f"No trial within the budget had an error of {row.error:.1e}: {remedy}")
+            own = [f"    Your own fix would need timestep {row.own.dt:.2g}, as extrapolated."]
+            lines += own if row.own else []
+    return lines or ["None of the errors can be judged: try --budget, a shorter --time or a larger --error."]
 
 
 def write_costs(folder, deck, costs):
