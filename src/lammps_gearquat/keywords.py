@@ -53,12 +53,6 @@ class Keyword:
         return {formulation: (int(low), int(high)) for low, high, formulation in limits}
 
     @property
-    def most_with_tolerance(self):
-        """The largest value of an integer beside keyword tolerance, None without such a limit."""
-        limit = re.search(r"at most (\d+) \(tolerance\)", self.values)
-        return int(limit[1]) if limit else None
-
-    @property
     def of_one_formulation(self):
         """Whether a value means something in one of the two formulations only."""
         return len(self.ranges) > 1 or "formulation" in dict(self.requires)

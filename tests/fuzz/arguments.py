@@ -167,10 +167,10 @@ def agrees(key, given):
 
 def bounds(key, given):
     """Least and largest integer of a keyword."""
-    ranges, limit = TABLE[key].ranges, TABLE[key].most_with_tolerance
+    ranges, limit = TABLE[key].ranges, re.search(r"at most (\d+) .tolerance.", TABLE[key].values)
     formulation = given.get("formulation", TABLE["formulation"].default)
     least, most = ranges.get("") or ranges[formulation]
-    return least, min(most, limit) if limit and "tolerance" in given else most
+    return least, min(most, int(limit[1])) if limit and "tolerance" in given else most
 
 
 def allowed(key, given):

@@ -110,15 +110,14 @@ class Budget:
     """
 
     def __init__(self, seconds, progress=None, begin=None):
-        self.seconds, self.progress, self.shown = seconds, progress, 0.0
+        self.seconds, self.progress = seconds, progress
         self.begin = clock.monotonic() if begin is None else begin
 
     def spent(self):
         """Seconds since the beginning; moves the bar."""
         now = clock.monotonic() - self.begin
         if self.progress is not None:
-            self.progress.update(max(0.0, min(now, self.seconds) - self.shown))
-            self.shown = min(now, self.seconds)
+            self.progress.update(max(0.0, min(now, self.seconds) - self.progress.n))
         return now
 
     def left(self):
@@ -133,12 +132,14 @@ class Budget:
 class Study:
     """The trials of one question about ``deck``.
 
-    ``pace``, seconds per step by keywords; ``overhead``, seconds that a trial takes beside its steps.
+    ``pace``, seconds per step by keywords; ``overhead``, seconds that a trial takes beside its steps;
+    ``truth``, positions and centers at the end of trials.
     """
 
     def __init__(self, deck, budget, timings=5, norm=0):
         self.deck, self.budget, self.timings, self.norm = deck, budget, timings, norm
         self.pace, self.overhead, self.failures = {}, 0.0, {}
+        self.truth = None
 
     def attempt(self, keywords, end, steps, samples=1):
         """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
@@ -246,21 +247,27 @@ class Study:
         return shift.max(axis=-1), evaluate.rms(shift), turn.max(axis=-1), evaluate.rms(turn)
 
     # --- 2. the methods -------------------------------------------------------------------------------
-    def ladder(self, keywords, end, judge, errors, first, reserve):
+    def add(self, costs, keywords, steps):
+        """A trial into ``costs``; returns the largest error that it may have, None where it did not end."""
+        trial = self.attempt(keywords, costs.end, steps)
+        if trial is None:
+            return None
+        costs.trials.append((trial, self.errors(trial.positions[-1], trial.center[-1], *self.truth)))
+        return costs.trials[-1][1][self.norm] + costs.doubt
+
+    def ladder(self, costs, keywords, errors, first, reserve):
         """Trials of one method over steps: from where it is too coarse to where it is good enough.
 
-        ``judge(trial)`` is its error; ``first``, the number of steps to begin with; ``reserve``, seconds
-        of the budget to leave.  Returns a list of (Trial, error), the finest last.
+        ``first``, the number of steps to begin with; ``reserve``, seconds of the budget to leave.
+        Returns a dictionary number of steps -> error.
         """
         ratio = 2.0 if keywords is None else math.sqrt(2.0)
         rungs = {}
 
         def climb(exponent):
             steps = round(first * ratio**exponent)
-            trial = self.attempt(keywords, end, steps)
-            if trial:
-                rungs[steps] = (trial, judge(trial))
-            return rungs[steps][1] if trial else None
+            rungs[steps] = self.add(costs, keywords, steps)
+            return rungs[steps]
 
         exponent, error = 0, climb(0)
         while error is not None and error < 3 * max(errors):
@@ -270,7 +277,7 @@ class Study:
             if steps < FEWEST_STEPS or not self.affords(keywords, steps, reserve):
                 break
             error = climb(exponent)
-        exponent, last = 0, [rungs[first][1]] if first in rungs else []
+        exponent, last = 0, [] if rungs[first] is None else [rungs[first]]
         while not last or last[-1] > min(errors) / 1.2:
             exponent += 1
             if not self.affords(keywords, round(first * ratio**exponent), reserve) or exponent > 40:
@@ -279,10 +286,10 @@ class Study:
             last += [] if error is None else [error]
             if len(last) > 3 and last[-1] > 0.8 * last[-4]:  # rounding, or no order at all
                 break
-        return [rungs[steps] for steps in sorted(rungs)]
+        return {steps: error for steps, error in rungs.items() if error is not None}
 
-    def climb_all(self, costs, judge, errors, tries):
-        """Trials of all methods into ``costs``; ``judge(trial)`` gives one error for each of NORMS."""
+    def climb_all(self, costs, errors, tries):
+        """Trials of all methods into ``costs``."""
         methods = [None, *dict.fromkeys([*filter(self.deck.takes, METHODS), *tries])]
         middle = math.log(errors[0] * errors[-1]) / 2
         own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
@@ -294,28 +301,23 @@ class Study:
                 costs.notes.append(f"the budget leaves no time for {keywords or 'the own fix'}")
                 continue
             first = own_steps if keywords is None else gear_steps
-            known = lambda trial: judge(trial)[self.norm] + costs.doubt  # noqa: E731
-            rungs = self.ladder(keywords, costs.end, known, errors, first, reserve)
+            rungs = self.ladder(costs, keywords, errors, first, reserve)
             if rungs and keywords is not None:  # the next method begins in the middle
-                near = min(rungs, key=lambda rung: abs(math.log(rung[1] + 1e-300) - middle))
-                gear_steps = near[0].steps
-            costs.trials += [(trial, judge(trial)) for trial, _ in rungs]
+                gear_steps = min(rungs, key=lambda steps: abs(math.log(rungs[steps] + 1e-300) - middle))
             if not rungs and keywords in self.failures:
-                reason = self.failures[keywords]
-                costs.notes.append(f"no trial of {keywords} came to its end: {reason}")
+                costs.notes.append(f"no trial of {keywords} came to its end: {self.failures[keywords]}")
 
     # --- 3. the steps between -------------------------------------------------------------------------
-    def refine(self, costs, judge, errors):
+    def refine(self, costs, errors):
         """Further trials into ``costs``, at the steps that interpolation promises, as scripts have them."""
         reserve, methods = SHARE_TIMING / 2 * self.budget.seconds, list(costs.points())
         for error in ATTEMPTS * list(errors):
-            for keywords, price in candidates(costs.points(), error).items():
+            for keywords, price in evaluate.candidates(costs.points(), error).items():
                 # not finer than what is recommended if this trial holds the error
                 steps = int(costs.end / evaluate.usable_step(price.aim))
                 loose = price.kind == "at most" and price.aim > evaluate.CLOSE * price.dt
                 if loose and steps and self.affords(keywords, steps, reserve):
-                    trial = self.attempt(keywords, costs.end, steps)
-                    costs.trials += [(trial, judge(trial))] if trial else []
+                    self.add(costs, keywords, steps)
         costs.trials.sort(key=lambda pair: (methods.index(pair[0].keywords), pair[0].steps))
 
     # --- 4. the wall time -----------------------------------------------------------------------------
@@ -356,21 +358,17 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     if reason:
         costs.notes.append(f"{reason} allows trials until t = {whole:g}, and the run ends at {deck.end:g}")
     costs.notes += [cut] if cut else []
-
-    def judge(trial):
-        known = reference.positions[last], reference.center[last]
-        return study.errors(trial.positions[-1], trial.center[-1], *known)
-
+    study.truth = reference.positions[last], reference.center[last]
     judged = [error for error in errors if error > costs.doubt_limit]
     wanted = judged or errors[:1]
-    study.climb_all(costs, judge, wanted, tries)
+    study.climb_all(costs, wanted, tries)
     if not costs.trials:
         enough = before + RUNS_IN_BUDGET * study.expected(None, SAMPLES)
         raise DeckError(
             f"a step takes {study.pace[None]:.2g} s, so {budget.seconds:g} s are too few to compare methods:"
             f" try --budget {float(f'{enough:.2g}'):g}"
         )
-    study.refine(costs, judge, wanted)
+    study.refine(costs, wanted)
     for _ in range(ATTEMPTS):  # other methods may matter when times are known better
         study.repeat(worth_timing(costs, wanted))
     fill_rows(costs, errors)
@@ -379,11 +377,16 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     return costs
 
 
+def judged_at(doubt, error):
+    """Indices of the samples up to which an error can be judged."""
+    return np.flatnonzero(MARGIN * np.maximum.accumulate(doubt) < error)
+
+
 def known_until(time, doubt, errors):
     """Until what time errors that cannot be judged at the end could be: list of notes."""
     notes = []
     for error in errors:
-        known = np.flatnonzero(MARGIN * np.maximum.accumulate(doubt) < error)
+        known = judged_at(doubt, error)
         until = f"only until t = {time[known[-1]]:g}" if len(known) else f"not at t = {time[0]:g}"
         notes.append(f"the trajectory is known well enough to judge an error of {error:g} {until}")
     return notes
@@ -409,7 +412,7 @@ def cut_to(time, doubt, errors):
     """
     last = len(time) - 1
     for error in sorted(errors):
-        good = np.flatnonzero(MARGIN * np.maximum.accumulate(doubt) < error)
+        good = judged_at(doubt, error)
         if len(good) and (good[-1] + 1) / len(time) >= SHORTEST:
             if good[-1] == last:
                 return last, ""
@@ -424,25 +427,11 @@ def cut_to(time, doubt, errors):
     )
 
 
-def candidates(points, error):
-    """Keywords -> Price of ``error`` with the methods that matter, as far as they reach it.
-
-    The deck's own (None), and the two fastest by seconds and by evaluations at the interpolated steps.
-    """
-    prices = {key: evaluate.price(own, error, key is None) for key, own in points.items()}
-    prices = {key: price for key, price in prices.items() if price}
-    kept = {None}
-    for cost in ("seconds", "evaluations"):
-        at_aim = {key: getattr(p, cost) * p.dt / p.aim for key, p in prices.items() if key is not None}
-        kept.update(sorted(at_aim, key=at_aim.get)[:2])
-    return {key: prices[key] for key in prices if key in kept}
-
-
 def worth_timing(costs, errors):
     """Trials that the prices of ``errors`` are those of, or are extrapolated from."""
     chosen, points = {}, costs.points()
     for error in errors:
-        for keywords, price in candidates(points, error).items():
+        for keywords, price in evaluate.candidates(points, error).items():
             mine = [trial for trial, _ in costs.trials if trial.keywords == keywords]
             mine.sort(key=lambda trial: abs(math.log(trial.dt / price.dt)))
             chosen |= {id(trial): trial for trial in mine[: 2 if price.kind == "extrapolated" else 1]}
@@ -453,7 +442,7 @@ def fill_rows(costs, errors):
     """One row for each error: what it costs with the deck's own method, and at best."""
     points = costs.points()
     for error in errors:
-        prices = candidates(points, error) if error > costs.doubt_limit else {}
+        prices = evaluate.candidates(points, error) if error > costs.doubt_limit else {}
         own = prices.pop(None, None)
         best = min(prices.values(), key=lambda price: price.seconds, default=None)
         costs.rows.append(Row(error, own, best))

@@ -105,6 +105,20 @@ def _extrapolated(finer, coarser, error):
     return Price(finer.method, along("dt"), *cost, error, *starts, "extrapolated", along("dt"))
 
 
+def candidates(points, error):
+    """Keywords -> Price of ``error`` with the methods that matter, as far as they reach it.
+
+    The deck's own (None), and the two fastest by seconds and by evaluations at the interpolated steps.
+    """
+    prices = {key: price(own, error, key is None) for key, own in points.items()}
+    prices = {key: found for key, found in prices.items() if found}
+    kept = {None}
+    for cost in ("seconds", "evaluations"):
+        at_aim = {key: getattr(p, cost) * p.dt / p.aim for key, p in prices.items() if key is not None}
+        kept.update(sorted(at_aim, key=at_aim.get)[:2])
+    return {key: prices[key] for key in prices if key in kept}
+
+
 # --- how a difference grows -----------------------------------------------------------------------
 @dataclass(frozen=True)
 class Growth:

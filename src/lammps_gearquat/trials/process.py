@@ -150,15 +150,10 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
     lammps = _open(deck, variables, log)
     try:
         replay(lammps, Path(log).parent, start, lines, need_map)
-        for command in (
-            COMPUTE_SITES,
-            f"timestep {dt:.17g}",
-            "thermo 0",
-            "thermo_style custom step",
-            *([f"thermo_modify {' '.join(start.lost)}"] if start.lost else []),
-            "timer loop",
-        ):
-            lammps.command(command)
+        commands = [COMPUTE_SITES, f"timestep {dt:.17g}", "timer loop"]
+        commands += ["thermo 0", "thermo_style custom step"]
+        commands += [f"thermo_modify {' '.join(start.lost)}"] if start.lost else []
+        lammps.commands_list(commands)
         now = lammps.extract_global("ntimestep")
         ramp = f"start {now} stop {now + max(ramp_steps, sum(segments))}"
         samples, seconds = [], 0.0
