@@ -77,11 +77,12 @@ class Bodies : protected Pointers {
     double arm_body[3];
     double wrap[3];    ///< what its image flags take from its unwrapped position
   };
-  struct Placed {    ///< where and how fast a site is by the state of its body
-    double x[3], v[3];
-    double length, speed;    ///< what rounding of x and v is relative to
+  struct Expected {    ///< position or velocity of a site by the state of its body
+    double value[3];
+    double size;    ///< what its rounding is relative to
   };
-  Placed placed(const Site &site) const;
+  Expected expected_position(const Site &site) const;
+  Expected expected_velocity(const Site &site) const;
   // True if place or velocity of the atom are those of its body, up to rounding.
   bool is_there(const Site &site) const;
   bool is_as_fast(const Site &site) const;

@@ -181,40 +181,45 @@ void Census::look_for_tears(const SiteCount *sites, int n, const SiteCount &owne
    what this rank knows of its atoms
 ------------------------------------------------------------------------- */
 
-Bodies::Placed Bodies::placed(const Site &site) const
+Bodies::Expected Bodies::expected_position(const Site &site) const
 {
   const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
-  const BodyState &s = state[site.body];
-  double arm[3], spin[3];
-  Placed there;
+  const double *center = state[site.body].center;
+  double arm[3];
+  Expected x;
   to_space(frame[site.body].axes, site.arm_body, arm);
-  cross3(frame[site.body].omega_space, arm, spin);
-  for (int k = 0; k < 3; ++k) {
-    there.x[k] = s.center[k] + arm[k] - site.wrap[k];
-    there.v[k] = s.velocity[k] + spin[k];
-  }
-  there.length = box + std::sqrt(dot3(s.center, s.center) + dot3(site.wrap, site.wrap));
-  there.speed = length(s.velocity) + length(spin);
-  return there;
+  for (int k = 0; k < 3; ++k) x.value[k] = center[k] + arm[k] - site.wrap[k];
+  x.size = box + std::sqrt(dot3(center, center) + dot3(site.wrap, site.wrap));
+  return x;
 }
 
-static bool same(const double *a, const double *b, double size)
+Bodies::Expected Bodies::expected_velocity(const Site &site) const
+{
+  const double *velocity = state[site.body].velocity;
+  double arm[3], spin[3];
+  Expected v;
+  to_space(frame[site.body].axes, site.arm_body, arm);
+  cross3(frame[site.body].omega_space, arm, spin);
+  for (int k = 0; k < 3; ++k) v.value[k] = velocity[k] + spin[k];
+  v.size = length(velocity) + length(spin);
+  return v;
+}
+
+static bool same(const double *a, const Bodies::Expected &expected)
 {
   for (int k = 0; k < 3; ++k)
-    if (!(std::fabs(a[k] - b[k]) <= SAME * size)) return false;
+    if (!(std::fabs(a[k] - expected.value[k]) <= SAME * expected.size)) return false;
   return true;
 }
 
 bool Bodies::is_there(const Site &site) const
 {
-  const Placed there = placed(site);
-  return same(atom->x[site.atom], there.x, there.length);
+  return same(atom->x[site.atom], expected_position(site));
 }
 
 bool Bodies::is_as_fast(const Site &site) const
 {
-  const Placed there = placed(site);
-  return same(atom->v[site.atom], there.v, there.speed);
+  return same(atom->v[site.atom], expected_velocity(site));
 }
 
 bool Bodies::atoms_match()
@@ -249,10 +254,10 @@ void Bodies::describe(const Site &site, SiteCount &count) const
   const double mass = atom_mass(site.atom), r2 = dot3(arm, arm);
   if (owned[site.atom] >= 0)
     std::copy_n(body[owned[site.atom]].rigid.inertia, 3, count.body_moments);
-  const Placed there = placed(site);
+  const Expected there = expected_position(site);
   for (int k = 0; k < 3; ++k) {
     count.first[k] = mass * arm[k];
-    count.expected[k] = there.x[k] + site.wrap[k];
+    count.expected[k] = there.value[k] + site.wrap[k];
     count.found[k] = atom->x[site.atom][k] + site.wrap[k];
   }
   double own_space[9] = {}, unused[3], own[9];

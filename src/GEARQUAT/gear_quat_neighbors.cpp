@@ -261,10 +261,10 @@ std::vector<int> Neighbors::take_velocities(bigint step, bool end)
 
   tagint torn = 0;
   for (const auto &site : bodies.sites) {
-    const Bodies::Placed placed = bodies.placed(site);
+    const Bodies::Expected v = bodies.expected_velocity(site);
     double off[3];
-    for (int k = 0; k < 3; ++k) off[k] = atom->v[site.atom][k] - placed.v[k];
-    if (!(length(off) <= RIGID * placed.speed)) torn = bodies.body_at(site.body).id;
+    for (int k = 0; k < 3; ++k) off[k] = atom->v[site.atom][k] - v.value[k];
+    if (!(length(off) <= RIGID * v.size)) torn = bodies.body_at(site.body).id;
   }
   torn = over_ranks(MPI_MAX, torn, world);
   if (!torn) return changed;
@@ -294,10 +294,9 @@ bool Neighbors::gather_impulses()
   std::fill_n(impulse[0], 3 * ((size_t) atom->nlocal + 1), 0.0);
   std::fill_n(twist[0], 3 * ((size_t) atom->nlocal + 1), 0.0);
   for (const auto &site : bodies.sites) {
-    const Bodies::Placed placed = bodies.placed(site);
+    const Bodies::Expected v = bodies.expected_velocity(site);
     const double mass = bodies.atom_mass(site.atom) / force->ftm2v;
-    for (int k = 0; k < 3; ++k)
-      impulse[site.atom][k] = mass * (atom->v[site.atom][k] - placed.v[k]);
+    for (int k = 0; k < 3; ++k) impulse[site.atom][k] = mass * (atom->v[site.atom][k] - v.value[k]);
   }
   bodies.gather_loads(impulse, twist);
   memory->destroy(impulse);
@@ -312,7 +311,8 @@ bool Neighbors::gather_impulses()
 void Neighbors::check_velocities()
 {
   if (warned_change || bodies.sites.empty()) return;
-  const auto &site = bodies.sites[++sample % bodies.sites.size()];
+  if (++sample >= bodies.sites.size()) sample = 0;
+  const auto &site = bodies.sites[sample];
   if (!bodies.is_as_fast(site)) tell(site, "velocity");
 }
 
@@ -329,8 +329,8 @@ void Neighbors::check_places()
                    update->ntimestep);
     return;
   }
-  if (warned_change || bodies.sites.empty()) return;
-  const auto &site = bodies.sites[sample % bodies.sites.size()];
+  if (warned_change || sample >= bodies.sites.size()) return;
+  const auto &site = bodies.sites[sample];
   if (!bodies.is_there(site)) tell(site, "place");
 }
 
