@@ -149,12 +149,13 @@ def _points(option, path, others=""):
     import numpy as np
 
     try:
-        points, reason = np.loadtxt(path, ndmin=2), ""
+        points = np.loadtxt(path, ndmin=2)
+        if points.shape[1] != 3:
+            raise ValueError(f"it has {points.shape[1]} columns")
+        return points
     except (OSError, ValueError) as error:
-        points, reason = np.empty((0, 0)), f": {error}"
-    if points.shape[1] != 3:
-        raise ValueError(f"{option} {path}: {others}a file with x y z in each line is required{reason}")
-    return points
+        required = f"{others}a file with x y z in each line is required"
+        raise ValueError(f"{option} {path}: {required}: {error}") from error
 
 
 def _run(dump, out, frames, converted, options):

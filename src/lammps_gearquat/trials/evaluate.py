@@ -83,7 +83,8 @@ def price(points, error, extrapolate=False):
     while last + 1 < len(points) and points[last + 1].error <= error:
         last += 1
     best, kind, aim = points[last], "at most", points[last].dt
-    for coarser in points[last + 1 : last + 2]:
+    if last + 1 < len(points):
+        coarser = points[last + 1]
         ratio, rise = coarser.dt / best.dt, math.log(coarser.error / best.error)
         smooth = rise < CLIFF * math.log(ratio)
         aim *= ratio ** (math.log(error / best.error) / rise if smooth else 0.5)
@@ -95,14 +96,10 @@ def price(points, error, extrapolate=False):
 def _extrapolated(finer, coarser, error):
     """Price on the log-log line through two points."""
     share = math.log(error / finer.error) / math.log(coarser.error / finer.error)
-
-    def along(name):
-        begin, end = getattr(finer, name), getattr(coarser, name)
-        return begin * (end / begin) ** share
-
-    starts = finer.start_evaluations, finer.start_seconds
-    cost = along("evaluations"), along("seconds")
-    return Price(finer.method, along("dt"), *cost, error, *starts, "extrapolated", along("dt"))
+    begin, end = vars(finer), vars(coarser)
+    names = ("dt", "evaluations", "seconds", "error")
+    line = {name: begin[name] * (end[name] / begin[name]) ** share for name in names}
+    return Price(**(begin | line), kind="extrapolated", aim=line["dt"])
 
 
 def candidates(points, error):
