@@ -94,7 +94,7 @@ def _draw_prices(axis, name, costs):
     chosen = [row for row in costs.rows if row.choice]
     axis.plot(
         [getattr(row.choice, name) / costs.end for row in chosen],
-        [row.error for row in chosen],
+        [row.choice.error for row in chosen],
         "*",
         color="black",
         markersize=9,
