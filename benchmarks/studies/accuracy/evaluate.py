@@ -61,7 +61,7 @@ def fitted_order(steps, errors, limit=np.inf):
     used = asymptotic(steps, errors, limit)
     if used.sum() < FEWEST_POINTS:
         return None
-    line = theilslopes(np.log(errors[used]), np.log(steps[used]), CONFIDENCE)
+    line = theilslopes(np.log(errors[used]), np.log(steps[used]), CONFIDENCE, "joint")
     error = 0.5 * (line.high_slope - line.low_slope)
     return Fit(float(line.slope), float(error), float(np.exp(line.intercept)), used)
 

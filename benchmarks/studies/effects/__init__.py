@@ -138,4 +138,4 @@ def find(results):
     return Finding([*idle, more], tables, {"effects": panels(results)}, context)
 
 
-STUDY = Study("effects", "What each effect costs", 300.0, measure, find)
+STUDY = Study("effects", "What each effect costs", 120.0, measure, find)
