@@ -387,8 +387,8 @@ def known_until(time, doubt, errors):
     notes = []
     for error in errors:
         known = judged_at(doubt, error)
-        until = f"only until t = {time[known[-1]]:g}" if len(known) else f"not at t = {time[0]:g}"
-        notes.append(f"the trajectory is known well enough to judge an error of {error:g} {until}")
+        until = f"only until t = {time[known[-1]]:g}" if len(known) else f"not even until t = {time[0]:g}"
+        notes.append(f"an error of {error:g} can be judged {until}: the two best trials differ by more")
     return notes
 
 
