@@ -20,8 +20,8 @@
 #define GEAR_QUAT_INTEGRATOR_H
 
 #include "gear_quat_gauss.h"
-#include "gear_quat_nordsieck.h"
 #include "gear_quat_rigid_body.h"
+#include "gear_quat_tuned.h"
 
 #include <array>
 
@@ -30,26 +30,21 @@ namespace LAMMPS_NS::GearQuat {
 /// What the corrector tells of a step.
 struct Correction {
   double work;    ///< of the load along the way from the predicted to the corrected pose
-  double position_residual2, quaternion_residual2;    ///< squared, summed over the passes
-  double error_weight;                                ///< of a residual in the local error
+  double position_error2, quaternion_error2;    ///< squared estimates of the local errors
 
   /// Estimated local error of the center of mass, length.
-  double position_error() const { return error_weight * std::sqrt(position_residual2); }
+  double position_error() const { return std::sqrt(position_error2); }
   /// Estimated local error of the orientation, radians.
-  double angle_error() const { return 2.0 * error_weight * std::sqrt(quaternion_residual2); }
+  double angle_error() const { return 2.0 * std::sqrt(quaternion_error2); }
 };
 
 class Integrator {
  public:
-  /// h: the time step, not zero; negative runs backwards.
+  /// h: the time step, not zero; negative runs backwards.  Throws std::domain_error if the scheme
+  /// asks for tuned coefficients that do not exist.
   Integrator(const Scheme &scheme, double h) :
-      scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values())
+      scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values()), c(scheme)
   {
-    const Fractions exact = scheme.first() ? first_order_coefficients(n)
-                                           : second_order_coefficients(n, scheme.velocity_c0);
-    for (int j = 0; j < n; ++j) c[j] = exact[j].value();
-    error_weight =
-        (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
   }
 
   double step() const { return h; }
@@ -229,12 +224,12 @@ class Integrator {
     add_first(rows, Scheme::OMEGA, change);
   }
 
-  /// A scalar y with the step and the coefficients of the bodies, y' = rate: its n rows to t + h.
+  /// A scalar y with the step and the coefficients of the momenta, y' = rate: its n rows to t + h.
   void advance(double *rows_of_scalar, double rate) const
   {
     Nordsieck<1>::predict(rows_of_scalar, n);
     const double residual = h * rate - rows_of_scalar[1];
-    Nordsieck<1>::correct<1>(rows_of_scalar, n, c, 0, &residual);
+    Nordsieck<1>::correct<1>(rows_of_scalar, n, c.momentum.data(), 0, &residual);
   }
 
   /// Torque and moments of inertia have no part in it.
@@ -246,7 +241,7 @@ class Integrator {
       correct_center(history, body, load, Undamped(), rows, residual);
     });
     for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
-    return {dot3(load.force, dx), dot3(residual, residual), 0.0, error_weight};
+    return {dot3(load.force, dx), c.position_weight2 * dot3(residual, residual), 0.0};
   }
 
  private:
@@ -273,8 +268,7 @@ class Integrator {
   Scheme scheme;
   double h, per_h;
   int n;
-  double c[MAX_VALUES];
-  double error_weight;
+  CorrectorCoefficients c;
 
   /// What Gauss's principle adds to force and torque; nothing without a constraint.
   struct Undamped {
@@ -294,11 +288,11 @@ class Integrator {
 
   /// Residual of a column is target - row, row that of the order of the equation.
   template <int COUNT, class History>
-  void feed_back(History history, double *rows, const double *row, int component, double *target,
-                 double *total = nullptr) const
+  void feed_back(History history, const CorrectorCoefficients::Array &coefficients, double *rows,
+                 const double *row, int component, double *target, double *total = nullptr) const
   {
     for (int i = 0; i < COUNT; ++i) target[i] -= row[component + i];
-    history.template correct<COUNT>(rows, n, c, component, target);
+    history.template correct<COUNT>(rows, n, coefficients.data(), component, target);
     if (total)
       for (int i = 0; i < COUNT; ++i) total[i] += target[i];
   }
@@ -312,10 +306,10 @@ class Integrator {
     double before[3], target[3];
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i) target[i] = h * damper.force(load.force[i], before[i]);
-    feed_back<3>(history, rows, rates, Scheme::MOMENTUM, target);
+    feed_back<3>(history, c.momentum, rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
-    feed_back<3>(history, rows, rates, Scheme::POSITION, target, residual);
+    feed_back<3>(history, c.position, rows, rates, Scheme::POSITION, target, residual);
   }
 
   /// Angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16).
@@ -331,10 +325,10 @@ class Integrator {
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * before[i]);
     angular_acceleration(body, torque, before, target);
     for (int i = 0; i < 3; ++i) target[i] *= h;
-    feed_back<3>(history, rows, rates, Scheme::OMEGA, target);
+    feed_back<3>(history, c.omega, rows, rates, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
-    feed_back<4>(history, rows, rates, quat, target, residual);
+    feed_back<4>(history, c.quaternion, rows, rates, quat, target, residual);
   }
 
   template <int CARRIES>
@@ -363,8 +357,9 @@ class Integrator {
     for (int i = 0; i < 4; ++i) dq[i] = q[i] - pending.q[i];
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
     const Residual &total = pending.total;
-    return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body), dot3(total.x, total.x),
-            dot4(total.q, total.q), error_weight};
+    return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body),
+            c.position_weight2 * dot3(total.x, total.x),
+            c.quaternion_weight2 * dot4(total.q, total.q)};
   }
 
   /// Positions (Eq. 17): forces stay, so one pass is all.
@@ -376,7 +371,7 @@ class Integrator {
     const double half_h2 = 0.5 * h * h;
     double target[3];
     for (int i = 0; i < 3; ++i) target[i] = half_h2 * load.force[i] / body.mass;
-    feed_back<3>(history, rows, seconds, Scheme::POSITION, target, residual);
+    feed_back<3>(history, c.position, rows, seconds, Scheme::POSITION, target, residual);
   }
 
   template <int CARRIES>
@@ -399,7 +394,7 @@ class Integrator {
       angular_acceleration(body, pending.torque_body, omega_body, omegadot_body);
       quaternion_acceleration(q, qdot, omegadot_body, target);
       for (int i = 0; i < 4; ++i) target[i] *= half_h2;
-      feed_back<4>(history, rows, seconds, quat, target, total.q);
+      feed_back<4>(history, c.quaternion, rows, seconds, quat, target, total.q);
     }
     if (!scheme.project) return;
 

@@ -28,6 +28,7 @@ struct Scheme {
   Formulation formulation = Formulation::SECOND;
   int rows = 0;                    ///< values kept; 0: as many as the paper
   int passes = 1;                  ///< corrections with the same forces
+  bool tuned = false;              ///< coefficients of gear_quat_tuned.h, otherwise Gear's
   bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
   bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)

@@ -1,0 +1,246 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Tuned coefficients of the corrector.
+
+   Gear's numbers put every spurious root of the corrector at zero.  Order does not ask for this: of
+   the N coefficients it determines one (first-order equation, c_0) or two (second-order, c_0 and c_1),
+   and one is 1 by definition.  The others, the tail, are free, and the table below chooses them for
+   rigid bodies.  Its tails are decimals; what order determines is solved for from them.
+
+   Order conditions.  Let the right side be given in time and its solution be a polynomial of degree N,
+   y_N = h^N/N! y^(N) = 1 for all times.  The rows then deviate from the exact ones, y_j = exact + e_j,
+   by an e_j that is steady above row q - 1 (q: the order of the equation), with a steady residual r:
+
+     row N-1           c_(N-1) r = N
+     rows N-2 ... q    sum_(k>j) binom(k, j) e_k = binom(N, j) - c_j r,   e_q = 0
+     row q-1           its deviation does not grow if
+                       c_(q-1) r = binom(N, q-1) - sum_(k>=q) binom(k, q-1) e_k             (1)
+
+   For q = 1 this makes order N.  For q = 2 it makes order N - 1, and one degree more determines c_0.
+   With y_(N+1) = 1, y_N = (N + 1) n after n steps, deviations and residual are (N + 1) e_j n + b_j
+   and (N + 1) r n + s:
+
+     row N-1           c_(N-1) s = binom(N+1, N-1) + (N + 1) e_(N-1)
+     rows N-2 ... 2    sum_(k>j) binom(k, j) b_k = binom(N+1, j) - c_j s + (N + 1) e_j,   b_2 = 0
+     row 1             grows by g = sum_(k>=2) k b_k - (N + 1) + c_1 s in a step
+
+   and the predicted position, the one that forces see, has the right second derivative if
+
+     c_0 r = 1 - sum_(k>=2) e_k - g/(N + 1)                                                 (2)
+
+   Gear's c_0 and c_1 are the solutions for Gear's tails (tests/unit/test_tuned.cpp). */
+
+#ifndef GEAR_QUAT_TUNED_H
+#define GEAR_QUAT_TUNED_H
+
+#include "gear_quat_nordsieck.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS::GearQuat {
+
+/// Columns of a history that have coefficients of their own; the second formulation has two of them.
+enum class Columns { MOMENTUM, POSITION, OMEGA, QUATERNION };
+
+// ---------------------------------------------------------------------------------------------
+// order conditions
+// ---------------------------------------------------------------------------------------------
+
+/// Steady deviations of the rows, for coefficients of an equation of order q = 1 or 2.
+class SteadyDeviations {
+ public:
+  /// c: N coefficients, of which those from row q on are used.
+  SteadyDeviations(int q, const std::vector<long double> &c) :
+      q(q), n((int) c.size()), residual(n / c[n - 1]), e(descend(c, n, residual, {}))
+  {
+  }
+
+  /// c_(q-1) by Eq. (1).
+  long double consistent() const { return (binomial(n, q - 1) - sum(q - 1, e)) / residual; }
+
+  /// c_0 of a second-order equation by Eq. (2); c: with c_1.
+  long double position_c0(const std::vector<long double> &c) const
+  {
+    const long double s = (binomial(n + 1, n - 1) + (n + 1) * e[n - 1]) / c[n - 1];
+    const auto b = descend(c, n + 1, s, e);
+    const long double growth = sum(1, b) - (n + 1) + c[1] * s;
+    return (1.0L - (sum(0, e) + growth / (n + 1))) / residual;
+  }
+
+  /// What a step adds to row 0 of a second-order equation beyond the exact motion from where it
+  /// began, as a part of the residual.
+  long double local_error(long double c0) const { return c0 + (sum(0, e) - 1.0L) / residual; }
+
+ private:
+  using Rows = std::vector<long double>;
+  int q, n;
+  long double residual;
+  Rows e;
+
+  static long double binomial(int m, int k)
+  {
+    long double b = 1.0L;
+    for (int i = 1; i <= k; ++i) b = b * (m - k + i) / i;
+    return b;
+  }
+
+  /// Sum over k > j of binom(k, j) d_k.
+  long double sum(int j, const Rows &d) const
+  {
+    long double total = 0.0L;
+    for (int k = n - 1; k > j; --k) total += binomial(k, j) * d[k];
+    return total;
+  }
+
+  /// Rows N-2 ... q for an exact solution of this degree; slope: e where deviations grow, or empty.
+  Rows descend(const Rows &c, int degree, long double residual, const Rows &slope) const
+  {
+    Rows d(n, 0.0L);
+    for (int j = n - 2; j >= q; --j) {
+      const long double growth = slope.empty() ? 0.0L : degree * slope[j];
+      d[j + 1] = (binomial(degree, j) - c[j] * residual + growth - sum(j, d)) / (j + 1);
+    }
+    return d;
+  }
+};
+
+// ---------------------------------------------------------------------------------------------
+// the table
+// ---------------------------------------------------------------------------------------------
+
+/// What is free of the coefficients of some columns.
+struct TunedSet {
+  static constexpr long double SOLVED = std::numeric_limits<long double>::quiet_NaN();
+
+  Formulation formulation;
+  std::vector<Columns> columns;     ///< that have these
+  std::vector<long double> tail;    ///< c_2 ... c_(N-1) of formulation first, c_3 ... of second
+  long double c0 = SOLVED;          ///< where order does not determine it
+
+  int values() const { return (int) tail.size() + (formulation == Formulation::FIRST ? 2 : 3); }
+
+  /// All N.
+  std::vector<long double> coefficients() const
+  {
+    const int q = formulation == Formulation::FIRST ? 1 : 2;
+    std::vector<long double> c(q, 0.0L);
+    c.push_back(1.0L);
+    c.insert(c.end(), tail.begin(), tail.end());
+    const SteadyDeviations deviations(q, c);
+    c[q - 1] = deviations.consistent();
+    if (q == 2) c[0] = deviations.position_c0(c);
+    if (!std::isnan(c0)) c[0] = c0;
+    return c;
+  }
+};
+
+/// Formulation first: momenta and angular velocities are driven by forces, positions and quaternions
+/// integrate them.
+inline const std::vector<TunedSet> &tuned_sets()
+{
+  constexpr Formulation FIRST = Formulation::FIRST, SECOND = Formulation::SECOND;
+  static const std::vector<Columns> ALL = {Columns::MOMENTUM, Columns::POSITION, Columns::OMEGA,
+                                           Columns::QUATERNION},
+                                    BOTH = {Columns::POSITION, Columns::QUATERNION};
+  static const std::vector<TunedSet> sets = {
+      // Gear's tails, until others are here
+      {FIRST, ALL, {1 / 2.0L}},
+      {FIRST, ALL, {3 / 4.0L, 1 / 6.0L}},
+      {FIRST, ALL, {11 / 12.0L, 1 / 3.0L, 1 / 24.0L}},
+      {FIRST, ALL, {25 / 24.0L, 35 / 72.0L, 5 / 48.0L, 1 / 120.0L}},
+      {FIRST, ALL, {137 / 120.0L, 5 / 8.0L, 17 / 96.0L, 1 / 40.0L, 1 / 720.0L}},
+      {SECOND, BOTH, {1 / 3.0L}},
+      {SECOND, BOTH, {1 / 2.0L, 1 / 12.0L}},
+      {SECOND, BOTH, {11 / 18.0L, 1 / 6.0L, 1 / 60.0L}},
+      {SECOND, BOTH, {25 / 36.0L, 35 / 144.0L, 1 / 24.0L, 1 / 360.0L}},
+      {SECOND, BOTH, {137 / 180.0L, 5 / 16.0L, 17 / 240.0L, 1 / 120.0L, 1 / 2520.0L}},
+  };
+  return sets;
+}
+
+/// Null if there is none.
+inline const TunedSet *tuned_set(Formulation formulation, int values, Columns columns)
+{
+  for (const TunedSet &set : tuned_sets())
+    if (set.formulation == formulation && set.values() == values &&
+        std::count(set.columns.begin(), set.columns.end(), columns))
+      return &set;
+  return nullptr;
+}
+
+/// Numbers of values that have tuned coefficients, from the smallest on.
+inline std::vector<int> tuned_values(Formulation formulation)
+{
+  std::vector<int> values;
+  for (int n = 0; n <= MAX_VALUES; ++n)
+    if (tuned_set(formulation, n, Columns::POSITION)) values.push_back(n);
+  return values;
+}
+
+// ---------------------------------------------------------------------------------------------
+// what the integrator works with
+// ---------------------------------------------------------------------------------------------
+
+/// Coefficients of all columns, and the weights of residuals in the local error.
+struct CorrectorCoefficients {
+  using Array = std::array<double, MAX_VALUES>;
+
+  Array momentum = {}, position = {}, omega = {}, quaternion = {};    ///< second: the middle ones
+  double position_weight2, quaternion_weight2;                        ///< squared
+
+  /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned set.
+  explicit CorrectorCoefficients(const Scheme &scheme)
+  {
+    position_weight2 = square(fill(scheme, Columns::POSITION, position));
+    quaternion_weight2 = square(fill(scheme, Columns::QUATERNION, quaternion));
+    if (!scheme.first()) return;
+    fill(scheme, Columns::MOMENTUM, momentum);
+    fill(scheme, Columns::OMEGA, omega);
+  }
+
+ private:
+  static double square(double x) { return x * x; }
+
+  /// Returns the weight of the residual in the local error.
+  static double fill(const Scheme &scheme, Columns columns, Array &c)
+  {
+    return scheme.tuned ? fill_tuned(scheme, columns, c) : fill_gear(scheme, c);
+  }
+
+  static double fill_gear(const Scheme &scheme, Array &c)
+  {
+    const int n = scheme.values();
+    const Fractions exact = scheme.first() ? first_order_coefficients(n)
+                                           : second_order_coefficients(n, scheme.velocity_c0);
+    for (int j = 0; j < n; ++j) c[j] = exact[j].value();
+    return (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
+  }
+
+  /// First-order equation: h^N y^(N) has the weight that it has with Gear's coefficients.
+  static double fill_tuned(const Scheme &scheme, Columns columns, Array &c)
+  {
+    const int n = scheme.values();
+    const TunedSet *set = tuned_set(scheme.formulation, n, columns);
+    if (!set)
+      throw std::domain_error("there are no tuned coefficients for " + std::to_string(n) +
+                              " values");
+    const std::vector<long double> exact = set->coefficients();
+    for (int j = 0; j < n; ++j) c[j] = double(exact[j]);
+    if (!scheme.first()) return double(std::fabs(SteadyDeviations(2, exact).local_error(exact[0])));
+    return first_order_error_weight(n).value() * std::tgamma(n) * c[n - 1];
+  }
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif
