@@ -9,6 +9,7 @@ double.  What there is, and how it is used::
     )
     from benchmarks.reference.lammps_forces import LammpsForces, deck_problem, DeckError
     from benchmarks.reference.solvers import state_errors, work_precision
+    from benchmarks.reference import splittings
 
     problem = paper_problem(1, "consistent")         # the cage; or case 3, or "unrotated"
     problem = deck_problem("in.water", {"dt": 0.5})  # any script; every molecule a rigid body
@@ -29,6 +30,8 @@ double.  What there is, and how it is used::
     errors = state_errors(problem, end, other_state)
     points = work_precision(problem, 200.0, end, "DOP853", tolerances)  # or "LSODA"
     points[0].evaluations, points[0].errors
+    # the same of splittings with exact free rotation, by their numbers of steps
+    points = splittings.work_precision(problem, 200.0, end, splittings.SPLITTINGS[1], numbers)
 
 State of a body: center of mass and velocity in space axes; q in the paper's order (vector part
 first, scalar last; A(q) of Eq. 8 turns space into body axes); omega_body along the principal axes,
@@ -40,7 +43,7 @@ name made of the problem's content.
 Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
 lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
 (Gragg-Bulirsch-Stoer); free_top.py (exact); store.py (cache); solvers.py (errors; SciPy);
-stability.py (stable steps of Gear's methods for a linear equation).
+splittings.py (symmetric Runge-Kutta-Nystroem); stability.py (stable steps of Gear's methods for a linear equation).
 """
 
 from .equations import Problem, RigidBodies, State, bodies_from_sites

@@ -191,22 +191,30 @@ class Problem:
         arms = self._arms_space(qt.rotation_space_body(state.q))
         return state.center[self.bodies.body] + arms
 
+    def forces(self, center, rotation):
+        """Potential energy; force in space axes and torque in body axes, (B, 3) each.
+
+        ``center`` (B, 3), ``rotation`` (B, 3, 3) body -> space.  Force over mass and torque over moment
+        of inertia are rates of change: the factor of the units is applied.
+        """
+        arms = self._arms_space(rotation)
+        energy, forces = self.field.energy_and_forces(center[self.bodies.body] + arms)
+        forces = np.asarray(forces, dtype=center.dtype)
+        force = np.add.reduceat(forces, self._first, axis=0)
+        torque_space = np.add.reduceat(qt.cross(arms, forces), self._first, axis=0)
+        torque_body = (torque_space[:, :, None] * rotation).sum(axis=1)
+        factor = center.dtype.type(self.field.force_to_acceleration)
+        return energy, factor * force, factor * torque_body
+
     def rates(self, _time, y):
         """Time derivative of a packed state, shape (B, 13)."""
         bodies, state = self.bodies, State.of(y)
         q, omega = state.q, state.omega_body
-        rotation = qt.rotation_space_body(q)
-        arms = self._arms_space(rotation)
-        _, site_forces = self.field.energy_and_forces(state.center[bodies.body] + arms)
-        site_forces = np.asarray(site_forces, dtype=y.dtype)
-        force = np.add.reduceat(site_forces, self._first, axis=0)
-        torque_space = np.add.reduceat(qt.cross(arms, site_forces), self._first, axis=0)
-        torque_body = (torque_space[:, :, None] * rotation).sum(axis=1)
-        factor = y.dtype.type(self.field.force_to_acceleration)
+        _, force, torque_body = self.forces(state.center, qt.rotation_space_body(q))
         gyroscopic = qt.cross(omega, bodies.moments * omega)
         spin = np.concatenate([omega, np.zeros_like(omega[:, :1])], axis=1)
-        acceleration = factor * force / bodies.masses[:, None]
-        omega_rate = (factor * torque_body - gyroscopic) / bodies.moments
+        acceleration = force / bodies.masses[:, None]
+        omega_rate = (torque_body - gyroscopic) / bodies.moments
         return State(state.velocity, acceleration, qt.product(q, spin) / 2, omega_rate).packed()
 
     def energies(self, state):

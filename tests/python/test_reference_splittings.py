@@ -1,0 +1,207 @@
+"""Splittings with exact free rotation: orders by slope, symmetry, the exact top, counted evaluations."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.reference import (
+    FreeField,
+    Problem,
+    RigidBodies,
+    State,
+    paper_problem,
+    reference_state,
+    splittings,
+)
+from benchmarks.reference.fields import LennardJonesUnits
+from benchmarks.reference.free_top import exact_state
+from benchmarks.reference.solvers import state_errors
+from benchmarks.reference.splittings import SPLITTINGS, FreeRotation, Motion, states
+
+LONG = np.longdouble
+LABELS = [splitting.label for splitting in SPLITTINGS]
+EVERY = pytest.mark.parametrize("splitting", SPLITTINGS, ids=LABELS)
+
+
+# --- order ----------------------------------------------------------------------------------------
+def oscillator(splitting, steps, end=4):
+    """x and v of x'' = -x - x^2/2 - x^3 after so many steps, in extended precision."""
+    x, v, h = LONG(1) / 2, LONG(1), LONG(end) / steps
+    for _ in range(steps):
+        for is_kick, part in splitting.parts:
+            if is_kick:
+                v -= part * h * (x + x * x / 2 + x * x * x)
+            else:
+                x += part * h * v
+    return np.array([x, v])
+
+
+def slopes(errors, counts):
+    """Orders between one count of steps and the next."""
+    return -np.diff(np.log(np.array(errors, dtype=float))) / np.diff(np.log(counts))
+
+
+def oscillator_order(splitting, evaluations=(600, 900)):
+    """Order that the errors of the oscillator show at two numbers of evaluations."""
+    counts = [n // splitting.stages for n in evaluations]
+    exact = oscillator(SPLITTINGS[-1], 1000)
+    return slopes([np.abs(oscillator(splitting, n) - exact).max() for n in counts], counts)[0]
+
+
+@EVERY
+def test_order_on_a_nonlinear_oscillator(splitting):
+    assert oscillator_order(splitting) == pytest.approx(splitting.order, abs=0.3)
+
+
+class Springs(LennardJonesUnits):
+    """Every site is tied to a place of its own by a spring that hardens: forces and torques."""
+
+    PLACES = np.array([[3, 1, 0], [0, -2, 1], [1, 0, 4], [-1, 2, 0]])
+
+    def energy_and_forces(self, positions):
+        gap = positions - self.PLACES
+        square = (gap * gap).sum(axis=1, keepdims=True)
+        return (square / 2 + square**2 / 40).sum(), -gap * (1 + square / 10)
+
+    def astype(self, _dtype):
+        return self
+
+    def fingerprint(self):
+        return b"springs"
+
+
+def driven_top():
+    """An asymmetric body of four sites in Springs."""
+    sites = np.array([[2, 0, 0.5], [-1, 1, 0], [0, -2, 1], [0.5, 0, -1]], dtype=LONG)
+    bodies = RigidBodies(np.zeros(4, int), LONG([5]), LONG([[7, 5, 3]]), sites)
+    q = LONG([[0.5, -0.5, 0.5, 0.5]])
+    spin, velocity = LONG([[0.7, -0.4, 0.9]]), LONG([[0.2, 0.1, -0.3]])
+    return Problem("driven top", bodies, Springs(), State(LONG([[1, 0, 0]]), velocity, q, spin))
+
+
+@EVERY
+def test_order_on_a_driven_top(splitting):
+    top, evaluations = driven_top(), {4: (600, 1200), 6: (600, 900), 8: (500, 800)}
+    counts = [n // splitting.stages for n in evaluations[splitting.order]]
+    exact = reference_state(top, 3.0)
+    points = splittings.work_precision(top, 3.0, exact, splitting, counts)
+    for get in (lambda e: e.rms_center, lambda e: e.rms_angle):
+        errors = [get(point.errors) for point in points]
+        assert slopes(errors, counts)[0] == pytest.approx(splitting.order, abs=0.5)
+        assert 1e-13 < errors[1] < 1e-5
+
+
+def spoiled(splitting, name, place):
+    """The Splitting with an error of 1 % in one entry and its mirror image; the sum stays 1."""
+    parts = np.array(getattr(splitting, name))
+    change = 0.01 * parts[place]
+    parts[[place, -1 - place]] += change
+    middle = [(len(parts) - 1) // 2, len(parts) // 2]
+    parts[middle] -= 2 * change / len(set(middle))
+    return replace(splitting, **{name: tuple(parts)})
+
+
+def all_entries():
+    """(splitting, which parts, place) of all entries that are free."""
+    for splitting in SPLITTINGS:
+        for name in ("kicks", "drifts"):
+            for place in range((len(getattr(splitting, name)) - 1) // 2):
+                yield pytest.param(splitting, name, place, id=f"{splitting.label}-{name}-{place}")
+
+
+@pytest.mark.parametrize("splitting, name, place", list(all_entries()))
+def test_a_wrong_coefficient_spoils_the_order(splitting, name, place):
+    wrong = spoiled(splitting, name, place)
+    assert sum(wrong.kicks) == pytest.approx(1) == sum(wrong.drifts)
+    assert oscillator_order(wrong) < splitting.order - 0.3
+
+
+# --- motion ---------------------------------------------------------------------------------------
+@EVERY
+def test_a_step_back_leads_to_the_start(splitting):
+    motion = Motion(driven_top())
+    start = motion.state.packed()
+    motion.advance(splitting, 0.3)
+    assert np.abs(motion.state.packed() - start).max() > 0.1
+    motion.advance(splitting, -0.3)
+    assert np.abs(motion.state.packed() - start).max() < 1e-13
+    wrong = replace(splitting, kicks=(1.01 * splitting.kicks[0], *splitting.kicks[1:]))
+    motion.advance(wrong, 0.3)
+    motion.advance(wrong, -0.3)
+    assert np.abs(motion.state.packed() - start).max() > 1e-6
+
+
+TOPS = [  # round the largest, the smallest axis, near the middle one, and fast
+    ((7, 5, 3), (2, 0.3, -0.1)),
+    ((7, 5, 3), (0.2, 0.1, -1.5)),
+    ((3, 7, 5), (0.1, -0.1, 1.2)),
+    ((3, 7, 5), (-40, 30, 20)),
+    ((5, 5, 3), (0.3, 1, 0.5)),
+    ((3, 5, 5), (0.3, 1, -0.5)),
+]
+
+
+@pytest.mark.parametrize("moments, omega", TOPS)
+@pytest.mark.parametrize("time", [-3.0, 1e-3, 0.4, 50.0])
+def test_a_free_top_turns_exactly(moments, omega, time):
+    sites = np.zeros((1, 3), dtype=LONG)
+    q, still = LONG([[0.1, -0.7, 0.1, 0.7]]), np.zeros((1, 3), dtype=LONG)
+    start = State(still, still, q, LONG([omega]))
+    bodies = RigidBodies(np.zeros(1, int), LONG([1]), LONG([moments]), sites)
+    free = Problem("top", bodies, FreeField(), start)
+    exact, motion = exact_state(free, time), Motion(free)
+    limit = 1e-13 * max(1, np.abs(omega).max() * abs(time))
+    for wrong in (1, 1.01):
+        motion = Motion(free)
+        motion.drift(wrong * time)
+        off = np.abs(motion.omega_body - exact.omega_body.astype(float)).max() / np.abs(omega).max()
+        angle = state_errors(free, exact, motion.state).rms_angle
+        assert max(off, angle) < limit if wrong == 1 else max(off, angle) > 1e3 * limit
+
+
+def test_motions_without_this_solution_are_refused():
+    with pytest.raises(ValueError, match="three equal moments"):
+        FreeRotation([[1, 1, 1]])
+    about_an_axis = np.array([[0.0, 0.0, 1.0]])
+    with pytest.raises(ValueError, match="not quite about a principal axis"):
+        FreeRotation([[3, 2, 1]])(np.eye(3)[None], about_an_axis, 1.0)
+
+
+# --- work -----------------------------------------------------------------------------------------
+@EVERY
+def test_every_evaluation_is_counted(splitting):
+    calls = []
+
+    class Counting(Springs):
+        def energy_and_forces(self, positions):
+            calls.append(1)
+            return super().energy_and_forces(positions)
+
+    found = states(driven_top().with_field(Counting()), 2.0, splitting, 6, every=2)
+    assert [evaluations for _, evaluations in found][-1] == len(calls)
+    # a step that begins with a kick needs one evaluation before it
+    assert len(calls) == 6 * splitting.stages + (len(splitting.kicks) > len(splitting.drifts))
+    assert splitting.stages == int(splitting.label.split()[-2])
+    (end, _), *_ = states(driven_top(), 2.0, splitting, 6)
+    assert (end.packed() == found[-1][0].packed()).all()
+
+
+def test_a_high_order_pays_at_small_errors():
+    """Test case 1: order 4 is ahead at few evaluations of the forces, order 6 at many."""
+    problem = paper_problem(1)
+    end = reference_state(problem, 200.0)
+
+    def errors(evaluations):
+        for splitting in SPLITTINGS[:2]:
+            counts = [evaluations // splitting.stages]
+            (point,) = splittings.work_precision(problem, 200.0, end, splitting, counts)
+            assert point.evaluations == pytest.approx(evaluations, rel=0.01)
+            yield point.errors.rms_center
+
+    low, high = errors(1100)
+    assert 1e-5 < low < high < 1e-2
+    low, high = errors(3200)
+    assert 1e-11 < high < 0.01 * low
+    low, high = errors(16000)
+    assert high < 1e-11 < low < 1e-8
