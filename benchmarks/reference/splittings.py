@@ -8,8 +8,8 @@ it is the same.  The kinetic energy is quadratic in the momenta, so methods of R
 Nystroem keep their order.  An evaluation of the forces counts for each kick, and the last kick of a
 step shares its evaluation with the first one of the next step.
 
-S. Blanes and P. C. Moan, J. Comput. Appl. Math. 142, 313 (2002): SRKN6b, SRKN11b and SRKN14a of Tables
-2 and 3.  W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  The free rotation by Jacobi's
+S. Blanes and P. C. Moan, J. Comput. Appl. Math. 142, 313 (2002): SRKN6b, SRKN11b and SRKN14a.
+W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  The free rotation by Jacobi's
 elliptic functions is that of R. van Zon and J. Schofield, Phys. Rev. E 75, 056701 (2007), with the
 formulas of free_top.py in double precision: ``FreeRotation``.
 """

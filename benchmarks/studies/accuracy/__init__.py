@@ -2,18 +2,23 @@
 
 plan.py      what is run: scenes, methods, steps
 runs.py      references, errors of runs, and everything that is run, in order
+peers.py     other methods: SciPy's, splittings, compositions
+heldout.py   scenes that no coefficient was chosen on
 evaluate.py  fitted orders, costs of given errors; arrays in, numbers out
 tables.py    tables and measurements
+strongest.py evaluations beside those of the strongest of the other methods
 figures.py   the pictures
 """
 
 from benchmarks.engine import Finding, Study
+from benchmarks.engine.session import Session
 
-from . import evaluate, figures, plan, tables
-from .runs import measure
+from . import evaluate, figures, heldout, plan, runs, strongest, tables
 
 #: errors the sentences speak of
 SAMPLE, FINE = 1e-6, 1e-8
+#: the part of the study that runs the scenes of heldout.py
+HELD_OUT = "heldout"
 
 
 def _milliseconds(cost):
@@ -22,7 +27,9 @@ def _milliseconds(cost):
 
 def _of_case1(results):
     """Tables, measurements and names of the template from test case 1."""
-    shown, measurements = tables.case1(results)
+    shown, measurements = strongest.case1(results)
+    speedups, found = tables.case1(results)
+    shown, measurements = shown | speedups, measurements + found
     for name in ("orders", "rounding", "modify"):
         shown[name], found = getattr(tables, name)(results)
         measurements += found
@@ -30,7 +37,12 @@ def _of_case1(results):
     others = plan.DEFAULT, plan.RIGID_NVE
     prices = [best, *(evaluate.price(results, "case1", m, SAMPLE) for m in others)]
     exact = [error for key, points in results.rounding.items() if key[1] for _, error in points]
+    name, peer = strongest.strongest(results, SAMPLE)
+    counts = [evaluate.price(results, "case1", plan.DEFAULT, SAMPLE, "evaluations"), peer]
     context = {
+        "counts": [tables.count_text(cost) for cost in counts],
+        "peer": name,
+        "speedup": tables.ratio_text(tables.speedups(results, "case1", SAMPLE)[0], error=False),
         "end": f"{results.scenes['case1'].end:g}",
         "sample": tables.power(SAMPLE),
         "best": method.label if method else "",
@@ -40,6 +52,18 @@ def _of_case1(results):
         "timings": min(point.timings for point in results.runs if point.timings),
     }
     return shown, measurements, context
+
+
+def measure(lab):
+    """Results of the parts that were asked for."""
+    others, results = set(lab.parts) - {HELD_OUT}, runs.Results(lab.quick)
+    with Session(lab.out / "logs") as session:
+        if others or not lab.parts:
+            with lab.share(0.95 if HELD_OUT in lab.parts or not lab.parts else 1.0):
+                results = runs.measure(lab, session)
+        if HELD_OUT in lab.parts or not lab.parts:
+            results.heldout = heldout.measure(lab, session)
+    return results
 
 
 def find(results):
@@ -57,6 +81,11 @@ def find(results):
             context["passes"] = {"error": tables.power(FINE), "saved": saved}
     if {"water", "water-plain"} <= scenes:
         context["cutoff"] = tables.cutoff(results)
+    if results.heldout:
+        shown["heldout"], found = heldout.find(results.heldout)
+        measurements += found
+    names = {"starts": "STARTS", "seed": "SEED", "coarse": "COARSE", "above": "ABOVE_FLOOR"}
+    context["held_out"] = {key: getattr(heldout, name) for key, name in names.items()}
     # the fix reports as zero what is rounding
     context["norm"], context["tangency"] = (max(x, 1e-15) for x in tables.constraints(results))
     shown["runs"] = tables.of_runs(results)
@@ -71,6 +100,6 @@ STUDY = Study(
     measure,
     find,
     page="accuracy_cost",
-    parts=tuple(plan.scenes(False)),
+    parts=(*plan.scenes(False), HELD_OUT),
     blocks={"README.md": "accuracy_cost.readme.md.j2"},
 )

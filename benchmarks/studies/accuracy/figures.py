@@ -7,12 +7,15 @@ import numpy as np
 
 from benchmarks.engine import Curve, Panel, draw
 from benchmarks.engine.methods import looks
+from benchmarks.reference.solvers import METHODS as SOLVERS
 from lammps_gearquat.style import COLOR, RECONSTRUCTED, STYLE
 
 from . import plan, tables
 from .evaluate import fitted_order, price
 
-SOLVER = {"DOP853": "#009e73", "LSODA": "#cc79a7"}
+#: other methods that the pictures show, and their colors
+PEER = {"DOP853": "#009e73", "LSODA": "#cc79a7", "RKN4, 6 stages": "#e69f00"}
+PEER |= {"RKN6, 11 stages": "#9467bd", "Kahan–Li 8, 17 stages": "#8c564b"}
 AXIS = {"seconds": "wall time of the run, ms", "evaluations": "force evaluations, start included"}
 #: the least that a logarithmic panel shows
 TINY = 1e-17
@@ -67,10 +70,10 @@ def draw_main(path, results):
             axis.set_xlim(left=0.6 * axis.get_xlim()[0])
         for target in tables.TARGETS:
             _arrow(axes[0], results, target)
-        for (solver, color), height in zip(SOLVER.items(), (0.94, 0.88)):
-            axes[1].plot(*results.solver("case1", solver), "-.", color=color, linewidth=1)
-            look = {"color": color, "transform": axes[1].transAxes, "fontsize": 9.5}
-            axes[1].text(0.35, height, f"SciPy's {solver} (dash-dotted)", **look)
+        for (name, color), height in zip(PEER.items(), np.arange(0.94, 0, -0.055)):
+            axes[1].plot(*results.peer("case1", name), "-.", color=color, linewidth=1)
+            look = {"color": color, "transform": axes[1].transAxes, "fontsize": 9, "ha": "right"}
+            axes[1].text(0.98, height, name, **look)
         axes[0].set_ylabel("error of the center of mass at the end")
         heading = results.scenes["case1"].heading
         figure.suptitle(heading, x=0.01, ha="left", fontsize=10)
@@ -119,12 +122,11 @@ def top_panels(results, scene):
         curves = _curves(results, scene, unit, quantity) + more
         return Panel(title, AXIS[unit], "", curves, "xy", legend=False)
 
-    solvers = tuple(
-        Curve(f"SciPy's {name}", *results.solver(scene.key, name), color, "-.", "^")
-        for name, color in SOLVER.items()
+    others = tuple(
+        Curve(name, *results.peer(scene.key, name), PEER[name], "-.", "^") for name in SOLVERS
     )
     orientation = _curves(results, scene, "evaluations", "orientation", label=True)
-    orientation += solvers + _fits(results, scene)
+    orientation += others + _fits(results, scene)
     dots = [
         Curve("", curve.x, curve.y, curve.color, "", marker, hollow=name == "tangency")
         for name, marker in (("norm", "o"), ("tangency", "s"))

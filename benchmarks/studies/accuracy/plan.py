@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from benchmarks.engine import decks
-from benchmarks.engine.methods import gear, rigid
+from benchmarks.engine.methods import DEFAULT_PASSES, DEFAULT_VALUES, DEFAULTS, gear, rigid
 
-#: what the fix takes unless told: values of each formulation, and passes
-DEFAULT_VALUES, DEFAULT_PASSES, PASSES = {"second": 8, "first": 6}, 2, (1, 2)
+PASSES = 1, 2
 #: columns of the log of every scene (examples/common/in.motion), and the further one asked for
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
 VALUES = {"second": range(4, 13), "first": range(3, 9)}
@@ -23,13 +22,11 @@ def setting(formulation, values, passes=DEFAULT_PASSES, **more):
     return gear(formulation, values, passes=passes, **more)
 
 
-DEFAULTS = {name: setting(name, values) for name, values in DEFAULT_VALUES.items()}
 DEFAULT = DEFAULTS["second"]
 RIGID_NVE, RIGID_SMALL = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
 ALL_METHODS = (
     *(setting(name, n, passes) for passes in PASSES for name in VALUES for n in VALUES[name]),
-    setting("second", 6, c0="velocity"),
-    setting("second", DEFAULT_VALUES["second"], c0="velocity"),
+    *(setting("second", n, c0="velocity", corrector="gear") for n in (6, 8)),
     RIGID_NVE,
     RIGID_SMALL,
 )
@@ -72,8 +69,8 @@ class Scene:
     of that.  ``gear_blocks``, ``rigid_blocks``: steps between two samples, ascending; ``far``: those
     of fix rigid/nve/small if it has others.  ``measure``: the error that prices are for, position or
     orientation.  ``time``: its unit, "" for reduced ones.  ``cost``: seconds per step, and ``minutes``:
-    of all runs, both roughly; ``tolerances``: those of SciPy's solvers; ``smooth``: whether forces have
-    no jump.
+    of all runs, both roughly; ``tolerances``: those of SciPy's solvers, and ``evaluations``: of the
+    splittings, roughly; ``smooth``: whether forces have no jump.
     """
 
     key: str
@@ -88,6 +85,7 @@ class Scene:
     cost: float = 1.3e-6
     minutes: float = 15.0
     tolerances: tuple = ()
+    evaluations: tuple = ()
     smooth: bool = True
     far: tuple = ()
     variables: tuple = ()
@@ -182,11 +180,11 @@ def scenes(quick):
     """Key -> Scene, all of them."""
     cage = "One body in the cage (test case 1, consistent body)"
     smooth, plain = (f"500 SPC/E molecules, {how} cutoff" for how in ("smooth at the", "plain"))
-    few = {"methods": FEW_METHODS, "tolerances": () if quick else half_decades(4, 12)[::4]}
+    work = geometric(1000, 4000, 2.0) if quick else geometric(500, 12_000, 2 ** (1 / 3))
     found = (
-        _one_body(quick, key="case1", title=cage),
+        _one_body(quick, key="case1", title=cage, evaluations=work),
         _one_body(quick, key="top", title="Free asymmetric top", measure="orientation"),
-        _water(quick, "smooth", key="water", title=smooth, **few),
+        _water(quick, "smooth", key="water", title=smooth, methods=FEW_METHODS),
         _water(quick, "plain", key="water-plain", title=plain, methods=ROUGH_METHODS, smooth=False),
     )
     return {scene.key: scene for scene in found}

@@ -1,18 +1,17 @@
 """The references, the errors of runs, and everything that is run, in order."""
 
-import itertools
 import math
 from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
 from benchmarks.engine import LammpsError
-from benchmarks.engine.session import MOST_ROUNDS, RunError, Session, time_in_turn
+from benchmarks.engine.session import MOST_ROUNDS, RunError, time_in_turn
 from benchmarks.engine.sites import pose_errors
-from benchmarks.reference import FreeField, paper_problem, reference_state, solvers
+from benchmarks.reference import FreeField, paper_problem, reference_state
 from benchmarks.reference.lammps_forces import deck_problem
 
-from . import plan
+from . import peers, plan
 
 #: timings of every run, at least
 ROUNDS, QUICK_ROUNDS = 5, 2
@@ -71,19 +70,21 @@ class Point(Errors):
 class Results:
     """Everything that was measured.
 
-    ``runs``: list of Point.  ``solvers``: (scene, solver) -> list of (tolerance, evaluations, error of
-    position, of orientation).  ``limits``: (scene, method) -> largest usable step, 0 if none was found.
+    ``runs``: list of Point.  ``peers``: (scene, name) -> list of (tolerance or number of steps,
+    evaluations, error of position, of orientation).  ``limits``: (scene, method) -> largest usable step, 0 if none was found.
     ``orders``: (formulation, N) and ``rounding``: (formulation, whether compensated) -> list of (step,
     error of position) in test case 1.  ``modify``: method -> Timing of a step inside the fix.
+    ``heldout``: (scene, method) -> list of (evaluations, error) of the scenes of heldout.py.
     """
 
     quick: bool
     runs: list = field(default_factory=list)
-    solvers: dict = field(default_factory=dict)
+    peers: dict = field(default_factory=dict)
     limits: dict = field(default_factory=dict)
     orders: dict = field(default_factory=dict)
     rounding: dict = field(default_factory=dict)
     modify: dict = field(default_factory=dict)
+    heldout: dict = field(default_factory=dict)
 
     @property
     def scenes(self):
@@ -105,10 +106,10 @@ class Results:
         measure = plan.scenes(self.quick)[scene].measure
         return self.column(scene, method, "dt"), self.column(scene, method, measure)
 
-    def solver(self, scene, name):
-        """Evaluations and errors (the scene's measure) of a SciPy solver, two arrays (n,)."""
+    def peer(self, scene, name):
+        """Evaluations and errors (the scene's measure) of one of ``peers.NAMES``, two arrays (n,)."""
         column = 2 if plan.scenes(self.quick)[scene].measure == "position" else 3
-        table = np.array(sorted(self.solvers.get((scene, name), []), key=lambda row: row[1]))
+        table = np.array(sorted(self.peers.get((scene, name), []), key=lambda row: row[1]))
         return table.reshape(-1, 4)[:, [1, column]].T
 
 
@@ -266,19 +267,8 @@ def time_all(lab, session, outcomes):
     return time_in_turn(ended, rounds, once, rounds if lab.quick else MOST_ROUNDS)
 
 
-def run_solvers(lab, results, scene, reference):
-    """SciPy's solvers with all tolerances of a scene."""
-    task = reference.problem, scene.end, reference.state
-    for solver, tolerance in itertools.product(solvers.METHODS, scene.tolerances):
-        (point,) = solvers.work_precision(*task, solver, [tolerance])
-        errors = point.errors.rms_center, point.errors.rms_angle
-        rows = results.solvers.setdefault((scene.key, solver), [])
-        rows.append((tolerance, point.evaluations, *errors))
-        lab.advance(1 / len(solvers.METHODS) / len(scene.tolerances))
-
-
 def run_scene(lab, session, results, scene, reference):
-    """Errors of all methods, their largest steps, timings in turn, and SciPy's solvers."""
+    """Errors of all methods, their largest steps, timings in turn, and the peers."""
     with lab.share(0.1):
         outcomes = judge_all(lab, session, scene, reference)
     with lab.share(0.1):
@@ -289,7 +279,8 @@ def run_scene(lab, session, results, scene, reference):
         times = time_all(lab, session, outcomes)
     results.runs += [point_of(run, *own, times.get(run)) for run, own in outcomes.items()]
     with lab.share(0.3):
-        run_solvers(lab, results, scene, reference)
+        for name, rows in peers.measure(lab, session, scene, reference).items():
+            results.peers[scene.key, name] = rows
 
 
 def run_further(lab, session, results, scene, reference):
@@ -309,15 +300,14 @@ def run_further(lab, session, results, scene, reference):
     results.modify = {run.method.key: timing for run, timing in times.items()}
 
 
-def measure(lab):
-    """Results.  Everything runs one at a time, because everything is timed."""
+def measure(lab, session):
+    """Results of all scenes of the plan.  One runs at a time, because runs are timed."""
     scenes = [s for key, s in plan.scenes(lab.quick).items() if key in lab.parts or not lab.parts]
     results = Results(lab.quick)
-    with Session(lab.out / "logs") as session:
-        for scene in scenes:
-            with lab.share(scene.minutes / sum(scene.minutes for scene in scenes)):
-                reference = reference_of(scene, lab.out / "reference", session)
-                run_scene(lab, session, results, scene, reference)
-                if scene.key == "case1":
-                    run_further(lab, session, results, scene, reference)
+    for scene in scenes:
+        with lab.share(scene.minutes / sum(scene.minutes for scene in scenes)):
+            reference = reference_of(scene, lab.out / "reference", session)
+            run_scene(lab, session, results, scene, reference)
+            if scene.key == "case1":
+                run_further(lab, session, results, scene, reference)
     return results

@@ -10,11 +10,10 @@ import numpy as np
 from benchmarks.engine import Measurement, Table
 from benchmarks.engine.page import grouped
 from benchmarks.engine.statistics import order
-from benchmarks.reference.solvers import METHODS as SOLVERS
 from benchmarks.reference.stability import first_order_step, linear_limit, second_order_step
 
 from . import plan
-from .evaluate import cheapest, cost_of, expected_order, fitted_order, price, sign_change
+from .evaluate import cheapest, expected_order, fitted_order, price, sign_change
 from .runs import Point
 
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -79,36 +78,19 @@ def count_text(cost):
 
 # --- test case 1 and other scenes -----------------------------------------------------------------
 def case1(results):
-    """Tables speedup, evaluations and readme, and their measurements."""
-    speed, counts, found, short = [], [], [], [[row] for row in ROWS]
+    """Table of speed-ups over fix rigid/nve/small, and their measurements."""
+    speed, found = [], []
     for target in TARGETS:
         default, best, method = speedups(results, "case1", target)
         words = NONE if method is None else method.label
         speed.append([power(target), ratio_text(best), words, ratio_text(default)])
-        for row, name, cost in zip(short, ROWS, (default, best)):
-            row.append(ratio_text(cost, error=False))
+        for name, cost in zip(ROWS, (default, best)):
             value, error = (cost.value, cost.error * cost.value) if cost else (np.nan, None)
             what = f"test case 1, error {power(target)}: {THEIRS} {name}"
             least = LEAST_SPEEDUP.get(target)
             found.append(Measurement(what, value, error, ".3g", "times", least=least))
-        setting, own = cheapest_setting(results, "case1", target, "evaluations")
-        usual = price(results, "case1", plan.DEFAULT, target, "evaluations")
-        others = [cost_of(*results.solver("case1", solver), target) for solver in SOLVERS]
-        words = NONE if setting is None else setting.label
-        counts.append([power(target), count_text(own), words, *map(count_text, (usual, *others))])
-        known = [cost.value for cost in others if cost]
-        value, most = own.value if own else np.nan, min(known) if known else None
-        what = f"test case 1, error {power(target)}: force evaluations with the cheapest settings"
-        found.append(Measurement(what, value, spec=",.0f", most=most))
     header = ("error", "cheapest settings", "namely", "default settings")
-    least = len(LEAST_SPEEDUP)
-    errors = [f"error {power(target)}" for target in TARGETS[:least]]
-    tables = {
-        "speedup": Table(header, speed),
-        "evaluations": Table((*header, *SOLVERS), counts),
-        "readme": Table([THEIRS, *errors], [row[: least + 1] for row in short]),
-    }
-    return tables, found
+    return {"speedup": Table(header, speed)}, found
 
 
 def other_speedups(results):
@@ -195,7 +177,7 @@ def constraints(results):
         if p.method in GEAR and np.isfinite(p.energy)
         if p.dt <= results.limits.get((p.scene, p.method), 0.0)
     ]
-    return np.max(rows, axis=0, initial=0.0)
+    return np.max(np.reshape(rows, (-1, 2)), axis=0, initial=0.0)
 
 
 def closest(results, methods):

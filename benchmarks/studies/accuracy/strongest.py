@@ -1,0 +1,81 @@
+"""Evaluations of the forces in test case 1 beside those of the strongest of the other methods."""
+
+import numpy as np
+
+from benchmarks.engine import Measurement, Table
+
+from . import peers, plan
+from .evaluate import cheapest, cost_of, price
+from .tables import NONE, TARGETS, cheapest_setting, count_text, power, ratio_text
+
+#: evaluations by error in test case 1, at most
+MOST_DEFAULT = dict(zip(TARGETS, (650, 800, 1250, 2050)))
+MOST_CHEAPEST = dict(zip(TARGETS, (500, 650, 1000, 1600)))
+#: error of the first formulation's defaults at this step, at most
+FIRST_STEP, MOST_FIRST = 0.1, 3e-7
+
+
+def prices(results, target):
+    """Name -> Cost in evaluations, or None, of an error in test case 1, fix rigid/nve/small included."""
+    found = {name: cost_of(*results.peer("case1", name), target) for name in peers.NAMES}
+    task = results, "case1", plan.RIGID_NVE, target, "evaluations"
+    return found | {plan.RIGID_NVE.label: price(*task, extrapolate=True)}
+
+
+def strongest(results, target):
+    """(name, Cost) of the peer that takes the fewest evaluations; twice None if none gets there."""
+    return cheapest(prices(results, target))
+
+
+def error_at(steps, errors, step):
+    """Error at a step between those that were run, log-log; arrays (n,)."""
+    order = np.argsort(steps)
+    steps, errors = np.log(np.asarray(steps)[order]), np.log(np.asarray(errors)[order])
+    return float(np.exp(np.interp(np.log(step), steps, errors)))
+
+
+def _of_ours(results, target):
+    """(settings, Method or None, Cost or None, bound) of the defaults and of the cheapest settings."""
+    method, best = cheapest_setting(results, "case1", target, "evaluations")
+    usual = price(results, "case1", plan.DEFAULT, target, "evaluations")
+    yield "default", plan.DEFAULT, usual, MOST_DEFAULT[target]
+    yield "cheapest", method, best, MOST_CHEAPEST[target]
+
+
+def columns(results, target):
+    """Label -> cell of one error, for the page and for README."""
+    others, (name, peer) = prices(results, target), strongest(results, target)
+    ours = list(_of_ours(results, target))
+    counts = {f"`fix gear/quat`, {words} settings": count_text(cost) for words, _, cost, _ in ours}
+    factors = {
+        f"the strongest over {words} settings": ratio_text(peer and cost and peer.over(cost), False)
+        for words, _, cost, _ in ours
+    }
+    method = ours[-1][1]
+    namely = {"the cheapest settings are": method.label if method else NONE}
+    of_others = {label: count_text(cost) for label, cost in others.items()}
+    label = "the strongest of the other methods"
+    page = counts | namely | of_others | {label: name or NONE} | factors
+    return page, counts | {label: f"{count_text(peer)} ({name})" if peer else NONE} | factors
+
+
+def case1(results):
+    """Tables evaluations and readme of test case 1, and their measurements."""
+    found = []
+    for target in TARGETS:
+        at, (name, peer) = f"test case 1, error {power(target)}", strongest(results, target)
+        for words, _, cost, most in _of_ours(results, target):
+            value = cost.value if cost else np.nan
+            what = f"{at}: force evaluations with the {words} settings"
+            found.append(Measurement(what, value, spec=",.0f", most=most))
+            factor = peer.value / value if peer else np.nan
+            what = f"{at}: force evaluations of the strongest other method over those"
+            found.append(Measurement(what, factor, None, ".3g", "times", name or "", least=1.0))
+    error = error_at(*results.errors("case1", plan.DEFAULTS["first"]), FIRST_STEP)
+    what = f"test case 1, first formulation, default settings, step {FIRST_STEP:g}: error"
+    found.append(Measurement(what, error, most=MOST_FIRST))
+    header = ("force evaluations", *(f"error {power(target)}" for target in TARGETS))
+    tables = {}
+    for key, cells in zip(("evaluations", "readme"), zip(*(columns(results, t) for t in TARGETS))):
+        tables[key] = Table(header, [[label, *(c[label] for c in cells)] for label in cells[0]])
+    return tables, found
