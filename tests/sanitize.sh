@@ -138,7 +138,8 @@ part_valgrind() {
       "$ROOT/tests/lammps/fix-timestep-gear_quat_$name.yaml" --gtest_filter=FixTimestep.plain -s
   done
   for words in "formulation first" "tolerance 1e-8" "formulation first isokinetic separate" \
-    "values 12 compensate yes force 1 off off off torque 2* off off on" "start zero project no c0 velocity report long"; do
+    "values 12 corrector gear compensate yes force 1 off off off torque 2* off off on" \
+    "start zero project no corrector gear c0 velocity report long"; do
     check "fields $words" "$ROOT/examples/fields" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.fields -log none \
       -var steps 20 -var every 5 -var words "$words"
   done

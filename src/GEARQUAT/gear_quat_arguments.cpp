@@ -90,9 +90,6 @@ int Arguments::parse_bodystyle(int narg, char **arg)
 
 void Arguments::parse_keywords(int narg, char **arg)
 {
-  for (const auto &row : keyword_table())
-    if (!row.standard.empty()) row.store(*this, {row.standard});
-
   for (int iarg = 0; iarg < narg; ++iarg) {
     const Keyword &row = find_keyword(lmp, arg[iarg]);
     if (row.kind != Keyword::MASK && given.count(row.name))
@@ -102,6 +99,9 @@ void Arguments::parse_keywords(int narg, char **arg)
     row.store(*this, value);
     given[row.name] = value;
   }
+  for (const auto &row : keyword_table())
+    if (row.kind == Keyword::WORD && !given.count(row.name))
+      row.store(*this, {row.standard_word(is_on("tolerance", ""))});
   check_conditions();
   check_ranges();
   if (is_on("tolerance", "")) check_control();
@@ -115,7 +115,8 @@ bool Arguments::is_on(const std::string &keyword, const std::string &value) cons
   const auto place = given.find(keyword);
   if (keyword == "bodystyle") return place->second.text == value;
   const Keyword &row = find_keyword(lmp, keyword);
-  const std::string &present = place == given.end() ? row.standard : place->second.text;
+  const std::string &present = place == given.end() ? row.standard_word(given.count("tolerance"))
+                                                    : place->second.text;
   if (!value.empty()) return present == value;
   return !present.empty() && !(row.kind == Keyword::WORD && present == "none");
 }
@@ -129,8 +130,9 @@ void Arguments::check_conditions() const
   for (const auto &row : keyword_table()) {
     if (!given.count(row.name) || !is_on(row.name, "")) continue;
     for (const auto &condition : row.needs)
-      if (!is_on(condition.keyword, condition.value))
-        error->all(FLERR, "Fix gear/quat keyword {} requires {}{}", row.name,
+      if (is_on(row.name, condition.only_for) && !is_on(condition.keyword, condition.value))
+        error->all(FLERR, "Fix gear/quat keyword {}{} requires {}{}", row.name,
+                   condition.only_for.empty() ? "" : " " + condition.only_for,
                    condition.value.empty() ? "keyword " + condition.keyword
                                            : condition.keyword + " " + condition.value,
                    because(condition));
@@ -166,6 +168,13 @@ void Arguments::check_ranges()
                  "Fix gear/quat tolerance: {} {} are more than {}, the largest number with "
                  "which a step may shrink",
                  value.integer, row.name, row.most_with_tolerance);
+    if (row.of_tables && scheme.tuned && !has_tuned(scheme.formulation, value.integer))
+      error->all(
+          FLERR,
+          "Fix gear/quat {}: formulation {} has no tuned coefficients for {} but for {}; use "
+          "one of these numbers, or add corrector gear",
+          row.name, scheme.first() ? "first" : "second", value.integer,
+          tuned_numbers(scheme.first(), ", "));
   }
 }
 

@@ -107,19 +107,18 @@ bool Bootstrap::run()
   for (auto &party : parties) {
     if (!party.needed) continue;
     party.seed_local(3, h);
-    const int values = party.scheme.values();
-    const int most = forces.most_values_with_noise(party.scheme, [&party](int i) {
+    const Noise noise = forces.noise([&party](int i) {
       return party.bodies->in_body(i);
     });
     if (comm->me != 0) continue;
     utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
                    party.fix->id, why);
-    if (most > 0 && values > most)
+    const std::string remedy = remedy_for_noise(party.scheme, noise);
+    if (!remedy.empty())
       utils::logmesg(
           lmp,
-          "Fix gear/quat {}: random forces heat bodies with many values; use values {} at "
-          "most instead of {}\n",
-          party.fix->id, most, values);
+          "Fix gear/quat {}: random forces heat bodies with many values; use {} instead of {}\n",
+          party.fix->id, remedy, party.scheme.values());
   }
   return false;
 }

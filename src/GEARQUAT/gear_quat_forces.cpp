@@ -5,7 +5,6 @@
 
 #include "gear_quat_forces.h"
 
-#include "gear_quat_nordsieck.h"
 #include "gear_quat_quaternion.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
@@ -95,21 +94,20 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
   if (why.empty()) look_at_time();
 }
 
-int Forces::most_values_with_noise(const Scheme &scheme,
-                                   const std::function<bool(int)> &in_body) const
+Noise Forces::noise(const std::function<bool(int)> &in_body) const
 {
-  int most = 0;
+  Noise found = Noise::NONE;
   for (const auto *style : RANDOM_PAIRS)
-    if (force->pair && force->pair_match(style, 0, 1)) most = scheme.most_with_noise(false);
+    if (force->pair && force->pair_match(style, 0, 1)) found = Noise::RANDOM;
   for (const auto *fix : modify->get_fix_list()) {
-    if (among(COLLISIONS, fix)) return scheme.most_with_noise(true);
+    if (among(COLLISIONS, fix)) return Noise::COLLISIONS;
     if (!among(RANDOM_FIXES, fix)) continue;
     int here = 0;
     for (int i = 0; i < atom->nlocal; ++i)
       if ((atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
-    if (over_ranks(MPI_MAX, here, world)) most = scheme.most_with_noise(false);
+    if (over_ranks(MPI_MAX, here, world)) found = Noise::RANDOM;
   }
-  return most;
+  return found;
 }
 
 void Forces::look_at_styles()

@@ -15,6 +15,8 @@
 #ifndef LMP_GEAR_QUAT_FORCES_H
 #define LMP_GEAR_QUAT_FORCES_H
 
+#include "gear_quat_noise.h"
+
 #include "lmptype.h"
 #include "pointers.h"
 
@@ -64,9 +66,8 @@ class Forces : protected Pointers {
   /// Empty if forces can be followed, else what stands in the way.
   const std::string &reason() const { return why; }
 
-  /// More values than these carry on the noise of random forces on the atoms that `in_body` tells; 0 if
-  /// there are none.  Collective.
-  int most_values_with_noise(const Scheme &scheme, const std::function<bool(int)> &in_body) const;
+  /// Which forces without derivatives act on the atoms that `in_body` tells.  Collective.
+  Noise noise(const std::function<bool(int)> &in_body) const;
 
   /// Keep positions, velocities, forces and torques of all atoms, ghosts too.
   void save();

@@ -27,6 +27,7 @@ static constexpr char INTEGRATION[] = "integration", STEP[] = "step", BODIES[] =
 
 static constexpr char HELD[] =
     "it acts on all momenta; define a second fix for the bodies that are held";
+static constexpr char FOR_CORRECTED[] = "tuned coefficients are those for the corrected one";
 static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies come";
 
 using Value = KeywordValue;
@@ -46,7 +47,13 @@ static std::vector<Keyword> make_table()
             }).word({"second", "first"}),
     Keyword("values", INTEGRATION, "how many values a history keeps of each function",
             [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
-        .integer({{SECOND_FEWEST, SECOND_MOST, 8}, {FIRST_FEWEST, FIRST_MOST, 6}}, VARIABLE_MOST),
+        .integer({{SECOND_FEWEST, SECOND_MOST, 8}, {FIRST_FEWEST, FIRST_MOST, 6}}, VARIABLE_MOST)
+        .with_tables(),
+    Keyword("corrector", INTEGRATION, "which coefficients correct a history",
+            [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
+        .word({"tuned", "gear"}).standard_with_tolerance("gear")
+        .cannot_go_with({"tolerance", "tuned", "rows of tuned coefficients forget a change of the "
+                         "step too slowly; leave out corrector, or write corrector gear"}),
     Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
             [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
         .integer({{1, PASSES_MOST, 2}}),
@@ -59,13 +66,16 @@ static std::vector<Keyword> make_table()
             }).word({"bootstrap", "zero"}),
     Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
             [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })
-        .word({"position", "velocity"}).requires_also({"formulation", "second", ""}),
+        .word({"position", "velocity"}).requires_also({"formulation", "second", ""})
+        .requires_also({"corrector", "gear", "tuned coefficients have a c_0 of their own"}),
     Keyword("omega", INTEGRATION, "which angular velocity corrects the quaternion",
             [](Arguments &a, const Value &v) { a.scheme.predicted_omega = v.is("predicted"); })
-        .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
+        .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
+        .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
     Keyword("momentum", INTEGRATION, "which momentum corrects the position",
             [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
-        .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
+        .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
+        .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
     Keyword("project", INTEGRATION, "whether quaternions are kept at unit length",
             [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
         .word({"yes", "no"}),
@@ -131,7 +141,8 @@ static constexpr char BAROSTAT[] =
 /// doc/howto/from_rigid.md has the same table.
 static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {
     {{"langevin"},
-     "define fix langevin on the same group, and use values 6 at most (formulation first: 4)"},
+     "define fix langevin on the same group, and use corrector gear with values 6 at most "
+     "(formulation first: 4)"},
     {{"temp", "tparam", "tchain"},
      "define fix temp/csvr or temp/berendsen on the same group, or use keyword isokinetic"},
     {{"iso", "aniso", "tri", "x", "y", "z", "xy", "yz", "xz", "couple", "pparam", "pchain",
@@ -197,6 +208,14 @@ template <typename Text> static std::string of_formulations(const Keyword &row, 
   return text(row.range(false)) + " (second), " + text(row.range(true)) + " (first)";
 }
 
+std::string GearQuat::tuned_numbers(bool first, const std::string &between)
+{
+  std::vector<std::string> numbers;
+  for (const int n : tuned_values(first ? Formulation::FIRST : Formulation::SECOND))
+    numbers.push_back(std::to_string(n));
+  return utils::join_words(numbers, between);
+}
+
 std::string Keyword::possible_values() const
 {
   if (kind == NUMBER) return "a positive number";
@@ -209,6 +228,10 @@ std::string Keyword::possible_values() const
       return fmt::format("{} to {}", range.fewest, range.most);
     });
   if (most_with_tolerance) text += fmt::format(", at most {} (tolerance)", most_with_tolerance);
+  if (of_tables)
+    for (const bool first : {false, true})
+      text +=
+          fmt::format(", {} ({}, tuned)", tuned_numbers(first, " "), first ? "first" : "second");
   return text;
 }
 
@@ -262,7 +285,9 @@ namespace {
 
 std::string default_cell(const Keyword &row)
 {
-  if (row.kind != Keyword::INTEGER) return row.standard;
+  if (row.kind != Keyword::INTEGER)
+    return row.standard +
+        (row.with_tolerance.empty() ? "" : ", with tolerance " + row.with_tolerance);
   const auto standard = [&row](bool tolerance) {
     return of_formulations(row, [&row, tolerance](const Keyword::Range &range) {
       return std::to_string(row.standard_of(range, tolerance));
@@ -271,7 +296,7 @@ std::string default_cell(const Keyword &row)
   return standard(false) + (row.most_with_tolerance ? ", with tolerance " + standard(true) : "");
 }
 
-/// excluded: a value belongs to the keyword of the row, otherwise to the other one.
+/// A value in brackets belongs to the keyword of the row, any other to the other keyword.
 std::string conditions_cell(const std::vector<Keyword::Condition> &conditions, bool excluded)
 {
   std::vector<std::string> parts;
@@ -280,7 +305,8 @@ std::string conditions_cell(const std::vector<Keyword::Condition> &conditions, b
       parts.push_back(one.keyword);
     else
       parts.push_back(excluded ? fmt::format("{} ({})", one.keyword, one.value)
-                               : one.keyword + " " + one.value);
+                               : one.keyword + " " + one.value +
+                              (one.only_for.empty() ? "" : fmt::format(" ({})", one.only_for)));
   }
   return utils::join_words(parts, ", ");
 }

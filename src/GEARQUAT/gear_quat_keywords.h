@@ -51,6 +51,8 @@ struct Keyword {
   struct Condition {
     std::string keyword, value;
     std::string reason;    ///< ends the error message, may be empty
+    std::string
+        only_for;    ///< what is required: by this value of the keyword alone, empty: by any
   };
   using Store = void (*)(Arguments &, const KeywordValue &);
 
@@ -62,8 +64,10 @@ struct Keyword {
   Kind kind = WORD;
   std::vector<std::string> words;    ///< WORD: the possible ones; NAME and MASK: what follows
   std::string standard;              ///< WORD: the default
+  std::string with_tolerance;        ///< WORD: the default then, empty: the same
   std::vector<Range> ranges;         ///< INTEGER: one, or those of formulation second and first
   int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
+  bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them
   std::vector<Condition> needs, excludes;
 
   Keyword(const char *name, const char *about, const char *meaning, Store store) :
@@ -83,6 +87,16 @@ struct Keyword {
     ranges = possible;
     most_with_tolerance = at_most_with_tolerance;
     return follows(INTEGER, {});
+  }
+  Keyword &standard_with_tolerance(const std::string &word)
+  {
+    with_tolerance = word;
+    return *this;
+  }
+  Keyword &with_tables()
+  {
+    of_tables = true;
+    return *this;
   }
   Keyword &number() { return follows(NUMBER, {}); }
   Keyword &follows(Kind what, const std::vector<std::string> &names)
@@ -105,6 +119,12 @@ struct Keyword {
   /// Of the formulation, where there are two.
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
 
+  /// The default of a WORD.
+  const std::string &standard_word(bool tolerance) const
+  {
+    return tolerance && !with_tolerance.empty() ? with_tolerance : standard;
+  }
+
   /// The default of an INTEGER.
   int standard_of(const Range &range, bool tolerance) const
   {
@@ -125,6 +145,9 @@ const std::vector<Keyword> &keyword_table();
 /// The row of a keyword.  An unknown one ends the run on all ranks, with what to write
 /// instead if it is a keyword of the rigid fixes.
 const Keyword &find_keyword(LAMMPS *lmp, const std::string &name);
+
+/// The numbers of values of a formulation that have tuned coefficients, in a row.
+std::string tuned_numbers(bool first, const std::string &between);
 
 /// Whether a word is an integer, and which.
 bool read_integer(const std::string &text, int &integer);

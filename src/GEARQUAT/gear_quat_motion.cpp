@@ -411,6 +411,7 @@ Motion::Checkpoint Motion::checkpoint() const
           (double) started,
           step(),
           (double) scheme.trial,
+          (double) scheme.tuned,
           tolerance ? tolerance->checkpoint() : Tolerance::Checkpoint(),
           isokinetic ? isokinetic->checkpoint() : IsokineticConstraint::Checkpoint()};
 }
@@ -426,6 +427,12 @@ void Motion::restore(const Checkpoint &saved)
   if (tolerance && started) tolerance->restore(saved.tolerance);
   last_step = saved.h;
   if (saved.h != 0.0) make_integrator(saved.h);
+  if (started && saved.tuned != mine.tuned && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat: the restart file was written with corrector {}; its histories go "
+        "on with corrector {}",
+        saved.tuned != 0.0 ? "tuned" : "gear", args.scheme.tuned ? "tuned" : "gear");
   if (saved.started != 0.0 && !same && comm->me == 0)
     error->warning(
         FLERR,

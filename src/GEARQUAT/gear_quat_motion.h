@@ -78,13 +78,13 @@ class Motion : protected Pointers {
 
   /// The part of a restart file that is not a history.
   struct Checkpoint {
-    double formulation, values, compensate, started, h, variable;
+    double formulation, values, compensate, started, h, variable, tuned;
     Tolerance::Checkpoint tolerance;
     IsokineticConstraint::Checkpoint isokinetic;
   };
   Checkpoint checkpoint() const;
   /// The histories of the file are about to arrive.  If they do not fit this command they start
-  /// anew, and rank 0 says so.
+  /// anew, and rank 0 says so, as it does if they go on with another corrector.
   void restore(const Checkpoint &saved);
 
  private:

@@ -6,6 +6,7 @@
 #include "gear_quat_neighbors.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_noise.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 
@@ -135,14 +136,15 @@ void Neighbors::tell_noise(const Fix *other)
 {
   const bool collides = utils::strmatch(other->style, "^srd");
   if (warned_noise || (!collides && !utils::strmatch(other->style, "^langevin"))) return;
-  const int most = args.scheme.most_with_noise(collides);
-  if (args.scheme.values() <= most || (!collides && !shared_atom(other))) return;
+  const std::string remedy =
+      remedy_for_noise(args.scheme, collides ? Noise::COLLISIONS : Noise::RANDOM);
+  if (remedy.empty() || (!collides && !shared_atom(other))) return;
   warned_noise = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: forces of fix {} ({}) are random, and {} values make heat of "
-                   "them; use values {} at most",
-                   other->id, other->style, args.scheme.values(), most);
+                   "them; use {}",
+                   other->id, other->style, args.scheme.values(), remedy);
 }
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.

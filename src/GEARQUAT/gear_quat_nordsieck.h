@@ -46,12 +46,6 @@ struct Scheme {
   /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N keep
   /// N, and N - 1 with velocity_c0).
   int order() const { return (velocity_c0 ? values() - 1 : values()) | 1; }
-  /// More values make heat of forces without derivatives: random ones, or those of collisions, which
-  /// last a single step.
-  int most_with_noise(bool collisions) const
-  {
-    return collisions ? (first() ? 3 : 4) : (first() ? 4 : 6);
-  }
 
   // columns of a row
 

@@ -235,6 +235,16 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
   };
 }
 
+/// How the bodies are integrated.
+static std::string settings(const Arguments &args)
+{
+  const Scheme &scheme = args.scheme;
+  return fmt::format("  formulation {}, {}{} values, {} pass{}, corrector {}\n",
+                     scheme.first() ? "first" : "second", args.control.eps > 0.0 ? "at most " : "",
+                     scheme.values(), scheme.passes, scheme.passes == 1 ? "" : "es",
+                     scheme.tuned ? "tuned" : "gear");
+}
+
 /* ---------------------------------------------------------------------- */
 
 void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies)
@@ -251,6 +261,7 @@ void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, 
   std::string text =
       fmt::format("Fix gear/quat {}: {} bodies of {} sites, {} degrees of freedom\n", fix->id,
                   scene.count[Scene::BODIES], sites, scene.count[Scene::FREEDOMS]);
+  text += settings(args);
   for (const auto &row : rows) {
     text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);
     if (args.report == Arguments::Report::LONG && (!row.on || row.in_part) && !row.omits.empty())

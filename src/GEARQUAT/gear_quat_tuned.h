@@ -159,11 +159,25 @@ inline const std::vector<TunedSet> &tuned_sets()
       {FIRST, ALL, {11 / 12.0L, 1 / 3.0L, 1 / 24.0L}},
       {FIRST, ALL, {25 / 24.0L, 35 / 72.0L, 5 / 48.0L, 1 / 120.0L}},
       {FIRST, ALL, {137 / 120.0L, 5 / 8.0L, 17 / 96.0L, 1 / 40.0L, 1 / 720.0L}},
+      {FIRST, ALL, {49 / 40.0L, 203 / 270.0L, 49 / 192.0L, 7 / 144.0L, 7 / 1440.0L, 1 / 5040.0L}},
       {SECOND, BOTH, {1 / 3.0L}},
       {SECOND, BOTH, {1 / 2.0L, 1 / 12.0L}},
       {SECOND, BOTH, {11 / 18.0L, 1 / 6.0L, 1 / 60.0L}},
       {SECOND, BOTH, {25 / 36.0L, 35 / 144.0L, 1 / 24.0L, 1 / 360.0L}},
       {SECOND, BOTH, {137 / 180.0L, 5 / 16.0L, 17 / 240.0L, 1 / 120.0L, 1 / 2520.0L}},
+      {SECOND, BOTH, {49 / 60.0L, 203 / 540.0L, 49 / 480.0L, 7 / 432.0L, 1 / 720.0L, 1 / 20160.0L}},
+      {SECOND,
+       BOTH,
+       {121 / 140.0L, 469 / 1080.0L, 967 / 7200.0L, 7 / 270.0L, 23 / 7560.0L, 1 / 5040.0L,
+        1 / 181440.0L}},
+      {SECOND,
+       BOTH,
+       {761 / 840.0L, 29531 / 60480.0L, 267 / 1600.0L, 1069 / 28800.0L, 3 / 560.0L, 13 / 26880.0L,
+        1 / 40320.0L, 1 / 1814400.0L}},
+      {SECOND,
+       BOTH,
+       {7129 / 7560.0L, 6515 / 12096.0L, 4523 / 22680.0L, 19 / 384.0L, 3013 / 362880.0L,
+        5 / 5376.0L, 29 / 435456.0L, 1 / 362880.0L, 1 / 19958400.0L}},
   };
   return sets;
 }
@@ -178,12 +192,22 @@ inline const TunedSet *tuned_set(Formulation formulation, int values, Columns co
   return nullptr;
 }
 
-/// Numbers of values that have tuned coefficients, from the smallest on.
+/// Whether all columns have tuned coefficients for this number of values.
+inline bool has_tuned(Formulation formulation, int values)
+{
+  const auto has = [&](Columns columns) {
+    return tuned_set(formulation, values, columns) != nullptr;
+  };
+  return has(Columns::POSITION) && has(Columns::QUATERNION) &&
+      (formulation == Formulation::SECOND || (has(Columns::MOMENTUM) && has(Columns::OMEGA)));
+}
+
+/// These numbers, from the smallest on.
 inline std::vector<int> tuned_values(Formulation formulation)
 {
   std::vector<int> values;
   for (int n = 0; n <= MAX_VALUES; ++n)
-    if (tuned_set(formulation, n, Columns::POSITION)) values.push_back(n);
+    if (has_tuned(formulation, n)) values.push_back(n);
   return values;
 }
 

@@ -23,8 +23,8 @@ class Keyword:
     """A row of the list.
 
     ``about`` is integration, step, bodies, physics or output.  ``kind`` is word, integer, number,
-    name or mask.  ``requires`` and ``excludes`` are pairs of another keyword and a value: the value
-    that the other one must have, or the value of this one that excludes it; empty for any.
+    name or mask.  ``requires`` and ``excludes`` are triples of another keyword, the value that it
+    must have and the value of this one that requires or excludes it; either is empty for any.
     """
 
     name: str
@@ -41,6 +41,11 @@ class Keyword:
         """The values of a keyword that takes one of some words."""
         return tuple(re.split(", | or ", self.values)) if self.kind == "word" else ()
 
+    def standard(self, tolerance=False):
+        """The default, without or with keyword tolerance."""
+        without, _, with_tolerance = self.default.partition(", with tolerance ")
+        return with_tolerance or without if tolerance else without
+
     @property
     def arguments(self):
         """How many words follow the keyword."""
@@ -53,14 +58,21 @@ class Keyword:
         return {formulation: (int(low), int(high)) for low, high, formulation in limits}
 
     @property
+    def tuned(self):
+        """Formulation -> the integers for which corrector tuned has coefficients."""
+        sets = re.findall(r"([\d ]+) \((\w+), tuned\)", self.values)
+        return {formulation: tuple(map(int, numbers.split())) for numbers, formulation in sets}
+
+    @property
     def of_one_formulation(self):
         """Whether a value means something in one of the two formulations only."""
-        return len(self.ranges) > 1 or "formulation" in dict(self.requires)
+        return len(self.ranges) > 1 or any(name == "formulation" for name, _, _ in self.requires)
 
 
 def _condition(text):
-    name, *value = text.replace("(", "").replace(")", "").split()
-    return name, " ".join(value)
+    name, *words = text.split()
+    own = "".join(word.strip("()") for word in words if word.startswith("("))
+    return name, "".join(word for word in words if not word.startswith("(")), own
 
 
 def parse(text):
@@ -77,8 +89,8 @@ def parse(text):
         name, about, kind, values, default, *conditions, meaning = (
             "" if cell == "-" else cell for cell in cells
         )
-        pairs = [tuple(map(_condition, filter(None, cell.split(", ")))) for cell in conditions]
-        table[name] = Keyword(name, about, kind, values, default, *pairs, meaning)
+        triples = [tuple(map(_condition, filter(None, cell.split(", ")))) for cell in conditions]
+        table[name] = Keyword(name, about, kind, values, default, *triples, meaning)
     return table
 
 

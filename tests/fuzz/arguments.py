@@ -148,7 +148,7 @@ def take_masks(words, bodies):
 
 def in_use(key, given, value=""):
     """Whether a keyword has a value, given or by default, or with an empty one any but none."""
-    present = given.get(key, TABLE[key].default if key in WORDS else "")
+    present = given.get(key, TABLE[key].standard("tolerance" in given) if key in WORDS else "")
     return present == value if value else present not in ("", "none")
 
 
@@ -156,13 +156,24 @@ def agrees(key, given):
     """Whether a keyword that was given may be used with all others; bodystyle is among these."""
     if not in_use(key, given):
         return True
-    for other, value in TABLE[key].requires:
+    for other, value, own in TABLE[key].requires:
+        if not in_use(key, given, own):
+            continue
         if given["bodystyle"] != value if other == "bodystyle" else not in_use(other, given, value):
             return False
     return not any(
-        in_use(key, given, value) and other in given and in_use(other, given)
-        for other, value in TABLE[key].excludes
+        in_use(key, given, own) and other in given and in_use(other, given)
+        for other, _, own in TABLE[key].excludes
     )
+
+
+def has_coefficients(given):
+    """Whether there are coefficients for the number of values."""
+    formulation = given.get("formulation", TABLE["formulation"].default)
+    standard = TABLE["values"].standard("tolerance" in given)
+    defaults = {name: number for number, name in re.findall(r"(\d+) \((\w+)\)", standard)}
+    values = integer(given.get("values", defaults[formulation]))
+    return in_use("corrector", given, "gear") or values in TABLE["values"].tuned[formulation]
 
 
 def bounds(key, given):
@@ -204,6 +215,8 @@ def is_valid(words):
         return False
     if not all(allowed(key, given) for key in given):
         return False
+    if not has_coefficients(given):
+        return False
     if {"dtmin", "dtmax"} <= set(given) and positive(given["dtmin"]) > positive(given["dtmax"]):
         return False
     given |= dict.fromkeys(masks, "*")
@@ -238,6 +251,8 @@ def valid(rng):
             del given[key]
     if rng.random() < 0.35:
         given["values"] = str(rng.randint(*bounds("values", given)))
+    if not has_coefficients(given) and rng.random() < 0.9:
+        given["corrector"] = "gear"
     if given["formulation"] == TABLE["formulation"].default and rng.random() < 0.65:
         del given["formulation"]
     pairs = [[key, value] for key, value in given.items() if key in TABLE and key not in MASKS]

@@ -117,7 +117,7 @@ def test_jumping_forces_are_told(lmp_wheel, examples):
         deck = deck.replace(name, str(examples / "water" / name))
     found = {}
     for forces in ("smooth", "plain"):
-        result = lmp_wheel.succeed(deck, dict(forces=forces, steps=1, every=1, values=12, dt=1.0))
+        result = lmp_wheel.succeed(deck, dict(forces=forces, steps=1, every=1, values=12, corrector="gear", dt=1.0))
         assert "start of order 13" in result.output
         found[forces] = re.search(r"forces jump: by (\S+) of the motion", result.output)
     assert found["smooth"] is None

@@ -8,7 +8,7 @@ from scenes import two_molecules
 ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
 
 KEYWORDS = """
-formulation values passes compensate start c0 omega momentum project reinit tolerance
+formulation values corrector passes compensate start c0 omega momentum project reinit tolerance
 infile
 """
 ARGUMENTS = {
@@ -32,7 +32,7 @@ ARGUMENTS = {
     "custom v_equal": "requires an atom-style or atomfile-style variable",
     "custom v_huge": "custom v_huge: the value of atom 6 is no number below 2.14748e+09",
     "custom i_far": "custom i_far: values from -2147483647 to 2147483647 are too far apart",
-    "molecule sloppy yes": "keyword: sloppy; the keywords are formulation, values, passes,",
+    "molecule sloppy yes": "keyword: sloppy; the keywords are formulation, values, corrector,",
     "molecule formulation third": "formulation: unknown value third (second or first)",
     "molecule formulation first formulation first": "keyword formulation is given twice",
     "molecule values 7.5": "values: 7.5 is not an integer; required: 4 to 12 (second), 3 to 8 (first)",
@@ -42,6 +42,12 @@ ARGUMENTS = {
     "molecule values 13": "values: 13 is not from 4 to 12, as formulation second requires",
     "molecule formulation first values 2": "2 is not from 3 to 8, as formulation first requires",
     "molecule values 9 formulation first": "9 is not from 3 to 8, as formulation first requires",
+    "molecule corrector best": "corrector: unknown value best (tuned or gear)",
+    "molecule tolerance 1e-8 corrector tuned": "corrector tuned cannot be used with tolerance: rows",
+    "molecule c0 velocity": "keyword c0 requires corrector gear: tuned coefficients have a c_0",
+    "molecule c0 position corrector tuned": "keyword c0 requires corrector gear",
+    "molecule formulation first momentum predicted": "keyword momentum predicted requires corrector gear: tuned",
+    "molecule formulation first omega predicted": "keyword omega predicted requires corrector gear",
     "molecule passes 0": "passes: 0 is not from 1 to 100",
     "molecule passes 101": "passes: 101 is not from 1 to 100",
     "molecule passes 1.5": "passes: 1.5 is not an integer; required: 1 to 100",

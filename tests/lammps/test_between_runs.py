@@ -85,9 +85,9 @@ def test_forces_changed_with_a_restart(lmp_tree, data, ranks):
 
 UNCHANGED = [
     *FIXES.values(),
-    "formulation first values 5 passes 1 momentum predicted project no start zero",
-    "values 4",
-    "values 10 compensate yes",
+    "formulation first corrector gear values 5 passes 1 momentum predicted project no start zero",
+    "values 4 corrector gear",
+    "values 10 corrector gear compensate yes",
 ]
 # long steps, a plain cut-off, PPPM, a thermostat, r-RESPA, a field of time
 PPPM = "lj/charmm/coul/long 2.7 3.9 4.2\nkspace_style pppm 1e-4"
@@ -95,7 +95,7 @@ SURROUNDINGS = [
     dict(dt=2.0),
     dict(dt=2.0, pair=("lj/charmm/coul/charmm 2.7", "lj/cut/coul/cut")),
     dict(dt=2.0, pair=("lj/charmm/coul/charmm 2.7 3.9", PPPM)),
-    dict(fix="values 5", after="fix l all langevin 300 300 100 4711"),
+    dict(fix="values 5 corrector gear", after="fix l all langevin 300 300 100 4711"),
     dict(before="run_style respa 2 1 pair 2"),
     dict(after="variable f equal cos(0.1*time)\nfix a all addforce v_f 0.0 0.0"),
 ]

@@ -24,13 +24,13 @@ pytestmark = pytest.mark.tree  # made in a fixture of the module
 
 SCENES = {"case1": 0.5, "case3": 2.0, "water": 1.0}  # with their time steps
 WORDS = {
-    "first-3": dict(formulation="first", values=3),
+    "first-3": dict(formulation="first", values=3, corrector="gear"),
     "first-6": dict(formulation="first", values=6),
-    "first-8": dict(formulation="first", values=8),
+    "first-8": dict(formulation="first", values=8, corrector="gear"),
     "first-6-compensated": dict(formulation="first", values=6, passes=1, compensate="yes"),
-    "second-4": dict(formulation="second", values=4),
+    "second-4": dict(formulation="second", values=4, corrector="gear"),
     "second-8": dict(formulation="second", values=8),
-    "second-12": dict(formulation="second", values=12),
+    "second-12": dict(formulation="second", values=12, corrector="gear"),
     "second-8-compensated": dict(formulation="second", values=8, passes=2, compensate="yes"),
 }
 RANKS = [(1, 1), (2, 2), (1, 2), (2, 1), (4, 2)]

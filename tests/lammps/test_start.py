@@ -75,7 +75,7 @@ def test_what_cannot_be_followed_is_said(lmp_tree, name, ranks):
     result, _ = field(lmp_tree, 10, 0.01, after=NOT_FOLLOWED[name], ranks=ranks)
     assert result.stdout.count(FALLBACK) == 1
     assert {"langevin": "fix l (langevin)", "time": "depends on time"}[name] in result.stdout
-    assert ("use values 6 at most instead of 8" in result.stdout) == (name == "langevin")
+    assert ("random forces heat bodies" in result.stdout) == (name == "langevin")
 
 
 def test_flexible_neighbours_are_not_followed(lmp_tree):
@@ -178,8 +178,8 @@ def two_fixes(lmp, steps, dt, first="", second="", **settings):
 
 PAIRS = {
     "alike": ("", "", "order 9"),
-    "of two formulations": ("formulation first", "values 8", "order 7 and 9"),
-    "of other numbers": ("values 9", "values 7", "order 9 and 7"),
+    "of two formulations": ("formulation first", "values 8 corrector gear", "order 7 and 9"),
+    "of other numbers": ("values 9 corrector gear", "values 7 corrector gear", "order 9 and 7"),
 }
 
 
@@ -207,8 +207,9 @@ def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
     result, _ = two_fixes(lmp_tree, 10, 0.02, after=again, ranks=ranks)
     said = "Fix gear/quat other and move: start of order 9 from"
     assert result.stdout.count(said) == 2 and FALLBACK not in result.stdout
+    few = "values 5 corrector gear"
     noisy = "fix noise all langevin 0.1 0.1 10.0 4711\n" + again
-    result, _ = two_fixes(lmp_tree, 10, 0.02, "values 5", "values 5", after=noisy, ranks=ranks)
+    result, _ = two_fixes(lmp_tree, 10, 0.02, few, few, after=noisy, ranks=ranks)
     assert result.stdout.count(FALLBACK) == 3
     assert result.stdout.count(f"Fix gear/quat other: {FALLBACK}") == 1
 

@@ -152,9 +152,12 @@ def test_what_is_set_reaches_the_fix(lmp_wheel, examples):
     """values, passes and compensate are given to the fix only if set; more adds columns."""
     deck = examples / "case1" / "in.case1"
     named = {"steps": 0, "values": 8, "passes": 2, "compensate": "yes", "more": "f_move[1] pe"}
+    named |= {"corrector": "tuned"}
     log = lmp_wheel.succeed(deck, named).log
     assert "fix move body gear/quat molecule formulation second start bootstrap" in log
-    assert "c0 position values 8 passes 2 compensate yes" in log
+    assert "corrector tuned values 8 passes 2 compensate yes" in log
+    for gear in ({"choices": "paper"}, {"c0": "position"}):
+        assert "corrector gear c0 " in lmp_wheel.succeed(deck, {"steps": 0, **gear}).log
     log = lmp_wheel.succeed(deck, {"steps": 0}).log
     assert not any(
         f" {word} " in line

@@ -438,7 +438,7 @@ def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
     expected = [evaluate.parting_time(series[0].time, distance, level) for level in thresholds]
     out = tmp_path / "out"
     arguments = ["--var", "choices", "paper", "--time", "500", "--every", "1", "--out", str(out)]
-    arguments += ["--a", "formulation first values 5 momentum predicted"]
+    arguments += ["--a", "formulation first corrector gear values 5 momentum predicted"]
     arguments += ["--b", "formulation second"]
     arguments += [word for level in thresholds for word in ("--threshold", str(level))]
     deck = str(examples / "case2" / "in.case2")

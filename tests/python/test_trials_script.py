@@ -1,5 +1,7 @@
 """What commands of a deck say, as text."""
 
+from dataclasses import replace
+
 import pytest
 
 from lammps_gearquat import keywords
@@ -94,7 +96,7 @@ def parse(line):
             "fix 1 a gear/quat molecule isokinetic separate rescale no",
         ),
         (
-            "fix 1 a gear/quat single start zero c0 velocity infile f",
+            "fix 1 a gear/quat single start zero corrector gear c0 velocity infile f",
             "fix 1 a gear/quat single infile f",
         ),
     ],
@@ -127,16 +129,36 @@ def test_lines_that_are_refused(line, said):
 
 
 def test_keywords_of_the_method_are_replaced_and_those_of_the_body_kept():
-    line = parse("fix 1 a gear/quat single formulation second start zero c0 velocity infile f")
+    own = "formulation second start zero corrector gear c0 velocity"
+    line = parse(f"fix 1 a gear/quat single {own} infile f")
     values = "formulation second values 8"
     assert line.with_numerics(values).text() == f"fix 1 a gear/quat single {values} infile f"
-    assert line.numerics("") == "formulation second start zero c0 velocity"
-    assert line.numerics("values 7") == "formulation second start zero c0 velocity values 7"
+    assert line.numerics("") == own
+    assert line.numerics("values 7") == f"{own} values 7"
     first = "formulation first momentum predicted"
-    assert line.numerics(first) == "formulation first start zero momentum predicted"
+    assert line.numerics(first) == "formulation first start zero corrector gear momentum predicted"
     for wrong in ("values", "valus 8", "infile g"):
         with pytest.raises(DeckError, match="pairs of a keyword"):
             line.numerics(wrong)
+
+
+def test_corrector_gear_is_added_where_there_are_no_tuned_coefficients(monkeypatch):
+    """And only there, and not to a line that says which corrector it has."""
+    table = dict(keywords.table())
+    sets = "4 to 12 (second), 3 to 8 (first), 6 8 (second, tuned), 5 (first, tuned)"
+    table["values"] = replace(table["values"], values=sets)
+    assert table["values"].tuned == {"second": (6, 8), "first": (5,)}
+    monkeypatch.setattr(keywords, "table", lambda: table)
+    line, start = parse("fix 1 a gear/quat single infile f"), "fix 1 a gear/quat single"
+    for text, added in (
+        ("values 8", ""),
+        ("values 7", " corrector gear"),
+        ("formulation first values 5 passes 1", ""),
+        ("formulation first values 6", " corrector gear"),
+        ("values 7 corrector tuned", ""),
+        ("passes 1", ""),
+    ):
+        assert line.with_numerics(text).text() == f"{start} {text}{added} infile f"
 
 
 def test_what_is_left_out_is_said():
@@ -151,7 +173,7 @@ def test_what_is_left_out_is_said():
         assert words in note
     line = parse("fix 1 a gear/quat single values 9 tolerance 1e-9 dtmin 1e-5 report long")
     own, (note,) = script.for_trials(line)
-    assert own.text() == "fix 1 a gear/quat single values 9 report long"
+    assert own.text() == "fix 1 a gear/quat single values 9 report long corrector gear"
     assert note.startswith("fix 1 gear/quat: tolerance, dtmin left out, for trials have steps of")
     plain = parse("fix 1 a gear/quat single report long")
     assert script.for_trials(plain) == (plain, []) and script.translate(plain)[1] == []

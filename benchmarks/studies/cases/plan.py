@@ -83,7 +83,7 @@ class Run:
         variables |= {"steps": steps, "every": round(1.0 / self.dt)} | ROWS[self.row].variables
         if self.omega:
             # as the paper corrects: a second pass would use the corrected one in any case
-            variables |= {"omega": self.omega, "values": 5, "passes": 1}
+            variables |= {"omega": self.omega, "values": 5, "passes": 1, "corrector": "gear"}
         return Job(deck(f"case{self.case}"), variables, steps)
 
 

@@ -187,7 +187,7 @@ class FixLine:
                 f" be tried with '{text}'"
             )
         kept = self.only(*_PHYSICAL)
-        return replace(kept, keywords=pairs(text) + kept.keywords)
+        return replace(kept, keywords=_with_coefficients(pairs(text)) + kept.keywords)
 
     def numerics(self, text):
         """The keywords about integration of this line as text, changed by those in ``text``.
@@ -208,6 +208,15 @@ def pairs(text):
     if len(words) % 2 or unknown:
         raise DeckError(f"'{text}' should be pairs of a keyword ({', '.join(known)}) and its value")
     return tuple((key, (value,)) for key, value in zip(words[::2], words[1::2]))
+
+
+def _with_coefficients(numerics):
+    """Pairs of a keyword and its value, with corrector gear if there are no tuned coefficients."""
+    given, row = dict(numerics), keywords.table()["values"]
+    (formulation,) = given.get("formulation", ("second",))
+    values, tuned = given.get("values", ("",))[0], row.tuned.get(formulation, ())
+    lacks = values.isdigit() and int(values) not in tuned and "corrector" not in given
+    return (*numerics, ("corrector", ("gear",))) if lacks else numerics
 
 
 def moves_bodies(style):
@@ -249,6 +258,9 @@ def for_trials(line):
     left_out = [key for key, _ in line.keywords if key not in dict(kept.keywords)]
     if not left_out:
         return line, []
+    if "tolerance" in left_out and "corrector" not in dict(kept.keywords):
+        standard = keywords.table()["corrector"].standard(tolerance=True)
+        kept = replace(kept, keywords=(*kept.keywords, ("corrector", (standard,))))
     return kept, [
         f"fix {line.id} {line.style}: {', '.join(left_out)} left out, for trials have steps of equal"
         " length; what it costs to let the step follow the error is not measured"
