@@ -72,9 +72,13 @@ def test_every_range_is_documented(key):
 
 def test_every_default_is_documented():
     text = " ".join(section("Default").split())
-    defaults = dict(re.findall(r"(\w+) = (\w+)", text.partition(", or ")[0]))
+    defaults = dict(re.findall(r"(\w+) = (\w+)", text.partition(", or reinit")[0]))
     stated = {key: row.default for key, row in TABLE.items() if re.fullmatch(r"\w+", row.default)}
     assert {key: defaults.pop(key) for key in stated} == stated
+    for key, row in TABLE.items():
+        if row.kind == "word" and row.standard() != row.standard(tolerance=True):
+            either = f"{key} = {row.standard()}, or {key} = {row.standard(tolerance=True)}"
+            assert f"{either} with tolerance" in text
     second, first, *most = re.findall(r"\d+", TABLE["values"].default)
     with_tolerance = f"({most[0]} and {most[1]} with tolerance)"
     assert f"values = {second} for *second* and {first} for *first* {with_tolerance}" in text
