@@ -25,7 +25,7 @@
 
      row N-1           c_(N-1) s = binom(N+1, N-1) + (N + 1) e_(N-1)
      rows N-2 ... 2    sum_(k>j) binom(k, j) b_k = binom(N+1, j) - c_j s + (N + 1) e_j,   b_2 = 0
-     row 1             grows by g = sum_(k>=2) k b_k - (N + 1) + c_1 s in a step
+     row 1             goes astray by g = sum_(k>=2) k b_k - (N + 1) + c_1 s in a step
 
    and the predicted position, the one that forces see, has the right second derivative if
 
@@ -68,13 +68,17 @@ class SteadyDeviations {
   /// c_(q-1) by Eq. (1).
   long double consistent() const { return (binomial(n, q - 1) - sum(q - 1, e)) / residual; }
 
+  /// By how much row q - 1 goes astray in a step for y_(N+1) = 1; c: with c_(q-1).
+  long double growth(const std::vector<long double> &c) const
+  {
+    const long double s = (binomial(n + 1, n - 1) + (n + 1) * e[n - 1]) / c[n - 1];
+    return sum(q - 1, descend(c, n + 1, s, e)) - binomial(n + 1, q - 1) + c[q - 1] * s;
+  }
+
   /// c_0 of a second-order equation by Eq. (2); c: with c_1.
   long double position_c0(const std::vector<long double> &c) const
   {
-    const long double s = (binomial(n + 1, n - 1) + (n + 1) * e[n - 1]) / c[n - 1];
-    const auto b = descend(c, n + 1, s, e);
-    const long double growth = sum(1, b) - (n + 1) + c[1] * s;
-    return (1.0L - (sum(0, e) + growth / (n + 1))) / residual;
+    return (1.0L - sum(0, e) - growth(c) / (n + 1)) / residual;
   }
 
   /// What a step adds to row 0 of a second-order equation beyond the exact motion from where it
@@ -250,7 +254,8 @@ struct CorrectorCoefficients {
     return (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
   }
 
-  /// First-order equation: h^N y^(N) has the weight that it has with Gear's coefficients.
+  /// First-order equation: h^N y^(N) has the weight that it has with Gear's coefficients, or more if
+  /// the error, of one order higher, is larger than Gear's.
   static double fill_tuned(const Scheme &scheme, Columns columns, Array &c)
   {
     const int n = scheme.values();
@@ -261,7 +266,9 @@ struct CorrectorCoefficients {
     const std::vector<long double> exact = set->coefficients();
     for (int j = 0; j < n; ++j) c[j] = double(exact[j]);
     if (!scheme.first()) return double(std::fabs(SteadyDeviations(2, exact).local_error(exact[0])));
-    return first_order_error_weight(n).value() * std::tgamma(n) * c[n - 1];
+    const double gear = adams_moulton(n).value() * std::tgamma(n + 2);
+    const double larger = double(std::fabs(SteadyDeviations(1, exact).growth(exact))) / gear;
+    return first_order_error_weight(n).value() * std::tgamma(n) * c[n - 1] * std::max(1.0, larger);
   }
 };
 

@@ -1,55 +1,362 @@
-/* gear_quat_tuned.h: the order conditions reproduce Gear's numbers from Gear's tails. */
+/* gear_quat_tuned.h and gear_quat_noise.h: the order conditions, against the characteristic equation
+   in exact fractions; every tuned set, whatever its numbers; and what random forces make of it. */
 
-#include "checks.h"
-#include "gear_quat_tuned.h"
+#include "gear_quat_noise.h"
+#include "oracles/characteristic.h"
+#include "oracles/exact_flow.h"
+#include "oracles/rational.h"
+#include "scenes.h"
 
-#include <gtest/gtest.h>
+#include <random>
 
-using namespace LAMMPS_NS::GearQuat;
+using namespace Drive;
+using Oracle::Rational;
 
 namespace {
 
-constexpr Formulation FIRST = Formulation::FIRST, SECOND = Formulation::SECOND;
+using Coefficients = vector<long double>;
+using Exact = vector<Rational>;
 
-std::vector<double> values_of(const Fractions &exact)
+/// Order of the equation that a formulation integrates.
+int order_of(Formulation formulation)
 {
-  std::vector<double> c;
-  for (const Fraction &f : exact) c.push_back(f.value());
+  return formulation == FIRST ? 1 : 2;
+}
+
+Scheme tuned(Scheme scheme)
+{
+  scheme.tuned = true;
+  return scheme;
+}
+
+/// Every number of values that has tuned coefficients.
+vector<Scheme> tuned_schemes(int passes = 1)
+{
+  vector<Scheme> list;
+  for (const Formulation formulation : {FIRST, SECOND})
+    for (const int n : tuned_values(formulation))
+      list.push_back(tuned(scheme_of(formulation, n, passes, true)));
+  return list;
+}
+
+Exact gear(Formulation formulation, int n)
+{
+  Exact c;
+  for (const Fraction &f :
+       formulation == FIRST ? first_order_coefficients(n) : second_order_coefficients(n, false))
+    c.push_back({f.numerator, f.denominator});
   return c;
 }
 
-std::vector<double> values_of(const std::vector<long double> &c)
-{
-  return std::vector<double>(c.begin(), c.end());
-}
-
-/// Gear's coefficients without those that order determines.
-TunedSet without_head(Formulation formulation, const Fractions &c)
+/// What the kernel makes of the rows from the order on.
+Coefficients completed(Formulation formulation, const Exact &c)
 {
   TunedSet set = {formulation, {}, {}};
-  for (std::size_t j = formulation == FIRST ? 2 : 3; j < c.size(); ++j)
-    set.tail.push_back((long double) c[j].numerator / c[j].denominator);
-  return set;
+  for (size_t j = order_of(formulation) + 1; j < c.size(); ++j)
+    set.tail.push_back((long double) c[j].numerator() / (long double) c[j].denominator());
+  return set.coefficients();
 }
 
-/// The conditions make of Gear's tail what Gear has, and of one that is 1 % off something else.
-void make_gears_of(Formulation formulation, const Fractions &gear)
+bool near(const Coefficients &found, const Exact &right)
 {
-  const std::vector<double> right = values_of(gear);
-  Check::holds_and_refuses_one_percent(values_of(without_head(formulation, gear).coefficients()),
-                                       [&](const std::vector<double> &c) {
-                                         for (std::size_t j = 0; j < c.size(); ++j)
-                                           if (!(std::fabs(c[j] - right[j]) <= 2e-16)) return false;
-                                         return c.size() == right.size();
-                                       });
+  for (size_t j = 0; j < right.size(); ++j) {
+    const double difference = double(found[j]) - right[j].value();
+    if (!(std::fabs(difference) <= 4e-16 * std::fabs(right[j].value()))) return false;
+  }
+  return found.size() == right.size();
+}
+
+/// Powers that order asks to vanish do, up to rounding; c0_free: those that c_0 does not enter.
+bool has_order(const Coefficients &c, int order, bool c0_free = false)
+{
+  const int n = int(c.size()), last = order == 1 ? (c0_free ? n - 1 : n) : (c0_free ? n : n + 1);
+  const Coefficients left = Oracle::characteristic(c, order, last + 1);
+  return std::all_of(left.begin(), left.end(), [](long double x) {
+    return std::fabs(x) < 1e-12L;
+  });
+}
+
+/// Coefficients that order determines are refused if they are 1 % off, and those of the tail unless
+/// the conditions do not contain them (the oracle tells).
+void refuses_one_percent(const Exact &right, int order, bool c0_free = false)
+{
+  const int n = int(right.size());
+  const auto holds = [&](const Exact &exact) {
+    Coefficients c;
+    for (const Rational &x : exact) c.push_back((long double) x.numerator() / x.denominator());
+    return has_order(c, order, c0_free);
+  };
+  ASSERT_TRUE(holds(right)) << n;
+  for (int j = c0_free ? 1 : 0; j < n; ++j) {
+    Exact wrong = right;
+    wrong[j] = wrong[j] * Rational(101, 100);
+    bool contained = j <= order;
+    if (j > order) {
+      const Exact head = Oracle::with_head(wrong, order);
+      for (int k = c0_free ? 1 : 0; k < order; ++k) contained |= head[k] != right[k];
+    }
+    EXPECT_EQ(holds(wrong), !contained) << n << " values, entry " << j;
+  }
+}
+
+/// The fraction that a decimal or a quotient of small numbers stands for.
+Rational rational_of(long double x)
+{
+  Rational::Integer h[2] = {1, 0}, k[2] = {0, 1};    // convergents of the continued fraction
+  for (long double rest = x;;) {
+    const auto whole = (Rational::Integer) std::floor(rest);
+    const Rational::Integer next_h = whole * h[0] + h[1], next_k = whole * k[0] + k[1];
+    h[1] = h[0], k[1] = k[0], h[0] = next_h, k[0] = next_k;
+    if (std::fabs((long double) h[0] / (long double) k[0] - x) <= 4e-19L * std::fabs(x))
+      return {h[0], k[0]};
+    rest = 1.0L / (rest - (long double) whole);
+  }
 }
 
 }    // namespace
 
+// --- the conditions
+
 TEST(OrderConditions, MakeGearsCoefficientsOfGearsTails)
 {
-  for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n)
-    make_gears_of(FIRST, first_order_coefficients(n));
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
-    make_gears_of(SECOND, second_order_coefficients(n, false));
+  for (const Formulation formulation : {FIRST, SECOND})
+    for (int n = fewest(formulation); n <= most(formulation); ++n) {
+      const Exact right = gear(formulation, n);
+      EXPECT_TRUE(near(completed(formulation, right), right)) << n;
+      for (size_t j = order_of(formulation) + 1; j < right.size(); ++j) {
+        Exact wrong = right;
+        wrong[j] = wrong[j] * Rational(101, 100);
+        EXPECT_FALSE(near(completed(formulation, wrong), right)) << n << ", " << j;
+      }
+    }
+}
+
+TEST(OrderConditions, AreThoseOfTheCharacteristicEquation)
+{
+  // tails anywhere near Gear's; the oracle solves for the other coefficients exactly
+  for (const Formulation formulation : {FIRST, SECOND})
+    for (int n = fewest(formulation); n <= most(formulation); ++n)
+      for (const int shift : {-1, 1, 2}) {
+        Exact c = gear(formulation, n);
+        for (int j = order_of(formulation) + 1; j < n; ++j)
+          c[j] = c[j] * Rational(16 + shift * (j % 3 + 1), 16);
+        EXPECT_TRUE(near(completed(formulation, c), Oracle::with_head(c, order_of(formulation))))
+            << n << ", " << shift;
+      }
+}
+
+TEST(OrderConditions, AOnePercentErrorInAnEntryIsSeen)
+{
+  for (const Scheme &scheme : every_scheme())
+    refuses_one_percent(gear(scheme.formulation, scheme.values()), order_of(scheme.formulation));
+}
+
+// --- the table
+
+TEST(TunedSets, AreOneForAllColumnsOfEachNumber)
+{
+  for (const TunedSet &set : tuned_sets()) {
+    EXPECT_GE(set.values(), fewest(set.formulation));
+    EXPECT_LE(set.values(), most(set.formulation));
+    EXPECT_TRUE(has_tuned(set.formulation, set.values()));
+    for (const Columns columns : set.columns)
+      EXPECT_EQ(tuned_set(set.formulation, set.values(), columns), &set) << "listed twice";
+  }
+  for (const Formulation formulation : {FIRST, SECOND}) {
+    const vector<int> values = tuned_values(formulation);
+    EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
+    EXPECT_FALSE(values.empty());
+    EXPECT_FALSE(has_tuned(formulation, most(formulation) + 1));
+  }
+}
+
+TEST(TunedSets, HaveTheirOrderExactly)
+{
+  for (const TunedSet &set : tuned_sets()) {
+    const int n = set.values(), order = order_of(set.formulation);
+    const bool c0_free = !std::isnan(set.c0);
+    const Coefficients c = set.coefficients();
+    Exact exact(n);
+    exact[order] = 1;
+    for (int j = order + 1; j < n; ++j) exact[j] = rational_of(c[j]);
+    exact = Oracle::with_head(exact, order);
+    if (c0_free) exact[0] = rational_of(c[0]);
+    for (int j = 0; j < n; ++j)
+      EXPECT_NEAR(double(c[j]), exact[j].value(), 2e-16) << n << ", " << j;
+    refuses_one_percent(exact, order, c0_free);
+  }
+}
+
+TEST(TunedSets, ForgetErrorsOfTheHigherRows)
+{
+  for (const TunedSet &set : tuned_sets()) {
+    const int n = set.values(), order = order_of(set.formulation);
+    const Coefficients exact = set.coefficients();
+    const vector<double> c(exact.begin(), exact.end());
+    double rows[MAX_VALUES] = {};
+    for (int j = order; j < n; ++j) rows[j] = 1.0;
+    for (int step = 0; step < 400; ++step) {
+      Nordsieck<1>::predict(rows, n);
+      const double residual = -rows[order];
+      Nordsieck<1>::correct<1>(rows, n, c.data(), 0, &residual);
+    }
+    for (int j = order; j < n; ++j) EXPECT_LT(std::fabs(rows[j]), 1e-6) << n;
+  }
+}
+
+TEST(TunedSets, NoneMeansAnError)
+{
+  EXPECT_THROW(Integrator(tuned(scheme_of(SECOND, MAX_VALUES + 1)), 0.1), std::domain_error);
+  EXPECT_THROW(Integrator(tuned(scheme_of(FIRST, FIRST_MOST + 1)), 0.1), std::domain_error);
+  EXPECT_NO_THROW(Integrator(tuned(scheme_of(SECOND, tuned_values(SECOND).front())), 0.1));
+}
+
+// --- what they do
+
+namespace {
+
+/// The exponent of the error, where it is far from both rounding and the largest steps.
+double slope_seen(const Scene &scene, const Scheme &scheme)
+{
+  vector<double> h, e;
+  for (double step = 0.25; step > 0.01; step *= 0.9) {
+    const double rounded = scene.time / std::ceil(scene.time / step);
+    const double missed = error(scene, scheme, rounded, rounded);
+    if (missed < 1e-5) h.push_back(rounded), e.push_back(missed);
+    if (missed < 1e-13) break;
+  }
+  if (h.size() < 5) return 0.0;
+  const size_t last = h.size() - 2;    // the finest may be rounding
+  return Check::slopes({h[last - 3], h[last]}, {e[last - 3], e[last]})[0];
+}
+
+}    // namespace
+
+TEST(TunedOrders, PositionOfTheOscillator)
+{
+  for (const Scheme &scheme : tuned_schemes()) {
+    if (scheme.values() < 5) continue;    // no step here has a small error
+    EXPECT_GT(slope_seen(oscillator(200.0), scheme), scheme.values() - 0.5) << scheme;
+    EXPECT_LT(slope_seen(oscillator(200.0, 1.01), scheme), 0.5) << scheme;
+  }
+}
+
+TEST(TunedOrders, OrientationOfTheFreeTop)
+{
+  for (const Scheme &scheme : tuned_schemes(2)) {
+    if (scheme.values() < 5 || scheme.values() > 11) continue;
+    const int order = scheme.values() - (scheme.first() ? 0 : 1);
+    EXPECT_GT(slope_seen(free_top(), scheme), order - 0.6) << scheme;
+  }
+}
+
+namespace {
+
+/// Estimated by true local error of the position of the swinging top, root mean squares over a run.
+double estimated_by_true(const Scheme &scheme, double h)
+{
+  const Oracle::ExactFlow flow(TOP, swing);
+  Motion motion(TOP, top_state(0.0), swing, scheme, h, Start::BOOTSTRAP, std::min(h, 0.1));
+  motion.steps(300);
+  double estimated = 0.0, missed = 0.0;
+  for (int n = 0; n < 60; ++n) {
+    const BodyState exact = flow(motion.state(), h);
+    estimated += std::pow(motion.step().position_error(), 2);
+    const BodyState after = motion.state();
+    for (int i = 0; i < 3; ++i) missed += std::pow(after.center[i] - exact.center[i], 2);
+  }
+  return std::sqrt(estimated / missed);
+}
+
+}    // namespace
+
+TEST(TunedEstimates, AreTheLocalErrorOrAboveIt)
+{
+  for (const Scheme &scheme : tuned_schemes(2)) {
+    if (scheme.values() > 9) continue;    // rounding of the state is near
+    const double h = scheme.values() > 7 ? 0.12 : 0.1, wide = estimated_by_true(scheme, h);
+    if (scheme.first()) {    // an estimate of one order less
+      EXPECT_GT(wide, 1.0) << scheme;
+      continue;
+    }
+    const double narrow = estimated_by_true(scheme, 0.75 * h);
+    const double limit = (narrow - 0.5625 * wide) / (1.0 - 0.5625);    // without the term of h^2
+    EXPECT_NEAR(limit, 1.0, 0.02) << scheme;
+  }
+}
+
+// --- noise
+
+namespace {
+
+/// Mean square change of the velocity in a step under random forces, by that of the kicks alone.
+double measured_gain(const Scheme &scheme)
+{
+  std::mt19937 random(4711);
+  std::normal_distribution<double> normal;
+  const RigidBody body = {2.0, {1.0, 1.0, 1.0}};
+  BodyState start = {};
+  start.q[3] = 1.0;
+  const double h = 0.1;
+  const LoadOf load = [&](const BodyState &, double) {
+    return Load{{normal(random), normal(random), normal(random)}, {}};
+  };
+  Motion motion(body, start, free_of_load, scheme, h, Start::FORCES, h);
+  motion.load = load;
+  motion.steps(500);
+  const int steps = 40000;
+  double sum = 0.0;
+  for (int n = 0; n < steps; ++n) {
+    const BodyState before = motion.state();
+    motion.step();
+    const BodyState after = motion.state();
+    for (int i = 0; i < 3; ++i) sum += std::pow(after.velocity[i] - before.velocity[i], 2);
+  }
+  return sum / (3.0 * steps) / std::pow(h / body.mass, 2);
+}
+
+}    // namespace
+
+TEST(Noise, OfRandomForcesIsTheGain)
+{
+  for (const Scheme &scheme :
+       {scheme_of(FIRST, 4), scheme_of(FIRST, 6), scheme_of(SECOND, 6), scheme_of(SECOND, 8),
+        tuned(scheme_of(SECOND, tuned_values(SECOND).back())),
+        tuned(scheme_of(FIRST, tuned_values(FIRST).back()))})
+    EXPECT_NEAR(measured_gain(scheme) / noise_gain(scheme), 1.0, 0.03) << scheme;
+}
+
+TEST(Noise, GrowsWithTheNumberOfGearsValues)
+{
+  for (const Formulation formulation : {FIRST, SECOND}) {
+    double last = 0.0;
+    for (const Scheme &scheme : schemes_of(formulation)) {
+      EXPECT_GT(noise_gain(scheme), 1.2 * last) << scheme;
+      last = noise_gain(scheme);
+    }
+  }
+}
+
+TEST(Noise, RemediesSuitIt)
+{
+  for (const Scheme &scheme : {scheme_of(SECOND, 8), scheme_of(SECOND, 7)})
+    EXPECT_EQ(remedy_for_noise(scheme, Noise::RANDOM), "values 6 at most");
+  EXPECT_EQ(remedy_for_noise(scheme_of(SECOND, 6), Noise::RANDOM), "");
+  EXPECT_EQ(remedy_for_noise(scheme_of(SECOND, 6), Noise::COLLISIONS), "values 4 at most");
+  EXPECT_EQ(remedy_for_noise(scheme_of(FIRST, 5), Noise::RANDOM), "values 4 at most");
+  EXPECT_EQ(remedy_for_noise(scheme_of(FIRST, 4), Noise::COLLISIONS), "values 3 at most");
+  for (const Scheme &scheme : tuned_schemes()) {
+    EXPECT_EQ(remedy_for_noise(scheme, Noise::NONE), "");
+    for (const Noise noise : {Noise::RANDOM, Noise::COLLISIONS}) {
+      const std::string remedy = remedy_for_noise(scheme, noise);
+      Scheme limit = scheme;
+      limit.tuned = false;
+      limit.rows = most_with_noise(scheme, noise);
+      EXPECT_EQ(remedy.empty(), noise_gain(scheme) < 1.01 * noise_gain(limit)) << scheme;
+      if (remedy.empty() || remedy.find("gear") != std::string::npos) continue;
+      Scheme mended = scheme;
+      mended.rows = std::stoi(remedy.substr(7));
+      EXPECT_TRUE(suits_noise(mended, noise)) << remedy;
+    }
+  }
 }
