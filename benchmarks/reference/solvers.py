@@ -59,8 +59,8 @@ def state_errors(problem, reference, state):
     )
 
 
-def solve(problem, time, method, tolerance):
-    """State of a Problem at ``time`` by a SciPy method in double precision, and the evaluations.
+def _solution(problem, time, method, tolerance):
+    """Packed states (n, B, 13) at the steps of a SciPy method in double precision, and the evaluations.
 
     ``tolerance`` is relative to each component and to the largest of its kind (position, velocity,
     quaternion, angular velocity), whichever is larger.
@@ -85,7 +85,21 @@ def solve(problem, time, method, tolerance):
     solution = solve_ivp(rates, span, start.ravel(), method, **limits)
     if not solution.success:
         raise RuntimeError(f"{method} at tolerance {tolerance:g}: {solution.message}")
-    return State.of(solution.y[:, -1].reshape(start.shape)), evaluations
+    return solution.y.T.reshape(-1, *start.shape), evaluations
+
+
+def solve(problem, time, method, tolerance):
+    """State of a Problem at ``time`` by a SciPy method, and the evaluations; see ``_solution``."""
+    steps, evaluations = _solution(problem, time, method, tolerance)
+    return State.of(steps[-1]), evaluations
+
+
+def largest_energy_error(problem, time, method, tolerance):
+    """(evaluations, largest deviation of the energy at the solver's own steps)."""
+    steps, evaluations = _solution(problem, time, method, tolerance)
+    double = problem.astype(np.float64)
+    energies = [float(sum(double.energies(State.of(packed)))) for packed in steps]
+    return evaluations, float(np.abs(np.array(energies) - energies[0]).max())
 
 
 def work_precision(problem, time, reference, method, tolerances):

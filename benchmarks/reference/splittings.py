@@ -151,7 +151,7 @@ class FreeRotation:
         # 2T I_3 - L^2 and L^2 - 2T I_1: of one sign
         near = i1 * w1 * w1 * (i3 - i1) + i2 * w2 * w2 * (i3 - i2)
         far = i2 * w2 * w2 * (i2 - i1) + i3 * w3 * w3 * (i3 - i1)
-        if not (near * far > 0).all():
+        if (near * far <= 0).any():
             raise ValueError("a rotation that is not quite about a principal axis is required")
         a1, a2 = np.sqrt(near / (i1 * (i3 - i1))), np.sqrt(near / (i2 * (i3 - i2)))
         a3 = np.copysign(np.sqrt(far / (i3 * (i3 - i1))), w3)
@@ -245,6 +245,14 @@ def states(problem, time, splitting, steps, every=None):
         if number % (every or steps) == 0:
             found.append((motion.state, motion.evaluations))
     return found
+
+
+def largest_energy_error(problem, time, splitting, steps):
+    """(evaluations, largest deviation of the energy), sampled about once per unit of time."""
+    start, every = float(sum(problem.energies(problem.start))), max(1, round(steps / float(time)))
+    found = states(problem, time, splitting, steps, every)
+    energies = [float(sum(problem.energies(state.astype(problem.dtype)))) for state, _ in found]
+    return found[-1][1], float(np.abs(np.array(energies) - start).max())
 
 
 def work_precision(problem, time, reference, splitting, numbers):

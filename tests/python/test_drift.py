@@ -14,6 +14,7 @@ from benchmarks.engine.methods import gear, looks
 from benchmarks.engine.page import render
 from benchmarks.engine.runner import LammpsError
 from benchmarks.engine.statistics import slope
+from benchmarks.reference import paper_problem, solvers, splittings
 from benchmarks.studies import drift
 
 TIME = np.arange(2001.0)
@@ -112,6 +113,10 @@ TYPICAL = {
 }
 
 
+#: a solver whose error falls a hundredfold at half the time per evaluation, from 0.2 to 0.01
+PEERS = {"DOP853": [(x, 1e-5 * 100 ** np.log2(x / 0.0625)) for x in (0.2, 0.01)]}
+
+
 def test_ratios_say_who_holds_the_energy():
     finding = drift.find(made_up(TYPICAL))
     shown = [" ".join(row[1:]) for row in finding.tables["ratios_top"].rows]
@@ -121,7 +126,9 @@ def test_ratios_say_who_holds_the_energy():
     rows = {row[0]: row[1:] for row in finding.tables["largest_top"].rows}
     assert rows[DEFAULT] == ["1.0e-07", "lost, t = 10"] and rows[VERLET] == ["1.0e-03", "7.0e+00*"]
     assert finding.context["steps"] == 2000
+    finding = drift.find_all(drift.Results(made_up(TYPICAL), PEERS))
     text = render("drift.md.j2", drift.STUDY, finding, "Somewhere.")
+    assert "| DOP853 | – | 1.0e-03 | 1.0e-05 | 1.0e-07 |" in text
     assert f"| {DEFAULT} | 1.0e-07 | lost, t = 10 |" in text and "over 2 000 steps" in text
 
 
@@ -155,6 +162,37 @@ def test_small_run(tmp_path):
     finding = drift.find(results)
     finding.pictures["drift"](tmp_path / "drift.png")
     assert (tmp_path / "drift.png").stat().st_size > 10_000
+
+
+def test_errors_at_equal_evaluations():
+    rows = [(0.02, 1e-8), (0.2, 1e-4)]
+    assert drift.peers.error_at(rows, 0.02 * 10**0.5) == pytest.approx(1e-6, rel=1e-9)
+    assert np.isnan(drift.peers.error_at(rows, 0.3)) and np.isnan(drift.peers.error_at(rows, 0.01))
+    assert drift.peers.error_at([*rows, (0.4, np.inf)], 0.3) == np.inf
+
+
+def test_a_splitting_holds_the_energy_and_a_solver_does_not():
+    """Test case 1 to t = 200 and 400 at 0.1 per evaluation: the error of RKN6 stays."""
+    kept, lost = (
+        [work(paper_problem(1), end, *own)[1] for end, own in zip((200.0, 400.0), settings)]
+        for work, settings in (
+            (splittings.largest_energy_error, [(splittings.SPLITTINGS[1], n) for n in (182, 364)]),
+            (solvers.largest_energy_error, [("DOP853", 1e-7)] * 2),
+        )
+    )
+    assert kept[0] == kept[1] < 1e-5
+    assert 1e-6 < 1.2 * lost[0] < lost[1]
+
+
+def test_a_quick_run_of_the_peers(tmp_path, monkeypatch):
+    monkeypatch.setattr(drift.peers, "SPACINGS", (0.25, 0.125))
+    done = []
+    lab = Lab(tmp_path, quick=True, advance=done.append)
+    rows = drift.peers.measure(lab, drift.read, drift.is_lost)
+    assert sum(done) == pytest.approx(1.0)
+    assert set(rows) >= {"DOP853", "LSODA", "RKN4, 6 stages", NO_SQUISH}
+    ends = {label: drift.peers.error_at(own, 0.125) for label, own in rows.items()}
+    assert ends["RKN6, 11 stages"] < ends[NO_SQUISH] < ends[VERLET]
 
 
 def test_other_errors_are_not_results(tmp_path):

@@ -4,19 +4,22 @@ Two scenes of ``examples`` that no method has to lose: the body without bare cha
 cage, bound because its energy is below zero, and the free asymmetric top.  Every method runs the
 same number of steps at the same few steps, from one that is small for all of them to one that is
 usual with fix rigid/nve/small.  Samples are sparse; the largest error is that of the samples.
+In test case 1, peers.py compares further methods at equal numbers of force evaluations.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from benchmarks.engine import Curve, Finding, Job, Measurement, Panel, Study, Table, deck, series
-from benchmarks.engine.methods import gear, looks, rigid
+from benchmarks.engine.methods import DEFAULT_VALUES, gear, looks, rigid
 from benchmarks.engine.page import grouped
 from benchmarks.engine.panels import draw
 from benchmarks.engine.statistics import slope
+
+from . import peers
 
 STEPS, QUICK_STEPS, SAMPLES = 10_000_000, 100_000, 2000
 #: LAMMPS' word for coordinates and energies that are not finite any more, and the fix's own
@@ -26,7 +29,9 @@ SIGNIFICANT = 4.0
 #: an error of more than this part of the kinetic energy at the start spoils a run
 SPOILS = 0.1
 
-DEFAULT, DEFAULT_COMPENSATED = gear("second", 8), gear("second", 8, compensate=True)
+DEFAULT, DEFAULT_COMPENSATED = (
+    gear("second", DEFAULT_VALUES["second"], compensate) for compensate in (False, True)
+)
 NO_SQUISH, VERLET = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
 METHODS = {
     method.label: method
@@ -201,6 +206,30 @@ def find(results):
     return Finding(measurements, shown, {"drift": picture}, context)
 
 
+@dataclass(frozen=True)
+class Results:
+    """``runs``: what ``measure`` returns; ``peers``: what peers.measure returns."""
+
+    runs: dict
+    peers: dict
+
+
+def measure_all(lab):
+    """Results of everything."""
+    with lab.share(0.8):
+        runs = measure(lab)
+    with lab.share(0.2):
+        return Results(runs, peers.measure(lab, read, is_lost))
+
+
+def find_all(results):
+    """Finding of Results."""
+    finding = find(results.runs)
+    finding.tables["peers"], measurements = peers.find(results.peers)
+    context = finding.context | {"end": peers.END}
+    return replace(finding, measurements=finding.measurements + measurements, context=context)
+
+
 # --- picture ------------------------------------------------------------------------------------
 def panels_of(title, runs, dts):
     """Error over time at the second step, largest error and slope against the step."""
@@ -230,4 +259,4 @@ def panels_of(title, runs, dts):
     )
 
 
-STUDY = Study("drift", "Energy over long runs", 900.0, measure, find)
+STUDY = Study("drift", "Energy over long runs", 1080.0, measure_all, find_all)
