@@ -28,8 +28,17 @@ class Method:
         return self.kind != "rigid"
 
 
+#: formulation -> numbers of values that the fix has tuned coefficients for
+TUNED = {"second": (4, 5, 6, 7, 8), "first": (3, 4, 5, 6, 7)}
+
+
 def gear(formulation, values, compensate=False, **more):
-    """Fix gear/quat with so many ``values``; ``more``: variables of the decks, such as passes or c0."""
+    """Fix gear/quat with so many ``values``; ``more``: variables of the decks, such as passes or c0.
+
+    The coefficients are Gear's where there are no others.
+    """
+    if values not in TUNED.get(formulation, ()):
+        more = {"corrector": "gear"} | more
     variables = {"formulation": formulation, "values": values, **more}
     words = [formulation, f"N = {values}"]
     for name, value in more.items():

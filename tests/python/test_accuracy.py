@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine import Lab, LammpsError, session
+from benchmarks.engine import Lab, LammpsError, methods, session
 from benchmarks.engine.methods import DEFAULTS, GEARS
 from benchmarks.engine.page import render
 from benchmarks.engine.sites import pose_errors
@@ -19,6 +19,7 @@ from benchmarks.studies import accuracy as study
 from benchmarks.studies.accuracy import evaluate, heldout, peers, plan, runs, strongest, tables
 from benchmarks.studies.accuracy.evaluate import Cost, cost_of, fitted_order
 from benchmarks.studies.cases.accuracy import reference
+from lammps_gearquat import keywords
 
 STEPS = 0.5 / 2.0 ** np.arange(0, 8, 0.5)
 
@@ -384,6 +385,14 @@ def test_defaults_are_those_of_the_fix(lammps):
         told = plan.Run(SCENE, method, 320).perform(lammps)
         untold = lammps.run(SCENE.deck, bare, "bare")
         assert np.array_equal(told.after, untold.after), f"{method.label}: not the defaults"
+
+
+def test_methods_know_which_coefficients_there_are():
+    assert methods.TUNED == keywords.table()["values"].tuned
+    for name, numbers in plan.VALUES.items():
+        for n in numbers:
+            asked = plan.setting(name, n).variables.get("corrector")
+            assert asked == (None if n in methods.TUNED[name] else "gear")
 
 
 def test_usable_steps(lammps):

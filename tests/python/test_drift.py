@@ -18,7 +18,7 @@ from benchmarks.reference import paper_problem, solvers, splittings
 from benchmarks.studies import drift
 
 TIME = np.arange(2001.0)
-DEFAULT, HIGH, NO_SQUISH = drift.DEFAULT.label, "second, N = 10", drift.NO_SQUISH.label
+DEFAULT, HIGH, NO_SQUISH = drift.DEFAULT.label, gear("second", 10).label, drift.NO_SQUISH.label
 NVE, VERLET = "fix rigid/nve", drift.VERLET.label
 
 
