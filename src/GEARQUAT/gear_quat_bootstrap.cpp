@@ -52,7 +52,7 @@ static int most_values(const std::vector<Party> &parties)
 }
 
 Bootstrap::Bootstrap(LAMMPS *lmp, const std::vector<Party> &parties, double h) :
-    Pointers(lmp), parties(parties), h(h), collocation(most_values(parties)), evaluations(0)
+    Pointers(lmp), parties(parties), h(h), collocation(most_values(parties))
 {
   for (auto &party : this->parties) party.power.assign(collocation.number_of_nodes(), 0.0);
 }
@@ -84,22 +84,18 @@ void Bootstrap::seed_body(Bodies &bodies, int ibody, const Load &acting, const S
 bool Bootstrap::run()
 {
   std::vector<const Fix *> owners;
-  std::string orders;
-  for (const auto &party : parties) {
-    owners.push_back(party.fix);
-    const std::string order = std::to_string(party.scheme.order());
-    if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
-  }
+  for (const auto &party : parties) owners.push_back(party.fix);
   Forces forces(lmp, owners);
   std::string why = forces.reason();
   if (why.empty()) {
-    if (search(forces)) {
+    const StartFound start = search(forces);
+    if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
       const bool any = std::any_of(parties.begin(), parties.end(), [](const auto &party) {
         return party.bodies->number() > 0;
       });
       if (comm->me == 0 && any)
         utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
-                       names(), orders, evaluations, reason);
+                       names(), orders(start), evaluations, reason);
       return true;
     }
     why = reason;
@@ -130,31 +126,129 @@ std::string Bootstrap::names() const
   return utils::join_words(ids, " and ");
 }
 
-/// Tries one spacing after the other.  After the call atoms, states and loads are as before.
-bool Bootstrap::search(Forces &forces)
+/// Those that the histories begin with.
+std::string Bootstrap::orders(const StartFound &start) const
 {
-  std::vector<Bodies::Snapshot> snapshots;
-  for (const auto &party : parties) snapshots.push_back(party.bodies->snapshot());
-  const auto put_back = [&]() {
-    for (size_t p = 0; p < parties.size(); ++p) {
-      parties[p].bodies->put_back_states(snapshots[p]);
-      parties[p].bodies->put_back_loads(snapshots[p]);
+  const bool jumps = start.verdict == StartPlan::Verdict::JUMPS;
+  std::string orders;
+  for (const auto &party : parties) {
+    const int full = party.scheme.order();
+    const std::string order = std::to_string(jumps ? std::min(full, start.order()) : full);
+    if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
+  }
+  return orders;
+}
+
+/* ---------------------------------------------------------------------- */
+
+/// What find_start() asks of LAMMPS.
+struct Bootstrap::Search {
+  Bootstrap &our;
+  Forces &forces;
+  const double skin;
+  std::vector<Bodies::Snapshot> snapshots = {};
+  double spacing = 0.0;
+
+  Search(Bootstrap &our, Forces &forces) : our(our), forces(forces), skin(our.neighbor->skin)
+  {
+    for (const auto &party : our.parties) snapshots.push_back(party.bodies->snapshot());
+  }
+
+  void put_back()
+  {
+    for (size_t p = 0; p < our.parties.size(); ++p) {
+      our.parties[p].bodies->put_back_states(snapshots[p]);
+      our.parties[p].bodies->put_back_loads(snapshots[p]);
     }
-  };
-  forces.save();
-  bool done = false;
-  double spacing = first_spacing();
-  for (int n = 0; n < SweepRule::MAX_SPACINGS && !done; ++n, spacing *= 0.5) {
+  }
+
+  /// The length that the motion of a body is compared with.
+  double length(const Body &body) const { return body.extent > 0.0 ? body.extent : skin; }
+
+  void begin(double of)
+  {
+    spacing = of;
+    our.reason = "forces vary too much within a few steps";
     put_back();
-    done = collocate(forces, spacing);
+    our.measure(0);
+    for (auto &party : our.parties) {
+      const Bodies &bodies = *party.bodies;
+      party.work.resize(bodies.nmoved());
+      for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+        our.collocation.begin(local_series(bodies.rigid_of(ibody), bodies.state_of(ibody),
+                                           party.acting(ibody), spacing),
+                              party.work[ibody]);
+    }
+  }
+
+  void foretell()
+  {
+    for (auto &party : our.parties)
+      for (auto &work : party.work) our.collocation.foretell(work);
+  }
+
+  bool visit(int pair, double &change)
+  {
+    double here = 0.0;
+    for (const int node : {-pair, pair})
+      if (!visit_node(node, here)) {
+        our.reason = fmt::format("sites would leave the neighbor skin, {}", skin);
+        return false;
+      }
+    for (auto &party : our.parties)
+      for (auto &work : party.work) our.collocation.settle(pair, work);
+    change = over_ranks(MPI_MAX, here, our.world);
+    return true;
+  }
+
+  /// Forces at one node; change: grows to what they change.  False, with nothing evaluated, if a site
+  /// would leave the skin.
+  bool visit_node(int node, double &change)
+  {
+    for (auto &party : our.parties) {
+      Bodies &bodies = *party.bodies;
+      for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+        bodies.change_state(ibody) = our.collocation.state_at(node, party.work[ibody], spacing);
+      bodies.spread_states();
+      bodies.place_sites(true);
+    }
+    if (forces.largest_displacement() > 0.5 * skin) return false;
+    forces.evaluate();
+    ++our.evaluations;
+    for (auto &party : our.parties) party.bodies->gather_loads(our.atom->f, our.atom->torque);
+    our.measure(node);
+    for (auto &party : our.parties)
+      for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody) {
+        const Body &body = party.bodies->body_at(ibody);
+        const BodyState &state = party.bodies->state_of(ibody);
+        change = std::max(change,
+                          our.collocation.set_load(node, body.rigid, state, party.acting(ibody),
+                                                   spacing, length(body), party.work[ibody]));
+      }
+    return true;
+  }
+};
+
+/// After the call atoms, states and loads are as before.
+StartFound Bootstrap::search(Forces &forces)
+{
+  forces.save();
+  Search all(*this, forces);
+  const StartFound start = find_start(most_values(parties), first_spacing(), all);
+  if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
+    reason.clear();
+    if (start.verdict == StartPlan::Verdict::JUMPS)
+      reason = fmt::format(", because forces vary in jumps, by {:.1g} of the motion in a step",
+                           start.change);
+    seed_all(start);
   }
   forces.restore();
-  put_back();
+  all.put_back();
   for (auto &party : parties) {
     party.bodies->spread_states();
     party.bodies->place_extended();
   }
-  return done;
+  return start;
 }
 
 /// Node spacing: the step, or as much of it as keeps every site within half the skin.
@@ -174,111 +268,18 @@ double Bootstrap::first_spacing() const
   return way > reach ? h * reach / way : h;
 }
 
-/// The length that the motion of a body is compared with.
-double Bootstrap::length(const Body &body) const
-{
-  return body.extent > 0.0 ? body.extent : neighbor->skin;
-}
-
-/// False, with a reason, if the nodes are too far apart.
-bool Bootstrap::collocate(Forces &forces, double spacing)
-{
-  measure(0);
-  for (auto &party : parties) {
-    const Bodies &bodies = *party.bodies;
-    party.work.resize(bodies.nmoved());
-    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      collocation.begin(local_series(bodies.rigid_of(ibody), bodies.state_of(ibody),
-                                     party.acting(ibody), spacing),
-                        party.work[ibody]);
-  }
-
-  using Verdict = SweepRule::Verdict;
-  Verdict verdict = Verdict::ANOTHER_SWEEP;
-  double change = 0.0;
-  for (rule.begin_spacing(); verdict == Verdict::ANOTHER_SWEEP;) {
-    if (!sweep(forces, spacing, rule.is_first_sweep(), change)) {
-      reason = fmt::format("sites would leave the neighbor skin, {}", neighbor->skin);
-      return false;
-    }
-    verdict = rule.judge(change, [this]() {
-      return truncation();
-    });
-  }
-  if (verdict == Verdict::SHORTER_SPACING) {
-    reason = "forces vary too much within a few steps";
-    return false;
-  }
-  reason.clear();
-  if (verdict == Verdict::JUMPS)
-    reason = fmt::format(" (forces jump: by {:.1g} of the motion in a step)", change);
-  seed_all(spacing);
-  return true;
-}
-
-void Bootstrap::seed_all(double spacing)
+/// Histories of all bodies from the polynomials that were found.
+void Bootstrap::seed_all(const StartFound &start)
 {
   for (auto &party : parties) {
     Bodies &bodies = *party.bodies;
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      seed(party.scheme, bodies.rigid_of(ibody), collocation.series(party.work[ibody]), spacing, h,
-           bodies.history(ibody));
+      seed(party.scheme, bodies.rigid_of(ibody), collocation.series(party.work[ibody], start.pairs),
+           start.spacing, h, bodies.history(ibody));
     if (!party.isokinetic) continue;
     std::vector<double> heat(party.power.size() + 1);
-    collocation.integrate(party.power.data(), spacing, heat.data());
-    party.isokinetic->seed_heat(heat.data(), (int) heat.size(), spacing, h);
+    const int terms =
+        collocation.integrate(party.power.data(), start.pairs, start.spacing, heat.data());
+    party.isokinetic->seed_heat(heat.data(), terms, start.spacing, h);
   }
-}
-
-/// The largest truncation error of all bodies.
-double Bootstrap::truncation() const
-{
-  double here = 0.0;
-  for (const auto &party : parties)
-    for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody)
-      here = std::max(
-          here, collocation.truncation(length(party.bodies->body_at(ibody)), party.work[ibody]));
-  return over_ranks(MPI_MAX, here, world);
-}
-
-/// Forces at all nodes once, outwards.  False, with nothing evaluated there, if a site would leave
-/// the skin.
-bool Bootstrap::sweep(Forces &forces, double spacing, bool first, double &change)
-{
-  double here = 0.0;
-  for (int pair = 1; pair <= collocation.pairs(); ++pair) {
-    for (const int node : {-pair, pair})
-      if (!visit(forces, node, spacing, here)) return false;
-    if (first && pair < collocation.pairs())
-      for (auto &party : parties)
-        for (auto &one : party.work) collocation.foretell(pair, one);
-  }
-  change = over_ranks(MPI_MAX, here, world);
-  return true;
-}
-
-/// Forces at one node; change: grows to what they change.  False as in sweep().
-bool Bootstrap::visit(Forces &forces, int node, double spacing, double &change)
-{
-  for (auto &party : parties) {
-    Bodies &bodies = *party.bodies;
-    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      bodies.change_state(ibody) = collocation.state_at(node, party.work[ibody], spacing);
-    bodies.spread_states();
-    bodies.place_sites(true);
-  }
-  if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
-  forces.evaluate();
-  ++evaluations;
-  for (auto &party : parties) party.bodies->gather_loads(atom->f, atom->torque);
-  measure(node);
-  for (auto &party : parties)
-    for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody) {
-      const Body &body = party.bodies->body_at(ibody);
-      change = std::max(change,
-                        collocation.set_load(node, body.rigid, party.bodies->state_of(ibody),
-                                             party.acting(ibody), spacing, length(body),
-                                             party.work[ibody]));
-    }
-  return true;
 }

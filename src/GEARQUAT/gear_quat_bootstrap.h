@@ -59,20 +59,16 @@ class Bootstrap : protected Pointers {
   double h;
 
   Collocation collocation;
-  int evaluations;    ///< of the forces, so far
-  SweepRule rule;
-  std::string reason;    ///< why the last spacing failed, or what is to be said about it
+  int evaluations = 0;    ///< of the forces, so far
+  std::string reason;     ///< why the last spacing failed, or what is to be said about it
 
+  struct Search;
   void measure(int node);
   std::string names() const;
+  std::string orders(const StartFound &start) const;
   double first_spacing() const;
-  double length(const Body &body) const;
-  double truncation() const;
-  bool search(Forces &forces);
-  bool collocate(Forces &forces, double spacing);
-  void seed_all(double spacing);
-  bool visit(Forces &forces, int node, double spacing, double &change);
-  bool sweep(Forces &forces, double spacing, bool first, double &change);
+  StartFound search(Forces &forces);
+  void seed_all(const StartFound &start);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

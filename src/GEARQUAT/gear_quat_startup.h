@@ -10,24 +10,25 @@
    of which `terms` are known: 2 (position and velocity: the paper's zero start), 3 (forces too), or
    as many as collocation finds.
 
-   Collocation: the second derivatives at the nodes t = k H, k = -half..half, are interpolated by one
-   polynomial; integrating it twice from the exact start gives the state at every node, the forces
-   there give new second derivatives, and so on until nothing changes (Picard iteration).  Rows 0 and
-   1 stay exact: no difference of positions enters a velocity.  Nodes on both sides of the start make
-   it symmetric under time reversal.  The first sweep marches outwards: each pair of nodes is foretold
-   by the polynomial through the nodes inside it.
+   Collocation: the second derivatives at the nodes t = k H, k = -m..m, are interpolated by one
+   polynomial; integrating it twice from the exact start gives the state at a node, and the forces
+   there give new second derivatives (Picard iteration).  Pairs of nodes are added outwards: each is
+   foretold by the polynomial through the nodes inside it.  Rows 0 and 1 stay exact: no difference of
+   positions enters a velocity.  Nodes on both sides of the start, neither of which is evaluated
+   first, make it symmetric under time reversal.
 
-   The host calls, for every body: begin(); then, until converged, sweep after sweep, for every pair
-   -k and k, k = 1..half: state_at(), [forces at that state], set_load(), and in the first sweep
-   foretell(k) after the pair; at the end seed(). */
+   find_start() (gear_quat_start_plan.h) leads; its host calls, for every body: begin(); foretell()
+   for one pair more; for both nodes of a pair state_at(), [forces at that state], set_load(), and
+   then settle(); at the end series() and seed(). */
 
 #ifndef GEAR_QUAT_STARTUP_H
 #define GEAR_QUAT_STARTUP_H
 
 #include "gear_quat_integrator.h"
+#include "gear_quat_start_plan.h"
 
-#include <cstdlib>
 #include <limits>
+#include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -94,118 +95,67 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
   }
 }
 
-/// Decides when the sweeps end, from the largest change that each of them makes in any body.
-class SweepRule {
- public:
-  static constexpr int MAX_SPACINGS = 8;    ///< that are tried, each half of the one before
-
-  enum class Verdict { ANOTHER_SWEEP, CONVERGED, JUMPS, SHORTER_SPACING };
-
-  /// The next sweep is the first one with this node spacing.
-  void begin_spacing() { sweeps = 0; }
-  bool is_first_sweep() const { return sweeps == 0; }
-
-  /// After a sweep.  truncation: a function that finds what the polynomial leaves out; it is called
-  /// only if the answer depends on it.
-  ///
-  /// Sweeps end when the next one would change accelerations by less than CONVERGED, relative to how
-  /// the bodies move: less than rounding takes from their velocities in a step, or than the
-  /// polynomial leaves out.  A change that no longer falls is taken for rounding of the forces below
-  /// ROUNDING; above, the nodes are too far apart, or forces jump, as at a cutoff.  Which of the two
-  /// it is shorter spacings tell: after the last of JUMPING of them a change below JUMP counts as
-  /// jumps.
-  template <class Truncation> Verdict judge(double change, Truncation truncation)
-  {
-    const bool first = sweeps++ == 0, second = sweeps == 2;
-    const double before = first ? 0.0 : last;
-    last = change;
-    const double next = !first && change < before ? change * (change / before) : change;
-    if (next < CONVERGED || (!first && next < truncation())) return Verdict::CONVERGED;
-    const bool falls = first || second || change <= 0.5 * before;
-    if (std::isfinite(change) && falls && sweeps < MAX_SWEEPS) return Verdict::ANOTHER_SWEEP;
-    if (change < ROUNDING) return Verdict::CONVERGED;
-    return change < JUMP && ++jumps == JUMPING ? Verdict::JUMPS : Verdict::SHORTER_SPACING;
-  }
-
- private:
-  static constexpr int MAX_SWEEPS = 12, JUMPING = 3;
-  static constexpr double CONVERGED = 1.0e-15, ROUNDING = 1.0e-9, JUMP = 0.1;
-
-  int sweeps = 0;    ///< with the present spacing
-  int jumps = 0;     ///< spacings at which forces seemed to jump
-  double last = 0.0;
-};
-
 /// Collocation of one body; the object's tables are the same for all bodies.
 class Collocation {
  public:
-  static constexpr int MAX_HALF = (MAX_VALUES + 1) / 2;
+  static constexpr int MAX_HALF = StartPlan::MAX_PAIRS;
   static constexpr int MAX_NODES = 2 * MAX_HALF + 1;
 
   /// Second derivatives at the nodes, in units of the node spacing, and the exact start.
   struct Workspace {
+    int pairs;    ///< of nodes that the polynomial goes through
     double start[2][7];
-    double second[MAX_NODES][7];
+    double second[MAX_NODES][7];    ///< node k in row pairs() + k
+    double met[2][7];               ///< at the two nodes that are being evaluated
   };
 
   /// As many nodes as the order of a history of `values` rows needs.
-  explicit Collocation(int values) : half((values + 1) / 2), nodes(2 * half + 1)
+  explicit Collocation(int values) : half(StartPlan::pairs_for(values)), polynomial(half + 1)
   {
-    interpolate(half, monomial);
-    for (int k = 0; k < nodes; ++k) {
-      const double s = k - half;
-      for (int l = 0; l < nodes; ++l) {
-        long double value = 0.0, rate = 0.0, power = s;
-        for (int j = 0; j < nodes; ++j) {
-          rate += monomial[j][l] * power / (j + 1);
-          power *= s;
-          value += monomial[j][l] * power / ((j + 1) * (j + 2));
-        }
-        value_weight[k][l] = double(value);
-        rate_weight[k][l] = double(rate);
-      }
-    }
-    for (int inner = 1; inner < half; ++inner) extrapolate(inner);
+    for (int pairs = 0; pairs <= half; ++pairs) polynomial[pairs].make(pairs);
   }
 
   /// Nodes on each side of the start, which needs no forces: its own are known.
   int pairs() const { return half; }
 
-  /// First guess: constant second derivatives, those of `series` (at least three terms, in units of
-  /// the node spacing).
+  /// No pair is known yet: constant second derivatives, those of `series` (at least three terms, in
+  /// units of the node spacing).
   void begin(const TaylorSeries &series, Workspace &w) const
   {
+    w.pairs = 0;
     for (int i = 0; i < 7; ++i) {
       w.start[0][i] = series.c[0][i];
       w.start[1][i] = series.c[1][i];
-      for (int k = 0; k < nodes; ++k) w.second[k][i] = 2.0 * series.c[2][i];
+      w.second[half][i] = 2.0 * series.c[2][i];
     }
   }
 
-  /// Second derivatives beyond the nodes -inner..inner from those inside.
-  void foretell(int inner, Workspace &w) const
+  /// One pair more, with the second derivatives that the present polynomial has there.
+  void foretell(Workspace &w) const
   {
-    for (int k = 0; k < nodes; ++k) {
-      if (std::abs(k - half) <= inner) continue;
+    const Polynomial &inside = polynomial[w.pairs];
+    const int next = w.pairs + 1;
+    for (int side = 0; side < 2; ++side)
       for (int i = 0; i < 7; ++i) {
         double sum = 0.0;
-        for (int l = -inner; l <= inner; ++l)
-          sum += outer_weight[inner][k][half + l] * w.second[half + l][i];
-        w.second[k][i] = sum;
+        for (int l = -w.pairs; l <= w.pairs; ++l)
+          sum += inside.beyond[side][column_of(l)] * w.second[half + l][i];
+        w.second[half + (side ? next : -next)][i] = sum;
       }
-    }
+    w.pairs = next;
   }
 
-  /// State of the body at node -half..half by the present polynomial; spacing: time between nodes.
+  /// State of the body at a known node by the present polynomial; spacing: time between nodes.
   BodyState state_at(int node, const Workspace &w, double spacing) const
   {
+    const Polynomial &present = polynomial[w.pairs];
     double value[7], rate[7];
     for (int i = 0; i < 7; ++i) {
       value[i] = w.start[0][i] + node * w.start[1][i];
       rate[i] = w.start[1][i];
-      for (int l = 0; l < nodes; ++l) {
-        value[i] += value_weight[half + node][l] * w.second[l][i];
-        rate[i] += rate_weight[half + node][l] * w.second[l][i];
+      for (int l = -w.pairs; l <= w.pairs; ++l) {
+        value[i] += present.value[column_of(node)][column_of(l)] * w.second[half + l][i];
+        rate[i] += present.rate[column_of(node)][column_of(l)] * w.second[half + l][i];
       }
     }
     BodyState state;
@@ -219,39 +169,38 @@ class Collocation {
     return state;
   }
 
-  /// Take the load met at a node.  length: the size of the body.  Returns by how much the second
-  /// derivatives there change, relative to the first or second derivatives of that body, whichever
-  /// are larger; infinite if the load is no number.
+  /// Note the load met at a node, until settle().  length: the size of the body.  Returns by how much
+  /// the second derivatives there change, relative to the first or second derivatives of that body,
+  /// whichever are larger; infinite if the load is no number.
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
                   double spacing, double length, Workspace &w) const
   {
     BodyState unit = state;
     project_norm(unit.q);
     const TaylorSeries series = local_series(body, unit, load, spacing);
-    double *second = w.second[half + node], change[7];
+    double *met = w.met[node > 0], change[7];
     for (int i = 0; i < 7; ++i) {
-      const double found = 2.0 * series.c[2][i];
-      if (!std::isfinite(found)) return std::numeric_limits<double>::infinity();
-      change[i] = found - second[i];
-      second[i] = found;
+      met[i] = 2.0 * series.c[2][i];
+      if (!std::isfinite(met[i])) return std::numeric_limits<double>::infinity();
+      change[i] = met[i] - w.second[half + node][i];
     }
-    return relative(change, second, length, w);
+    return relative(change, met, length, w);
   }
 
-  /// What the polynomial leaves out, relative as in set_load: the size of its last term.
-  double truncation(double length, const Workspace &w) const
+  /// The polynomial goes through what was met at both nodes of a pair: neither side is first, so the
+  /// start is symmetric under time reversal.
+  void settle(int pair, Workspace &w) const
   {
-    double term[7];
     for (int i = 0; i < 7; ++i) {
-      term[i] = 0.0;
-      for (int l = 0; l < nodes; ++l) term[i] += double(monomial[nodes - 1][l]) * w.second[l][i];
+      w.second[half - pair][i] = w.met[0][i];
+      w.second[half + pair][i] = w.met[1][i];
     }
-    return relative(term, w.second[half], length, w);
   }
 
-  /// The converged polynomial as a series in units of the node spacing.
-  TaylorSeries series(const Workspace &w) const
+  /// The polynomial through the innermost `pairs` as a series in units of the node spacing.
+  TaylorSeries series(const Workspace &w, int pairs) const
   {
+    const int nodes = 2 * pairs + 1;
     TaylorSeries series;
     series.terms = nodes + 2;
     static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
@@ -260,50 +209,91 @@ class Collocation {
       series.c[1][i] = w.start[1][i];
       for (int j = 0; j < nodes; ++j) {
         long double sum = 0.0;
-        for (int l = 0; l < nodes; ++l) sum += monomial[j][l] * w.second[l][i];
+        for (int l = -pairs; l <= pairs; ++l)
+          sum += polynomial[pairs].monomial[j][column_of(l)] * w.second[half + l][i];
         series.c[j + 2][i] = double(sum / ((j + 1) * (j + 2)));
       }
     }
     return series;
   }
+  TaylorSeries series(const Workspace &w) const { return series(w, w.pairs); }
 
-  int number_of_nodes() const { return nodes; }
+  int number_of_nodes() const { return 2 * half + 1; }
 
-  /// The rate of a scalar at all nodes, from -half on, as series of the scalar that is zero at the
-  /// start: `nodes + 1` terms in units of the node spacing.
-  void integrate(const double *rate, double spacing, double *c) const
+  /// The rate of a scalar at all nodes, from -half on, of which the innermost `pairs` count, as series
+  /// of the scalar that is zero at the start, in units of the node spacing.  Returns its terms, at
+  /// most number_of_nodes() + 1.
+  int integrate(const double *rate, int pairs, double spacing, double *c) const
   {
     c[0] = 0.0;
-    for (int j = 0; j < nodes; ++j) {
+    for (int j = 0; j <= 2 * pairs; ++j) {
       long double sum = 0.0;
-      for (int l = 0; l < nodes; ++l) sum += monomial[j][l] * rate[l];
+      for (int l = -pairs; l <= pairs; ++l)
+        sum += polynomial[pairs].monomial[j][column_of(l)] * rate[half + l];
       c[j + 1] = double(spacing * sum / (j + 1));
     }
+    return 2 * pairs + 2;
   }
 
  private:
   /// Motion slower than this part of the body's size (of a radian) in a step is none.
   static constexpr double SMALLEST = 1.0e-4;
 
-  using Table = long double[MAX_NODES][MAX_NODES];
+  /// Column or row of a node in the tables.
+  static int column_of(int node) { return MAX_HALF + node; }
 
-  int half, nodes;
-  Table monomial;    ///< coefficient of s^j of the interpolation at node l
-  double value_weight[MAX_NODES][MAX_NODES];              ///< twice integrated, at node k
-  double rate_weight[MAX_NODES][MAX_NODES];               ///< once integrated, at node k
-  double outer_weight[MAX_HALF][MAX_NODES][MAX_NODES];    ///< from the inner nodes to node k
+  /// The interpolation through the nodes -pairs..pairs.
+  struct Polynomial {
+    long double monomial[MAX_NODES][MAX_NODES];    ///< coefficient of s^j at node l
+    double value[MAX_NODES][MAX_NODES];            ///< twice integrated, at node k
+    double rate[MAX_NODES][MAX_NODES];             ///< once integrated, at node k
+    double beyond[2][MAX_NODES];                   ///< at the nodes just outside
 
-  void extrapolate(int inner)
-  {
-    Table inside;
-    interpolate(inner, inside);
-    for (int k = 0; k < nodes; ++k)
-      for (int l = 0; l <= 2 * inner; ++l) {
-        long double sum = 0.0, power = 1.0;
-        for (int j = 0; j <= 2 * inner; ++j, power *= k - half) sum += inside[j][l] * power;
-        outer_weight[inner][k][half + l - inner] = double(sum);
+    void make(int pairs)
+    {
+      interpolate(pairs);
+      for (int l = -pairs; l <= pairs; ++l) {
+        const int column = column_of(l);
+        for (int k = -pairs; k <= pairs; ++k) {
+          long double twice = 0.0, once = 0.0, power = k;
+          for (int j = 0; j <= 2 * pairs; ++j) {
+            once += monomial[j][column] * power / (j + 1);
+            power *= k;
+            twice += monomial[j][column] * power / ((j + 1) * (j + 2));
+          }
+          value[column_of(k)][column] = double(twice);
+          rate[column_of(k)][column] = double(once);
+        }
+        for (int side = 0; side < 2; ++side) {
+          long double sum = 0.0, power = 1.0;
+          for (int j = 0; j <= 2 * pairs; ++j, power *= side ? pairs + 1 : -pairs - 1)
+            sum += monomial[j][column] * power;
+          beyond[side][column] = double(sum);
+        }
       }
-  }
+    }
+
+    /// Lagrange's basis polynomials, multiplied out factor by factor.
+    void interpolate(int pairs)
+    {
+      for (int l = -pairs; l <= pairs; ++l) {
+        long double basis[MAX_NODES] = {1.0L};
+        long double denominator = 1.0L;
+        int degree = 0;
+        for (int root = -pairs; root <= pairs; ++root) {
+          if (root == l) continue;
+          ++degree;
+          for (int j = degree; j >= 0; --j)
+            basis[j] = (j > 0 ? basis[j - 1] : 0.0L) - root * (j < degree ? basis[j] : 0.0L);
+          denominator *= l - root;
+        }
+        for (int j = 0; j <= 2 * pairs; ++j) monomial[j][column_of(l)] = basis[j] / denominator;
+      }
+    }
+  };
+
+  int half;
+  std::vector<Polynomial> polynomial;    ///< through 0..half pairs
 
   static double relative(const double *change, const double *second, double length,
                          const Workspace &w)
@@ -315,26 +305,6 @@ class Collocation {
       scale[p] = std::max({scale[p], std::fabs(w.start[1][i]), std::fabs(second[i])});
     }
     return std::max(part[0] / scale[0], part[1] / scale[1]);
-  }
-
-  /// Lagrange's basis polynomials on the nodes -half..half, multiplied out factor by factor.
-  static void interpolate(int half, Table &monomial)
-  {
-    const int nodes = 2 * half + 1;
-    for (int l = 0; l < nodes; ++l) {
-      long double basis[MAX_NODES] = {1.0L};
-      long double denominator = 1.0L;
-      int degree = 0;
-      for (int m = 0; m < nodes; ++m) {
-        if (m == l) continue;
-        const long double root = m - half;
-        ++degree;
-        for (int j = degree; j >= 0; --j)
-          basis[j] = (j > 0 ? basis[j - 1] : 0.0L) - root * (j < degree ? basis[j] : 0.0L);
-        denominator *= l - m;
-      }
-      for (int j = 0; j < nodes; ++j) monomial[j][l] = basis[j] / denominator;
-    }
   }
 };
 

@@ -32,9 +32,12 @@ def errors(result, row=-1):
 def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, formulation, values):
     result, x = liquid(f"formulation {formulation} values {values}")
     found = re.search(r"start of order (\d+) from (\d+) force evaluations", result.output)
-    assert int(found[1]) == values + (values % 2 == 0)
-    pairs = 2 * ((values + 1) // 2)
-    assert int(found[2]) % pairs == 0 and 2 <= int(found[2]) // pairs <= 8
+    # the switch of the forces has kinks, and high derivatives end there
+    full, kinks = values + (values % 2 == 0), "forces vary in jumps" in result.output
+    assert int(found[1]) == (min(full, 8) if kinks else full)
+    assert not kinks or values > 6
+    pairs = (values + 1) // 2
+    assert 2 * (3 if kinks else pairs) <= int(found[2]) <= pairs * (pairs + 1) + 4 * pairs
     arms = np.linalg.norm(x[1::3] - x[0::3], axis=1)
     assert arms == pytest.approx(np.ones(len(arms)), abs=1e-13)
     assert np.abs(arms * 1.01 - 1).max() > 1e-3
@@ -115,10 +118,13 @@ def test_jumping_forces_are_told(lmp_wheel, examples):
     deck = whole_deck(examples / "water" / "in.water")
     for name in ("data.water", "forces."):
         deck = deck.replace(name, str(examples / "water" / name))
-    found = {}
+    orders = {}
     for forces in ("smooth", "plain"):
-        result = lmp_wheel.succeed(deck, dict(forces=forces, steps=1, every=1, values=12, corrector="gear", dt=1.0))
-        assert "start of order 13" in result.output
-        found[forces] = re.search(r"forces jump: by (\S+) of the motion", result.output)
-    assert found["smooth"] is None
-    assert 1e-5 < float(found["plain"][1]) < 0.1
+        result = lmp_wheel.succeed(
+            deck, dict(forces=forces, steps=1, every=1, values=12, corrector="gear", dt=1.0)
+        )
+        orders[forces] = int(re.search(r"start of order (\d+) from", result.output)[1])
+        jump = re.search(r"because forces vary in jumps, by (\S+) of the motion", result.output)
+        assert (jump is None) == (forces == "smooth")
+    assert orders == {"smooth": 13, "plain": 4}
+    assert 1e-5 < float(jump[1]) < 10.0

@@ -1,5 +1,7 @@
 """The start inside LAMMPS: what it follows, what it leaves alone, when it steps back."""
 
+import re
+
 import numpy as np
 import pytest
 from scenes import last_frame, placed, two_molecules, water
@@ -137,6 +139,70 @@ def test_time_reversal(lmp_tree, formulation):
     back = f"timestep 0.01\nrun 100\n{again}\ntimestep -0.01\nrun 99"
     _, end = field(lmp_tree, 1, -0.01, fix, after=back)
     assert np.abs(end - begin).max() < 2e-7
+
+
+SPCE = """
+pair_style {}
+pair_coeff 1 1 0.1553 3.166
+pair_coeff 1 2 0.0 1.0
+pair_coeff 2 2 0.0 1.0
+"""
+MIXTURES = {  # pair style, and the evaluations that its start may take
+    "smooth": ("lj/charmm/coul/charmm 6.0 8.0", "", 20),
+    "pppm": ("lj/cut/coul/long 9.0", "kspace_style pppm 1e-4", 20),
+    "plain cut-off": ("lj/cut/coul/cut 8.0", "", 12),
+}
+LIQUID = """
+units real
+atom_style full
+atom_modify sort 0 0.0
+read_data {data}
+{pairs}
+neighbor 1.0 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+fix move all gear/quat molecule {fix}
+timestep {dt}
+dump poses all custom {steps} poses.dump id xu yu zu
+dump_modify poses sort id format float %.17g
+run {steps}
+"""
+
+
+@pytest.fixture(scope="module")
+def liquid(examples):
+    """500 SPC/E for 20 fs: the start's order, its evaluations, its line and the last positions."""
+
+    def run(lmp, name, dt, fix=""):
+        pairs = SPCE.format(MIXTURES[name][0]) + MIXTURES[name][1]
+        settings = dict(data=examples / "water" / "data.water", pairs=pairs, fix=fix)
+        result = lmp.succeed(LIQUID.format(dt=dt, steps=round(20 / dt), **settings))
+        said = re.search(r"start of order (\d+) from (\d+) force evaluations.*", result.stdout)
+        order, evaluations = (int(said[1]), int(said[2])) if said else (0, 0)
+        end = last_frame(lmp.folder / "poses.dump")[:, 1:4]
+        return order, evaluations, said and said[0], end
+
+    return run
+
+
+@pytest.mark.parametrize("name", MIXTURES)
+def test_evaluations_of_a_liquid(lmp_tree, liquid, name):
+    """No more of them than the forces can use, at the step that people take."""
+    order, evaluations, said, _ = liquid(lmp_tree, name, 2.0)
+    assert 0 < evaluations <= MIXTURES[name][2]
+    assert ("because forces vary in jumps" in said) == (order < 9)
+    if name == "plain cut-off":
+        assert order == 4
+
+
+def test_a_start_of_low_order_is_as_good_as_forces_that_jump(lmp_tree, liquid):
+    """A run with steps ten times smaller as reference: the start is not what is seen of the error."""
+    *_, reference = liquid(lmp_tree, "plain cut-off", 0.2)
+
+    def error(fix):
+        return np.sqrt(np.mean((liquid(lmp_tree, "plain cut-off", 2.0, fix)[-1] - reference) ** 2))
+
+    assert error("") < 6e-3
+    assert error("start zero") > 2 * error("")
 
 
 LONG = "lj/charmm/coul/long 2.7 3.9 4.2\npair_modify table 0\nkspace_style pppm 1e-6"

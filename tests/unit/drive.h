@@ -79,29 +79,46 @@ inline Scheme with_velocity_c0(Scheme scheme)
 
 // The start as the host finds it (gear_quat_bootstrap.cpp).
 
-/// One sweep over all nodes, outwards.  Returns the largest change.
-inline double sweep(const Collocation &collocation, const RigidBody &body, const LoadOf &load,
-                    double spacing, double length, bool first, Collocation::Workspace &work)
-{
-  double change = 0.0;
-  for (int pair = 1; pair <= collocation.pairs(); ++pair) {
+/// The host of find_start(), for one body.
+struct StartHost {
+  const Collocation &collocation;
+  const RigidBody &body;
+  BodyState state;
+  LoadOf load;
+  double length;    ///< the size of the body
+  Collocation::Workspace work = {};
+  double spacing = 0.0;
+  int evaluations = 0;
+
+  void begin(double of)
+  {
+    spacing = of;
+    collocation.begin(local_series(body, state, load(state, dot4(state.q, state.q)), spacing),
+                      work);
+  }
+  void foretell() { collocation.foretell(work); }
+  bool visit(int pair, double &change)
+  {
+    change = 0.0;
     for (const int node : {-pair, pair}) {
       const BodyState s = collocation.state_at(node, work, spacing);
       change = std::max(
           change,
           collocation.set_load(node, body, s, load(s, dot4(s.q, s.q)), spacing, length, work));
     }
-    if (first && pair < collocation.pairs()) collocation.foretell(pair, work);
+    collocation.settle(pair, work);
+    evaluations += 2;
+    return true;
   }
-  return change;
-}
+};
 
 /// A series found by collocation, and what it took.
 struct Found {
   TaylorSeries series;
   double spacing;
-  int sweeps = 0;    ///< of the spacing that was kept
-  int evaluations = 0;
+  StartPlan::Verdict verdict;
+  int pairs;
+  int evaluations;
 };
 
 /// length: the size of the body.  Throws if the host would start with known forces only.
@@ -109,29 +126,28 @@ inline Found bootstrap(int values, const RigidBody &body, const BodyState &state
                        const LoadOf &load, double spacing, double length = 1.0)
 {
   const Collocation collocation(values);
-  Collocation::Workspace work;
-  Found found;
-  SweepRule rule;
-  using Verdict = SweepRule::Verdict;
-  for (int n = 0; n < SweepRule::MAX_SPACINGS; ++n, spacing *= 0.5) {
-    collocation.begin(local_series(body, state, load(state, dot4(state.q, state.q)), spacing),
-                      work);
-    Verdict verdict = Verdict::ANOTHER_SWEEP;
-    found.sweeps = 0;
-    for (rule.begin_spacing(); verdict == Verdict::ANOTHER_SWEEP; ++found.sweeps) {
-      const double change =
-          sweep(collocation, body, load, spacing, length, rule.is_first_sweep(), work);
-      found.evaluations += 2 * collocation.pairs();
-      verdict = rule.judge(change, [&]() {
-        return collocation.truncation(length, work);
-      });
-    }
-    if (verdict == Verdict::SHORTER_SPACING) continue;
-    found.series = collocation.series(work);
-    found.spacing = spacing;
-    return found;
+  StartHost host = {collocation, body, state, load, length};
+  const StartFound start = find_start(values, spacing, host);
+  if (start.verdict == StartPlan::Verdict::SHORTER_SPACING)
+    throw std::runtime_error("forces vary too much within a few steps");
+  return {collocation.series(host.work, start.pairs), start.spacing, start.verdict, start.pairs,
+          host.evaluations};
+}
+
+/// The series after so many evaluations of every pair that rounding and truncation alone are left.
+inline TaylorSeries settled_series(int values, const RigidBody &body, const BodyState &state,
+                                   const LoadOf &load, double spacing)
+{
+  const Collocation collocation(values);
+  StartHost host = {collocation, body, state, load, 1.0};
+  host.begin(spacing);
+  double change = 0.0;
+  for (int outer = 1; outer <= collocation.pairs(); ++outer) {
+    host.foretell();
+    for (int round = 0; round < 20; ++round)
+      for (int pair = 1; pair <= outer; ++pair) host.visit(pair, change);
   }
-  throw std::runtime_error("forces vary too much within a few steps");
+  return collocation.series(host.work);
 }
 
 /// A history of `scheme` at `state`.  The series is found at a step of `spacing`, whatever h is.

@@ -52,36 +52,63 @@ struct Host {
     return loads;
   }
 
+  /// All bodies as the host of find_start().
+  struct Search {
+    Host &our;
+    const Collocation &collocation;
+    vector<BodyState> at_start;
+    vector<Collocation::Workspace> work;
+    vector<double> power;
+
+    Search(Host &our, const Collocation &collocation) :
+        our(our), collocation(collocation), at_start(our.states), work(our.bodies.size()),
+        power(collocation.number_of_nodes())
+    {
+    }
+    void begin(double)
+    {
+      our.states = at_start;
+      const vector<Load> loads = our.acting(power[collocation.pairs()]);
+      for (size_t b = 0; b < work.size(); ++b)
+        collocation.begin(local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
+    }
+    void foretell()
+    {
+      for (auto &w : work) collocation.foretell(w);
+    }
+    bool visit(int pair, double &change)
+    {
+      change = 0.0;
+      for (const int node : {-pair, pair}) {
+        for (size_t b = 0; b < work.size(); ++b)
+          our.states[b] = collocation.state_at(node, work[b], our.h);
+        const vector<Load> loads = our.acting(power[collocation.pairs() + node]);
+        for (size_t b = 0; b < work.size(); ++b)
+          change = std::max(change,
+                            collocation.set_load(node, our.bodies[b], our.states[b], loads[b],
+                                                 our.h, 1.0, work[b]));
+      }
+      for (auto &w : work) collocation.settle(pair, w);
+      return true;
+    }
+  };
+
   void start()
   {
-    const vector<BodyState> begin = states;
+    double power = 0.0;
+    target = sums(acting(power));
     const Collocation collocation(scheme.values());
-    const int half = collocation.pairs();
-    vector<Collocation::Workspace> work(bodies.size());
-    vector<double> power(collocation.number_of_nodes());
-    vector<Load> loads = acting(power[half]);
-    target = sums(loads);
-    for (size_t b = 0; b < bodies.size(); ++b)
-      collocation.begin(local_series(bodies[b], states[b], loads[b], h), work[b]);
-    for (int sweep = 0; sweep < 12; ++sweep)
-      for (int pair = 1; pair <= half; ++pair) {
-        for (const int node : {-pair, pair}) {
-          for (size_t b = 0; b < bodies.size(); ++b)
-            states[b] = collocation.state_at(node, work[b], h);
-          loads = acting(power[half + node]);
-          for (size_t b = 0; b < bodies.size(); ++b)
-            collocation.set_load(node, bodies[b], states[b], loads[b], h, 1.0, work[b]);
-        }
-        if (sweep == 0 && pair < half)
-          for (auto &w : work) collocation.foretell(pair, w);
-      }
-    states = begin;
+    Search search(*this, collocation);
+    const StartFound found = find_start(scheme.values(), h, search);
+    states = search.at_start;
+    ASSERT_EQ(found.spacing, h);
     rows.assign(bodies.size(), vector<double>(scheme.size()));
     for (size_t b = 0; b < bodies.size(); ++b)
-      seed(scheme, bodies[b], collocation.series(work[b]), h, h, rows[b].data());
-    vector<double> series(power.size() + 1);
-    collocation.integrate(power.data(), h, series.data());
-    for (int j = 0; j < scheme.values(); ++j) heat[j] = series[j];
+      seed(scheme, bodies[b], collocation.series(search.work[b], found.pairs), h, h,
+           rows[b].data());
+    vector<double> series(collocation.number_of_nodes() + 1);
+    const int terms = collocation.integrate(search.power.data(), found.pairs, h, series.data());
+    for (int j = 0; j < scheme.values(); ++j) heat[j] = j < terms ? series[j] : 0.0;
   }
 
   void read_states()

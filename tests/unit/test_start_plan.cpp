@@ -1,0 +1,179 @@
+/* gear_quat_start_plan.h: which pair of nodes comes next, when enough is known, and how many evaluations
+   of the forces that takes. */
+
+#include "scenes.h"
+
+using namespace Drive;
+using Verdict = StartPlan::Verdict;
+
+namespace {
+
+/// The pairs in the order of their evaluation, if `change` tells what each finds; and the verdict.
+struct Course {
+  std::string pairs;
+  Verdict verdict;
+  int known;
+};
+Course course(int values, const std::function<double(int pair, bool is_new, int known)> &change)
+{
+  StartPlan plan(values);
+  Course course = {"", Verdict::GOES_ON, 0};
+  while (course.verdict == Verdict::GOES_ON && course.pairs.size() < 100) {
+    course.pairs += std::to_string(plan.pair());
+    course.verdict = plan.take(change(plan.pair(), plan.is_new(), plan.pairs()));
+  }
+  course.known = plan.pairs();
+  return course;
+}
+
+/// Smooth forces: new pairs are missed by z^(2 m - 1), and a round shrinks what is left by `contraction`.
+Course smooth(int values, double z, double contraction)
+{
+  std::vector<double> last(StartPlan::MAX_PAIRS + 1);
+  return course(values, [&](int pair, bool is_new, int) {
+    return last[pair] = is_new ? std::pow(z, 2 * pair - 1) : contraction * last[pair];
+  });
+}
+
+/// x'' = -x and a step of the force at |t| = 0.13, of this height.
+LoadOf jumping(double height)
+{
+  return [height](const BodyState &s, double) {
+    Load l = {};
+    l.force[0] = -2.5 * s.center[0] + (s.center[1] > 0.13 ? height : 0.0);
+    return l;
+  };
+}
+
+Found oscillating(const LoadOf &load, double spacing)
+{
+  const Scene scene = oscillator(1.0);
+  return bootstrap(8, scene.body, scene.start, load, spacing);
+}
+
+}    // namespace
+
+TEST(StartPlan, PairsAreEvaluatedAnewBeforeOneIsAdded)
+{
+  const Course slow = smooth(8, 0.1, 0.02);
+  EXPECT_EQ(slow.pairs.substr(0, 10), "1121231234");
+  EXPECT_EQ(slow.verdict, Verdict::CONVERGED);
+  EXPECT_EQ(slow.known, 4);
+}
+
+TEST(StartPlan, WhatWouldChangeLessThanTheMethodLeavesOutIsNotEvaluated)
+{
+  EXPECT_EQ(smooth(8, 0.3, 1e-5).pairs, "11234");
+  EXPECT_EQ(smooth(6, 0.3, 1e-5).pairs, "1123");
+  EXPECT_EQ(smooth(4, 0.3, 1e-5).pairs, "112");
+}
+
+TEST(StartPlan, MorePairsThanRoundingLeavesAreNotAdded)
+{
+  EXPECT_EQ(smooth(8, 1e-6, 1e-12).known, 2);
+  const Course rounding = course(8, [](int pair, bool is_new, int) {
+    return is_new ? std::max(std::pow(1e-3, 2 * pair - 1), 1e-13 * std::pow(4, pair)) : 1e-14;
+  });
+  EXPECT_EQ(rounding.verdict, Verdict::CONVERGED);
+  EXPECT_LT(rounding.known, 4);
+}
+
+TEST(StartPlan, ForcesJumpWhereANewPairIsMissedByMoreThanTheOneInside)
+{
+  for (int jump : {2, 3, 4}) {
+    const Course c = course(8, [&](int pair, bool is_new, int) {
+      return is_new ? (pair < jump ? std::pow(0.1, pair) : std::pow(0.1, jump - 1) * 1.01)
+                    : 1e-4 * std::pow(0.1, pair);
+    });
+    EXPECT_EQ(c.verdict, Verdict::JUMPS);
+    EXPECT_EQ(c.known, jump - 1);
+    EXPECT_EQ(c.pairs.back() - '0', jump);
+  }
+  // and where a further evaluation changes hardly less than the one before
+  EXPECT_EQ(course(8,
+                   [](int, bool is_new, int) {
+                     return is_new ? 0.1 : 0.06;
+                   })
+                .verdict,
+            Verdict::JUMPS);
+}
+
+TEST(StartPlan, AFirstPairThatIsMissedAltogetherIsTooFarOut)
+{
+  for (double change : {0.6, double(INFINITY), double(NAN)})
+    EXPECT_EQ(StartPlan(8).take(change), Verdict::SHORTER_SPACING);
+  EXPECT_EQ(StartPlan(8).take(0.4), Verdict::GOES_ON);
+}
+
+TEST(StartPlan, EvaluationsInTheCage)
+{
+  // test case 1 at the steps that errors of 1e-4 to 1e-10 take
+  const CageScene scene(1, true);
+  for (int values : {7, 8, 9})
+    for (double h : {0.35, 0.25, 0.125, 0.0625}) {
+      const Found found = bootstrap(values, scene.body, scene.start, scene, h, 12.0);
+      EXPECT_EQ(found.verdict, Verdict::CONVERGED);
+      EXPECT_LE(found.evaluations, values < 9 ? 24 : 26) << values << ' ' << h;
+      EXPECT_EQ(found.spacing, h);
+    }
+}
+
+TEST(StartPlan, EvaluationsOfSmoothMotions)
+{
+  // a round more than pairs at most: each gains an order where forces depend on velocities
+  for (int values = FIRST_FEWEST; values <= SECOND_MOST; ++values) {
+    const int pairs = StartPlan::pairs_for(values);
+    for (double h : {0.02, 0.05, 0.1, 0.2, 0.3}) {
+      const Found found = bootstrap(values, TOP, top_state(0.0), swing, h);
+      EXPECT_LE(found.evaluations, pairs * (pairs + 1) + 4 * pairs) << values << ' ' << h;
+      EXPECT_EQ(found.spacing, h);
+    }
+  }
+}
+
+TEST(StartPlan, TheStartIsNotWhatLimitsARun)
+{
+  // against a start whose errors are those of rounding: far below the error of the run itself
+  const Scene scene = cage(CageScene(1, true));
+  const Found exact = bootstrap(12, scene.body, scene.start, scene.load, 0.05, 12.0);
+  const Scheme scheme = scheme_of(SECOND, 8, 2);
+  for (double h : {0.4, 0.25, 0.125}) {
+    const Found found = bootstrap(8, scene.body, scene.start, scene.load, h, 12.0);
+    auto end = [&](const Found &start, double off) {
+      vector<double> rows(scheme.size());
+      seed(scheme, scene.body, start.series, start.spacing, h, rows.data());
+      for (int i = 0; i < 3; ++i) rows[3 * scheme.width() + i] *= off;
+      Motion motion(scene.body, scene.load, scheme, h, rows);
+      motion.run(scene.time);
+      return motion.state();
+    };
+    const BodyState best = end(exact, 1.0);
+    auto differs = [&](const BodyState &s) {
+      return Check::largest_difference(s.center, best.center, 3);
+    };
+    EXPECT_LT(differs(end(found, 1.0)), 1e-4 * scene.missed(best)) << h;
+    EXPECT_GT(differs(end(found, 1.01)),
+              1e-4 * scene.missed(best));    // 1 % in one derivative is seen
+  }
+}
+
+TEST(StartPlan, AJumpIsRecognizedAtTheFirstSpacing)
+{
+  for (double height : {1e-3, 1e-2, 0.1}) {
+    const Found found = oscillating(jumping(height), 0.1);
+    EXPECT_EQ(found.verdict, Verdict::JUMPS) << height;
+    EXPECT_EQ(found.spacing, 0.1);
+    EXPECT_LT(found.pairs, 4);
+    EXPECT_LE(found.evaluations, 20);
+  }
+  EXPECT_LE(oscillating(jumping(0.1), 0.1).evaluations, 12);
+  EXPECT_EQ(oscillating(jumping(0.0), 0.1).verdict, Verdict::CONVERGED);
+}
+
+TEST(StartPlan, HalvesTheSpacingUntilTheFirstPairIsForetold)
+{
+  const Found wide = bootstrap(12, TOP, top_state(0.0), swing, 1.6);
+  EXPECT_LT(wide.spacing, 1.6);
+  const LoadOf broken = constant({{std::nan(""), 0, 0}, {0, 0, 0}});
+  EXPECT_THROW(bootstrap(6, TOP, top_state(0.0), broken, 0.1), std::runtime_error);
+}
