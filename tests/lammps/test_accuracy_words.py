@@ -4,7 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from scenes import WATER_MASSES, last_frame, restarted, water, whole_deck
+from scenes import WATER_MASSES, last_frame, restarted, two_molecules, water, whole_deck
+
+from lammps_gearquat import keywords
 
 LADDER = [("first", n) for n in range(3, 9)] + [("second", n) for n in range(4, 13)]
 ERRORS = "f_move[5] f_move[6] f_move[7] f_move[8]"
@@ -30,7 +32,7 @@ def errors(result, row=-1):
 
 @pytest.mark.parametrize("formulation, values", LADDER)
 def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, formulation, values):
-    result, x = liquid(f"formulation {formulation} values {values}")
+    result, x = liquid(f"formulation {formulation} corrector gear values {values}")
     found = re.search(r"start of order (\d+) from (\d+) force evaluations", result.output)
     # the switch of the forces has kinks, and high derivatives end there
     full, kinks = values + (values % 2 == 0), "forces vary in jumps" in result.output
@@ -57,18 +59,24 @@ def cage(lmp, examples):
 
 
 @pytest.mark.parametrize(
-    "formulation, values", [("first", 3), ("first", 6), ("second", 4), ("second", 8)]
+    "formulation, values, corrector, within",
+    [
+        *(("first", 3, "gear", 0.3), ("first", 6, "gear", 0.3)),
+        *(("second", 4, "gear", 0.3), ("second", 8, "gear", 0.3)),
+        *(("first", 6, "tuned", 0.8), ("second", 8, "tuned", 0.8)),
+    ],
 )
-def test_estimates_fall_with_the_power_of_the_step(cage, formulation, values):
-    coarse, fine = (cage(dt, formulation=formulation, values=values) for dt in (0.1, 0.05))
-    assert np.log2(coarse / fine) == pytest.approx([values] * 4, abs=0.3)
-    other = cage(0.0505, formulation=formulation, values=values)
-    assert (np.abs(other / fine - 1.01**values) < 0.005 * values).all()  # 1 % shows
+def test_estimates_fall_with_the_power_of_the_step(cage, formulation, values, corrector, within):
+    words = dict(formulation=formulation, values=values, corrector=corrector)
+    coarse, fine = (cage(dt, **words) for dt in (0.1, 0.05))
+    assert np.log2(coarse / fine) == pytest.approx([values] * 4, abs=within)
+    other = cage(0.0505, **words)
+    assert (np.abs(other / fine - 1.01**values) < 0.006 * values).all()  # 1 % shows
     assert coarse[0] == coarse[1] and coarse[2] == coarse[3]  # one body: largest is rms
 
 
 def test_estimates_fall_with_the_number_of_values(cage):
-    found = [cage(0.1, values=n) for n in range(4, 13)]
+    found = [cage(0.1, values=n, corrector="gear") for n in range(4, 13)]
     assert all((b < 0.3 * a).all() for a, b in zip(found, found[1:]))
 
 
@@ -111,6 +119,36 @@ def test_a_restart_with_another_history_says_so(liquid, lmp, after):
     result = lmp.succeed(restarted(deck, "half.restart"))
     assert "another number of values" in result.output
     assert "start of order" in result.output  # it starts anew
+
+
+@pytest.mark.parametrize("before, after", [("gear", "tuned"), ("tuned", "gear")])
+def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
+    """A warning names both; with the same one nothing is said."""
+    _, whole = liquid(f"corrector {before}", steps=40)
+    liquid(f"corrector {before}", run="run 20\nwrite_restart half.restart")
+    for corrector in (before, after):
+        deck = water("data.water", f"gear/quat molecule corrector {corrector}", dt=0.5, steps=40)
+        result = lmp.succeed(restarted(deck, "half.restart").replace("run 40", "run 20"))
+        said = f"written with corrector {before}; its histories go on with corrector {after}"
+        assert (said in result.output) == (corrector == after)
+        assert "start of order" not in result.output
+        end = last_frame(lmp.folder / "poses.dump")[:, 1:4]
+        assert np.abs(end - whole).max() < 1e-6
+        assert np.abs(1.01 * end - whole).max() > 1e-2
+
+
+@pytest.mark.parametrize("formulation, values", LADDER)
+def test_values_without_tuned_coefficients_are_refused(lmp_wheel, formulation, values):
+    """And those that the list of keywords names are not; with Gear's all are accepted."""
+    deck = two_molecules("molecule formulation {} corrector {} values {}", after="run 0")
+    named = keywords.table()["values"].tuned[formulation]
+    assert lmp_wheel.succeed(deck.format(formulation, "gear", values)).output
+    tuned = deck.format(formulation, "tuned", values)
+    if values in named:
+        assert f"{values} values, 2 passes, corrector tuned" in lmp_wheel.succeed(tuned).output
+    else:
+        message = f"formulation {formulation} has no tuned coefficients for {values} but for "
+        lmp_wheel.refuse(tuned, message + ", ".join(map(str, named)), ranks=2)
 
 
 def test_jumping_forces_are_told(lmp_wheel, examples):

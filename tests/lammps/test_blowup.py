@@ -118,7 +118,7 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
     """Before LAMMPS loses atoms: what it says then tells nothing of where."""
     data = water_data(lmp_tree.folder / "data.water")
     still = "velocity all set 0 0 0"  # who turns so fast already is refused
-    fix = f"gear/quat molecule values {values}"
+    fix = f"gear/quat molecule corrector gear values {values}"
     deck = water(data, fix, dt=dt, thermo=1, steps=100, after=still)
     deck = deck.replace("dump poses all custom 100", "dump poses all custom 1")
     result = lmp_tree.refuse(deck, "Fix gear/quat: blow-up", ranks=ranks)

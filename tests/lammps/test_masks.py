@@ -66,7 +66,8 @@ def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
 @pytest.mark.parametrize("formulation, values", [("first", 5), ("second", 6)])
 def test_the_order_is_that_of_the_method(lmp_tree, formulation, values):
     steps = [0.1, 0.05, 0.025]
-    ends = [rotor(lmp_tree, formulation, f"values {values} {HELD}", dt)[0] for dt in steps]
+    words = f"corrector gear values {values} {HELD}"
+    ends = [rotor(lmp_tree, formulation, words, dt)[0] for dt in steps]
     errors = [np.abs(end - held_rotor(4.0)).max() for end in ends]
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > 5 - 0.5
 
