@@ -13,6 +13,7 @@ the page from them again.  The Lab (lab.py) runs decks:
 
     lab.sweep(name, deck, axes, read, settings)   every combination of values of variables -> read(finished)
     lab.many({name: Job(deck, variables, steps)}) side by side, --jobs at once -> {name: Finished}
+    lab.many(jobs, keep=True)                     the same, without those that are there (kept.py)
     lab.in_turn(jobs, rounds)                     one at a time, for timing -> {name: [Finished, ...]}
     lab.share(0.3)                                a context: its work is that part of the progress bar
     lab.quick, lab.full, lab.parts                what was asked for

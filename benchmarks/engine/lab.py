@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from .kept import Kept
 from .logs import Log
 from .runner import Interrupted, LammpsError, find_lmp, run
 from .sites import read_sites
@@ -44,6 +45,13 @@ class Finished:
     def sites(self):
         """Sites of the dump."""
         return read_sites(self.dump)
+
+
+def _is_result(error, may_fail):
+    """Whether a run with this error, "" for none, counts; None: there is no run.  See Lab.many."""
+    if not error:
+        return error is not None
+    return may_fail(error) if callable(may_fail) else may_fail
 
 
 class Lab:
@@ -93,17 +101,18 @@ class Lab:
         """Path of the dump of a run."""
         return self.out / "dumps" / f"{name}.dump"
 
-    def many(self, jobs, may_fail=False):
+    def many(self, jobs, may_fail=False, keep=False):
         """Run ``jobs``, name -> Job, side by side, the longest first; returns name -> Finished.
 
         ``may_fail``: whether an error of LAMMPS is a result, or a function that tells from its text.
-        Any other error ends all runs and is raised as LammpsError.
+        Any other error ends all runs and is raised as LammpsError.  ``keep``: whether runs that an
+        earlier call has finished with the same input are taken from there; see kept.py.
         """
         stop, total = threading.Event(), sum(job.steps for job in jobs.values())
         order = sorted(jobs, key=lambda name: -jobs[name].steps)
         with ThreadPoolExecutor(max_workers=self.jobs) as pool:
             futures = {
-                name: pool.submit(self._run, name, jobs[name], may_fail, stop, total)
+                name: pool.submit(self._run, name, jobs[name], may_fail, stop, total, keep)
                 for name in order
             }
             try:
@@ -147,11 +156,17 @@ class Lab:
         finished_runs = self.many(jobs, may_fail)
         return {keys[of_run]: read(finished) for of_run, finished in finished_runs.items()}
 
-    def _run(self, name, job, may_fail, stop, total):
+    def _run(self, name, job, may_fail, stop, total, keep=False):
         if stop.is_set():
             raise Interrupted(name)
         log, dump = self.out / "logs" / f"log.{name}", self.dump(name)
         dump.parent.mkdir(parents=True, exist_ok=True)
+        kept = Kept(log, dump.parent, name, job, self.lmp) if keep else None
+        if kept and _is_result(kept.error(), may_fail):
+            self.advance(job.steps / total)
+            return Finished(Log(log), dump, kept.error())
+        if kept:
+            kept.forget()
         variables = job.variables | {"out": dump.with_suffix("").resolve()}
         done, error = 0, ""
 
@@ -167,8 +182,10 @@ class Lab:
             raise
         except LammpsError as failure:
             error = str(failure)
-            if not (may_fail(error) if callable(may_fail) else may_fail):
+            if not _is_result(error, may_fail):
                 stop.set()
                 raise
         self.advance((job.steps - done) / total)
+        if kept:
+            kept.write(error)
         return Finished(Log(log), dump, error)

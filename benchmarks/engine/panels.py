@@ -45,7 +45,8 @@ class Bars:
 class Panel:
     """One pair of axes with ``curves``, a sequence, or with Bars in their place.
 
-    ``log``: "x", "y" or "xy".  ``ticks``: words for x = 0, 1, 2, ...; ``xticks``: the values at which x
+    ``log``: "x", "y" or "xy".  ``linear``: y is linear up to this size and logarithmic beyond, for
+    values of both signs.  ``ticks``: words for x = 0, 1, 2, ...; ``xticks``: the values at which x
     is labeled.  ``xlim``, ``ylim``: ends of the axes.  ``lost``: (x, color) of runs that ended early,
     drawn as crosses at the top.  ``legend``: whether the panel has one of its own.
     """
@@ -61,6 +62,7 @@ class Panel:
     ylim: tuple = None
     lost: tuple = ()
     legend: bool = True
+    linear: float = None
 
 
 def floor(values, least=1e-17):
@@ -93,6 +95,9 @@ def _scales(axis, panel):
         axis.set_xscale("log")
     if "y" in panel.log:
         axis.set_yscale("log")
+    if panel.linear:
+        axis.set_yscale("symlog", linthresh=panel.linear, linscale=0.6)
+        axis.axhline(0.0, color="#666666", linewidth=0.6)
     if panel.ticks:
         axis.set_xticks(range(len(panel.ticks)), panel.ticks)
         axis.margins(x=0.15)

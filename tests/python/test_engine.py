@@ -154,6 +154,34 @@ def test_an_error_ends_all_runs_unless_it_is_a_result(fake):
         lab.many({"bad": bad}, may_fail=lambda text: "other" in text)
 
 
+def test_runs_are_kept_while_their_input_is_the_same(fake, tmp_path):
+    lab, deck, done = fake
+    counted = tmp_path / "elsewhere" / "count"
+    counted.parent.mkdir()
+    count = f"echo run >> {counted}\n"
+    script = deck("in.kept", count + 'for name; do out=$name; done; echo data > "$out.data"\n')
+    (tmp_path / "data").write_text("one")
+
+    def again(value=1):
+        variables = {"data": tmp_path / "data", "value": value}
+        lab.many({"kept": Job(script, variables)}, keep=True)
+        return len(counted.read_text().split())
+
+    assert [again(), again(), again()] == [1, 1, 1] and sum(done) == pytest.approx(1.0)
+    assert [again(value=2), again(value=2)] == [2, 2]
+    (tmp_path / "data").write_text("two")
+    assert again(value=2) == 3
+    lab.dump("kept").with_suffix(".data").unlink()
+    assert [again(value=2), again(value=2)] == [4, 4]
+    deck("in.kept", count + "echo ERROR: lost atoms\nexit 1\n")
+    job = {"kept": Job(script, {})}
+    errors = [lab.many(job, may_fail=True, keep=True)["kept"].error for _ in range(2)]
+    assert "lost atoms" in errors[0] and errors[1] == errors[0]
+    assert len(counted.read_text().split()) == 5
+    with pytest.raises(LammpsError, match="lost atoms"):
+        lab.many(job, keep=True)
+
+
 def test_rounds_begin_with_another_job_each(fake, tmp_path):
     lab, deck, done = fake
     script = deck("in.order", f'echo "$4" >> {tmp_path}/order\n')
