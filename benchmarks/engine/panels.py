@@ -48,7 +48,7 @@ class Panel:
     ``log``: "x", "y" or "xy".  ``linear``: y is linear up to this size and logarithmic beyond, for
     values of both signs.  ``ticks``: words for x = 0, 1, 2, ...; ``xticks``: the values at which x
     is labeled.  ``xlim``, ``ylim``: ends of the axes.  ``lost``: (x, color) of runs that ended early,
-    drawn as crosses at the top.  ``legend``: whether the panel has one of its own.
+    drawn as crosses at the top.  ``legend``: whether the panel has one of its own, of so many ``columns``.
     """
 
     title: str
@@ -62,6 +62,7 @@ class Panel:
     ylim: tuple = None
     lost: tuple = ()
     legend: bool = True
+    columns: int = 3
     linear: float = None
 
 
@@ -122,7 +123,7 @@ def draw_panel(axis, panel):
         axis.plot(x, 0.99, "x", color=color, transform=axis.get_xaxis_transform())
     _scales(axis, panel)
     if panel.legend and any(curve.label for curve in panel.curves):
-        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 3}
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": panel.columns}
         axis.legend(fontsize=7, **place)
 
 

@@ -60,8 +60,8 @@ def results(rates=(), lost=()):
                 found[key] = made_up(rates.get(key, 0.0), scene.liquid, seed=seed, time=time)
     floors = {
         (forces.text, method.key): made_up(seed=k)
-        for k, forces in enumerate(plan.FLOORS)
-        for method in plan.FLOOR_METHODS
+        for k, (forces, methods) in enumerate(plan.FLOORS.items())
+        for method in methods
     }
     return runs.Results(plan.Plan(), found, floors)
 

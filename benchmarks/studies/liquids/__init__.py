@@ -14,8 +14,8 @@ from benchmarks.engine.panels import Curve, Panel, draw
 from benchmarks.engine.study import Finding, Measurement, Study, Table
 
 from . import quantities as of
-from .plan import ACCURACIES, ALL_METHODS, FAMILIES, FLOOR_METHODS, FLOORS, LIQUIDS
-from .plan import MAIN, NAMES, NVE_SMALL, SCENES, SECOND, replace
+from .plan import ALL_METHODS, FAMILIES, FLOOR_STEP, FLOORS, LIQUIDS, MAIN, NAMES, NVE_SMALL, SCENES
+from .plan import SECOND, SINGLE, power
 from .runs import measure
 
 #: as many standard errors of a difference are noise
@@ -25,12 +25,15 @@ UNIT = "kT/ns/dof"
 MOST_DRIFT = {2.5: 0.1}
 #: the drift is drawn linearly below this size
 LINEAR = 0.01
-LOOKS = looks(ALL_METHODS)
+#: and is a cross above this one
+LARGEST = 100.0
+#: the darker of a kind come last
+LOOKS = looks(ALL_METHODS[::-1])
 
 
 def with_error(value, error, sign=""):
     """Value ± error with two digits of the error."""
-    digits = max(0, 1 - math.floor(math.log10(error))) if error > 0 else 3
+    digits = min(max(0, 1 - math.floor(math.log10(error))), 4) if error > 0 else 4
     return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
 
 
@@ -81,32 +84,43 @@ def scene_tables(results, scene):
     }
 
 
+def show_fluctuation(run):
+    """Fluctuation as text, "" without a run."""
+    if run is None:
+        return ""
+    return lost_text(run) if run.lost else f"{of.fluctuation(run):.2g}"
+
+
 def floor_table(results):
     """Fluctuation, drift and time per step for each way to compute the forces."""
     rows = []
     for forces in FLOORS:
-        runs = [results.floors[forces.text, method.key] for method in FLOOR_METHODS]
-        cells = []
-        for run in runs:
-            there = not run.lost
-            cells.append(f"{of.fluctuation(run):.2g}" if there else lost_text(run))
-            cells.append(show_drift(run, MAIN.liquid))
+        own, other = (results.floors.get((forces.text, m.key)) for m in (SECOND, NVE_SMALL))
         lines = "<br>".join(f"`{line}`" for line in forces.lines)
-        rows.append([lines, *cells, f"{1000 * min(run.seconds for run in runs):.1f}"])
-    names = [f"{word}, {NAMES[m]}" for m in FLOOR_METHODS for word in ("fluctuation", "drift")]
-    return Table(("lines", *names, "ms per step"), rows)
+        cells = show_fluctuation(own), show_fluctuation(other), show_drift(own, MAIN.liquid)
+        rows.append([lines, *cells, f"{1000 * own.seconds:.1f}"])
+    names = [f"fluctuation, {NAMES[method]}" for method in (SECOND, NVE_SMALL)]
+    return Table(("lines", *names, f"drift, {NAMES[SECOND]}", "ms per step"), rows)
 
 
 def floors(results):
     """Fluctuations with the default that the sentences name, kcal/mol."""
     words = {"plain": "plain cut-off", "shifted": "energy shifted", "switched": "energy switched"}
-    shown = {}
-    for word, family in words.items():
-        for suffix, accuracy in (("_coarse", 1e-4), ("", 1e-5), ("_fine", 1e-6)):
-            forces = replace(FAMILIES[family], accuracy=accuracy)
-            run = results.floors[forces.text, SECOND.key]
-            shown[word + suffix] = math.inf if run.lost else of.fluctuation(run)
-    return shown
+    named = {
+        word + suffix: next(f for f in FAMILIES[family] if f.accuracy == accuracy)
+        for word, family in words.items()
+        for suffix, accuracy in (("_coarse", 1e-4), ("", 1e-5), ("_fine", 1e-6))
+    }
+    named |= {"switched_finest": FAMILIES["energy switched"][-1]}
+    named |= dict(zip(("functions", "longer", "order", "ewald", "rare"), SINGLE))
+    runs = {word: results.floors[forces.text, SECOND.key] for word, forces in named.items()}
+    return {word: math.inf if run.lost else of.fluctuation(run) for word, run in runs.items()}
+
+
+def advice(results):
+    """The cheaper of two ways to the same fine forces."""
+    ways = FAMILIES["energy shifted"][-2], SINGLE[2]
+    return min(ways, key=lambda forces: results.floors[forces.text, SECOND.key].seconds)
 
 
 def calibration(results):
@@ -129,37 +143,42 @@ def main_measurements(results):
     for dt in MAIN.liquid.steps:
         own, other = runs[SECOND, dt], runs[NVE_SMALL, dt]
         what = f"{MAIN.title}, {dt:g} fs, {NAMES[SECOND]}"
-        length = own.time[-1] / 1000 if len(own.time) else 0.0
-        least = 0.999 * own.duration / 1000
-        yield Measurement(f"{what}: time without loss", length, spec=".1f", unit="ps", least=least)
+        if own.lost or dt == max(MAIN.steps):
+            length = own.time[-1] / 1000 if len(own.time) else 0.0
+            bounds = {"spec": ".1f", "unit": "ps", "least": 0.999 * own.duration / 1000}
+            yield Measurement(f"{what}: time without loss", length, **bounds)
         if own.lost:
             continue
         (rate, error), (theirs, scatter) = (of.drift(run, MAIN.liquid) for run in (own, other))
         most = MOST_DRIFT.get(dt, NOISE * math.hypot(error, scatter))
         bounds = {"least": -most, "most": most} if dt < max(MAIN.steps) else {}
         remark = f"{NVE_SMALL.label}: {with_error(theirs, scatter, '+')}"
-        yield Measurement(f"{what}: drift", rate, error, "+.3f", UNIT, remark, **bounds)
+        yield Measurement(f"{what}: drift", rate, error, ".4f", UNIT, remark, **bounds)
 
 
 # --- pictures -------------------------------------------------------------------------------------
-def _curves(scene, runs, read):
-    """A Curve for each method of a scene; ``read(run)``: value and error."""
-    for method in scene.methods:
+def plain_name(method):
+    """Name of a method in pictures."""
+    return NAMES[method].replace("`", "")
+
+
+def panel(results, scene, title, ylabel, read, apart=0.0, most=math.inf, **more):
+    """Panel of a quantity against the step; ``read(run)``: value and error.
+
+    ``apart``: distance of error bars at the same step, as a part of the largest step.  Runs that were
+    lost, or whose value is beyond ``most``, are crosses.
+    """
+    runs, curves, lost = of_scene(results, scene), [], []
+    for k, method in enumerate(scene.methods):
         points = [(dt, *read(runs[method, dt])) for dt in scene.steps if not runs[method, dt].lost]
+        points = [point for point in points if abs(point[1]) <= most]
         x, y, error = np.array(points).reshape(-1, 3).T
-        yield Curve(NAMES[method].replace("`", ""), x, y, **LOOKS[method], error=error)
-
-
-def _lost(scene, runs):
-    return tuple((dt, LOOKS[method]["color"]) for (method, dt), run in runs.items() if run.lost)
-
-
-def panel(results, scene, title, ylabel, read, **more):
-    """Panel of a quantity against the step."""
-    runs = of_scene(results, scene)
+        color = LOOKS[method]["color"]
+        lost += [(dt, color) for dt in scene.steps if dt not in x]
+        x = x + apart * max(scene.steps) * (k - (len(scene.methods) - 1) / 2)
+        curves.append(Curve(plain_name(method), x, y, **LOOKS[method], error=error))
     more = {"log": "", "legend": False} | more
-    curves = tuple(_curves(scene, runs, read))
-    return Panel(title, "step, fs", ylabel, curves, xticks=scene.steps, lost=_lost(scene, runs), **more)
+    return Panel(title, "step, fs", ylabel, curves, xticks=scene.steps, lost=tuple(lost), **more)
 
 
 def drift_panels(results):
@@ -171,6 +190,7 @@ def drift_panels(results):
             scene.title,
             f"drift, {UNIT}",
             partial(of.drift, liquid=scene.liquid),
+            most=LARGEST,
             linear=LINEAR,
         )
         for scene in SCENES
@@ -189,24 +209,35 @@ def state_panels(results):
     words = "fluctuation of the energy, kcal/mol"
     return (
         panel(results, MAIN, MAIN.title, words, lambda run: (of.fluctuation(run), 0.0), log="y"),
-        panel(results, MAIN, MAIN.title, "T rotation − T translation, K", cooler),
-        panel(results, MAIN, MAIN.title, "pressure, atm", pressure),
+        panel(results, MAIN, MAIN.title, "T rotation − T translation, K", cooler, 0.01),
+        panel(results, MAIN, MAIN.title, "pressure, atm", pressure, 0.01),
     )
 
 
-def floor_panel(results):
-    """Fluctuation against the accuracy of kspace, for each way to cut off."""
-    curves, marks = [], dict(zip(FAMILIES, "so^"))
-    for method in FLOOR_METHODS:
-        for name, forces in FAMILIES.items():
-            runs = [results.floors[replace(forces, accuracy=a).text, method.key] for a in ACCURACIES]
-            y = np.array([math.nan if run.lost else of.fluctuation(run) for run in runs])
-            look = {"color": LOOKS[method]["color"], "marker": marks[name]}
-            label = f"{NAMES[method].replace('`', '')}, {name}"
-            curves.append(Curve(label, np.array(ACCURACIES), y, **look))
-    words = "fluctuation of the energy, kcal/mol"
-    title = f"{MAIN.liquid.title}, step {results.plan.floor_step:g} fs"
-    return Panel(title, "accuracy of kspace_style", words, tuple(curves), log="xy")
+def floor_panels(results):
+    """Fluctuation against the accuracy of kspace, by way to cut off, and against the step, by accuracy."""
+    by_accuracy, by_step, marks, words = [], [], "so^", "fluctuation of the energy, kcal/mol"
+    short = {SECOND: "fix gear/quat", NVE_SMALL: NVE_SMALL.label}
+
+    def curve(name, method, mark, runs):
+        kept = [(x, of.fluctuation(run)) for x, run in runs.items() if not run.lost]
+        look = LOOKS[method] | {"marker": mark}
+        return Curve(f"{short[method]}, {name}", *np.array(kept).reshape(-1, 2).T, **look)
+
+    for mark, (name, family) in zip(marks, FAMILIES.items()):
+        for method in FLOORS[family[0]]:
+            runs = {forces.accuracy: results.floors[forces.text, method.key] for forces in family}
+            by_accuracy.append(curve(name, method, mark, runs))
+    for mark, scene in zip(marks, (s for s in SCENES if s.liquid is MAIN.liquid)):
+        for method in short:
+            runs = {dt: results.runs[scene.key, method.key, dt] for dt in scene.steps}
+            by_step.append(curve(f"pppm {power(scene.accuracy)}", method, mark, runs))
+    title = f"{MAIN.liquid.title}, step {FLOOR_STEP:g} fs"
+    more = {"log": "xy", "columns": 2}
+    return (
+        Panel(title, "accuracy of kspace_style", words, by_accuracy, **more),
+        Panel(f"{MAIN.liquid.title}, energy shifted", "step, fs", words, by_step, xticks=MAIN.steps, **more),
+    )
 
 
 def find(results):
@@ -216,19 +247,20 @@ def find(results):
         tables |= scene_tables(results, scene)
     measurements = (*main_measurements(results), calibration(results))
     pictures = {
-        "drift": partial(draw, panels=drift_panels(results), columns=3, note="crosses: lost"),
+        "drift": partial(draw, panels=drift_panels(results), columns=3, note=f"crosses: lost, or a drift above {LARGEST:g}"),
         "state": state_panels(results),
-        "floor": (floor_panel(results),),
+        "floor": floor_panels(results),
     }
     context = {
         "floors": floors(results),
-        "advice": replace(FAMILIES["energy shifted"], accuracy=1e-6).lines,
+        "advice": advice(results).lines,
         "plan": results.plan,
         "scenes": SCENES,
         "main": MAIN,
         "liquids": LIQUIDS,
         "blocks": of.BLOCKS,
         "unit": UNIT,
+        "floor_step": FLOOR_STEP,
         "gears": [GEARS[f].variables["values"] for f in ("second", "first")],
     }
     return Finding(measurements, tables, pictures, context)

@@ -3,7 +3,7 @@
 Another liquid needs an entry of LIQUIDS, its files ``liquid.KEY`` and ``molecule.KEY``, and a Scene.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from benchmarks.engine.methods import DEFAULTS, GEARS, rigid
 
@@ -28,6 +28,11 @@ TIP4P = f"lj/cut/tip4p/long 1 2 1 1 0.1546 {CUTOFF:g}"
 SWITCHED = f"lj/charmm/coul/long 7 {CUTOFF:g}"
 
 
+def power(accuracy):
+    """A power of ten as people write it: 1e-5."""
+    return f"{accuracy:.0e}".replace("e-0", "e-")
+
+
 @dataclass(frozen=True)
 class Forces:
     """How forces are computed, in the words of LAMMPS' commands; see in.liquid.  ``skin`` in Angstrom."""
@@ -44,12 +49,12 @@ class Forces:
     def variables(self):
         """Variables of in.liquid."""
         words = {"pair": self.pair, "modify": self.modify, "order": self.order, "skin": self.skin}
-        return words | {"kspace": f"{self.kspace} {self.accuracy:g}", "neighbors": self.neighbors}
+        return words | {"kspace": f"{self.kspace} {power(self.accuracy)}", "neighbors": self.neighbors}
 
     @property
     def lines(self):
         """What a user writes, where it is not LAMMPS' default."""
-        lines = [f"pair_style {self.pair}", f"kspace_style {self.kspace} {self.accuracy:g}"]
+        lines = [f"pair_style {self.pair}", f"kspace_style {self.kspace} {power(self.accuracy)}"]
         if self.modify != "shift no":
             lines.insert(1, f"pair_modify {self.modify}")
         if self.order != 5:
@@ -128,8 +133,7 @@ class Scene:
     @property
     def title(self):
         """A heading."""
-        digits = f"{self.accuracy:.0e}".replace("e-0", "e-")
-        return f"{self.liquid.title}, {self.liquid.kspace} {digits}"
+        return f"{self.liquid.title}, {self.liquid.kspace} {power(self.accuracy)}"
 
 
 MAIN = Scene("spce", SPCE, methods=ALL_METHODS, more=(0.5,))
@@ -142,37 +146,35 @@ SCENES = (
     Scene("benzene", BENZENE),
 )
 
-#: what limits accuracy: SPC/E water at a step that is short enough to see it
-FLOOR_METHODS = SECOND, NVE_SMALL
+#: what limits accuracy, with SPC/E water at a step in fs that is short enough to see it
+FLOOR_STEP = 0.5
 ACCURACIES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
-#: words of a curve -> forces at any accuracy
+#: words of a curve -> forces at each accuracy; a finer mesh would not lower the floor of the first one
 FAMILIES = {
-    "plain cut-off": Forces(modify="shift no"),
-    "energy shifted": Forces(),
-    "energy switched": Forces(SWITCHED, "shift no"),
+    "plain cut-off": [Forces(modify="shift no", accuracy=a) for a in ACCURACIES[:-1]],
+    "energy shifted": [Forces(accuracy=a) for a in ACCURACIES],
+    "energy switched": [Forces(SWITCHED, "shift no", accuracy=a) for a in ACCURACIES],
 }
-#: single settings, each a change of the finer ones above
+#: further settings, each a change of a fine one above
 SINGLE = (
     Forces(SWITCHED, "table 0", accuracy=1e-7),
     Forces(f"{PLAIN} 12", accuracy=1e-6),
     Forces(accuracy=1e-6, order=7),
     Forces(kspace="ewald", accuracy=1e-6),
-    Forces(accuracy=1e-6, skin=0.5, neighbors="every 40 delay 0 check no"),
+    Forces(accuracy=1e-6, skin=1.0, neighbors="every 40 delay 0 check no"),
 )
-FLOORS = (*(replace(f, accuracy=a) for f in FAMILIES.values() for a in ACCURACIES), *SINGLE)
+#: Forces -> methods that are run with them
+FLOORS = {f: (SECOND,) for family in FAMILIES.values() for f in family}
+FLOORS |= {f: (SECOND, NVE_SMALL) for f in (*FAMILIES["energy shifted"], *SINGLE)}
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Durations: those of the main scene, the others and the floor in ps, steps of equilibration.
-
-    ``floor_step``: step of the runs that show what limits accuracy, fs.
-    """
+    """Durations: those of the main scene, the others and the floor in ps, steps of equilibration."""
 
     main: float = 20.0
     others: float = 10.0
-    floor: float = 4.0
-    floor_step: float = 0.5
+    floor: float = 3.0
     equilibration: int = 10_000
 
     def duration(self, scene):
@@ -180,4 +182,4 @@ class Plan:
         return 1000 * (self.main if scene is MAIN else self.others)
 
 
-QUICK = Plan(main=0.6, others=0.6, floor=0.6, floor_step=2.0, equilibration=500)
+QUICK = Plan(main=0.6, others=0.6, floor=0.6, equilibration=500)

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.engine import EXAMPLES, Job
 from benchmarks.studies.drift import is_lost
 
-from .plan import FLOOR_METHODS, FLOORS, LIQUIDS, QUICK, SCENES, SPCE, Plan
+from .plan import FLOOR_STEP, FLOORS, LIQUIDS, QUICK, SCENES, SPCE, Plan
 
 #: LAMMPS' real units: g/mol (Angstrom/fs)^2 in kcal/mol
 ENERGY = 48.88821291**2
@@ -109,11 +109,11 @@ def measure(lab, plan=None, scenes=SCENES, floors=FLOORS):
                 keys[name] = scene.liquid, (scene.key, method.key, dt)
                 duration = plan.duration(scene)
                 jobs[name] = job(scene.liquid, data, scene.forces, method, dt, duration)
-    for k, forces in enumerate(floors):
-        for method in FLOOR_METHODS:
+    for k, (forces, methods) in enumerate(floors.items()):
+        for method in methods:
             name = f"floor{k}_{method.key}"
-            keys[name] = SPCE, (forces, method.key, plan.floor_step)
-            jobs[name] = job(SPCE, data, forces, method, plan.floor_step, 1000 * plan.floor)
+            keys[name] = SPCE, (forces, method.key, FLOOR_STEP)
+            jobs[name] = job(SPCE, data, forces, method, FLOOR_STEP, 1000 * plan.floor)
     with lab.share(0.97):
         finished = lab.many(jobs, may_fail=is_lost, keep=True)
     runs, limits = {}, {}
