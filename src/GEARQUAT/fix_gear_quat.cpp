@@ -236,7 +236,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
     neighbors->check_velocities();
   compared = false;
   motion->predict(atom->f);
-  bodies->spread_states();
+  bodies->spread_moved();
   bodies->place_sites(velocities_read);
   table->forget();
 }
@@ -248,7 +248,7 @@ void FixGearQuat::finish_step(double **f, double **torque)
   v_init(vflag_of_step);    // here: the atoms are those that forces belong to
   if (evflag) tally_virial(f);
   motion->correct(f);
-  bodies->spread_states();
+  bodies->spread_moved();
   bodies->place_sites(true);
   table->forget();
   const bool output_due = output->next == update->ntimestep;

@@ -21,7 +21,7 @@ using namespace GearQuat;
 /* ---------------------------------------------------------------------- */
 
 Bodies::Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), scheme(scheme), extended(lmp, scheme)
+    Pointers(lmp), fix(fix), scheme(scheme), row_size(scheme.size()), extended(lmp, scheme)
 {
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
@@ -353,7 +353,7 @@ double Bodies::memory_usage() const
   return owned.capacity() * per_atom + rows.capacity() * sizeof(double) +
       body.capacity() * sizeof(Body) + state.capacity() * sizeof(BodyState) +
       load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +
-      frame.capacity() * sizeof(Frame) + sites.capacity() * sizeof(Site) +
+      frame.capacity() * sizeof(BodyFrame) + sites.capacity() * sizeof(Site) +
       large.capacity() * sizeof(Large) +
       (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +

@@ -17,6 +17,7 @@
    The fix calls, every step:
      [predict owned states] -> spread_states() -> place_sites() -> [forces] -> gather_loads()
      -> [correct owned states] -> spread_states() -> place_sites()
+   where spread_moved() does instead of spread_states() if the frames are written with the states;
    and after every exchange of atoms update_ghosts(). */
 
 #ifndef LMP_GEAR_QUAT_BODIES_H
@@ -48,9 +49,11 @@ class Bodies : protected Pointers {
   const Load &load_of(int ibody) const { return load[ibody]; }
   const Correction &last_of(int ibody) const { return last[ibody]; }
 
-  // The rooms that move bodies write states and corrections here, and call spread_states() then.
+  // The rooms that move bodies write states and corrections here, and call spread_states() then, or
+  // spread_moved() if they have written the frames of all states, too.
 
   BodyState &change_state(int ibody) { return state[ibody]; }
+  BodyFrame &change_frame(int ibody) { return frame[ibody]; }
   Correction &change_last(int ibody) { return last[ibody]; }
   void forget_work()
   {
@@ -100,8 +103,8 @@ class Bodies : protected Pointers {
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
   /// The rotation matrix space -> body of a state that spread_states() has seen.
   const double *axes(int ibody) const { return frame[ibody].axes; }
-  double *history(int ibody) { return rows.data() + (size_t) ibody * scheme.size(); }
-  const double *history(int ibody) const { return rows.data() + (size_t) ibody * scheme.size(); }
+  double *history(int ibody) { return rows.data() + ibody * row_size; }
+  const double *history(int ibody) const { return rows.data() + ibody * row_size; }
   bool in_body(int atom) const { return body_id[atom] != 0; }
   /// The user's ID of an atom's body, of ghosts too; 0 for none.
   tagint id_of(int atom) const;
@@ -163,6 +166,8 @@ class Bodies : protected Pointers {
   void expect_forces(bool any);
 
   void spread_states();
+  /// The same where the frames of all bodies that this rank moves are those of their states.
+  void spread_moved();
   /// Positions of all sites, and velocities if anything reads them before the next call.
   void place_sites(bool velocities);
   /// Velocities alone: before a run positions were made by the last step, or by the user.
@@ -207,6 +212,7 @@ class Bodies : protected Pointers {
 
   Fix *fix;
   Scheme scheme;
+  size_t row_size;    ///< doubles of a history
   Extended extended;
 
   int nown = 0, nmove = 0;           ///< owned bodies; with copies of large ones
@@ -226,11 +232,7 @@ class Bodies : protected Pointers {
   std::vector<double> packed_large;    ///< all of them, packed, while atoms are exchanged
   std::vector<double> parts, sums;     ///< their loads: of the atoms here, and of all
 
-  struct Frame {       ///< what placing a site needs, derived from the state
-    double axes[9];    ///< rotation matrix space -> body
-    double omega_space[3];
-  };
-  std::vector<Frame> frame;    ///< all bodies here
+  std::vector<BodyFrame> frame;    ///< of the states of all bodies here
 
   // These say what a step can leave out, and change only when atoms are exchanged.
 
@@ -268,7 +270,6 @@ class Bodies : protected Pointers {
   int add_owned(int atom);
   void remove_owned(int ibody);
   void update_frame(int ibody);
-  void update_frames();
   void list_bodies();
   void list_sites();
   int body_of(int atom) const;

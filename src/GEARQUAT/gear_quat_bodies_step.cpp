@@ -18,11 +18,16 @@ using namespace GearQuat;
 
 void Bodies::spread_states()
 {
-  if (any_ghosts) {
-    forward = Forward::STATES;
-    comm->forward_comm(fix, STATE_SIZE);
-  }
-  update_frames();
+  for (const int ibody : tops) update_frame(ibody);
+  spread_moved();
+}
+
+void Bodies::spread_moved()
+{
+  if (!any_ghosts) return;
+  forward = Forward::STATES;
+  comm->forward_comm(fix, STATE_SIZE);
+  for (const int ibody : ghost_tops) update_frame(ibody);
 }
 
 /// What the atoms of all ranks have added to the loads of bodies that this rank moves.
@@ -46,12 +51,6 @@ void Bodies::update_frame(int ibody)
   to_space(frame[ibody].axes, s.omega_body, frame[ibody].omega_space);
 }
 
-void Bodies::update_frames()
-{
-  for (const int ibody : tops) update_frame(ibody);
-  for (const int ibody : ghost_tops) update_frame(ibody);
-}
-
 template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Bodies::place()
 {
   const Site *site = sites.data(), *const arms = site + ncentered, *const end = site + sites.size();
@@ -64,7 +63,7 @@ template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Bodies::place()
   }
   for (; site != end; ++site) {
     const BodyState &s = state[site->body];
-    const Frame &fr = frame[site->body];
+    const BodyFrame &fr = frame[site->body];
     double arm[3], spin[3];
     to_space(fr.axes, site->arm_body, arm);
     if (POSITIONS) {
@@ -134,7 +133,7 @@ Bodies::ConstraintForce Bodies::constraint_force(const Site &site, double **f) c
 {
   ConstraintForce constraint;
   double *arm_space = constraint.arm[0], *lacking = constraint.force[0];
-  const Frame &fr = frame[site.body];
+  const BodyFrame &fr = frame[site.body];
   const Load &l = load[site.body];
   const RigidBody &rigid = body[site.body].rigid;
   double torque_body[3], alpha_body[3], alpha_space[3], tangential[3], spin[3], radial[3];

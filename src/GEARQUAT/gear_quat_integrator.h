@@ -83,18 +83,19 @@ class Integrator {
   BodyState body_state(const RigidBody &body, const double *rows) const
   {
     BodyState state;
-    const double *rates = rows + scheme.width();
-    const int quat = scheme.quaternion();
-    center_state(body, rows, state);
-    copy(rows + quat, 4, state.q);
-    if (scheme.first())
-      copy(rows + Scheme::OMEGA, 3, state.omega_body);
-    else {
-      double qdot[4];
-      for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] * per_h;
-      angular_velocity(state.q, scheme.norm2(state.q), qdot, state.omega_body);
-    }
+    BodyFrame frame;
+    body_state(body, rows, state, frame);
     return state;
+  }
+
+  /// The same with the frame of this state.
+  void body_state(const RigidBody &body, const double *rows, BodyState &state,
+                  BodyFrame &frame) const
+  {
+    if (scheme.first())
+      find_state<Formulation::FIRST>(body, rows, state, frame);
+    else
+      find_state<Formulation::SECOND>(body, rows, state, frame);
   }
 
   /// Position and velocity alone.
@@ -284,6 +285,35 @@ class Integrator {
   static void copy(const double *from, int n, double *to)
   {
     for (int i = 0; i < n; ++i) to[i] = from[i];
+  }
+
+  /// All is read before any of it is written: for all the compiler knows, it is written to `rows`.
+  template <Formulation FORM>
+  void find_state(const RigidBody &body, const double *rows, BodyState &state,
+                  BodyFrame &frame) const
+  {
+    constexpr bool FIRST = FORM == Formulation::FIRST;
+    constexpr int QUATERNION = FIRST ? Scheme::FIRST_QUATERNION : Scheme::SECOND_QUATERNION;
+    const double *rates = rows + (FIRST ? Scheme::FIRST_WIDTH : Scheme::SECOND_WIDTH);
+    double center[3], q[4], velocity[3], omega_body[3];
+    copy(rows + Scheme::POSITION, 3, center);
+    copy(rows + QUATERNION, 4, q);
+    const double norm2 = scheme.norm2(q);
+    if (FIRST) {
+      for (int i = 0; i < 3; ++i) velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
+      copy(rows + Scheme::OMEGA, 3, omega_body);
+    } else {
+      double qdot[4];
+      for (int i = 0; i < 3; ++i) velocity[i] = rates[Scheme::POSITION + i] * per_h;
+      for (int i = 0; i < 4; ++i) qdot[i] = rates[QUATERNION + i] * per_h;
+      angular_velocity(q, norm2, qdot, omega_body);
+    }
+    copy(center, 3, state.center);
+    copy(q, 4, state.q);
+    copy(velocity, 3, state.velocity);
+    copy(omega_body, 3, state.omega_body);
+    rotation_matrix(q, norm2, frame.axes);
+    to_space(frame.axes, omega_body, frame.omega_space);
   }
 
   /// Residual of a column is target - row, row that of the order of the equation.

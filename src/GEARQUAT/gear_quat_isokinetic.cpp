@@ -125,7 +125,8 @@ void IsokineticConstraint::correct(const Integrator &integrator)
     double *rows = bodies.history(ibody);
     bodies.change_last(ibody) = integrator.finish(bodies.load_of(ibody), rows, pending[ibody]);
     if (rescale) integrator.scale_momenta(bodies.rigid_of(ibody), factor, rows);
-    bodies.change_state(ibody) = integrator.body_state(bodies.rigid_of(ibody), rows);
+    integrator.body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
+                          bodies.change_frame(ibody));
   }
 }
 

@@ -294,7 +294,8 @@ void Motion::predict(double **f)
   for (const int ibody : bodies.tops) {
     double *rows = bodies.history(ibody);
     integrator->predict(rows);
-    bodies.change_state(ibody) = integrator->body_state(bodies.rigid_of(ibody), rows);
+    integrator->body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
+                           bodies.change_frame(ibody));
     check(ibody);
   }
 }
@@ -311,27 +312,22 @@ void Motion::correct(double **f)
 template <bool MASKED> void Motion::correct_bodies(double **f)
 {
   const auto correct_all = [&](auto changing) {
-    for (const int ibody : bodies.points) {
-      correct_body<MASKED, true, changing>(ibody);
-      check_limits(ibody, f);
-    }
-    for (const int ibody : bodies.tops) {
-      correct_body<MASKED, false, changing>(ibody);
-      check_limits(ibody, f);
-    }
+    for (const int ibody : bodies.points) correct_body<MASKED, true, changing>(ibody, f);
+    for (const int ibody : bodies.tops) correct_body<MASKED, false, changing>(ibody, f);
   };
   tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
   begin_fresh(f);
 }
 
 /// POINT: without moments of inertia.  CHANGING: the time step follows the error.
-template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int ibody)
+template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int ibody, double **f)
 {
   double *rows = bodies.history(ibody);
   const RigidBody &rigid = bodies.rigid_of(ibody);
-  const Load load = MASKED ? bodies.acting(ibody) : bodies.load_of(ibody);
+  const Load masked = MASKED ? bodies.acting(ibody) : Load();
+  const Load &load = MASKED ? masked : bodies.load_of(ibody);
   BodyState &state = bodies.change_state(ibody);
-  const BodyState before = state;
+  const BodyState before = MASKED ? state : BodyState();
   Correction &last = bodies.change_last(ibody);
   if (CHANGING)
     last = tolerance->correct(*integrator, ibody, load);
@@ -341,8 +337,9 @@ template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int 
   if (POINT)
     integrator->center_state(rigid, rows, state);
   else
-    state = integrator->body_state(rigid, rows);
+    integrator->body_state(rigid, rows, state, bodies.change_frame(ibody));
   if (MASKED) last.work = work_between(bodies.load_of(ibody), before, state);
+  check_limits(ibody, f);
 }
 
 /// The isokinetic constraint couples all bodies, so they are corrected pass by pass.

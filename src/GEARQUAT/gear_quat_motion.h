@@ -59,6 +59,7 @@ class Motion : protected Pointers {
   double last_error() const;
   /// True if this motion is that of the atom.
   bool moves(int atom) const { return bodies.in_body(atom); }
+  /// Both leave states with their frames.
   void predict(double **f);
   /// f: forces that the loads were gathered from.
   void correct(double **f);
@@ -128,7 +129,7 @@ class Motion : protected Pointers {
     return isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
   }
   template <bool MASKED> void correct_bodies(double **f);
-  template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody);
+  template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody, double **f);
   void correct_together(double **f);
   void begin_fresh(double **f);
 };

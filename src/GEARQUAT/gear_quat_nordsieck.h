@@ -52,7 +52,8 @@ struct Scheme {
   static constexpr int FIRST_WIDTH = 13, SECOND_WIDTH = 7;
   static constexpr int POSITION = 0;
   static constexpr int MOMENTUM = 3;    ///< first only
-  int quaternion() const { return first() ? 6 : 3; }
+  static constexpr int FIRST_QUATERNION = 6, SECOND_QUATERNION = 3;
+  int quaternion() const { return first() ? FIRST_QUATERNION : SECOND_QUATERNION; }
   static constexpr int OMEGA = 10;    ///< first only
 
   /// What q is divided by where a unit quaternion is meant: unprojected, the paper's formulas are

@@ -50,6 +50,12 @@ struct BodyState {
   double omega_body[3];    ///< angular velocity along the principal axes
 };
 
+/// What placing a site needs, derived from a state.
+struct BodyFrame {
+  double axes[9];    ///< rotation matrix space -> body
+  double omega_space[3];
+};
+
 /// Total force and torque about the center of mass, in mass * length / time^2 (* length).
 struct Load {
   double force[3];
