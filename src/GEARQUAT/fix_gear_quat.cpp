@@ -238,6 +238,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
   motion->predict(atom->f);
   bodies->spread_moved();
   bodies->place_sites(velocities_read);
+  neighbors->note_place();
   table->forget();
 }
 
@@ -250,6 +251,7 @@ void FixGearQuat::finish_step(double **f, double **torque)
   motion->correct(f);
   bodies->spread_moved();
   bodies->place_sites(true);
+  neighbors->note_velocity();
   table->forget();
   const bool output_due = output->next == update->ntimestep;
   if (is_due(readers->of_atoms, update->ntimestep) || output_due)

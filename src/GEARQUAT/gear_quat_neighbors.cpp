@@ -21,6 +21,7 @@
 #include "utils.h"
 
 #include <algorithm>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -91,6 +92,7 @@ static constexpr double RIGID = 1.0e-6;    // of the velocity of a site, for a m
 Neighbors::Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args) :
     Pointers(lmp), fix(fix), bodies(bodies), args(args)
 {
+  std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // equal to nothing
 }
 
 /* ----------------------------------------------------------------------
@@ -310,12 +312,33 @@ bool Neighbors::gather_impulses()
    changes that bodies do not follow
 ------------------------------------------------------------------------- */
 
+void Neighbors::note(double **values)
+{
+  if (sample < bodies.sites.size()) std::copy_n(values[bodies.sites[sample].atom], 3, noted);
+}
+
+bool Neighbors::is_noted(const Bodies::Site &site, double **values) const
+{
+  return std::equal(noted, noted + 3, values[site.atom]);
+}
+
+/// The next sample begins.
+void Neighbors::note_velocity()
+{
+  if (++sample >= bodies.sites.size()) sample = 0;
+  note(atom->v);
+}
+
+void Neighbors::note_place()
+{
+  note(atom->x);
+}
+
 void Neighbors::check_velocities()
 {
-  if (warned_change || bodies.sites.empty()) return;
-  if (++sample >= bodies.sites.size()) sample = 0;
+  if (warned_change || sample >= bodies.sites.size()) return;
   const auto &site = bodies.sites[sample];
-  if (!bodies.is_as_fast(site)) tell(site, "velocity");
+  if (!is_noted(site, atom->v) && !bodies.is_as_fast(site)) tell(site, "velocity");
 }
 
 void Neighbors::check_places()
@@ -333,7 +356,7 @@ void Neighbors::check_places()
   }
   if (warned_change || sample >= bodies.sites.size()) return;
   const auto &site = bodies.sites[sample];
-  if (!bodies.is_there(site)) tell(site, "place");
+  if (!is_noted(site, atom->x) && !bodies.is_there(site)) tell(site, "place");
 }
 
 void Neighbors::check_all()

@@ -8,7 +8,8 @@
    not begin.  The manual has the same table.  What no table knows is found by samples.
 
    The fix calls init() before every run; take_velocities() before a step, with the velocities that
-   the step before has left; check_places() after the forces, with the predicted places. */
+   the step before has left; check_places() after the forces, with the predicted places; note_place()
+   and note_velocity() when it has placed its sites. */
 
 #ifndef LMP_GEAR_QUAT_NEIGHBORS_H
 #define LMP_GEAR_QUAT_NEIGHBORS_H
@@ -45,9 +46,13 @@ class Neighbors : protected Pointers {
   /// and is left alone otherwise.  Collective.
   std::vector<int> take_velocities(bigint step, bool end);
 
-  // These are local and look at a single site unless a fix is known to move atoms.
+  // These are local and look at a single site unless a fix is known to move atoms.  A site that is
+  // as note_velocity() and note_place() have seen it, right after the fix had placed it, needs no more
+  // than that comparison.
 
+  void note_velocity();
   void check_velocities();
+  void note_place();
   void check_places();
   /// All sites, places and velocities, where a run begins without any comparison.
   void check_all();
@@ -59,6 +64,7 @@ class Neighbors : protected Pointers {
   std::vector<const Fix *> taken;      ///< whose velocities bodies take over
   std::vector<const Fix *> watched;    ///< that may move single atoms
   size_t sample = 0;                   ///< the site that is looked at next
+  double noted[3];                     ///< its velocity or place
   bool warned_noise = false;           ///< of random forces
   bool warned_change = false;          ///< of a change by something unknown in this run
 
@@ -66,6 +72,8 @@ class Neighbors : protected Pointers {
   tagint shared_atom(const Fix *other) const;
   void refuse(const Fix *other, const NeighborRule &row, tagint atom) const;
   bool gather_impulses();
+  void note(double **values);
+  bool is_noted(const Bodies::Site &site, double **values) const;
   void tell(const Bodies::Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };
