@@ -398,9 +398,9 @@ class Integrator {
                       double *rows, double *residual) const
   {
     const double *seconds = rows + 2 * scheme.width();
-    const double half_h2 = 0.5 * h * h;
+    const double half_h2_per_mass = 0.5 * h * h / body.mass;
     double target[3];
-    for (int i = 0; i < 3; ++i) target[i] = half_h2 * load.force[i] / body.mass;
+    for (int i = 0; i < 3; ++i) target[i] = half_h2_per_mass * load.force[i];
     feed_back<3>(history, c.position, rows, seconds, Scheme::POSITION, target, residual);
   }
 
@@ -408,24 +408,29 @@ class Integrator {
   void correct_all(Second<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
                    Pending &pending) const
   {
-    Residual &total = pending.total;
     const int quat = scheme.quaternion(), width = scheme.width();
     const double *rates = rows + width, *seconds = rows + 2 * width, *q = rows + quat;
     const double half_h2 = 0.5 * h * h;
-    double target[4];
-    correct_center(history, body, load, Undamped(), rows, total.x);
+    double target[4], per_inertia[3];
+    inverse_moments(body, per_inertia);
+    correct_center(history, body, load, Undamped(), rows, pending.total.x);
 
-    // quaternions (Eqs. 6, 7, 18)
+    // quaternions (Eqs. 6, 7, 18): with c_2 = 1 the residuals of all passes add up to target -
+    // prediction, so the history is corrected once
 
+    double *total = pending.total.q;
     for (int pass = 0; pass < scheme.passes; ++pass) {
-      double omega_body[3], omegadot_body[3], qdot[4];
-      for (int i = 0; i < 4; ++i) qdot[i] = rates[quat + i] * per_h;
-      angular_velocity(q, scheme.norm2(q), qdot, omega_body);
-      angular_acceleration(body, pending.torque_body, omega_body, omegadot_body);
-      quaternion_acceleration(q, qdot, omegadot_body, target);
-      for (int i = 0; i < 4; ++i) target[i] *= half_h2;
-      feed_back<4>(history, c.quaternion, rows, seconds, quat, target, total.q);
+      double omega_body[3], omegadot_body[3], q_pass[4], qdot[4];
+      for (int i = 0; i < 4; ++i) {
+        q_pass[i] = q[i] + c.quaternion[0] * total[i];
+        qdot[i] = (rates[quat + i] + c.quaternion[1] * total[i]) * per_h;
+      }
+      angular_velocity(q_pass, scheme.norm2(q_pass), qdot, omega_body);
+      angular_acceleration(body, per_inertia, pending.torque_body, omega_body, omegadot_body);
+      quaternion_acceleration(q_pass, qdot, omegadot_body, target);
+      for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[quat + i];
     }
+    history.template correct<4>(rows, n, c.quaternion.data(), quat, total);
     if (!scheme.project) return;
 
     // a rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4)

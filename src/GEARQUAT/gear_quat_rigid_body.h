@@ -76,6 +76,28 @@ inline void angular_acceleration(const RigidBody &body, const double *torque_bod
   omegadot_body[2] = about(2, 0, 1);
 }
 
+/// 1/I, 0 for an axis without inertia.
+inline void inverse_moments(const RigidBody &body, double *per_inertia)
+{
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) per_inertia[i] = body.inertia[i] > 0.0 ? 1.0 / body.inertia[i] : 0.0;
+}
+
+/// Eq. 7 for many torques and angular velocities: no division that waits for them.
+inline void angular_acceleration(const RigidBody &body, const double *per_inertia,
+                                 const double *torque_body, const double *omega_body,
+                                 double *omegadot_body)
+{
+  const double *inertia = body.inertia;
+  const auto about = [&](int i, int j, int k) {
+    const double gyroscopic = (inertia[j] - inertia[k]) * omega_body[j] * omega_body[k];
+    return (torque_body[i] + gyroscopic) * per_inertia[i];
+  };
+  omegadot_body[0] = about(0, 1, 2);
+  omegadot_body[1] = about(1, 2, 0);
+  omegadot_body[2] = about(2, 0, 1);
+}
+
 /// The torque along the principal axes, Eq. 10.  norm2: see rotation_matrix().
 inline void torque_along_axes(const double *q, double norm2, const Load &load, double *torque_body)
 {
