@@ -42,8 +42,12 @@ class Integrator {
  public:
   /// h: the time step, not zero; negative runs backwards.  Throws std::domain_error if the scheme
   /// asks for tuned coefficients that do not exist.
-  Integrator(const Scheme &scheme, double h) :
-      scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values()), c(scheme)
+  Integrator(const Scheme &scheme, double h) : Integrator(scheme, h, CorrectorCoefficients(scheme))
+  {
+  }
+  /// With other coefficients than those of the scheme, of as many values.
+  Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
+      scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values()), c(coefficients)
   {
   }
 

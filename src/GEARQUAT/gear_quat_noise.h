@@ -21,11 +21,10 @@ namespace LAMMPS_NS::GearQuat {
 
 enum class Noise { NONE, RANDOM, COLLISIONS };
 
-/// sum d_k^2 of the center of mass.
-inline double noise_gain(const Scheme &scheme)
+/// sum d_k^2 of the center of mass, with these coefficients.
+inline double noise_gain(const Scheme &scheme, const CorrectorCoefficients &c)
 {
   constexpr int STEPS = 1000;    // roots of 0.99 have faded
-  const CorrectorCoefficients c(scheme);
   const double *driven = (scheme.first() ? c.momentum : c.position).data();
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
   double rows[MAX_VALUES] = {}, gain = 0.0;
@@ -38,6 +37,12 @@ inline double noise_gain(const Scheme &scheme)
     gain += change * change;
   }
   return gain;
+}
+
+/// With the coefficients of the scheme.
+inline double noise_gain(const Scheme &scheme)
+{
+  return noise_gain(scheme, CorrectorCoefficients(scheme));
 }
 
 /// Values that do not heat with Gear's coefficients (tests/lammps/test_neighbors.py).

@@ -180,8 +180,14 @@ struct Motion {
 
   Motion(const RigidBody &body, const LoadOf &load, const Scheme &scheme, double h,
          std::vector<double> history) :
+      Motion(body, load, scheme, CorrectorCoefficients(scheme), h, std::move(history))
+  {
+  }
+  /// With other coefficients than those of the scheme.
+  Motion(const RigidBody &body, const LoadOf &load, const Scheme &scheme,
+         const CorrectorCoefficients &c, double h, std::vector<double> history) :
       body(body),
-      scheme(scheme), load(load), h(h), integrator(scheme, h), history(std::move(history)),
+      scheme(scheme), load(load), h(h), integrator(scheme, h, c), history(std::move(history)),
       rows(this->history.data())
   {
   }
