@@ -38,6 +38,17 @@ def chosen(names):
     return [(known[key], tuple(own)) for key, own in parts.items()]
 
 
+def search(studies, wanted, seed, iterations):
+    """--search: print what the study finds."""
+    for study, _ in studies:
+        if study.search is None:
+            raise click.UsageError(f"{study.key} has nothing to search for")
+        try:
+            click.echo(study.search(*wanted, seed, iterations))
+        except ValueError as error:
+            raise click.UsageError(str(error)) from error
+
+
 def report(finding, check):
     """Print what was found; the number of measurements that are out of bounds, if they are checked."""
     if finding.summary:
@@ -67,9 +78,16 @@ def report(finding, check):
 @click.option("--full", is_flag=True)
 @click.option("--lmp")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path))
-def main(names, out, publish_it, check, render_only, **options):
+@click.option("--search", "wanted", type=(str, int), metavar="FORMULATION VALUES")
+@click.option("--seed", type=int, default=1)
+@click.option("--iterations", type=click.IntRange(min=1), default=60)
+def main(
+    names, out, publish_it, check, render_only, wanted=None, seed=1, iterations=60, **options
+):
     """Measure what the pages of doc/ show; the head of the script says what the options mean."""
     failed, studies = 0, chosen(names)
+    if wanted:
+        return search(studies, wanted, seed, iterations)
     for study, parts in studies:
         folder = out or ROOT / "build" / "benchmarks" / study.key
         if out and len(studies) > 1:
@@ -86,11 +104,15 @@ def main(names, out, publish_it, check, render_only, **options):
         sys.exit(1)
 
 
-#: of examples/run: the same for one study
+#: of examples/run: the same for one study, which does not search
 examples = click.Command(
     "examples/run",
     callback=partial(main.callback, ["cases"]),
-    params=[option for option in main.params if option.name != "names"],
+    params=[
+        option
+        for option in main.params
+        if option.name not in ("names", "wanted", "seed", "iterations")
+    ],
     context_settings=main.context_settings,
 )
 

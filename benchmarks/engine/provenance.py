@@ -56,9 +56,11 @@ def lammps_of(logs):
 def sentence(out, at):
     """One sentence: what measured, where, when and at which commit.  ``out``: folder of the run."""
     cores = len(os.sched_getaffinity(0))
-    versions = [f"{name} {metadata.version(name)}" for name in PACKAGES]
+    logs = Path(out) / "logs"
+    versions = [lammps_of(logs)] if logs.is_dir() else []
+    versions += [f"{name} {metadata.version(name)}" for name in PACKAGES]
     return (
-        f"It was measured with {lammps_of(Path(out) / 'logs')}, {', '.join(versions)} and Python "
+        f"It was measured with {', '.join(versions)} and Python "
         f"{platform.python_version()} on {system()}, {processor()} ({cores} cores), on "
         f"{datetime.date.today():%d %b %Y}{f', at commit {at}' if at else ''}."
     )

@@ -78,7 +78,8 @@ class Study:
     two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``page``: the page
     doc/PAGE.md (default: the key), written from the template PAGE.md.j2; its pictures go to doc/PAGE.
     ``parts``: what can be run alone, as KEY/PART.  ``blocks``: file of the checkout -> template of the
-    block that the study writes there.
+    block that the study writes there.  ``search(formulation, values, seed, iterations)``, if there is
+    one, returns the text that --search prints, or raises ValueError.
     """
 
     key: str
@@ -89,6 +90,7 @@ class Study:
     page: str = ""
     parts: tuple = ()
     blocks: dict = field(default_factory=dict)
+    search: Callable = field(default=None, repr=False)
 
     def __post_init__(self):
         self.page = self.page or self.key

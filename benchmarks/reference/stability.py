@@ -1,4 +1,4 @@
-"""Largest stable steps of Gear's methods for the linear test equation, from exact coefficients.
+"""One step of the methods for the linear test equation as a matrix, and their largest stable steps.
 
 Test equation: x'' = -omega^2 x, one force evaluation a step, at the predicted position.  One step is
 a linear map of the history y_j = h^j x^(j) / j!, and counts as stable while no spurious root, which is
@@ -6,7 +6,7 @@ an eigenvalue farther than OWN from exp(+-i omega h), lies outside of the unit c
 itself may grow or decay, which is error, not instability.  Source of the analysis: C. W. Gear,
 "Numerical Initial Value Problems in Ordinary Differential Equations" (1971).
 
-Coefficients, for N values (rows j = 0 ... N-1), from the polynomial P_n(s) = (1+s)(1+s/2)...(1+s/n):
+Gear's coefficients, for N values (rows j = 0 ... N-1), from the polynomial P_n(s) = (1+s)(1+s/2)...(1+s/n):
   first-order equation    sum_j j c_j s^(j-1) = P_(N-2)(s),  c_0 = integral of P_(N-1) over (-1, 0)
   second-order equation   c_(j+1) = 2 a_j / (j+1), a_j those of a first-order equation with N-1 values;
                           c_0 = 2 times the integral of -s P_(N-2)(s) over (-1, 0) ("velocity"),
@@ -52,29 +52,49 @@ def second_order_coefficients(values, c0="position"):
     return [head * Fraction(values - 2, values - 1) if c0 == "position" else head, *tail]
 
 
+def second_step(c, omega_h, rate=0.0, passes=1):
+    """Matrix (N, N) of one step of the second formulation with coefficients ``c`` (N,).
+
+    Equation: x'' = -omega^2 x + (rate/h) x', where the force is that at the predicted x and the term of
+    the rate is found anew in each pass, as the kernel does it.  Elements are of the type of those of
+    ``c`` (an array of floats, or of objects such as mpmath's numbers).
+    """
+    predict = pascal(len(c), "upper").astype(c.dtype)
+    step = predict
+    for _ in range(passes):
+        target = (rate * step[1] - omega_h**2 * predict[0]) / 2
+        step = step + np.outer(c, target - step[2])
+    return step
+
+
+def first_step(driven, integrating, omega_h, momentum="corrected", rate=0.0, passes=1):
+    """Matrix (2N, 2N) of one step of the first formulation: x' = v, v' = -omega^2 x + (rate/h) v.
+
+    Histories of position, with the coefficients ``integrating``, and of velocity, with ``driven``; the
+    position is corrected with the corrected velocity, or with the predicted one.
+    """
+    n = len(driven)
+    predict = np.kron(np.eye(2, dtype=int), pascal(n, "upper").astype(int)).astype(driven.dtype)
+    step = predict
+    # units: velocity history in omega times length, so that only omega h appears
+    for _ in range(passes):
+        before, target = step[n], rate * step[n] - omega_h * predict[0]
+        velocity = step[n:] + np.outer(driven, target - step[n + 1])
+        of = velocity[0] if momentum == "corrected" else before
+        position = step[:n] + np.outer(integrating, omega_h * of - step[1])
+        step = np.concatenate([position, velocity])
+    return step
+
+
 def second_order_step(values, omega_h, c0="position"):
-    """Matrix (N, N) of one step of the second formulation at omega h."""
-    predict = pascal(values, "upper").astype(float)
-    c = np.array([float(x) for x in second_order_coefficients(values, c0)])
-    residual = -0.5 * omega_h**2 * predict[0] - predict[2]
-    return predict + np.outer(c, residual)
+    """``second_step`` with Gear's coefficients."""
+    return second_step(np.array(second_order_coefficients(values, c0), dtype=float), omega_h)
 
 
 def first_order_step(values, omega_h, momentum="corrected"):
-    """Matrix (2N, 2N) of one step of the first formulation at omega h.
-
-    Histories of position and of velocity; the position is corrected with the corrected velocity, or
-    with the predicted one.
-    """
-    n = values
-    predict = np.kron(np.eye(2), pascal(n, "upper").astype(float))
-    c = np.array([float(x) for x in first_order_coefficients(n)])
-    step = predict.copy()
-    # units: velocity history in omega times length, so that only omega h appears
-    step[n:] += np.outer(c, -omega_h * predict[0] - predict[n + 1])
-    velocity = step[n] if momentum == "corrected" else predict[n]
-    step[:n] += np.outer(c, omega_h * velocity - predict[1])
-    return step
+    """``first_step`` with Gear's coefficients."""
+    c = np.array(first_order_coefficients(values), dtype=float)
+    return first_step(c, c, omega_h, momentum)
 
 
 def linear_limit(step_matrix):

@@ -297,6 +297,7 @@ def test_check_refuses_what_is_out_of_bounds(run):
         (["made/two"], "no part two; its parts: one"),
         (["made", "--quick", "--publish"], "needs the whole study"),
         (["made/one", "--publish"], "needs the whole study"),
+        (["made", "--search", "second", "5"], "made has nothing to search for"),
     ],
 )
 def test_bad_options(run, words, said):
@@ -304,13 +305,17 @@ def test_bad_options(run, words, said):
     assert done.exit_code == 2 and said in done.output
 
 
-OPTIONS = {option for parameter in command.examples.params for option in parameter.opts}
+def options_of(program):
+    return {option for parameter in program.params for option in parameter.opts if option != "names"}
+
+
+OPTIONS = options_of(command.examples)
 
 
 @pytest.mark.parametrize(
     "name, options",
     [
-        ("benchmarks/run", OPTIONS),
+        ("benchmarks/run", options_of(command.main)),
         ("examples/run", OPTIONS - {"--list", "--publish"}),
         ("tests/run", set()),
     ],

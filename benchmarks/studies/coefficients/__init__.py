@@ -1,0 +1,230 @@
+"""Coefficients of the corrector: the search for them, and what they do, Gear's beside them.
+
+search.py (parameters and what is minimized), kernel.cpp and kernel.py (motions with the kernel itself
+and any coefficients), properties.py (model equations and motions).  Coefficients are those of
+src/GEARQUAT/gear_quat_tuned.h.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from scipy.constants import speed_of_light
+
+from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table
+from benchmarks.engine.methods import DEFAULT_VALUES
+from benchmarks.engine.panels import draw, floor
+
+from . import properties, search
+from .kernel import LOST, VALUES, gear, tuned
+from .properties import Flights, Linear, Motions
+
+TUNED, GEAR = "tuned", "Gear's"
+#: omega h, and radians a step, of the picture
+RANGE = np.arange(0.06, 1.2001, 0.02)
+#: (formulation, values, color) of the picture: the defaults, and one number more
+SHOWN = (
+    ("second", DEFAULT_VALUES["second"], "second"),
+    ("second", 7 if DEFAULT_VALUES["second"] == 9 else 9, "translation"),
+    ("first", DEFAULT_VALUES["first"], "first"),
+)
+#: wave numbers of the librations of liquid water in 1/cm, roughly, and a large step for it
+BAND, FEMTOSECONDS = (600, 850), 2.5
+
+
+@dataclass(frozen=True)
+class Results:
+    """(formulation, values, TUNED or GEAR) -> ``linear``: Linear, ``motions``: Motions, ``moved``:
+    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py."""
+
+    linear: dict
+    motions: dict
+    moved: dict
+    curves: dict
+
+
+def correctors():
+    """(formulation, values, TUNED or GEAR) -> Corrector, of numbers that have both."""
+    every = {}
+    for formulation, numbers in VALUES.items():
+        for values in numbers:
+            ours = tuned(formulation, values)
+            if ours:
+                every[formulation, values, GEAR] = gear(formulation, values)
+                every[formulation, values, TUNED] = ours
+    return every
+
+
+def measure(lab):
+    """Results of all sets."""
+    results, every, flights = Results({}, {}, {}, {}), correctors(), Flights()
+    shown = [(formulation, values) for formulation, values, _ in SHOWN]
+    for key, corrector in every.items():
+        results.linear[key] = Linear.of(corrector)
+        results.motions[key] = Motions.of(corrector, flights)
+        results.moved[key] = flights.others(properties.moved(corrector))
+        if key[:2] in shown:
+            results.curves[key] = properties.curves(corrector, RANGE)
+        lab.advance(1 / len(every))
+    return results
+
+
+# --- tables ---------------------------------------------------------------------------------------
+def cell(value, spec=".1e"):
+    """A number as text, "lost" where the motion did not stay finite."""
+    return "lost" if abs(value) >= LOST else format(value, spec)
+
+
+def with_order(errors):
+    """The smaller of the errors at START_STEPS, and the order at which they fall."""
+    ratio = np.divide(*properties.START_STEPS)
+    return cell(errors[1]), format(np.log(errors[0] / errors[1]) / np.log(ratio), ".1f")
+
+
+def table(columns, rows):
+    """Table of (formulation, values, coefficients) -> cells."""
+    return Table(
+        ("formulation", "values", "coefficients", *columns),
+        [(*key, *cells) for key, cells in rows.items()],
+    )
+
+
+def tables(results):
+    """All tables by name."""
+    linear, motions = results.linear, results.motions
+    shown = [key for key in linear if key[:2] in [place[:2] for place in SHOWN]]
+    at = f"at {properties.AT:g}"
+    heads = {
+        "linear": ("error constant", f"damping {at}", f"phase error {at}", "largest spurious root"),
+        "motions": tuple(f"libration, {h:g}" for h in properties.LIBRATIONS),
+        "models": ("damped", "driven", "gyroscopic"),
+        "radii": tuple(f"ratio {ratio:g}" for ratio in properties.RATIOS),
+        "responses": tuple(f"{y:g}" for y in properties.RESPONSES),
+        "moved": ("c_0 as it is", "order", "c_0 moved", "order"),
+    }
+    heads["linear"] += ("stable to", "noise gain")
+    heads["motions"] += tuple(f"free top, {h:g}" for h in properties.TOPS)
+    heads["motions"] += tuple(f"test case 1, {h:g}" for h in properties.CAGES) 
+    heads["motions"] += tuple(f"other starts, {h:g}" for h in properties.START_STEPS)
+    rows = {
+        "linear": {
+            key: (
+                *map(cell, (own.error, own.damping, own.phase)),
+                *(format(x, ".2f") for x in (own.memory, own.limit, own.noise)),
+            )
+            for key, own in linear.items()
+        },
+        "motions": {
+            key: tuple(map(cell, (*own.librations, *own.tops, *own.cages, *own.starts)))
+            for key, own in motions.items()
+        },
+        "models": {key: tuple(map(cell, linear[key].models)) for key in shown},
+        "radii": {key: tuple(cell(x, ".2f") for x in linear[key].radii) for key in shown},
+        "responses": {key: tuple(map(cell, linear[key].responses)) for key in shown},
+        "moved": {
+            key: (*with_order(motions[key].starts), *with_order(results.moved[key]))
+            for key in shown
+        },
+    }
+    return {name: table(head, rows[name]) for name, head in heads.items()}
+
+
+def gains(linear):
+    """(formulation, values) -> how many times the error constant is smaller than Gear's."""
+    return {
+        key[:2]: linear[(*key[:2], GEAR)].error / own.error
+        for key, own in linear.items()
+        if key[2] == TUNED
+    }
+
+
+def mean_gain(linear, formulation, parity=None):
+    """Geometric mean of ``gains`` over numbers of values of a ``parity`` (0 or 1), or all."""
+    logs = [
+        np.log(gain)
+        for (of, values), gain in gains(linear).items()
+        if of == formulation and parity in (None, values % 2)
+    ]
+    return float(np.exp(np.mean(logs))) if logs else np.nan
+
+
+# --- picture --------------------------------------------------------------------------------------
+def panels(results):
+    """Phase, damping and largest spurious root against omega h, and the response to forces."""
+    kinds = ([], [], [], [])
+    for formulation, values, color in SHOWN:
+        for name, line in ((TUNED, "-"), (GEAR, "--")):
+            key = (formulation, values, name)
+            if key not in results.curves:
+                continue
+            damping, phase, root, of_force = results.curves[key]
+            # beyond its limit a method is not used
+            stable = RANGE <= results.linear[key].limit
+            label, look = f"{formulation}, N = {values}, {name}", {"color": color, "line": line}
+            for curves, x, y in zip(
+                kinds,
+                (RANGE[stable], RANGE[stable], RANGE, RANGE),
+                (floor(phase[stable]), floor(damping[stable]), root, floor(of_force)),
+            ):
+                curves.append(Curve(label, x, y, **look))
+    z, alone = "radians of the oscillation a step, z", {"legend": False}
+    force, size = "radians of the force a step", "|phase error| / z^N"
+    return (
+        Panel("Phase error a step by z to the power N", z, size, kinds[0], **alone),
+        Panel("Damping a step", z, "| |root| − 1 |", kinds[1], **alone),
+        Panel("Largest spurious root", z, "modulus", kinds[2], "", ylim=(0.0, 1.5), **alone),
+        Panel("Response to forces", force, "|Im H|", kinds[3], ylim=(1e-10, 2.0), **alone),
+    )
+
+
+def find(results):
+    """Finding of Results."""
+    measurements = [
+        Measurement(f"{formulation}, N = {values}: gain in the error constant", gain, spec=".1f")
+        for (formulation, values), gain in gains(results.linear).items()
+    ]
+    radians = 2 * np.pi * 100 * speed_of_light * FEMTOSECONDS * 1e-15  # per step and 1/cm
+    context = {
+        "odd": mean_gain(results.linear, "second", 1),
+        "even": mean_gain(results.linear, "second", 0),
+        "first": mean_gain(results.linear, "first"),
+        "search": search,
+        "properties": properties,
+        "band": BAND,
+        "femtoseconds": FEMTOSECONDS,
+        "librations": [radians * wave for wave in BAND],
+    }
+    picture = partial(draw, panels=panels(results), columns=2)
+    return Finding(measurements, tables(results), {"coefficients": picture}, context)
+
+
+# --- search ---------------------------------------------------------------------------------------
+def written(corrector, free_c0):
+    """Lines of the table of src/GEARQUAT/gear_quat_tuned.h."""
+    order, sets = corrector.order, {"BOTH": corrector.driven}
+    if order == 1:
+        sets = {"DRIVEN": corrector.driven, "INTEGRATING": corrector.integrating}
+    for columns, own in sets.items():
+        tail = ", ".join(f"{float(x):.9g}L" for x in own[order + 1 :])
+        c0 = f", {float(own[0]):.9g}L" if free_c0 else ""
+        yield f"{{{corrector.formulation.upper()}, {columns}, {{{tail}}}{c0}}},"
+
+
+def searched(formulation, values, seed, iterations):
+    """What --search prints.  Raises ValueError where there is nothing to search for."""
+    if values not in VALUES.get(formulation, ()):
+        known = " and ".join(f"{n.start} to {n.stop - 1} of {f}" for f, n in VALUES.items())
+        raise ValueError(f"there are no {values} values of {formulation}; there are {known}")
+    wanted = search.Search(formulation, values)
+    corrector, _ = wanted.run(seed, iterations)
+    lines = [*written(corrector, wanted.free_c0), ""]
+    flights = Flights()
+    for name, own in ((TUNED, corrector), (GEAR, gear(formulation, values))):
+        lines += [f"{name}: cost {wanted.cost(own):.3f}"]
+        lines += [f"  {linear}" for linear in (Linear.of(own), Motions.of(own, flights))]
+    return "\n".join(lines)
+
+
+STUDY = Study(
+    "coefficients", "Coefficients of the corrector", 30.0, measure, find, search=searched
+)

@@ -1,0 +1,140 @@
+"""The kernel with any coefficients: kernel.cpp, compiled and loaded."""
+
+import ctypes
+import hashlib
+import math
+import os
+import subprocess
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.engine import ROOT
+from benchmarks.reference.correctors import completed
+from benchmarks.reference.stability import (
+    first_order_coefficients,
+    first_step,
+    second_order_coefficients,
+    second_step,
+)
+
+SOURCE = Path(__file__).with_name("kernel.cpp")
+INCLUDED = (ROOT / "src" / "GEARQUAT", ROOT / "tests" / "unit")
+#: error of a motion that does not stay finite
+LOST = 1e3
+MOST = 12
+VALUES = {"first": range(3, 9), "second": range(4, 13)}
+_ROWS = ctypes.c_double * MOST
+
+
+class _Corrector(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_int) for name in ("second", "values", "passes", "compensate")]
+    _fields_ += [("driven", _ROWS), ("integrating", _ROWS)]
+
+
+@cache
+def library():
+    """The compiled kernel.cpp; compiled again if it or a header is another one."""
+    headers = sorted(header for folder in INCLUDED for header in folder.rglob("*.h"))
+    text = b"".join(path.read_bytes() for path in (SOURCE, *headers))
+    folder = ROOT / "build" / "benchmarks" / "coefficients"
+    compiled = folder / f"kernel-{hashlib.sha256(text).hexdigest()[:16]}.so"
+    if not compiled.is_file():
+        folder.mkdir(parents=True, exist_ok=True)
+        made = compiled.with_suffix(f".{os.getpid()}")
+        words = ["g++", "-O2", "-std=c++17", "-shared", "-fPIC", str(SOURCE), "-o", str(made)]
+        subprocess.run([*words, *(f"-I{path}" for path in INCLUDED)], check=True)
+        made.replace(compiled)
+    loaded = ctypes.CDLL(str(compiled))
+    real, whole = ctypes.c_double, ctypes.c_int
+    numbers, corrector = ctypes.POINTER(real), ctypes.POINTER(_Corrector)
+    loaded.libration.argtypes = [corrector, real, whole, numbers, real]
+    loaded.free_top.argtypes = [corrector, real, real]
+    loaded.cage.argtypes = [corrector, real, whole, real, numbers]
+    loaded.noise.argtypes = [corrector]
+    loaded.tuned_tail.argtypes = [whole, whole, whole, numbers, numbers]
+    for function in (loaded.libration, loaded.free_top, loaded.noise):
+        function.restype = real
+    return loaded
+
+
+@dataclass(frozen=True)
+class Corrector:
+    """Coefficients c_0 ... c_(N-1) of a ``formulation``, fractions or numbers.
+
+    ``driven``: of rows that forces drive; ``integrating``: of those that integrate them (the same in the
+    second formulation).  The motions return LOST where they do not stay finite; in all of them the
+    rotation is corrected in two passes.
+    """
+
+    formulation: str
+    driven: tuple
+    integrating: tuple
+
+    @property
+    def values(self):
+        """N."""
+        return len(self.driven)
+
+    @property
+    def order(self):
+        """Order of the equations."""
+        return 2 if self.formulation == "second" else 1
+
+    def step(self, omega_h, rate=0.0, passes=1, number=float):
+        """Matrix of one step, see stability.py; ``number``: type of its elements."""
+        driven, integrating = (
+            np.array([number(x) for x in c]) for c in (self.driven, self.integrating)
+        )
+        if self.order == 2:
+            return second_step(driven, omega_h, rate, passes)
+        return first_step(driven, integrating, omega_h, rate=rate, passes=passes)
+
+    def _passed(self, compensate=False):
+        rows = (_ROWS(*map(float, c)) for c in (self.driven, self.integrating))
+        return ctypes.byref(_Corrector(self.order == 2, self.values, 2, compensate, *rows))
+
+    def libration(self, h, frequency, amplitude, steps):
+        """Change of the energy of a body in wells, by its kinetic energy at the start."""
+        return library().libration(
+            self._passed(), h, steps, (ctypes.c_double * 3)(*frequency), amplitude
+        )
+
+    def free_top(self, h, time):
+        """Relative change of the energy of a free top that turns by 1.2 per unit of time."""
+        return library().free_top(self._passed(), h, time)
+
+    def cage(self, h, seed=0, time=200.0, compensate=False):
+        """Center of mass (3,) in the paper's cage; ``seed``: of another start, 0 for the paper's."""
+        center = (ctypes.c_double * 3)()
+        library().cage(self._passed(compensate), time / round(time / h), seed, time, center)
+        return np.array(center)
+
+    @property
+    def noise(self):
+        """What random forces do to the velocity, by the mean square of what they should do."""
+        return library().noise(self._passed())
+
+
+def gear(formulation, values):
+    """The classical Corrector."""
+    made = second_order_coefficients if formulation == "second" else first_order_coefficients
+    return Corrector(formulation, *[tuple(made(values))] * 2)
+
+
+def tuned(formulation, values):
+    """The Corrector of src/GEARQUAT/gear_quat_tuned.h, None if it has none."""
+    order, sets = 2 if formulation == "second" else 1, []
+    for integrating in (False, True):
+        tail, c0 = _ROWS(), ctypes.c_double()
+        length = library().tuned_tail(order == 2, values, integrating, tail, ctypes.byref(c0))
+        if not length:
+            return None
+        # the shortest decimal of a number is the one in the header
+        c = completed(order, [Fraction(1), *(Fraction(repr(x)) for x in tail[:length])])
+        c[0] = c[0] if math.isnan(c0.value) else Fraction(repr(c0.value))
+        sets.append(tuple(c))
+    return Corrector(formulation, *sets)

@@ -1,0 +1,177 @@
+"""What coefficients do: model equations, responses and changing steps, linear; motions of bodies."""
+
+from dataclasses import dataclass
+
+import mpmath
+import numpy as np
+from scipy.linalg import pascal
+
+from benchmarks.reference.stability import linear_limit
+
+from .kernel import LOST, gear
+from .search import Search, spectrum
+
+#: omega h at which single numbers are given, and decimal digits of the principal root
+AT, DIGITS = 0.3, 40
+#: damping of the damped oscillation, frequency of the driven one, both by that of the oscillation
+DAMPED, DRIVEN = 0.1, 0.5
+#: steps by the step before
+RATIOS = (0.8, 0.9, 1.1, 1.25)
+#: radians a step of forces whose response is given
+RESPONSES = (0.8, 1.0, 1.2)
+#: steps of the librations, free tops and bodies in the cage
+LIBRATIONS, TOPS, CAGES = (0.2, 0.35), (0.1, 0.2), (0.4, 0.2, 0.1)
+#: other starts in the cage: their seeds, time and step
+SEEDS, SHORT, START_STEPS = range(1001, 1009), 40.0, (0.4, 0.2)
+#: how far c_0 is moved to see what it is good for
+MOVED = 0.05
+
+
+# --- linear ---------------------------------------------------------------------------------------
+def principal(corrector, omega_h):
+    """Damping |lambda| - 1 and phase error of the principal root of x'' = -omega^2 x, in DIGITS."""
+    with mpmath.workdps(DIGITS):
+        z = mpmath.mpf(str(omega_h))
+        step = mpmath.matrix(corrector.step(z, number=mpmath.mpmathify).tolist())
+        unit, exact = mpmath.eye(step.rows), mpmath.expj(z)
+        near = exact * (1 + z ** (corrector.values + 1) / 1000)
+        found = mpmath.findroot(lambda root: mpmath.det(root * unit - step), (exact, near))
+        return float(abs(found) - 1), float(mpmath.arg(found) - z)
+
+
+def open_loop(c, order):
+    """Step (N, N) of rows whose right side is zero."""
+    predict = pascal(len(c), "upper").astype(float)
+    return predict - np.outer(c, predict[order])
+
+
+def response(corrector, y):
+    """H: predicted position over the exact one for the force exp(i y t/h), complex.
+
+    An oscillation has the root exp(i y) with y^2 = (omega h)^2 H(y), so that its damping is about
+    - y/2 Im H: a motion that makes such forces is drained where Im H > 0, and heated where it is below.
+    """
+    root, unit, order = np.exp(1j * y), np.eye(corrector.values), corrector.order
+    driven, integrating = (
+        np.array(c, dtype=float) for c in (corrector.driven, corrector.integrating)
+    )
+    rows = np.linalg.solve(root * unit - open_loop(driven, order), root * driven / order)
+    if order == 1:
+        right = root * integrating * rows[0]
+        rows = np.linalg.solve(root * unit - open_loop(integrating, 1), right)
+    return -(y**2) * rows.sum() / root  # a prediction is the sum of all rows
+
+
+def radius(corrector, ratio):
+    """Largest spurious root without forces if each step is ``ratio`` times the one before."""
+    scaled, q = float(ratio) ** np.arange(corrector.values), corrector.order
+    steps = (
+        open_loop(np.array(c, dtype=float), q) for c in (corrector.driven, corrector.integrating)
+    )
+    spurious = ((scaled[:, None] * step)[q:, q:] for step in steps)
+    return max(abs(np.linalg.eigvals(step)).max() for step in spurious)
+
+
+def models(corrector, z=AT):
+    """Errors of damped and driven oscillation and of gyroscopic motion, with steps of z radians.
+
+    x'' = -x - 2 DAMPED x' and x'' = i x': of the root, |lambda - exact|, with the term of the velocity
+    found in two passes.  x'' = -x + exp(i DRIVEN t): of the steady motion, relative.
+    """
+    decay = np.exp(z * (-DAMPED + 1j * np.sqrt(1 - DAMPED**2)))
+    damped = np.linalg.eigvals(corrector.step(z, -2 * DAMPED * z, passes=2))
+    spinning = np.linalg.eigvals(corrector.step(0.0, 1j * z, passes=2))
+    of_force = response(corrector, DRIVEN * z)
+    steady = of_force * (DRIVEN**2 - 1) / (DRIVEN**2 - of_force) - 1
+    return abs(damped - decay).min(), abs(steady), abs(spinning - np.exp(1j * z)).min()
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Properties of a Corrector: ``error``, largest (|damping| + PHASE |phase|)/(omega h)^N of the range
+    that the search covers; ``damping`` and ``phase`` at AT; ``memory``, largest spurious root without
+    forces; ``limit``, largest stable omega h; ``noise``, see Corrector; ``radii`` at RATIOS; ``models``;
+    ``responses``, imaginary parts at RESPONSES.
+    """
+
+    error: float
+    damping: float
+    phase: float
+    memory: float
+    limit: float
+    noise: float
+    radii: tuple
+    models: tuple
+    responses: tuple
+
+    @classmethod
+    def of(cls, corrector):
+        """Properties of a Corrector."""
+        search = Search(corrector.formulation, corrector.values)
+        return cls(
+            float(10 ** search.oscillation(corrector)[0]),
+            *principal(corrector, AT),
+            float(radius(corrector, 1.0)),
+            float(linear_limit(corrector.step)),
+            corrector.noise,
+            tuple(float(radius(corrector, ratio)) for ratio in RATIOS),
+            tuple(map(float, models(corrector))),
+            tuple(float(response(corrector, y).imag) for y in RESPONSES),
+        )
+
+
+def curves(corrector, z):
+    """Arrays (n,) at each omega h: damping, phase error / (omega h)^N, largest spurious root, and the
+    imaginary part of the response at as many radians a step."""
+    damping, phase = np.array([principal(corrector, x) for x in z]).T
+    of_force = np.array([response(corrector, y).imag for y in z])
+    return damping, phase / z**corrector.values, spectrum(corrector, z)[:, 2], of_force
+
+
+# --- motions --------------------------------------------------------------------------------------
+class Flights:
+    """Errors of bodies in the cage, against Gear's method with eleven values at a short step."""
+
+    def __init__(self):
+        exact = gear("second", 11)
+        self._paper = exact.cage(0.0125, compensate=True)
+        self._others = {seed: exact.cage(0.0125, seed, SHORT, True) for seed in SEEDS}
+
+    def error(self, corrector, h):
+        """Error of the center of mass in test case 1 at t = 200, at most LOST."""
+        return min(LOST, float(np.linalg.norm(corrector.cage(h) - self._paper)))
+
+    def others(self, corrector):
+        """Geometric mean of the errors of the other starts, at each of START_STEPS."""
+        errors = [
+            [np.linalg.norm(corrector.cage(h, seed, SHORT) - end) for h in START_STEPS]
+            for seed, end in self._others.items()
+        ]
+        return tuple(map(float, np.exp(np.mean(np.log(errors), axis=0))))
+
+
+@dataclass(frozen=True)
+class Motions:
+    """``librations`` and ``tops``: changes of the energy at LIBRATIONS and TOPS; ``cages``: errors of
+    test case 1 at CAGES; ``starts``: those of the other starts at START_STEPS."""
+
+    librations: tuple
+    tops: tuple
+    cages: tuple
+    starts: tuple
+
+    @classmethod
+    def of(cls, corrector, flights):
+        """Motions with a Corrector."""
+        return cls(
+            tuple(corrector.libration(h, (1.0, 0.8, 0.6), 0.4, 4000) for h in LIBRATIONS),
+            tuple(corrector.free_top(h, 180.0) for h in TOPS),
+            tuple(flights.error(corrector, h) for h in CAGES),
+            flights.others(corrector),
+        )
+
+
+def moved(corrector):
+    """The Corrector with c_0 of both kinds of rows moved."""
+    sets = ((float(c[0]) + MOVED, *c[1:]) for c in (corrector.driven, corrector.integrating))
+    return type(corrector)(corrector.formulation, *sets)

@@ -1,0 +1,161 @@
+"""The search for tuned coefficients: differential evolution over spurious roots, then Nelder-Mead.
+
+Parameters are the spurious roots without forces, inside of the circle of radius INNER, and in the
+second formulation with an odd number of values c_0; all other coefficients follow from order.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import differential_evolution, minimize
+
+from benchmarks.reference.correctors import completed, decimals, placed
+
+from .kernel import LOST, VALUES, Corrector
+
+#: roots without forces, and roots with forces up to MARGIN beyond the largest omega h that counts
+INNER, OUTER, MARGIN = 0.94, 0.955, 0.1
+#: how far c_0 goes from the one that order would determine, where it is free
+C0_RANGE = 0.14
+#: weight of the phase error against damping
+PHASE = 0.05
+#: largest omega h that counts: formulation -> number of values -> omega h
+REACH = {
+    "second": dict(zip(VALUES["second"], (0.9, 0.8, 0.7, 0.6, 0.55, 0.5, 0.45, 0.4, 0.36))),
+    "first": dict(zip(VALUES["first"], (0.8, 0.7, 0.6, 0.5, 0.45, 0.38))),
+}
+#: omega h by the reach: of the librations, and of the free top
+LIBRATIONS = np.array([0.2, 0.35, 0.5, 0.65, 0.8, 0.9])
+TOPS = 1.2 * np.array([0.12, 0.25, 0.4, 0.6, 0.8])
+#: (factor of the step, frequencies, amplitude in radians) of the librations
+WELLS = ((1.0, (1.0, 0.8, 0.6), 0.3), (1.03, (0.9, 1.0, 0.5), 0.2))
+
+
+def spectrum(corrector, omega_h):
+    """Damping |lambda| - 1, phase error and largest spurious root at each omega h (n,): (n, 3)."""
+    found = []
+    for z in omega_h:
+        roots = np.linalg.eigvals(corrector.step(z))
+        own, other = (np.argmin(abs(roots - np.exp(s * z))) for s in (1j, -1j))
+        rest = abs(np.delete(roots, [own, other]))
+        found.append((abs(roots[own]) - 1.0, np.angle(roots[own]) - z, rest.max()))
+    return np.array(found)
+
+
+@dataclass(frozen=True)
+class Search:
+    """What is searched for: N ``values`` of a ``formulation``."""
+
+    formulation: str
+    values: int
+
+    @property
+    def order(self):
+        """Order of the equations."""
+        return 2 if self.formulation == "second" else 1
+
+    @property
+    def free_c0(self):
+        """Whether c_0 is a parameter: order does not need it."""
+        return self.order == 2 and self.values % 2 == 1
+
+    @property
+    def reach(self):
+        """Largest omega h that counts."""
+        return REACH[self.formulation][self.values]
+
+    @property
+    def bounds(self):
+        """(low, high) of each parameter: moduli and angles (in pi) of pairs, a real root, c_0."""
+        count = self.values - self.order - 1
+        one = [(0, INNER), (0, 1)] * (count // 2) + [(-INNER, INNER)] * (count % 2)
+        return one * (3 - self.order) + [(-1, 1)] * self.free_c0
+
+    def corrector(self, x):
+        """Corrector of the parameters ``x``, with decimals where they are written so."""
+        count, sets = self.values - self.order - 1, []
+        for part in np.reshape(x[: len(x) - self.free_c0], (3 - self.order, count)):
+            pairs = part[: count - count % 2].reshape(-1, 2)
+            roots = pairs[:, 0] * np.exp(1j * np.pi * pairs[:, 1])
+            roots = np.concatenate([roots, roots.conj(), part[len(part) - count % 2 :]])
+            c = completed(self.order, [1.0, *placed(self.order, roots)[1:]])
+            if self.free_c0:
+                c[0] += C0_RANGE * x[-1]
+            sets.append(tuple(c))
+        return Corrector(self.formulation, sets[0], sets[-1])
+
+    def written(self, corrector):
+        """The Corrector of the decimals: c_0 and c_1 follow from the tail anew, exactly."""
+        sets = []
+        for c in (corrector.driven, corrector.integrating):
+            exact = completed(self.order, decimals(c[self.order :]))
+            exact[0] = decimals(c[:1])[0] if self.free_c0 else exact[0]
+            sets.append(tuple(exact))
+        return Corrector(self.formulation, *sets)
+
+    @cached_property
+    def _grids(self):
+        return np.linspace(0.08, self.reach, 9), np.linspace(0.05, self.reach + MARGIN, 6)
+
+    def oscillation(self, corrector):
+        """log10 of the largest (|damping| + PHASE |phase error|) / (omega h)^N; largest root."""
+        counted, stable = self._grids
+        found = spectrum(corrector, [*counted, *stable])
+        damping, phase, _ = abs(found[: len(counted)].T)
+        error = (damping + PHASE * phase) / counted**self.values
+        return np.log10(error.max() + 1e-30), found[:, 2].max()
+
+    def librations(self, corrector):
+        """log10 of the changes of energy by what is usual at each step."""
+        usual = 10.0 ** (1 - self.values) * (LIBRATIONS * self.reach / 0.1) ** (self.values + 1)
+        usual *= 30 if self.order == 1 else 1
+        changes = [
+            np.mean(
+                [
+                    abs(corrector.libration(z * part, frequency, amplitude, 600)) / amplitude
+                    for part, frequency, amplitude in WELLS
+                ]
+            )
+            for z in LIBRATIONS * self.reach
+        ]
+        return _levels(1.7 * np.array(changes), usual)
+
+    def tops(self, corrector):
+        """The same for the free top."""
+        usual = 10.0 ** (1 - self.values) * (TOPS * self.reach / 0.12) ** self.values
+        usual *= 3 if self.order == 1 else 1
+        times = np.where(TOPS * self.reach > 0.12, 150.0, 60.0)
+        changes = [
+            abs(corrector.free_top(z / 1.24, time)) * 180.0 / time
+            for z, time in zip(TOPS * self.reach, times)
+        ]
+        return _levels(np.array(changes), usual)
+
+    def cost(self, corrector):
+        """What is minimized."""
+        error, root = self.oscillation(corrector)
+        if root > OUTER + 0.05:
+            return 20.0 + 50.0 * (root - OUTER)
+        librations, tops = self.librations(corrector), self.tops(corrector)
+        motions = 0.5 * librations.mean() + 0.25 * tops.mean()
+        motions += 0.1 * librations.max() + 0.05 * tops.max()
+        return error + motions + 50.0 * max(0.0, root - OUTER)
+
+    def run(self, seed=1, iterations=60):
+        """The best Corrector found, in decimals, and its cost."""
+
+        def of(x):
+            corrector = self.corrector(x)
+            return self.cost(corrector) if np.all(np.isfinite(corrector.driven)) else LOST
+
+        options = {"maxiter": iterations, "popsize": 7, "seed": seed, "polish": False, "tol": 1e-9}
+        rough = differential_evolution(of, self.bounds, **options).x
+        most = {"maxfev": 17 * iterations, "fatol": 1e-5, "xatol": 1e-6}
+        best = minimize(of, rough, method="Nelder-Mead", bounds=self.bounds, options=most).x
+        corrector = self.written(self.corrector(best))
+        return corrector, self.cost(corrector)
+
+
+def _levels(changes, usual):
+    return np.clip(np.log10(np.maximum(changes, 1e-14) / usual), -2.5, 4.0)
