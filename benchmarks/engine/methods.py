@@ -29,7 +29,7 @@ class Method:
 
 
 #: formulation -> numbers of values that the fix has tuned coefficients for
-TUNED = {"second": (4, 5, 6, 7, 8), "first": (3, 4, 5, 6, 7)}
+TUNED = {"second": (4, 5, 6, 7, 8, 9, 10, 11, 12), "first": (3, 4, 5, 6, 7, 8)}
 
 
 def gear(formulation, values, compensate=False, **more):
@@ -56,7 +56,7 @@ def rigid(style, method):
 
 
 #: what the fix takes unless told: values of each formulation, and passes
-DEFAULT_VALUES, DEFAULT_PASSES = {"second": 8, "first": 6}, 2
+DEFAULT_VALUES, DEFAULT_PASSES = {"second": 9, "first": 8}, 2
 #: the defaults, and those of version 0.2, which took Gear's coefficients
 DEFAULTS = {f: gear(f, n, passes=DEFAULT_PASSES) for f, n in DEFAULT_VALUES.items()}
 GEARS = {f: gear(f, n, passes=2, corrector="gear") for f, n in (("second", 8), ("first", 6))}

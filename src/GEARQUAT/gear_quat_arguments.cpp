@@ -154,7 +154,7 @@ void Arguments::check_ranges()
     if (row.kind != Keyword::INTEGER) continue;
     const Keyword::Range &range = row.range(scheme.first());
     KeywordValue value;
-    value.integer = row.standard_of(range, tolerance);
+    value.integer = row.standard_of(range, tolerance, !scheme.tuned);
     if (given.count(row.name)) value = given.at(row.name);
     row.store(*this, value);
     if (value.integer < range.fewest || value.integer > range.most)

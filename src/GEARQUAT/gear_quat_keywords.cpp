@@ -47,7 +47,7 @@ static std::vector<Keyword> make_table()
             }).word({"second", "first"}),
     Keyword("values", INTEGRATION, "how many values a history keeps of each function",
             [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
-        .integer({{SECOND_FEWEST, SECOND_MOST, 8}, {FIRST_FEWEST, FIRST_MOST, 6}}, VARIABLE_MOST)
+        .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, VARIABLE_MOST)
         .with_tables(),
     Keyword("corrector", INTEGRATION, "which coefficients correct a history",
             [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
@@ -288,12 +288,15 @@ std::string default_cell(const Keyword &row)
   if (row.kind != Keyword::INTEGER)
     return row.standard +
         (row.with_tolerance.empty() ? "" : ", with tolerance " + row.with_tolerance);
-  const auto standard = [&row](bool tolerance) {
-    return of_formulations(row, [&row, tolerance](const Keyword::Range &range) {
-      return std::to_string(row.standard_of(range, tolerance));
+  const auto standard = [&row](bool tolerance, bool gear) {
+    return of_formulations(row, [&row, tolerance, gear](const Keyword::Range &range) {
+      return std::to_string(row.standard_of(range, tolerance, gear));
     });
   };
-  return standard(false) + (row.most_with_tolerance ? ", with tolerance " + standard(true) : "");
+  std::string cell = standard(false, false);
+  if (row.of_tables) cell += ", with corrector gear " + standard(false, true);
+  if (row.most_with_tolerance) cell += ", with tolerance " + standard(true, true);
+  return cell;
 }
 
 /// A value in brackets belongs to the keyword of the row, any other to the other keyword.

@@ -46,6 +46,7 @@ struct Keyword {
   enum Kind { WORD, INTEGER, NUMBER, NAME, MASK };
   struct Range {
     int fewest, most, standard;
+    int standard_gear = 0;    ///< the default with corrector gear; 0: the same
   };
   /// Another keyword that has to be given, or must not be; value: empty for any but "none".
   struct Condition {
@@ -126,10 +127,10 @@ struct Keyword {
   }
 
   /// The default of an INTEGER.
-  int standard_of(const Range &range, bool tolerance) const
+  int standard_of(const Range &range, bool tolerance, bool gear) const
   {
-    return tolerance && most_with_tolerance ? std::min(range.most, most_with_tolerance)
-                                            : range.standard;
+    if (tolerance && most_with_tolerance) return std::min(range.most, most_with_tolerance);
+    return gear && range.standard_gear ? range.standard_gear : range.standard;
   }
 
   /// Reads the words behind arg[0] into value and returns how many they are.  Words that cannot be

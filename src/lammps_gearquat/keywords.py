@@ -43,8 +43,8 @@ class Keyword:
 
     def standard(self, tolerance=False):
         """The default, without or with keyword tolerance."""
-        without, _, with_tolerance = self.default.partition(", with tolerance ")
-        return with_tolerance or without if tolerance else without
+        plain, _, with_tolerance = self.default.partition(", with tolerance ")
+        return with_tolerance if tolerance and with_tolerance else plain.split(", with ")[0]
 
     @property
     def arguments(self):
