@@ -19,7 +19,7 @@ from . import properties, search
 from .kernel import LOST, VALUES, gear, tuned
 from .properties import Flights, Linear, Motions
 
-TUNED, GEAR = "tuned", "Gear's"
+TUNED, GEAR, QUATERNIONS = "tuned", "Gear's", "tuned, quaternions"
 #: omega h, and radians a step, of the picture
 RANGE = np.arange(0.06, 1.2001, 0.02)
 #: (formulation, values, color) of the picture: the defaults, and one number more
@@ -35,7 +35,8 @@ BAND, FEMTOSECONDS = (600, 850), 2.5
 @dataclass(frozen=True)
 class Results:
     """(formulation, values, TUNED or GEAR) -> ``linear``: Linear, ``motions``: Motions, ``moved``:
-    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py."""
+    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py.  Where quaternions have
+    a set of their own, ``linear`` has QUATERNIONS too."""
 
     linear: dict
     motions: dict
@@ -61,6 +62,8 @@ def measure(lab):
     shown = [(formulation, values) for formulation, values, _ in SHOWN]
     for key, corrector in every.items():
         results.linear[key] = Linear.of(corrector)
+        if corrector.of_rotation != corrector:
+            results.linear[(*key[:2], QUATERNIONS)] = Linear.of(corrector.of_rotation)
         results.motions[key] = Motions.of(corrector, flights)
         results.moved[key] = flights.others(properties.moved(corrector))
         if key[:2] in shown:
@@ -124,9 +127,11 @@ def tables(results):
         "moved": {
             key: (*with_order(motions[key].starts), *with_order(results.moved[key]))
             for key in shown
+            if key in motions
         },
     }
-    return {name: table(head, rows[name]) for name, head in heads.items()}
+    every = {name: table(head, rows[name]) for name, head in heads.items()}
+    return every | {"gains": motion_gains(motions)}
 
 
 def gains(linear):
@@ -136,6 +141,30 @@ def gains(linear):
         for key, own in linear.items()
         if key[2] == TUNED
     }
+
+
+def motion_gains(motions):
+    """Table: how many times errors are smaller than Gear's, over all numbers of values and steps."""
+    kinds = {
+        "librations": "librations",
+        "tops": "free tops",
+        "cages": "test case 1",
+        "starts": "other starts",
+    }
+    rows = []
+    for formulation in dict.fromkeys(key[0] for key in motions):
+        for kind, words in kinds.items():
+            theirs, ours = (
+                np.array([getattr(own, kind) for key, own in motions.items() if key[::2] == of])
+                for of in ((formulation, GEAR), (formulation, TUNED))
+            )
+            kept = (abs(theirs) < LOST) & (abs(ours) < LOST)
+            gain = abs(theirs[kept] / ours[kept])
+            lost = [np.count_nonzero(abs(errors) >= LOST) for errors in (theirs, ours)]
+            mean = np.exp(np.mean(np.log(gain)))
+            rows.append((formulation, words, f"{mean:.1f}", f"{gain.min():.2f}", *lost))
+    header = ("formulation", "motion", "geometric mean", "least", "Gear's lost", "tuned lost")
+    return Table(header, rows)
 
 
 def mean_gain(linear, formulation, parity=None):
@@ -201,10 +230,9 @@ def find(results):
 # --- search ---------------------------------------------------------------------------------------
 def written(corrector, free_c0):
     """Lines of the table of src/GEARQUAT/gear_quat_tuned.h."""
-    order, sets = corrector.order, {"BOTH": corrector.driven}
-    if order == 1:
-        sets = {"DRIVEN": corrector.driven, "INTEGRATING": corrector.integrating}
-    for columns, own in sets.items():
+    order = corrector.order
+    names = ("DRIVEN", "INTEGRATED") if order == 1 else ("BOTH",)
+    for columns, own in zip(names, corrector.sets):
         tail = ", ".join(f"{float(x):.9g}L" for x in own[order + 1 :])
         c0 = f", {float(own[0]):.9g}L" if free_c0 else ""
         yield f"{{{corrector.formulation.upper()}, {columns}, {{{tail}}}{c0}}},"
@@ -226,5 +254,5 @@ def searched(formulation, values, seed, iterations):
 
 
 STUDY = Study(
-    "coefficients", "Coefficients of the corrector", 30.0, measure, find, search=searched
+    "coefficients", "Coefficients of the corrector", 35.0, measure, find, search=searched
 )

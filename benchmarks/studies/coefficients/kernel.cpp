@@ -17,11 +17,11 @@ namespace {
 
 constexpr double LOST = 1e3;
 
-/// Coefficients c_0 ... c_(values-1): driven, of rows that forces drive; integrating, of those that
-/// integrate these (first formulation only).
+/// Two sets of coefficients c_0 ... c_(values-1).  First formulation: of rows that forces drive, and of
+/// those that integrate these; second: of positions, and of quaternions.
 struct Corrector {
   int second, values, passes, compensate;
-  double driven[MAX_VALUES], integrating[MAX_VALUES];
+  double sets[2][MAX_VALUES];
 };
 
 Scheme scheme_for(const Corrector &corrector)
@@ -33,11 +33,12 @@ Scheme scheme_for(const Corrector &corrector)
 CorrectorCoefficients coefficients_of(const Corrector &corrector)
 {
   CorrectorCoefficients c(scheme_for(corrector));
-  const double *integrating = corrector.second ? corrector.driven : corrector.integrating;
-  std::copy_n(corrector.driven, corrector.values, c.momentum.begin());
-  std::copy_n(corrector.driven, corrector.values, c.omega.begin());
-  std::copy_n(integrating, corrector.values, c.position.begin());
-  std::copy_n(integrating, corrector.values, c.quaternion.begin());
+  const double *one = corrector.sets[0], *other = corrector.sets[1];
+  const int n = corrector.values;
+  std::copy_n(one, n, c.momentum.begin());
+  std::copy_n(one, n, c.omega.begin());
+  std::copy_n(corrector.second ? one : other, n, c.position.begin());
+  std::copy_n(other, n, c.quaternion.begin());
   return c;
 }
 
@@ -174,12 +175,13 @@ double noise(const Corrector *corrector)
   return noise_gain(scheme_for(*corrector), coefficients_of(*corrector));
 }
 
-/// The tail of the tuned set of rows that integrate, or of those that are driven, and its c_0 (NaN if
-/// it is solved for).  Returns the length of the tail, 0 if there is no such set.
-int tuned_tail(int second, int values, int integrating, double *tail, double *c0)
+/// The tail of a tuned set, and its c_0 (NaN if it is solved for).  which: 0 or 1, as in Corrector.
+/// Returns the length of the tail, 0 if there is no such set.
+int tuned_tail(int second, int values, int which, double *tail, double *c0)
 {
-  const TunedSet *set = tuned_set(second ? SECOND : FIRST, values,
-                                  second || integrating ? Columns::POSITION : Columns::MOMENTUM);
+  constexpr Columns KINDS[2][2] = {{Columns::MOMENTUM, Columns::POSITION},
+                                   {Columns::POSITION, Columns::QUATERNION}};
+  const TunedSet *set = tuned_set(second ? SECOND : FIRST, values, KINDS[second][which]);
   if (!set) return 0;
   std::copy(set->tail.begin(), set->tail.end(), tail);
   *c0 = double(set->c0);

@@ -32,7 +32,7 @@ _ROWS = ctypes.c_double * MOST
 
 class _Corrector(ctypes.Structure):
     _fields_ = [(name, ctypes.c_int) for name in ("second", "values", "passes", "compensate")]
-    _fields_ += [("driven", _ROWS), ("integrating", _ROWS)]
+    _fields_ += [("sets", _ROWS * 2)]
 
 
 @cache
@@ -63,21 +63,20 @@ def library():
 
 @dataclass(frozen=True)
 class Corrector:
-    """Coefficients c_0 ... c_(N-1) of a ``formulation``, fractions or numbers.
+    """Two ``sets`` of coefficients c_0 ... c_(N-1) of a ``formulation``, fractions or numbers.
 
-    ``driven``: of rows that forces drive; ``integrating``: of those that integrate them (the same in the
-    second formulation).  The motions return LOST where they do not stay finite; in all of them the
+    First formulation: of rows that forces drive, and of rows that integrate them; second: of positions,
+    and of quaternions.  Linear properties of the second are those of the positions.  The motions return LOST where they do not stay finite; in all of them the
     rotation is corrected in two passes.
     """
 
     formulation: str
-    driven: tuple
-    integrating: tuple
+    sets: tuple
 
     @property
     def values(self):
         """N."""
-        return len(self.driven)
+        return len(self.sets[0])
 
     @property
     def order(self):
@@ -86,16 +85,24 @@ class Corrector:
 
     def step(self, omega_h, rate=0.0, passes=1, number=float):
         """Matrix of one step, see stability.py; ``number``: type of its elements."""
-        driven, integrating = (
-            np.array([number(x) for x in c]) for c in (self.driven, self.integrating)
-        )
+        sets = [np.array([number(x) for x in c]) for c in self.sets]
         if self.order == 2:
-            return second_step(driven, omega_h, rate, passes)
-        return first_step(driven, integrating, omega_h, rate=rate, passes=passes)
+            return second_step(sets[0], omega_h, rate, passes)
+        return first_step(*sets, omega_h, rate=rate, passes=passes)
+
+    @property
+    def of_rotation(self):
+        """The Corrector whose linear properties are those of the rotation."""
+        return self if self.order == 1 else Corrector(self.formulation, (self.sets[1],) * 2)
+
+    @property
+    def floats(self):
+        """The sets as arrays of floats."""
+        return [np.array(c, dtype=float) for c in self.sets]
 
     def _passed(self, compensate=False):
-        rows = (_ROWS(*map(float, c)) for c in (self.driven, self.integrating))
-        return ctypes.byref(_Corrector(self.order == 2, self.values, 2, compensate, *rows))
+        sets = (_ROWS * 2)(*(_ROWS(*c) for c in self.floats))
+        return ctypes.byref(_Corrector(self.order == 2, self.values, 2, compensate, sets))
 
     def libration(self, h, frequency, amplitude, steps):
         """Change of the energy of a body in wells, by its kinetic energy at the start."""
@@ -122,19 +129,19 @@ class Corrector:
 def gear(formulation, values):
     """The classical Corrector."""
     made = second_order_coefficients if formulation == "second" else first_order_coefficients
-    return Corrector(formulation, *[tuple(made(values))] * 2)
+    return Corrector(formulation, (tuple(made(values)),) * 2)
 
 
 def tuned(formulation, values):
     """The Corrector of src/GEARQUAT/gear_quat_tuned.h, None if it has none."""
     order, sets = 2 if formulation == "second" else 1, []
-    for integrating in (False, True):
+    for which in (0, 1):
         tail, c0 = _ROWS(), ctypes.c_double()
-        length = library().tuned_tail(order == 2, values, integrating, tail, ctypes.byref(c0))
+        length = library().tuned_tail(order == 2, values, which, tail, ctypes.byref(c0))
         if not length:
             return None
         # the shortest decimal of a number is the one in the header
         c = completed(order, [Fraction(1), *(Fraction(repr(x)) for x in tail[:length])])
         c[0] = c[0] if math.isnan(c0.value) else Fraction(repr(c0.value))
         sets.append(tuple(c))
-    return Corrector(formulation, *sets)
+    return Corrector(formulation, tuple(sets))

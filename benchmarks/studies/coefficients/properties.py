@@ -1,6 +1,7 @@
 """What coefficients do: model equations, responses and changing steps, linear; motions of bodies."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import mpmath
 import numpy as np
@@ -52,23 +53,17 @@ def response(corrector, y):
     - y/2 Im H: a motion that makes such forces is drained where Im H > 0, and heated where it is below.
     """
     root, unit, order = np.exp(1j * y), np.eye(corrector.values), corrector.order
-    driven, integrating = (
-        np.array(c, dtype=float) for c in (corrector.driven, corrector.integrating)
-    )
-    rows = np.linalg.solve(root * unit - open_loop(driven, order), root * driven / order)
+    one, other = corrector.floats
+    rows = np.linalg.solve(root * unit - open_loop(one, order), root * one / order)
     if order == 1:
-        right = root * integrating * rows[0]
-        rows = np.linalg.solve(root * unit - open_loop(integrating, 1), right)
+        rows = np.linalg.solve(root * unit - open_loop(other, 1), root * other * rows[0])
     return -(y**2) * rows.sum() / root  # a prediction is the sum of all rows
 
 
 def radius(corrector, ratio):
     """Largest spurious root without forces if each step is ``ratio`` times the one before."""
     scaled, q = float(ratio) ** np.arange(corrector.values), corrector.order
-    steps = (
-        open_loop(np.array(c, dtype=float), q) for c in (corrector.driven, corrector.integrating)
-    )
-    spurious = ((scaled[:, None] * step)[q:, q:] for step in steps)
+    spurious = ((scaled[:, None] * open_loop(c, q))[q:, q:] for c in corrector.floats[: 3 - q])
     return max(abs(np.linalg.eigvals(step)).max() for step in spurious)
 
 
@@ -80,7 +75,7 @@ def models(corrector, z=AT):
     """
     decay = np.exp(z * (-DAMPED + 1j * np.sqrt(1 - DAMPED**2)))
     damped = np.linalg.eigvals(corrector.step(z, -2 * DAMPED * z, passes=2))
-    spinning = np.linalg.eigvals(corrector.step(0.0, 1j * z, passes=2))
+    spinning = np.linalg.eigvals(corrector.of_rotation.step(0.0, 1j * z, passes=2))
     of_force = response(corrector, DRIVEN * z)
     steady = of_force * (DRIVEN**2 - 1) / (DRIVEN**2 - of_force) - 1
     return abs(damped - decay).min(), abs(steady), abs(spinning - np.exp(1j * z)).min()
@@ -173,5 +168,4 @@ class Motions:
 
 def moved(corrector):
     """The Corrector with c_0 of both kinds of rows moved."""
-    sets = ((float(c[0]) + MOVED, *c[1:]) for c in (corrector.driven, corrector.integrating))
-    return type(corrector)(corrector.formulation, *sets)
+    return replace(corrector, sets=tuple((c[0] + Fraction(MOVED), *c[1:]) for c in corrector.sets))

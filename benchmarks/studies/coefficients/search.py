@@ -22,7 +22,7 @@ C0_RANGE = 0.14
 PHASE = 0.05
 #: largest omega h that counts: formulation -> number of values -> omega h
 REACH = {
-    "second": dict(zip(VALUES["second"], (0.9, 0.8, 0.7, 0.6, 0.55, 0.5, 0.45, 0.4, 0.36))),
+    "second": dict(zip(VALUES["second"], (0.9, 0.8, 0.7, 0.6, 0.55, 0.45, 0.45, 0.4, 0.36))),
     "first": dict(zip(VALUES["first"], (0.8, 0.7, 0.6, 0.5, 0.45, 0.38))),
 }
 #: omega h by the reach: of the librations, and of the free top
@@ -83,16 +83,16 @@ class Search:
             if self.free_c0:
                 c[0] += C0_RANGE * x[-1]
             sets.append(tuple(c))
-        return Corrector(self.formulation, sets[0], sets[-1])
+        return Corrector(self.formulation, (sets[0], sets[-1]))
 
     def written(self, corrector):
         """The Corrector of the decimals: c_0 and c_1 follow from the tail anew, exactly."""
         sets = []
-        for c in (corrector.driven, corrector.integrating):
+        for c in corrector.sets:
             exact = completed(self.order, decimals(c[self.order :]))
             exact[0] = decimals(c[:1])[0] if self.free_c0 else exact[0]
             sets.append(tuple(exact))
-        return Corrector(self.formulation, *sets)
+        return Corrector(self.formulation, tuple(sets))
 
     @cached_property
     def _grids(self):
@@ -147,7 +147,7 @@ class Search:
 
         def of(x):
             corrector = self.corrector(x)
-            return self.cost(corrector) if np.all(np.isfinite(corrector.driven)) else LOST
+            return self.cost(corrector) if np.all(np.isfinite(corrector.sets)) else LOST
 
         options = {"maxiter": iterations, "popsize": 7, "seed": seed, "polish": False, "tol": 1e-9}
         rough = differential_evolution(of, self.bounds, **options).x
