@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from benchmarks import __main__ as command
+from benchmarks.engine.decks import ROOT
 from benchmarks.engine.lab import Lab
 from benchmarks.engine.page import render
 from benchmarks.reference.correctors import completed, decimals, placed
@@ -262,3 +263,17 @@ def test_a_page_of_few_sets(tmp_path, monkeypatch):
     assert f"| first | 6 | tuned | {own.error:.1e} | {own.damping:.1e} |" in text
     finding.pictures["coefficients"](tmp_path / "coefficients.png")
     assert (tmp_path / "coefficients.png").stat().st_size > 10_000
+
+
+def test_the_published_page_has_the_coefficients_of_the_kernel():
+    page = (ROOT / "doc" / "coefficients.md").read_text(encoding="utf-8")
+    formulation, values, _ = study.SHOWN[0]
+
+    def row(corrector):
+        damping, phase, _ = roots_of(corrector, properties.AT)
+        found = rf"\| {formulation} \| {values} \| tuned \| \S+ \| {damping:.1e} \| {phase:.1e} \|"
+        return re.search(found, page)
+
+    corrector = kernel.tuned(formulation, values)
+    assert row(corrector)
+    assert not any(row(wrong) for wrong in one_percent_off(corrector))
