@@ -13,6 +13,7 @@ from scipy.constants import speed_of_light
 
 from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table
 from benchmarks.engine.methods import DEFAULT_VALUES
+from benchmarks.engine.page import markdown_table
 from benchmarks.engine.panels import draw, floor
 
 from . import properties, search
@@ -56,16 +57,21 @@ def correctors():
     return every
 
 
+def add(results, key, corrector, flights):
+    """Put what a Corrector does into Results, but for its curves."""
+    results.linear[key] = Linear.of(corrector)
+    if corrector.of_rotation != corrector:
+        results.linear[(*key[:2], QUATERNIONS)] = Linear.of(corrector.of_rotation)
+    results.motions[key] = Motions.of(corrector, flights)
+    results.moved[key] = flights.others(properties.moved(corrector))
+
+
 def measure(lab):
     """Results of all sets."""
     results, every, flights = Results({}, {}, {}, {}), correctors(), Flights()
     shown = [(formulation, values) for formulation, values, _ in SHOWN]
     for key, corrector in every.items():
-        results.linear[key] = Linear.of(corrector)
-        if corrector.of_rotation != corrector:
-            results.linear[(*key[:2], QUATERNIONS)] = Linear.of(corrector.of_rotation)
-        results.motions[key] = Motions.of(corrector, flights)
-        results.moved[key] = flights.others(properties.moved(corrector))
+        add(results, key, corrector, flights)
         if key[:2] in shown:
             results.curves[key] = properties.curves(corrector, RANGE)
         lab.advance(1 / len(every))
@@ -245,11 +251,14 @@ def searched(formulation, values, seed, iterations):
         raise ValueError(f"there are no {values} values of {formulation}; there are {known}")
     wanted = search.Search(formulation, values)
     corrector, _ = wanted.run(seed, iterations)
+    results, flights = Results({}, {}, {}, {}), Flights()
     lines = [*written(corrector, wanted.free_c0), ""]
-    flights = Flights()
     for name, own in ((TUNED, corrector), (GEAR, gear(formulation, values))):
-        lines += [f"{name}: cost {wanted.cost(own):.3f}"]
-        lines += [f"  {linear}" for linear in (Linear.of(own), Motions.of(own, flights))]
+        lines.append(f"{name}: cost {wanted.cost(own):.3f}")
+        add(results, (formulation, values, name), own, flights)
+    shown = tables(results)
+    for name in ("linear", "motions"):
+        lines += ["", markdown_table(shown[name].header, shown[name].rows)]
     return "\n".join(lines)
 
 
