@@ -44,15 +44,15 @@ void Party::seed_local(int terms, double h)
 
 /* ---------------------------------------------------------------------- */
 
-static int most_values(const std::vector<Party> &parties)
+static int most_start_values(const std::vector<Party> &parties)
 {
   int most = 0;
-  for (const auto &party : parties) most = std::max(most, party.scheme.values());
+  for (const auto &party : parties) most = std::max(most, party.scheme.start_values());
   return most;
 }
 
 Bootstrap::Bootstrap(LAMMPS *lmp, const std::vector<Party> &parties, double h) :
-    Pointers(lmp), parties(parties), h(h), collocation(most_values(parties))
+    Pointers(lmp), parties(parties), h(h), collocation(most_start_values(parties))
 {
   for (auto &party : this->parties) party.power.assign(collocation.number_of_nodes(), 0.0);
 }
@@ -234,7 +234,7 @@ StartFound Bootstrap::search(Forces &forces)
 {
   forces.save();
   Search all(*this, forces);
-  const StartFound start = find_start(most_values(parties), first_spacing(), all);
+  const StartFound start = find_start(most_start_values(parties), first_spacing(), all);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
     if (start.verdict == StartPlan::Verdict::JUMPS)

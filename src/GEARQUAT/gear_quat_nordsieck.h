@@ -19,6 +19,8 @@
 #include "gear_quat_coefficients.h"
 #include "gear_quat_quaternion.h"
 
+#include <algorithm>
+
 namespace LAMMPS_NS::GearQuat {
 
 enum class Formulation { FIRST, SECOND };
@@ -50,6 +52,12 @@ struct Scheme {
   {
     if (tuned) return first() ? values() : values() & ~1;
     return (velocity_c0 ? values() - 1 : values()) | 1;
+  }
+  /// The number of values whose start has the order that this scheme needs.  From 11 on a rotation needs
+  /// all of it.
+  int start_values() const
+  {
+    return tuned && values() < 11 ? std::min(values(), order()) : values();
   }
 
   // columns of a row

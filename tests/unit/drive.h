@@ -157,7 +157,7 @@ inline std::vector<double> started(const Scheme &scheme, const RigidBody &body,
 {
   Found found;
   if (start == Start::BOOTSTRAP) {
-    found = bootstrap(scheme.values(), body, state, load, spacing);
+    found = bootstrap(scheme.start_values(), body, state, load, spacing);
   } else {
     found.series = local_series(body, state, load(state, dot4(state.q, state.q)), spacing);
     found.spacing = spacing;

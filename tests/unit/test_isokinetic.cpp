@@ -97,9 +97,9 @@ struct Host {
   {
     double power = 0.0;
     target = sums(acting(power));
-    const Collocation collocation(scheme.values());
+    const Collocation collocation(scheme.start_values());
     Search search(*this, collocation);
-    const StartFound found = find_start(scheme.values(), h, search);
+    const StartFound found = find_start(scheme.start_values(), h, search);
     states = search.at_start;
     ASSERT_EQ(found.spacing, h);
     rows.assign(bodies.size(), vector<double>(scheme.size()));

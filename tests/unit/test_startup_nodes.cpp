@@ -47,7 +47,7 @@ Collocation::Workspace nodes_of(const vector<double> &a, int pairs, int inner)
 TEST(StartupNodes, AsManyAsTheOrderNeeds)
 {
   for (const Scheme &scheme : every_scheme()) {
-    const Collocation collocation(scheme.values());
+    const Collocation collocation(scheme.start_values());
     // the polynomial of x'' has degree 2 pairs, that of x two more, and nodes are symmetric
     EXPECT_GE(2 * collocation.pairs() + 2, scheme.order() + (scheme.first() ? 0 : 1));
     EXPECT_GE(2 * collocation.pairs() + 2, scheme.values());    // all rows are found
