@@ -1,13 +1,18 @@
 """The manual says what the fix accepts, its examples run, its numbers are right; so is the first script."""
 
+import math
 import re
+from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from importlib import metadata
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 
 from benchmarks.reference import stability
+from benchmarks.studies.coefficients import kernel, properties
 from lammps_gearquat import keywords
 from pages import first_script
 from running import ROOT, tree_source
@@ -79,9 +84,9 @@ def test_every_default_is_documented():
         if row.kind == "word" and row.standard() != row.standard(tolerance=True):
             either = f"{key} = {row.standard()}, or {key} = {row.standard(tolerance=True)}"
             assert f"{either} with tolerance" in text
-    second, first, *most = re.findall(r"\d+", TABLE["values"].default)
-    with_tolerance = f"({most[0]} and {most[1]} with tolerance)"
-    assert f"values = {second} for *second* and {first} for *first* {with_tolerance}" in text
+    plain, gear, most = re.findall(r"(\d+) \(second\), (\d+) \(first\)", TABLE["values"].default)
+    others = "({} and {} with corrector gear, {} and {} with tolerance)".format(*gear, *most)
+    assert "values = {} for *second* and {} for *first* ".format(*plain) + others in text
 
 
 def test_a_list_that_is_cut_off_is_no_list():
@@ -236,27 +241,37 @@ def test_the_page_is_written_as_the_manual_of_lammps(what):
 
 
 # --- numbers -------------------------------------------------------------------------------------
+def both_kinds(formulation, n, omega_h):
+    """Step of positions and quaternions with tuned coefficients, beside each other."""
+    corrector = kernel.tuned(formulation, n)
+    return block_diag(corrector.step(omega_h), corrector.of_rotation.step(omega_h))
+
+
+SECOND, FIRST = range(4, 13), range(3, 9)
 #: column of the manual's table -> numbers of values, one step of the test equation
 COLUMNS = {
-    "second": (range(4, 13), stability.second_order_step),
-    "c0 velocity": (range(4, 13), partial(stability.second_order_step, c0="velocity")),
-    "first": (range(3, 9), stability.first_order_step),
-    "momentum predicted": (range(3, 9), partial(stability.first_order_step, momentum="predicted")),
+    "second": (SECOND, partial(both_kinds, "second")),
+    "first": (FIRST, partial(both_kinds, "first")),
+    "second, gear": (SECOND, stability.second_order_step),
+    "c0 velocity": (SECOND, partial(stability.second_order_step, c0="velocity")),
+    "first, gear": (FIRST, stability.first_order_step),
+    "momentum predicted": (FIRST, partial(stability.first_order_step, momentum="predicted")),
 }
 
 
-def growth(values, z):
-    """Growth of the amplitude of the oscillation in a period, by formulation."""
-    steps = {"second": stability.second_order_step, "first": stability.first_order_step}
-    found = []
-    for formulation, number in values.items():
-        modes = np.linalg.eigvals(steps[formulation](number, z))
-        own = np.abs(modes[np.abs(modes - np.exp(1j * z)).argmin()])
-        found.append(own ** (2 * np.pi / z) - 1)
-    return np.array(found)
+def growth(corrector, z):
+    """Growth of the amplitude of the oscillation in a period."""
+    damping, _ = properties.principal(corrector, z)
+    return math.expm1(2 * np.pi / z * math.log1p(damping))
 
 
-DEFAULTS = {"second": 8, "first": 6}
+#: in the order of the manual
+DEFAULTS = (
+    kernel.tuned("second", 9),
+    kernel.tuned("first", 8),
+    kernel.gear("second", 8),
+    kernel.gear("first", 6),
+)
 
 
 def documented_limits():
@@ -285,34 +300,60 @@ def test_stability_limits_of_the_manual(name):
 def test_growth_of_the_manual():
     text = " ".join(section("Choosing the time step").split())
     found = [float(x) for x in re.findall(r"\d\.\de-\d+", text)]
-    large, small = growth(DEFAULTS, 0.2), growth(DEFAULTS, 0.1)
-    assert found == pytest.approx(np.abs([*large, *small]), rel=0.02)
-    assert large[0] < 0 < large[1]
+    large, small = ([growth(corrector, z) for corrector in DEFAULTS] for z in (0.2, 0.1))
+    expected = np.array([*large[:2], *small[:2], *large[2:], *small[2:]])
+    assert found == pytest.approx(np.abs(expected), rel=0.05)
+    words = re.findall(r"(increases|decreases)(?: per period)? by \d", text)
+    assert words == ["increases" if x > 0 else "decreases" for x in large]
+    assert (np.sign(small) == np.sign(large)).all()
 
 
 def test_growth_of_stable_steps():
     text = " ".join(section("Choosing the time step").split())
-    bounds = re.search(r"up to (\d+) % .* up to (\d+) % .* less than (\S+) % with more", text)
-    changes = {"few": [], "several": [], "many": []}
-    for formulation in DEFAULTS:
+    words = r"three values, (\d+) % with four, (\d+) % with five or six, and less than (\S+) %"
+    bounds = re.search(r"up to (\d+) % with " + words, text).groups()
+    changes = [[], [], [], []]
+    for formulation in ("second", "first"):
         for n, limit in documented_limits()[formulation].items():
-            of_n = changes["few" if n < 5 else "several" if n < 7 else "many"]
-            steps = np.linspace(0.3, 0.995, 200) * limit
-            of_n += [100.0 * growth({formulation: n}, step)[0] for step in steps]
-    few, several, many = map(float, bounds.groups())
-    assert max(changes["few"]) < 0 and 0.9 * few < -min(changes["few"]) < few
-    assert 0.9 * several < max(changes["several"]) < several
-    assert np.max(np.abs(changes["many"])) < many
+            tuned = kernel.tuned(formulation, n)
+            of_n = changes[0 if n == 3 else 1 if n == 4 else 2 if n < 7 else 3]
+            for z in np.linspace(0.3, 0.995, 50) * limit:
+                for corrector in (tuned, tuned.of_rotation):
+                    roots = np.linalg.eigvals(corrector.step(z))
+                    own = np.abs(roots[np.abs(roots - np.exp(1j * z)).argmin()])
+                    of_n.append(100.0 * abs(own ** (2 * np.pi / z) - 1))
+    for bound, of_n in zip(map(float, bounds), changes):
+        assert 0.85 * bound < max(of_n) < bound
 
 
-@pytest.mark.parametrize("row", range(1, 8))
-def test_a_coefficient_wrong_by_one_percent_shows(monkeypatch, row):
-    right, (found, _) = stability.second_order_coefficients, growth(DEFAULTS, 0.2)
+def fastest(corrector):
+    """Radians a step up to which a free top keeps its energy for 2000 steps."""
+    steps, rate = np.arange(0.05, 1.2, 0.025), 1.24
+    lost = [not abs(corrector.free_top(h, 2000 * h)) < 0.5 for h in steps]
+    return rate * steps[np.argmax(lost) - 1] if not lost[0] else 0.0
 
-    def wrong(*words):
-        coefficients = right(*words)
-        coefficients[row] *= 1.01
-        return coefficients
 
-    monkeypatch.setattr(stability, "second_order_coefficients", wrong)
-    assert growth(DEFAULTS, 0.2)[0] != pytest.approx(found, rel=2e-3)
+def test_turns_in_a_step():
+    text = " ".join(MANUAL.split())
+    words = r"turn by (\S+) radians per step and more with every number of values, by (\S+) with"
+    all_of_them, default = map(float, re.search(words, text).groups())
+    limits = {}
+    for formulation, values in (("second", SECOND), ("first", FIRST)):
+        for n in values:
+            tuned = kernel.tuned(formulation, n)
+            limits[formulation, n] = [fastest(replace(tuned, passes=p)) for p in (1, 2, 3)]
+    one, two, three = np.transpose(list(limits.values()))
+    assert (two > one).all() and (three < two).any()
+    assert all_of_them < two.min() < 1.2 * all_of_them
+    assert default < min(limits["second", 9][1], limits["first", 8][1]) < 1.2 * default
+
+
+@pytest.mark.parametrize("corrector", DEFAULTS[:3], ids=lambda c: f"{c.formulation}-{c.values}")
+def test_a_coefficient_wrong_by_one_percent_shows(corrector):
+    right = growth(corrector, 0.2)
+    for row in range(1, corrector.values):
+        sets = [list(c) for c in corrector.sets]
+        for c in sets:
+            c[row] *= Fraction(101, 100)
+        wrong = replace(corrector, sets=tuple(map(tuple, sets)))
+        assert abs(growth(wrong, 0.2) / right - 1) > 2e-3, row

@@ -181,7 +181,7 @@ def test_boundaries_leave_out_turns_of_the_flags_only():
 
 
 def test_water_runs(run):
-    for water in run(cutoff, (cutoff.RIGID, "first, N = 5"), 20).values():
+    for water in run(cutoff, (cutoff.RIGID, "first, N = 6"), 20).values():
         assert not water.lost and len(water.time) == 3
         assert water.temperature[0] == pytest.approx(300.0, abs=1.0)
 
@@ -193,4 +193,4 @@ def test_water_is_judged_by_temperature(hot, lost, holds):
     time, noise = 20.0 * np.arange(251), np.random.default_rng(1).normal(size=251)
     rigid = cutoff.Water(time, 100 * noise, 500.0 + noise, False)
     other = replace(rigid, temperature=hot + noise, lost=lost)
-    assert held(cutoff.find({cutoff.RIGID: rigid, "first, N = 5": other})) == [holds]
+    assert held(cutoff.find({cutoff.RIGID: rigid, "first, N = 6": other})) == [holds]

@@ -66,12 +66,13 @@ class Corrector:
     """Two ``sets`` of coefficients c_0 ... c_(N-1) of a ``formulation``, fractions or numbers.
 
     First formulation: of rows that forces drive, and of rows that integrate them; second: of positions,
-    and of quaternions.  Linear properties of the second are those of the positions.  The motions return LOST where they do not stay finite; in all of them the
-    rotation is corrected in two passes.
+    and of quaternions.  Linear properties of the second are those of the positions.  The motions return
+    LOST where they do not stay finite; the rotation is corrected in so many ``passes``.
     """
 
     formulation: str
     sets: tuple
+    passes: int = 2
 
     @property
     def values(self):
@@ -102,7 +103,7 @@ class Corrector:
 
     def _passed(self, compensate=False):
         sets = (_ROWS * 2)(*(_ROWS(*c) for c in self.floats))
-        return ctypes.byref(_Corrector(self.order == 2, self.values, 2, compensate, sets))
+        return ctypes.byref(_Corrector(self.order == 2, self.values, self.passes, compensate, sets))
 
     def libration(self, h, frequency, amplitude, steps):
         """Change of the energy of a body in wells, by its kinetic energy at the start."""

@@ -13,12 +13,12 @@ RIGID = "fix rigid/nve/small"
 #: method -> variables of the deck; the first is the yardstick, the last two have too many values
 METHODS = {
     RIGID: {"method": "rigid"},
-    "second, N = 8 (default)": {"formulation": "second"},
-    "second, N = 6": {"formulation": "second", "values": 6},
-    "first, N = 6 (default)": {"formulation": "first"},
-    "first, N = 5": {"formulation": "first", "values": 5},
-    "second, N = 9": {"formulation": "second", "values": 9},
-    "first, N = 7": {"formulation": "first", "values": 7},
+    "second, N = 9 (default)": {"formulation": "second"},
+    "second, N = 7": {"formulation": "second", "values": 7},
+    "first, N = 8 (default)": {"formulation": "first"},
+    "first, N = 6": {"formulation": "first", "values": 6},
+    "second, N = 9, Gear's": {"formulation": "second", "values": 9, "corrector": "gear"},
+    "first, N = 8, Gear's": {"formulation": "first", "values": 8, "corrector": "gear"},
 }
 TOO_MANY = tuple(METHODS)[-2:]
 #: temperature, by the end, over that of fix rigid/nve/small: no blow-up
