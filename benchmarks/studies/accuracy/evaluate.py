@@ -152,10 +152,8 @@ def price(results, scene, method, target, unit="seconds", extrapolate=False):
 
 
 def expected_order(formulation, values):
-    """Order of the global error that Gear's method with N values is expected to have.
+    """Order of the error of positions with the tuned coefficients for so many values.
 
-    An odd N has order N, an even one N + 1 by symmetry; in the second formulation from N = 5 on.
+    N; in the second formulation N - 1 for odd N (see Scheme::order() of the kernel).
     """
-    if (formulation, values) == ("second", 4):
-        return 3
-    return values + 1 - values % 2
+    return values - values % 2 if formulation == "second" else values

@@ -89,6 +89,7 @@ def _few(scene):
     look = looks([method for method in plan.ALL_METHODS if method in few])
     look[plan.RIGID_SMALL]["line"] = ":"
     look[plan.setting("second", 8, 1)]["line"] = "--"
+    look[plan.GEARS["second"]]["line"] = ":"
     return {method: own for method, own in look.items() if method in scene.methods}
 
 
@@ -182,7 +183,7 @@ def pictures(results):
         note = f"lines: fitted orders; triangles: largest usable steps; {RECONSTRUCTED}"
         found["orders"] = partial(draw, panels=order_panels(results), note=note)
     if "top" in scenes:
-        note = "broad: lines of fitted order; dashed: one pass"
+        note = "broad: lines of fitted order; dashed: one pass; dotted: Gear's coefficients"
         panels = top_panels(results, scenes["top"])
         found["top"] = partial(draw, panels=panels, columns=3, note=note)
     if {"water", "water-plain"} <= set(scenes):

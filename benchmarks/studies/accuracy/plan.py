@@ -9,7 +9,14 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from benchmarks.engine import decks
-from benchmarks.engine.methods import DEFAULT_PASSES, DEFAULT_VALUES, DEFAULTS, gear, rigid
+from benchmarks.engine.methods import (
+    DEFAULT_PASSES,
+    DEFAULT_VALUES,
+    DEFAULTS,
+    GEARS,
+    gear,
+    rigid,
+)
 
 PASSES = 1, 2
 #: columns of the log of every scene (examples/common/in.motion), and the further one asked for
@@ -26,7 +33,7 @@ DEFAULT = DEFAULTS["second"]
 RIGID_NVE, RIGID_SMALL = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
 ALL_METHODS = (
     *(setting(name, n, passes) for passes in PASSES for name in VALUES for n in VALUES[name]),
-    *(setting("second", n, c0="velocity", corrector="gear") for n in (6, 8)),
+    *GEARS.values(),
     RIGID_NVE,
     RIGID_SMALL,
 )
@@ -40,11 +47,12 @@ def _few(*settings):
 
 #: methods of the scenes where a step costs milliseconds, and of a first look; and where forces jump
 FEW_METHODS = _few(
-    *(setting("second", n) for n in (6, 8, 10)),
-    *(setting("first", n) for n in (6, 8)),
+    *(setting("second", n) for n in (7, 11)),
+    setting("first", 6),
     setting("second", 8, 1),
+    GEARS["second"],
 )
-ROUGH_METHODS = _few(setting("second", 6), setting("second", 8), setting("first", 5))
+ROUGH_METHODS = _few(setting("second", 7), setting("first", 6), GEARS["second"])
 
 
 def geometric(first, last, ratio):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from benchmarks.engine import Measurement, Table
+from benchmarks.engine.methods import GEARS
 
 from . import peers, plan
 from .evaluate import cheapest, cost_of, price
@@ -53,7 +54,9 @@ def columns(results, target):
     }
     method = ours[-1][1]
     namely = {"the cheapest settings are": method.label if method else NONE}
-    of_others = {label: count_text(cost) for label, cost in others.items()}
+    gears = price(results, "case1", GEARS["second"], target, "evaluations")
+    of_others = {"`fix gear/quat`, `corrector gear`": count_text(gears)}
+    of_others |= {label: count_text(cost) for label, cost in others.items()}
     label = "the strongest of the other methods"
     page = counts | namely | of_others | {label: name or NONE} | factors
     return page, counts | {label: f"{count_text(peer)} ({name})" if peer else NONE} | factors

@@ -10,7 +10,8 @@ import numpy as np
 from benchmarks.engine import Measurement, Table
 from benchmarks.engine.page import grouped
 from benchmarks.engine.statistics import order
-from benchmarks.reference.stability import first_order_step, linear_limit, second_order_step
+from benchmarks.reference.stability import linear_limit
+from benchmarks.studies.coefficients import kernel
 
 from . import plan
 from .evaluate import cheapest, expected_order, fitted_order, price, sign_change
@@ -109,10 +110,13 @@ def other_speedups(results):
 
 
 # --- order, stability, rounding, time in the fix --------------------------------------------------
-def limit_of(formulation, n):
-    """Largest omega h of the linear test equation."""
-    step = second_order_step if formulation == "second" else first_order_step
-    return linear_limit(lambda omega_h: step(n, omega_h))
+def limit_of(formulation, n, made=kernel.tuned):
+    """Largest omega h of the linear test equation, for positions and quaternions.
+
+    ``made``: which Corrector, kernel.tuned or kernel.gear.
+    """
+    corrector = made(formulation, n)
+    return min(linear_limit(own.step) for own in (corrector, corrector.of_rotation))
 
 
 def order_fits(results):
@@ -123,7 +127,7 @@ def order_fits(results):
 
 def orders(results):
     """Slope of each N beside the order, and the largest stable steps; table and measurements."""
-    header = ["formulation", "N", "order", "slope", "ω Δt, linear"]
+    header = ["formulation", "N", "order", "slope", "ω Δt, linear", "ω Δt, Gear's"]
     header += ["largest usable step, 1 pass", "largest usable step, 2 passes"]
     rows, found = [], []
     for (name, n), (steps, errors, fit) in order_fits(results).items():
@@ -136,7 +140,8 @@ def orders(results):
         limits = [results.limits.get(("case1", plan.setting(name, n, p).key)) for p in plan.PASSES]
         steps = [NONE if limit is None else f"{limit:.2f}" for limit in limits]
         text = found[-1].text if fit else NONE
-        rows.append([name, n, expected, text, f"{limit_of(name, n):.2f}", *steps])
+        linear = [f"{limit_of(name, n, made):.2f}" for made in (kernel.tuned, kernel.gear)]
+        rows.append([name, n, expected, text, *linear, *steps])
     return Table(header, rows), found
 
 

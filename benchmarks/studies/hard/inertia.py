@@ -41,9 +41,9 @@ ORDER, LESS = 8, 0.7
 #: estimates that add up to less call a step right; where they do, errors may not be larger than
 RIGHT, WRONG = 1e-3, 1e-2
 #: errors below are rounding, (position, orientation)
-ROUNDING = (1e-12, 3e-13)
+ROUNDING = (1e-13, 3e-13)
 #: the same of bodies where it is more: sites of thin6, 0.004 from its axis, turn at 700
-MORE_ROUNDING = {"thin6": (1e-12, 1e-11)}
+MORE_ROUNDING = {"thin6": (1e-13, 1e-11)}
 
 
 class Springs(LennardJonesUnits):

@@ -51,7 +51,7 @@ from .common import (
         "tries",
         multiple=True,
         metavar="KEYWORDS",
-        help='Further keywords of the fix to try, such as "formulation second values 9 passes 2".',
+        help='Further keywords of the fix to try, such as "formulation second values 8 corrector gear".',
     ),
 )
 @cloup.option_group(

@@ -21,9 +21,10 @@ from .script import DeckError
 from .worker import TrialError
 
 CONFIRMATION = "formulation first values 6 compensate yes"
+#: the default first; fewer values follow forces that change quickly, more are better where all is smooth
 METHODS = (
-    *(f"formulation second values {n}" for n in (8, 5, 6, 10, 12)),
-    *(f"formulation first values {n}" for n in (5, 6, 8)),
+    *(f"formulation second values {n}" for n in (9, 7, 5, 11)),
+    *(f"formulation first values {n}" for n in (8, 6, 4)),
 )
 #: default errors, in powers of ten of the size of the bodies
 DECADES = (1e-2, 1e-4, 1e-6, 1e-8)

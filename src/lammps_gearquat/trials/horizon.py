@@ -52,7 +52,7 @@ def measure(deck, a=None, b=None, steps=(None, None), time=None, every=None, thr
     if a is None and deck.own != deck.lines:
         raise DeckError(
             f"fix {deck.lines[0].id} gear/quat, keyword tolerance: its steps follow the error, and runs of"
-            " equal steps are compared: give keywords for such a run with --a, such as --a 'values 8', and"
+            " equal steps are compared: give keywords for such a run with --a, such as --a 'values 9', and"
             " its step with --step-a"
         )
     keywords = [None if a is None else deck.lines[0].numerics(a)]

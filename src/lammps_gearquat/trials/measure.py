@@ -16,7 +16,9 @@ from .worker import TrialError, Worker
 
 DECK_ITSELF = "the deck's own"
 #: keywords of fix gear/quat for a trajectory to compare with; the second ones where it has to be isokinetic
-ACCURATE = tuple(f"formulation {name} values 8 compensate yes" for name in ("second", "first"))
+ACCURATE = tuple(
+    f"formulation {name} values {n} compensate yes" for name, n in (("second", 9), ("first", 8))
+)
 #: a checkpoint is good if steps from it differ from the deck's own by this part of the motion
 CHECKPOINT_ERROR = 1e-6
 
