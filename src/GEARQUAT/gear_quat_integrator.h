@@ -115,19 +115,29 @@ class Integrator {
   /// Velocities of the state into a history of the same pose, and with them the accelerations that
   /// depend on velocities: those of the rotation and, of formulation first, those of the load, which
   /// may be damped.  Other derivatives stay.  load: at this pose.
+  ///
+  /// The corrector sets these rows too, but for the second derivative of the quaternion in formulation
+  /// first.  That changes by what the velocities change of it: to set it in every step would be another
+  /// corrector, unstable with 8 values.
   void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
                       double *rows) const
   {
     const int width = scheme.width(), quat = scheme.quaternion(), row = scheme.first() ? 0 : 1;
     double *rates = rows + width, *qddot = rates + width + quat;
-    double omegadot_body[3], qdot[4];
+    double omegadot_body[3], qdot[4], now[4], kept[4] = {};
     angular_acceleration(body, state, scheme.norm2(state.q), load, omegadot_body);
     quaternion_rate(rows + quat, state.omega_body, qdot);
-    quaternion_acceleration(rows + quat, qdot, omegadot_body, qddot);
+    quaternion_acceleration(rows + quat, qdot, omegadot_body, now);
+    if (scheme.first()) {
+      double scaled[3], before[4];    // times h, h^2
+      for (int i = 0; i < 3; ++i) scaled[i] = h * rates[Scheme::OMEGA + i];
+      quaternion_acceleration(rows + quat, rates + quat, scaled, before);
+      for (int i = 0; i < 4; ++i) kept[i] = qddot[i] - 0.5 * before[i];
+    }
     for (int i = 0; i < 3; ++i) rates[Scheme::POSITION + i] = h * state.velocity[i];
     for (int i = 0; i < 4; ++i) {
       rates[quat + i] = h * qdot[i];
-      qddot[i] *= 0.5 * h * h;
+      qddot[i] = kept[i] + 0.5 * h * h * now[i];
     }
     if (scheme.first()) {
       for (int i = 0; i < 3; ++i) {

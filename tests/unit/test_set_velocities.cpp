@@ -1,5 +1,6 @@
 /* Integrator::set_velocities(): a thermostat scales the velocities of a body again and again.  What is
-   left of the history makes the motion after it of second order, and not of first. */
+   left of the history makes the motion after it of second order, and not of first, and it is no
+   corrector of its own. */
 
 #include "checks.h"
 #include "drive.h"
@@ -91,4 +92,28 @@ TEST(SetVelocities, RodUnderTorque)
     EXPECT_GT(Check::smallest(Check::slopes(STEPS, error)), 1.8) << scheme;
     EXPECT_LT(Check::slopes(STEPS, wrong).back(), 1.5) << scheme;
   }
+}
+
+/// A thermostat that has nothing to do leaves the motion as it is: velocities are set to what they are
+/// after every step of a spinning top.
+TEST(SetVelocities, TheSameInEveryStep)
+{
+  constexpr double H = 0.05;    // few values follow it less exactly than this test asks
+  const RigidBody body = {1.0, {3.0, 2.0, 1.2}};
+  const BodyState start = {{}, {0.0, 0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {1.0, 0.4, 0.5}};
+  for (const bool tuned : {false, true})
+    for (Scheme scheme : every_scheme(2)) {
+      if (scheme.first() ? scheme.values() < 5 : scheme.values() < 6) continue;
+      scheme.tuned = tuned;
+      if (tuned && !has_tuned(scheme.formulation, scheme.values())) continue;
+      Motion left(body, start, free_of_load, scheme, H, Start::BOOTSTRAP, H);
+      Motion set(body, start, free_of_load, scheme, H, Start::BOOTSTRAP, H);
+      for (int n = 0; n < 2000; ++n) {
+        left.step();
+        set.step();
+        set.integrator.set_velocities(body, set.state(), Load{}, set.rows);
+      }
+      EXPECT_LT(Check::quaternion_distance(left.state().q, set.state().q), 1e-6)
+          << scheme << (tuned ? ", tuned" : "");
+    }
 }
