@@ -326,6 +326,18 @@ def test_growth_of_stable_steps():
         assert 0.85 * bound < max(of_n) < bound
 
 
+def test_noise_of_the_manual():
+    """Random forces: what tuned sets make of them is compared with Gear's at the limit."""
+    text = " ".join(MANUAL.split())
+    words = r"only \*values (\d)\* suits .*? and \*values (\d)\* or fewer in \*first\*"
+    second, first = map(int, re.search(words, text).groups())
+    suited = {}
+    for formulation, values, limit in (("second", SECOND, 6), ("first", FIRST, 4)):
+        most = 1.001 * kernel.gear(formulation, limit).noise
+        suited[formulation] = [n for n in values if kernel.tuned(formulation, n).noise <= most]
+    assert suited == {"second": [second], "first": list(range(3, first + 1))}
+
+
 def fastest(corrector):
     """Radians a step up to which a free top keeps its energy for 2000 steps."""
     steps, rate = np.arange(0.05, 1.2, 0.025), 1.24

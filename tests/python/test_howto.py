@@ -121,7 +121,7 @@ def test_estimated_errors_fall_as_is_said(lmp_wheel):
             script = edited(script, new)
         thermo = passes(lmp_wheel, script).thermo[-1]
         estimates.append(np.array([thermo[f"f_move[{i}]"][10:] for i in (5, 7)]))
-    assert np.median(estimates[0] / estimates[1], axis=1) == pytest.approx(2**8, rel=0.3)
+    assert np.median(estimates[0] / estimates[1], axis=1) == pytest.approx(2**9, rel=0.3)
 
 
 def test_commands_that_choose_a_step(pasted, lmp_wheel):

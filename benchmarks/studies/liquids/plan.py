@@ -5,15 +5,18 @@ Another liquid needs an entry of LIQUIDS, its files ``liquid.KEY`` and ``molecul
 
 from dataclasses import dataclass
 
-from benchmarks.engine.methods import DEFAULTS, GEARS, rigid
+from benchmarks.engine.methods import DEFAULT_PASSES, DEFAULTS, GEARS, gear, rigid
 
 NVE_SMALL = rigid("rigid/nve/small", "rigid")
 SMALL = rigid("rigid/small", "rigid_verlet")
 SECOND, FIRST = DEFAULTS["second"], DEFAULTS["first"]
+#: what the manual recommends for liquids at long steps
+LONG_STEPS = gear("second", 7, passes=DEFAULT_PASSES)
 #: how the page calls them
 NAMES = {
     SECOND: "second formulation, default",
     FIRST: "first formulation, default",
+    LONG_STEPS: "second formulation, `values 7`",
     GEARS["second"]: "second formulation, Gear's coefficients",
     GEARS["first"]: "first formulation, Gear's coefficients",
     NVE_SMALL: f"`{NVE_SMALL.label}`",
