@@ -124,10 +124,11 @@ def test_a_restart_with_another_history_says_so(liquid, lmp, after):
 @pytest.mark.parametrize("before, after", [("gear", "tuned"), ("tuned", "gear")])
 def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
     """A warning names both; with the same one nothing is said."""
-    _, whole = liquid(f"corrector {before}", steps=40)
-    liquid(f"corrector {before}", run="run 20\nwrite_restart half.restart")
+    _, whole = liquid(f"corrector {before} values 8", steps=40)
+    liquid(f"corrector {before} values 8", run="run 20\nwrite_restart half.restart")
     for corrector in (before, after):
-        deck = water("data.water", f"gear/quat molecule corrector {corrector}", dt=0.5, steps=40)
+        words = f"gear/quat molecule corrector {corrector} values 8"
+        deck = water("data.water", words, dt=0.5, steps=40)
         result = lmp.succeed(restarted(deck, "half.restart").replace("run 40", "run 20"))
         said = f"written with corrector {before}; its histories go on with corrector {after}"
         assert (said in result.output) == (corrector == after)

@@ -272,7 +272,7 @@ def test_energy_is_kept_with_the_methods_order(lmp_tree, kind, formulation):
     """The energy of everything at the end, against that of the start, at halved steps."""
     errors = []
     values = {"first": 5, "second": 6}[formulation]
-    fix = f"custom v_pair formulation {formulation} values {values}"
+    fix = f"custom v_pair formulation {formulation} corrector gear values {values}"  # order 5
     for dt in (0.032, 0.016, 0.008):
         text = clustered(kind, fix=fix, dt=dt, steps=round(0.8 / dt))
         thermo = lmp_tree.succeed(text).thermo[0]

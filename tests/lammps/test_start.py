@@ -243,8 +243,8 @@ def two_fixes(lmp, steps, dt, first="", second="", **settings):
 
 
 PAIRS = {
-    "alike": ("", "", "order 9"),
-    "of two formulations": ("formulation first", "values 8 corrector gear", "order 7 and 9"),
+    "alike": ("", "", "order 8"),
+    "of two formulations": ("formulation first", "values 8 corrector gear", "order 8 and 9"),
     "of other numbers": ("values 9 corrector gear", "values 7 corrector gear", "order 9 and 7"),
 }
 
@@ -271,7 +271,7 @@ def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
     """Both begin anew, with full order; where forces cannot be followed the other one goes on."""
     again = "timestep 0.02\nrun 10\nunfix move\nfix move right gear/quat molecule\n"
     result, _ = two_fixes(lmp_tree, 10, 0.02, after=again, ranks=ranks)
-    said = "Fix gear/quat other and move: start of order 9 from"
+    said = "Fix gear/quat other and move: start of order 8 from"
     assert result.stdout.count(said) == 2 and FALLBACK not in result.stdout
     few = "values 5 corrector gear"
     noisy = "fix noise all langevin 0.1 0.1 10.0 4711\n" + again
@@ -285,11 +285,11 @@ def test_a_fix_that_goes(lmp_tree):
     after = "timestep 0.02\nfix_modify move energy yes\nthermo 10\nrun 20\nunfix other\nrun 20\n"
     result, _ = two_fixes(lmp_tree, 10, 0.02, after=after)
     assert "Fix gear/quat move: other fixes move atoms than in the last steps" in result.stdout
-    assert result.stdout.count("start of order 9 from") == 2
+    assert result.stdout.count("start of order 8 from") == 2
 
 
 def test_tolerance_beside_another_fix(lmp_tree):
     """The first step is made shorter before either has begun it."""
     result, _ = two_fixes(lmp_tree, 10, 0.5, second="tolerance 1e-9")
     assert "first step" in result.stdout and "WARNING" not in result.output
-    assert "start of order 9 and 11 from" in result.stdout
+    assert "start of order 8 and 11 from" in result.stdout
