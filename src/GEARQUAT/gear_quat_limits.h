@@ -63,14 +63,14 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
   return s;
 }
 
-constexpr int FLIGHT_STEPS = 100;
+constexpr int FLIGHT_STEPS = 100, LONG_FLIGHT_STEPS = 5000;
 
 /// Radians in a step; whatever the method, a slower rotation survives.
 constexpr double FLIGHT_SLOW = 0.1;
 
-/// False if the body goes astray within FLIGHT_STEPS steps without any load.
+/// False if the body goes astray within so many steps without any load.
 inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const BodyState &state,
-                            double h)
+                            double h, int steps = FLIGHT_STEPS)
 {
   const Integrator integrator(scheme, h);
   const MotionLimits limits(h, std::numeric_limits<double>::infinity());
@@ -81,7 +81,7 @@ inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const B
   for (double &component : still.velocity) component = 0.0;
   if (!limits.keep(still)) return false;
   seed(scheme, body, local_series(body, still, none, h), h, h, rows);
-  for (int step = 0; step < FLIGHT_STEPS; ++step) {
+  for (int step = 0; step < steps; ++step) {
     integrator.predict(rows);
     if (!limits.keep_velocities(integrator.body_state(body, rows))) return false;
     integrator.correct(body, none, rows);
@@ -90,12 +90,12 @@ inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const B
   return true;
 }
 
-/// The longest step, of h and its halves, thirds, ..., that the flight survives.
+/// The longest step, of h and its halves, thirds, ..., that the long flight survives.
 inline double longest_step(const Scheme &scheme, const RigidBody &body, const BodyState &state,
                            double h)
 {
   int parts = 1;
-  while (parts < 1000 && !survives_flight(scheme, body, state, h / parts))
+  while (parts < 1000 && !survives_flight(scheme, body, state, h / parts, LONG_FLIGHT_STEPS))
     parts += parts < 10 ? 1 : parts / 5;
   return h / parts;
 }
