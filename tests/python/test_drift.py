@@ -143,7 +143,7 @@ def test_methods_of_a_kind_look_alike_and_differ():
     look = looks(methods)
     assert set(look) == set(methods)
     assert len({own["color"] for own in look.values()}) == len(methods)
-    second, high, first = gear("second", 8), gear("second", 10), gear("first", 5)
+    second, high, first = gear("second", 6), gear("second", 10), gear("first", 5)
     assert look[second]["marker"] == look[high]["marker"] != look[first]["marker"]
 
 

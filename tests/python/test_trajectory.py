@@ -40,7 +40,7 @@ def test_reference_check_can_fail(run_case, formulation):
 
 
 @pytest.mark.parametrize(
-    "formulation, steps, order", [("first", (0.1, 0.05, 0.02), 4.7), ("second", (0.1, 0.05), 6.6)]
+    "formulation, steps, order", [("first", (0.2, 0.1), 6.6), ("second", (0.2, 0.1), 6.6)]
 )
 def test_order(run_case, formulation, steps, order):
     found = [errors(run_case, (200,), dt, formulation=formulation)[0] for dt in steps]
