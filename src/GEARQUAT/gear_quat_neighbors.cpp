@@ -104,6 +104,7 @@ void Neighbors::init()
   taken.clear();
   watched.clear();
   warned_change = false;
+  tell_friction();
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
     tell_noise(other);
@@ -147,6 +148,30 @@ void Neighbors::tell_noise(const Fix *other)
                    "Fix gear/quat: forces of fix {} ({}) are random, and {} values make heat of "
                    "them; use {}",
                    other->id, other->style, args.scheme.values(), remedy);
+}
+
+/// Forces see predicted velocities, which limits the friction that a step can take.
+void Neighbors::tell_friction()
+{
+  constexpr double ENOUGH = 0.1;    // of a momentum in a step
+  const double most = largest_friction(args.scheme);
+  if (warned_friction || most >= ENOUGH) return;
+  std::string source;
+  if (force->pair && force->pair_match("^gran", 0, 1))
+    source = fmt::format("pair style {}", force->pair_style);
+  for (const auto *other : modify->get_fix_list())
+    if ((utils::strmatch(other->style, "^viscous") ||
+         utils::strmatch(other->style, "^wall/gran")) &&
+        shared_atom(other))
+      source = fmt::format("fix {} ({})", other->id, other->style);
+  if (source.empty()) return;
+  warned_friction = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {}: forces of {} depend on velocities, and {} values gain energy "
+                   "if they take more than {} of a momentum in a step; use {} or a shorter step",
+                   fix->id, source, args.scheme.values(), most,
+                   args.scheme.first() ? "fewer values" : "formulation first or values 4");
 }
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.

@@ -66,9 +66,11 @@ class Neighbors : protected Pointers {
   size_t sample = 0;                   ///< the site that is looked at next
   double noted[3];                     ///< its velocity or place
   bool warned_noise = false;           ///< of random forces
+  bool warned_friction = false;        ///< of forces that depend on velocities
   bool warned_change = false;          ///< of a change by something unknown in this run
 
   void tell_noise(const Fix *other);
+  void tell_friction();
   tagint shared_atom(const Fix *other) const;
   void refuse(const Fix *other, const NeighborRule &row, tagint atom) const;
   bool gather_impulses();

@@ -80,6 +80,32 @@ inline std::string remedy_for_noise(const Scheme &scheme, Noise noise)
   return "corrector gear and values " + std::to_string(most) + " at most";
 }
 
+/// Whether the momentum of a free body fades under a friction that takes this part of it in a step.
+/// The force is that of the predicted velocity, as in a step of the fix.
+inline bool friction_fades(const Scheme &scheme, double part)
+{
+  constexpr int STEPS = 2000;
+  const CorrectorCoefficients c(scheme);
+  const double *driven = (scheme.first() ? c.momentum : c.position).data();
+  const int n = scheme.values(), order = scheme.first() ? 1 : 2;
+  double rows[MAX_VALUES] = {};
+  rows[order - 1] = 1.0;
+  for (int step = 0; step < STEPS; ++step) {
+    Nordsieck<1>::predict(rows, n);
+    const double residual = -part / order * rows[order - 1] - rows[order];
+    Nordsieck<1>::correct<1>(rows, n, driven, 0, &residual);
+  }
+  return std::fabs(rows[order - 1]) < 1.0;
+}
+
+/// The largest part of a momentum, in hundredths, that friction may take in a step.
+inline double largest_friction(const Scheme &scheme)
+{
+  int hundredths = 0;
+  while (hundredths < 100 && friction_fades(scheme, 0.01 * (hundredths + 1))) ++hundredths;
+  return 0.01 * hundredths;
+}
+
 }    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -282,6 +282,15 @@ def test_log_and_warning_agree_on_random_forces(lmp_wheel, words, most):
     assert "heat" not in lmp_wheel.succeed(two_molecules(f"molecule {mended}", after=after)).words
 
 
+@pytest.mark.parametrize(
+    "words, warned", [("", True), ("values 4", False), ("formulation first", False)]
+)
+def test_friction_that_a_step_cannot_take_is_warned_of(lmp_wheel, words, warned):
+    deck = two_molecules(f"molecule {words}", after="fix drag all viscous 0.01\nrun 1")
+    told = "forces of fix drag (viscous) depend on velocities, and 9 values gain energy"
+    assert (told in lmp_wheel.succeed(deck).words) == warned
+
+
 SRD = """
 units lj
 atom_style sphere

@@ -326,6 +326,32 @@ TEST(Noise, OfRandomForcesIsTheGain)
     EXPECT_NEAR(measured_gain(scheme) / noise_gain(scheme), 1.0, 0.03) << scheme;
 }
 
+TEST(Friction, FadesUpToTheLimit)
+{
+  RigidBody body = {2.5, {1.0, 1.0, 1.0}};
+  BodyState start = {};
+  start.q[3] = start.velocity[1] = 1.0;
+  for (const Scheme &scheme : {scheme_of(SECOND, 8), tuned(scheme_of(SECOND, 9)),
+                               tuned(scheme_of(SECOND, 4)), tuned(scheme_of(FIRST, 8))})
+    for (const double off : {-0.02, 0.02}) {
+      const double part = largest_friction(scheme) + off, h = 0.5;
+      const LoadOf load = [&](const BodyState &s, double) {
+        Load l = {};
+        for (int i = 0; i < 3; ++i) l.force[i] = -part / h * body.mass * s.velocity[i];
+        return l;
+      };
+      Motion motion(body, start, load, scheme, h, Start::FORCES, h);
+      motion.steps(4000);
+      EXPECT_EQ(std::fabs(motion.state().velocity[1]) < 1.0, off < 0.0) << scheme << ' ' << part;
+    }
+}
+
+TEST(Friction, IsSmallerInTheSecondFormulation)
+{
+  EXPECT_GT(largest_friction(tuned(scheme_of(FIRST, 8))),
+            5.0 * largest_friction(tuned(scheme_of(SECOND, 9))));
+}
+
 TEST(Noise, GrowsWithTheNumberOfGearsValues)
 {
   for (const Formulation formulation : {FIRST, SECOND}) {
