@@ -347,7 +347,7 @@ def fastest(corrector):
 
 def test_turns_in_a_step():
     text = " ".join(MANUAL.split())
-    words = r"turn by (\S+) radians per step and more with every number of values, by (\S+) with"
+    words = r"turn by (\S+) radians per step and more with every number of tuned values, by (\S+) with"
     all_of_them, default = map(float, re.search(words, text).groups())
     limits = {}
     for formulation, values in (("second", SECOND), ("first", FIRST)):
