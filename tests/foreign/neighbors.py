@@ -308,7 +308,7 @@ class Campaign:
                 outcome.faults.append(f"rigid: {wrong}")
         elif answers:
             apart = distances(*answers)
-            wrong = worst(apart, dict.fromkeys(apart, BROAD))
+            wrong = worst(apart, dict.fromkeys(apart, max(BROAD, outcome.a_try.floor)))
             if wrong:
                 outcome.faults.append(f"rigid at the same step: {wrong}")
 
