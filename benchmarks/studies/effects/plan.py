@@ -106,7 +106,7 @@ EFFECTS = (
         "masks",
         moved(words="force * on on off"),
         MOVED,
-        own=r"GearQuat::Motion::correct|GearQuat::Bodies::acting",
+        own=r"correct_bodies<true>|GearQuat::Bodies::acting",
     ),
     Effect(
         "thermostat",
