@@ -154,8 +154,7 @@ void Neighbors::tell_noise(const Fix *other)
 void Neighbors::tell_friction()
 {
   constexpr double ENOUGH = 0.1;    // of a momentum in a step
-  const double most = largest_friction(args.scheme);
-  if (warned_friction || most >= ENOUGH) return;
+  if (warned_friction) return;
   std::string source;
   if (force->pair && force->pair_match("^gran", 0, 1))
     source = fmt::format("pair style {}", force->pair_style);
@@ -166,12 +165,14 @@ void Neighbors::tell_friction()
       source = fmt::format("fix {} ({})", other->id, other->style);
   if (source.empty()) return;
   warned_friction = true;
-  if (comm->me == 0)
+  const double most = largest_friction(args.scheme);
+  if (most < ENOUGH && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat {}: forces of {} depend on velocities, and {} values gain energy "
                    "if they take more than {} of a momentum in a step; use {} or a shorter step",
                    fix->id, source, args.scheme.values(), most,
-                   args.scheme.first() ? "fewer values" : "formulation first or values 4");
+                   args.scheme.first() || !args.scheme.tuned ? "fewer values"
+                                                             : "formulation first or values 4");
 }
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
