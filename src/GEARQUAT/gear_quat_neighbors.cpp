@@ -169,7 +169,7 @@ void Neighbors::tell_friction()
   if (most < ENOUGH && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat {}: forces of {} depend on velocities, and {} values gain energy "
-                   "if they take more than {} of a momentum in a step; use {} or a shorter step",
+                   "if they take more than {} of a momentum in a step; use {}, or a shorter step",
                    fix->id, source, args.scheme.values(), most,
                    args.scheme.first() || !args.scheme.tuned ? "fewer values"
                                                              : "formulation first or values 4");
