@@ -122,6 +122,7 @@ void Bodies::gather_loads(double **f, double **torque)
   sum_loads();
 
   const double ftm2v = force->ftm2v;
+  if (ftm2v == 1.0) return;
   for (int ibody = 0; ibody < nmove; ++ibody)
     for (int k = 0; k < 3; ++k) {
       load[ibody].force[k] *= ftm2v;
