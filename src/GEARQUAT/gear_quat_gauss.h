@@ -97,6 +97,17 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
   return damped;
 }
 
+/// What Gauss's principle adds to force and torque; nothing without a constraint.
+struct Undamped {
+  double force(double met, double) const { return met; }
+  double torque(double met, double) const { return met; }
+};
+struct Damping {
+  Multipliers alpha;
+  double force(double met, double p) const { return met - alpha.translation * p; }
+  double torque(double met, double l) const { return met - alpha.rotation * l; }
+};
+
 }    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -27,17 +27,6 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What the corrector tells of a step.
-struct Correction {
-  double work;    ///< of the load along the way from the predicted to the corrected pose
-  double position_error2, quaternion_error2;    ///< squared estimates of the local errors
-
-  /// Estimated local error of the center of mass, length.
-  double position_error() const { return std::sqrt(position_error2); }
-  /// Estimated local error of the orientation, radians.
-  double angle_error() const { return 2.0 * std::sqrt(quaternion_error2); }
-};
-
 class Integrator {
  public:
   /// h: the time step, not zero; negative runs backwards.  Throws std::domain_error if the scheme
@@ -285,19 +274,9 @@ class Integrator {
   int n;
   CorrectorCoefficients c;
 
-  /// What Gauss's principle adds to force and torque; nothing without a constraint.
-  struct Undamped {
-    double force(double met, double) const { return met; }
-    double torque(double met, double) const { return met; }
-  };
-  struct Damping {
-    Multipliers alpha;
-    double force(double met, double p) const { return met - alpha.translation * p; }
-    double torque(double met, double l) const { return met - alpha.rotation * l; }
-  };
-
   static void copy(const double *from, int n, double *to)
   {
+#pragma GCC unroll 4
     for (int i = 0; i < n; ++i) to[i] = from[i];
   }
 
@@ -432,9 +411,10 @@ class Integrator {
     // quaternions (Eqs. 6, 7, 18): with c_2 = 1 the residuals of all passes add up to target -
     // prediction, so the history is corrected once
 
-    double *total = pending.total.q;
+    double total[4] = {0.0, 0.0, 0.0, 0.0};
     for (int pass = 0; pass < scheme.passes; ++pass) {
       double omega_body[3], omegadot_body[3], q_pass[4], qdot[4];
+#pragma GCC unroll 4
       for (int i = 0; i < 4; ++i) {
         q_pass[i] = q[i] + c.quaternion[0] * total[i];
         qdot[i] = (rates[quat + i] + c.quaternion[1] * total[i]) * per_h;
@@ -442,9 +422,11 @@ class Integrator {
       angular_velocity(q_pass, scheme.norm2(q_pass), qdot, omega_body);
       angular_acceleration(body, per_inertia, pending.torque_body, omega_body, omegadot_body);
       quaternion_acceleration(q_pass, qdot, omegadot_body, target);
+#pragma GCC unroll 4
       for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[quat + i];
     }
     history.template correct<4>(rows, n, c.quaternion.data(), quat, total);
+    copy(total, 4, pending.total.q);
     if (!scheme.project) return;
 
     // a rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4)

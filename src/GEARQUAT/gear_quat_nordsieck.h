@@ -89,6 +89,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   {
     double *sum = rows + row * WIDTH + component;
     if (row >= CARRIES) {
+#pragma GCC unroll 4
       for (int c = 0; c < COUNT; ++c) sum[c] += value[c];
       return;
     }
@@ -131,6 +132,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
                       const double *residual)
   {
     double r[COUNT];    // a copy: residual might be in `rows`, for all the compiler knows
+#pragma GCC unroll 4
     for (int c = 0; c < COUNT; ++c) r[c] = residual[c];
     for (int j = 0; j < CARRIES; ++j) {
       double value[COUNT];
@@ -138,9 +140,10 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
       add<COUNT>(rows, n, j, component, value);
     }
     for (int j = CARRIES; j < n; ++j) {
+      const double coefficient = coefficients[j];
       double *row = rows + j * WIDTH + component;
 #pragma GCC unroll 4
-      for (int c = 0; c < COUNT; ++c) row[c] += coefficients[j] * r[c];
+      for (int c = 0; c < COUNT; ++c) row[c] += coefficient * r[c];
     }
   }
 

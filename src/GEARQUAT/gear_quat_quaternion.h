@@ -93,6 +93,7 @@ inline void angular_velocity(const double *q, double norm2, const double *qdot, 
 {
   w_transposed_times(q, qdot, omega_body);
   const double factor = 2.0 / norm2;
+#pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) omega_body[i] *= factor;
 }
 

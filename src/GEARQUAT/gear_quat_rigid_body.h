@@ -62,6 +62,17 @@ struct Load {
   double torque_space[3];
 };
 
+/// What the corrector tells of a step.
+struct Correction {
+  double work;    ///< of the load along the way from the predicted to the corrected pose
+  double position_error2, quaternion_error2;    ///< squared estimates of the local errors
+
+  /// Estimated local error of the center of mass, length.
+  double position_error() const { return std::sqrt(position_error2); }
+  /// Estimated local error of the orientation, radians.
+  double angle_error() const { return 2.0 * std::sqrt(quaternion_error2); }
+};
+
 /// omegadot_body, Eq. 7.  An axis without inertia has no angular acceleration.
 inline void angular_acceleration(const RigidBody &body, const double *torque_body,
                                  const double *omega_body, double *omegadot_body)
