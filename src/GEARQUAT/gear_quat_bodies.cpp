@@ -171,8 +171,12 @@ void Bodies::update_ghosts()
     drop_ghosts();
     share_large();
     if (comm->nprocs > 1) {
-      for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; ++i) owned[i] = -1;
-      if (nlarge < nbodies) tell_ghosts();
+      std::fill(owned.begin() + atom->nlocal, owned.end(), -1);
+      std::fill(shared.begin(), shared.end(), -1);
+      if (nlarge < nbodies) {
+        share_owners();
+        tell_ghosts();
+      }
     }
     list_bodies();
     frame.resize(state.size());
@@ -181,7 +185,22 @@ void Bodies::update_ghosts()
   } while (!take_stock());
 }
 
-/// The IDs of their bodies for ghost atoms, and the bodies that are not large for ghosts of owner atoms.
+/// Owner atoms of bodies that are not large learn whether sites on other ranks look for them.
+void Bodies::share_owners()
+{
+  std::vector<double> sought(atom->nlocal + atom->nghost, 0.0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int owner = in_body(i) ? atom->map(owner_tag[i]) : -1;
+    if (owner >= atom->nlocal) sought[owner] = 1.0;
+  }
+  labels = sought.data();
+  comm->reverse_comm(fix, 1);
+  labels = nullptr;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (sought[i] > 0.0 && owned[i] >= 0 && !is_large(owned[i])) shared[i] = owned[i];
+}
+
+/// The IDs of their bodies for ghost atoms, and the bodies themselves for ghosts of shared owner atoms.
 void Bodies::tell_ghosts()
 {
   forward = Forward::GHOSTS;
@@ -324,6 +343,7 @@ void Bodies::grow_arrays(int n)
   body_id.resize(n);
   owner_tag.resize(n);
   owned.resize(n, -1);
+  shared.resize(n, -1);
   site_body.resize(n);
   extended.grow(n);
 }
@@ -331,7 +351,7 @@ void Bodies::grow_arrays(int n)
 void Bodies::set_arrays(int i)
 {
   body_id[i] = owner_tag[i] = 0;
-  owned[i] = -1;
+  owned[i] = shared[i] = -1;
   site_body[i] = {};
   extended.set(i);
 }
@@ -349,7 +369,7 @@ void Bodies::copy_arrays(int from, int to, int delflag)
 
 double Bodies::memory_usage() const
 {
-  const double per_atom = 2 * sizeof(tagint) + sizeof(int) + 3 * sizeof(double);
+  const double per_atom = 2 * sizeof(tagint) + 2 * sizeof(int) + 3 * sizeof(double);
   return owned.capacity() * per_atom + rows.capacity() * sizeof(double) +
       body.capacity() * sizeof(Body) + state.capacity() * sizeof(BodyState) +
       load.capacity() * sizeof(Load) + last.capacity() * sizeof(Correction) +

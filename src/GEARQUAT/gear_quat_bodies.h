@@ -7,8 +7,9 @@
 
    A body belongs to the rank that owns its owner atom and migrates with it.  Owned bodies come
    first, then ghost bodies: copies of pose and velocities for atoms whose owner atom is a ghost
-   here.  Centers of mass are unwrapped; atoms are placed with their own image flags, so that bodies
-   need none.
+   here.  Few bodies lie across the border of two ranks, so only the owner atoms of these are shared
+   with their ghosts.  Centers of mass are unwrapped; atoms are placed with their own image flags, so
+   that bodies need none.
 
    A body that reaches further than ghost atoms are seen is large: every rank has it, with its
    history, and moves it as its owner does; its loads are summed over all ranks.  Of all other
@@ -246,9 +247,10 @@ class Bodies : protected Pointers {
 
   // per atom, ghosts too
 
-  std::vector<tagint> body_id;                     ///< the user's ID of its body, 0 for none
-  std::vector<tagint> owner_tag;                   ///< atom ID of the owner of its body
-  std::vector<int> owned;                          ///< the body it owns, or -1
+  std::vector<tagint> body_id;      ///< the user's ID of its body, 0 for none
+  std::vector<tagint> owner_tag;    ///< atom ID of the owner of its body
+  std::vector<int> owned;           ///< the body it owns, or -1
+  std::vector<int> shared;    ///< the same if sites on other ranks are in that body, otherwise -1
   std::vector<std::array<double, 3>> site_body;    ///< from the center of mass, principal frame
 
   /// packed: IDs of body and owner, arm, size of history; behind the arm what `extended` has
@@ -267,6 +269,7 @@ class Bodies : protected Pointers {
   void follow_atom_ids();
   void drop_ghosts();
   void tell_ghosts();
+  void share_owners();
   int add_owned(int atom);
   void remove_owned(int ibody);
   void update_frame(int ibody);
@@ -290,8 +293,6 @@ class Bodies : protected Pointers {
   void describe(const Site &site, SiteCount &count) const;
   void refuse_tears(const Census &found) const;
 
-  /// True if ghosts of its owner atom stand for this body.
-  bool has_ghosts(int ibody) const { return ibody >= 0 && !is_large(ibody); }
   int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + scheme.size(); }
   /// of a large body: atom ID of its owner atom, and what an owner has
   int large_size() const { return 1 + moved_size(); }

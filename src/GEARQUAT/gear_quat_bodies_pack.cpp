@@ -130,12 +130,12 @@ int Bodies::pack_forward(int n, const int *list, double *buf)
     return m;
   }
   for (int i = 0; i < n; ++i) {
-    const int ibody = owned[list[i]];
+    const int ibody = shared[list[i]];
     if (forward == Forward::GHOSTS) {
       buf[m++] = ubuf(body_id[list[i]]).d;
-      buf[m++] = ubuf(has_ghosts(ibody) ? 1 : 0).d;
-      if (has_ghosts(ibody)) m += pack_body(body[ibody], state[ibody], buf + m);
-    } else if (!has_ghosts(ibody)) {
+      buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
+      if (ibody >= 0) m += pack_body(body[ibody], state[ibody], buf + m);
+    } else if (ibody < 0) {
       continue;
     } else if (forward == Forward::STATES) {
       std::memcpy(buf + m, &state[ibody], sizeof(BodyState));
@@ -159,37 +159,47 @@ void Bodies::unpack_forward(int n, int first, const double *buf)
     if (forward == Forward::GHOSTS) {
       body_id[i] = (tagint) ubuf(buf[m++]).i;
       if (ubuf(buf[m++]).i == 0) continue;
-      owned[i] = (int) body.size();
+      owned[i] = shared[i] = (int) body.size();
       body.emplace_back();
       state.emplace_back();
       m += unpack_body(buf + m, body.back(), state.back());
-    } else if (owned[i] >= 0 && forward == Forward::STATES) {
-      std::memcpy(&state[owned[i]], buf + m, sizeof(BodyState));
+    } else if (shared[i] >= 0 && forward == Forward::STATES) {
+      std::memcpy(&state[shared[i]], buf + m, sizeof(BodyState));
       m += STATE_SIZE;
-    } else if (owned[i] >= 0) {
-      std::memcpy(&load[owned[i]], buf + m, sizeof(Load));
+    } else if (shared[i] >= 0) {
+      std::memcpy(&load[shared[i]], buf + m, sizeof(Load));
       m += LOAD_SIZE;
     }
   }
 }
 
+/// Labels of atoms, while there are any, or else loads.
 int Bodies::pack_reverse(int n, int first, double *buf)
 {
+  if (labels) {
+    std::copy_n(labels + first, n, buf);
+    return n;
+  }
   int m = 0;
   for (int i = first; i < first + n; ++i) {
-    if (owned[i] < 0) continue;
-    std::memcpy(buf + m, &load[owned[i]], sizeof(Load));
+    if (shared[i] < 0) continue;
+    std::memcpy(buf + m, &load[shared[i]], sizeof(Load));
     m += LOAD_SIZE;
   }
   return m;
 }
 
+/// Both are added up.
 void Bodies::unpack_reverse(int n, const int *list, const double *buf)
 {
+  if (labels) {
+    for (int i = 0; i < n; ++i) labels[list[i]] += buf[i];
+    return;
+  }
   int m = 0;
   for (int i = 0; i < n; ++i) {
-    const int ibody = owned[list[i]];
-    if (!has_ghosts(ibody)) continue;
+    const int ibody = shared[list[i]];
+    if (ibody < 0) continue;
     for (int k = 0; k < 3; ++k) load[ibody].force[k] += buf[m++];
     for (int k = 0; k < 3; ++k) load[ibody].torque_space[k] += buf[m++];
   }

@@ -29,9 +29,10 @@ class ExtractTest : public Command {
     const double ke = *(const double *) get("ke", 0);
     const double erotational = *(const double *) get("erotational", 0);
 
-    // atoms in bodies, of sensible numbers; masses and moments of the bodies of all these atoms
+    // atoms in bodies, of sensible numbers; masses and moments of the bodies of all these atoms; bodies
+    // that ranks know
 
-    double here[6] = {0, 0, 0, 0, 0, 0}, all[6];
+    double here[7] = {0, 0, 0, 0, 0, 0, double(nbody)}, all[7];
     for (int i = 0; i < atom->nlocal; ++i) {
       if (body[i] < 0) continue;
       here[0] += 1.0;
@@ -39,7 +40,7 @@ class ExtractTest : public Command {
       here[2] += mass[body[i]];
       for (int k = 0; k < 3; ++k) here[3 + k] += inertia[body[i]][k];
     }
-    MPI_Allreduce(here, all, 6, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(here, all, 7, MPI_DOUBLE, MPI_SUM, world);
 
     Molecule **molecules = nullptr;
     if (strcmp(arg[1], "NULL") != 0) molecules = &atom->molecules[atom->find_molecule(arg[1])];
@@ -47,8 +48,9 @@ class ExtractTest : public Command {
     int dim;
     const int unknown = fix->extract("nonsense", dim) == nullptr;
     if (comm->me == 0)
-      utils::logmesg(lmp, "extracted {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} {}\n",
-                     all[0], all[1], all[2], all[3], all[4], all[5], ke, erotational, same, unknown);
+      utils::logmesg(lmp, "extracted {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} {} {}\n",
+                     all[0], all[1], all[2], all[3], all[4], all[5], ke, erotational, same, unknown,
+                     all[6]);
   }
 
  private:

@@ -41,10 +41,23 @@ def test_what_is_extracted(lmp_tree, command, ranks, mol):
     fix = f"gear/quat molecule {mol}"
     result = lmp_tree.succeed(water(data, fix, dt=1.0, before=before, run=run), ranks=ranks)
     line = next(line for line in result.log.splitlines() if line.startswith("extracted"))
-    found = [float(word) for word in line.split()[1:]]
+    *found, _ = (float(word) for word in line.split()[1:])
     thermo = result.thermo[-1]
     right = [3 * N, 3 * N, 3 * N * WATER_MASSES.sum(), *(3 * N * moments())]
     right += [thermo["f_move[1]"][-1], thermo["f_move[2]"][-1], 1, 1]
     assert found == pytest.approx(right, rel=1e-9)
     assert found[6] == pytest.approx(right[6], rel=1e-13) and found[6] > 0.1
     assert 1.01 * np.array(found[:8]) != pytest.approx(right[:8], rel=1e-3)
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_only_bodies_across_a_border_are_known_to_other_ranks(lmp_tree, command, ranks):
+    known = {}
+    for shift in (1.65, 0.0):  # in the middle of their cells, and around the borders of the ranks
+        data = water_data(lmp_tree.folder / "data.water", n=4, shift=shift)
+        run = f"run 0\nplugin load {command}\nextract_test move NULL"
+        result = lmp_tree.succeed(water(data, run=run), ranks=ranks)
+        line = next(line for line in result.log.splitlines() if line.startswith("extracted"))
+        known[shift] = int(line.split()[-1])
+    assert known[1.65] == 4**3
+    assert known[0.0] > 4**3
