@@ -38,6 +38,11 @@ class Integrator {
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       scheme(scheme), h(h), per_h(1.0 / h), n(scheme.values()), c(coefficients)
   {
+    for (int j = 0; j < n; ++j) {
+      double *row = &second[j * Scheme::SECOND_WIDTH];
+      std::fill_n(row + Scheme::POSITION, 3, c.position[j]);
+      std::fill_n(row + Scheme::SECOND_QUATERNION, 4, c.quaternion[j]);
+    }
   }
 
   double step() const { return h; }
@@ -273,6 +278,8 @@ class Integrator {
   double h, per_h;
   int n;
   CorrectorCoefficients c;
+  /// Formulation second: c as rows of a history.
+  std::array<double, MAX_VALUES *Scheme::SECOND_WIDTH> second = {};
 
   static void copy(const double *from, int n, double *to)
   {
@@ -386,55 +393,62 @@ class Integrator {
   }
 
   /// Positions (Eq. 17): forces stay, so one pass is all.
+  void position_residual(const RigidBody &body, const Load &load, const double *rows,
+                         double *residual) const
+  {
+    const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::POSITION;
+    const double half_h2_per_mass = 0.5 * h * h / body.mass;
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) residual[i] = half_h2_per_mass * load.force[i] - seconds[i];
+  }
+
   template <int CARRIES>
   void correct_center(Second<CARRIES> history, const RigidBody &body, const Load &load, Undamped,
                       double *rows, double *residual) const
   {
-    const double *seconds = rows + 2 * scheme.width();
-    const double half_h2_per_mass = 0.5 * h * h / body.mass;
-    double target[3];
-    for (int i = 0; i < 3; ++i) target[i] = half_h2_per_mass * load.force[i];
-    feed_back<3>(history, c.position, rows, seconds, Scheme::POSITION, target, residual);
+    position_residual(body, load, rows, residual);
+    history.template correct<3>(rows, n, c.position.data(), Scheme::POSITION, residual);
   }
 
   template <int CARRIES>
   void correct_all(Second<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
                    Pending &pending) const
   {
-    const int quat = scheme.quaternion(), width = scheme.width();
-    const double *rates = rows + width, *seconds = rows + 2 * width, *q = rows + quat;
+    constexpr int WIDTH = Scheme::SECOND_WIDTH, QUATERNION = Scheme::SECOND_QUATERNION;
+    double *q = rows + QUATERNION, *rates = q + WIDTH, *seconds = rates + WIDTH;
     const double half_h2 = 0.5 * h * h;
-    double target[4], per_inertia[3];
+    double residual[WIDTH] = {}, per_inertia[3], *total = residual + QUATERNION;
     inverse_moments(body, per_inertia);
-    correct_center(history, body, load, Undamped(), rows, pending.total.x);
+    position_residual(body, load, rows, residual + Scheme::POSITION);
 
     // quaternions (Eqs. 6, 7, 18): with c_2 = 1 the residuals of all passes add up to target -
     // prediction, so the history is corrected once
 
-    double total[4] = {0.0, 0.0, 0.0, 0.0};
     for (int pass = 0; pass < scheme.passes; ++pass) {
-      double omega_body[3], omegadot_body[3], q_pass[4], qdot[4];
+      double omega_body[3], omegadot_body[3], q_pass[4], qdot[4], target[4];
 #pragma GCC unroll 4
       for (int i = 0; i < 4; ++i) {
         q_pass[i] = q[i] + c.quaternion[0] * total[i];
-        qdot[i] = (rates[quat + i] + c.quaternion[1] * total[i]) * per_h;
+        qdot[i] = (rates[i] + c.quaternion[1] * total[i]) * per_h;
       }
       angular_velocity(q_pass, scheme.norm2(q_pass), qdot, omega_body);
       angular_acceleration(body, per_inertia, pending.torque_body, omega_body, omegadot_body);
       quaternion_acceleration(q_pass, qdot, omegadot_body, target);
 #pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[quat + i];
+      for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[i];
     }
-    history.template correct<4>(rows, n, c.quaternion.data(), quat, total);
+    history.correct(rows, n, second.data(), residual);
+    copy(residual + Scheme::POSITION, 3, pending.total.x);
     copy(total, 4, pending.total.q);
     if (!scheme.project) return;
 
     // a rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4)
 
     project_row(history, rows);
-    const double radial = -dot4(q, rates + quat);
-    for (int i = 0; i < 4; ++i) target[i] = radial * q[i];
-    history.template add<4>(rows, n, 1, quat, target);
+    const double radial = -dot4(q, rates);
+    double change[4];
+    for (int i = 0; i < 4; ++i) change[i] = radial * q[i];
+    history.template add<4>(rows, n, 1, QUATERNION, change);
   }
 
   /// |q| = 1 (Eq. 3), by what is missing: a compensated row keeps its digits.

@@ -89,7 +89,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   {
     double *sum = rows + row * WIDTH + component;
     if (row >= CARRIES) {
-#pragma GCC unroll 4
+#pragma GCC unroll 13
       for (int c = 0; c < COUNT; ++c) sum[c] += value[c];
       return;
     }
@@ -144,6 +144,19 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
       double *row = rows + j * WIDTH + component;
 #pragma GCC unroll 4
       for (int c = 0; c < COUNT; ++c) row[c] += coefficient * r[c];
+    }
+  }
+
+  /// The same for all components at once, each with coefficients of its own: n rows of them.
+  static void correct(double *rows, int n, const double *coefficients, const double *residual)
+  {
+    double r[WIDTH], change[WIDTH];    // copies, as above
+#pragma GCC unroll 13
+    for (int c = 0; c < WIDTH; ++c) r[c] = residual[c];
+    for (int j = 0; j < n; ++j) {
+#pragma GCC unroll 13
+      for (int c = 0; c < WIDTH; ++c) change[c] = coefficients[j * WIDTH + c] * r[c];
+      add<WIDTH>(rows, n, j, 0, change);
     }
   }
 
