@@ -113,3 +113,21 @@ def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
     fixes = f"fix first low gear/quat single\nfix second high {second}"
     result = lmp_wheel.succeed(deck(fixes, 1e-5, wall=True, style="zero", steps=1))
     assert ("fix wall (wall/gran) knows the bodies of fix first only" in result.output) == told
+
+
+@pytest.mark.parametrize(
+    "style, wall, source",
+    [
+        ("gran/hooke", False, "pair style gran/hooke"),
+        ("granular", False, "pair style granular"),
+        ("zero", True, "fix wall (wall/gran)"),
+        ("zero", False, None),
+    ],
+)
+@pytest.mark.parametrize("words, many", [("", True), ("values 4", False)])
+def test_contacts_that_a_step_cannot_damp_are_warned_of(lmp_wheel, style, wall, source, words, many):
+    fix = f"fix move all gear/quat group 2 low high {words}"
+    result = lmp_wheel.succeed(deck(fix, 1e-5, wall=wall, style=style, steps=1))
+    told = f"forces of {source} depend on velocities, and 9 values gain energy"
+    assert (told in result.words) == (many and source is not None)
+    assert ("depend on velocities" in result.words) == (many and source is not None)
