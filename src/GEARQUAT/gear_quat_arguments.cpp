@@ -129,13 +129,19 @@ void Arguments::check_conditions() const
   };
   for (const auto &row : keyword_table()) {
     if (!given.count(row.name) || !is_on(row.name, "")) continue;
-    for (const auto &condition : row.needs)
-      if (is_on(row.name, condition.only_for) && !is_on(condition.keyword, condition.value))
-        error->all(FLERR, "Fix gear/quat keyword {}{} requires {}{}", row.name,
-                   condition.only_for.empty() ? "" : " " + condition.only_for,
-                   condition.value.empty() ? "keyword " + condition.keyword
-                                           : condition.keyword + " " + condition.value,
-                   because(condition));
+    std::string user = row.name, lacking,
+                reasons;    // all at once: one error should not lead to the next
+    for (const auto &condition : row.needs) {
+      if (!is_on(row.name, condition.only_for) || is_on(condition.keyword, condition.value))
+        continue;
+      if (!condition.only_for.empty()) user = row.name + std::string(" ") + condition.only_for;
+      lacking += (lacking.empty() ? "" : " and ") +
+          (condition.value.empty() ? "keyword " + condition.keyword
+                                   : condition.keyword + " " + condition.value);
+      reasons += because(condition);
+    }
+    if (!lacking.empty())
+      error->all(FLERR, "Fix gear/quat keyword {} requires {}{}", user, lacking, reasons);
     for (const auto &condition : row.excludes)
       if (is_on(row.name, condition.value) && given.count(condition.keyword) &&
           is_on(condition.keyword, ""))

@@ -60,8 +60,8 @@ class IsokineticConstraint : protected Pointers {
     double heat[MAX_VALUES];
   };
   Checkpoint checkpoint() const;
-  /// False if the file is of another kind of constraint.
-  bool restore(const Checkpoint &saved);
+  /// Of the same kind of constraint.
+  void restore(const Checkpoint &saved);
 
  private:
   Bodies &bodies;

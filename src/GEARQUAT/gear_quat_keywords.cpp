@@ -216,17 +216,23 @@ std::string GearQuat::tuned_numbers(bool first, const std::string &between)
   return utils::join_words(numbers, between);
 }
 
-std::string Keyword::possible_values() const
+std::string Keyword::required() const
 {
   if (kind == NUMBER) return "a positive number";
-  if (kind != WORD && kind != INTEGER) return utils::join_words(words, " ");
+  if (kind == INTEGER)
+    return of_formulations(*this, [](const Range &range) {
+      return fmt::format("{} to {}", range.fewest, range.most);
+    });
+  if (kind != WORD) return utils::join_words(words, " ");
   std::string text;
   for (size_t n = 0; n < words.size(); ++n)
     text += (n == 0 ? "" : n + 1 == words.size() ? " or " : ", ") + words[n];
-  if (kind == INTEGER)
-    text = of_formulations(*this, [](const Range &range) {
-      return fmt::format("{} to {}", range.fewest, range.most);
-    });
+  return text;
+}
+
+std::string Keyword::possible_values() const
+{
+  std::string text = required();
   if (most_with_tolerance) text += fmt::format(", at most {} (tolerance)", most_with_tolerance);
   if (of_tables)
     for (const bool first : {false, true})
@@ -250,16 +256,15 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
   const int count = kind == MASK ? (int) words.size() : 1;
   if (narg <= count)
     error->all(FLERR, "Fix gear/quat {}: {} is missing; required: {}", name,
-               kind == MASK ? words[narg - 1] : "the value", possible_values());
+               kind == MASK ? words[narg - 1] : "the value", required());
   value.text = arg[1];
   if (value.text.empty()) error->all(FLERR, "Fix gear/quat {}: the value is an empty word", name);
 
   if (kind == WORD && !std::count(words.begin(), words.end(), value.text))
-    error->all(FLERR, "Fix gear/quat {}: unknown value {} ({})", name, value.text,
-               possible_values());
+    error->all(FLERR, "Fix gear/quat {}: unknown value {} ({})", name, value.text, required());
   if (kind == INTEGER && !read_integer(value.text, value.integer))
     error->all(FLERR, "Fix gear/quat {}: {} is not an integer; required: {}", name, value.text,
-               possible_values());
+               required());
   if (kind == NUMBER) {
     if (utils::is_double(value.text)) value.number = std::strtod(value.text.c_str(), nullptr);
     if (!(value.number > 0.0) || !std::isfinite(value.number))

@@ -136,7 +136,10 @@ struct Keyword {
   /// Reads the words behind arg[0] into value and returns how many they are.  Words that cannot be
   /// meant end the run on all ranks.
   int read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const;
-  /// What is possible, as a sentence has it: "no, short or long", "1 to 100", "M xflag yflag zflag".
+  /// What the words have to be, as a sentence has it: "no, short or long", "1 to 100", "M xflag yflag
+  /// zflag".
+  std::string required() const;
+  /// The same with what holds for some settings of other keywords.
   std::string possible_values() const;
 };
 

@@ -416,10 +416,17 @@ Motion::Checkpoint Motion::checkpoint() const
 void Motion::restore(const Checkpoint &saved)
 {
   const Checkpoint mine = checkpoint();
-  const bool same = saved.formulation == mine.formulation && saved.values == mine.values &&
-      saved.compensate == mine.compensate && saved.variable == mine.variable &&
-      (isokinetic ? isokinetic->restore(saved.isokinetic)
-                  : saved.isokinetic.mode == (double) Isokinetic::NONE);
+  std::vector<std::string> others;    // keywords that had another value
+  const auto compare = [&others](const char *keyword, double before, double now) {
+    if (before != now) others.emplace_back(keyword);
+  };
+  compare("formulation", saved.formulation, mine.formulation);
+  compare("values", saved.values, mine.values);
+  compare("compensate", saved.compensate, mine.compensate);
+  compare("tolerance", saved.variable, mine.variable);
+  compare("isokinetic", saved.isokinetic.mode, mine.isokinetic.mode);
+  const bool same = others.empty();
+  if (isokinetic && same) isokinetic->restore(saved.isokinetic);
   started = saved.started != 0.0 && same;
   if (tolerance && started) tolerance->restore(saved.tolerance);
   last_step = saved.h;
@@ -433,8 +440,7 @@ void Motion::restore(const Checkpoint &saved)
   if (saved.started != 0.0 && !same && comm->me == 0)
     error->warning(
         FLERR,
-        "Fix gear/quat: the restart file has histories of another formulation, another "
-        "number of values, another compensate or another isokinetic, or only one of the two runs "
-        "has a tolerance; "
-        "poses and velocities are kept, the higher derivatives start anew");
+        "Fix gear/quat: the restart file was written with other settings of {}; poses and "
+        "velocities are kept, the higher derivatives start anew",
+        utils::join_words(others, ", "));
 }
