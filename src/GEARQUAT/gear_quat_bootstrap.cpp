@@ -126,14 +126,23 @@ std::string Bootstrap::names() const
   return utils::join_words(ids, " and ");
 }
 
+/// True if forces jump so early that a history begins with a lower order than it can keep.
+bool Bootstrap::lowers_order(const StartFound &start) const
+{
+  return start.verdict == StartPlan::Verdict::JUMPS &&
+      std::any_of(parties.begin(), parties.end(), [&start](const auto &party) {
+           return start.order() < party.scheme.order();
+         });
+}
+
 /// Those that the histories begin with.
 std::string Bootstrap::orders(const StartFound &start) const
 {
-  const bool jumps = start.verdict == StartPlan::Verdict::JUMPS;
   std::string orders;
   for (const auto &party : parties) {
     const int full = party.scheme.order();
-    const std::string order = std::to_string(jumps ? std::min(full, start.order()) : full);
+    const std::string order =
+        std::to_string(lowers_order(start) ? std::min(full, start.order()) : full);
     if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
   }
   return orders;
@@ -237,7 +246,7 @@ StartFound Bootstrap::search(Forces &forces)
   const StartFound start = find_start(most_start_values(parties), first_spacing(), all);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
-    if (start.verdict == StartPlan::Verdict::JUMPS)
+    if (lowers_order(start))
       reason = fmt::format(", because forces vary in jumps, by {:.1g} of the motion in a step",
                            start.change);
     seed_all(start);

@@ -65,6 +65,7 @@ class Bootstrap : protected Pointers {
   struct Search;
   void measure(int node);
   std::string names() const;
+  bool lowers_order(const StartFound &start) const;
   std::string orders(const StartFound &start) const;
   double first_spacing() const;
   StartFound search(Forces &forces);

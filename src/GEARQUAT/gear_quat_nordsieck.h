@@ -46,19 +46,10 @@ struct Scheme {
   int size() const { return (values() + carries() + trial) * width(); }
   int trial_row() const { return (values() + carries()) * width(); }
   /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N keep
-  /// N, and N - 1 with velocity_c0).  Tuned sets of the second formulation with odd N let positions be
-  /// off by a bounded h^(N-1), which does not grow along the way.
-  int order() const
-  {
-    if (tuned) return first() ? values() : values() & ~1;
-    return (velocity_c0 ? values() - 1 : values()) | 1;
-  }
-  /// The number of values whose start has the order that this scheme needs.  From 11 on a rotation needs
-  /// all of it.
-  int start_values() const
-  {
-    return tuned && values() < 11 ? std::min(values(), order()) : values();
-  }
+  /// N, and N - 1 with velocity_c0).  See gear_quat_tuned.h.
+  int order() const;
+  /// The number of values whose start has the order that this scheme needs.
+  int start_values() const { return tuned ? std::min(values(), order()) : values(); }
 
   // columns of a row
 

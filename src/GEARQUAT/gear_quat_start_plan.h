@@ -73,8 +73,13 @@ class StartPlan {
   static constexpr double FALLS = 1.0, CONTRACTS = 0.5;
   // less than rounding takes from velocities in a step; and the rounding of forces, at most
   static constexpr double CONVERGED = 1.0e-15, ROUNDING = 1.0e-9;
-  // the last changes, as a part of what the polynomial leaves out
+  // the last changes, as a part of what the polynomial leaves out; beyond four pairs less, for the
+  // highest derivatives multiply what the pairs inside are off by, unless there is a pair to spare
   static constexpr double ALLOWED = 0.03;
+  double allowed_part() const
+  {
+    return odd || known < 5 ? ALLOWED : std::ldexp(ALLOWED, 3 * (4 - known));
+  }
   // errors inside, as they are extrapolated, as a part of what the last new pair was missed by
   static constexpr double CLEAR = 0.5;
 
@@ -98,7 +103,7 @@ class StartPlan {
   Verdict choose()
   {
     const bool more = known < most && first[known] > CONVERGED;
-    const double allowed = more ? 0.0 : std::max(CONVERGED, ALLOWED * left_out());
+    const double allowed = more ? 0.0 : std::max(CONVERGED, allowed_part() * left_out());
     while (present < round)
       if (contraction * last[++present] > allowed) return Verdict::GOES_ON;
     const double next = contraction * *std::max_element(last + 1, last + known + 1);

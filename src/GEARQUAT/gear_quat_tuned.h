@@ -131,6 +131,7 @@ struct TunedSet {
   std::vector<long double> tail;    ///< c_2 ... c_(N-1) of formulation first, c_3 ... of second
   long double c0 = SOLVED;          ///< where order does not determine it
 
+  bool solves_c0() const { return std::isnan(c0); }
   int values() const { return (int) tail.size() + (formulation == Formulation::FIRST ? 2 : 3); }
 
   /// All N.
@@ -143,7 +144,7 @@ struct TunedSet {
     const SteadyDeviations deviations(q, c);
     c[q - 1] = deviations.consistent();
     if (q == 2) c[0] = deviations.position_c0(c);
-    if (!std::isnan(c0)) c[0] = c0;
+    if (!solves_c0()) c[0] = c0;
     return c;
   }
 };
@@ -237,6 +238,15 @@ inline std::vector<int> tuned_values(Formulation formulation)
   for (int n = 0; n <= MAX_VALUES; ++n)
     if (has_tuned(formulation, n)) values.push_back(n);
   return values;
+}
+
+/// Tuned sets of the second formulation with a c_0 of their own let positions be off by a bounded
+/// h^(N-1), which does not grow along the way.
+inline int Scheme::order() const
+{
+  if (!tuned) return (velocity_c0 ? values() - 1 : values()) | 1;
+  const TunedSet *set = tuned_set(formulation, values(), Columns::POSITION);
+  return set && !set->solves_c0() ? values() - 1 : values();
 }
 
 // ---------------------------------------------------------------------------------------------
