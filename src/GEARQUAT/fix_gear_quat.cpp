@@ -32,7 +32,6 @@
 #include "force.h"
 #include "group.h"
 #include "modify.h"
-#include "output.h"
 #include "update.h"
 
 #include <algorithm>
@@ -253,10 +252,9 @@ void FixGearQuat::finish_step(double **f, double **torque)
   bodies->place_sites(true);
   neighbors->note_velocity();
   table->forget();
-  const bool output_due = output->next == update->ntimestep;
-  if (is_due(readers->of_atoms, update->ntimestep) || output_due)
+  if (is_due(lmp, readers->of_atoms))
     comm->forward_comm();    // ghost atoms are where the forces were taken
-  if (is_due(readers->of_local_data, update->ntimestep) || output_due) show_bodies();
+  if (is_due(lmp, readers->of_local_data)) show_bodies();
 }
 
 /// LAMMPS calls this with keyword tolerance only, when all fixes have finished the step.

@@ -15,6 +15,7 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "output.h"
 #include "update.h"
 #include "utils.h"
 
@@ -191,9 +192,11 @@ Readers GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
   return readers;
 }
 
-bool GearQuat::is_due(const std::vector<int> &periods, bigint step)
+bool GearQuat::is_due(LAMMPS *lmp, const std::vector<int> &periods)
 {
-  return std::any_of(periods.begin(), periods.end(), [step](int period) {
-    return step % period == 0;
-  });
+  const bigint step = lmp->update->ntimestep;
+  return lmp->output->next == step ||
+      std::any_of(periods.begin(), periods.end(), [step](int period) {
+           return step % period == 0;
+         });
 }

@@ -49,8 +49,8 @@ struct Readers {
 };
 Readers readers_at_end(LAMMPS *lmp, const Fix *owner);
 
-/// True if one of the periods ends with this step.
-bool is_due(const std::vector<int> &periods, bigint step);
+/// True if output is due in this step, or one of the periods ends with it.
+bool is_due(LAMMPS *lmp, const std::vector<int> &periods);
 
 }    // namespace LAMMPS_NS::GearQuat
 

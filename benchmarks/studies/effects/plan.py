@@ -71,7 +71,7 @@ EFFECTS = (
         "rotation",
         MOVED,
         POINTS,
-        own=r"GearQuat::Integrator::(correct|body_state|correct_all<.*>)\("
+        own=r"GearQuat::(Integrator|Kinematics)::(correct|body_state|correct_all<.*>)\("
         r"|GearQuat::Bodies::update_frame\(",
     ),
     Effect("torques of forces", MOVED, FULL, own=r"GearQuat::Bodies::gather_loads"),
