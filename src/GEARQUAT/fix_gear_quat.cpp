@@ -61,6 +61,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   restart_global = restart_peratom = restart_file = 1;
 
   args.reset(new Arguments(lmp, narg, arg));
+  ecouple_flag = args->thermostat.damp > 0.0;
   bodies.reset(new Bodies(lmp, this, args->scheme));
   motion.reset(new Motion(lmp, this, *args, *bodies));
   neighbors.reset(new Neighbors(lmp, this, *bodies, *args));
@@ -119,6 +120,10 @@ int FixGearQuat::setmask()
 void FixGearQuat::init()
 {
   refuse_scene(lmp, this, *bodies);
+  if (ecouple_flag && thermo_energy)
+    error->all(FLERR,
+               "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
+               "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
   neighbors->init();
   if (!reported) stated = read_stated(lmp, args->mol);
   motion->init();
@@ -302,7 +307,7 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 
 double FixGearQuat::compute_scalar()
 {
-  return sums->energy_correction();
+  return sums->energy_correction() + motion->energy_of_thermostat();
 }
 
 double FixGearQuat::compute_vector(int n)

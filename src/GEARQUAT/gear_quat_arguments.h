@@ -10,6 +10,7 @@
 
 #include "gear_quat_keywords.h"
 #include "gear_quat_step_control.h"
+#include "gear_quat_thermostat.h"
 #include "pointers.h"
 
 #include <map>
@@ -39,6 +40,7 @@ struct Arguments : protected Pointers {
   std::vector<MaskWords> masks;
   Isokinetic isokinetic;
   bool rescale;
+  ThermostatWords thermostat;    ///< damp 0: none
 
   /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
   /// names the word and what is required.

@@ -24,11 +24,13 @@ using namespace GearQuat;
 void Party::measure()
 {
   if (isokinetic) isokinetic->measure();
+  if (thermostat) thermostat->measure();
 }
 
 Load Party::acting(int ibody) const
 {
-  return isokinetic ? isokinetic->acting(ibody) : bodies->acting(ibody);
+  if (isokinetic) return isokinetic->acting(ibody);
+  return thermostat ? thermostat->acting(ibody) : bodies->acting(ibody);
 }
 
 void Party::seed_local(int terms, double h)
@@ -40,6 +42,7 @@ void Party::seed_local(int terms, double h)
     const double heat[2] = {0.0, h * isokinetic->power()};
     isokinetic->seed_heat(heat, 2, h, h);
   }
+  if (thermostat) thermostat->seed_local(h);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -60,7 +63,10 @@ Bootstrap::Bootstrap(LAMMPS *lmp, const std::vector<Party> &parties, double h) :
 void Bootstrap::measure(int node)
 {
   for (auto &party : parties) {
-    party.measure();
+    if (node == 0 || !party.thermostat)
+      party.measure();
+    else
+      party.thermostat->measure_node(collocation, node);
     if (party.isokinetic) party.power[collocation.pairs() + node] = party.isokinetic->power();
   }
 }
@@ -182,6 +188,7 @@ struct Bootstrap::Search {
     our.measure(0);
     for (auto &party : our.parties) {
       const Bodies &bodies = *party.bodies;
+      if (party.thermostat) party.thermostat->begin_start(our.collocation, spacing, our.h);
       party.work.resize(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         our.collocation.begin(local_series(bodies.rigid_of(ibody), bodies.state_of(ibody),
@@ -192,8 +199,10 @@ struct Bootstrap::Search {
 
   void foretell()
   {
-    for (auto &party : our.parties)
+    for (auto &party : our.parties) {
       for (auto &work : party.work) our.collocation.foretell(work);
+      if (party.thermostat) party.thermostat->foretell(our.collocation);
+    }
   }
 
   bool visit(int pair, double &change)
@@ -204,8 +213,10 @@ struct Bootstrap::Search {
         our.reason = fmt::format("sites would leave the neighbor skin, {}", skin);
         return false;
       }
-    for (auto &party : our.parties)
+    for (auto &party : our.parties) {
       for (auto &work : party.work) our.collocation.settle(pair, work);
+      if (party.thermostat) party.thermostat->settle(our.collocation, pair);
+    }
     change = over_ranks(MPI_MAX, here, our.world);
     return true;
   }
@@ -285,6 +296,7 @@ void Bootstrap::seed_all(const StartFound &start)
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
       seed(party.scheme, bodies.rigid_of(ibody), collocation.series(party.work[ibody], start.pairs),
            start.spacing, h, bodies.history(ibody));
+    if (party.thermostat) party.thermostat->seed(collocation, start.pairs);
     if (!party.isokinetic) continue;
     std::vector<double> heat(party.power.size() + 1);
     const int terms =

@@ -13,6 +13,7 @@
 #include "gear_quat_forces.h"
 #include "gear_quat_isokinetic.h"
 #include "gear_quat_startup.h"
+#include "gear_quat_thermostat.h"
 
 #include <string>
 #include <vector>
@@ -24,13 +25,14 @@ struct Party {
   const Fix *fix;
   Bodies *bodies;                      ///< states and loads are those of the start
   IsokineticConstraint *isokinetic;    ///< null without such a constraint
+  Thermostat *thermostat;              ///< null without
   Scheme scheme;
   bool needed;    ///< false if there are histories, to be kept where not all rows can be found
 
   std::vector<Collocation::Workspace> work = {};
   std::vector<double> power = {};    ///< of all forces at the nodes, where a constraint takes it
 
-  /// The isokinetic constraint takes its sums from the present states and loads.
+  /// Constraint or thermostat take their sums from the present states and loads.
   void measure();
   /// The load that moves a body, after measure().
   Load acting(int ibody) const;

@@ -81,9 +81,26 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
   return {both, both};
 }
 
-/// The load with the forces of the constraint, -alpha p and -alpha L.
+/// The rates at which momenta of one body decay, 1/time: of its momentum along the axes of space, and
+/// of its angular momentum.
+struct Friction {
+  double translation[3] = {0.0, 0.0, 0.0};
+  double rotation = 0.0;
+
+  Friction(const Multipliers &alpha) : rotation(alpha.rotation)
+  {
+    for (double &one : translation) one = alpha.translation;
+  }
+
+  // what acts on component i of a momentum p, or of an angular momentum l along the principal axes
+
+  double force(int i, double met, double p) const { return met - translation[i] * p; }
+  double torque(double met, double l) const { return met - rotation * l; }
+};
+
+/// The load with the forces of friction, -alpha p and -alpha L.
 inline Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
-                        const Multipliers &alpha)
+                        const Friction &alpha)
 {
   double a[9], momentum_body[3], momentum_space[3];
   rotation_matrix(state.q, dot4(state.q, state.q), a);
@@ -91,21 +108,16 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
   to_space(a, momentum_body, momentum_space);
   Load damped = load;
   for (int i = 0; i < 3; ++i) {
-    damped.force[i] -= alpha.translation * body.mass * state.velocity[i];
+    damped.force[i] -= alpha.translation[i] * body.mass * state.velocity[i];
     damped.torque_space[i] -= alpha.rotation * momentum_space[i];
   }
   return damped;
 }
 
-/// What Gauss's principle adds to force and torque; nothing without a constraint.
+/// In place of Friction where there is none.
 struct Undamped {
-  double force(double met, double) const { return met; }
+  double force(int, double met, double) const { return met; }
   double torque(double met, double) const { return met; }
-};
-struct Damping {
-  Multipliers alpha;
-  double force(double met, double p) const { return met - alpha.translation * p; }
-  double torque(double met, double l) const { return met - alpha.rotation * l; }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

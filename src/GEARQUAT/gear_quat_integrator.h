@@ -43,7 +43,14 @@ class Integrator : public Kinematics {
       std::fill_n(row + Scheme::POSITION, 3, c.position[j]);
       std::fill_n(row + Scheme::SECOND_QUATERNION, 4, c.quaternion[j]);
     }
+    const Fractions gear = first_order_coefficients(n);
+    for (int j = 0; j < n; ++j) scalar[j] = scheme.first() ? c.momentum[j] : gear[j].value();
   }
+
+  int values() const { return n; }
+  /// Coefficients of scalars with a first-order equation and as many values: in the first-order form
+  /// those of momenta, otherwise Gear's.
+  const CorrectorCoefficients::Array &scalar_coefficients() const { return scalar; }
 
   void predict(double *rows) const
   {
@@ -85,8 +92,9 @@ class Integrator : public Kinematics {
     return correct(body, load, axes_of(rows).data(), rows);
   }
 
-  // First-order form under a constraint of all bodies together: the same correction pass by pass,
-  // begin(), passes times [alpha of all bodies] -> correct_pass(), then finish(), scale_momenta().
+  // Under a friction that depends on all bodies together: the same correction pass by pass, begin(),
+  // passes times [friction] -> correct_pass(), then finish(), and in the first-order form also
+  // scale_momenta().
 
   struct Residual {    ///< summed over the passes
     double x[3], q[4];
@@ -107,23 +115,35 @@ class Integrator : public Kinematics {
     return pending;
   }
 
-  void correct_pass(const RigidBody &body, const Load &load, const Multipliers &alpha, double *rows,
+  void correct_pass(const RigidBody &body, const Load &load, const Friction &friction, double *rows,
                     Pending &pending) const
   {
-    const Damping damping = {alpha};
-    with_first([&](auto history) {
-      correct_center(history, body, load, damping, rows, pending.total.x);
-      correct_rotation(history, body, pending.torque_body, damping, rows, pending.total.q);
+    with_history([&](auto history) {
+      pass(history, body, load, friction, rows, pending);
     });
   }
 
-  /// Projects |q| = 1.
+  /// The velocities after so many passes.
+  void velocities_of_pass(const RigidBody &body, const double *rows, const Pending &pending,
+                          double *velocity, double *omega_body) const
+  {
+    if (scheme.first()) {
+      for (int i = 0; i < 3; ++i) velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
+      copy(rows + Scheme::OMEGA, 3, omega_body);
+    } else {
+      double q[4], qdot[4];
+      velocity_of_pass(rows, pending.total.x, velocity);
+      rotation_of_pass(rows, pending.total.q, q, qdot);
+      angular_velocity(q, scheme.norm2(q), qdot, omega_body);
+    }
+  }
+
+  /// Projects |q| = 1 and, in the second-order form, q.qdot = 0.
   Correction finish(const Load &load, double *rows, const Pending &pending) const
   {
-    if (scheme.project)
-      with_first([&](auto history) {
-        project_row(history, rows);
-      });
+    with_history([&](auto history) {
+      finish_passes(history, rows, pending);
+    });
     return conclude(load, rows, pending);
   }
 
@@ -183,6 +203,7 @@ class Integrator : public Kinematics {
   CorrectorCoefficients c;
   /// Formulation second: c as rows of a history.
   std::array<double, MAX_VALUES *Scheme::SECOND_WIDTH> second = {};
+  CorrectorCoefficients::Array scalar = {};
 
   /// Residual of a column is target - row, row that of the order of the equation.
   template <int COUNT, class History>
@@ -203,7 +224,7 @@ class Integrator : public Kinematics {
     const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
     double before[3], target[3];
     copy(momentum, 3, before);
-    for (int i = 0; i < 3; ++i) target[i] = h * damper.force(load.force[i], before[i]);
+    for (int i = 0; i < 3; ++i) target[i] = h * damper.force(i, load.force[i], before[i]);
     feed_back<3>(history, c.momentum, rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
@@ -237,6 +258,20 @@ class Integrator : public Kinematics {
     correct_center(history, body, load, Undamped(), rows, total.x);
     for (int pass = 0; pass < scheme.passes; ++pass)
       correct_rotation(history, body, pending.torque_body, Undamped(), rows, total.q);
+    if (scheme.project) project_row(history, rows);
+  }
+
+  template <int CARRIES>
+  void pass(First<CARRIES> history, const RigidBody &body, const Load &load,
+            const Friction &friction, double *rows, Pending &pending) const
+  {
+    correct_center(history, body, load, friction, rows, pending.total.x);
+    correct_rotation(history, body, pending.torque_body, friction, rows, pending.total.q);
+  }
+
+  template <int CARRIES>
+  void finish_passes(First<CARRIES> history, double *rows, const Pending &) const
+  {
     if (scheme.project) project_row(history, rows);
   }
 
@@ -283,8 +318,6 @@ class Integrator : public Kinematics {
                    Pending &pending) const
   {
     constexpr int WIDTH = Scheme::SECOND_WIDTH, QUATERNION = Scheme::SECOND_QUATERNION;
-    double *q = rows + QUATERNION, *rates = q + WIDTH, *seconds = rates + WIDTH;
-    const double half_h2 = 0.5 * h * h;
     double residual[WIDTH] = {}, per_inertia[3], *total = residual + QUATERNION;
     inverse_moments(body, per_inertia);
     position_residual(body, load, rows, residual + Scheme::POSITION);
@@ -292,31 +325,85 @@ class Integrator : public Kinematics {
     // quaternions (Eqs. 6, 7, 18): with c_2 = 1 the residuals of all passes add up to target -
     // prediction, so the history is corrected once
 
-    for (int pass = 0; pass < scheme.passes; ++pass) {
-      double omega_body[3], omegadot_body[3], q_pass[4], qdot[4], target[4];
-#pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i) {
-        q_pass[i] = q[i] + c.quaternion[0] * total[i];
-        qdot[i] = (rates[i] + c.quaternion[1] * total[i]) * per_h;
-      }
-      angular_velocity(q_pass, scheme.norm2(q_pass), qdot, omega_body);
-      angular_acceleration(body, per_inertia, pending.torque_body, omega_body, omegadot_body);
-      quaternion_acceleration(q_pass, qdot, omegadot_body, target);
-#pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[i];
-    }
+    for (int pass = 0; pass < scheme.passes; ++pass)
+      rotation_residual(body, per_inertia, pending.torque_body, Undamped(), rows, total);
     history.correct(rows, n, second.data(), residual);
     copy(residual + Scheme::POSITION, 3, pending.total.x);
     copy(total, 4, pending.total.q);
-    if (!scheme.project) return;
+    if (scheme.project) project(history, rows);
+  }
 
-    // a rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4)
+  /// The residual of the quaternion after one more pass; total: of the passes before.
+  template <class Damper>
+  void rotation_residual(const RigidBody &body, const double *per_inertia,
+                         const double *torque_body, const Damper &damper, const double *rows,
+                         double *total) const
+  {
+    const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::SECOND_QUATERNION;
+    const double half_h2 = 0.5 * h * h;
+    double omega_body[3], torque[3], omegadot_body[3], q[4], qdot[4], target[4];
+    rotation_of_pass(rows, total, q, qdot);
+    angular_velocity(q, scheme.norm2(q), qdot, omega_body);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+      torque[i] = damper.torque(torque_body[i], body.inertia[i] * omega_body[i]);
+    angular_acceleration(body, per_inertia, torque, omega_body, omegadot_body);
+    quaternion_acceleration(q, qdot, omegadot_body, target);
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[i];
+  }
 
+  // what predicted rows and the residuals of a pass stand for
+
+  void rotation_of_pass(const double *rows, const double *total, double *q, double *qdot) const
+  {
+    const double *place = rows + Scheme::SECOND_QUATERNION, *rates = place + Scheme::SECOND_WIDTH;
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+      q[i] = place[i] + c.quaternion[0] * total[i];
+      qdot[i] = (rates[i] + c.quaternion[1] * total[i]) * per_h;
+    }
+  }
+  void velocity_of_pass(const double *rows, const double *total, double *velocity) const
+  {
+    const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
+    for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.position[1] * total[i]) * per_h;
+  }
+
+  /// Finds residuals alone: rows stay predicted until finish_passes().
+  template <int CARRIES>
+  void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Friction &friction,
+            double *rows, Pending &pending) const
+  {
+    double velocity[3], per_inertia[3];
+    Load damped = load;
+    velocity_of_pass(rows, pending.total.x, velocity);
+    for (int i = 0; i < 3; ++i)
+      damped.force[i] = friction.force(i, load.force[i], body.mass * velocity[i]);
+    position_residual(body, damped, rows, pending.total.x);
+    inverse_moments(body, per_inertia);
+    rotation_residual(body, per_inertia, pending.torque_body, friction, rows, pending.total.q);
+  }
+
+  template <int CARRIES>
+  void finish_passes(Second<CARRIES> history, double *rows, const Pending &pending) const
+  {
+    double residual[Scheme::SECOND_WIDTH];
+    copy(pending.total.x, 3, residual + Scheme::POSITION);
+    copy(pending.total.q, 4, residual + Scheme::SECOND_QUATERNION);
+    history.correct(rows, n, second.data(), residual);
+    if (scheme.project) project(history, rows);
+  }
+
+  /// A rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4).
+  template <int CARRIES> void project(Second<CARRIES> history, double *rows) const
+  {
+    const double *q = rows + Scheme::SECOND_QUATERNION, *rates = q + Scheme::SECOND_WIDTH;
+    double change[4];
     project_row(history, rows);
     const double radial = -dot4(q, rates);
-    double change[4];
     for (int i = 0; i < 4; ++i) change[i] = radial * q[i];
-    history.template add<4>(rows, n, 1, QUATERNION, change);
+    history.template add<4>(rows, n, 1, Scheme::SECOND_QUATERNION, change);
   }
 
   /// |q| = 1 (Eq. 3), by what is missing: a compensated row keeps its digits.

@@ -28,6 +28,8 @@ static constexpr char INTEGRATION[] = "integration", STEP[] = "step", BODIES[] =
 static constexpr char HELD[] =
     "it acts on all momenta; define a second fix for the bodies that are held";
 static constexpr char FOR_CORRECTED[] = "tuned coefficients are those for the corrected one";
+static constexpr char ONE_TEMPERATURE[] =
+    "both hold the kinetic energy of the bodies; leave out one of the two";
 static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies come";
 
 using Value = KeywordValue;
@@ -120,6 +122,21 @@ static std::vector<Keyword> make_table()
     Keyword("rescale", PHYSICS, "whether momenta are scaled to exactly that energy",
             [](Arguments &a, const Value &v) { a.rescale = v.is("yes"); })
         .word({"yes", "no"}).requires_also({"isokinetic", "", ""}),
+    Keyword("temp", PHYSICS, "the temperature of all bodies, at the beginning and at the end of a run",
+            [](Arguments &a, const Value &v) {
+              a.thermostat.start = v.numbers[0];
+              a.thermostat.stop = v.numbers[1];
+              a.thermostat.damp = v.numbers[2];
+            }).follows(Keyword::NUMBERS, {"Tstart", "Tstop", "Tdamp"})
+        .cannot_go_with({"isokinetic", "", ONE_TEMPERATURE})
+        .cannot_go_with({"tolerance", "", "the variables of a thermostat have one number of values"})
+        .cannot_go_with({"mol", "", "bodies that come bring degrees of freedom"}),
+    Keyword("tchain", PHYSICS, "how many variables a thermostat has",
+            [](Arguments &a, const Value &v) { a.thermostat.length = v.integer; })
+        .integer({{1, Chain::LONGEST, 3}}).requires_also({"temp", "", ""}),
+    Keyword("thermostat", PHYSICS, "whether translation and rotation have one thermostat each",
+            [](Arguments &a, const Value &v) { a.thermostat.separate = v.is("separate"); })
+        .word({"total", "separate"}).requires_also({"temp", "", ""}),
     Keyword("report", OUTPUT, "what the log says about the scene",
             [](Arguments &a, const Value &v) {
               a.report = v.is("no") ? Arguments::Report::NO
@@ -143,8 +160,7 @@ static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGI
     {{"langevin"},
      "define fix langevin on the same group, and use corrector gear with values 6 at most "
      "(formulation first: 4)"},
-    {{"temp", "tparam", "tchain"},
-     "define fix temp/csvr or temp/berendsen on the same group, or use keyword isokinetic"},
+    {{"tparam"}, "a thermostat is integrated with the bodies, without iterations; leave it out"},
     {{"iso", "aniso", "tri", "x", "y", "z", "xy", "yz", "xz", "couple", "pparam", "pchain",
       "dilate", "fixedpoint", "scalexy", "scalexz", "scaleyz"},
      BAROSTAT},
@@ -250,13 +266,21 @@ bool GearQuat::read_integer(const std::string &text, int &integer)
   return true;
 }
 
+/// Whether a word is a positive number, and which.
+static bool read_positive(const std::string &text, double &number)
+{
+  number = utils::is_double(text) ? std::strtod(text.c_str(), nullptr) : 0.0;
+  return number > 0.0 && std::isfinite(number);
+}
+
 int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
 {
   Error *error = lmp->error;
-  const int count = kind == MASK ? (int) words.size() : 1;
+  const bool several = kind == MASK || kind == NUMBERS;
+  const int count = several ? (int) words.size() : 1;
   if (narg <= count)
     error->all(FLERR, "Fix gear/quat {}: {} is missing; required: {}", name,
-               kind == MASK ? words[narg - 1] : "the value", required());
+               several ? words[narg - 1] : "the value", required());
   value.text = arg[1];
   if (value.text.empty()) error->all(FLERR, "Fix gear/quat {}: the value is an empty word", name);
 
@@ -265,10 +289,14 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
   if (kind == INTEGER && !read_integer(value.text, value.integer))
     error->all(FLERR, "Fix gear/quat {}: {} is not an integer; required: {}", name, value.text,
                required());
-  if (kind == NUMBER) {
-    if (utils::is_double(value.text)) value.number = std::strtod(value.text.c_str(), nullptr);
-    if (!(value.number > 0.0) || !std::isfinite(value.number))
-      error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", name, value.text);
+  if (kind == NUMBER && !read_positive(value.text, value.number))
+    error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", name, value.text);
+  if (kind == NUMBERS) {
+    value.numbers.resize(count);
+    for (int k = 0; k < count; ++k)
+      if (!read_positive(arg[1 + k], value.numbers[k]))
+        error->all(FLERR, "Fix gear/quat {}: {} {} is not a positive number", name, words[k],
+                   arg[1 + k]);
   }
   if (kind == MASK) {
     value.mask = {std::string("torque") == name, value.text, {}};
@@ -323,7 +351,7 @@ std::string conditions_cell(const std::vector<Keyword::Condition> &conditions, b
 
 std::string GearQuat::list_of_keywords()
 {
-  static const char *const KINDS[] = {"word", "integer", "number", "name", "mask"};
+  static const char *const KINDS[] = {"word", "integer", "number", "name", "mask", "numbers"};
   std::vector<std::vector<std::string>> lines = {
       {"keyword", "about", "kind", "values", "default", "requires", "excludes", "meaning"}};
   for (const auto &row : keyword_table())

@@ -32,18 +32,19 @@ struct MaskWords {
 
 /// The words behind a keyword, after they were read.
 struct KeywordValue {
-  std::string text;       ///< the first word as it stands
-  int integer = 0;        ///< of an INTEGER
-  double number = 0.0;    ///< of a NUMBER
-  MaskWords mask = {};    ///< of a MASK
+  std::string text;                    ///< the first word as it stands
+  int integer = 0;                     ///< of an INTEGER
+  double number = 0.0;                 ///< of a NUMBER
+  std::vector<double> numbers = {};    ///< of NUMBERS
+  MaskWords mask = {};                 ///< of a MASK
 
   bool is(const char *word) const { return text == word; }
 };
 
 struct Keyword {
-  /// WORD: one of some words; NUMBER: a positive one; NAME: any word that is not empty; MASK: four
-  /// words, and the keyword may be given many times.
-  enum Kind { WORD, INTEGER, NUMBER, NAME, MASK };
+  /// WORD: one of some words; NUMBER: a positive one; NUMBERS: some of them; NAME: any word that is not
+  /// empty; MASK: four words, and the keyword may be given many times.
+  enum Kind { WORD, INTEGER, NUMBER, NAME, MASK, NUMBERS };
   struct Range {
     int fewest, most, standard;
     int standard_gear = 0;    ///< the default with corrector gear; 0: the same
@@ -63,7 +64,7 @@ struct Keyword {
   Store store;
 
   Kind kind = WORD;
-  std::vector<std::string> words;    ///< WORD: the possible ones; NAME and MASK: what follows
+  std::vector<std::string> words;    ///< WORD: the possible ones; NAME, MASK, NUMBERS: what follows
   std::string standard;              ///< WORD: the default
   std::string with_tolerance;        ///< WORD: the default then, empty: the same
   std::vector<Range> ranges;         ///< INTEGER: one, or those of formulation second and first

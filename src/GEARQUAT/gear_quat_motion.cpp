@@ -46,6 +46,9 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
   if (args.isokinetic != Isokinetic::NONE)    // not with tolerance
     isokinetic.reset(
         new IsokineticConstraint(lmp, bodies, args.scheme, args.isokinetic, args.rescale));
+  if (args.thermostat.damp > 0.0)    // not with isokinetic
+    thermostat.reset(new Thermostat(lmp, fix, bodies, args.thermostat));
+  coupled = isokinetic || thermostat;
 }
 
 void Motion::meet_bodies()
@@ -88,6 +91,7 @@ void Motion::follow_time_step()
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     integrator->rescale(bodies.history(ibody), ratio);
   if (isokinetic) isokinetic->rescale_step(ratio);
+  if (thermostat) thermostat->rescale_step(ratio);
 }
 
 void Motion::forget(const std::string &why)
@@ -112,6 +116,7 @@ void Motion::begin_run()
 {
   if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, step());
   if (isokinetic) isokinetic->begin_run(!started);
+  if (thermostat) thermostat->begin_run();
   set_up = true;
 }
 
@@ -157,6 +162,8 @@ const char *Motion::reason_to_start_anew(double **f)
     return "the time step is less than half of that of the last steps";
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
+  if (thermostat && thermostat->target_jumps() && can_start_anew())
+    return "the thermostat has another target than in the last steps";
   return forces_changed(f) ? "forces are not those of the last step" : nullptr;
 }
 
@@ -189,7 +196,7 @@ bool Motion::forces_can_be_followed() const
 /// True if the present loads leave a residual that the histories cannot have left.
 bool Motion::forces_changed(double **f)
 {
-  if (isokinetic) isokinetic->measure();
+  measure();
   double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
   for (auto *other : modify->get_fix_list())
     if (const Motion *same = motion_of(other)) here[0] = std::max(here[0], same->last_error());
@@ -249,7 +256,11 @@ bool Motion::has_to_start(double **f)
 
 Party Motion::party(bool needed)
 {
-  return {fix, &bodies, isokinetic.get(), tolerance ? tolerance->scheme_of_start() : args.scheme,
+  return {fix,
+          &bodies,
+          isokinetic.get(),
+          thermostat.get(),
+          tolerance ? tolerance->scheme_of_start() : args.scheme,
           needed};
 }
 
@@ -269,10 +280,17 @@ void Motion::begin(bool full)
 void Motion::take_velocities(const std::vector<int> &changed)
 {
   if (!started) return;
-  if (isokinetic) isokinetic->measure();
+  measure();
   for (const int ibody : changed)
     integrator->set_velocities(bodies.rigid_of(ibody), bodies.state_of(ibody), acting(ibody),
                                bodies.history(ibody));
+}
+
+/// Forces of constraint and thermostat are those of the present states and loads.
+void Motion::measure()
+{
+  if (isokinetic) isokinetic->measure();
+  if (thermostat) thermostat->measure();
 }
 
 void Motion::predict(double **f)
@@ -302,7 +320,7 @@ void Motion::predict(double **f)
 
 void Motion::correct(double **f)
 {
-  if (isokinetic)
+  if (coupled)
     correct_together(f);
   else
     masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
@@ -342,10 +360,13 @@ template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int 
   check_limits(ibody, f);
 }
 
-/// The isokinetic constraint couples all bodies, so they are corrected pass by pass.
+/// Constraint and thermostat couple all bodies, so they are corrected pass by pass.
 void Motion::correct_together(double **f)
 {
-  isokinetic->correct(*integrator);
+  if (isokinetic)
+    isokinetic->correct(*integrator);
+  else
+    thermostat->correct(*integrator, present_scheme());
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) check_limits(ibody, f);
 }
@@ -376,18 +397,24 @@ void Motion::choose_step()
 
 int Motion::elements() const
 {
-  if (tolerance) return Tolerance::ELEMENTS;
-  return isokinetic ? IsokineticConstraint::ELEMENTS : 0;
+  return elements_of_tolerance() +
+      (isokinetic       ? IsokineticConstraint::ELEMENTS
+           : thermostat ? Thermostat::ELEMENTS
+                        : 0);
 }
 
 double Motion::element(int n) const
 {
-  return tolerance ? tolerance->element(n) : isokinetic->element(n);
+  const int behind = n - elements_of_tolerance();
+  if (behind < 0) return tolerance->element(n);
+  return isokinetic ? isokinetic->element(behind) : thermostat->element(behind);
 }
 
 int Motion::extensive(int n) const
 {
-  return isokinetic && n == IsokineticConstraint::HEAT ? 1 : 0;
+  const int behind = n - elements_of_tolerance();
+  return (isokinetic && behind == IsokineticConstraint::HEAT) ||
+      (thermostat && behind == Thermostat::ENERGY);
 }
 
 const Integrator *Motion::present_integrator() const
@@ -410,7 +437,8 @@ Motion::Checkpoint Motion::checkpoint() const
           (double) scheme.trial,
           (double) scheme.tuned,
           tolerance ? tolerance->checkpoint() : Tolerance::Checkpoint(),
-          isokinetic ? isokinetic->checkpoint() : IsokineticConstraint::Checkpoint()};
+          isokinetic ? isokinetic->checkpoint() : IsokineticConstraint::Checkpoint(),
+          thermostat ? thermostat->checkpoint() : Thermostat::Checkpoint()};
 }
 
 void Motion::restore(const Checkpoint &saved)
@@ -425,8 +453,12 @@ void Motion::restore(const Checkpoint &saved)
   compare("compensate", saved.compensate, mine.compensate);
   compare("tolerance", saved.variable, mine.variable);
   compare("isokinetic", saved.isokinetic.mode, mine.isokinetic.mode);
+  const bool one_without = saved.thermostat.mode == 0.0 || mine.thermostat.mode == 0.0;
+  compare(one_without ? "temp" : "thermostat", saved.thermostat.mode, mine.thermostat.mode);
+  if (!one_without) compare("tchain", saved.thermostat.length, mine.thermostat.length);
   const bool same = others.empty();
   if (isokinetic && same) isokinetic->restore(saved.isokinetic);
+  if (thermostat && same) thermostat->restore(saved.thermostat);
   started = saved.started != 0.0 && same;
   if (tolerance && started) tolerance->restore(saved.tolerance);
   last_step = saved.h;

@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* Motion of all owned bodies: predicted, then corrected with the loads that the store has gathered.
-   Knows which laws hold in this run (masks, isokinetic, tolerance) and decides once a step, not once
+   Knows which laws hold in this run (masks, isokinetic, thermostat, tolerance) and decides once a step, not once
    a body, which of them the loop over bodies has to heed.
 
    The fix calls, before the first step of a run: [gathers present loads] begin_steps(); every step:
@@ -18,6 +18,7 @@
 #include "gear_quat_blowup.h"
 #include "gear_quat_bootstrap.h"
 #include "gear_quat_isokinetic.h"
+#include "gear_quat_thermostat.h"
 #include "gear_quat_tolerance.h"
 
 #include <memory>
@@ -72,6 +73,8 @@ class Motion : protected Pointers {
 
   int elements() const;
   double element(int n) const;
+  /// What a thermostat has taken from the bodies; collective.
+  double energy_of_thermostat() const { return thermostat ? thermostat->energy() : 0.0; }
   /// 1 if an element grows with the number of bodies.
   int extensive(int n) const;
   /// Null before the start.
@@ -82,6 +85,7 @@ class Motion : protected Pointers {
     double formulation, values, compensate, started, h, variable, tuned;
     Tolerance::Checkpoint tolerance;
     IsokineticConstraint::Checkpoint isokinetic;
+    Thermostat::Checkpoint thermostat;
   };
   Checkpoint checkpoint() const;
   /// The histories of the file are about to arrive.  If they do not fit this command they start
@@ -95,7 +99,9 @@ class Motion : protected Pointers {
   Blowup blowup;
   std::map<tagint, Mask> masks;                        ///< of the command, by the IDs of bodies
   std::unique_ptr<IsokineticConstraint> isokinetic;    ///< null without
-  std::unique_ptr<Tolerance> tolerance;                ///< null: the step is LAMMPS' own
+  std::unique_ptr<Thermostat> thermostat;              ///< null without
+  bool coupled;    ///< all bodies are corrected together, by one of these two
+  std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
   std::unique_ptr<Integrator> integrator;
 
   bool started = false;      ///< histories are those of the step of the integrator
@@ -107,6 +113,7 @@ class Motion : protected Pointers {
   /// The time step of the histories; 0 before the first run.
   double step() const { return integrator ? integrator->step() : 0.0; }
   const Scheme &present_scheme() const;
+  int elements_of_tolerance() const { return tolerance ? (int) Tolerance::ELEMENTS : 0; }
   void make_integrator(double step);
   bool has_to_start(double **f);
   Party party(bool needed);
@@ -126,11 +133,13 @@ class Motion : protected Pointers {
   /// The load that moves a body.
   Load acting(int ibody) const
   {
-    return isokinetic ? isokinetic->acting(ibody) : bodies.acting(ibody);
+    if (isokinetic) return isokinetic->acting(ibody);
+    return thermostat ? thermostat->acting(ibody) : bodies.acting(ibody);
   }
   template <bool MASKED> void correct_bodies(double **f);
   template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody, double **f);
   void correct_together(double **f);
+  void measure();
   void begin_fresh(double **f);
 };
 

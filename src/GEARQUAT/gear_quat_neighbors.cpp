@@ -21,6 +21,7 @@
 #include "utils.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -44,6 +45,9 @@ static constexpr char THERMOSTAT[] =
 static constexpr char CONSTRAINTS[] =
     "take the bonds and angles of bodies out of it: bodies are rigid already";
 static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall/harmonic";
+
+static const char *const THERMOSTATS[] = {"^temp/", "^langevin", "^gle$", "^gld$",
+                                          "^lambda_thermostat"};
 
 /// The first row that matches counts.  doc/src/fix_gear_quat.rst has the same table.
 static const NeighborRule NEIGHBORS[] = {
@@ -107,6 +111,7 @@ void Neighbors::init()
   tell_friction();
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
+    refuse_thermostat(other);
     tell_noise(other);
     const NeighborRule *row = nullptr;
     for (const auto &one : NEIGHBORS)
@@ -132,6 +137,21 @@ void Neighbors::init()
                    other->id, other->style);
     }
   }
+}
+
+/// Two thermostats on the same bodies would fight each other.
+void Neighbors::refuse_thermostat(const Fix *other) const
+{
+  if (args.thermostat.damp == 0.0) return;
+  const bool another =
+      std::any_of(std::begin(THERMOSTATS), std::end(THERMOSTATS), [other](const char *style) {
+        return utils::strmatch(other->style, style);
+      });
+  if (another && shared_atom(other))
+    error->all(FLERR,
+               "Fix gear/quat temp is a thermostat of the bodies, and fix {} ({}) is another one; "
+               "leave out one of the two, or give the other one a group without atoms of bodies",
+               other->id, other->style);
 }
 
 /// Random forces have no derivatives, and forces of collisions last a single step only.

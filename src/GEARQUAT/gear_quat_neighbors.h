@@ -72,6 +72,7 @@ class Neighbors : protected Pointers {
   void tell_noise(const Fix *other);
   void tell_friction();
   tagint shared_atom(const Fix *other) const;
+  void refuse_thermostat(const Fix *other) const;
   void refuse(const Fix *other, const NeighborRule &row, tagint atom) const;
   bool gather_impulses();
   void note(double **values);

@@ -206,13 +206,27 @@ static Effect compensation(const Arguments &args, const Scene &scene)
           fmt::format("rounding of a coordinate, at most {:.1e} of length in a sum", rounding)};
 }
 
+/// What holds the kinetic energy: one keyword at most.
+static Effect temperature(const Arguments &args)
+{
+  const ThermostatWords &words = args.thermostat;
+  const bool isokinetic = args.isokinetic != Isokinetic::NONE;
+  if (words.damp == 0.0)
+    return {"isokinetic", isokinetic, isokinetic ? "keyword isokinetic" : "isokinetic none",
+            NOTHING};
+  return {"thermostat", true,
+          fmt::format("temp {:g} {:g} {:g}, tchain {}, {}", words.start, words.stop, words.damp,
+                      words.length, words.separate ? "separate" : "total"),
+          NOTHING};
+}
+
 /// The rows of the report.
 static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                    const Scene &scene)
 {
   const std::string reader = reader_of_predicted_velocities(lmp, fix);
   const bigint extended = scene.count[Scene::EXTENDED_SITES];
-  const bool masks = !args.masks.empty(), isokinetic = args.isokinetic != Isokinetic::NONE;
+  const bool masks = !args.masks.empty();
   return {
       rotation(scene),
       torques(scene, makes_forces(lmp, fix)),
@@ -222,7 +236,7 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
       images(lmp->domain),
       ghost_bodies(scene, lmp->comm->nprocs),
       {"masks", masks, masks ? "keywords force and torque" : "no keyword force or torque", NOTHING},
-      {"isokinetic", isokinetic, isokinetic ? "keyword isokinetic" : "isokinetic none", NOTHING},
+      temperature(args),
       {"virial", fix->thermo_virial != 0,
        fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no",
        "pressure and stress of the forces of constraint; of the trajectory nothing"},

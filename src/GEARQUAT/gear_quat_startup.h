@@ -220,6 +220,52 @@ class Collocation {
 
   int number_of_nodes() const { return 2 * half + 1; }
 
+  /// A scalar with a first-order equation at the same nodes: its rates there, in the units of the host.
+  struct Scalar {
+    int pairs;
+    double start;
+    double rate[MAX_NODES];    ///< node k in row pairs() + k
+    double met[2];             ///< at the two nodes that are being evaluated
+  };
+
+  // as for a body: begin(), foretell(), value_at() and set_rate() at both nodes of a pair, settle()
+
+  void begin(double start, double rate, Scalar &s) const
+  {
+    s.pairs = 0;
+    s.start = start;
+    s.rate[half] = rate;
+  }
+
+  void foretell(Scalar &s) const
+  {
+    const int next = s.pairs + 1;
+    for (int side = 0; side < 2; ++side) {
+      double sum = 0.0;
+      for (int l = -s.pairs; l <= s.pairs; ++l)
+        sum += polynomial[s.pairs].beyond[side][column_of(l)] * s.rate[half + l];
+      s.rate[half + (side ? next : -next)] = sum;
+    }
+    s.pairs = next;
+  }
+
+  /// spacing: time between nodes.
+  double value_at(int node, const Scalar &s, double spacing) const
+  {
+    double sum = 0.0;
+    for (int l = -s.pairs; l <= s.pairs; ++l)
+      sum += polynomial[s.pairs].rate[column_of(node)][column_of(l)] * s.rate[half + l];
+    return s.start + spacing * sum;
+  }
+
+  void set_rate(int node, double rate, Scalar &s) const { s.met[node > 0] = rate; }
+
+  void settle(int pair, Scalar &s) const
+  {
+    s.rate[half - pair] = s.met[0];
+    s.rate[half + pair] = s.met[1];
+  }
+
   /// The rate of a scalar at all nodes, from -half on, of which the innermost `pairs` count, as series
   /// of the scalar that is zero at the start, in units of the node spacing.  Returns its terms, at
   /// most number_of_nodes() + 1.

@@ -89,6 +89,24 @@ ARGUMENTS = {
     "molecule rescale yes": "keyword rescale requires keyword isokinetic",
     "molecule formulation first isokinetic none rescale no": "rescale requires keyword isokinetic",
     "molecule formulation first isokinetic total tolerance 1": "tolerance cannot be used with isokinetic",
+    "molecule temp": "temp: Tstart is missing; required: Tstart Tstop Tdamp",
+    "molecule temp 1.0 1.0": "temp: Tdamp is missing; required: Tstart Tstop Tdamp",
+    "molecule temp 0 1 0.1": "temp: Tstart 0 is not a positive number",
+    "molecule temp 1 -1 0.1": "temp: Tstop -1 is not a positive number",
+    "molecule temp 1 1 0.0": "temp: Tdamp 0.0 is not a positive number",
+    "molecule temp 1 1 tchain": "temp: Tdamp tchain is not a positive number",
+    "molecule temp 1 1 nan": "temp: Tdamp nan is not a positive number",
+    "molecule temp 1 1 0.1 temp 1 1 0.1": "keyword temp is given twice",
+    "molecule temp 1 1 0.1 tchain 0": "tchain: 0 is not from 1 to 10",
+    "molecule temp 1 1 0.1 tchain 11": "tchain: 11 is not from 1 to 10",
+    "molecule temp 1 1 0.1 tchain 1.5": "tchain: 1.5 is not an integer; required: 1 to 10",
+    "molecule tchain 3": "keyword tchain requires keyword temp",
+    "molecule thermostat total": "keyword thermostat requires keyword temp",
+    "molecule temp 1 1 0.1 thermostat both": "thermostat: unknown value both (total or separate)",
+    "molecule formulation first isokinetic total temp 1 1 0.1": "keyword temp cannot be used with isokinetic: both hold",
+    "molecule temp 1 1 0.1 tolerance 1e-8": "keyword temp cannot be used with tolerance: ",
+    "molecule temp 1 1 0.1 mol some": "keyword temp cannot be used with mol: bodies that come",
+    "molecule tparam 3 2 3": "no keyword tparam of the rigid fixes: a thermostat is integrated",
     "single mol some": "keyword mol requires bodystyle molecule",
     "molecule formulation first isokinetic total mol some": "keyword mol cannot be used with isokinetic: bodies that come",
     "molecule formulation first isokinetic total force 1 on on off": "keyword force cannot be used",
@@ -182,6 +200,56 @@ def test_infile(lmp_wheel, text):
 def test_scene(lmp, name, ranks):
     before, after, message = SCENES[name]
     lmp.refuse(two_molecules(before=before, after=after), message, ranks=ranks)
+
+
+# keywords besides temp 1 1 0.1, before the fix, after it, message
+THERMOSTATS = {
+    "at rest": ("", "velocity all set 0 0 0", "", "the kinetic energy of the bodies is zero"),
+    "no spin": (
+        "thermostat separate",
+        "velocity all set 0.3 0 0.1",
+        "",
+        "the rotational kinetic energy of the bodies is zero",
+    ),
+    "only held": (
+        "force * off off off torque * off off off",
+        "",
+        "",
+        "the bodies have no degrees of freedom that keywords force and torque leave on",
+    ),
+    "an axis": ("torque 2 off off on", "", "", "turns off some components for body 2 and not all"),
+    "energy yes": (
+        "",
+        "",
+        "fix_modify move energy yes",
+        "temp cannot be used with fix_modify energy yes",
+    ),
+    "berendsen": (
+        "",
+        "",
+        "fix bath all temp/berendsen 1 1 0.1",
+        "and fix bath (temp/berendsen) is another one",
+    ),
+    "langevin": (
+        "",
+        "group half id 1",
+        "fix bath half langevin 1 1 0.1 4711",
+        "and fix bath (langevin) is another one",
+    ),
+    "nvt": ("", "", "fix bath all nvt temp 1 1 0.1", "is also moved by fix bath (nvt)"),
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("name", THERMOSTATS)
+def test_thermostats(lmp_tree, name, ranks):
+    words, before, after, message = THERMOSTATS[name]
+    deck = two_molecules(f"molecule temp 1 1 0.1 {words}", before=before, after=f"{after}\nrun 1")
+    lmp_tree.refuse(deck, message, ranks=ranks)
+
+
+def test_a_spin_alone_has_a_temperature(lmp_tree):
+    lmp_tree.succeed(two_molecules("molecule temp 1 1 0.1", before="velocity all set 0.3 0 0.1"))
 
 
 @pytest.mark.parametrize("words", ["force * on on on", "torque 1 off on on"])

@@ -89,6 +89,9 @@ WAYS = {
     "first": dict(fix="formulation first compensate yes"),
     "total": dict(fix="formulation first isokinetic total"),
     "separate": dict(fix="formulation first isokinetic separate"),
+    "thermostat": dict(
+        fix="temp 100.0 120.0 0.1 thermostat separate", after="fix_modify move energy no"
+    ),
     "masks": dict(fix="force 1 off on on torque 1* on off on"),
     "cooled": dict(after="fix cool all temp/berendsen 100 10 0.1"),
     "tolerance": dict(fix="tolerance 1e-9 dtmax 0.004"),
@@ -97,8 +100,8 @@ WAYS = {
     "timestep": dict(run="run 100\ntimestep 0.0015\nrun 100"),
 }
 RANKS = {
-    1: ["plain", "first", "total", "separate", "masks", "cooled", "timestep"],
-    2: ["plain", "tiled", "total", "separate"],
+    1: ["plain", "first", "total", "separate", "thermostat", "masks", "cooled", "timestep"],
+    2: ["plain", "tiled", "total", "separate", "thermostat"],
     4: list(WAYS),
 }
 
@@ -157,7 +160,7 @@ def test_the_scene_tells(ends):
     assert ghosts(ends[4, "plain", "log"]) < 0.5 * ghosts(ends[4, "wide", "log"])
     assert int(re.findall(r"Neighbor list builds = (\d+)", ends[4, "plain", "log"])[-1]) > 10
     assert difference(ends[1, "plain"], ends[1, "first"]) < 1e-6  # two ways to follow one motion
-    for way in ("total", "separate", "masks", "cooled", "timestep"):
+    for way in ("total", "separate", "thermostat", "masks", "cooled", "timestep"):
         assert difference(ends[1, "plain"], ends[1, way]) > 1e-5
 
 

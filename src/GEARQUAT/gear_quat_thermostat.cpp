@@ -1,0 +1,446 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_thermostat.h"
+
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// a kinetic energy less than this part of the other one is rounding of velocities
+
+static constexpr double NOTHING = 1.0e-24;
+
+// targets that differ by less are the same but for rounding
+
+static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
+
+static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
+
+/* ---------------------------------------------------------------------- */
+
+Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words) :
+    Pointers(lmp), fix(fix), bodies(bodies), words(words),
+    chains(words.separate ? 2 : 1, Chain(words.length))
+{
+}
+
+/* ----------------------------------------------------------------------
+   target and degrees of freedom
+------------------------------------------------------------------------- */
+
+Thermostat::Line Thermostat::line_of_step(bigint step) const
+{
+  const double per_degree = force->boltz / force->mvv2e;
+  const bigint steps = update->endstep - update->beginstep;
+  Line found = {per_degree * words.start, 0.0};
+  if (steps <= 0) return found;
+  found.kt_step = per_degree * (words.stop - words.start) / steps;
+  found.kt += found.kt_step * (step - update->beginstep);
+  return found;
+}
+
+ChainTarget Thermostat::target_of(int chain, double steps_ahead, double h) const
+{
+  ChainTarget target;
+  target.kt = line.kt + line.kt_step * steps_ahead;
+  target.kt_rate = h == 0.0 ? 0.0 : line.kt_step / h;
+  target.freedoms = freedoms_of(chain);
+  target.period = words.damp;
+  return target;
+}
+
+double Thermostat::freedoms_of(int chain) const
+{
+  return words.separate ? freedoms[chain] : freedoms[TRANSLATION] + freedoms[ROTATION];
+}
+
+double Thermostat::twice_of(int chain) const
+{
+  return words.separate ? twice[chain] : twice[TRANSLATION] + twice[ROTATION];
+}
+
+/// In two dimensions bodies have no momentum along z and turn about z alone, whatever keywords say.
+bool Thermostat::is_thermostatted(int ibody, Part part, int component) const
+{
+  const Mask off = bodies.body_at(ibody).off;
+  const bool flat = domain->dimension == 2;
+  if (part == TRANSLATION) return !(off & force_off(component)) && !(flat && component == 2);
+  return flat ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
+}
+
+void Thermostat::count_freedoms()
+{
+  double here[2] = {0.0, 0.0};
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    for (int k = 0; k < 3; ++k) here[TRANSLATION] += is_thermostatted(ibody, TRANSLATION, k);
+    if (!is_thermostatted(ibody, ROTATION)) continue;
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    here[ROTATION] += domain->dimension == 2 ? rigid.inertia[2] > 0.0 : rigid.rotational_freedoms();
+  }
+  const auto all = over_ranks(MPI_SUM, here, world);
+  conserved = conserves_momentum();
+  const int of_total = conserved ? domain->dimension : 0;
+  freedoms[TRANSLATION] = std::max(0.0, all[TRANSLATION] - of_total);
+  freedoms[ROTATION] = all[ROTATION];
+  counted = bodies.number();
+}
+
+/// True if nothing outside of the bodies has a force on them.
+bool Thermostat::conserves_momentum() const
+{
+  if (bodies.number_of_sites() != atom->natoms) return false;
+  int held = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    for (int k = 0; k < domain->dimension; ++k) held |= !is_thermostatted(ibody, TRANSLATION, k);
+  if (over_ranks(MPI_MAX, held, world)) return false;
+  constexpr int EXERTS = FixConst::POST_FORCE | FixConst::POST_FORCE_RESPA;
+  for (auto *other : modify->get_fix_list())
+    if (other != fix && (modify->get_fix_mask(other) & EXERTS)) return false;
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+void Thermostat::begin_run()
+{
+  refuse_masks();
+  const Line before = line;
+  const double had[2] = {freedoms[TRANSLATION], freedoms[ROTATION]};
+  const bool first = counted == 0;
+  count_freedoms();
+  line = line_of_step(update->ntimestep);
+  const auto differs = [&](double a, double b) {
+    return std::fabs(a - b) > ROUNDING_OF_TARGET * line.kt;
+  };
+  jumps = differs(before.kt, line.kt) || differs(before.kt_step, line.kt_step) ||
+      had[TRANSLATION] != freedoms[TRANSLATION] || had[ROTATION] != freedoms[ROTATION] ||
+      damp_before != words.damp;
+  damp_before = words.damp;
+  measure();
+  refuse_nothing();
+  if (first && comm->me == 0)
+    utils::logmesg(lmp,
+                   "Fix gear/quat {}: thermostat of {:.0f} degrees of freedom of translation{} and "
+                   "{:.0f} of rotation\n",
+                   fix->id, freedoms[TRANSLATION],
+                   conserved ? ", without those of the total momentum," : "", freedoms[ROTATION]);
+}
+
+/// Space-frame components of a torque belong to no part of the rotational energy.
+void Thermostat::refuse_masks() const
+{
+  if (domain->dimension == 2) return;
+  tagint partly = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    const Mask off = body.off & NO_TORQUE;
+    if (off && off != NO_TORQUE && body.rigid.rotational_freedoms() > 0) partly = body.id;
+  }
+  partly = over_ranks(MPI_MAX, partly, world);
+  if (partly)
+    error->all(FLERR,
+               "Fix gear/quat temp: keyword torque turns off some components for body {} and not "
+               "all, so its rotation has no temperature; turn off all three, or define a second "
+               "fix without temp for such bodies",
+               partly);
+}
+
+/// Friction warms nothing that stands still.
+void Thermostat::refuse_nothing() const
+{
+  if (freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0)
+    error->all(FLERR,
+               "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
+               "torque leave on, so they have no temperature");
+  const char *missing = nullptr;
+  const auto rests = [this](Part part) {
+    return freedoms[part] > 0.0 && twice[part] <= NOTHING * (twice[TRANSLATION] + twice[ROTATION]);
+  };
+  if (twice[TRANSLATION] + twice[ROTATION] <= 0.0)
+    missing = "";
+  else if (words.separate && rests(TRANSLATION))
+    missing = "translational ";
+  else if (words.separate && rests(ROTATION))
+    missing = "rotational ";
+  if (missing)
+    error->all(FLERR,
+               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero, and a thermostat "
+               "only scales it; give them velocities first",
+               missing);
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+Friction Thermostat::friction_of(int ibody) const
+{
+  const double of_rotation = friction[words.separate ? ROTATION : TRANSLATION];
+  Friction found = Multipliers{friction[TRANSLATION], of_rotation};
+  if (bodies.body_at(ibody).off == 0) return found;
+  for (int k = 0; k < 3; ++k)
+    if (!is_thermostatted(ibody, TRANSLATION, k)) found.translation[k] = 0.0;
+  if (!is_thermostatted(ibody, ROTATION)) found.rotation = 0.0;
+  return found;
+}
+
+/// Of kinetic energies: the same in all steps with one target.
+double Thermostat::scale() const
+{
+  return ExactSum::scale_of(std::max(1.0, freedoms[TRANSLATION] + freedoms[ROTATION]) * line.kt);
+}
+
+/// Adds what the chains have of the kinetic energy of a body.
+void Thermostat::add_kinetic(int ibody, const double *velocity, const double *omega_body,
+                             Sums &here) const
+{
+  const RigidBody &rigid = bodies.rigid_of(ibody);
+  double along[3] = {velocity[0], velocity[1], velocity[2]};
+  const bool masked = bodies.body_at(ibody).off != 0;
+  for (int k = 0; masked && k < 3; ++k)
+    if (!is_thermostatted(ibody, TRANSLATION, k)) along[k] = 0.0;
+  here[TRANSLATION].add(2.0 * translational_energy(rigid, along), unit);
+  if (!masked || is_thermostatted(ibody, ROTATION))
+    here[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), unit);
+}
+
+void Thermostat::sum_kinetic(const Sums &here)
+{
+  bigint limbs[4];
+  for (int part = 0; part < 2; ++part) std::copy_n(here[part].limbs, 2, limbs + 2 * part);
+  const auto all = over_ranks(MPI_SUM, limbs, world);
+  for (int part = 0; part < 2; ++part) {
+    ExactSum sum;
+    std::copy_n(all.begin() + 2 * part, 2, sum.limbs);
+    twice[part] = sum.value(unit);
+  }
+}
+
+void Thermostat::sum_present()
+{
+  Sums here;
+  unit = scale();
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    add_kinetic(ibody, s.velocity, s.omega_body, here);
+  }
+  sum_kinetic(here);
+}
+
+void Thermostat::note_friction()
+{
+  for (size_t c = 0; c < chains.size(); ++c) friction[c] = chains[c].friction();
+}
+
+void Thermostat::measure()
+{
+  sum_present();
+  note_friction();
+}
+
+void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
+{
+  const int n = bodies.nmoved(), values = integrator.values();
+  const double h = integrator.step();
+  if (counted != bodies.number()) count_freedoms();    // some were removed
+  line = line_of_step(update->ntimestep);
+  for (auto &chain : chains) chain.predict(values);
+
+  Sums here;
+  double velocity[3], omega_body[3];
+  unit = scale();
+  pending.resize(n);
+  for (int ibody = 0; ibody < n; ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    pending[ibody] =
+        integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
+    if (ibody < bodies.nowned()) add_kinetic(ibody, s.velocity, s.omega_body, here);
+  }
+
+  for (int pass = 0; pass < scheme.passes; ++pass) {
+    sum_kinetic(here);
+    for (size_t c = 0; c < chains.size(); ++c)
+      chains[c].correct(target_of(c, 0.0, h), twice_of(c), h, values,
+                        integrator.scalar_coefficients().data());
+    note_friction();
+    here[TRANSLATION] = here[ROTATION] = ExactSum();
+    for (int ibody = 0; ibody < n; ++ibody) {
+      const RigidBody &rigid = bodies.rigid_of(ibody);
+      double *rows = bodies.history(ibody);
+      integrator.correct_pass(rigid, bodies.acting(ibody), friction_of(ibody), rows,
+                              pending[ibody]);
+      if (ibody >= bodies.nowned() || pass + 1 == scheme.passes) continue;
+      integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
+      add_kinetic(ibody, velocity, omega_body, here);
+    }
+  }
+  for (auto &chain : chains) chain.conclude(values);
+  finish_bodies(integrator);
+}
+
+void Thermostat::finish_bodies(const Integrator &integrator)
+{
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    double *rows = bodies.history(ibody);
+    BodyState &state = bodies.change_state(ibody);
+    Correction &last = bodies.change_last(ibody);
+    const bool masked = bodies.body_at(ibody).off != 0;
+    const BodyState before = masked ? state : BodyState();
+    last = integrator.finish(bodies.acting(ibody), rows, pending[ibody]);
+    integrator.body_state(bodies.rigid_of(ibody), rows, state, bodies.change_frame(ibody));
+    if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   start
+------------------------------------------------------------------------- */
+
+void Thermostat::begin_start(const Collocation &collocation, double of, double h)
+{
+  spacing = of;
+  step_of_start = h;
+  nodes.resize(chains.size());
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const auto y = chains[c].values();
+    const auto rate = chains[c].rates(target_of(c, 0.0, h), twice_of(c), y);
+    for (int v = 0; v < chains[c].size(); ++v) collocation.begin(y[v], rate[v], nodes[c][v]);
+  }
+}
+
+void Thermostat::foretell(const Collocation &collocation)
+{
+  for (auto &chain : nodes)
+    for (auto &one : chain) collocation.foretell(one);
+}
+
+void Thermostat::measure_node(const Collocation &collocation, int node)
+{
+  sum_present();
+  for (size_t c = 0; c < chains.size(); ++c) {
+    Chain::Variables y = {};
+    for (int v = 0; v < chains[c].size(); ++v)
+      y[v] = collocation.value_at(node, nodes[c][v], spacing);
+    friction[c] = y[0];
+    const ChainTarget target = target_of(c, node * spacing / step_of_start, step_of_start);
+    const auto rate = chains[c].rates(target, twice_of(c), y);
+    for (int v = 0; v < chains[c].size(); ++v) collocation.set_rate(node, rate[v], nodes[c][v]);
+  }
+}
+
+void Thermostat::settle(const Collocation &collocation, int pair)
+{
+  for (auto &chain : nodes)
+    for (auto &one : chain) collocation.settle(pair, one);
+}
+
+void Thermostat::seed(const Collocation &collocation, int pairs)
+{
+  std::vector<double> series(collocation.number_of_nodes() + 1);
+  for (size_t c = 0; c < chains.size(); ++c)
+    for (int v = 0; v < chains[c].size(); ++v) {
+      const int terms = collocation.integrate(nodes[c][v].rate, pairs, spacing, series.data());
+      chains[c].seed(v, series.data(), terms, spacing, step_of_start);
+    }
+}
+
+void Thermostat::seed_local(double h)
+{
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const auto rate = chains[c].rates(target_of(c, 0.0, h), twice_of(c), chains[c].values());
+    for (int v = 0; v < chains[c].size(); ++v) {
+      const double series[2] = {0.0, h * rate[v]};
+      chains[c].seed(v, series, 2, h, h);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   another step
+------------------------------------------------------------------------- */
+
+void Thermostat::rescale_step(double ratio)
+{
+  for (auto &chain : chains) chain.rescale(ratio);
+}
+
+void Thermostat::set_values(int values)
+{
+  for (auto &chain : chains) chain.set_values(values);
+}
+
+/* ----------------------------------------------------------------------
+   outputs and restart
+------------------------------------------------------------------------- */
+
+double Thermostat::energy() const
+{
+  double sum = 0.0;
+  for (size_t c = 0; c < chains.size(); ++c) sum += chains[c].energy(target_of(c, 0.0, 0.0));
+  return sum * force->mvv2e;
+}
+
+double Thermostat::element(int n)
+{
+  const double degree = force->mvv2e / force->boltz;
+  const auto temperature = [&](Part part) {
+    sum_present();
+    return freedoms[part] > 0.0 ? degree * twice[part] / freedoms[part] : 0.0;
+  };
+  switch (n) {
+    case ENERGY:
+      return energy();
+    case T_TRANSLATION:
+      return temperature(TRANSLATION);
+    case T_ROTATION:
+      return temperature(ROTATION);
+    case TARGET:
+      return degree * line.kt;
+    case XI_TRANSLATION:
+      return chains.front().friction();
+    default:
+      return chains.back().friction();
+  }
+}
+
+Thermostat::Checkpoint Thermostat::checkpoint() const
+{
+  Checkpoint saved = {(double) mode(),
+                      (double) words.length,
+                      (double) counted,
+                      line.kt,
+                      line.kt_step,
+                      words.damp,
+                      {freedoms[TRANSLATION], freedoms[ROTATION]},
+                      {}};
+  for (size_t c = 0; c < chains.size(); ++c) saved.rows[c] = chains[c].record();
+  return saved;
+}
+
+void Thermostat::restore(const Checkpoint &saved)
+{
+  counted = (bigint) saved.bodies;
+  line = {saved.kt, saved.kt_step};
+  damp_before = saved.period;
+  std::copy_n(saved.freedoms, 2, freedoms);
+  for (size_t c = 0; c < chains.size(); ++c) chains[c].restore(saved.rows[c]);
+  note_friction();
+}

@@ -1,0 +1,132 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keyword temp: Nose-Hoover chains (gear_quat_chain.h) that hold the temperature of all bodies.  They
+   need the kinetic energies of all bodies on all ranks: a reduction of two numbers in every pass of the
+   corrector, each an exact sum, so that a run does not depend on where bodies are.  A component of a momentum that keywords force and torque turn off belongs to no chain.
+
+   The target of a step is that of LAMMPS' thermostats: it changes linearly with the number of the step
+   from the beginning to the end of the run. */
+
+#ifndef LMP_GEAR_QUAT_THERMOSTAT_H
+#define LMP_GEAR_QUAT_THERMOSTAT_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_chain.h"
+#include "gear_quat_exact_sum.h"
+#include "gear_quat_startup.h"
+
+namespace LAMMPS_NS::GearQuat {
+
+/// What keywords temp, tchain and thermostat say.
+struct ThermostatWords {
+  double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
+  int length = 0;
+  bool separate = false;
+};
+
+class Thermostat : protected Pointers {
+ public:
+  /// Elements of the fix's vector behind those of Sums, and of Tolerance.
+  enum { ENERGY, T_TRANSLATION, T_ROTATION, TARGET, XI_TRANSLATION, XI_ROTATION, ELEMENTS };
+
+  Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words);
+
+  // all collective
+
+  /// Before a run.  Ends it if there is nothing to be thermostatted, or another thermostat.
+  void begin_run();
+  /// Friction by the present states and chains, whose rates are known then.
+  void measure();
+  /// One step of h: correct the predicted histories and states.
+  void correct(const Integrator &integrator, const Scheme &scheme);
+
+  /// True if the target jumps where this run begins; after begin_run().
+  bool target_jumps() const { return jumps; }
+
+  // after measure()
+
+  /// The load that moves a body: what is not turned off, with the friction.
+  Load acting(int ibody) const
+  {
+    return damped_load(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.acting(ibody),
+                       friction_of(ibody));
+  }
+  double element(int n);
+  /// What the chains have taken from the bodies.
+  double energy() const;
+
+  // the start, of all bodies at the same nodes (gear_quat_startup.h)
+
+  void begin_start(const Collocation &collocation, double spacing, double h);
+  void foretell(const Collocation &collocation);
+  /// As measure(), at another node.
+  void measure_node(const Collocation &collocation, int node);
+  void settle(const Collocation &collocation, int pair);
+  void seed(const Collocation &collocation, int pairs);
+  /// From the first derivatives alone.
+  void seed_local(double h);
+
+  void rescale_step(double ratio);
+  void set_values(int values);
+
+  /// What a restart file holds, the same on all ranks.
+  struct Checkpoint {
+    double mode, length, bodies;                ///< mode: number of chains, 0 without a thermostat
+    double kt, kt_step, period, freedoms[2];    ///< the target when the file was written
+    Chain::Record rows[2];
+  };
+  Checkpoint checkpoint() const;
+  /// saved: of as many chains of as many variables.
+  void restore(const Checkpoint &saved);
+
+ private:
+  const Fix *fix;
+  Bodies &bodies;
+  ThermostatWords words;
+
+  enum Part { TRANSLATION, ROTATION };
+  struct Line {    ///< kT of a step, and its change with every step
+    double kt = 0.0, kt_step = 0.0;
+  };
+
+  std::vector<Chain> chains;    ///< of both parts, or one for both
+  double freedoms[2] = {};      ///< of both parts
+  double twice[2] = {};         ///< twice the kinetic energies, as of the last sum
+  bigint counted = 0;           ///< bodies that the freedoms belong to
+  Line line;                    ///< the target of the present step
+  double damp_before = 0.0;     ///< of the steps so far
+  double friction[2] = {};      ///< xi_1 of the chains
+  double unit = 1.0;            ///< of the sums, see scale()
+  bool jumps = false;
+  bool conserved = false;    ///< the total momentum, which has no temperature
+  std::vector<Integrator::Pending> pending;
+
+  double spacing = 0.0, step_of_start = 0.0;
+  std::vector<std::array<Collocation::Scalar, Chain::MOST>> nodes;    ///< of the chains
+
+  int mode() const { return words.separate ? 2 : 1; }
+  Line line_of_step(bigint step) const;
+  ChainTarget target_of(int chain, double steps_ahead, double h) const;
+  double twice_of(int chain) const;
+  double freedoms_of(int chain) const;
+  bool is_thermostatted(int ibody, Part part, int component = 0) const;
+  Friction friction_of(int ibody) const;
+  void count_freedoms();
+  bool conserves_momentum() const;
+  void refuse_masks() const;
+  void refuse_nothing() const;
+  using Sums = ExactSum[2];
+  void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &here) const;
+  void sum_kinetic(const Sums &here);
+  double scale() const;
+  void sum_present();
+  void note_friction();
+  void finish_bodies(const Integrator &integrator);
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

@@ -1,0 +1,289 @@
+"""Keyword temp: Nose-Hoover chains beside those of rigid/nvt/small, energy, target, restart, ranks.
+
+What is refused is in test_bad_input.py, large bodies in test_large_bodies.py.
+"""
+
+import re
+
+import numpy as np
+import pytest
+from scenes import FORMULATIONS, last_frame, one_after_the_other, placed
+
+KINDS = ["total", "separate"]
+
+# Three triangles and a dumbbell that attract each other and hold together; nothing is cut off.
+MOLECULES = [
+    [(0.0, 0.0, 0.0), (0.7, 0.0, 0.1), (0.0, 0.6, 0.2)],
+    [(2.0, 0.3, 0.0), (2.5, 0.9, 0.1), (2.6, 0.0, 0.6)],
+    [(0.8, 2.0, 0.4), (1.4, 2.3, 0.0), (0.9, 1.9, 1.1)],
+    [(1.0, 0.6, -1.6), (1.4, 1.1, -1.8)],
+]
+BEFORE = """
+velocity all create 0.6 4711 loop geom
+pair_style lj/cut 40.0
+pair_coeff * * 0.3 1.0
+"""
+TEMP = "temp 0.5 0.5 0.3"
+END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"
+COLUMNS = "econserve ecouple f_move f_move[9] f_move[10] f_move[11] f_move[12] f_move[13] f_move[14]"
+
+
+def cluster(words, dt=0.004, time=0.8, run=None, every=None, style="", **settings):
+    steps = round(time / dt)
+    settings = dict(box="-9 9 -9 9 -9 9", columns=COLUMNS) | settings
+    fix = f"gear/quat molecule {words}" if "rigid" not in words else words
+    text = placed(
+        settings.pop("bodies", MOLECULES),
+        before=BEFORE + style,
+        fix=fix,
+        dt=dt,
+        thermo=every or max(1, steps // 8),
+        run=run or f"run {steps}",
+        **settings,
+    )
+    return text.replace("fix_modify move energy yes", "")
+
+
+def run(lmp, decks, ranks=1):
+    return lmp.succeed(one_after_the_other(decks), ranks=ranks)
+
+
+def largest_change(table, column):
+    values = np.array(table[column])
+    return np.abs(values - values[0]).max()
+
+
+def order(steps, errors):
+    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
+
+
+# --- the equations ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_econserve_to_the_order_of_the_method(lmp_tree, formulation, kind):
+    """With a target that moves; of the first steps too: the start knows the chains."""
+    values, steps = (6, (0.008, 0.004, 0.002)) if formulation == "first" else (7, (0.016, 0.008, 0.004))
+    words = f"formulation {formulation} values {values} temp 0.4 0.8 0.3 thermostat {kind}"
+    decks = [cluster(words, dt) for dt in steps]
+    few = "run 2 start 0 stop {}"
+    decks += [cluster(words, dt, every=1, run=few.format(round(0.8 / dt))) for dt in steps]
+    tables = run(lmp_tree, decks).thermo
+    errors = [largest_change(table, "Econserve") for table in tables[:3]]
+    assert order(steps, errors) > values - 1.3
+    errors = [largest_change(table, "Econserve") for table in tables[3:]]
+    assert order(steps, errors) > values - 1.3
+    assert largest_change(tables[2], "TotEng") > 1e4 * largest_change(tables[2], "Econserve")
+
+
+def test_the_columns_belong_together(lmp_tree, formulation):
+    deck = cluster(f"formulation {formulation} temp 0.5 0.7 0.3 thermostat separate tchain 2", 0.016)
+    result = run(lmp_tree, [deck])
+    table = {name: np.array(values) for name, values in result.thermo[0].items()}
+    assert "of 9 degrees of freedom of translation, without those of the total" in result.log
+    assert "and 11 of rotation" in result.log
+    assert np.abs(table["Econserve"] - table["TotEng"] - table["f_move"]).max() < 1e-14
+    assert (table["Ecouple"] == table["f_move"]).all()
+    # the scalar is also the way from the predicted to the corrected pose, which is short
+    assert 0.0 < np.abs(table["f_move"] - table["f_move[9]"]).max() < 1e-4
+    for kinetic, temperature, freedoms in (("1", "10", 9), ("2", "11", 11)):
+        found = 2 * table[f"f_move[{kinetic}]"] / freedoms
+        assert table[f"f_move[{temperature}]"] == pytest.approx(found, rel=1e-12)
+    steps = table["Step"]
+    assert table["f_move[12]"] == pytest.approx(0.5 + 0.2 * steps / steps[-1], rel=1e-12)
+    assert abs(table["f_move[9]"][-1]) > 1.0
+
+
+def test_what_chains_take_is_what_friction_does(lmp_tree, formulation):
+    words = f"formulation {formulation} {TEMP} thermostat separate"
+    (table,) = run(lmp_tree, [cluster(words, 0.001, 0.02, every=1)]).thermo
+    taken, xi = np.array(table["f_move[9]"]), {k: np.array(table[f"f_move[{k}]"]) for k in (13, 14)}
+    power = 2 * (xi[13] * table["f_move[1]"] + xi[14] * table["f_move[2]"])
+    n = len(taken) // 2
+    slope = (8 * (taken[n + 1] - taken[n - 1]) - (taken[n + 2] - taken[n - 2])) / (12 * 0.001)
+    assert power[n] == pytest.approx(slope, rel=1e-6) and abs(slope) > 1e-3
+    assert 1.01 * power[n] != pytest.approx(slope, rel=5e-3)
+
+
+def test_the_trajectory_that_rigid_nvt_approaches(lmp_tree, formulation):
+    """With the same degrees of freedom: those chains count the total momentum, as ours do where
+    another fix exerts forces.  They are of first order in the step, so two steps are extrapolated."""
+    nothing = dict(after="fix nothing all addforce 0.0 0.0 0.0", columns="")
+    words = f"formulation {formulation} values 8 temp 0.4 0.8 0.3 thermostat separate tchain 3"
+
+    def end(words, dt):
+        result = run(lmp_tree, [cluster(words, dt, **nothing)])
+        return last_frame(lmp_tree.folder / "poses.dump"), result.log
+
+    exact, log = end(words, 0.002)
+    assert "of 12 degrees of freedom of translation and 11 of rotation" in log
+    steps = (0.001, 0.0005, 0.00025)
+    rigid = [end("rigid/nvt/small molecule temp 0.4 0.8 0.3 tparam 3 2 3", dt)[0] for dt in steps]
+    errors = [np.abs(2 * fine - coarse - exact).max() for coarse, fine in zip(rigid, rigid[1:])]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.15) and errors[1] < 1e-5
+    assert np.abs(rigid[-1] - exact).max() > 100 * errors[1]
+    # another damping time is another trajectory
+    assert np.abs(end(words.replace("0.3", "0.303"), 0.002)[0] - exact).max() > 100 * errors[1]
+
+
+# bodies, keywords and settings, degrees of freedom of translation and rotation
+FREEDOMS = {
+    "points": ([[(0, 0, 0)], [(1.2, 0, 0.1)], [(0, 1.3, 0)]], "", {}, (6, 0)),
+    "linear": ([[(0, 0, 0), (0, 0, 1)], [(1.5, 0, 0), (1.5, 1, 0)]], "", {}, (3, 4)),
+    "held": (MOLECULES, "force 1 off on on torque 2 off off off", {}, (11, 8)),
+    "outside": (MOLECULES, "", {"after": "fix one all spring/self 1.0"}, (12, 11)),
+    "flat": (
+        [[(0, 0, 0), (1, 0, 0)], [(0, 2, 0), (1, 2.2, 0)], [(2.5, 1, 0)]],
+        "",
+        {"dimension": 2, "box": "-9 9 -9 9 -0.5 0.5", "boundary": "f f p"},
+        (4, 2),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FREEDOMS)
+def test_degrees_of_freedom(lmp_tree, name):
+    bodies, words, settings, (translation, rotation) = FREEDOMS[name]
+    deck = cluster(f"{words} {TEMP}", 0.002, 0.2, bodies=bodies, **settings)
+    deck = deck.replace("exclude molecule/intra all", "every 1") if name == "points" else deck
+    result = run(lmp_tree, [deck])
+    said = re.search(r"thermostat of (\d+) degrees of freedom.* and (\d+) of rotation", result.log)
+    assert tuple(map(int, said.groups())) == (translation, rotation)
+    table = result.thermo[0]
+    if name in ("outside", "held"):  # the springs' energy is not in pe, and what holds does work
+        return
+    assert largest_change(table, "Econserve") < 1e-6
+    assert largest_change(table, "TotEng") > 1e-2
+
+
+def test_what_is_off_has_no_friction(lmp_tree, formulation):
+    """A momentum along a direction that is off persists, and an angular momentum does."""
+    masks = "force 1 off off off torque 1 off off off"
+    deck = cluster(f"formulation {formulation} {masks} {TEMP}", dumped="", time=1.6)
+    deck = deck.replace(COLUMNS, COLUMNS + " f_move[1][4] f_move[1][23] f_move[2][4]")
+    (table,) = run(lmp_tree, [deck]).thermo
+    assert largest_change(table, "f_move[1][4]") < 1e-13
+    assert largest_change(table, "f_move[1][23]") < 1e-6
+    assert largest_change(table, "f_move[2][4]") > 1e-2
+    assert largest_change(table, "Econserve") > 1e-3  # what holds it does work on it
+
+
+# --- targets ------------------------------------------------------------------------------------
+
+
+def test_another_target_starts_anew(lmp_tree, formulation):
+    words = f"formulation {formulation} {TEMP}"
+    commands = f"run 100\nunfix move\nfix move all gear/quat molecule {words}\nrun 100"
+    again = cluster(words, run="run 100\nrun 100\nrun 100 start 0 stop 300")
+    step = cluster(f"formulation {formulation} temp 0.5 0.9 0.3", run="run 100\nrun 100")
+    results = run(lmp_tree, [again, step])
+    assert results.log.count("the thermostat has another target") == 1
+    for table in results.thermo:
+        assert largest_change(table, "Econserve") < 1e-7
+    last, then = results.thermo[3], results.thermo[4]
+    assert (last["f_move[12]"][-1], then["f_move[12]"][0]) == (pytest.approx(0.9), pytest.approx(0.5))
+    # what the chains have taken goes on
+    assert then["f_move[9]"][0] != 0.0 and then["f_move[13]"][0] == last["f_move[13]"][-1]
+
+
+def test_a_ramp_goes_over_runs(lmp_tree):
+    """One run, and parts of it with start and stop."""
+    words = "temp 0.4 0.8 0.3"
+    parts = "\n".join(f"run {n} start 0 stop 200" for n in (50, 50, 100))
+    decks = [cluster(words, run=f"run 200\n{END.format('whole')}")]
+    decks += [cluster(words, run=f"{parts}\n{END.format('parts')}")]
+    result = run(lmp_tree, decks)
+    whole, parts = (last_frame(lmp_tree.folder / f"{name}.end") for name in ("whole", "parts"))
+    assert np.abs(whole - parts).max() < 1e-12
+    assert "another target" not in result.log
+
+
+def test_another_step(lmp_tree, formulation):
+    commands = "run 100\ntimestep 0.003\nrun 100\ntimestep 0.004\nrun 100"
+    tables = run(lmp_tree, [cluster(f"formulation {formulation} {TEMP}", run=commands)]).thermo
+    values = np.concatenate([table["Econserve"] for table in tables])
+    assert np.abs(values - values[0]).max() < 1e-7
+
+
+# --- beside others, ranks, restart --------------------------------------------------------------
+
+
+def test_several_fixes(lmp_tree, formulation):
+    deck = cluster(f"formulation {formulation} {TEMP}")
+    deck = deck.replace("fix move all", "group some molecule 1 2\ngroup others subtract all some\nfix move some")
+    deck = deck.replace("timestep", f"fix too others gear/quat molecule {TEMP} thermostat separate\ntimestep")
+    result = run(lmp_tree, [deck])
+    assert len(re.findall("6 degrees of freedom of translation and", result.log)) == 2
+    assert largest_change(result.thermo[0], "Econserve") < 1e-6
+    assert largest_change(result.thermo[0], "TotEng") > 1e-2
+
+
+def test_respa(lmp_tree):
+    ends = []
+    for style in ("", "run_style respa 2 1 pair 1 kspace 2"):
+        run(lmp_tree, [cluster(TEMP, style=style, run="run 50\n" + END.format("a"))])
+        ends.append(last_frame(lmp_tree.folder / "a.end"))
+    assert np.abs(ends[0] - ends[1]).max() < 1e-12
+
+
+def test_a_body_is_taken_away(lmp_tree):
+    commands = "run 20\ngroup gone molecule 4\ndelete_atoms group gone compress no\nrun 100"
+    table = run(lmp_tree, [cluster(TEMP, run=commands, every=20)], 2).thermo[1]
+    assert largest_change(table, "Econserve") < 1e-7
+    freedoms = 2 * np.array(table["f_move[1]"]) / table["f_move[10]"]
+    assert freedoms == pytest.approx(6.0)
+
+
+def continued(deck, file):
+    """The deck with its atoms and potential from a restart file."""
+    rest = re.sub("velocity all create.*", "", deck[deck.index("neigh_") :])
+    return f"units lj\natom_modify sort 0 0.0\nread_restart {file}\n{rest}"
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
+    decks, names = [], []
+    for form in FORMULATIONS:
+        for kind in KINDS:
+            words = f"formulation {form} temp 0.4 0.8 0.3 tchain {3 if kind == 'total' else 2} thermostat {kind}"
+            span = "start 0 stop 100"
+            name = f"{form}-{kind}"
+            names.append(name)
+            for part, commands in {
+                "whole": "run 100",
+                "halves": f"run 50 {span}\nwrite_restart {name}.half\nrun 50 {span}",
+                "again": f"run 50 {span}",
+            }.items():
+                commands += "\n" + END.format(f"{name}-{part}")
+                deck = cluster(words, every=50, run=commands)
+                decks.append(continued(deck, f"{name}.half") if part == "again" else deck)
+    result = run(lmp_tree, decks, ranks)
+    ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
+    for n, name in enumerate(names):
+        assert ends[f"{name}-whole"] == ends[f"{name}-halves"] == ends[f"{name}-again"], name
+        whole, _, half, again = result.thermo[4 * n : 4 * n + 4]
+        for column in ("f_move[9]", "f_move[13]", "Econserve"):
+            assert whole[column][-1] == half[column][-1] == again[column][-1], column
+    assert len({ends[f"{name}-whole"] for name in names}) == len(names)
+    assert "another target" not in result.log
+
+
+def test_ranks(lmp_tree):
+    ends, deck = [], cluster(f"{TEMP} thermostat separate", run="run 100\n" + END.format("a"))
+    for ranks in (1, 2, 4):
+        run(lmp_tree, [deck], ranks)
+        ends.append(last_frame(lmp_tree.folder / "a.end"))
+    assert max(np.abs(end - ends[0]).max() for end in ends) < 1e-11
+
+
+def test_another_thermostat_after_a_restart_begins_anew(lmp_tree):
+    first = cluster(TEMP, run="run 50\nwrite_restart half\nrun 0")
+    others = [cluster(f"{TEMP} {more}", run="run 20") for more in ("thermostat separate", "tchain 4")]
+    others.append(cluster("", run="run 20", columns=""))
+    slower = cluster("temp 0.5 0.5 0.4", run="run 20")
+    result = run(lmp_tree, [first, *(continued(deck, "half") for deck in (*others, slower))])
+    for keyword in ("thermostat", "tchain", "temp"):
+        assert result.output.count(f"with other settings of {keyword}; poses") == 1
+    assert result.log.count("another target") == 1
+    for table in result.thermo[2:]:
+        assert largest_change(table, "Econserve" if "Econserve" in table else "TotEng") < 1e-6

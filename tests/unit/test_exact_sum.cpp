@@ -1,0 +1,83 @@
+/* Sums that do not depend on the order of their terms. */
+
+#include "checks.h"
+
+#include "gear_quat_exact_sum.h"
+
+#include <limits>
+
+using LAMMPS_NS::GearQuat::ExactSum;
+using std::vector;
+
+namespace {
+
+double sum(const vector<double> &terms, double scale, int parts = 1)
+{
+  vector<ExactSum> part(parts);
+  for (size_t i = 0; i < terms.size(); ++i) part[i % parts].add(terms[i], scale);
+  ExactSum all;
+  for (const auto &one : part)
+    for (int k = 0; k < 2; ++k) all.limbs[k] += one.limbs[k];
+  return all.value(scale);
+}
+
+/// Terms of very different sizes, as kinetic energies.
+vector<double> energies(int n)
+{
+  Check::Numbers numbers(7);
+  vector<double> terms;
+  for (int i = 0; i < n; ++i) terms.push_back(std::pow(numbers.next(), 2) * std::pow(2.0, i % 7));
+  return terms;
+}
+
+}    // namespace
+
+TEST(ExactSum, NeitherOrderNorPartsMatter)
+{
+  vector<double> terms = energies(1000);
+  const double scale = ExactSum::scale_of(700.0), first = sum(terms, scale);
+  double plain = 0.0, reversed = 0.0;
+  for (const double one : terms) plain += one;
+  std::reverse(terms.begin(), terms.end());
+  for (const double one : terms) reversed += one;
+  EXPECT_NE(plain, reversed);    // as plain sums do
+  for (const int parts : {1, 2, 4, 7}) EXPECT_EQ(sum(terms, scale, parts), first);
+}
+
+TEST(ExactSum, AsExactAsADouble)
+{
+  for (const double size : {1.0e-12, 1.0, 3.0e7}) {
+    vector<double> terms = energies(1000);
+    long double exact = 0.0L;
+    double total = 0.0;
+    for (double &one : terms) {
+      one *= size;
+      exact += one;
+      total += one;
+    }
+    for (const double of : {0.01, 1.0, 100.0}) {    // the scale is no more than a size
+      const double found = sum(terms, ExactSum::scale_of(of * total));
+      EXPECT_LT(std::fabs(double((found - exact) / exact)), 2.5e-16);
+    }
+    EXPECT_GT(std::fabs(sum(terms, ExactSum::scale_of(total)) - 1.01 * double(exact)),
+              5.0e-3 * double(exact));
+  }
+}
+
+TEST(ExactSum, AScaleIsAPowerOfTwo)
+{
+  for (const double number : {0.3, 1.0, 1.5, 3.0e-20, 6.0e17}) {
+    int exponent;
+    const double scale = ExactSum::scale_of(number);
+    EXPECT_EQ(std::frexp(scale, &exponent), 0.5);
+    EXPECT_GT(scale, number);
+    EXPECT_LE(scale, 2.0 * number);
+  }
+}
+
+TEST(ExactSum, WhatIsNoNumberIsLarge)
+{
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double term : {infinite, infinite - infinite, 1.0e300})
+    EXPECT_GT(sum({1.0, term}, 1.0), 1.0e6);
+}
