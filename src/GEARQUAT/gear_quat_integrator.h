@@ -23,8 +23,6 @@
 #include "gear_quat_kinematics.h"
 #include "gear_quat_tuned.h"
 
-#include <array>
-
 namespace LAMMPS_NS::GearQuat {
 
 class Integrator : public Kinematics {
@@ -38,13 +36,8 @@ class Integrator : public Kinematics {
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       Kinematics(scheme, h), n(scheme.values()), c(coefficients)
   {
-    for (int j = 0; j < MAX_VALUES; ++j) {
-      double *row = &second[j * Scheme::SECOND_WIDTH];
-      std::fill_n(row + Scheme::POSITION, 3, c.position[j]);
-      std::fill_n(row + Scheme::SECOND_QUATERNION, 4, c.quaternion[j]);
-    }
     const Fractions gear = first_order_coefficients(n);
-    for (int j = 0; j < n; ++j) scalar[j] = scheme.first() ? c.momentum[j] : gear[j].value();
+    for (int j = 0; j < n; ++j) scalar[j] = scheme.first() ? c.driven[j] : gear[j].value();
   }
 
   int values() const { return n; }
@@ -163,7 +156,7 @@ class Integrator : public Kinematics {
   {
     Nordsieck<1>::predict(rows_of_scalar, n);
     const double residual = h * rate - rows_of_scalar[1];
-    Nordsieck<1>::correct<1>(rows_of_scalar, n, c.momentum.data(), 0, &residual);
+    Nordsieck<1>::correct<1>(rows_of_scalar, n, c.driven.data(), 0, &residual);
   }
 
   /// Torque and moments of inertia have no part in it.
@@ -175,7 +168,7 @@ class Integrator : public Kinematics {
       correct_center(history, body, load, Undamped(), rows, residual);
     });
     for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
-    return {dot3(load.force, dx), c.position_weight2 * dot3(residual, residual), 0.0};
+    return {dot3(load.force, dx), c.weight2 * dot3(residual, residual), 0.0};
   }
 
  private:
@@ -201,8 +194,6 @@ class Integrator : public Kinematics {
 
   int n;
   CorrectorCoefficients c;
-  /// Formulation second: c as rows of a history.
-  std::array<double, MAX_VALUES *Scheme::SECOND_WIDTH> second = {};
   CorrectorCoefficients::Array scalar = {};
 
   /// Residual of a column is target - row, row that of the order of the equation.
@@ -225,10 +216,10 @@ class Integrator : public Kinematics {
     double before[3], target[3];
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i) target[i] = h * damper.force(i, load.force[i], before[i]);
-    feed_back<3>(history, c.momentum, rows, rates, Scheme::MOMENTUM, target);
+    feed_back<3>(history, c.driven, rows, rates, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
-    feed_back<3>(history, c.position, rows, rates, Scheme::POSITION, target, residual);
+    feed_back<3>(history, c.integrated, rows, rates, Scheme::POSITION, target, residual);
   }
 
   /// Angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16).
@@ -244,10 +235,10 @@ class Integrator : public Kinematics {
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * before[i]);
     angular_acceleration(body, torque, before, target);
     for (int i = 0; i < 3; ++i) target[i] *= h;
-    feed_back<3>(history, c.omega, rows, rates, Scheme::OMEGA, target);
+    feed_back<3>(history, c.driven, rows, rates, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
-    feed_back<4>(history, c.quaternion, rows, rates, quat, target, residual);
+    feed_back<4>(history, c.integrated, rows, rates, quat, target, residual);
   }
 
   template <int CARRIES>
@@ -291,8 +282,7 @@ class Integrator : public Kinematics {
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
     const Residual &total = pending.total;
     return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body),
-            c.position_weight2 * dot3(total.x, total.x),
-            c.quaternion_weight2 * dot4(total.q, total.q)};
+            c.weight2 * dot3(total.x, total.x), c.weight2 * dot4(total.q, total.q)};
   }
 
   /// Positions (Eq. 17): forces stay, so one pass is all.
@@ -310,7 +300,7 @@ class Integrator : public Kinematics {
                       double *rows, double *residual) const
   {
     position_residual(body, load, rows, residual);
-    history.template correct<3>(rows, n, c.position.data(), Scheme::POSITION, residual);
+    history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, residual);
   }
 
   template <int CARRIES>
@@ -327,7 +317,7 @@ class Integrator : public Kinematics {
 
     for (int pass = 0; pass < scheme.passes; ++pass)
       rotation_residual(body, per_inertia, pending.torque_body, Undamped(), rows, total);
-    history.correct(rows, n, second.data(), residual);
+    history.template correct<WIDTH>(rows, n, c.driven.data(), 0, residual);
     copy(residual + Scheme::POSITION, 3, pending.total.x);
     copy(total, 4, pending.total.q);
     if (scheme.project) project(history, rows);
@@ -360,14 +350,14 @@ class Integrator : public Kinematics {
     const double *place = rows + Scheme::SECOND_QUATERNION, *rates = place + Scheme::SECOND_WIDTH;
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
-      q[i] = place[i] + c.quaternion[0] * total[i];
-      qdot[i] = (rates[i] + c.quaternion[1] * total[i]) * per_h;
+      q[i] = place[i] + c.driven[0] * total[i];
+      qdot[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
     }
   }
   void velocity_of_pass(const double *rows, const double *total, double *velocity) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
-    for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.position[1] * total[i]) * per_h;
+    for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
   }
 
   /// Finds residuals alone: rows stay predicted until finish_passes().
@@ -391,7 +381,7 @@ class Integrator : public Kinematics {
     double residual[Scheme::SECOND_WIDTH];
     copy(pending.total.x, 3, residual + Scheme::POSITION);
     copy(pending.total.q, 4, residual + Scheme::SECOND_QUATERNION);
-    history.correct(rows, n, second.data(), residual);
+    history.template correct<Scheme::SECOND_WIDTH>(rows, n, c.driven.data(), 0, residual);
     if (scheme.project) project(history, rows);
   }
 

@@ -25,14 +25,13 @@ enum class Noise { NONE, RANDOM, COLLISIONS };
 inline double noise_gain(const Scheme &scheme, const CorrectorCoefficients &c)
 {
   constexpr int STEPS = 1000;    // roots of 0.99 have faded
-  const double *driven = (scheme.first() ? c.momentum : c.position).data();
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
   double rows[MAX_VALUES] = {}, gain = 0.0;
   for (int step = 0; step < STEPS; ++step) {
     const double before = rows[order - 1];
     Nordsieck<1>::predict(rows, n);
     const double residual = (step == 0 ? 1.0 / order : 0.0) - rows[order];
-    Nordsieck<1>::correct<1>(rows, n, driven, 0, &residual);
+    Nordsieck<1>::correct<1>(rows, n, c.driven.data(), 0, &residual);
     const double change = rows[order - 1] - before;
     gain += change * change;
   }
@@ -86,14 +85,13 @@ inline bool friction_fades(const Scheme &scheme, double part)
 {
   constexpr int STEPS = 2000;
   const CorrectorCoefficients c(scheme);
-  const double *driven = (scheme.first() ? c.momentum : c.position).data();
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
   double rows[MAX_VALUES] = {};
   rows[order - 1] = 1.0;
   for (int step = 0; step < STEPS; ++step) {
     Nordsieck<1>::predict(rows, n);
     const double residual = -part / order * rows[order - 1] - rows[order];
-    Nordsieck<1>::correct<1>(rows, n, driven, 0, &residual);
+    Nordsieck<1>::correct<1>(rows, n, c.driven.data(), 0, &residual);
   }
   return std::fabs(rows[order - 1]) < 1.0;
 }

@@ -138,19 +138,6 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
     }
   }
 
-  /// The same for all components at once, each with coefficients of its own: n rows of them.
-  static void correct(double *rows, int n, const double *coefficients, const double *residual)
-  {
-    double r[WIDTH], change[WIDTH];    // copies, as above
-#pragma GCC unroll 13
-    for (int c = 0; c < WIDTH; ++c) r[c] = residual[c];
-    for (int j = 0; j < n; ++j) {
-#pragma GCC unroll 13
-      for (int c = 0; c < WIDTH; ++c) change[c] = coefficients[j * WIDTH + c] * r[c];
-      add<WIDTH>(rows, n, j, 0, change);
-    }
-  }
-
   /// The same polynomial for another step: ratio = new step / old step.
   static void rescale(double *rows, int n, double ratio)
   {

@@ -49,8 +49,9 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Columns of a history that have coefficients of their own; the second formulation has two of them.
-enum class Columns { MOMENTUM, POSITION, OMEGA, QUATERNION };
+/// Columns that forces drive: momenta and angular velocities, in the second formulation positions and
+/// quaternions.  Columns that integrate others: positions and quaternions of the first one.
+enum class Columns { DRIVEN, INTEGRATED };
 
 // ---------------------------------------------------------------------------------------------
 // order conditions
@@ -122,12 +123,12 @@ class SteadyDeviations {
 // the table
 // ---------------------------------------------------------------------------------------------
 
-/// What is free of the coefficients of some columns.
+/// What is free of the coefficients of a kind of columns.
 struct TunedSet {
   static constexpr long double SOLVED = std::numeric_limits<long double>::quiet_NaN();
 
   Formulation formulation;
-  std::vector<Columns> columns;     ///< that have these
+  Columns columns;                  ///< that have these
   std::vector<long double> tail;    ///< c_2 ... c_(N-1) of formulation first, c_3 ... of second
   long double c0 = SOLVED;          ///< where order does not determine it
 
@@ -149,14 +150,10 @@ struct TunedSet {
   }
 };
 
-/// Formulation first: momenta and angular velocities are driven by forces, positions and quaternions
-/// integrate them.
 inline const std::vector<TunedSet> &tuned_sets()
 {
   constexpr Formulation FIRST = Formulation::FIRST, SECOND = Formulation::SECOND;
-  static const std::vector<Columns> DRIVEN = {Columns::MOMENTUM, Columns::OMEGA},
-                                    INTEGRATED = {Columns::POSITION, Columns::QUATERNION},
-                                    BOTH = INTEGRATED;
+  constexpr Columns DRIVEN = Columns::DRIVEN, INTEGRATED = Columns::INTEGRATED;
   static const std::vector<TunedSet> sets = {
       {FIRST, DRIVEN, {0.175562493L}},
       {FIRST, INTEGRATED, {0.977598317L}},
@@ -174,37 +171,26 @@ inline const std::vector<TunedSet> &tuned_sets()
       {FIRST,
        INTEGRATED,
        {1.168083887L, 0.680906246L, 0.213715031L, 0.042664217L, 0.003990708L, 0.000315392L}},
-      {SECOND, BOTH, {0.518283853L}},
-      {SECOND, BOTH, {0.611353799L, 0.291024122L}, 0.008965579L},
-      {SECOND, BOTH, {0.68109688L, 0.214659532L, 0.054497661L}},
+      {SECOND, DRIVEN, {0.518283853L}},
+      {SECOND, DRIVEN, {0.612194931L, 0.286697465L}, 0.005707609L},
+      {SECOND, DRIVEN, {0.68109688L, 0.214659532L, 0.054497661L}},
+      {SECOND, DRIVEN, {0.764735219L, 0.414859115L, 0.077867825L, 0.021600975L}, 0.027779193L},
+      {SECOND, DRIVEN, {0.767583958L, 0.315047149L, 0.095050269L, 0.010917458L, 0.001670165L}},
       {SECOND,
-       {Columns::POSITION},
-       {0.775986951L, 0.426920571L, 0.082983591L, 0.02343505L},
-       0.013193217L},
+       DRIVEN,
+       {0.829069459L, 0.46120882L, 0.12299792L, 0.033749712L, 0.00278766L, 0.000443347L},
+       0.029954015L},
       {SECOND,
-       {Columns::QUATERNION},
-       {0.726403228L, 0.391439217L, 0.066868486L, 0.018981058L},
-       0.029866974L},
-      {SECOND, BOTH, {0.767583958L, 0.315047149L, 0.095050269L, 0.010917458L, 0.001670165L}},
-      {SECOND,
-       {Columns::POSITION},
-       {0.849867047L, 0.481218042L, 0.134798532L, 0.037980937L, 0.003319961L, 0.000551133L},
-       0.028964021L},
-      {SECOND,
-       {Columns::QUATERNION},
-       {0.832176253L, 0.46047364L, 0.125226338L, 0.034148131L, 0.002875965L, 0.000459046L},
-       0.03326182L},
-      {SECOND,
-       BOTH,
+       DRIVEN,
        {0.818476876L, 0.410728212L, 0.122420593L, 0.025374013L, 0.003252486L, 0.00026864L,
         0.000014191L}},
       {SECOND,
-       BOTH,
-       {0.848095259L, 0.451504824L, 0.139478998L, 0.033975854L, 0.004349437L, 0.000564923L,
-        0.000026122L, 0.000001941L},
-       0.067085091L},
+       DRIVEN,
+       {0.830377065L, 0.45130325L, 0.132203956L, 0.034419801L, 0.00409732L, 0.000602561L,
+        0.00002542L, 0.000002296L},
+       0.050487162L},
       {SECOND,
-       BOTH,
+       DRIVEN,
        {0.85324761L, 0.446512735L, 0.14481459L, 0.033139668L, 0.005008598L, 0.000553739L,
         0.000040524L, 0.000001961L, 0.000000058L}},
   };
@@ -215,20 +201,15 @@ inline const std::vector<TunedSet> &tuned_sets()
 inline const TunedSet *tuned_set(Formulation formulation, int values, Columns columns)
 {
   for (const TunedSet &set : tuned_sets())
-    if (set.formulation == formulation && set.values() == values &&
-        std::count(set.columns.begin(), set.columns.end(), columns))
+    if (set.formulation == formulation && set.values() == values && set.columns == columns)
       return &set;
   return nullptr;
 }
 
-/// Whether all columns have tuned coefficients for this number of values.
+/// Whether there are tuned coefficients for this number of values.
 inline bool has_tuned(Formulation formulation, int values)
 {
-  const auto has = [&](Columns columns) {
-    return tuned_set(formulation, values, columns) != nullptr;
-  };
-  return has(Columns::POSITION) && has(Columns::QUATERNION) &&
-      (formulation == Formulation::SECOND || (has(Columns::MOMENTUM) && has(Columns::OMEGA)));
+  return tuned_set(formulation, values, Columns::DRIVEN) != nullptr;
 }
 
 /// These numbers, from the smallest on.
@@ -253,26 +234,22 @@ inline int Scheme::order() const
 // what the integrator works with
 // ---------------------------------------------------------------------------------------------
 
-/// Coefficients of all columns, and the weights of residuals in the local error.
+/// Coefficients of all columns, and the weight of residuals in the local error.
 struct CorrectorCoefficients {
   using Array = std::array<double, MAX_VALUES>;
 
-  Array momentum = {}, position = {}, omega = {}, quaternion = {};    ///< second: the middle ones
-  double position_weight2, quaternion_weight2;                        ///< squared
+  Array driven = {}, integrated = {};    ///< see Columns; second: driven alone
+  double weight2;                        ///< of the residuals of positions and quaternions, squared
 
   /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned set.
   explicit CorrectorCoefficients(const Scheme &scheme)
   {
-    position_weight2 = square(fill(scheme, Columns::POSITION, position));
-    quaternion_weight2 = square(fill(scheme, Columns::QUATERNION, quaternion));
-    if (!scheme.first()) return;
-    fill(scheme, Columns::MOMENTUM, momentum);
-    fill(scheme, Columns::OMEGA, omega);
+    double weight = fill(scheme, Columns::DRIVEN, driven);
+    if (scheme.first()) weight = fill(scheme, Columns::INTEGRATED, integrated);
+    weight2 = weight * weight;
   }
 
  private:
-  static double square(double x) { return x * x; }
-
   /// Returns the weight of the residual in the local error.
   static double fill(const Scheme &scheme, Columns columns, Array &c)
   {

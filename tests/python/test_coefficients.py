@@ -124,7 +124,7 @@ def test_the_command_prints_lines_of_the_table():
         command.main, "coefficients --search second 5 --seed 2 --iterations 1".split()
     )
     number = r"(-?[\d.e-]+)L"
-    pattern = rf"\{{SECOND, BOTH, \{{{number}, {number}\}}, {number}\}},\n"
+    pattern = rf"\{{SECOND, DRIVEN, \{{{number}, {number}\}}, {number}\}},\n"
     line = re.match(pattern, done.output)
     assert line, done.output
     c = completed(2, [Fraction(1), Fraction(line[1]), Fraction(line[2])])

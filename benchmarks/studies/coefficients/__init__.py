@@ -20,7 +20,7 @@ from . import properties, search
 from .kernel import LOST, VALUES, gear, tuned
 from .properties import Flights, Linear, Motions
 
-TUNED, GEAR, QUATERNIONS = "tuned", "Gear's", "tuned, quaternions"
+TUNED, GEAR = "tuned", "Gear's"
 #: omega h, and radians a step, of the picture
 RANGE = np.arange(0.06, 1.2001, 0.02)
 #: (formulation, values, color) of the picture: the defaults, and one number more
@@ -36,8 +36,7 @@ BAND, FEMTOSECONDS = (600, 850), 2.5
 @dataclass(frozen=True)
 class Results:
     """(formulation, values, TUNED or GEAR) -> ``linear``: Linear, ``motions``: Motions, ``moved``:
-    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py.  Where quaternions have
-    a set of their own, ``linear`` has QUATERNIONS too."""
+    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py."""
 
     linear: dict
     motions: dict
@@ -60,8 +59,6 @@ def correctors():
 def add(results, key, corrector, flights):
     """Put what a Corrector does into Results, but for its curves."""
     results.linear[key] = Linear.of(corrector)
-    if corrector.of_rotation != corrector:
-        results.linear[(*key[:2], QUATERNIONS)] = Linear.of(corrector.of_rotation)
     results.motions[key] = Motions.of(corrector, flights)
     results.moved[key] = flights.others(properties.moved(corrector))
 
@@ -113,7 +110,7 @@ def tables(results):
     }
     heads["linear"] += ("stable to", "noise gain")
     heads["motions"] += tuple(f"free top, {h:g}" for h in properties.TOPS)
-    heads["motions"] += tuple(f"test case 1, {h:g}" for h in properties.CAGES) 
+    heads["motions"] += tuple(f"test case 1, {h:g}" for h in properties.CAGES)
     heads["motions"] += tuple(f"other starts, {h:g}" for h in properties.START_STEPS)
     rows = {
         "linear": {
@@ -133,7 +130,6 @@ def tables(results):
         "moved": {
             key: (*with_order(motions[key].starts), *with_order(results.moved[key]))
             for key in shown
-            if key in motions
         },
     }
     every = {name: table(head, rows[name]) for name, head in heads.items()}
@@ -237,8 +233,7 @@ def find(results):
 def written(corrector, free_c0):
     """Lines of the table of src/GEARQUAT/gear_quat_tuned.h."""
     order = corrector.order
-    names = ("DRIVEN", "INTEGRATED") if order == 1 else ("BOTH",)
-    for columns, own in zip(names, corrector.sets):
+    for columns, own in zip(("DRIVEN", "INTEGRATED")[: 3 - order], corrector.sets):
         tail = ", ".join(f"{float(x):.9g}L" for x in own[order + 1 :])
         c0 = f", {float(own[0]):.9g}L" if free_c0 else ""
         yield f"{{{corrector.formulation.upper()}, {columns}, {{{tail}}}{c0}}},"

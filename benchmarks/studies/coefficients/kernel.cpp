@@ -17,8 +17,8 @@ namespace {
 
 constexpr double LOST = 1e3;
 
-/// Two sets of coefficients c_0 ... c_(values-1).  First formulation: of rows that forces drive, and of
-/// those that integrate these; second: of positions, and of quaternions.
+/// Coefficients c_0 ... c_(values-1) of rows that forces drive, and of those that integrate these, which
+/// only the first formulation has.
 struct Corrector {
   int second, values, passes, compensate;
   double sets[2][MAX_VALUES];
@@ -33,12 +33,8 @@ Scheme scheme_for(const Corrector &corrector)
 CorrectorCoefficients coefficients_of(const Corrector &corrector)
 {
   CorrectorCoefficients c(scheme_for(corrector));
-  const double *one = corrector.sets[0], *other = corrector.sets[1];
-  const int n = corrector.values;
-  std::copy_n(one, n, c.momentum.begin());
-  std::copy_n(one, n, c.omega.begin());
-  std::copy_n(corrector.second ? one : other, n, c.position.begin());
-  std::copy_n(other, n, c.quaternion.begin());
+  std::copy_n(corrector.sets[0], corrector.values, c.driven.begin());
+  std::copy_n(corrector.sets[1], corrector.values, c.integrated.begin());
   return c;
 }
 
@@ -179,9 +175,8 @@ double noise(const Corrector *corrector)
 /// Returns the length of the tail, 0 if there is no such set.
 int tuned_tail(int second, int values, int which, double *tail, double *c0)
 {
-  constexpr Columns KINDS[2][2] = {{Columns::MOMENTUM, Columns::POSITION},
-                                   {Columns::POSITION, Columns::QUATERNION}};
-  const TunedSet *set = tuned_set(second ? SECOND : FIRST, values, KINDS[second][which]);
+  const Columns kind = which && !second ? Columns::INTEGRATED : Columns::DRIVEN;
+  const TunedSet *set = tuned_set(second ? SECOND : FIRST, values, kind);
   if (!set) return 0;
   std::copy(set->tail.begin(), set->tail.end(), tail);
   *c0 = double(set->c0);

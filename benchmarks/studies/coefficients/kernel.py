@@ -65,9 +65,9 @@ def library():
 class Corrector:
     """Two ``sets`` of coefficients c_0 ... c_(N-1) of a ``formulation``, fractions or numbers.
 
-    First formulation: of rows that forces drive, and of rows that integrate them; second: of positions,
-    and of quaternions.  Linear properties of the second are those of the positions.  The motions return
-    LOST where they do not stay finite; the rotation is corrected in so many ``passes``.
+    The first is of rows that forces drive, the second of rows that integrate these; in the second
+    formulation both are the same.  The motions return LOST where they do not stay finite; the rotation is
+    corrected in so many ``passes``.
     """
 
     formulation: str
@@ -90,11 +90,6 @@ class Corrector:
         if self.order == 2:
             return second_step(sets[0], omega_h, rate, passes)
         return first_step(*sets, omega_h, rate=rate, passes=passes)
-
-    @property
-    def of_rotation(self):
-        """The Corrector whose linear properties are those of the rotation."""
-        return self if self.order == 1 else Corrector(self.formulation, (self.sets[1],) * 2)
 
     @property
     def floats(self):

@@ -75,7 +75,7 @@ def models(corrector, z=AT):
     """
     decay = np.exp(z * (-DAMPED + 1j * np.sqrt(1 - DAMPED**2)))
     damped = np.linalg.eigvals(corrector.step(z, -2 * DAMPED * z, passes=2))
-    spinning = np.linalg.eigvals(corrector.of_rotation.step(0.0, 1j * z, passes=2))
+    spinning = np.linalg.eigvals(corrector.step(0.0, 1j * z, passes=2))
     of_force = response(corrector, DRIVEN * z)
     steady = of_force * (DRIVEN**2 - 1) / (DRIVEN**2 - of_force) - 1
     return abs(damped - decay).min(), abs(steady), abs(spinning - np.exp(1j * z)).min()

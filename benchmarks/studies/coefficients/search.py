@@ -1,10 +1,11 @@
 """The search for tuned coefficients: differential evolution over spurious roots, then Nelder-Mead.
 
-Parameters are the spurious roots without forces, inside of the circle of radius INNER, and in the
-second formulation with an odd number of values c_0; all other coefficients follow from order.
+Parameters are the spurious roots without forces, inside of the circle of radius INNER.  All other
+coefficients follow from order, but for c_0 in the second formulation with an odd number of values: it
+is the one for which an oscillation keeps its energy.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,15 +17,22 @@ from .kernel import LOST, VALUES, Corrector
 
 #: roots without forces, and roots with forces up to MARGIN beyond the largest omega h that counts
 INNER, OUTER, MARGIN = 0.94, 0.955, 0.1
-#: how far c_0 goes from the one that order would determine, where it is free
-C0_RANGE = 0.14
+#: how far c_0 goes at most from the one that order would determine, where it is free
+C0_RANGE, C0_TRIED, SECANTS = 0.2, (-0.06, -0.1), 4
+#: number of values -> (omega h, amplitude in radians) of the libration that keeps its energy; it is for
+#: long steps.  With other numbers, a harmonic oscillation keeps its energy at half of the reach.
+LONG_STEPS = {7: (0.5, 0.2)}
 #: weight of the phase error against damping
 PHASE = 0.05
 #: largest omega h that counts: formulation -> number of values -> omega h
 REACH = {
-    "second": dict(zip(VALUES["second"], (0.9, 0.8, 0.7, 0.6, 0.55, 0.45, 0.45, 0.4, 0.36))),
+    "second": dict(zip(VALUES["second"], (0.9, 0.8, 0.7, 0.6, 0.55, 0.42, 0.45, 0.4, 0.36))),
     "first": dict(zip(VALUES["first"], (0.8, 0.7, 0.6, 0.5, 0.45, 0.38))),
 }
+#: largest gain of noise, and the part of a momentum that friction takes in a step
+NOISE, FRICTION = 8.0, 0.05
+#: omega h beside this friction: of a free body, almost, and of an oscillation
+DAMPED = (0.02, 0.2)
 #: omega h by the reach: of the librations, and of the free top
 LIBRATIONS = np.array([0.2, 0.35, 0.5, 0.65, 0.8, 0.9])
 TOPS = 1.2 * np.array([0.12, 0.25, 0.4, 0.6, 0.8])
@@ -67,23 +75,43 @@ class Search:
 
     @property
     def bounds(self):
-        """(low, high) of each parameter: moduli and angles (in pi) of pairs, a real root, c_0."""
+        """(low, high) of each parameter: moduli and angles (in pi) of pairs, a real root."""
         count = self.values - self.order - 1
         one = [(0, INNER), (0, 1)] * (count // 2) + [(-INNER, INNER)] * (count % 2)
-        return one * (3 - self.order) + [(-1, 1)] * self.free_c0
+        return one * (3 - self.order)
 
     def corrector(self, x):
         """Corrector of the parameters ``x``, with decimals where they are written so."""
         count, sets = self.values - self.order - 1, []
-        for part in np.reshape(x[: len(x) - self.free_c0], (3 - self.order, count)):
+        for part in np.reshape(x, (3 - self.order, count)):
             pairs = part[: count - count % 2].reshape(-1, 2)
             roots = pairs[:, 0] * np.exp(1j * np.pi * pairs[:, 1])
             roots = np.concatenate([roots, roots.conj(), part[len(part) - count % 2 :]])
-            c = completed(self.order, [1.0, *placed(self.order, roots)[1:]])
-            if self.free_c0:
-                c[0] += C0_RANGE * x[-1]
-            sets.append(tuple(c))
-        return Corrector(self.formulation, (sets[0], sets[-1]))
+            sets.append(tuple(completed(self.order, [1.0, *placed(self.order, roots)[1:]])))
+        corrector = Corrector(self.formulation, (sets[0], sets[-1]))
+        return self.balanced(corrector) if self.free_c0 else corrector
+
+    def balanced(self, corrector):
+        """The Corrector with the c_0 for which an oscillation keeps its energy."""
+
+        def moved(by):
+            return replace(corrector, sets=tuple((c[0] + by, *c[1:]) for c in corrector.sets))
+
+        def gain(by):
+            if self.values not in LONG_STEPS:
+                return spectrum(moved(by), [self.reach / 2])[0, 0]
+            z, amplitude = LONG_STEPS[self.values]
+            return moved(by).libration(z, WELLS[0][1], amplitude, 1000)
+
+        last, by = C0_TRIED
+        before, now = gain(last), gain(by)
+        for _ in range(SECANTS):
+            if now == before:
+                break
+            last, by, before = by, by - now * (by - last) / (now - before), now
+            by = np.clip(by, -C0_RANGE, C0_RANGE)
+            now = gain(by)
+        return moved(by)
 
     def written(self, corrector):
         """The Corrector of the decimals: c_0 and c_1 follow from the tail anew, exactly."""
@@ -132,11 +160,19 @@ class Search:
         ]
         return _levels(np.array(changes), usual)
 
+    def disturbances(self, corrector):
+        """Octaves of the gain of noise above NOISE; by how much the largest root with FRICTION is above 1."""
+        roots = [np.linalg.eigvals(corrector.step(z, -FRICTION)) for z in DAMPED]
+        gain = np.log2(corrector.noise / NOISE)
+        return max(0.0, gain), max(0.0, np.abs(roots).max() - 1.0)
+
     def cost(self, corrector):
         """What is minimized."""
         error, root = self.oscillation(corrector)
         if root > OUTER + 0.05:
             return 20.0 + 50.0 * (root - OUTER)
+        noise, friction = self.disturbances(corrector)
+        error += 0.5 * noise + 60.0 * friction
         librations, tops = self.librations(corrector), self.tops(corrector)
         motions = 0.5 * librations.mean() + 0.25 * tops.mean()
         motions += 0.1 * librations.max() + 0.05 * tops.max()
