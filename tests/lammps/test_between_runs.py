@@ -98,8 +98,7 @@ UNCHANGED = [
 PPPM = "lj/charmm/coul/long 2.7 3.9 4.2\nkspace_style pppm 1e-4"
 SURROUNDINGS = [
     dict(dt=2.0),
-    # the cut-off heats these molecules above 1000 K, where 2 fs are too long a step for nine values
-    dict(dt=1.0, pair=("lj/charmm/coul/charmm 2.7", "lj/cut/coul/cut")),
+    dict(dt=2.0, pair=("lj/charmm/coul/charmm 2.7", "lj/cut/coul/cut")),
     dict(dt=2.0, pair=("lj/charmm/coul/charmm 2.7 3.9", PPPM)),
     dict(fix="values 5 corrector gear", after="fix l all langevin 300 300 100 4711"),
     dict(before="run_style respa 2 1 pair 2"),
