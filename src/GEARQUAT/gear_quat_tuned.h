@@ -226,7 +226,7 @@ inline std::vector<int> tuned_values(Formulation formulation)
 inline int Scheme::order() const
 {
   if (!tuned) return (velocity_c0 ? values() - 1 : values()) | 1;
-  const TunedSet *set = tuned_set(formulation, values(), Columns::POSITION);
+  const TunedSet *set = tuned_set(formulation, values(), Columns::DRIVEN);
   return set && !set->solves_c0() ? values() - 1 : values();
 }
 

@@ -19,7 +19,7 @@ from benchmarks.studies import coefficients as study
 from benchmarks.studies.coefficients import kernel, properties
 from benchmarks.studies.coefficients.kernel import Corrector, gear
 from benchmarks.studies.coefficients.properties import Linear
-from benchmarks.studies.coefficients.search import Search
+from benchmarks.studies.coefficients.search import LONG_STEPS, Search, spectrum
 
 #: roots far from Gear's, of both kinds of rows
 ROOTS = {
@@ -117,6 +117,33 @@ def test_a_short_search_finds_better_coefficients_of_exact_order(formulation, va
         assert has_order(c, corrector.order) != search.free_c0
     again, _ = search.run(seed=1, iterations=8)
     assert again == corrector
+
+
+ODD = [n for n in kernel.VALUES["second"] if n % 2]
+
+
+@pytest.mark.parametrize("values", ODD)
+def test_a_free_c0_keeps_the_energy_of_an_oscillation(values):
+    search, corrector = Search("second", values), kernel.tuned("second", values)
+
+    def gain(factor):
+        other = properties.moved(corrector, (factor - 1) * corrector.sets[0][0])
+        if values in LONG_STEPS:
+            z, amplitude = LONG_STEPS[values]
+            return other.libration(z, (1.0, 0.8, 0.6), amplitude, 1000)
+        return spectrum(other, [search.reach / 2])[0, 0]
+
+    assert abs(gain(1)) < 0.1 * abs(gain(Fraction(101, 100)))
+
+
+@pytest.mark.parametrize("formulation", ROOTS)
+def test_tuned_sets_stand_noise_and_friction(formulation):
+    for values in kernel.VALUES[formulation]:
+        search = Search(formulation, values)
+        noise, friction = search.disturbances(kernel.tuned(formulation, values))
+        assert noise < 1e-3 and friction < 1e-3
+        gears = search.disturbances(kernel.gear(formulation, values))
+        assert max(gears) > 1e-3 or values < 9
 
 
 def test_the_command_prints_lines_of_the_table():

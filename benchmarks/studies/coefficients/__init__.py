@@ -163,6 +163,8 @@ def motion_gains(motions):
             kept = (abs(theirs) < LOST) & (abs(ours) < LOST)
             gain = abs(theirs[kept] / ours[kept])
             lost = [np.count_nonzero(abs(errors) >= LOST) for errors in (theirs, ours)]
+            if not kept.any():
+                continue
             mean = np.exp(np.mean(np.log(gain)))
             rows.append((formulation, words, f"{mean:.1f}", f"{gain.min():.2f}", *lost))
     header = ("formulation", "motion", "geometric mean", "least", "Gear's lost", "tuned lost")

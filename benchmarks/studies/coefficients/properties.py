@@ -166,6 +166,6 @@ class Motions:
         )
 
 
-def moved(corrector):
+def moved(corrector, by=Fraction(MOVED)):
     """The Corrector with c_0 of both kinds of rows moved."""
-    return replace(corrector, sets=tuple((c[0] + Fraction(MOVED), *c[1:]) for c in corrector.sets))
+    return replace(corrector, sets=tuple((c[0] + by, *c[1:]) for c in corrector.sets))

@@ -18,11 +18,10 @@ NAMES = {
     FIRST: "first formulation, default",
     LONG_STEPS: "second formulation, `values 7`",
     GEARS["second"]: "second formulation, Gear's coefficients",
-    GEARS["first"]: "first formulation, Gear's coefficients",
     NVE_SMALL: f"`{NVE_SMALL.label}`",
     SMALL: f"`{SMALL.label}`",
 }
-METHODS, ALL_METHODS = (SECOND, FIRST, NVE_SMALL, SMALL), tuple(NAMES)
+METHODS, ALL_METHODS = (SECOND, LONG_STEPS, FIRST, NVE_SMALL), tuple(NAMES)
 
 CUTOFF = 9.0
 PLAIN, CHECKED = f"lj/cut/coul/long {CUTOFF:g}", "every 1 delay 0 check yes"
@@ -115,13 +114,12 @@ LIQUIDS = (SPCE, WATER4, CO2, BENZENE)
 
 @dataclass(frozen=True)
 class Scene:
-    """A liquid with forces, followed by ``methods`` at the steps of the liquid and at ``more`` steps."""
+    """A liquid with forces, followed by ``methods`` at the steps of the liquid."""
 
     key: str
     liquid: Liquid
     accuracy: float = 1e-5
     methods: tuple = METHODS
-    more: tuple = ()
 
     @property
     def forces(self):
@@ -129,17 +127,12 @@ class Scene:
         return Forces(self.liquid.pair, kspace=self.liquid.kspace, accuracy=self.accuracy)
 
     @property
-    def steps(self):
-        """All steps, fs."""
-        return tuple(sorted((*self.more, *self.liquid.steps)))
-
-    @property
     def title(self):
         """A heading."""
         return f"{self.liquid.title}, {self.liquid.kspace} {power(self.accuracy)}"
 
 
-MAIN = Scene("spce", SPCE, methods=ALL_METHODS, more=(0.5,))
+MAIN = Scene("spce", SPCE, methods=ALL_METHODS)
 SCENES = (
     MAIN,
     Scene("spce_coarse", SPCE, 1e-4),
@@ -176,8 +169,8 @@ class Plan:
     """Durations: those of the main scene, the others and the floor in ps, steps of equilibration."""
 
     main: float = 20.0
-    others: float = 10.0
-    floor: float = 3.0
+    others: float = 5.0
+    floor: float = 2.0
     equilibration: int = 10_000
 
     def duration(self, scene):

@@ -104,7 +104,7 @@ def measure(lab, plan=None, scenes=SCENES, floors=FLOORS):
     jobs, keys = {}, {}
     for scene in scenes:
         for method in scene.methods:
-            for dt in scene.steps:
+            for dt in scene.liquid.steps:
                 name = f"{scene.key}_{method.key}_dt{dt:g}"
                 keys[name] = scene.liquid, (scene.key, method.key, dt)
                 duration = plan.duration(scene)
