@@ -14,7 +14,7 @@ from pathlib import Path
 from running import EXAMPLES, Lammps, make_lmp_tree, make_lmp_wheel
 
 #: folders with decks that have logs; ``common`` is read by some of them
-FOLDERS = ("case1", "case2", "case3", "coated", "fields", "isokinetic", "top", "water")
+FOLDERS = ("case1", "case2", "case3", "coated", "fields", "isokinetic", "top", "water", "water_nvt")
 #: writes data of its folder, for minutes
 WITHOUT_LOG = ("in.equilibrate",)
 RANKS = (1, 4)
