@@ -140,6 +140,10 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     assert found["axis1_order1"][0] == pytest.approx(1.0)
     with open(tmp_path / "bodies.csv", newline="") as file:
         rows = list(csv.DictReader(file))
+    with open(tmp_path / "averages.csv", newline="") as file:
+        averages = {row["average"]: row["value"] for row in csv.DictReader(file)}
+    assert "temperature of rotation about axis 3" in averages
+    assert not averages["diffusion coefficient"]  # of five frames
     assert len(rows) == 500 and rows[0]["kind"] == "general" and float(rows[0]["mass"]) > 18.0
     for name in ("totals.png", "correlations.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")

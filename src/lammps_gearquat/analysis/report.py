@@ -33,6 +33,21 @@ def write_stays(path, stays, ids):
     write_rows(path, ["body", "place", "begin", "end", "complete"], rows)
 
 
+def write_averages(path, averages):
+    """Write a row for each Average: name, value, standard error, unit; empty where the run is too short."""
+    blank = [[*row[:1], *("" if np.isnan(x) else x for x in row[1:3]), row[3]] for row in averages]
+    write_rows(path, ["average", "value", "standard error", "unit"], blank)
+
+
+def average_lines(averages):
+    """A line for a terminal for each Average that is known, and one about the others."""
+    known = [one for one in averages if np.isfinite([one.value, one.error]).all()]
+    lines = [f"The {one.name} is {one.value:.4g} ± {one.error:.1g} {one.unit}".rstrip() + "." for one in known]
+    if len(known) < len(averages):
+        lines.append(f"The run is too short for {len(averages) - len(known)} further averages with errors.")
+    return "\n".join(lines)
+
+
 def summary(poses, totals):
     """A few lines for a terminal."""
     time, (frames, number) = poses.results.time, poses.results.table.shape

@@ -86,7 +86,8 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
     the table of fix gear/quat.  The command leaves poses.npy (poses and energies, by frame and body),
-    bodies.csv, totals.csv, correlations.csv and pictures of the latter two.
+    bodies.csv, totals.csv, correlations.csv with pictures of both, and averages.csv: temperatures, diffusion
+    and rotational correlation times with standard errors, which it also prints.
     """
     from .. import figures
     from ..analysis import report
@@ -102,6 +103,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     if as_csv:
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)
+    _average(out, poses)
     if near:
         _stay(out, poses, places, radius)
     if converted:
@@ -214,6 +216,18 @@ def _correlate(out, poses):
         )
     write_columns(out / "correlations.csv", functions)
     return figures.draw_correlations(out / "correlations.png", functions)
+
+
+def _average(out, poses):
+    """Write averages.csv and print it, unless frames are too few or unevenly spaced."""
+    from ..analysis import averages, report
+
+    try:
+        found = averages.averages(poses)
+    except ValueError:
+        return  # said with the correlations
+    report.write_averages(out / "averages.csv", found)
+    cloup.echo(report.average_lines(found))
 
 
 def _stay(out, poses, places, radius):

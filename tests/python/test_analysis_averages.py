@@ -1,0 +1,132 @@
+"""Temperatures, diffusion and rotational correlation times of made-up motions whose values are known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from lammps_gearquat.analysis import averages
+from lammps_gearquat.analysis.report import average_lines, write_averages
+
+FRAMES, BODIES = 2000, 60
+MOMENTS = np.array([3.0, 2.0, 1.0])
+
+
+class Made(SimpleNamespace):
+    def __len__(self):
+        return BODIES
+
+
+class Results(SimpleNamespace):
+    def __contains__(self, name):
+        return hasattr(self, name)
+
+
+def bodies(moments=MOMENTS):
+    moments = np.broadcast_to(moments, (BODIES, 3))
+    return Made(
+        mass=np.full(BODIES, 2.0),
+        moments=moments,
+        axes=np.broadcast_to(np.eye(3), (BODIES, 3, 3)),
+        point=(moments == 0).all(axis=1),
+        linear=(moments[:, 2] == 0) & (moments[:, 0] > 0),
+    )
+
+
+def thermal(translation=1.3, axes=(1.0, 1.1, 1.2), resting=True, moments=MOMENTS):
+    """Poses with velocities of these temperatures."""
+    rng = np.random.default_rng(3)
+    made = bodies(moments)
+    velocity = rng.normal(size=(FRAMES, BODIES, 3)) * np.sqrt(translation / 2.0)
+    if resting:
+        velocity -= velocity.mean(axis=1, keepdims=True)
+    q = Rotation.random(FRAMES * BODIES, random_state=1).as_quat(scalar_first=True)
+    spread = np.sqrt(np.divide(axes, made.moments, out=np.zeros((BODIES, 3)), where=made.moments > 0))
+    omega = rng.normal(size=(FRAMES, BODIES, 3)) * spread
+    turn = Rotation.from_quat(q, scalar_first=True)
+    results = Results(
+        time=np.arange(FRAMES, dtype=float),
+        center=np.zeros((FRAMES, BODIES, 3)),
+        q=q.reshape(FRAMES, BODIES, 4),
+        velocity=velocity,
+        omega_space=turn.apply(omega.reshape(-1, 3)).reshape(FRAMES, BODIES, 3),
+        ke_translation=0.5 * 2.0 * (velocity**2).sum(axis=2),
+        ke_rotation=0.5 * (made.moments * omega**2).sum(axis=2),
+    )
+    return SimpleNamespace(results=results, bodies=made, units=None)
+
+
+def near(average, expected):
+    """Within four standard errors, which are small; and not what is 10 % off."""
+    assert average[1] < 0.02 * expected
+    assert abs(average[0] - expected) < 4 * average[1]
+    assert abs(average[0] - 1.1 * expected) > 4 * average[1]
+
+
+@pytest.mark.parametrize("resting", [True, False])
+def test_temperatures(resting):
+    found = averages.temperatures(thermal(resting=resting))
+    about = {f"rotation about axis {k}": value for k, value in ((1, 1.0), (2, 1.1), (3, 1.2))}
+    expected = {"translation": 1.3, "rotation": 1.1} | about
+    assert set(found) == set(expected)
+    for name, value in expected.items():
+        near(averages.of_series(found[name]), value)
+
+
+def test_without_a_moment_there_is_no_temperature():
+    found = averages.temperatures(thermal(moments=np.array([3.0, 3.0, 0.0])))
+    assert set(found) == {"translation", "rotation", "rotation about axis 1", "rotation about axis 2"}
+    near(averages.of_series(found["rotation"]), 1.05)
+    assert set(averages.temperatures(thermal(moments=np.zeros(3)))) == {"translation"}
+
+
+def test_the_error_of_independent_samples():
+    """That of n samples is 1/sqrt(n), within what ten blocks know of it."""
+    values = np.random.default_rng(5).normal(size=(200, 1000))
+    errors = [averages.of_series(one)[1] for one in values]
+    assert np.mean(np.square(errors)) == pytest.approx(1e-3, rel=0.15)
+    assert np.isnan(averages.of_series(values[0, :5])).all()
+
+
+def test_diffusion_of_a_random_walk():
+    rng = np.random.default_rng(7)
+    spread, dt = 0.3, 0.5
+    center = rng.normal(size=(FRAMES, 500, 3)).cumsum(axis=0) * spread + 1e3
+    found = averages.diffusion(dt * np.arange(FRAMES), center)
+    expected = spread**2 / (2 * dt)
+    assert found[0] == pytest.approx(expected, rel=0.03) and found[1] < 0.03 * expected
+    assert np.isnan(averages.diffusion(np.arange(50.0), center[:50])).all()
+
+
+def test_times_of_rotational_diffusion():
+    """Small random turns about body axes: P1 and P2 decay with 2 D and 6 D."""
+    rng, spread, dt = np.random.default_rng(11), 0.15, 2.0
+    turn = Rotation.random(400, random_state=2)
+    q = np.empty((FRAMES, 400, 4))
+    for frame in range(FRAMES):
+        q[frame] = turn.as_quat(scalar_first=True)
+        turn = turn * Rotation.from_rotvec(spread * rng.normal(size=(400, 3)))
+    time = dt * np.arange(FRAMES)
+    for order, expected in ((1, dt / spread**2), (2, dt / (3 * spread**2))):
+        value, error = averages.rotational_time(time, q, [0.0, 0.6, 0.8], order)
+        assert value == pytest.approx(expected, rel=0.06) and error < 0.06 * expected
+    assert np.isnan(averages.rotational_time(time[:200], q[:200], [0, 0, 1], 1)).all()
+
+
+def test_the_integral_of_an_exponential():
+    lag = 0.1 * np.arange(1000)
+    assert averages.integral_time(lag, np.exp(-lag / 3.0)) == pytest.approx(3.0, rel=1e-3)
+    assert np.isnan(averages.integral_time(lag, np.exp(-lag / 300.0)))
+
+
+def test_what_is_too_short_is_told(tmp_path):
+    found = averages.averages(thermal())
+    text = average_lines(found)
+    assert "The temperature of translation is 1.3" in text and " ± " in text
+    assert "too short for" not in average_lines(found[:5])
+    short = [*found[:1], averages.Average("correlation time", float("nan"), float("nan"), "")]
+    assert "The run is too short for 1 further averages" in average_lines(short)
+    write_averages(tmp_path / "a.csv", short)
+    rows = (tmp_path / "a.csv").read_text().splitlines()
+    assert rows[0] == "average,value,standard error,unit" and rows[2] == "correlation time,,,"
