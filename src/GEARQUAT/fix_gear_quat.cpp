@@ -12,7 +12,8 @@
 /* One step:
      initial_integrate   predict every body, place its sites
      LAMMPS              forces at the predicted sites, once
-     final_integrate     gather force and torque, correct, project, place its sites */
+     final_integrate     gather force and torque, correct, project, place its sites;
+                         with tolerance: again with a shorter step, if the error was too large */
 
 #include "fix_gear_quat.h"
 
@@ -240,19 +241,34 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
     neighbors->check_velocities();
   compared = false;
   motion->predict(atom->f);
+  place_prediction();
+}
+
+void FixGearQuat::place_prediction()
+{
   bodies->spread_moved();
   bodies->place_sites(velocities_read);
   neighbors->note_place();
   table->forget();
 }
 
-void FixGearQuat::finish_step(double **f, double **torque)
+void FixGearQuat::correct_step(double **f, double **torque)
 {
-  neighbors->check_places();
   bodies->gather_loads(f, torque);
   v_init(vflag_of_step);    // here: the atoms are those that forces belong to
   if (evflag) tally_virial(f);
   motion->correct(f);
+}
+
+void FixGearQuat::finish_step(double **f, double **torque)
+{
+  neighbors->check_places();
+  correct_step(f, torque);
+  while (motion->repeats_step(f)) {
+    place_prediction();
+    motion->evaluate(vflag_of_step);
+    correct_step(f, torque);
+  }
   bodies->spread_moved();
   bodies->place_sites(true);
   neighbors->note_velocity();

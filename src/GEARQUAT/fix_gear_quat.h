@@ -110,6 +110,8 @@ class FixGearQuat : public Fix {
   void resume();
   void begin_steps(double **, double **);
   void begin_step(int, double **, double **);
+  void place_prediction();
+  void correct_step(double **, double **);
   void finish_step(double **, double **);
   void tally_virial(double **);
   void count_rows();

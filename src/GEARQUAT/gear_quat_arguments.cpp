@@ -189,6 +189,7 @@ void Arguments::check_control()
   scheme.trial = true;
   control.fewest = find_keyword(lmp, "values").range(scheme.first()).fewest;
   control.most = scheme.rows;
+  control.short_of = control.energy && !scheme.first() ? 1 : 0;
   if (control.longest > 0.0 && control.shortest > control.longest)
     error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                control.longest);

@@ -21,7 +21,8 @@ using namespace GearQuat;
 /* ---------------------------------------------------------------------- */
 
 Bodies::Bodies(LAMMPS *lmp, Fix *fix, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), scheme(scheme), row_size(scheme.size()), extended(lmp, scheme)
+    Pointers(lmp), fix(fix), scheme(scheme), row_size(scheme.size() * (scheme.trial ? 2 : 1)),
+    extended(lmp, scheme)
 {
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
@@ -132,7 +133,7 @@ void Bodies::drop_ghosts()
   state.resize(nown);
   load.resize(nown);
   last.resize(nown);
-  rows.resize((size_t) nown * scheme.size(), 0.0);
+  rows.resize((size_t) nown * row_size, 0.0);
   large.clear();
   nmove = nown;
 }
@@ -159,7 +160,7 @@ void Bodies::remove_owned(int ibody)
     last[ibody] = last[end];
     owner_atom[ibody] = owner_atom[end];
     owned[owner_atom[ibody]] = ibody;
-    std::copy_n(history(end), scheme.size(), history(ibody));
+    std::copy_n(history(end), row_size, history(ibody));
   }
   drop_ghosts();
   owner_atom.resize(nown);

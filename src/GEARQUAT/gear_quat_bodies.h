@@ -104,8 +104,12 @@ class Bodies : protected Pointers {
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
   /// The rotation matrix space -> body of a state that spread_states() has seen.
   const double *axes(int ibody) const { return frame[ibody].axes; }
-  double *history(int ibody) { return rows.data() + ibody * row_size; }
-  const double *history(int ibody) const { return rows.data() + ibody * row_size; }
+  double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
+  const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
+  // Of a scheme with a trial row: histories that are kept for a step that may be undone, also if bodies
+  // change their ranks in it.
+  void keep_histories();
+  void put_back_histories();
   bool in_body(int atom) const { return body_id[atom] != 0; }
   /// The user's ID of an atom's body, of ghosts too; 0 for none.
   tagint id_of(int atom) const;
@@ -213,7 +217,7 @@ class Bodies : protected Pointers {
 
   Fix *fix;
   Scheme scheme;
-  size_t row_size;    ///< doubles of a history
+  int row_size;    ///< doubles of a history, with a trial row also of the one that was kept
   Extended extended;
 
   int nown = 0, nmove = 0;           ///< owned bodies; with copies of large ones
@@ -293,7 +297,7 @@ class Bodies : protected Pointers {
   void describe(const Site &site, SiteCount &count) const;
   void refuse_tears(const Census &found) const;
 
-  int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + scheme.size(); }
+  int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + row_size; }
   /// of a large body: atom ID of its owner atom, and what an owner has
   int large_size() const { return 1 + moved_size(); }
   int pack_moved(int ibody, double *buf) const;

@@ -102,8 +102,8 @@ void Bodies::share_large()
       state.emplace_back();
       last.emplace_back();
       load.emplace_back();
-      rows.resize((size_t) nmove * scheme.size());
-      unpack_moved(ibody, &packed_large[m + 1], scheme.size());
+      rows.resize((size_t) nmove * row_size);
+      unpack_moved(ibody, &packed_large[m + 1], row_size);
     }
     large.push_back({tag, ibody});
   }

@@ -26,7 +26,7 @@ int Bodies::pack_exchange(int i, double *buf) const
   for (int k = 0; k < 3; ++k) buf[m++] = site_body[i][k];
   m += extended.pack(i, buf + m);
   const int ibody = owned[i];
-  buf[m++] = ubuf(ibody < 0 ? 0 : scheme.size()).d;
+  buf[m++] = ubuf(ibody < 0 ? 0 : row_size).d;
   if (ibody < 0) return m;
   return m + pack_moved(ibody, buf + m);
 }
@@ -53,8 +53,8 @@ int Bodies::pack_moved(int ibody, double *buf) const
   m += LAST_SIZE;
   std::memcpy(buf + m, &load[ibody], sizeof(Load));
   m += LOAD_SIZE;
-  std::copy_n(history(ibody), scheme.size(), buf + m);
-  return m + scheme.size();
+  std::copy_n(history(ibody), row_size, buf + m);
+  return m + row_size;
 }
 
 /// size: of the history, which is passed over if it is of another scheme.
@@ -65,7 +65,7 @@ int Bodies::unpack_moved(int ibody, const double *buf, int size)
   m += LAST_SIZE;
   std::memcpy(&load[ibody], buf + m, sizeof(Load));
   m += LOAD_SIZE;
-  if (size == scheme.size()) std::copy_n(buf + m, size, history(ibody));
+  if (size == row_size) std::copy_n(buf + m, size, history(ibody));
   return m + size;
 }
 

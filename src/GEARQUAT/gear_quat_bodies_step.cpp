@@ -16,6 +16,18 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
+void Bodies::keep_histories()
+{
+  for (int ibody = 0; ibody < nmove; ++ibody)
+    std::copy_n(history(ibody), row_size / 2, history(ibody) + row_size / 2);
+}
+
+void Bodies::put_back_histories()
+{
+  for (int ibody = 0; ibody < nmove; ++ibody)
+    std::copy_n(history(ibody) + row_size / 2, row_size / 2, history(ibody));
+}
+
 void Bodies::spread_states()
 {
   for (const int ibody : tops) update_frame(ibody);

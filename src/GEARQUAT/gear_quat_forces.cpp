@@ -237,15 +237,15 @@ double Forces::largest_displacement() const
   return std::sqrt(over_ranks(MPI_MAX, largest, world));
 }
 
-void Forces::evaluate()
+void Forces::evaluate(int eflag, int vflag)
 {
   comm->forward_comm();
   clear_forces();
-  for (auto *fix : pre_force) fix->pre_force(0);
-  compute_forces();
-  for (auto *fix : pre_force) fix->pre_reverse(0, 0);
+  for (auto *fix : pre_force) fix->pre_force(vflag);
+  compute_forces(eflag, vflag);
+  for (auto *fix : pre_force) fix->pre_reverse(eflag, vflag);
   if (force->newton) comm->reverse_comm();
-  for (auto *fix : post_force) fix->post_force(0);
+  for (auto *fix : post_force) fix->post_force(vflag);
 }
 
 void Forces::clear_forces()
@@ -256,17 +256,17 @@ void Forces::clear_forces()
   if (atom->torque_flag) std::fill_n(atom->torque[0], n, 0.0);
 }
 
-/// Leaves out energies and virials, so that thermo output of the step stays as it is.
-void Forces::compute_forces()
+/// Without flags thermo output of the step stays as it is.
+void Forces::compute_forces(int eflag, int vflag)
 {
-  if (force->pair && force->pair->compute_flag) force->pair->compute(0, 0);
+  if (force->pair && force->pair->compute_flag) force->pair->compute(eflag, vflag);
   if (atom->molecular != Atom::ATOMIC) {
-    if (force->bond) force->bond->compute(0, 0);
-    if (force->angle) force->angle->compute(0, 0);
-    if (force->dihedral) force->dihedral->compute(0, 0);
-    if (force->improper) force->improper->compute(0, 0);
+    if (force->bond) force->bond->compute(eflag, vflag);
+    if (force->angle) force->angle->compute(eflag, vflag);
+    if (force->dihedral) force->dihedral->compute(eflag, vflag);
+    if (force->improper) force->improper->compute(eflag, vflag);
   }
-  if (force->kspace && force->kspace->compute_flag) force->kspace->compute(0, 0);
+  if (force->kspace && force->kspace->compute_flag) force->kspace->compute(eflag, vflag);
 }
 
 /* ----------------------------------------------------------------------

@@ -75,8 +75,9 @@ class Forces : protected Pointers {
   void restore();
   /// Largest distance of an owned atom from where save() found it, on all ranks.
   double largest_displacement() const;
-  /// Forces of owned atoms at their present positions into atom->f.
-  void evaluate();
+  /// Forces of owned atoms at their present positions into atom->f.  Without flags energies and
+  /// virials are left as they are; with those of LAMMPS' present step they are those of the positions.
+  void evaluate(int eflag = 0, int vflag = 0);
 
  private:
   std::string why;
@@ -90,7 +91,7 @@ class Forces : protected Pointers {
   void look_at_time();
   std::vector<double> external_forces(bigint step);
   void clear_forces();
-  void compute_forces();
+  void compute_forces(int eflag, int vflag);
 };
 
 /// r-RESPA with one step for all levels: the forces of a step are the sum over the levels, each of

@@ -82,8 +82,10 @@ static std::vector<Keyword> make_table()
             [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
         .word({"yes", "no"}),
     Keyword("tolerance", STEP, "the error that a step may make, which the time step follows",
-            [](Arguments &a, const Value &v) { a.control.eps = v.number; })
-        .number()
+            [](Arguments &a, const Value &v) {
+              a.control.eps = v.number;
+              a.control.energy = v.unit == "energy";
+            }).number({"length", "energy"})
         .cannot_go_with({"isokinetic", "", "heat and multipliers are those of one step and one "
                          "number of values"}),
     Keyword("dtmin", STEP, "the time step does not become shorter",
@@ -234,7 +236,9 @@ std::string GearQuat::tuned_numbers(bool first, const std::string &between)
 
 std::string Keyword::required() const
 {
-  if (kind == NUMBER) return "a positive number";
+  if (kind == NUMBER)
+    return words.empty() ? "a positive number"
+                         : "a positive number and perhaps " + utils::join_words(words, " or ");
   if (kind == INTEGER)
     return of_formulations(*this, [](const Range &range) {
       return fmt::format("{} to {}", range.fewest, range.most);
@@ -291,6 +295,10 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
                required());
   if (kind == NUMBER && !read_positive(value.text, value.number))
     error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", name, value.text);
+  if (kind == NUMBER && narg > 2 && std::count(words.begin(), words.end(), arg[2])) {
+    value.unit = arg[2];
+    return 2;
+  }
   if (kind == NUMBERS) {
     value.numbers.resize(count);
     for (int k = 0; k < count; ++k)

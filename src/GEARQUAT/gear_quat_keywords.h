@@ -35,6 +35,7 @@ struct KeywordValue {
   std::string text;                    ///< the first word as it stands
   int integer = 0;                     ///< of an INTEGER
   double number = 0.0;                 ///< of a NUMBER
+  std::string unit = {};               ///< of a NUMBER, the word behind it
   std::vector<double> numbers = {};    ///< of NUMBERS
   MaskWords mask = {};                 ///< of a MASK
 
@@ -42,7 +43,7 @@ struct KeywordValue {
 };
 
 struct Keyword {
-  /// WORD: one of some words; NUMBER: a positive one; NUMBERS: some of them; NAME: any word that is not
+  /// WORD: one of some words; NUMBER: a positive one, perhaps with a word behind it; NUMBERS: some of them; NAME: any word that is not
   /// empty; MASK: four words, and the keyword may be given many times.
   enum Kind { WORD, INTEGER, NUMBER, NAME, MASK, NUMBERS };
   struct Range {
@@ -64,7 +65,8 @@ struct Keyword {
   Store store;
 
   Kind kind = WORD;
-  std::vector<std::string> words;    ///< WORD: the possible ones; NAME, MASK, NUMBERS: what follows
+  std::vector<std::string> words;    ///< WORD: the possible ones; NUMBER: those behind it, the
+                                     ///< first is the default; NAME, MASK, NUMBERS: what follows
   std::string standard;              ///< WORD: the default
   std::string with_tolerance;        ///< WORD: the default then, empty: the same
   std::vector<Range> ranges;         ///< INTEGER: one, or those of formulation second and first
@@ -100,7 +102,7 @@ struct Keyword {
     of_tables = true;
     return *this;
   }
-  Keyword &number() { return follows(NUMBER, {}); }
+  Keyword &number(const std::vector<std::string> &units = {}) { return follows(NUMBER, units); }
   Keyword &follows(Kind what, const std::vector<std::string> &names)
   {
     kind = what;

@@ -8,8 +8,9 @@
    a body, which of them the loop over bodies has to heed.
 
    The fix calls, before the first step of a run: [gathers present loads] begin_steps(); every step:
-   predict(); [places sites, forces, gathers loads]; correct(); and with a changing step, when all
-   fixes have finished it, choose_step(). */
+   predict(); [places sites, forces, gathers loads]; correct(); and with a changing step repeats_step(),
+   after which it places sites, calls evaluate(), gathers loads and corrects once more if so; and when
+   all fixes have finished the step choose_step(). */
 
 #ifndef LMP_GEAR_QUAT_MOTION_H
 #define LMP_GEAR_QUAT_MOTION_H
@@ -66,6 +67,10 @@ class Motion : protected Pointers {
   void correct(double **f);
 
   bool changes_step() const { return tolerance != nullptr; }
+  /// After correct(): true if the step has failed.  After the call histories and states are those of
+  /// the prediction of a shorter one.  f: as in correct().  Collective.
+  bool repeats_step(double **f);
+  void evaluate(int vflag) { tolerance->evaluate(vflag); }
   /// To be called with tolerance only, when all fixes have finished the step.  Collective.
   void choose_step();
 
@@ -141,6 +146,7 @@ class Motion : protected Pointers {
   void correct_together(double **f);
   void measure();
   void begin_fresh(double **f);
+  void predict_bodies(double **f);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -17,8 +17,10 @@
    chapter 9, for the comparison of three orders.
 
    The host calls, for every body and once a step: correct() in place of Integrator::correct(); then,
-   with the largest errors of all bodies, StepControl::next(); if values change, add_row() or
-   drop_row() for every body; then Integrator::rescale(). */
+   with the largest errors of all bodies, StepControl::fails().  If so, and if the host has kept the
+   histories, it puts them back and makes the step again as StepControl::repeat() says.  Otherwise
+   Steady::count() and StepControl::next().  If values change, add_row() or drop_row() for every body;
+   then Integrator::rescale(). */
 
 #ifndef GEAR_QUAT_STEP_CONTROL_H
 #define GEAR_QUAT_STEP_CONTROL_H
@@ -30,13 +32,11 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Largest values with which a shrinking step is stable: from 11 on the rescaled rows of the
-/// second-order form grow by themselves (tests/unit/test_step_control.cpp).
-constexpr int VARIABLE_MOST = 10;
+/// Largest values with which a shrinking step is stable: in the second-order form errors of rescaled
+/// rows, as velocities, hardly fade from 10 on, and grow from 11 on (tests/unit/test_step_control.cpp).
+constexpr int VARIABLE_MOST = 9;
 
-/// Local errors (lengths: of the position, or of the orientation times the reach of the body, whichever
-/// is larger) with one value fewer, the present number,
-/// one more.
+/// Local errors of a step with one value fewer, the present number, one more.
 struct StepErrors {
   double fewer = 0.0, same = 0.0, more = 0.0;
 
@@ -48,22 +48,34 @@ struct StepErrors {
   }
 };
 
+/// As a length: of the position, or of the orientation times the reach of the body, whichever is larger.
+/// As an energy: how much of it the errors of position, orientation and velocities may be worth.
+struct StepMeasures {
+  StepErrors length, energy;
+
+  void include(const StepMeasures &other)
+  {
+    length.include(other.length);
+    energy.include(other.energy);
+  }
+};
+
 /// Histories with a trial row; the scheme's number of values is the present one.
 class VariableOrder {
  public:
   explicit VariableOrder(const Scheme &scheme) : scheme(scheme), n(scheme.values())
   {
     double factorial = 1.0;
-    for (int k = 1; k <= n; ++k) factorial *= k;
-    fewer = adams_moulton(n - 2).value() * factorial / n;
-    same = adams_moulton(n - 1).value() * factorial;
-    more = adams_moulton(n).value() * factorial;
+    for (int k = 2; k < n; ++k) factorial *= k;
+    fewer = weights(n - 1, factorial);
+    same = weights(n, factorial * n);
+    more = weights(n + 1, factorial * n);    // the change is one of a row n, not n + 1
   }
 
   /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a rotation
   /// by a radian moves what is far out on the body.
   Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
-                     const Load &load, const double *axes, double *rows, StepErrors &errors) const
+                     const Load &load, const double *axes, double *rows, StepMeasures &errors) const
   {
     const double *last = rows + (n - 1) * scheme.width();
     double *trial = rows + scheme.trial_row();
@@ -75,14 +87,23 @@ class VariableOrder {
       change[i] = found - trial[i];
       trial[i] = found;
     }
-    errors = {fewer * size(last, reach), same * size(trial, reach), more * size(change, reach)};
+    errors.length = {fewer.pose * size(last, reach), same.pose * size(trial, reach),
+                     more.pose * size(change, reach)};
+    const Worth worth = worth_of(integrator, body, load, axes, rows);
+    errors.energy = {energy(worth, fewer, last), energy(worth, same, trial),
+                     energy(worth, more, change)};
     return correction;
   }
 
-  /// Error of a step from the rows alone.
-  double error(const double *rows, double reach) const
+  /// Errors of a step from the rows alone, those of the present number of values.
+  StepMeasures measures(const Integrator &integrator, const RigidBody &body, double reach,
+                        const Load &load, const double *axes, const double *rows) const
   {
-    return same * size(rows + scheme.trial_row(), reach);
+    const double *trial = rows + scheme.trial_row();
+    StepMeasures errors;
+    errors.length.same = same.pose * size(trial, reach);
+    errors.energy.same = energy(worth_of(integrator, body, load, axes, rows), same, trial);
+    return errors;
   }
 
   /// One value more.  After the call the rows are those of n + 1 values; their trial row is zero
@@ -110,27 +131,107 @@ class VariableOrder {
   }
 
  private:
+  /// k! gamma / the part of a_k that is measured: of poses, and of velocities times the step.  In the
+  /// second formulation velocities have a value less.
+  struct Weights {
+    double pose, rate;
+  };
+  /// What an error of a unit costs in energy; rates: of the velocities times the step.
+  struct Worth {
+    double position, rate, angle, turn[3], q[4], norm2;
+  };
+
   Scheme scheme;
   int n;
-  double fewer, same, more;    ///< gamma_(k-1) k! / the part of a_k that is measured
+  Weights fewer, same, more;
+
+  Weights weights(int k, double factorial) const
+  {
+    return {factorial * adams_moulton(k - 1).value(),
+            factorial * adams_moulton(scheme.first() ? k - 1 : k - 2).value()};
+  }
 
   double size(const double *row, double reach) const
   {
     const double *x = row + Scheme::POSITION, *q = row + scheme.quaternion();
     return std::max(length(x), 2.0 * reach * std::sqrt(dot4(q, q)));
   }
+
+  Worth worth_of(const Integrator &integrator, const RigidBody &body, const Load &load,
+                 const double *axes, const double *rows) const
+  {
+    const BodyState state = integrator.body_state(body, rows);
+    const double per_h = 1.0 / std::fabs(integrator.step());
+    Worth worth;
+    double torque_body[3];
+    to_body(axes, load.torque_space, torque_body);
+    worth.position = length(load.force);
+    worth.angle = length(torque_body);
+    worth.rate = length(state.velocity) * (scheme.first() ? 1.0 : body.mass * per_h);
+    for (int i = 0; i < 3; ++i)
+      worth.turn[i] =
+          body.inertia[i] * std::fabs(state.omega_body[i]) * (scheme.first() ? 1.0 : per_h);
+    std::copy_n(state.q, 4, worth.q);
+    worth.norm2 = scheme.norm2(state.q);
+    return worth;
+  }
+
+  double energy(const Worth &worth, const Weights &weights, const double *row) const
+  {
+    const double *x = row + Scheme::POSITION, *q = row + scheme.quaternion();
+    double turn[3], sum = 0.0;
+    angular_velocity(worth.q, worth.norm2, q, turn);
+    const double pose = worth.position * length(x) + worth.angle * length(turn);
+    const double *p = scheme.first() ? row + Scheme::MOMENTUM : x;
+    const double *w = scheme.first() ? row + Scheme::OMEGA : turn;
+    for (int i = 0; i < 3; ++i) sum += worth.turn[i] * std::fabs(w[i]);
+    return weights.pose * pose + weights.rate * (worth.rate * length(p) + sum);
+  }
 };
 
-/// The law.  No step can be redone, so growth is held back.
+/// Steps made so far with the present number of values, with the present length, and since one had to
+/// be repeated.
+struct Steady {
+  int values = 0, step = 0, repeat = 0;
+
+  void count()
+  {
+    for (int *one : {&values, &step, &repeat}) *one = std::min(*one + 1, FOR_LONG);
+  }
+
+  static constexpr int FOR_LONG = 1000000;
+};
+
+/// The law.  A step whose error exceeds eps fails; where the host can undo it, it asks repeat() for
+/// another length.
 class StepControl {
  public:
-  static constexpr double GROWTH = 1.05, SHRINK = 0.5;    ///< limits of new step / old step
+  static constexpr double SAFETY = 0.9;    ///< of a step that would have the error eps
+  /// Limits of new step / old step, as a factor of the last row where the step grows: errors in the
+  /// rows grow with them.  The step grows once in as many steps as there are values.
+  static constexpr double GROWTH_OF_LAST_ROW = 25.0, SHRINK = 0.5, SHRINK_FAILED = 0.2;
+  static double largest_growth(int values)
+  {
+    return std::pow(GROWTH_OF_LAST_ROW, 1.0 / (values - 1));
+  }
+  /// Between these ratios nothing changes, so that rows are not rescaled in every step.
+  static constexpr double NO_SHORTER = 0.97, NO_LONGER = 1.1;
+  /// The part of the longest step that the motion allows, wherever a step has to be changed for it.
+  static constexpr double CLEAR_OF_LIMIT = 0.9;
   /// What an other number of values has to promise: an error smaller by this.
-  static constexpr double FEWER = 4.0, MORE = 10.0;
+  static constexpr double FEWER = 2.0, MORE = 3.0;
+  /// Or, where the step stays, one more value a step that could be longer by this.
+  static constexpr double CLEARLY_MORE = 1.02;
+  /// A step that fails within so few of another one has rows that are of no use.
+  static constexpr int SOON = 4;
 
-  double eps = 0.0;                        ///< error a step may make
+  double eps = 0.0;                        ///< error a step may make, a length or an energy
+  bool energy = false;                     ///< which of the two
   double shortest = 0.0, longest = 0.0;    ///< limits of the step; longest 0: none
   int fewest = 0, most = 0;                ///< limits of the number of values
+  /// Orders of the step by which the error falls short of the number of values: 1 for energies in the
+  /// second formulation, whose velocities have a value less.
+  int short_of = 0;
 
   struct Next {
     double step;    ///< with the sign of the present one
@@ -138,30 +239,62 @@ class StepControl {
     bool held;    ///< would be shorter, but for the limit
   };
 
-  /// step, values: of the step that made these errors.  steady: steps made with that number.
-  /// farthest: the step is not longer, whatever the errors are.  Numbers of values are compared by
-  /// what they allow as far as a step may grow.
-  Next next(const StepErrors &errors, double step, int values, int steady,
+  const StepErrors &measured(const StepMeasures &both) const
+  {
+    return energy ? both.energy : both.length;
+  }
+
+  /// True if a step is to be repeated with a shorter one.
+  bool fails(double error, double step) const
+  {
+    return !(error <= eps) && std::fabs(step) > shortest;
+  }
+
+  /// Length and values of another try.
+  Next repeat(double error, double step, int values, const Steady &steady) const
+  {
+    const bool again = steady.repeat < SOON;
+    double ratio = SHRINK_FAILED;
+    if (std::isfinite(error))
+      ratio = std::max(ratio,
+                       std::min(again ? SHRINK : SAFETY, SAFETY * SAFETY * allowed(error, values)));
+    const double size = std::max(shortest, ratio * std::fabs(step));
+    return {std::copysign(size, step), again && values > fewest ? values - 1 : values, false};
+  }
+
+  /// step, values: of the step that made these errors.  farthest: the step is not longer, whatever the
+  /// errors are.  Numbers of values are compared by what they allow as far as a step may grow.
+  Next next(const StepErrors &errors, double step, int values, const Steady &steady,
             double farthest = std::numeric_limits<double>::infinity()) const
   {
     Next choice = {step, values, false};
-    const double same = std::min(GROWTH, allowed(errors.same, values));
+    const double growth = std::min(steady.step, steady.repeat) > values ? largest_growth(values)
+                                                                        : 1.0;
+    const double same = std::min(growth, SAFETY * allowed(errors.same, values));
     double ratio = same;
     if (values > fewest) {
-      const double fewer = std::min(GROWTH, allowed(FEWER * errors.fewer, values - 1));
+      const double fewer = std::min(growth, SAFETY * allowed(FEWER * errors.fewer, values - 1));
       if (fewer > same) {
         ratio = fewer;
         choice.values = values - 1;
       }
     }
-    if (values < most && steady > values) {
-      const double more = std::min(GROWTH, allowed(MORE * errors.more, values + 1));
+    if (values < most && steady.values > values) {
+      const double more = std::min(growth, SAFETY * allowed(MORE * errors.more, values + 1));
       if (more > ratio) {
         ratio = more;
         choice.values = values + 1;
       }
     }
-    double size = std::min(farthest, std::fabs(step) * std::max(SHRINK, ratio));
+    double size = std::fabs(step);
+    if (ratio < NO_SHORTER || ratio > NO_LONGER)
+      size *= std::max(SHRINK, ratio);
+    else if (choice.values < values || ratio < CLEARLY_MORE * same)
+      choice.values = values;
+    if (size > farthest || (ratio > NO_LONGER && size > CLEAR_OF_LIMIT * farthest))
+      size = std::min(
+          size,
+          std::max(CLEAR_OF_LIMIT * farthest, std::fabs(step) > farthest ? 0.0 : std::fabs(step)));
     choice.held = size < shortest;
     size = std::max(size, shortest);
     if (longest > 0.0) size = std::min(size, longest);
@@ -169,12 +302,30 @@ class StepControl {
     return choice;
   }
 
+  /// The step of a history without the third derivative of positions, `jerk`.
+  double low_order_step(double jerk, double speed, double mass) const
+  {
+    if (!energy) return std::cbrt(6.0 * eps / jerk);
+    const double rest = std::sqrt(2.0 * eps / mass);    // a change of velocity worth eps from rest
+    return std::sqrt(2.0 / jerk * std::min(rest, speed > 0.0 ? eps / (mass * speed) : rest));
+  }
+
   /// By what factor the step may change so that the error becomes eps.
   double allowed(double error, int values) const
   {
-    return error > 0.0 ? std::pow(eps / error, 1.0 / values) : 2.0 * GROWTH;
+    return error > 0.0 ? std::pow(eps / error, 1.0 / (values - short_of)) : HUGE_VAL;
   }
 };
+
+/// Steps of equal length, at most the given one, that end exactly at a time that is not far: a step
+/// that is cut at the end alone would be of no use for the next ones.  way: to that time, positive.
+inline double even_step(double step, double way)
+{
+  constexpr double FAR = 10.0, ROUNDING = 1.0e-9;
+  const double size = std::fabs(step), number = way / size;
+  if (!(number < FAR)) return step;
+  return std::copysign(way / std::max(1.0, std::ceil(number - ROUNDING)), step);
+}
 
 }    // namespace LAMMPS_NS::GearQuat
 

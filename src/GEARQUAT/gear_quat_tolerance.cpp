@@ -14,7 +14,6 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
-#include "neighbor.h"
 #include "output.h"
 #include "pair.h"
 #include "update.h"
@@ -27,11 +26,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// no step moves a site by more than this part of the neighbor skin: a force that begins on the way is
-// met before the body is deep in it
-
-static constexpr double PART_OF_SKIN = 0.25;
-
 static Scheme with_trial_row(Scheme scheme)
 {
   scheme.trial = true;
@@ -41,9 +35,11 @@ static Scheme with_trial_row(Scheme scheme)
 Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
                      Bodies &bodies) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present)
+    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present),
+    repeat(lmp, fix), failed()
 {
   record.values = present.values();
+  if (control.energy) this->control.eps /= force->mvv2e;
 }
 
 void Tolerance::refuse_scene() const
@@ -79,6 +75,8 @@ Scheme Tolerance::scheme_of_start() const
 void Tolerance::begin(bool full)
 {
   record = Checkpoint();
+  steady = Steady();
+  steady.repeat = Steady::FOR_LONG;
   set_values(full ? control.most : control.fewest);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     double *rows = bodies.history(ibody);
@@ -90,16 +88,51 @@ void Tolerance::begin(bool full)
   }
 }
 
-void Tolerance::shorten_first_step()
+/// The error of the first step, as far as the rows of bodies on this rank tell.
+double Tolerance::first_error() const
 {
-  double here[2] = {0.0, largest_speed()};
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    here[0] = std::max(here[0], order.error(bodies.history(ibody), bodies.body_at(ibody).reach()));
+  const Integrator integrator(present, update->dt);
+  double largest = 0.0;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    const StepMeasures one =
+        order.measures(integrator, body.rigid, body.reach(), bodies.load_of(ibody),
+                       bodies.axes(ibody), bodies.history(ibody));
+    largest = std::max(largest, control.measured(one).same);
+  }
+  return largest;
+}
+
+/// The first step of histories that know no more than the present loads: forces are taken to change by
+/// themselves while a body moves by its own size, or while they accelerate it that far.
+double Tolerance::first_step_of_low_order() const
+{
+  double least = std::numeric_limits<double>::infinity();
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    const BodyState &state = bodies.state_of(ibody);
+    const double reach = body.reach(), size = reach > 0.0 ? reach : limit_of_motion();
+    double turn[3];
+    angular_acceleration(body.rigid, state, dot4(state.q, state.q), bodies.load_of(ibody), turn);
+    const double speed = length(state.velocity) + reach * length(state.omega_body);
+    const double acceleration =
+        length(bodies.load_of(ibody).force) / body.rigid.mass + reach * length(turn);
+    const double jerk = acceleration * std::max(speed / size, std::sqrt(acceleration / size));
+    if (jerk > 0.0) least = std::min(least, control.low_order_step(jerk, speed, body.rigid.mass));
+  }
+  return over_ranks(MPI_MIN, least, world);
+}
+
+void Tolerance::shorten_first_step(bool full)
+{
+  double here[2] = {full ? first_error() : 0.0, largest_speed()};
   const auto all = over_ranks(MPI_MAX, here, world);
   const double largest = all[0];
-  const double ratio = std::min(1.0, control.allowed(largest, present.values()));
-  const double size =
-      std::max(control.shortest, std::min(ratio * std::fabs(update->dt), farthest_step(all[1])));
+  double size = std::fabs(update->dt) *
+      std::min(1.0, StepControl::SAFETY * control.allowed(largest, present.values()));
+  if (!full) size = std::min(size, first_step_of_low_order());
+  size = std::max(control.shortest, std::min(size, farthest_step(all[1])));
+  size = std::fabs(even(std::copysign(size, update->dt), time() - update->dt));
   if (size >= std::fabs(update->dt)) return;
   const Fix *first = fix;    // gear/quat, which starts histories for all before it begins the step
   for (const auto *other : modify->get_fix_list())
@@ -113,13 +146,20 @@ void Tolerance::shorten_first_step()
           FLERR,
           "Fix gear/quat tolerance: the error of the first step is estimated as {:.2g}, "
           "more than {:.2g}; define fix {} ({}) after this fix, or use a time step of {:.2g}",
-          largest, control.eps, other->id, other->style, size);
+          shown(largest), shown(control.eps), other->id, other->style, size);
     return;
   }
+  const double instead = update->dt;
+  set_begun_step(std::copysign(size, instead));
+  tell_of_first_step(instead);
+}
+
+/// instead: the length that LAMMPS had.
+void Tolerance::tell_of_first_step(double instead) const
+{
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
-                   std::copysign(size, update->dt), update->dt);
-  set_begun_step(std::copysign(size, update->dt));
+                   update->dt, instead);
 }
 
 /// A fix that has begun this step when `begins` begins it, null for none.
@@ -138,89 +178,20 @@ void Tolerance::set_begun_step(double step)
   const bigint before = update->ntimestep - 1;
   update->atime += (before - update->atimestep) * update->dt;
   update->atimestep = before;
+  --update->ntimestep;    // a dump in intervals of time may not be due any more when this step ends
   set_step(step);
+  ++update->ntimestep;
 }
 
 /* ----------------------------------------------------------------------
-   a step
+   length and values
 ------------------------------------------------------------------------- */
-
-Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
-{
-  StepErrors one;
-  const Body &body = bodies.body_at(ibody);
-  const Correction correction = order.correct(integrator, body.rigid, body.reach(), load,
-                                              bodies.axes(ibody), bodies.history(ibody), one);
-  if (!std::isfinite(one.same)) one.same = std::numeric_limits<double>::infinity();
-  errors.include(one);
-  return correction;
-}
-
-/// No site on this rank is faster.
-double Tolerance::largest_speed() const
-{
-  double largest = 0.0;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const BodyState &s = bodies.state_of(ibody);
-    const double speed = length(s.velocity) + bodies.body_at(ibody).reach() * length(s.omega_body);
-    largest = std::max(largest, speed);
-  }
-  return largest;
-}
-
-/// Where nothing moves nothing is known of what a longer step would do.
-double Tolerance::farthest_step(double speed) const
-{
-  if (speed == 0.0) return std::fabs(update->dt);
-  return neighbor->skin > 0.0 ? PART_OF_SKIN * neighbor->skin / speed
-                              : std::numeric_limits<double>::infinity();
-}
-
-double Tolerance::choose()
-{
-  double here[5] = {errors.fewer, errors.same, errors.more, fresh ? 1.0 : 0.0, largest_speed()};
-  const auto all = over_ranks(MPI_MAX, here, world);
-  errors = StepErrors();
-  fresh = false;
-  if (std::isinf(all[1]))
-    error->all(
-        FLERR,
-        "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
-        "are wrong, or the motion is lost: use a smaller tolerance",
-        update->ntimestep);
-
-  const double step = update->dt, size = std::fabs(step);
-  const int values = present.values();
-  record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
-  record.steps += 1.0;
-  record.steady += 1.0;
-  record.time += size;
-  record.values_sum += values;
-  record.largest = std::max(record.largest, all[1] / control.eps);
-
-  auto next = control.next({all[0], all[1], all[2]}, step, values, (int) record.steady,
-                           farthest_step(all[4]));
-  if (all[3] != 0.0) next.values = control.fewest;    // rows above are zero in a fresh history
-  if (next.held) {
-    record.held += 1.0;
-    if (!warned_held && comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix gear/quat tolerance: step {} makes an error of {:.2g}, more than {:.2g}, but "
-          "dtmin keeps the time step at {:.3g}; further such steps are counted",
-          update->ntimestep, all[1], control.eps, control.shortest);
-    warned_held = true;
-  }
-  if (next.values != values) change_values(next.values);
-  return next.step;
-}
 
 /// The step that ends now was made with the present one.
 void Tolerance::change_step(double step)
 {
-  if (step == update->dt) return;
-  update->update_time();
-  set_step(step);
+  update->update_time();    // in every step: the sum has the same rounding in two runs as in one
+  if (step != update->dt) set_step(step);
 }
 
 void Tolerance::set_values(int values)
@@ -228,7 +199,7 @@ void Tolerance::set_values(int values)
   present.rows = values;
   order = VariableOrder(present);
   record.values = values;
-  record.steady = 0.0;
+  steady.values = 0;
 }
 
 void Tolerance::change_values(int values)
@@ -298,13 +269,29 @@ double Tolerance::element(int n) const
       return record.steps > 0.0 ? record.values_sum / record.steps : 0.0;
     case LARGEST_ERROR:
       return record.largest;
+    case REPEATED:
+      return record.repeated;
+    case LENGTH:
+      return record.last_length;
+    case ENERGY:
+      return record.last_energy * force->mvv2e;
     default:
       return record.held;
   }
+}
+
+Tolerance::Checkpoint Tolerance::checkpoint() const
+{
+  Checkpoint now = record;
+  now.steady[0] = steady.values;
+  now.steady[1] = steady.step;
+  now.steady[2] = steady.repeat;
+  return now;
 }
 
 void Tolerance::restore(const Checkpoint &saved)
 {
   set_values((int) saved.values);
   record = saved;
+  steady = {(int) saved.steady[0], (int) saved.steady[1], (int) saved.steady[2]};
 }

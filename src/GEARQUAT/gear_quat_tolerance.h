@@ -7,14 +7,16 @@
    gear_quat_step_control.h, and LAMMPS' time step.
 
    The fix calls when histories begin scheme_of_start(), begin() and shorten_first_step(); in every
-   step correct() for every body; and at the end of the step, when all fixes have finished it,
-   choose() and change_step().  Where the number of values may have changed, after begin() and
-   choose(), the fix makes its integrator anew. */
+   step begin_step(); correct() for every body, and judge(); if that says so, it puts back the
+   histories, calls shorten_values() and shorten_step(), and makes the step again; and at the end of the
+   step, when all fixes have finished it, choose() and change_step().  Where the number of values may
+   have changed, after begin(), shorten_values() and choose(), the fix makes its integrator anew. */
 
 #ifndef LMP_GEAR_QUAT_TOLERANCE_H
 #define LMP_GEAR_QUAT_TOLERANCE_H
 
 #include "gear_quat_bodies.h"
+#include "gear_quat_repeat.h"
 #include "gear_quat_step_control.h"
 
 namespace LAMMPS_NS::GearQuat {
@@ -22,13 +24,25 @@ namespace LAMMPS_NS::GearQuat {
 class Tolerance : protected Pointers {
  public:
   /// Elements of the fix's vector, behind those of Sums.
-  enum { STEP, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST_ERROR, HELD, ELEMENTS };
+  enum {
+    STEP,
+    SMALLEST,
+    MEAN,
+    VALUES,
+    MEAN_VALUES,
+    LARGEST_ERROR,
+    HELD,
+    REPEATED,
+    LENGTH,
+    ENERGY,
+    ELEMENTS
+  };
 
   /// What a restart file keeps: the next step's values, steps made with them, and the sums behind the
   /// outputs.
   struct Checkpoint {
-    double values, steady;
-    double steps, time, smallest, values_sum, largest, held;
+    double values, steady[3];
+    double steps, time, smallest, values_sum, largest, held, repeated, last_length, last_energy;
   };
 
   /// scheme: of the fix; its number of values is the largest.
@@ -44,13 +58,21 @@ class Tolerance : protected Pointers {
   Scheme scheme_of_start() const;
   /// Histories are seeded.  full: to the last row; otherwise they begin with the fewest values.
   void begin(bool full);
-  /// Makes the first step shorter if its error would be too large.  Collective.
-  void shorten_first_step();
+  /// Makes the first step shorter if its error would be too large.  full: of what begin() says.
+  /// Collective.
+  void shorten_first_step(bool full);
 
+  /// A step begins; the histories are those of the last one.  Collective.
+  void begin_step();
   /// Correct one body.
   Correction correct(const Integrator &integrator, int ibody, const Load &load);
-  /// The history of a body has just begun with fewer terms than the others have.
-  void note_fresh() { fresh = true; }
+  /// All bodies are corrected: true if the step has failed and is to be made again.  Collective.
+  bool judge();
+  /// Histories as they were when the step began get the values, then the length of the next try.
+  void shorten_values();
+  void shorten_step();
+  /// Forces of the next try.  vflag: what LAMMPS asked of the virial when the step began.
+  void evaluate(int vflag) { repeat.evaluate(vflag); }
   /// Choose values and length of the next step, and return the length.  After the call histories
   /// have the new number of values.  Collective.
   double choose();
@@ -65,7 +87,7 @@ class Tolerance : protected Pointers {
   bool is_changing_step() const { return changing_step; }
 
   double element(int n) const;
-  Checkpoint checkpoint() const { return record; }
+  Checkpoint checkpoint() const;
   void restore(const Checkpoint &saved);
 
  private:
@@ -74,11 +96,20 @@ class Tolerance : protected Pointers {
   Scheme present;
   StepControl control;
   VariableOrder order;
-  StepErrors errors;    ///< of the bodies corrected so far
+  Repeat repeat;
+  StepMeasures errors;         ///< of the bodies corrected so far; of all, once judged
+  double speed = 0.0;          ///< no site of a body is faster
+  double begun_with = 0.0;     ///< length of the first try of the present step
+  int tries = 0;               ///< of the present step that have failed
+  StepControl::Next failed;    ///< the next try
+  Steady steady;
   bool changing_step = false;
-  bool fresh = false;
+  bool fresh = false;          ///< bodies have come in this step, once judged
   bool warned_held = false;    ///< of a step held at its lower limit
   Checkpoint record = {};
+  struct Settled {
+    double steps = 0.0, time = 0.0, smallest = 0.0;
+  } settled;    ///< of this run, without its start
 
   void set_values(int values);
   void change_values(int values);
@@ -88,6 +119,19 @@ class Tolerance : protected Pointers {
   const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
   double farthest_step(double speed) const;
+  double limit_of_motion() const;
+  double time() const;
+  double even(double step, double now) const;
+  double step_error() const { return control.measured(errors).same; }
+  double first_error() const;
+  double first_step_of_low_order() const;
+  void begin_run();
+  void tell_of_first_step(double instead) const;
+  /// An error as the user counts it.
+  double shown(double error) const;
+  void refuse_lost() const;
+  void note_step(double size, int values);
+  void tell_of_little_gain();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -52,6 +52,11 @@ class Keyword:
         return len(self.values.split()) if self.kind in ("mask", "numbers") else 1
 
     @property
+    def options(self):
+        """The words of which one may follow the number of a keyword."""
+        return tuple(self.values.partition(" and perhaps ")[2].split(" or ")) if self.kind == "number" else ()
+
+    @property
     def ranges(self):
         """Formulation -> (fewest, most) of an integer; the formulation is empty if there is one range."""
         limits = re.findall(r"(\d+) to (\d+)(?: \((\w+)\))?", self.values)

@@ -20,8 +20,9 @@ from scenes import (
     whole_deck,
 )
 
-COLUMNS = " ".join(f"f_move[{k}]" for k in range(9, 16))
-NEXT, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST, HELD = (f"f_move[{k}]" for k in range(9, 16))
+ELEMENTS = [f"f_move[{k}]" for k in range(9, 19)]
+COLUMNS = " ".join(ELEMENTS)
+NEXT, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST, HELD, REPEATED, LENGTH, ENERGY = ELEMENTS
 
 
 def case1(run="run ${steps}", before="", **settings):
@@ -51,7 +52,8 @@ def test_the_energy_error_follows_eps(lmp_tree, formulation):
     assert 0.7 < slope < 1.3
     for e, run in zip(eps, runs):
         assert 1000 <= run["Time"][-1] < 1001
-        assert run[LARGEST][-1] < 40  # eps: no step had to be redone
+        assert run[LARGEST][-1] <= 1  # eps
+        assert 0 < run[REPEATED][-1] < 0.05 * len(run["Step"])
         assert run[HELD][-1] == 0
     assert runs[-1][VALUES][-1] >= 8
     assert len(runs[0]["Step"]) < len(runs[2]["Step"])
@@ -66,12 +68,17 @@ def test_outputs_are_those_of_the_steps(lmp):
     (whole,) = tables(lmp.succeed(case1(steps=300)))
     steps = np.diff(whole["Time"])
     assert steps[0] == pytest.approx(0.1, rel=1e-12)
-    assert steps[1:] == pytest.approx(whole[NEXT][1:-1], rel=1e-11)
+    again = np.diff(whole[REPEATED])[1:] > 0
+    assert steps[1:][~again] == pytest.approx(whole[NEXT][1:-1][~again], rel=1e-11)
+    assert (steps[1:][again] < 0.95 * whole[NEXT][1:-1][again]).all() and again.any()
     assert whole[SMALLEST][-1] == pytest.approx(steps.min(), rel=1e-11)
     assert whole[MEAN][-1] == pytest.approx(steps.mean(), rel=1e-12)
-    assert whole[MEAN_VALUES][-1] == pytest.approx(np.append(10, whole[VALUES][1:-1]).mean())
+    assert whole[MEAN_VALUES][-1] == pytest.approx(
+        np.append(9, whole[VALUES][1:-1]).mean(), rel=0.01
+    )
     assert steps.max() / steps.min() > 2
-    assert (steps[1:] / steps[:-1]).max() < 1.0501
+    assert 1.1 < (steps[1:] / steps[:-1]).max() < 25 ** (1 / 3)
+    assert (np.diff(steps) == 0).mean() > 0.3  # rows are not rescaled in every step
     # in two runs the same
     first, second = tables(lmp.succeed(case1(run="run 200\nrun 100")))
     halves = [*first["v_total"], *second["v_total"][1:]]
@@ -84,7 +91,7 @@ def test_a_first_step_that_is_too_long_is_made_shorter(lmp_tree):
     (long,) = tables(result)
     assert long["Time"][1] < 1.0
     assert off(long) < 1e-8
-    assert long[LARGEST][-1] < 20
+    assert long[LARGEST][-1] <= 1
 
     (zero,) = tables(lmp_tree.succeed(case1(start="zero", steps=100)))
     assert zero[VALUES][1] == 4 and zero[VALUES][-1] > 5
@@ -190,7 +197,7 @@ def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, formulat
     depth = -met["c_potential"].min()
     assert depth == pytest.approx(0.5 / distance, rel=0.4)
     assert off(met) < 1e-8 * depth
-    assert met[LARGEST][-1] < 10
+    assert met[LARGEST][-1] <= 1
     assert off(run(tolerance=0, dt=0.001, steps=8000, more="")) > 1e-8 * depth
 
 
@@ -240,7 +247,8 @@ def test_a_collision_out_of_free_flight(lmp_tree):
         # force times eps in each step, and the bend of the force where it begins
         assert off(run, "TotEng") < 50 * e * len(steps) + 1e-6
         assert 2.0 * steps.max() < 0.25 * 0.3 * 1.001  # a quarter of the skin
-        assert run[VALUES].min() >= 8
+        assert (run[VALUES][run["Time"] < 5] == 9).all()  # until they meet
+        assert run[LARGEST][-1] <= 1
     for run in runs[3:]:  # a force and an energy that jump cost what they jump by
         assert run["Time"][-1] >= 12.5
         assert abs(run["TotEng"][-1] - run["TotEng"][0]) < 0.02
@@ -276,6 +284,6 @@ def test_eps_is_a_length(lmp_tree):
         (run,) = tables(lmp_tree.succeed(deck))
         times[units] = run["Time"][-1] / scale["time"]
         assert run[VALUES][-1] > 4
-    assert times["real"] > 30.0
+    assert times["real"] > 20.0
     for units, time in times.items():
         assert time == pytest.approx(times["real"], rel=1e-3), times

@@ -199,6 +199,8 @@ def test_every_keyword_of_the_fix_is_read():
         line = parse(f"fix 1 all gear/quat molecule {key} {' '.join(['x'] * row.arguments)}")
         assert line.keywords == ((key, ("x",) * row.arguments),)
         assert bool(script.for_trials(line)[1]) == (row.about == "step")
+    line = parse("fix 1 all gear/quat molecule tolerance 1e-9 energy values 7")
+    assert line.keywords == (("tolerance", ("1e-9", "energy")), ("values", ("7",)))
 
 
 def test_words_that_need_quotes_get_them():

@@ -1,19 +1,12 @@
 /* A step and a number of values that follow the error: the rows, the estimates, the law, and what
    comes of them in the paper's cage. */
 
-#include "gear_quat_step_control.h"
+#include "follow.h"
 #include "scenes.h"
 
 using namespace Drive;
 
 namespace {
-
-Scheme varying(Formulation formulation, int values, bool compensate = false)
-{
-  Scheme scheme = scheme_of(formulation, values, 2, compensate);
-  scheme.trial = true;
-  return scheme;
-}
 
 /// By what factor the rows that a scheme sets anew grow in a step when nothing but the step changes.
 double growth(const Scheme &scheme, double ratio)
@@ -51,102 +44,62 @@ vector<double> polynomial(const Scheme &scheme, int degree, double t, double h)
   return rows;
 }
 
-/// The host's part with a tolerance, for one body.
-struct Following {
+/// The body of the paper's cage.
+struct Following : Follower {
   CageScene scene;
-  StepControl control;
-  Scheme scheme;
-  double t = 0.0, h, largest = 0.0;
-  int steady = 0;
-  long steps = 0;
-  Integrator integrator;
-  VariableOrder order;
-  vector<double> rows;
 
   Following(Formulation formulation, double eps, double first_step, int values = 0) :
-      scene(1, true), scheme(varying(formulation, formulation == FIRST ? 8 : 10)), h(first_step),
-      integrator(scheme, h), order(scheme), rows(2 * MAX_SIZE, 0.0)
+      Follower(formulation, eps, false, first_step, {{CageScene(1, true).body, 1.0}}, {}),
+      scene(1, true)
   {
-    control.eps = eps;
-    control.fewest = values ? values : fewest(formulation);
-    control.most = values ? values : scheme.values();
-    if (values) use(values);
+    loads = [this](const vector<One> &ones) {
+      return vector<Load>{scene.load(ones[0].state, scheme.norm2(ones[0].state.q))};
+    };
+    if (values) {
+      control.fewest = control.most = values;
+      use(values);
+    }
     Scheme above = scheme;
     above.trial = false;
     above.rows = scheme.values() + 1;
     const auto start = started(above, scene.body, scene.start, scene, h, Start::BOOTSTRAP, h);
-    std::copy(start.begin(), start.end(), rows.begin());
+    std::copy(start.begin(), start.end(), rows());
   }
+  Following(const Following &) = delete;
 
-  void use(int values)
-  {
-    scheme.rows = values;
-    integrator = Integrator(scheme, h);
-    order = VariableOrder(scheme);
-    steady = 0;
-  }
+  double *rows() { return bodies[0].rows.data(); }
+  BodyState state() const { return bodies[0].state; }
 
-  BodyState state() const { return integrator.body_state(scene.body, rows.data()); }
-
-  StepErrors step()
-  {
-    StepErrors errors;
-    integrator.predict(rows.data());
-    const double norm2 = scheme.norm2(rows.data() + scheme.quaternion());
-    order.correct(integrator, scene.body, 1.0, scene.load(state(), norm2),
-                  integrator.axes_of(rows.data()).data(), rows.data(), errors);
-    t += h;
-    ++steps;
-    ++steady;
-    largest = std::max(largest, errors.same / control.eps);
-    return errors;
-  }
-
-  void follow(const StepErrors &errors)
-  {
-    const auto next = control.next(errors, h, scheme.values(), steady);
-    if (next.values != scheme.values()) {
-      next.values > scheme.values() ? order.add_row(rows.data()) : order.drop_row(rows.data());
-      use(next.values);
-    }
-    set_step(next.step);
-  }
-
-  void set_step(double step)
-  {
-    integrator.rescale(rows.data(), step / h);
-    h = step;
-    integrator.set_step(h);
-  }
-
-  /// To the time `end` exactly.  Returns the largest error of the energy.
+  /// Returns the largest error of the energy.
   double run(double end)
   {
     const double e0 = scene.total_energy(scene.start);
     double worst = 0.0;
-    while (t < end) {
-      if (t + h > end) set_step(end - t);    // a step like any other, only shorter
-      const StepErrors errors = step();
+    Follower::run(end, [&] {
       worst = std::max(worst, std::fabs(scene.total_energy(state()) - e0));
-      if (t < end) follow(errors);
-    }
+    });
     return worst;
   }
 };
 
 }    // namespace
 
-TEST(StepControl, AShrinkingStepIsStableToTenValues)
+TEST(StepControl, AShrinkingStepIsStableToNineValues)
 {
-  for (const Scheme &scheme : every_scheme()) {
-    double worst = growth(scheme, StepControl::GROWTH);
-    for (double ratio = StepControl::SHRINK; ratio < 1.0; ratio += 0.01)
-      worst = std::max(worst, growth(scheme, ratio));
+  // errors of rows have to fade faster than the step shrinks: in the second formulation they count as
+  // velocities, times the step
+
+  const auto worst = [](const Scheme &scheme) {
+    double most = 0.0;
+    for (double ratio = StepControl::SHRINK_FAILED; ratio < 1.0; ratio += 0.01)
+      most = std::max(most, growth(scheme, ratio) / (scheme.first() ? 1.0 : ratio));
+    return most;
+  };
+  for (const Scheme &scheme : every_scheme())
     if (scheme.values() <= VARIABLE_MOST)
-      EXPECT_LT(worst, 0.95) << scheme;
+      EXPECT_LT(worst(scheme), 0.85) << scheme;
     else
-      EXPECT_GT(worst, 1.0) << scheme;
-  }
+      EXPECT_GT(worst(scheme), 0.88) << scheme;
 }
 
 TEST(StepControl, RowsComeAndGoWithoutAnError)
@@ -236,14 +189,14 @@ TEST(StepControl, TheEstimateIsTheCorrectorsOwn)
     integrator.predict(rows.data());
     for (const double reach :
          {1e-3, 1.0, 1e3}) {    // an angle counts as the way of what is far out
-      StepErrors errors;
+      StepMeasures errors;
       vector<double> copy = rows;
       const Correction own = VariableOrder(scheme).correct(
           integrator, scene.body, reach, scene.load(scene.start, 1.0),
           integrator.axes_of(copy.data()).data(), copy.data(), errors);
       const double larger = std::max(own.position_error(), reach * own.angle_error());
       EXPECT_GT(larger, 0.0);
-      EXPECT_NEAR(errors.same / larger, 1.0, 1e-9) << scheme;
+      EXPECT_NEAR(errors.length.same / larger, 1.0, 1e-9) << scheme;
     }
   }
 }
@@ -253,46 +206,122 @@ TEST(StepControl, TheLaw)
   StepControl control;
   control.eps = 1e-6;
   control.fewest = 4;
-  control.most = 10;
-  const double big = 1e30;
-  auto next = [&](StepErrors errors, double step, int values = 8, int steady = 100) {
+  control.most = 9;
+  const double big = 1e30, growth = StepControl::largest_growth(8);
+  const Steady long_since = {100, 100, 100};
+  auto next = [&](StepErrors errors, double step, int values = 8, Steady steady = {100, 100, 100}) {
     return control.next(errors, step, values, steady);
   };
+  // the error of a step that could be longer by this factor
+  auto error = [&](double ratio, int values = 8) {
+    return 1e-6 * std::pow(StepControl::SAFETY / ratio, values);
+  };
 
-  EXPECT_DOUBLE_EQ(next({big, 1e-6, big}, 0.1).step, 0.1);
-  EXPECT_DOUBLE_EQ(next({big, 1e-6 * std::pow(1.25, 8), big}, 0.1).step, 0.08);
-  EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1).step, 0.1 * StepControl::GROWTH);
-  EXPECT_DOUBLE_EQ(next({big, big, big}, 0.1).step, 0.1 * StepControl::SHRINK);
+  EXPECT_DOUBLE_EQ(next({big, error(0.8), big}, 0.1).step, 0.08);
+  EXPECT_DOUBLE_EQ(next({big, error(1.2), big}, 0.1).step, 0.12);
+  EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1).step, 0.1 * growth);
   EXPECT_DOUBLE_EQ(next({big, big, big}, -0.1).step, -0.1 * StepControl::SHRINK);
+
+  // small changes do not pay, and a step that was just changed or repeated does not grow
+
+  for (const double ratio : {0.98, 1.0, 1.09})
+    EXPECT_DOUBLE_EQ(next({big, error(ratio), big}, 0.1).step, 0.1);
+  EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 8, 100}).step, 0.1);
+  EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 100, 8}).step, 0.1);
+  EXPECT_DOUBLE_EQ(next({big, error(0.8), big}, 0.1, 8, {100, 1, 1}).step, 0.08);
 
   // another number of values has to promise more than that the error is smaller
 
-  EXPECT_EQ(next({1e-7, 1e-6, big}, 0.1).values, 7);
-  EXPECT_EQ(next({0.5e-6, 1e-6, big}, 0.1).values, 8);
-  EXPECT_EQ(next({big, 1e-6, 0.9e-7}, 0.1).values, 9);
-  EXPECT_EQ(next({big, 1e-6, 1.1e-7}, 0.1).values, 8);
-  EXPECT_EQ(next({big, 1e-6, 0.9e-7}, 0.1, 8, 8).values, 8);    // too early
-  EXPECT_EQ(next({big, 1e-6, 0.0}, 0.1, 10).values, 10);
-  EXPECT_EQ(next({0.0, 1e-6, big}, 0.1, 4).values, 4);
+  EXPECT_EQ(next({error(0.7, 7) / 2.0, error(0.6), big}, 0.1).values, 7);
+  EXPECT_EQ(next({error(0.7, 7) * 1.01, error(0.7), big}, 0.1).values, 8);
+  EXPECT_EQ(next({big, error(0.6), error(0.7, 9) / 3.0}, 0.1).values, 9);
+  EXPECT_EQ(next({big, error(0.7), error(0.7, 9) / 2.9}, 0.1).values, 8);
+  EXPECT_EQ(next({big, error(1.0), error(1.3, 9) / 3.0}, 0.1).values, 9);
+  EXPECT_EQ(next({big, error(0.6), 0.0}, 0.1, 8, {8, 100, 100}).values, 8);    // too early
+  EXPECT_EQ(next({big, error(0.6), 0.0}, 0.1, 9).values, 9);
+  EXPECT_EQ(next({0.0, error(0.6), big}, 0.1, 4).values, 4);
 
   // as far as the step may grow: without forces no number of values is better than another
 
-  for (const double error : {0.0, 1e-30, 1e-20}) {
-    EXPECT_EQ(next({error, error, error}, 0.1).values, 8);
-    EXPECT_EQ(next({error, 1e3 * error, error}, 0.1).values, 8);
+  for (const double small : {0.0, 1e-30, 1e-20}) {
+    EXPECT_EQ(next({small, small, small}, 0.1).values, 8);
+    EXPECT_EQ(next({small, 1e3 * small, small}, 0.1).values, 8);
   }
 
   // nor is it longer than the motion allows
 
-  EXPECT_DOUBLE_EQ(control.next({big, 1e-6, big}, -0.1, 8, 100, 0.03).step, -0.03);
-  EXPECT_DOUBLE_EQ(control.next({big, 1e-6, big}, 0.1, 8, 100, 0.3).step, 0.1);
+  const double limit = 0.03, clear = StepControl::CLEAR_OF_LIMIT * limit;
+  EXPECT_DOUBLE_EQ(control.next({big, error(1.0), big}, -0.1, 8, long_since, limit).step, -clear);
+  EXPECT_DOUBLE_EQ(control.next({big, 0.0, big}, 0.026, 8, long_since, limit).step, clear);
+  EXPECT_DOUBLE_EQ(control.next({big, 0.0, big}, 0.029, 8, long_since, limit).step, 0.029);
+  EXPECT_DOUBLE_EQ(control.next({big, error(1.0), big}, 0.1, 8, long_since, 0.3).step, 0.1);
 
   control.shortest = 0.09;
   control.longest = 0.101;
   EXPECT_DOUBLE_EQ(next({big, big, big}, -0.1).step, -0.09);
   EXPECT_TRUE(next({big, big, big}, -0.1).held);
-  EXPECT_FALSE(next({big, 1e-6, big}, 0.1).held);
+  EXPECT_FALSE(next({big, error(1.0), big}, 0.1).held);
   EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1).step, 0.101);
+}
+
+TEST(StepControl, AStepThatFails)
+{
+  StepControl control;
+  control.eps = 1e-6;
+  control.fewest = 4;
+  control.most = 9;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(control.fails(1e-6, 0.1));
+  EXPECT_TRUE(control.fails(1.01e-6, 0.1));
+  EXPECT_TRUE(control.fails(nan, 0.1));
+
+  const Steady before = {100, 100, 100}, soon = {100, 100, 2};
+  const double safety = StepControl::SAFETY * StepControl::SAFETY;
+  EXPECT_DOUBLE_EQ(control.repeat(1e-6 * 256.0, -0.1, 8, before).step, -0.1 * safety / 2.0);
+  EXPECT_EQ(control.repeat(1e-6 * 256.0, 0.1, 8, before).values, 8);
+  EXPECT_DOUBLE_EQ(control.repeat(nan, 0.1, 8, before).step, 0.1 * StepControl::SHRINK_FAILED);
+  EXPECT_LT(control.repeat(1.0001e-6, 0.1, 8, before).step, 0.09);
+
+  // a failure soon after another one: the last row is of no use
+
+  EXPECT_LE(control.repeat(1.0001e-6, 0.1, 8, soon).step, 0.1 * StepControl::SHRINK);
+  EXPECT_EQ(control.repeat(1.0001e-6, 0.1, 8, soon).values, 7);
+  EXPECT_EQ(control.repeat(1.0001e-6, 0.1, 4, soon).values, 4);
+
+  control.shortest = 0.05;
+  EXPECT_DOUBLE_EQ(control.repeat(1e30, 0.1, 8, before).step, 0.05);
+  EXPECT_FALSE(control.fails(1e30, 0.05));
+}
+
+TEST(StepControl, EvenSteps)
+{
+  EXPECT_EQ(even_step(0.1, 1.01), 0.1);    // far away
+  EXPECT_DOUBLE_EQ(even_step(0.1, 0.35), 0.35 / 4);
+  EXPECT_DOUBLE_EQ(even_step(0.1, 0.1), 0.1);
+  EXPECT_DOUBLE_EQ(even_step(0.1, 0.3), 0.1);    // rounding makes no fourth step
+  EXPECT_DOUBLE_EQ(even_step(0.1, 0.02), 0.02);
+}
+
+TEST(StepControl, AFailedStepLeavesNoTrace)
+{
+  // a step that is far too long, repeated until it holds, and the same motion that met the last length
+  // at once
+  Following body(SECOND, 1e-9, 0.1), other(SECOND, 1e-9, 0.1);
+  for (int n = 0; n < 20; ++n) {
+    body.follow(body.step());
+    other.follow(other.step());
+  }
+  body.set_step(8.0 * body.h);
+  body.step();
+  EXPECT_GT(body.repeated, 0);
+  EXPECT_LE(body.largest, 1.0);
+  while (other.scheme.values() > body.scheme.values())
+    other.change({other.h, other.scheme.values() - 1, false});
+  other.set_step(body.h);
+  other.step();
+  EXPECT_EQ(other.repeated, 0);
+  EXPECT_LT(Check::largest_difference(body.rows(), other.rows(), 3 * body.scheme.width()),
+            1e-11);    // but for the rounding of several changes of the step
 }
 
 TEST(StepControl, TheErrorFollowsEps)
@@ -305,7 +334,8 @@ TEST(StepControl, TheErrorFollowsEps)
       body.run(200.0);
       errors.push_back(cage(body.scene).missed(body.state()));
       steps.push_back(body.steps);
-      EXPECT_LT(body.largest, 60.0);    // no step that would have had to be redone
+      EXPECT_LE(body.largest, 1.0);
+      EXPECT_LT(body.repeated, 0.1 * body.steps);
     }
     const double slope =
         std::log(errors.front() / errors.back()) / std::log(eps.front() / eps.back());
@@ -322,7 +352,7 @@ TEST(StepControl, EncountersKeepTheEnergy)
   for (Formulation formulation : {FIRST, SECOND}) {
     Following body(formulation, 1e-13, 0.1);
     EXPECT_LT(body.run(2000.0), 1e-8);
-    EXPECT_LT(body.largest, 20.0);
+    EXPECT_LE(body.largest, 1.0);
 
     const double mean = body.t / body.steps;
     Following fixed(formulation, 1e-13, mean);

@@ -233,9 +233,10 @@ def parse_fix(words):
         length = 2 + int(rest[1])
     if not length or len(rest) < length:
         raise DeckError(f"{who}: cannot make out which bodies: {' '.join(rest)}")
-    known = RIGID_KEYWORDS
+    known, options = RIGID_KEYWORDS, {}
     if style == "gear/quat":
         known = {key: row.arguments for key, row in keywords.table().items()}
+        options = {key: row.options for key, row in keywords.table().items()}
     given, rest, body = [], rest[length:], tuple(rest[:length])
     while rest:
         key = rest[0]
@@ -245,8 +246,11 @@ def parse_fix(words):
             raise DeckError(f"{who}: keyword {key} lacks its arguments")
         if key not in MASKS:  # the last one counts
             given = [pair for pair in given if pair[0] != key]
-        given.append((key, tuple(rest[1 : known[key] + 1])))
-        rest = rest[known[key] + 1 :]
+        end = known[key] + 1
+        if rest[end : end + 1] and rest[end] in options.get(key, ()):
+            end += 1
+        given.append((key, tuple(rest[1:end])))
+        rest = rest[end:]
     return FixLine(id_, group, style, body, tuple(given))
 
 

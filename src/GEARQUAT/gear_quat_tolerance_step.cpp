@@ -1,0 +1,243 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keyword tolerance, in a step: the errors of all bodies, whether it is repeated, and the next one. */
+
+#include "gear_quat_tolerance.h"
+
+#include "gear_quat_ranks.h"
+
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "neighbor.h"
+#include "output.h"
+#include "pair.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// no step moves a site by more than this part of the neighbor skin: a force that begins on the way is
+// met before the body is deep in it
+
+static constexpr double PART_OF_SKIN = 0.25;
+
+// a step that has failed so often is not repeated any more
+
+static constexpr int MOST_TRIES = 40;
+
+// steps that belong to the start, and by how much more steps of the smallest length the control has to
+// save to be worth while
+
+static constexpr double UNSETTLED = 100.0, LITTLE_GAIN = 0.3;
+
+// the part of a step that counts as no time
+
+static constexpr double ROUNDING_OF_TIME = 1.0e-6;
+
+/* ---------------------------------------------------------------------- */
+
+void Tolerance::begin_step()
+{
+  if (update->ntimestep == update->firststep + 1) begin_run();
+  tries = 0;
+  begun_with = update->dt;
+  if (repeat.possible()) bodies.keep_histories();
+}
+
+/// The first step of a run.
+void Tolerance::begin_run()
+{
+  repeat.begin_run();
+  settled = Settled();
+  const double fastest = over_ranks(MPI_MAX, largest_speed(), world);
+  const double farthest = farthest_step(fastest);
+  if (fastest > 0.0 && control.longest > farthest && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat tolerance: dtmax {:.3g} is longer than the {:.3g} in which the "
+                   "fastest site moves by {:.3g}; steps are not longer than that",
+                   control.longest, farthest, limit_of_motion());
+}
+
+Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
+{
+  StepMeasures one;
+  const Body &body = bodies.body_at(ibody);
+  const Correction correction = order.correct(integrator, body.rigid, body.reach(), load,
+                                              bodies.axes(ibody), bodies.history(ibody), one);
+  double &same = control.energy ? one.energy.same : one.length.same;
+  if (!std::isfinite(same)) same = std::numeric_limits<double>::infinity();
+  errors.include(one);
+  return correction;
+}
+
+/// No site on this rank is faster.
+double Tolerance::largest_speed() const
+{
+  double largest = 0.0;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    const double speed = length(s.velocity) + bodies.body_at(ibody).reach() * length(s.omega_body);
+    largest = std::max(largest, speed);
+  }
+  return largest;
+}
+
+/// How far a site may move in a step, infinite if nothing is known of the forces' range.
+double Tolerance::limit_of_motion() const
+{
+  double range = neighbor->skin > 0.0 ? neighbor->skin : std::numeric_limits<double>::infinity();
+  if (force->pair && force->pair->cutforce > 0.0) range = std::min(range, force->pair->cutforce);
+  return PART_OF_SKIN * range;
+}
+
+/// Where nothing moves nothing is known of what a longer step would do.
+double Tolerance::farthest_step(double speed) const
+{
+  return speed == 0.0 ? std::fabs(update->dt) : limit_of_motion() / speed;
+}
+
+bool Tolerance::judge()
+{
+  double here[] = {errors.length.fewer,
+                   errors.length.same,
+                   errors.length.more,
+                   errors.energy.fewer,
+                   errors.energy.same,
+                   errors.energy.more,
+                   bodies.fresh.empty() ? 0.0 : 1.0,
+                   largest_speed()};
+  const auto all = over_ranks(MPI_MAX, here, world);
+  errors = {{all[0], all[1], all[2]}, {all[3], all[4], all[5]}};
+  fresh = all[6] != 0.0;
+  speed = all[7];
+  if (repeat.possible() && control.fails(step_error(), update->dt) && tries < MOST_TRIES) {
+    ++tries;
+    record.repeated += 1.0;
+    failed = control.repeat(step_error(), update->dt, present.values(), steady);
+    steady.repeat = 0;
+    errors = StepMeasures();
+    return true;
+  }
+  if (!std::isfinite(step_error()) || tries == MOST_TRIES) refuse_lost();
+  if (record.steps == 0.0 && tries > 0) tell_of_first_step(begun_with);
+  return false;
+}
+
+void Tolerance::refuse_lost() const
+{
+  if (tries == MOST_TRIES)
+    error->all(
+        FLERR,
+        "Fix gear/quat tolerance: step {} was made {} times, and its error is {:.2g} still at a "
+        "time step of {:.3g}; the forces are not continuous, or the tolerance is smaller "
+        "than their rounding",
+        update->ntimestep, tries + 1, shown(step_error()), update->dt);
+  error->all(FLERR,
+             "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
+             "are wrong, or the motion is lost: use a smaller tolerance",
+             update->ntimestep);
+}
+
+void Tolerance::shorten_values()
+{
+  if (failed.values != present.values()) change_values(failed.values);
+}
+
+void Tolerance::shorten_step()
+{
+  steady.step = 0;
+  set_begun_step(failed.step);
+}
+
+double Tolerance::shown(double error) const
+{
+  return control.energy ? error * force->mvv2e : error;
+}
+
+double Tolerance::choose()
+{
+  const double step = update->dt;
+  const int values = present.values();
+  note_step(std::fabs(step), values);
+  auto next = control.next(control.measured(errors), step, values, steady, farthest_step(speed));
+  if (fresh) {    // rows above are zero in a fresh history
+    next.values = control.fewest;
+    next.step = std::copysign(std::min(std::fabs(next.step), first_step_of_low_order()), step);
+  }
+  if (next.held) {
+    record.held += 1.0;
+    if (!warned_held && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat tolerance: step {} makes an error of {:.2g}, more than {:.2g}, but "
+          "dtmin keeps the time step at {:.3g}; further such steps are counted",
+          update->ntimestep, shown(step_error()), shown(control.eps), control.shortest);
+    warned_held = true;
+  }
+  errors = StepMeasures();
+  fresh = false;
+  if (next.values != values) change_values(next.values);
+  next.step = even(next.step, time());
+  if (next.step != step) steady.step = 0;
+  if (update->ntimestep == update->laststep) tell_of_little_gain();
+  return next.step;
+}
+
+double Tolerance::time() const
+{
+  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
+/// Where a dump in intervals of time is due within a few steps, steps of equal length end there.  now:
+/// when the step begins.
+double Tolerance::even(double step, double now) const
+{
+  double next = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < output->ndump; ++n) {
+    if (output->mode_dump[n] == 0) continue;
+    double at = output->next_time_dump[n];
+    if (at - now < ROUNDING_OF_TIME * step)
+      at += output->every_time_dump[n];    // it is written now
+    if (at - now >= ROUNDING_OF_TIME * step) next = std::min(next, at);
+  }
+  return step > 0.0 && std::isfinite(next) ? even_step(step, next - now) : step;
+}
+
+/// The step that ends now, in the sums behind the outputs.
+void Tolerance::note_step(double size, int values)
+{
+  record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
+  record.steps += 1.0;
+  record.time += size;
+  record.values_sum += values;
+  record.largest = std::max(record.largest, step_error() / control.eps);
+  record.last_length = errors.length.same;
+  record.last_energy = errors.energy.same;
+  steady.count();
+  if (record.steps <= UNSETTLED) return;
+  settled.steps += 1.0;
+  settled.time += size;
+  settled.smallest = settled.steps == 1.0 ? size : std::min(settled.smallest, size);
+}
+
+/// At the end of a run.
+void Tolerance::tell_of_little_gain()
+{
+  const double more = settled.time / (settled.steps * settled.smallest) - 1.0;
+  if (settled.steps > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
+    utils::logmesg(lmp,
+                   "Fix gear/quat tolerance: the step has hardly changed, and the control does not "
+                   "pay here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
+                   "steps with Gear's coefficients, and tuned ones permit longer steps\n",
+                   settled.smallest, 100.0 * more);
+  settled = Settled();
+}

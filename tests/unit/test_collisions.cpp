@@ -1,0 +1,52 @@
+/* Collisions out of free flight under a tolerance: none is lost, whatever it is, and the error of the
+   energy is what was asked for. */
+
+#include "collisions.h"
+
+using namespace Drive;
+
+namespace {
+
+constexpr int COLLISIONS = 80;
+
+/// Every eps has its own collisions.
+void expect_all(Formulation formulation, bool energy, double most_for_eps)
+{
+  const double eps[] = {1e-6, 1e-8, 1e-10, 1e-12};
+  double largest[4] = {};
+  for (int which = 0; which < COLLISIONS; ++which) {
+    const int k = which / 2 % 4;
+    const Outcome met = collide(Collision(which), formulation, eps[k], energy, 20000);
+    ASSERT_TRUE(met.arrived && std::isfinite(met.error)) << "collision " << which;
+    EXPECT_LE(met.worst, 1.0) << "collision " << which;
+    EXPECT_LT(met.repeated, 0.1 * met.evaluations + 10) << "collision " << which;
+    largest[k] = std::max(largest[k], met.error / met.depth);
+  }
+  for (int k = 0; k < 4; ++k) EXPECT_LT(largest[k], most_for_eps * eps[k]) << "eps " << eps[k];
+  EXPECT_LT(largest[3], 1e-8);
+}
+
+}    // namespace
+
+TEST(Collisions, ToleranceIsALength)
+{
+  expect_all(SECOND, false, 1e5);
+  expect_all(FIRST, false, 1e5);
+}
+
+TEST(Collisions, ToleranceIsAnEnergy)
+{
+  expect_all(SECOND, true, 200.0);
+  expect_all(FIRST, true, 200.0);
+}
+
+TEST(Collisions, WithoutRepetitionStepsAreWrong)
+{
+  double with = 0.0, without = 0.0;
+  for (int which = 0; which < 20; ++which) {
+    with = std::max(with, collide(Collision(which), SECOND, 1e-8, true, 3000).worst);
+    without = std::max(without, collide(Collision(which), SECOND, 1e-8, true, 3000, false).worst);
+  }
+  EXPECT_LE(with, 1.0);
+  EXPECT_GT(without, 5.0);
+}
