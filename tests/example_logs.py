@@ -15,8 +15,8 @@ from running import EXAMPLES, Lammps, make_lmp_tree, make_lmp_wheel
 
 #: folders with decks that have logs; ``common`` is read by some of them
 FOLDERS = ("case1", "case2", "case3", "coated", "fields", "isokinetic", "top", "water", "water_nvt")
-#: writes data of its folder, for minutes
-WITHOUT_LOG = ("in.equilibrate",)
+#: writes data of its folder, for minutes, or is run by benchmarks alone
+WITHOUT_LOG = ("in.equilibrate", "in.models")
 RANKS = (1, 4)
 #: seconds on one rank, minutes on four where there are two cores
 ON_ONE_RANK = ("in.isokinetic", "in.tethered")
