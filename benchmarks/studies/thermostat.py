@@ -106,7 +106,7 @@ def read(finished):
         c["v_translation"] - c["v_rotation"],
         c["Press"],
         KILOJOULES * c["PotEng"],
-        c["Econserve"],
+        c["v_conserved"],
         finished.log.seconds,
     )
 
