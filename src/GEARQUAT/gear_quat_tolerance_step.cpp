@@ -37,7 +37,7 @@ static constexpr int MOST_TRIES = 40;
 // steps that belong to the start, and by how much more steps of the smallest length the control has to
 // save to be worth while
 
-static constexpr double UNSETTLED = 100.0, LITTLE_GAIN = 0.3;
+static constexpr double UNSETTLED = 100.0, LITTLE_GAIN = 0.6;
 
 // the part of a step that counts as no time
 
@@ -235,7 +235,7 @@ void Tolerance::tell_of_little_gain()
   const double more = settled.time / (settled.steps * settled.smallest) - 1.0;
   if (settled.steps > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
     utils::logmesg(lmp,
-                   "Fix gear/quat tolerance: the step has hardly changed, and the control does not "
+                   "Fix gear/quat tolerance: the step has changed little, and the control does not "
                    "pay here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
                    "steps with Gear's coefficients, and tuned ones permit longer steps\n",
                    settled.smallest, 100.0 * more);
