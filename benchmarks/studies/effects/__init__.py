@@ -15,8 +15,9 @@ from .runs import measure
 
 #: functions of the output, which are no work of a step
 _ASIDE = re.compile(r"BodyTable::|::(forces_changed|rounding|last_error)\(")
-#: relative difference between what an effect adds on the ladder and what it adds alone
-MOST_APART = 1e-3
+#: relative difference between what an effect adds on the ladder and what it adds alone: the control of
+#: the step takes maxima, and which branch that is depends on the data
+MOST_APART = 1e-2
 
 
 def number(value):
