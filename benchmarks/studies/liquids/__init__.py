@@ -18,7 +18,7 @@ from .plan import ALL_METHODS, FAMILIES, FLOOR_STEP, FLOORS, LIQUIDS, LONG_STEPS
 from .plan import NVE_SMALL, SCENES, SECOND, SINGLE, power
 from .runs import measure
 
-#: as many standard errors of a difference are noise
+#: as many standard errors of a difference are noise, once the errors are scaled to what does not drift
 NOISE = 3.0
 UNIT = "kT/ns/dof"
 #: bounds of drifts in MAIN: step -> largest size; those not named: noise
@@ -140,24 +140,30 @@ def calibration(results):
 def main_measurements(results):
     """What fix gear/quat must hold in MAIN: the default at the short steps, LONG_STEPS at the others."""
     runs, steps = of_scene(results, MAIN), MAIN.liquid.steps
+    noise = NOISE * max(1.0, calibration(results).value)
     for method, bounded in ((SECOND, steps[:2]), (LONG_STEPS, steps[2:])):
         for dt in steps:
-            yield from drift_measurements(method, dt, runs, dt in bounded)
+            yield from drift_measurements(method, dt, runs, noise if dt in bounded else None)
 
 
-def drift_measurements(method, dt, runs, bounded):
-    """Drift beside that of rigid/nve/small, and the time without loss."""
+def drift_measurements(method, dt, runs, noise):
+    """Drift beside that of rigid/nve/small, and the time without loss.
+
+    ``noise``: as many standard errors of a difference are noise; None for no bounds.
+    """
     own, other = runs[method, dt], runs[NVE_SMALL, dt]
     what, longest = f"{MAIN.title}, {dt:g} fs, {NAMES[method]}", max(MAIN.liquid.steps)
     if own.lost or dt == longest:
         length = own.time[-1] / 1000 if len(own.time) else 0.0
-        bounds = {"least": 0.999 * own.duration / 1000} if bounded else {}
+        bounds = {"least": 0.999 * own.duration / 1000} if noise else {}
         yield Measurement(f"{what}: time without loss", length, spec=".1f", unit="ps", **bounds)
     if own.lost:
         return
     (rate, error), (theirs, scatter) = (of.drift(run, MAIN.liquid) for run in (own, other))
-    most = MOST_DRIFT.get(dt, NOISE * math.hypot(error, scatter))
-    bounds = {"least": -most, "most": most} if bounded and dt < longest else {}
+    bounds = {}
+    if noise and dt < longest:
+        most = MOST_DRIFT.get(dt, noise * math.hypot(error, scatter))
+        bounds = {"least": -most, "most": most}
     remark = f"{NVE_SMALL.label}: {with_error(theirs, scatter, '+')}"
     yield Measurement(f"{what}: drift", rate, error, ".4f", UNIT, remark, **bounds)
 
