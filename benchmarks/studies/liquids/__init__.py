@@ -21,7 +21,7 @@ from .runs import measure
 #: as many standard errors of a difference are noise, once the errors are scaled to what does not drift
 NOISE = 3.0
 UNIT = "kT/ns/dof"
-#: bounds of drifts in MAIN: step -> largest size; those not named: noise
+#: bounds of drifts in MAIN: step -> largest size; at others the noise around the drift of rigid/nve/small
 MOST_DRIFT = {2.5: 0.1}
 #: the drift is drawn linearly below this size
 LINEAR = 0.01
@@ -162,8 +162,10 @@ def drift_measurements(method, dt, runs, noise):
     (rate, error), (theirs, scatter) = (of.drift(run, MAIN.liquid) for run in (own, other))
     bounds = {}
     if noise and dt < longest:
-        most = MOST_DRIFT.get(dt, noise * math.hypot(error, scatter))
-        bounds = {"least": -most, "most": most}
+        middle, most = theirs, noise * math.hypot(error, scatter)
+        if dt in MOST_DRIFT:
+            middle, most = 0.0, MOST_DRIFT[dt]
+        bounds = {"least": middle - most, "most": middle + most}
     remark = f"{NVE_SMALL.label}: {with_error(theirs, scatter, '+')}"
     yield Measurement(f"{what}: drift", rate, error, ".4f", UNIT, remark, **bounds)
 
