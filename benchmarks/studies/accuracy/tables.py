@@ -116,7 +116,7 @@ def limit_of(formulation, n, made=kernel.tuned):
     ``made``: which Corrector, kernel.tuned or kernel.gear.
     """
     corrector = made(formulation, n)
-    return min(linear_limit(own.step) for own in (corrector, corrector.of_rotation))
+    return linear_limit(corrector.step)
 
 
 def order_fits(results):
