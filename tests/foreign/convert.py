@@ -51,8 +51,13 @@ def has_random_forces(text):
 
 
 def converted(line):
-    """The command with gear/quat in place of the rigid style, all other words kept."""
+    """The command with gear/quat in place of the rigid style, all other words kept.
+
+    Translation and rotation have chains of their own in rigid/nvt, of ten variables by default.
+    """
     words = line.words[4:]
+    if "nvt" in line.words[3]:
+        words += ["thermostat", "separate", *([] if "tparam" in words else ["tchain", "10"])]
     if line.words[3] == "poems" and words[0] == "group":
         words = ["group", str(len(words) - 1), *words[1:]]
     return " ".join(["fix", *line.words[1:3], "gear/quat", *words])
