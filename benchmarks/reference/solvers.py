@@ -3,9 +3,13 @@
 Every call of the right-hand side counts, whoever makes it and whatever for; LSODA chooses between
 Adams and BDF itself and gets no Jacobian, so the calls for one of differences are among them.  It
 keeps room for a full Jacobian: 340 MB for 500 bodies.
+
+CVODE of SUNDIALS is there where the Python package scikit-sundae is installed.  BDF is with Newton's
+method and a Jacobian of differences, Adams with functional iteration, which needs none.
 """
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -14,6 +18,8 @@ from . import quaternion as qt
 from .equations import State
 
 METHODS = ("DOP853", "LSODA")
+#: methods of CVODE: name here -> name there
+CVODE = {"CVODE Adams": "Adams", "CVODE BDF": "BDF"}
 #: SciPy raises a smaller relative tolerance to this one, and says so in a warning
 SMALLEST_TOLERANCE = 100 * np.finfo(float).eps
 
@@ -59,14 +65,43 @@ def state_errors(problem, reference, state):
     )
 
 
+def available():
+    """METHODS, and those of CVODE where they can be had."""
+    return METHODS + (tuple(CVODE) if find_spec("sksundae") else ())
+
+
+def _of_cvode(rates, span, start, method, rtol, atol):
+    """What ``solve_ivp`` does, by CVODE: (success, message, states at its own steps (n, size))."""
+    from sksundae.cvode import CVODE as Solver
+
+    def fill(t, y, found):
+        found[:] = rates(t, y)
+
+    def nothing(t, y, found, jacobian):
+        jacobian[:] = 0.0
+
+    # with a Jacobian of zeros, Newton's method, the only one of the binding, is functional iteration
+    own = {"jacfn": nothing} if method == "Adams" else {}
+    solver = Solver(fill, method=method, rtol=rtol, atol=atol, max_num_steps=10**6, **own)
+    solution = solver.solve(np.array(span), start)
+    return solution.success, solution.message, solution.y
+
+
+def _of_scipy(rates, span, start, method, rtol, atol):
+    """The same of SciPy's methods."""
+    # no times in between are asked for: dense output would call the right-hand side for itself
+    solution = solve_ivp(rates, span, start, method, rtol=rtol, atol=atol)
+    return solution.success, solution.message, solution.y.T
+
+
 def _solution(problem, time, method, tolerance):
-    """Packed states (n, B, 13) at the steps of a SciPy method in double precision, and the evaluations.
+    """Packed states (n, B, 13) at the steps of a method in double precision, and the evaluations.
 
     ``tolerance`` is relative to each component and to the largest of its kind (position, velocity,
     quaternion, angular velocity), whichever is larger.
     """
-    if method not in METHODS:
-        raise ValueError(f"the method is one of {', '.join(METHODS)}, not {method}")
+    if method not in (*METHODS, *CVODE):
+        raise ValueError(f"the method is one of {', '.join((*METHODS, *CVODE))}, not {method}")
     if not tolerance >= SMALLEST_TOLERANCE:
         raise ValueError(f"a tolerance of at least {SMALLEST_TOLERANCE:.2g} is required")
     double = problem.astype(np.float64)
@@ -80,16 +115,16 @@ def _solution(problem, time, method, tolerance):
 
     scale = double.scales(start)
     absolute = np.broadcast_to(tolerance * np.where(scale > 0, scale, 1), start.shape).ravel()
-    # no times in between are asked for: dense output would call the right-hand side for itself
-    span, limits = (0.0, float(time)), {"rtol": tolerance, "atol": absolute}
-    solution = solve_ivp(rates, span, start.ravel(), method, **limits)
-    if not solution.success:
-        raise RuntimeError(f"{method} at tolerance {tolerance:g}: {solution.message}")
-    return solution.y.T.reshape(-1, *start.shape), evaluations
+    solver = _of_cvode if method in CVODE else _of_scipy
+    task = (rates, (0.0, float(time)), start.ravel(), CVODE.get(method, method))
+    success, message, states = solver(*task, rtol=tolerance, atol=absolute)
+    if not success:
+        raise RuntimeError(f"{method} at tolerance {tolerance:g}: {message}")
+    return states.reshape(-1, *start.shape), evaluations
 
 
 def solve(problem, time, method, tolerance):
-    """State of a Problem at ``time`` by a SciPy method, and the evaluations; see ``_solution``."""
+    """State of a Problem at ``time`` by a method, and the evaluations; see ``_solution``."""
     steps, evaluations = _solution(problem, time, method, tolerance)
     return State.of(steps[-1]), evaluations
 

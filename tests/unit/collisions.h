@@ -51,6 +51,7 @@ struct Collision {
   Molecule molecules[2];
   BodyState start[2] = {};
   double time;    ///< when they have met and parted, or turned about each other for a while
+  mutable long calls = 0;    ///< of the potential
 
   explicit Collision(int which)
   {
@@ -79,6 +80,7 @@ struct Collision {
   /// Of sites at rotation matrices of any quaternions; loads: of both, or null.
   double potential(const BodyState *states, Load *loads) const
   {
+    ++calls;
     vector<std::array<double, 3>> arms[2];
     for (int k = 0; k < 2; ++k) {
       double axes[9];

@@ -64,6 +64,7 @@ struct Follower {
   {
     use(control.fewest);
     const vector<Load> met = loads(bodies);
+    ++evaluations;
     for (size_t k = 0; k < bodies.size(); ++k) {
       One &one = bodies[k];
       TaylorSeries series = local_series(one.body, one.state, met[k], h);

@@ -1,10 +1,7 @@
 """The kernel with any coefficients: kernel.cpp, compiled and loaded."""
 
 import ctypes
-import hashlib
 import math
-import os
-import subprocess
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -12,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.engine import ROOT
+from benchmarks.engine import compiled
 from benchmarks.reference.correctors import completed
 from benchmarks.reference.stability import (
     first_order_coefficients,
@@ -21,8 +18,6 @@ from benchmarks.reference.stability import (
     second_step,
 )
 
-SOURCE = Path(__file__).with_name("kernel.cpp")
-INCLUDED = (ROOT / "src" / "GEARQUAT", ROOT / "tests" / "unit")
 #: error of a motion that does not stay finite
 LOST = 1e3
 MOST = 12
@@ -37,18 +32,8 @@ class _Corrector(ctypes.Structure):
 
 @cache
 def library():
-    """The compiled kernel.cpp; compiled again if it or a header is another one."""
-    headers = sorted(header for folder in INCLUDED for header in folder.rglob("*.h"))
-    text = b"".join(path.read_bytes() for path in (SOURCE, *headers))
-    folder = ROOT / "build" / "benchmarks" / "coefficients"
-    compiled = folder / f"kernel-{hashlib.sha256(text).hexdigest()[:16]}.so"
-    if not compiled.is_file():
-        folder.mkdir(parents=True, exist_ok=True)
-        made = compiled.with_suffix(f".{os.getpid()}")
-        words = ["g++", "-O2", "-std=c++17", "-shared", "-fPIC", str(SOURCE), "-o", str(made)]
-        subprocess.run([*words, *(f"-I{path}" for path in INCLUDED)], check=True)
-        made.replace(compiled)
-    loaded = ctypes.CDLL(str(compiled))
+    """The compiled kernel.cpp."""
+    loaded = compiled.load(Path(__file__).with_name("kernel.cpp"))
     real, whole = ctypes.c_double, ctypes.c_int
     numbers, corrector = ctypes.POINTER(real), ctypes.POINTER(_Corrector)
     loaded.libration.argtypes = [corrector, real, whole, numbers, real]

@@ -1,0 +1,156 @@
+"""Random collisions of rigid bodies: evaluations of the forces against the error of the energy.
+
+The step control of the kernel beside SciPy's solvers and CVODE; scene.py and kernel.cpp are one scene.
+"""
+
+import warnings
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, draw
+from benchmarks.reference import solvers
+
+from .scene import Scene
+
+#: label -> (formulation, whether eps is an energy)
+OURS = {
+    f"{formulation}, eps {words}": (formulation, energy)
+    for formulation in ("second", "first")
+    for energy, words in ((True, "an energy"), (False, "a length"))
+}
+PEERS = (*solvers.METHODS, *solvers.CVODE)
+#: label -> (color, line)
+LOOKS = {name: (which, "-" if energy else "--") for name, (which, energy) in OURS.items()}
+LOOKS |= {name: (("total", "rotation")[k // 2], ("-", "--")[k % 2]) for k, name in enumerate(PEERS)}
+EPS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 3e-14)
+#: errors of the energy by the depth at which evaluations are compared
+LEVELS = 10.0 ** -np.arange(6, 12)
+#: number of scenes: of five minutes on one core, of --full (an hour), and of --quick
+SCENES, FULL, QUICK = 75, 1000, 20
+
+
+@dataclass(frozen=True)
+class Results:
+    """``points``: label -> array (scenes, tolerances, 2) of evaluations, and the largest error of the energy
+    on the way by the depth; NaN where the scene is lost."""
+
+    points: dict
+
+
+# --- measuring ----------------------------------------------------------------------------------
+def of_peer(scene, name, tolerance):
+    """(evaluations, error of the energy) of a solver; NaN where it gives up."""
+    try:
+        return solvers.largest_energy_error(scene, scene.time, name, tolerance)
+    except RuntimeError:
+        return np.nan, np.nan
+
+
+def points_of(scene):
+    """Label -> array (tolerances, 2), as Results have it."""
+    runs = {name: [scene.follow(own[0], eps, own[1]) for eps in EPS] for name, own in OURS.items()}
+    depth = next(iter(runs.values()))[-1].depth
+    points = {name: [run[:2] for run in own] for name, own in runs.items()}
+    for name in solvers.available():
+        points[name] = [of_peer(scene, name, tolerance) for tolerance in TOLERANCES]
+    return {name: np.array(own) / (1.0, depth) for name, own in points.items()}
+
+
+def measure(lab):
+    """Results."""
+    count, every = QUICK if lab.quick else FULL if lab.full else SCENES, []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of solvers that give up, which is counted
+        for which in range(count):
+            every.append(points_of(Scene(which)))
+            lab.advance(1 / count)
+    return Results({name: np.array([own[name] for own in every]) for name in every[0]})
+
+
+# --- judging ------------------------------------------------------------------------------------
+def lost(points):
+    """Of points (..., 2): whether the energy is not finite, or wrong by more than the depth."""
+    return ~(points[..., 1] <= 1.0)
+
+
+def evaluations(points, levels=LEVELS):
+    """Fewest evaluations for errors of at most ``levels`` (n,), from ``points`` (tolerances, 2): shape (n,).
+
+    Logarithms are interpolated between points that no other one beats in both.  Infinite where no point
+    is as good; a level above all errors takes the fewest evaluations.
+    """
+    points = points[~lost(points)]
+    points = points[np.lexsort(points.T[::-1])]
+    before = np.minimum.accumulate(np.append(np.inf, points[:, 1]))[:-1]
+    work, error = np.log(np.maximum(points[points[:, 1] < before], 1e-17)).T[:, ::-1]
+    if not len(work):
+        return np.full(len(levels), np.inf)
+    return np.exp(np.interp(np.log(levels), error, work, left=np.inf))
+
+
+def counted(results):
+    """Label -> evaluations (scenes, levels)."""
+    return {name: np.array([*map(evaluations, own)]) for name, own in results.points.items()}
+
+
+def ratios(counts, name):
+    """Evaluations by those of the best solver (scenes, levels).
+
+    NaN where neither has so small an error; infinite where only the solver has it, and 0 where only ours has.
+    """
+    with np.errstate(invalid="ignore"):
+        return counts[name] / np.min([counts[peer] for peer in PEERS if peer in counts], axis=0)
+
+
+def median(values):
+    """Of what is a number; NaN if nothing is."""
+    values = values[~np.isnan(values)]
+    return float(np.median(values)) if len(values) else np.nan
+
+
+def tables(results, counts):
+    """Medians of evaluations and ratios at every level, and how many runs are lost."""
+    levels, every = [f"{level:.0e}" for level in LEVELS], {name: ratios(counts, name) for name in OURS}
+    gone = {name: lost(own) for name, own in results.points.items()}
+    work = [
+        (name, *(f"{median(x):.0f}" for x in own.T), f"{gone[name].sum()} of {gone[name].size}")
+        for name, own in counts.items()
+    ]
+    parts = [(name, *(f"{median(x):.2f}" for x in (*own.T, own))) for name, own in every.items()]
+    header = ("tolerance", *levels, "all")
+    return {"evaluations": Table(("method", *levels, "lost"), work), "ratios": Table(header, parts)}
+
+
+def panels(counts):
+    """Median evaluations of every method, and how the ratios are distributed."""
+    work = [Curve(name, LEVELS, np.median(own, axis=0), *LOOKS[name]) for name, own in counts.items()]
+    spread = []
+    for name in OURS:
+        own = np.sort(ratios(counts, name), axis=None)  # NaN are last
+        own = own[: np.count_nonzero(~np.isnan(own))]
+        spread.append(Curve(name, own, np.linspace(0.0, 1.0, len(own)), *LOOKS[name]))
+    x, part, alone = "error of the energy by the depth", "part of scenes and errors", {"legend": False}
+    return (
+        Panel("Median over the scenes", x, "evaluations", work, "xy", **alone),
+        Panel("By the best solver", "ratio of evaluations", part, spread, "", xlim=(0.0, 1.5), **alone),
+    )
+
+
+def find(results):
+    """Finding of Results."""
+    counts, rows = counted(results), []
+    for name in OURS:
+        ratio = median(ratios(counts, name))
+        rows.append(Measurement(f"{name}: median ratio to the best solver", ratio, spec=".2f", most=0.7))
+        gone = int(lost(results.points[name]).sum())
+        rows.append(Measurement(f"{name}: lost", gone, spec=".0f", most=0))
+    context = {"scenes": len(results.points[name]), "eps": EPS, "tolerances": TOLERANCES}
+    context["missing"] = [peer for peer in PEERS if peer not in results.points]
+    picture = partial(draw, panels=panels(counts))
+    return Finding(rows, tables(results, counts), {"collisions": picture}, context)
+
+
+STUDY = Study("collisions", "Collisions under a tolerance", 300.0, measure, find)
