@@ -186,14 +186,6 @@ def test_two_controls_are_refused(lmp_tree):
         lmp_tree.refuse(two_molecules("molecule tolerance 1e-8", before), message)
 
 
-def of_energy(folder):
-    """The deck of a hard case whose tolerance is an energy."""
-    deck = whole_deck(next((EXAMPLES / "hard" / folder).glob("in.*")))
-    return deck.replace("tolerance ${tolerance}", "tolerance ${tolerance} energy").replace(
-        "index ../../case1", f"index {EXAMPLES}/case1"
-    )
-
-
 @pytest.mark.parametrize("eps", ["1e-15 length", "1e-9 energy"])
 @pytest.mark.parametrize("distance", [0.02, 0.002])
 def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps, formulation):
@@ -202,8 +194,7 @@ def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps, for
     def run(**settings):
         words = dict(distance=distance, formulation=formulation, tolerance=tolerance)
         deck = EXAMPLES / "hard" / "encounter" / "in.encounter"
-        if measure == "energy":
-            deck = of_energy("encounter")
+        words["measure"] = measure
         return tables(lmp_tree.succeed(deck, words | settings))[0]
 
     met = run()
@@ -214,12 +205,12 @@ def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps, for
     assert off(run(tolerance=0, dt=0.001, steps=8000, more="")) > 1e-8 * depth
 
 
-@pytest.mark.parametrize("eps", ["", "1.5e-11 energy"])
+@pytest.mark.parametrize("eps", ["", "1.5e-11"])
 def test_case_1_for_long(lmp_tree, eps, formulation):
     variables = dict(formulation=formulation, shift="3e-9", until=2500)
     if eps:
-        variables |= dict(tolerance=eps.split()[0])
-    deck = of_energy("long") if eps else EXAMPLES / "hard" / "long" / "in.long"
+        variables["tolerance"] = eps
+    deck = EXAMPLES / "hard" / "long" / "in.long"
     result = lmp_tree.succeed(deck, variables)
     line = r"^evaluations (\S+), energy off by (\S+) sampled, (\S+) at"
     evaluations, sampled, every_step = map(float, re.findall(line, result.log, re.M)[-1])
