@@ -7,23 +7,11 @@ import re
 
 import numpy as np
 import pytest
-from scenes import last_frame, one_after_the_other, placed, two_molecules
+from scenes import BEFORE, MOLECULES, last_frame, one_after_the_other, placed, two_molecules
 
 MODES = ["total", "separate"]
 PARTS = ["f_move[1]", "f_move[2]"]  # of translation and rotation
 
-# Three triangles and a dumbbell that attract each other and hold together; nothing is cut off.
-MOLECULES = [
-    [(0.0, 0.0, 0.0), (0.7, 0.0, 0.1), (0.0, 0.6, 0.2)],
-    [(2.0, 0.3, 0.0), (2.5, 0.9, 0.1), (2.6, 0.0, 0.6)],
-    [(0.8, 2.0, 0.4), (1.4, 2.3, 0.0), (0.9, 1.9, 1.1)],
-    [(1.0, 0.6, -1.6), (1.4, 1.1, -1.8)],
-]
-BEFORE = """
-velocity all create 0.6 4711 loop geom
-pair_style lj/cut 40.0
-pair_coeff * * 0.3 1.0
-"""
 ENERGIES = """
 variable k equal f_move[1]+f_move[2]
 variable all equal etotal+f_move[9]

@@ -7,22 +7,10 @@ import re
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS, last_frame, one_after_the_other, placed
+from scenes import BEFORE, FORMULATIONS, MOLECULES, last_frame, one_after_the_other, placed
 
 KINDS = ["total", "separate"]
 
-# Three triangles and a dumbbell that attract each other and hold together; nothing is cut off.
-MOLECULES = [
-    [(0.0, 0.0, 0.0), (0.7, 0.0, 0.1), (0.0, 0.6, 0.2)],
-    [(2.0, 0.3, 0.0), (2.5, 0.9, 0.1), (2.6, 0.0, 0.6)],
-    [(0.8, 2.0, 0.4), (1.4, 2.3, 0.0), (0.9, 1.9, 1.1)],
-    [(1.0, 0.6, -1.6), (1.4, 1.1, -1.8)],
-]
-BEFORE = """
-velocity all create 0.6 4711 loop geom
-pair_style lj/cut 40.0
-pair_coeff * * 0.3 1.0
-"""
 TEMP = "temp 0.5 0.5 0.3"
 END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"
 COLUMNS = "econserve ecouple f_move f_move[9] f_move[10] f_move[11] f_move[12] f_move[13] f_move[14]"

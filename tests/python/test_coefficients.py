@@ -127,7 +127,7 @@ def test_a_free_c0_keeps_the_energy_of_an_oscillation(values):
     search, corrector = Search("second", values), kernel.tuned("second", values)
 
     def gain(factor):
-        other = properties.moved(corrector, (factor - 1) * corrector.sets[0][0])
+        other = corrector.moved((factor - 1) * corrector.sets[0][0])
         if values in LONG_STEPS:
             z, amplitude = LONG_STEPS[values]
             return other.libration(z, (1.0, 0.8, 0.6), amplitude, 1000)

@@ -60,7 +60,7 @@ def add(results, key, corrector, flights):
     """Put what a Corrector does into Results, but for its curves."""
     results.linear[key] = Linear.of(corrector)
     results.motions[key] = Motions.of(corrector, flights)
-    results.moved[key] = flights.others(properties.moved(corrector))
+    results.moved[key] = flights.others(corrector.moved(properties.MOVED))
 
 
 def measure(lab):

@@ -2,7 +2,7 @@
 
 import ctypes
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -75,6 +75,10 @@ class Corrector:
         if self.order == 2:
             return second_step(sets[0], omega_h, rate, passes)
         return first_step(*sets, omega_h, rate=rate, passes=passes)
+
+    def moved(self, by):
+        """The Corrector with c_0 of both kinds of rows larger by a number."""
+        return replace(self, sets=tuple((c[0] + by, *c[1:]) for c in self.sets))
 
     @property
     def floats(self):

@@ -1,6 +1,6 @@
 """What coefficients do: model equations, responses and changing steps, linear; motions of bodies."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 import mpmath
@@ -25,7 +25,7 @@ LIBRATIONS, TOPS, CAGES = (0.2, 0.35), (0.1, 0.2), (0.4, 0.2, 0.1)
 #: other starts in the cage: their seeds, time and step
 SEEDS, SHORT, START_STEPS = range(1001, 1009), 40.0, (0.4, 0.2)
 #: how far c_0 is moved to see what it is good for
-MOVED = 0.05
+MOVED = Fraction(1, 20)
 
 
 # --- linear ---------------------------------------------------------------------------------------
@@ -164,8 +164,3 @@ class Motions:
             tuple(flights.error(corrector, h) for h in CAGES),
             flights.others(corrector),
         )
-
-
-def moved(corrector, by=Fraction(MOVED)):
-    """The Corrector with c_0 of both kinds of rows moved."""
-    return replace(corrector, sets=tuple((c[0] + by, *c[1:]) for c in corrector.sets))

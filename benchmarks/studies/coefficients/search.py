@@ -5,7 +5,7 @@ coefficients follow from order, but for c_0 in the second formulation with an od
 is the one for which an oscillation keeps its energy.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -94,14 +94,11 @@ class Search:
     def balanced(self, corrector):
         """The Corrector with the c_0 for which an oscillation keeps its energy."""
 
-        def moved(by):
-            return replace(corrector, sets=tuple((c[0] + by, *c[1:]) for c in corrector.sets))
-
         def gain(by):
             if self.values not in LONG_STEPS:
-                return spectrum(moved(by), [self.reach / 2])[0, 0]
+                return spectrum(corrector.moved(by), [self.reach / 2])[0, 0]
             z, amplitude = LONG_STEPS[self.values]
-            return moved(by).libration(z, WELLS[0][1], amplitude, 1000)
+            return corrector.moved(by).libration(z, WELLS[0][1], amplitude, 1000)
 
         last, by = C0_TRIED
         before, now = gain(last), gain(by)
@@ -111,7 +108,7 @@ class Search:
             last, by, before = by, by - now * (by - last) / (now - before), now
             by = np.clip(by, -C0_RANGE, C0_RANGE)
             now = gain(by)
-        return moved(by)
+        return corrector.moved(by)
 
     def written(self, corrector):
         """The Corrector of the decimals: c_0 and c_1 follow from the tail anew, exactly."""
