@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -190,6 +191,10 @@ void Arguments::check_control()
   control.fewest = find_keyword(lmp, "values").range(scheme.first()).fewest;
   control.most = scheme.rows;
   control.short_of = control.energy && !scheme.first() ? 1 : 0;
+  const KeywordValue &eps = given.at("tolerance");
+  if (!(control.eps >= std::numeric_limits<double>::min()) || !std::isfinite(control.eps))
+    error->all(FLERR, "Fix gear/quat tolerance: {} times {} is too {}", eps.number, eps.unit,
+               control.eps > 1.0 ? "large" : "small");
   if (control.longest > 0.0 && control.shortest > control.longest)
     error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                control.longest);

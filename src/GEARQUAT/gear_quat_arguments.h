@@ -31,7 +31,8 @@ struct Arguments : protected Pointers {
   // what the keywords say; the table in gear_quat_keywords.cpp has the defaults
 
   Scheme scheme;
-  StepControl control;    ///< eps 0: the step is LAMMPS' own
+  StepControl control;        ///< eps 0: the step is LAMMPS' own
+  double every_time = 0.0;    ///< steps end at its multiples; 0: at any times
   Start start;
   bool reinit;
   Report report;

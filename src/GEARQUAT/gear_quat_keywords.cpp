@@ -83,8 +83,8 @@ static std::vector<Keyword> make_table()
         .word({"yes", "no"}),
     Keyword("tolerance", STEP, "the error that a step may make, which the time step follows",
             [](Arguments &a, const Value &v) {
-              a.control.eps = v.number;
-              a.control.energy = v.unit == "energy";
+              a.control.eps = v.number * v.unit;
+              a.control.energy = v.measure == "energy";
             }).number({"length", "energy"})
         .cannot_go_with({"isokinetic", "", "heat and multipliers are those of one step and one "
                          "number of values"}),
@@ -93,6 +93,9 @@ static std::vector<Keyword> make_table()
         .number().requires_also({"tolerance", "", ""}),
     Keyword("dtmax", STEP, "the time step does not become longer",
             [](Arguments &a, const Value &v) { a.control.longest = v.number; })
+        .number().requires_also({"tolerance", "", ""}),
+    Keyword("every/time", STEP, "the interval of time at whose multiples steps end",
+            [](Arguments &a, const Value &v) { a.every_time = v.number; })
         .number().requires_also({"tolerance", "", ""}),
     Keyword("infile", BODIES, "the file that states bodies",
             [](Arguments &a, const Value &v) { a.infile = v.text; })
@@ -238,7 +241,8 @@ std::string Keyword::required() const
 {
   if (kind == NUMBER)
     return words.empty() ? "a positive number"
-                         : "a positive number and perhaps " + utils::join_words(words, " or ");
+                         : "a positive number and perhaps " + utils::join_words(words, " or ") +
+            " and perhaps its unit";
   if (kind == INTEGER)
     return of_formulations(*this, [](const Range &range) {
       return fmt::format("{} to {}", range.fewest, range.most);
@@ -296,8 +300,12 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
   if (kind == NUMBER && !read_positive(value.text, value.number))
     error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", name, value.text);
   if (kind == NUMBER && narg > 2 && std::count(words.begin(), words.end(), arg[2])) {
-    value.unit = arg[2];
-    return 2;
+    value.measure = arg[2];
+    if (narg == 3 || !utils::is_double(arg[3])) return 2;
+    if (!read_positive(arg[3], value.unit))
+      error->all(FLERR, "Fix gear/quat {}: the unit of {}, {}, is not a positive number", name,
+                 value.measure, arg[3]);
+    return 3;
   }
   if (kind == NUMBERS) {
     value.numbers.resize(count);

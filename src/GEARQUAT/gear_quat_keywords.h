@@ -34,8 +34,9 @@ struct MaskWords {
 struct KeywordValue {
   std::string text;                    ///< the first word as it stands
   int integer = 0;                     ///< of an INTEGER
-  double number = 0.0;                 ///< of a NUMBER
-  std::string unit = {};               ///< of a NUMBER, the word behind it
+  double number = 0.0;                 ///< of a NUMBER, in units of `unit`
+  std::string measure = {};            ///< of a NUMBER, the word behind it
+  double unit = 1.0;                   ///< of a NUMBER, the number behind that word
   std::vector<double> numbers = {};    ///< of NUMBERS
   MaskWords mask = {};                 ///< of a MASK
 
@@ -43,8 +44,9 @@ struct KeywordValue {
 };
 
 struct Keyword {
-  /// WORD: one of some words; NUMBER: a positive one, perhaps with a word behind it; NUMBERS: some of them; NAME: any word that is not
-  /// empty; MASK: four words, and the keyword may be given many times.
+  /// WORD: one of some words; NUMBER: a positive one, perhaps with a word behind it, which may have a
+  /// unit, another positive number; NUMBERS: some positive ones; NAME: any word that is not empty;
+  /// MASK: four words, and the keyword may be given many times.
   enum Kind { WORD, INTEGER, NUMBER, NAME, MASK, NUMBERS };
   struct Range {
     int fewest, most, standard;
@@ -102,7 +104,10 @@ struct Keyword {
     of_tables = true;
     return *this;
   }
-  Keyword &number(const std::vector<std::string> &units = {}) { return follows(NUMBER, units); }
+  Keyword &number(const std::vector<std::string> &measures = {})
+  {
+    return follows(NUMBER, measures);
+  }
   Keyword &follows(Kind what, const std::vector<std::string> &names)
   {
     kind = what;

@@ -28,7 +28,7 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
     Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme)
 {
   if (args.control.eps > 0.0)
-    tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, bodies));
+    tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, args.every_time, bodies));
   if (args.isokinetic != Isokinetic::NONE)    // not with tolerance
     isokinetic.reset(
         new IsokineticConstraint(lmp, bodies, args.scheme, args.isokinetic, args.rescale));
@@ -103,6 +103,7 @@ void Motion::begin_run()
   if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, step());
   if (isokinetic) isokinetic->begin_run(!started);
   if (thermostat) thermostat->begin_run();
+  if (tolerance) tolerance->announce_output();
   set_up = true;
 }
 
@@ -247,6 +248,7 @@ void Motion::choose_step()
   const double next = tolerance->choose();
   if (tolerance->scheme().values() != values) make_integrator(step());
   tolerance->change_step(next);
+  tolerance->order_output();
 }
 
 /* ----------------------------------------------------------------------

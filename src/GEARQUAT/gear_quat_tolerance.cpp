@@ -33,10 +33,10 @@ static Scheme with_trial_row(Scheme scheme)
 }
 
 Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-                     Bodies &bodies) :
+                     double every_time, Bodies &bodies) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control), order(present),
-    repeat(lmp, fix), failed()
+    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control),
+    every_time(every_time), order(present), repeat(lmp, fix), failed()
 {
   record.values = present.values();
   if (control.energy) this->control.eps /= force->mvv2e;
@@ -132,7 +132,8 @@ void Tolerance::shorten_first_step(bool full)
       std::min(1.0, StepControl::SAFETY * control.allowed(largest, present.values()));
   if (!full) size = std::min(size, first_step_of_low_order());
   size = std::max(control.shortest, std::min(size, farthest_step(all[1])));
-  size = std::fabs(even(std::copysign(size, update->dt), time() - update->dt));
+  const bigint steps = update->ntimestep - 1 - update->atimestep;    // until this one began
+  size = std::fabs(even(std::copysign(size, update->dt), update->atime + steps * update->dt));
   if (size >= std::fabs(update->dt)) return;
   const Fix *first = fix;    // gear/quat, which starts histories for all before it begins the step
   for (const auto *other : modify->get_fix_list())

@@ -9,7 +9,7 @@
    The fix calls when histories begin scheme_of_start(), begin() and shorten_first_step(); in every
    step begin_step(); correct() for every body, and judge(); if that says so, it puts back the
    histories, calls shorten_values() and shorten_step(), and makes the step again; and at the end of the
-   step, when all fixes have finished it, choose() and change_step().  Where the number of values may
+   step, when all fixes have finished it, choose(), change_step() and order_output().  Where the number of values may
    have changed, after begin(), shorten_values() and choose(), the fix makes its integrator anew. */
 
 #ifndef LMP_GEAR_QUAT_TOLERANCE_H
@@ -45,9 +45,10 @@ class Tolerance : protected Pointers {
     double steps, time, smallest, values_sum, largest, held, repeated, last_length, last_energy;
   };
 
-  /// scheme: of the fix; its number of values is the largest.
+  /// scheme: of the fix; its number of values is the largest.  every_time: steps end at the multiples
+  /// of this time, 0: at any.
   Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-            Bodies &bodies);
+            double every_time, Bodies &bodies);
 
   /// Ends the run if something else in it changes the time step, or cannot follow it.
   void refuse_scene() const;
@@ -78,6 +79,12 @@ class Tolerance : protected Pointers {
   double choose();
   /// update->dt and all that depends on it, this fix too, become those of the next step.
   void change_step(double step);
+  /// Energies of the next step may be printed, although LAMMPS does not expect that: its thermo output
+  /// knows step numbers only.
+  void announce_output();
+  /// With thermo 0 there is thermo output at the multiples of every_time: now, if the step that ends is
+  /// at one of them.  To be called after change_step().
+  void order_output();
   /// Restores `step`, that of the histories: the timestep command sets the first step only.
   void keep_step(double step);
   /// The same in a run with pre no, whose first step has begun with another length already.  Ends the
@@ -95,6 +102,7 @@ class Tolerance : protected Pointers {
   Bodies &bodies;
   Scheme present;
   StepControl control;
+  double every_time;
   VariableOrder order;
   Repeat repeat;
   StepMeasures errors;         ///< of the bodies corrected so far; of all, once judged
@@ -106,6 +114,7 @@ class Tolerance : protected Pointers {
   bool changing_step = false;
   bool fresh = false;          ///< bodies have come in this step, once judged
   bool warned_held = false;    ///< of a step held at its lower limit
+  bigint announced = -1;       ///< the last step of announce_output()
   Checkpoint record = {};
   struct Settled {
     double steps = 0.0, time = 0.0, smallest = 0.0;
@@ -121,6 +130,7 @@ class Tolerance : protected Pointers {
   double farthest_step(double speed) const;
   double limit_of_motion() const;
   double time() const;
+  double next_output(double step, double now) const;
   double even(double step, double now) const;
   double step_error() const { return control.measured(errors).same; }
   double first_error() const;

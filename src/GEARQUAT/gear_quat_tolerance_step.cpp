@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "error.h"
 #include "force.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "pair.h"
@@ -187,7 +188,7 @@ double Tolerance::choose()
   fresh = false;
   if (next.values != values) change_values(next.values);
   next.step = even(next.step, time());
-  if (next.step != step) steady.step = 0;
+  if (std::fabs(next.step - step) > ROUNDING_OF_TIME * std::fabs(step)) steady.step = 0;
   if (update->ntimestep == update->laststep) tell_of_little_gain();
   return next.step;
 }
@@ -197,19 +198,58 @@ double Tolerance::time() const
   return update->atime + (update->ntimestep - update->atimestep) * update->dt;
 }
 
-/// Where a dump in intervals of time is due within a few steps, steps of equal length end there.  now:
-/// when the step begins.
-double Tolerance::even(double step, double now) const
+/// The next time at which a step has to end, infinite if there is none: that of a dump in intervals of
+/// time, or of every_time.  step: positive; now: when it begins.
+double Tolerance::next_output(double step, double now) const
 {
+  const double nearest =
+      now + ROUNDING_OF_TIME * step;    // before, output belongs to the last step
   double next = std::numeric_limits<double>::infinity();
+  if (every_time > 0.0) next = (std::floor(nearest / every_time) + 1.0) * every_time;
   for (int n = 0; n < output->ndump; ++n) {
     if (output->mode_dump[n] == 0) continue;
     double at = output->next_time_dump[n];
-    if (at - now < ROUNDING_OF_TIME * step)
-      at += output->every_time_dump[n];    // it is written now
-    if (at - now >= ROUNDING_OF_TIME * step) next = std::min(next, at);
+    if (at < nearest) at += output->every_time_dump[n];    // it is written now
+    if (at >= nearest) next = std::min(next, at);
   }
-  return step > 0.0 && std::isfinite(next) ? even_step(step, next - now) : step;
+  return next;
+}
+
+/// Steps of equal length end where output is due within a few steps, the last of them to the last bit.
+/// now: when the step begins.
+double Tolerance::even(double step, double now) const
+{
+  if (step <= 0.0) return step;
+  const double next = next_output(step, now), way = next - now;
+  if (!std::isfinite(next)) return step;
+  const double size = even_step(step, way);
+  if (way > 1.5 * size)    // rounding of the time is no reason to change the step
+    return std::fabs(size - step) < ROUNDING_OF_TIME * step ? step : size;
+  double last = way;
+  for (int n = 0; n < 4 && now + last != next; ++n)
+    last = std::nextafter(last, now + last < next ? HUGE_VAL : 0.0);
+  return last;
+}
+
+void Tolerance::announce_output()
+{
+  const bool by_time =
+      every_time > 0.0 && output->thermo_every == 0 && output->var_thermo == nullptr;
+  announced = by_time ? update->ntimestep + 1 : -1;
+  if (by_time) modify->addstep_compute_all(announced);
+}
+
+void Tolerance::order_output()
+{
+  const bigint now = update->ntimestep;
+  const auto is_even = [this](double time, double step) {
+    const double off = time - std::round(time / every_time) * every_time;
+    return std::fabs(off) < ROUNDING_OF_TIME * std::fabs(step);
+  };
+  if (announced == now && is_even(update->atime, update->dt))
+    output->next = output->next_thermo = now;
+  announced = -1;
+  if (every_time > 0.0 && is_even(update->atime + update->dt, update->dt)) announce_output();
 }
 
 /// The step that ends now, in the sums behind the outputs.

@@ -53,8 +53,8 @@ class Keyword:
 
     @property
     def options(self):
-        """The words of which one may follow the number of a keyword."""
-        return tuple(self.values.partition(" and perhaps ")[2].split(" or ")) if self.kind == "number" else ()
+        """The words of which one may follow the number of a keyword, and after it a number, its unit."""
+        return tuple(self.values.split(" and perhaps ")[1].split(" or ")) if " and perhaps " in self.values else ()
 
     @property
     def ranges(self):

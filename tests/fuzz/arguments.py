@@ -5,7 +5,9 @@ test_documentation.py holds the manual to; how words are read and what the scene
 here from doc/src/fix_gear_quat.rst, not from the source.
 """
 
+import math
 import re
+import sys
 
 from lammps_gearquat import keywords
 
@@ -56,7 +58,7 @@ FILES = {
 }
 
 #: groups of bodies whose energies are measured before, a word of every refusal, errors that may follow
-ALONE, NAMED, PARDONED = {}, "ERROR", ()
+ALONE, NAMED, PARDONED = {}, "ERROR", ("no temperature",)
 
 GROUPS = {"all": {1, 2, 3, 4, 5, 6}, "left": {1, 2, 3}, "right": {4, 5, 6}, "most": {1, 2, 3, 4}}
 GROUPS["nobody"] = set()
@@ -69,11 +71,13 @@ TABLE = keywords.table()
 WORDS = {key: row.words for key, row in TABLE.items() if row.kind == "word"}
 INTEGERS = [key for key, row in TABLE.items() if row.kind == "integer"]
 NUMBERS = [key for key, row in TABLE.items() if row.kind == "number"]
+SEVERAL = [key for key, row in TABLE.items() if row.kind == "numbers"]
 MASKS = [key for key, row in TABLE.items() if row.kind == "mask"]  # any number of times
 POOL = (
     *TABLE,
     *("on", "off", "*", "1*", "*2", "1*2", "2*1", "3", "1e-10", "1e-3", "0.1", "0"),
     *(value for values in WORDS.values() for value in values),
+    *(word for row in TABLE.values() for word in row.options),
     *GROUPS,
     *CUSTOM,
     *APART,
@@ -123,27 +127,31 @@ def bodystyle(words):
     return None
 
 
-def take_masks(words, bodies):
-    """The words without those of MASKS, and which of MASKS are there; None if one is wrong."""
-    rest, masks, at = [], set(), 0
+def keywords_of(words):
+    """Pairs of a keyword and the words behind it, or None if there is no way to read them so."""
+    pairs, at = [], 0
     while at < len(words):
-        if words[at] not in MASKS:
-            rest += words[at : at + 2]
-            at += 2
-            continue
-        if len(words) < at + 5 or any(flag not in ("on", "off") for flag in words[at + 2 : at + 5]):
+        row = TABLE.get(words[at])
+        end = at + 1 + (row.arguments if row else 0)
+        if row is None or end > len(words):
             return None
-        found = re.fullmatch(r"([0-9]*)(\*?)([0-9]*)", words[at + 1])
-        if not found or words[at + 1] == "":
-            return None
-        low, star, high = found.groups()
-        first = int((low or "1")[:30])
-        last = int((high or str(bodies))[:30]) if star else first
-        if not 1 <= first <= last <= bodies:
-            return None
-        masks.add(words[at])
-        at += 5
-    return rest, masks
+        if words[end : end + 1] and words[end] in row.options:
+            end += 1
+            end += bool(words[end : end + 1]) and positive(words[end]) is not None  # its unit
+        pairs.append((row.name, words[at + 1 : end]))
+        at = end
+    return pairs
+
+
+def is_mask(words, bodies):
+    """Whether words say which components act on which of so many bodies."""
+    found = re.fullmatch(r"([0-9]*)(\*?)([0-9]*)", words[0])
+    if not found or words[0] == "" or any(flag not in ("on", "off") for flag in words[1:]):
+        return False
+    low, star, high = found.groups()
+    first = int((low or "1")[:30])
+    last = int((high or str(bodies))[:30]) if star else first
+    return 1 <= first <= last <= bodies
 
 
 def in_use(key, given, value=""):
@@ -184,17 +192,16 @@ def bounds(key, given):
     return least, min(most, int(limit[1])) if limit and "tolerance" in given else most
 
 
-def allowed(key, given):
-    """Whether the value of a keyword belongs to it, in this scene."""
-    value = given[key]
+def allowed(key, words):
+    """Whether the words behind a keyword belong to it, in this scene; not of integers and masks."""
     if key in WORDS:
-        return value in WORDS[key]
-    if key in INTEGERS:
-        least, most = bounds(key, given)
-        return integer(value) is not None and least <= integer(value) <= most
+        return words[0] in WORDS[key]
     if key in NUMBERS:
-        return positive(value) is not None
-    return value in {"infile": INFILES, "mol": TEMPLATES}[key]
+        eps, unit = (positive(word) for word in (words[0], words[2] if len(words) == 3 else "1"))
+        return None not in (eps, unit) and sys.float_info.min <= eps * unit < math.inf
+    if key in SEVERAL:
+        return all(positive(word) is not None for word in words)
+    return words[0] in {"infile": INFILES, "mol": TEMPLATES}[key]
 
 
 def is_valid(words):
@@ -203,23 +210,28 @@ def is_valid(words):
     if found is None:
         return False
     used, bodies = found
-    taken = take_masks(words[used:], bodies)
-    if taken is None:
+    pairs = keywords_of(words[used:])
+    if pairs is None:
         return False
-    rest, masks = taken
-    keys = rest[::2]
-    if len(rest) % 2 or len(set(keys)) != len(keys) or any(key not in TABLE for key in keys):
+    single = [(key, behind) for key, behind in pairs if key not in MASKS]
+    given = {key: behind[0] for key, behind in single}
+    if len(given) != len(single):
         return False
-    given = dict(zip(keys, rest[1::2]))
     if given.get("formulation", "first") not in WORDS["formulation"]:
         return False
-    if not all(allowed(key, given) for key in given):
+    if not all(allowed(key, behind) for key, behind in single if key not in INTEGERS):
         return False
+    for key in INTEGERS:
+        least, most = bounds(key, given)
+        if key in given and not (integer(given[key]) is not None and least <= integer(given[key]) <= most):
+            return False
     if not has_coefficients(given):
         return False
     if {"dtmin", "dtmax"} <= set(given) and positive(given["dtmin"]) > positive(given["dtmax"]):
         return False
-    given |= dict.fromkeys(masks, "*")
+    if not all(is_mask(behind, bodies) for key, behind in pairs if key in MASKS):
+        return False
+    given |= {key: "*" for key, _ in pairs if key in MASKS}
     return all(agrees(key, given | {"bodystyle": words[0]}) for key in given)
 
 
@@ -242,6 +254,8 @@ def valid(rng):
     choices |= {"passes": str(rng.randint(1, 3)), "infile": "bodies", "mol": "two"}
     choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
     choices["dtmin"], choices["dtmax"] = "1e-5", rng.choice(("1e-5", "0.1", "1"))
+    choices["every/time"], choices["temp"] = rng.choice(("0.05", "1")), "1.5 1.0 0.1"
+    choices["tchain"] = str(rng.randint(*bounds("tchain", {})))
     given = {key: value for key, value in choices.items() if rng.random() < 0.35}
     given["formulation"] = choices["formulation"]
     given |= {key: "*" for key in MASKS if rng.random() < 0.2}
@@ -255,7 +269,11 @@ def valid(rng):
         given["corrector"] = "gear"
     if given["formulation"] == TABLE["formulation"].default and rng.random() < 0.65:
         del given["formulation"]
-    pairs = [[key, value] for key, value in given.items() if key in TABLE and key not in MASKS]
+    if "tolerance" in given:
+        given["tolerance"] += rng.choice(("", "", " length", " energy", " length 0.1", " energy 1e-3"))
+    pairs = [
+        [key, *value.split()] for key, value in given.items() if key in TABLE and key not in MASKS
+    ]
     for key in (key for key in MASKS if key in given):
         for _ in range(rng.choice((1, 1, 2))):
             flags = [rng.choice(("on", "off")) for _ in range(3)]

@@ -107,7 +107,7 @@ def test_where_steps_are_not_repeated_the_log_says_so(lmp_tree, command):
     assert off(run, "TotEng") < 1e-3  # the limit of the motion alone
 
 
-def test_steps_end_at_even_times(lmp_tree):
+def test_steps_end_at_times_of_a_dump(lmp_tree):
     dump = "dump even all custom 1 even.dump id xu\ndump_modify even every/time 1.0 sort id time yes"
     plain, even = tables(
         lmp_tree.succeed(one_after_the_other([scene("1e-10"), scene("1e-10", dump)]))
@@ -121,53 +121,123 @@ def test_steps_end_at_even_times(lmp_tree):
     assert even[LARGEST][-1] <= 1
 
 
-def argon(units, eps, dt):
-    """A deck with two atoms that fall towards each other."""
-    # length, mass, time, energy: of Angstrom, g/mol, ps and eV in these units
-    length, mass, time, energy = {
-        "metal": (1.0, 1.0, 1.0, 1.0),
-        "si": (1e-10, 1.66053907e-27, 1e-12, 1.602176634e-19),
-    }[units]
-    sigma, depth = 3.4 * length, 0.0104 * energy
+@pytest.mark.parametrize("interval", [7.3, 0.1])
+def test_steps_end_at_multiples_of_a_time(lmp, interval):
+    """With thermo 0 output is there, and only there; fix halt, first or last, ends the run there."""
+    words = f"every/time {interval}"
+    often = scene("1e-9", until=7.3, words=words)
+    rare = often.replace("thermo 1\n", "thermo 0\n")
+    halt, run = UNTIL.format(7.3).split("run")
+    first = rare.replace(halt, "\n").replace("fix move all", f"{halt}fix move all")
+    assert len({often, rare, first}) == 3
+    plain = scene("1e-9", until=7.3)
+    all_steps, at_times, halted_first, free = tables(
+        lmp.succeed(one_after_the_other([often, rare, first, plain]))
+    )
+    count = round(7.3 / interval)
+    expected = np.arange(count + 1) * interval
+    assert at_times["Time"][:-1].tolist() == expected[:-1].tolist()
+    assert at_times["Time"][-1] == pytest.approx(7.3, abs=1e-14)
+    assert {key: a.tolist() for key, a in halted_first.items()} == {
+        key: a.tolist() for key, a in at_times.items()
+    }
+    shown = np.isin(all_steps["Step"], at_times["Step"])
+    for column in ("Time", "TotEng", "KinEng", "PotEng", LENGTH):
+        assert all_steps[column][shown].tolist() == at_times[column].tolist(), column
+    assert all_steps["Time"][-1] == at_times["Time"][-1] < free["Time"][-1]
+    tries = [len(run["Step"]) + run[REPEATED][-1] for run in (free, all_steps)]
+    assert tries[1] < 1.1 * tries[0]
+
+
+def test_a_first_step_ends_at_a_multiple(lmp_tree):
+    deck = scene("1e-4", words="every/time 0.003", until=0.03).replace("thermo 1\n", "thermo 0\n")
+    (run,) = tables(lmp_tree.succeed(deck))
+    assert run["Step"].tolist() == list(range(11))
+    assert run["Time"] == pytest.approx(0.003 * np.arange(11), rel=1e-14)
+
+
+#: sigma, depth, mass and sqrt(mass sigma^2 / depth) of argon, in different units
+ARGON = {
+    "metal": (3.4, 0.0104, 39.95),
+    "si": (3.4e-10, 0.0104 * 1.602176634e-19, 39.95 * 1.66053907e-27),
+    "lj": (1.0, 1.0, 1.0),
+}
+PER_TIME = {"metal": 1e12, "si": 1.0}  # of a second
+
+
+def unit_of_time(units):
+    sigma, depth, mass = ARGON["si"]
+    return sigma * (mass / depth) ** 0.5 * PER_TIME[units] if units in PER_TIME else 1.0
+
+
+ARGON = {units: (*sizes, unit_of_time(units)) for units, sizes in ARGON.items()}
+
+
+def argon(units, eps, skin, until=5.0):
+    """A deck with two atoms that fall towards each other; skin and until in reduced units."""
+    sigma, depth, mass, tau = ARGON[units]
+    edge = 15 * sigma
     return f"""
 units {units}
 atom_style molecular
 atom_modify map array
 boundary f f f
-region box block {-50 * length} {50 * length} {-50 * length} {50 * length} {-50 * length} {50 * length}
+region box block {-edge} {edge} {-edge} {edge} {-edge} {edge}
 create_box 1 box
-create_atoms 1 single {-15 * length} 0 0
-create_atoms 1 single {15 * length} {length} 0
+create_atoms 1 single {-4.5 * sigma} 0 0
+create_atoms 1 single {4.5 * sigma} {0.3 * sigma} 0
 set atom 1 mol 1
 set atom 2 mol 2
-mass 1 {39.95 * mass}
+mass 1 {mass}
 velocity all set 0 0 0
-set atom 1 vx {3.0 * length / time}
-set atom 2 vx {-3.0 * length / time}
-neighbor {dict(metal=2.0, si=0.001)[units]} nsq
-pair_style lj/cut {12 * length}
+set atom 1 vx {1.9 * sigma / tau}
+set atom 2 vx {-1.9 * sigma / tau}
+neighbor {skin * sigma} nsq
+pair_style lj/cut {3.5 * sigma}
 pair_modify shift yes
 pair_coeff 1 1 {depth} {sigma}
-timestep {dt * time}
+timestep {0.005 * tau}
 fix move all gear/quat molecule tolerance {eps}
 fix_modify move energy yes
-thermo_style custom step time pe ke etotal {NEXT} {VALUES} {LARGEST} {REPEATED}
+thermo_style custom step time pe ke etotal {NEXT} {VALUES} {LARGEST} {REPEATED} {LENGTH} {ENERGY}
 thermo_modify norm no format float %.17g
 thermo 1
-{UNTIL.format(10 * time)}
+{UNTIL.format(until * tau)}
 """
 
 
-def test_two_atoms_in_units_of_the_laboratory(lmp_tree):
-    """Also where the neighbor skin is a millimeter, as it is in units si by default."""
-    decks = [argon("metal", "1e-8", 0.01), argon("si", "1e-18", 0.01)]
-    decks += [argon("metal", "1e-9 energy", 0.01), argon("si", "1.602176634e-28 energy", 0.01)]
+@pytest.mark.parametrize("words", ["1e-9 length {0}", "1e-8 energy {1}"])
+def test_two_atoms_fly_alike_in_all_units(lmp_tree, words):
+    """Eps in units of sigma or of the depth is the same number in all of LAMMPS' units."""
+    decks = [argon(units, words.format(*ARGON[units]), skin=0.6) for units in ARGON]
+    decks.append(argon("lj", words.split()[0] + " " + words.split()[1], skin=0.6))
     runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
-    for metal, si in (runs[:2], runs[2:]):
-        for run in (metal, si):
-            assert off(run, "TotEng") < 1e-4 * -run["PotEng"].min() and run["PotEng"].min() < 0
-            assert run[LARGEST][-1] <= 1
-        assert si["TotEng"][-1] / 1.602176634e-19 == pytest.approx(metal["TotEng"][-1], rel=1e-5)
+    scaled = []
+    for run, (sigma, depth, _, tau) in zip(runs, [*ARGON.values(), ARGON["lj"]], strict=True):
+        assert run["PotEng"].min() < -0.9 * depth and off(run, "TotEng") < 1e-5 * depth
+        assert 0.2 < run[LARGEST][-1] <= 1
+        columns = {"Time": tau, "PotEng": depth, LENGTH: sigma, ENERGY: depth}
+        scaled.append({column: run[column] / unit for column, unit in columns.items()})
+    metal, si, lj, plain = scaled
+    assert {key: a.tolist() for key, a in plain.items()} == {key: a.tolist() for key, a in lj.items()}
+    for other in (metal, si):  # their constants have seven digits
+        assert len(other["Time"]) == len(lj["Time"])
+        assert other["Time"] == pytest.approx(lj["Time"], rel=1e-4)
+        assert other["PotEng"] == pytest.approx(lj["PotEng"], abs=1e-4)
+    # another unit is another tolerance
+    measure, unit = words.split()[1], 10.0
+    (loose,) = tables(lmp_tree.succeed(argon("lj", f"{words.split()[0]} {measure} {unit}", skin=0.6)))
+    assert len(loose["Time"]) < 0.95 * len(lj["Time"])
+
+
+def test_two_atoms_with_a_skin_of_a_millimeter(lmp_tree):
+    """As it is in units si by default."""
+    sigma, depth, *_ = ARGON["si"]
+    decks = [argon("si", f"1e-9 length {sigma}", 0.001 / sigma)]
+    decks += [argon("si", f"{1e-8 * depth} energy", 0.001 / sigma)]
+    for run in tables(lmp_tree.succeed(one_after_the_other(decks))):
+        assert off(run, "TotEng") < 1e-4 * depth and run["PotEng"].min() < -0.9 * depth
+        assert run[LARGEST][-1] <= 1
 
 
 def test_free_flight_for_a_million(lmp_tree):

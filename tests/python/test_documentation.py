@@ -39,7 +39,7 @@ def strings(name, text):
 # --- words of the command ------------------------------------------------------------------------
 def documented_keywords(text):
     line = re.search(r"^\* keyword = (.*)$", section("Syntax", text), re.M)[1]
-    return set(re.findall(r"\*(\w+)\*", line))
+    return set(re.findall(r"\*([\w/]+)\*", line))
 
 
 def documented_values(key, text):
