@@ -136,6 +136,34 @@ def test_trials_of_an_isokinetic_deck(make_deck):
     assert all("first" in trial.keywords for trial, _ in costs.trials if trial.keywords)
 
 
+CHAINS = FIX.replace("${style}", "gear/quat") + " values 9 temp 0.5 0.8 0.3 tchain 2 thermostat separate"
+
+
+def test_trials_at_constant_temperature(make_deck):
+    """All methods have the thermostat of the deck, with its ramp over the whole run."""
+    with Deck(make_deck(**{FIX: CHAINS}, **FOR_GEAR)) as deck:
+        found = horizon.measure(deck, time=0.4)
+        costs = cost.measure(deck, cost.Budget(6.0), errors=[1e-4], time=0.4, timings=1)
+        other = deck.fix_lines("formulation first values 8")
+    assert deck.notes == [] and other[0].endswith("temp 0.5 0.8 0.3 tchain 2 thermostat separate")
+    assert found.largest[-1] < 1e-4
+    assert costs.rows[0].best is not None and costs.doubt < 1e-4
+    assert {"first", "second"} <= {trial.keywords.split()[1] for trial, _ in costs.trials if trial.keywords}
+
+
+def test_chains_are_at_rest_at_the_beginning_of_every_trial(make_deck):
+    """Else the deck's own method would go another way than those that it is compared with."""
+    changes = {FIX: CHAINS, "run 0\nrun 500\nrun 1000000": "run 300\nrun 500"} | FOR_GEAR
+    with Deck(make_deck(**changes), which=2) as deck:
+        own, gear = (deck.run(words, [50], deck.dt) for words in (None, "values 9"))
+        deck._anew = {}
+        deck.start.checkpoints = False
+        as_left = deck.run(None, [50], deck.dt)
+    assert "its chains are zero at the beginning of every trial" in deck.notes[0]
+    assert np.array_equal(own.positions, gear.positions)
+    assert np.abs(as_left.center - gear.center).max() > 1e-4
+
+
 def test_evaluations_count_the_start(make_deck):
     with Deck(make_deck()) as deck:
         own = deck.run_to(None, 0.4, 100)
@@ -221,7 +249,7 @@ def test_a_checkpoint_is_as_good_as_the_runs_before_it(tmp_path, ranks):
         ({"extra": "unfix 1"}, "no fix that moves rigid bodies is in use at any run"),
         ({"extra": "fix 2 all deform 1 x scale 1.1"}, "fix 2 deform: it changes the box"),
         ({FIX: FIX + " langevin 1 1 1 48"}, "keyword langevin: its forces are random"),
-        ({FIX: FIX.replace("${style}", "rigid/nvt") + " temp 1 1 1"}, "rigid/nvt.*no thermostat"),
+        ({FIX: FIX.replace("${style}", "rigid/nvt") + " temp 1 1 1"}, "rigid/nvt: its thermostat counts other"),
         ({"run 500": 'run 500 every 10 "velocity all scale 1"'}, "velocity all scale 1"),
         ({"run 0\nrun 500\nrun 1000000": ""}, "no fix that moves .* any run"),
     ],
@@ -334,6 +362,8 @@ def test_lines_for_a_script_say_what_to_do_about_other_errors():
     assert "No trial within the budget had an error of 1.0e-06: try a longer" in text
     assert text.endswith("Your own fix would need timestep 0.001, as extrapolated.")
     assert "can be judged" in report._script_lines(deck, costs_of(1e-3, [1e-3]))[0]
+    text = "\n".join(report._script_lines(deck, costs_of(1e-8, [1e-6], [])))
+    assert "No trial within the budget" in text and "Your own fix" not in text
 
 
 class MadeUpDeck:

@@ -109,10 +109,17 @@ def test_translation(line, translated):
 @pytest.mark.parametrize(
     "line, said",
     [
-        ("fix 1 a rigid/nvt molecule temp 1 1 1", "rigid/nvt.*no thermostat"),
-        ("fix 1 a rigid/npt/small molecule temp 1 1 1 iso 0 0 1", "rigid/npt/small"),
+        (
+            "fix 1 a rigid/nvt molecule temp 1 2 3 reinit no force 1 on on off",
+            "gear/quat molecule reinit no force 1 on on off temp 1 2 3 tchain 10 thermostat separate$",
+        ),
+        (
+            "fix 1 a rigid/nvt/small/omp single tparam 4 2 3 temp 1 2 3",
+            "gear/quat single temp 1 2 3 tchain 4 thermostat separate$",
+        ),
+        ("fix 1 a rigid/npt/small molecule temp 1 1 1 iso 0 0 1", "rigid/npt/small.*no barostat"),
         ("fix 1 a rigid molecule langevin 1 1 1 48", "langevin.*random"),
-        ("fix 1 a rigid molecule temp 1 1 1", "keyword temp: fix gear/quat has no thermostat"),
+        ("fix 1 a rigid molecule temp 1 1 1", "keyword temp: this fix has no thermostat"),
         ("fix 1 a rigid/small molecule gravity g", "disable of fix gravity"),
         ("fix 1 a rigid everything", "which bodies: everything"),
         ("fix 1 a rigid group 3 x y", "which bodies"),

@@ -148,7 +148,17 @@ class Deck:
         translated = [script.translate(line) for line in self.lines]
         self.own = [line for line, _ in own]
         self.base = [line for line, _ in translated]
+        used = {command.mover.id for command in self.start.commands if command.mover and command.in_use}
+        #: lines that trials of the deck's own method define anew: what earlier runs made of chains is not kept
+        self._anew = {b.id: b for b in self.own if b not in self.lines or (b.has_chains and b.id in used)}
         notes = [note for _, notes in own + translated for note in notes]
+        if self.start.checkpoints:
+            notes += [
+                f"fix {b.id} {b.style}, keyword temp: the variables of its chains are zero at the beginning of"
+                " every trial, and not what the runs before leave"
+                for b in self._anew.values()
+                if b.has_chains
+            ]
         self.notes = [*self.start.notes, *notes]
         self.scene = Scene(parts)
         self.size = self.scene.size
@@ -157,7 +167,7 @@ class Deck:
 
     def _test_checkpoint(self):
         """Do without checkpoints where steps from the last one are not those of the deck itself."""
-        if not self.start.checkpoints or self.own != self.lines:
+        if not self.start.checkpoints or self._anew:
             return
         try:
             trial = self.run(None, [self._situation.test_steps], self.dt)
@@ -205,7 +215,7 @@ class Deck:
 
     def run(self, keywords, segments, dt, timeout=None):
         """Trial over segments of these numbers of steps.  Raises TrialError if LAMMPS does."""
-        new = {b.id: b for b in self._with(keywords) if keywords is not None or b not in self.lines}
+        new = self._anew if keywords is None else {b.id: b for b in self._with(keywords)}
         outcomes = self._ask(
             "trial",
             timeout,

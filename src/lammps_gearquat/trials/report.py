@@ -115,8 +115,8 @@ def _script_lines(deck, costs):
         if not row.choice and row.error > costs.doubt_limit:
             remedy = "try a longer --budget, a shorter --time or a larger --error."
             lines.append(f"No trial within the budget had an error of {row.error:.1e}: {remedy}")
-            own = [f"    Your own fix would need timestep {row.own.dt:.2g}, as extrapolated."]
-            lines += own if row.own else []
+            if row.own:
+                lines.append(f"    Your own fix would need timestep {row.own.dt:.2g}, as extrapolated.")
     return lines or ["None of the errors can be judged: try --budget, a shorter --time or a larger --error."]
 
 

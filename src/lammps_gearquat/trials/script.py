@@ -107,6 +107,10 @@ def run_steps(words, now=0):
 
 # --- the fix that moves the bodies --------------------------------------------------------------
 RIGID = ("rigid", "rigid/nve", "rigid/small", "rigid/nve/small")
+#: those with a thermostat and no barostat
+RIGID_NVT = ("rigid/nvt", "rigid/nvt/small")
+#: length of their chains if tparam does not say it
+_TCHAIN = 10
 _SUFFIX = re.compile(r"/(omp|opt|intel|gpu|kk)$")
 #: keywords that may be given many times, and how many words follow each
 MASKS = ("force", "torque")
@@ -129,7 +133,6 @@ _LEFT_OUT = {
     "couple": "it acts with a barostat only",
     "dilate": "it acts with a barostat only",
 }
-_NO_HEAT = "fix gear/quat has no thermostat or barostat"
 
 
 def base_style(style):
@@ -166,6 +169,11 @@ class FixLine:
         """This line, of fix gear/quat, with those of its keywords that are about these subjects."""
         names = keywords.names(*about)
         return replace(self, keywords=tuple(pair for pair in self.keywords if pair[0] in names))
+
+    @property
+    def has_chains(self):
+        """Whether variables of a thermostat move with the bodies of this line, of fix gear/quat."""
+        return "temp" in dict(self.keywords)
 
     @property
     def isokinetic(self):
@@ -271,6 +279,16 @@ def for_trials(line):
     ]
 
 
+def thermostatted(line):
+    """The line of fix gear/quat that comes closest to one of RIGID_NVT: the same bodies, target and chains."""
+    heat = {key: values for key, values in line.keywords if key in ("temp", "tparam")}
+    rest = tuple((key, values) for key, values in line.keywords if key not in heat)
+    chain, *_ = heat.pop("tparam", (str(_TCHAIN),))
+    own = (*heat.items(), ("tchain", (chain,)), ("thermostat", ("separate",)))
+    moved, _ = translate(replace(line, style="rigid", keywords=rest))
+    return replace(moved, keywords=moved.keywords + own)
+
+
 def translate(line):
     """The same bodies for fix gear/quat: (FixLine with keywords about bodies and physics, notes).
 
@@ -279,10 +297,16 @@ def translate(line):
     if line.style == "gear/quat":
         return line.only(*_PHYSICAL), []
     style, who, notes = base_style(line.style), f"fix {line.id} {line.style}", []
+    if style in RIGID_NVT:
+        raise DeckError(
+            f"{who}: its thermostat counts other degrees of freedom than keyword temp of fix gear/quat, so"
+            " the two move the bodies differently, and the difference is no error. Steps and orders at"
+            f" constant temperature can be compared in a deck with\n  {thermostatted(line).text()}"
+        )
     if style not in RIGID:
         raise DeckError(
-            f"{who}: {_NO_HEAT}, and no other motion to compare with; the deck has to use one of"
-            f" {', '.join(RIGID)}"
+            f"{who}: fix gear/quat has no barostat, and no other motion to compare with; the deck has to"
+            f" use fix gear/quat or one of {', '.join(RIGID)}"
         )
     kept, stated = [], "infile" in dict(line.keywords)
     for key, values in line.keywords:
@@ -299,7 +323,7 @@ def translate(line):
         elif key in _LEFT_OUT:
             notes.append(f"{who}: keyword {key} is left out; {_LEFT_OUT[key]}")
         else:
-            raise DeckError(f"{who}, keyword {key}: {_NO_HEAT}")
+            raise DeckError(f"{who}, keyword {key}: this fix has no thermostat or barostat")
     return replace(line, style="gear/quat", keywords=tuple(kept)), notes
 
 
