@@ -135,6 +135,7 @@ def find(results):
         "cage": results.cage,
         "sizes": results.sizes,
         "fixed": plan.FIXED,
+        "temp": plan.TEMP,
     }
     return Finding([*idle, more], tables, {"effects": panels(results)}, context)
 

@@ -22,6 +22,7 @@ TOLERANCE = f"{FIXED} tolerance 1e-20 dtmin 0.0005 dtmax 0.0005"
 #: Gauss's principle needs the first formulation, and a step of its own
 FIRST = "formulation first"
 ISOKINETIC = f"{FIRST} isokinetic total"
+TEMP = "temp 300.0 300.0 0.1"
 SET = "set group all"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
@@ -109,11 +110,12 @@ EFFECTS = (
         own=r"correct_bodies<true>|GearQuat::Bodies::acting",
     ),
     Effect(
-        "thermostat",
+        "isokinetic",
         moved(words=ISOKINETIC),
         moved(words=FIRST),
         own=r"GearQuat::IsokineticConstraint::|GearQuat::Motion::correct_together",
     ),
+    Effect("temp", moved(words=TEMP), MOVED, own=r"GearQuat::(Thermostat|Chain)::"),
     Effect("compensated sums", moved(words="compensate yes"), MOVED),
 )
 
@@ -137,10 +139,10 @@ LADDER = (
         "the row above with output in every step",
     ),
     Rung(
-        "thermostat",
+        "isokinetic",
         charged_each(words=ISOKINETIC, columns="press"),
         charged_each(words=FIRST, columns="press"),
-        "thermostat",
+        "isokinetic",
         f"charges and virial with `{FIRST}`",
     ),
 )
