@@ -6,10 +6,11 @@ from .commands.analyze import analyze
 from .commands.common import HELP, epilog
 from .commands.cost import cost
 from .commands.horizon import horizon
+from .commands.scatter import scatter
 
 
 @cloup.group(
-    sections=[cloup.Section("Before a long run", [cost, horizon]), cloup.Section("After it", [analyze])],
+    sections=[cloup.Section("Before a long run", [cost, horizon]), cloup.Section("After it", [analyze]), cloup.Section("Instead of it", [scatter])],
     context_settings=HELP,
     epilog=epilog(
         "gearquat cost examples/water/in.water --var method rigid --budget 30",

@@ -1,4 +1,4 @@
-"""The pictures of ``gearquat cost``, ``horizon`` and ``analyze``.  Nothing is computed here."""
+"""The pictures of ``gearquat cost``, ``horizon``, ``analyze`` and ``scatter``.  Nothing is computed here."""
 
 from contextlib import contextmanager
 
@@ -202,3 +202,42 @@ def draw_correlations(path, functions):
             axis.set_yscale("log" if curves is squares else "linear")
             axis.set_xlabel("lag")
             axis.legend(fontsize=8)
+
+
+# --- scatter --------------------------------------------------------------------------------------
+#: dots of a picture at most
+DOTS = 20_000
+
+
+def draw_deflection(path, name, columns, plan):
+    """Deflection against impact parameter, by energy; orbiting flights are rings."""
+    parted = np.flatnonzero(columns["fate"] == "parted")[:DOTS]
+    b, angle, energy = (columns[key][parted] for key in ("b", "angle", "energy"))
+    orbiting = columns["turnings"][parted] > 1
+    with _picture(path, f"Deflection: {name}", figsize=(8, 5)) as (figure, axis):
+        dots = axis.scatter(b[~orbiting], np.degrees(angle[~orbiting]), s=3, c=energy[~orbiting], cmap="viridis")
+        rings = {"s": 16, "facecolors": "none", "edgecolors": COLOR["first"], "linewidths": 0.7}
+        axis.scatter(b[orbiting], np.degrees(angle[orbiting]), label=f"orbiting ({orbiting.sum()})", **rings)
+        if plan.energy is None:
+            figure.colorbar(dots, ax=axis, label="energy")
+        axis.set_xlim(0, plan.largest)
+        axis.set_ylim(0, 180)
+        axis.set_xlabel("impact parameter")
+        axis.set_ylabel("deflection (degrees)")
+        axis.legend(loc="upper right")
+
+
+def draw_convergence(path, name, numbers, series):
+    """Values with standard errors, by their last ones, and the errors, against numbers of flights."""
+    colors = (COLOR["second"], COLOR["first"])
+    with _picture(path, f"Convergence: {name}", ncols=2, figsize=(10, 4)) as (_, (left, right)):
+        for (label, (values, errors)), color in zip(series.items(), colors):
+            last = values[-1]
+            left.errorbar(numbers, values / last - 1.0, errors / abs(last), color=color, marker="o", markersize=3, label=label)
+            right.loglog(numbers, errors / abs(last), color=color, marker="o", markersize=3, label=label)
+        left.set_xscale("log")
+        left.set_ylabel("relative difference from the last value")
+        right.set_ylabel("relative standard error")
+        for axis in (left, right):
+            axis.set_xlabel("flights")
+            axis.legend()

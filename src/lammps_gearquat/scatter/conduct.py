@@ -1,0 +1,87 @@
+"""A run of the command: settings, flights until the errors are small enough, and the results in their folder."""
+
+from dataclasses import replace
+
+from .. import figures
+from ..units import UNITS
+from . import flights, largest, report, store
+from .pool import Pool
+from .results import convergence, results
+from .sampling import REPLICAS, Plan
+
+#: flights before errors are looked at, which doubles as long as they are too large
+FIRST_ROUND = 32 * REPLICAS
+#: what may be left out beyond the largest impact parameter, by the error that is asked for
+LEFT_OUT = 0.1
+
+
+def scatter(scene, asked, numbers, error, most, out, progress):
+    """Fly, and write the results into the folder ``out``; returns them as text.
+
+    ``scene``: arguments of ``open_pair``; ``asked``: seed, temperature, energy, rotation, largest, most_steps,
+    processes and sigma; ``numbers``, a range of flights, or None: until all relative standard errors are at most
+    ``error``, or ``most`` flights; ``progress`` is a bar.  Raises DeckError and TrialError.
+    """
+    with Pool(scene, asked["processes"], asked["most_steps"]) as pool:
+        progress.set_description("largest impact parameter")
+        plan, wanted = _settle(pool, asked, error, out)
+        store.begin(out, wanted)
+        progress.set_description("flights")
+        rows = _until(pool, plan, numbers, error, most, out, progress, asked["sigma"])
+    return conclude(out, wanted, rows, asked["sigma"])
+
+
+def _settle(pool, asked, error, out):
+    """The Plan with its largest impact parameter, and the settings."""
+    scale = asked["energy"]
+    if scale is None:
+        scale = UNITS[pool.facts.style].boltzmann * asked["temperature"]
+    plan = Plan((asked["seed"],), asked["temperature"], asked["energy"], asked["rotation"], 0.0)
+    if asked["largest"]:
+        farthest = largest.given(pool.facts, asked["largest"])
+    else:
+        farthest = largest.find(pool, plan, scale, LEFT_OUT * error)
+    plan = replace(plan, largest=farthest.value)
+    return plan, store.settings(pool.facts, plan, farthest, asked["most_steps"])
+
+
+def _until(pool, plan, numbers, error, most, out, progress, sigma):
+    """Rows of all flights of the folder, in their order, after those that were asked for."""
+    lines = store.read_lines(out)
+    known = {store.number_of(line): row for line, row in zip(lines, store.parse(lines))}
+    last, ordered = max(known, default=-1), list(known) == sorted(known)
+    with store.Writer(out) as writer:
+        wanted = numbers or range(min(FIRST_ROUND, most))
+        while True:
+            missing = [number for number in wanted if number not in known]
+            progress.total = progress.n + len(missing)
+            for some in pool.fly(plan, missing):
+                known |= {flight.flight: row for flight, row in zip(some, writer.append(some))}
+                progress.update(len(some))
+            ordered, last = ordered and (not missing or missing[0] > last), max(known)
+            if numbers or len(wanted) >= most:
+                break
+            rows = [known[number] for number in wanted]
+            if results(flights.columns(rows), plan, pool.facts, sigma).relative <= error:
+                break
+            wanted = range(min(2 * len(wanted), most))
+    if not ordered:
+        store.rewrite(out, known)
+    return [known[number] for number in sorted(known)]
+
+
+def conclude(out, settings, rows, sigma):
+    """Write results.json and the pictures; the results as text."""
+    facts, plan, farthest = store.facts_of(settings)
+    columns = flights.columns(rows)
+    found = results(columns, plan, facts, sigma)
+    store.write_json(out / store.RESULTS, report.as_json(settings, found))
+    figures.draw_deflection(out / "deflection.png", facts.name, columns, plan)
+    figures.draw_convergence(out / "convergence.png", facts.name, *convergence(columns, plan, facts))
+    return report.text(facts, plan, farthest, found)
+
+
+def merge(parts, out, sigma):
+    """Join the folders ``parts`` in ``out``; the results as text.  Raises DeckError."""
+    settings, rows = store.merge(parts, out)
+    return conclude(out, settings, rows, sigma)

@@ -1,0 +1,172 @@
+"""Averages over flights with their standard errors: cross sections and collision integrals.
+
+Energies are divided by kT: x of the relative translation before the collision, y after it, and d = x - y, what
+rotation has gained; chi is the angle between the relative velocities.  A bar is the integral over all impact
+parameters, 2 pi b db, averaged over orientations and angular momenta.  With the momentum flux of the
+relative velocity (C. S. Wang Chang and G. E. Uhlenbeck, University of Michigan Report CM-681 (1951); N. Taxman,
+Phys. Rev. 110, 1235 (1958)) the collision integrals are
+
+    Omega(l,s) = (k T / (2 pi mu))^(1/2) 1/2 integral of x exp(-x) bar(F_ls) dx,
+
+    F_11 = x - (x y)^(1/2) cos chi,    F_12 = x F_11,    F_22 = x y sin^2 chi + d^2 / 3.
+
+If rotation gains nothing they are those of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular
+Theory of Gases and Liquids, Wiley (1954), eq. (8.2-3), with F_ls = x^s (1 - cos^l chi).  By detailed balance
+the mean of F_22 is that of x^2 sin^2 chi + d^2 / 3 - d^2 sin^2 chi / 2, the form of L. Monchick, K. S. Yun and
+E. A. Mason, J. Chem. Phys. 39, 654 (1963).
+
+Flights that have not parted count as if they had left in all directions alike, without transfer of energy.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..units import UNITS
+from .sampling import REPLICAS, SHAPE
+
+#: mean of sin^2 and of cos over all directions
+ISOTROPIC = (2.0 / 3.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A ``value`` with its standard ``error``, in ``unit``; ``about`` says what it is."""
+
+    value: float
+    error: float
+    unit: str
+    about: str
+
+    @property
+    def relative(self):
+        """Standard error by the value."""
+        return abs(self.error / self.value) if self.value else np.inf
+
+
+@dataclass(frozen=True)
+class Collisions:
+    """Columns (n,) of flights in units of ``scale``: ``x``, ``y``, ``cosine`` and ``sine2`` = sin^2 chi."""
+
+    x: np.ndarray
+    y: np.ndarray
+    cosine: np.ndarray
+    sine2: np.ndarray
+
+    @classmethod
+    def of(cls, columns, scale):
+        """From the columns of flights, with ``scale`` the unit of energy."""
+        parted = columns["fate"] == "parted"
+        x = columns["energy"] / scale
+        y = np.where(parted, columns["energy_after"] / scale, x)
+        sine2 = np.where(parted, np.sin(columns["angle"]) ** 2, ISOTROPIC[0])
+        return cls(x, y, np.where(parted, np.cos(columns["angle"]), ISOTROPIC[1]), sine2)
+
+    @property
+    def gain(self):
+        """What rotation has gained."""
+        return self.x - self.y
+
+    @property
+    def f11(self):
+        """Change of the relative velocity along itself; for small angles without loss of digits."""
+        return self.x - np.sqrt(self.x * self.y) * self.cosine
+
+    @property
+    def f22(self):
+        """Change of the momentum flux."""
+        return self.x * self.y * self.sine2 + self.gain**2 / 3.0
+
+
+def thermal_speed(facts, temperature):
+    """(k T / (2 pi mu))^(1/2) in units of the deck."""
+    units = UNITS[facts.style]
+    return np.sqrt(units.boltzmann * temperature / (2.0 * np.pi * facts.reduced_mass * units.energy))
+
+
+def integrands(columns, plan, facts):
+    """Name -> (integrand (n,), unit, what it is): their means over flights are the quantities."""
+    if plan.energy is not None:
+        return _at_energy(columns, plan, facts)
+    return _at_temperature(columns, plan, facts)
+
+
+def _at_energy(columns, plan, facts):
+    pairs, area = Collisions.of(columns, plan.energy), np.pi * plan.largest**2
+    found = {
+        "Q(1)": (area * pairs.f11, "length^2", "momentum-transfer cross section"),
+        "Q(2)": (area * pairs.f22, "length^2", "viscosity cross section"),
+    }
+    if any(facts.freedoms):
+        found["transfer"] = (area * pairs.gain**2, "length^2", "cross section of the squared energy given to rotation")
+        found["gain"] = (area * pairs.gain, "length^2", "cross section of the energy given to rotation")
+    return found
+
+
+def _at_temperature(columns, plan, facts):
+    units, area = UNITS[facts.style], np.pi * plan.largest**2
+    pairs = Collisions.of(columns, units.boltzmann * plan.temperature)
+    speed = thermal_speed(facts, plan.temperature)
+    # x exp(-x) by the density of x, x^2 exp(-x) / 2
+    assert SHAPE == 3.0
+    weight = 2.0 / pairs.x
+    part, unit = 0.5 * area * weight, "length^3/time"
+    found = {
+        "cross section": (part * pairs.f11, "length^2", "collision cross section, averaged over energies and orientations"),
+        "Omega(1,1)": (speed * part * pairs.f11, unit, "collision integral of diffusion"),
+        "Omega(2,2)": (speed * part * pairs.f22, unit, "collision integral of viscosity"),
+        "Omega(1,2)": (speed * part * pairs.x * pairs.f11, unit, "collision integral of thermal diffusion"),
+    }
+    if any(facts.freedoms):
+        found["transfer"] = (area * weight * pairs.gain**2, "length^2", "cross section of the squared energy given to rotation")
+        found["gain"] = (area * weight * pairs.gain, "length^2", "cross section of the energy given to rotation")
+    return found
+
+
+class Averages:
+    """Means of integrands over flights, of all and with one replica left out.
+
+    ``means`` (1 + R, m): the first row is that of all; ``names`` (m,), in that order.
+    """
+
+    def __init__(self, numbers, found):
+        """``numbers`` (n,) of the flights; ``found``: name -> (integrand (n,), ...)."""
+        self.names = list(found)
+        values = np.column_stack([entry[0] for entry in found.values()])
+        replica = np.asarray(numbers) % REPLICAS
+        sums = np.zeros((REPLICAS, values.shape[1]))
+        np.add.at(sums, replica, values)
+        counts = np.bincount(replica, minlength=REPLICAS)
+        kept = counts > 0
+        sums, counts = sums[kept], counts[kept][:, None]
+        self.replicas = len(counts)
+        total, number = sums.sum(axis=0), counts.sum()
+        with np.errstate(invalid="ignore", divide="ignore"):
+            self.means = np.vstack([total / number, (total - sums) / (number - counts)])
+
+    def of(self, function):
+        """(value, standard error) of a function of the dictionary name -> mean, by the jackknife."""
+        values = np.array([function(dict(zip(self.names, row))) for row in self.means])
+        return float(values[0]), _spread(values[1:])
+
+    def correlations(self, names):
+        """Matrix (k, k) of the correlations between the errors of ``names`` (k,)."""
+        kept = self.means[1:, [self.names.index(name) for name in names]]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.corrcoef(kept.T)
+
+
+def _spread(values):
+    """Standard error from values that leave out one replica each."""
+    number = len(values)
+    if number < 2:
+        return np.nan
+    return float(np.sqrt((number - 1) / number * ((values - values.mean()) ** 2).sum()))
+
+
+def estimates(averages, found):
+    """Name -> Estimate of all means."""
+    return {
+        name: Estimate(*averages.of(lambda means, name=name: means[name]), unit, about)
+        for name, (_, unit, about) in found.items()
+    }

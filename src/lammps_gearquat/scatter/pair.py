@@ -1,0 +1,335 @@
+"""The two bodies of a deck, and one flight of them in LAMMPS.
+
+Lengths, times and energies are in the units of the deck, angular momenta in mass x length^2 / time.  Arrays
+of both bodies have the first one, that with the smaller ID, first.  Poses are rotations of the pose that
+a body has in the deck.
+"""
+
+import os
+import re
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..analysis.bodies import Bodies
+from ..analysis.superposition import superpose
+from ..trials import process
+from ..trials.interpreter import Interpreter
+from ..trials.script import DeckError
+from ..units import UNITS
+
+#: a flight begins and ends so much farther apart than the bodies can feel each other
+MARGIN = 1.0 + 1e-3
+#: what the first step may be: part of the way to the place of the encounter, and angle in radians
+FIRST_STEP, FIRST_TURN = 0.01, 0.05
+#: steps between two looks at the distance
+STEPS = 20
+#: parts of the sum of all forces that count as rounding, where the force on a body should be zero
+ROUNDING = 1e-12
+#: keywords of the fix that say where bodies are or what acts on them, which is the command's to say
+REFUSED_KEYWORDS = ("infile", "mol", "force", "torque")
+#: fixes that neither move atoms nor exert forces
+IDLE = re.compile(r"property/atom|store/.*|dt/reset")
+#: properties of atoms that turn with a body and that a flight would have to place
+EXTENDED = ("radius", "mu", "ellipsoid", "line", "tri", "body")
+UNTURNED = (1.0, 0.0, 0.0, 0.0)
+_CUTOFF = re.compile(r"master list distance cutoff = (\S+)")
+
+
+@dataclass(frozen=True)
+class Start:
+    """Both bodies: ``center`` and ``velocity`` (2, 3), ``quaternion`` (2, 4), scalar first, from the pose in
+    the deck, and ``momentum`` (2, 3), angular momenta about the own centers along the axes of space."""
+
+    center: np.ndarray
+    velocity: np.ndarray
+    quaternion: np.ndarray
+    momentum: np.ndarray
+
+    def reversed(self):
+        """The same poses with all motion turned round."""
+        return replace(self, velocity=-self.velocity, momentum=-self.momentum)
+
+
+@dataclass(frozen=True)
+class End(Start):
+    """The bodies after a flight, and what it was like.
+
+    ``time`` since the start; ``steps`` and ``repeats``, numbers of them; ``turnings``, how often the
+    radial velocity had changed its sign, and ``closest``, the smallest distance, both as seen every STEPS
+    steps; ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
+    flight with ``message``.
+    """
+
+    time: float
+    steps: int
+    repeats: int
+    turnings: int
+    closest: float
+    fate: str = "parted"
+    message: str = ""
+
+
+def open_pair(path, variables=(), without=(), which=None, say=lambda text: None):
+    """The Pair of a deck, to be used in a with statement.
+
+    ``variables``, ``without`` and ``which`` are those of ``trials.measure.Deck``.  Raises DeckError.
+    """
+    return Pair(path, variables, without, which, say)
+
+
+class Pair:
+    """Two rigid bodies of a deck in a LAMMPS of this process.
+
+    ``bodies``, a Bodies whose body frame is that of the deck; ``cutoff``, the largest distance at which two
+    sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the
+    distance of the centers at which flights begin and end; ``units``, a row of UNITS, and ``style``, its name;
+    ``charge`` (2,) if atoms have one, else None; ``text``, the commands that lead to the run.
+    """
+
+    def __init__(self, path, variables=(), without=(), which=None, say=lambda text: None):
+        self.path = Path(path).resolve()
+        self.variables = [tuple(map(str, variable)) for variable in variables]
+        self.without, self.which, self.say = tuple(without), which, say
+        self.lammps = None
+        self._open()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """End LAMMPS."""
+        if self.lammps:
+            self.lammps.close()
+        self.lammps = None
+
+    # --- the deck -------------------------------------------------------------------------------
+    def _open(self):
+        """Read the deck, in its own folder, and leave LAMMPS ready for flights."""
+        here = os.getcwd()
+        with tempfile.TemporaryDirectory(prefix="gearquat-") as folder:
+            try:
+                log = Path(folder) / "log"
+                self.lammps = process.open_lammps(self.path, self.variables, log)
+                follower = Interpreter(
+                    self.lammps, Path(folder), self.without, self.which, self.variables, self.say
+                )
+                start = follower.follow(self.path.name)
+                self.text = [command.text for command in start.commands]
+                self._check(start)
+                self._bodies()
+                self._prepare(log)
+                self._check_forces()
+            except BaseException:
+                self.close()
+                raise
+            finally:
+                os.chdir(here)
+
+    def _check(self, start):
+        """Refuse decks whose flights would not be those of two bodies alone; sets ``line``, their fix."""
+        movers = [command.mover for command in start.commands if command.mover]
+        if len(movers) != 1 or movers[0].style != "gear/quat":
+            found = ", ".join(f"{line.id} {line.style}" for line in movers)
+            raise DeckError(f"one fix gear/quat is required that moves both bodies, and no other; the deck has {found}")
+        line = movers[0]
+        given = dict(line.keywords)
+        who = f"fix {line.id} {line.style}"
+        if "tolerance" not in given:
+            raise DeckError(
+                f"{who}: keyword tolerance is required, such as 'tolerance 1e-9 energy': only with it does the step"
+                " follow an encounter"
+            )
+        for key in REFUSED_KEYWORDS:
+            if key in given:
+                raise DeckError(f"{who}: keyword {key} has to be left out, for the command places the bodies")
+        others = [f"{id_} {style}" for id_, style in start.fixes.items() if id_ != line.id and not IDLE.fullmatch(style)]
+        if others:
+            raise DeckError(
+                f"fix {others[0]} acts beside the two bodies: the pair has to be alone;"
+                f" --without {others[0].split()[0]} leaves it out"
+            )
+        self._check_box()
+        self.line = line
+
+    def _check_box(self):
+        lammps = self.lammps
+        if lammps.extract_setting("dimension") != 3:
+            raise DeckError("dimension 3 is required")
+        if any(lammps.extract_box()[5]):
+            raise DeckError("the box is periodic: boundary s s s is required, so that bodies meet once and part")
+        if any(text.split()[0] == "kspace_style" and "none" not in text for text in self.text if text.split()):
+            raise DeckError("forces of kspace_style do not vanish with the distance: a pair style with a cutoff is required")
+        extended = [name for name in EXTENDED if lammps.extract_atom(name)]
+        if extended:
+            raise DeckError(
+                f"atoms with the property {extended[0]}: atoms have to be points; a molecule can have several of them"
+            )
+
+    def _bodies(self):
+        """Sets ``bodies`` and what follows from them."""
+        lammps = self.lammps
+        labels = process.body_labels(lammps, [self.line])
+        if (labels[:, 0] < 0).any():
+            raise DeckError(
+                f"{(labels[:, 0] < 0).sum()} atoms are in no body of fix {self.line.id}: the two bodies have to be alone"
+            )
+        values = np.unique(labels[:, 1])
+        if len(values) != 2:
+            raise DeckError(f"two bodies are required: fix {self.line.id} has {len(values)}")
+        self.bodies = Bodies(np.searchsorted(values, labels[:, 1]) + 1, process.of_atoms(lammps, "mass"))
+        bodies, self._tags = self.bodies, lammps.numpy.extract_atom("id")[: len(labels)].copy()
+        positions = lammps.numpy.extract_atom("x")[bodies.index].copy()
+        bodies.set_shape(positions)
+        self.extent = bodies.largest(np.linalg.norm(bodies.shape, axis=1))
+        self.reduced_mass = float(np.prod(bodies.mass) / bodies.mass.sum())
+        self.freedoms = np.where(bodies.point, 0, np.where(bodies.linear, 2, 3))
+        self.style = lammps.extract_global("units")
+        self.units = UNITS[self.style]
+        charges = lammps.numpy.extract_atom("q")
+        self.charge = None if charges is None else bodies.sum(charges[bodies.index])
+        self.weights = np.zeros((2, len(bodies.index)))
+        self.weights[bodies.of, bodies.index] = bodies.masses / bodies.mass[bodies.of]
+
+    @property
+    def identical(self):
+        """Whether both bodies are the same, so that the pair is that of a gas of one kind."""
+        one, two = self.bodies.mass, self.bodies.moments
+        same = np.allclose(one[0], one[1], rtol=1e-9) and np.allclose(two[0], two[1], rtol=1e-6)
+        return bool(same and self.bodies.counts[0] == self.bodies.counts[1])
+
+    def _prepare(self, log):
+        """Sets ``cutoff`` and ``reach``, and turns off what only costs time."""
+        lammps = self.lammps
+        lammps.commands_list(
+            [
+                "thermo 0",
+                "thermo_style custom step",
+                "thermo_modify lost ignore",
+                "timer off",
+                "atom_modify sort 0 0.0",
+                "change_box all boundary s s s",
+                "neighbor 1.0 nsq",
+                "neigh_modify delay 0 every 1 check yes",
+            ]
+        )
+        self._command("run 0 post no")
+        lammps.command("log none")
+        found = _CUTOFF.findall(log.read_text(encoding="utf-8", errors="replace"))
+        if not found or float(found[-1]) <= 1.0:
+            raise DeckError("the deck has no forces between atoms: a pair style with a cutoff is required")
+        self.cutoff = float(found[-1]) - 1.0
+        self.reach = MARGIN * (self.cutoff + self.extent.sum())
+        # no list is ever renewed: it has all pairs of sites
+        lammps.command(f"neighbor {6.0 * self.reach:.17g} nsq")
+        self._command_of_fix = replace(
+            self.line, keywords=(*(pair for pair in self.line.keywords if pair[0] != "report"), ("report", ("no",)))
+        ).text()
+
+    def _command(self, text):
+        """Pass a command to LAMMPS, whose errors become a DeckError."""
+        try:
+            self.lammps.command(text)
+        except Exception as error:  # the only class LAMMPS' module raises
+            raise DeckError(f"LAMMPS refuses '{text}': {str(error).split(chr(10) + 'Last input line')[0]}") from error
+
+    def _check_forces(self):
+        """Refuse forces that act where a flight begins."""
+        turns = Rotation.random(16, random_state=np.random.default_rng(1)).as_quat(scalar_first=True)
+        apart = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, self.reach]])
+        for pair in turns.reshape(8, 2, 4):
+            self._place(Start(apart, np.zeros((2, 3)), pair, np.zeros((2, 3))))
+            self._command("run 0 post no")
+            forces = self.lammps.numpy.extract_atom("f")[self.bodies.index]
+            on_bodies = np.abs(self.bodies.sum(forces)).max()
+            if on_bodies > ROUNDING * np.abs(forces).sum():
+                raise DeckError(
+                    f"forces do not vanish: {on_bodies:.3g} acts on a body at a distance of {self.reach:.6g}, beyond the"
+                    f" cutoff of {self.cutoff:.6g}; a pair style with a cutoff is required, and nothing else may act"
+                )
+
+    # --- flights ----------------------------------------------------------------------------------
+    def turned(self, quaternion, vectors):
+        """Vectors (n, 3) of sites, turned by the quaternion (2, 4) of their body."""
+        turns = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()
+        return np.einsum("nij,nj->ni", turns[self.bodies.of], vectors)
+
+    def _place(self, state):
+        """Put the sites where a Start has them; returns angular velocities (2, 3) along the axes of space."""
+        bodies = self.bodies
+        arms = self.turned(state.quaternion, bodies.shape)
+        omega = bodies.divided_by_inertia(state.quaternion, state.momentum)
+        positions, velocities = (self.lammps.numpy.extract_atom(name) for name in "xv")
+        positions[bodies.index] = state.center[bodies.of] + arms
+        velocities[bodies.index] = state.velocity[bodies.of] + np.cross(omega[bodies.of], arms)
+        return omega
+
+    def _first_step(self, state, omega):
+        """Length of the first step, which the fix shortens if need be."""
+        speed = np.linalg.norm(state.velocity[1] - state.velocity[0])
+        turning = np.linalg.norm(omega, axis=1).max()
+        return 1.0 / (speed / (FIRST_STEP * self.reach) + turning / FIRST_TURN)
+
+    def fly(self, start, most_steps=1_000_000):
+        """End of the flight from ``start``, which has parted when the bodies go apart beyond ``reach``."""
+        if not self.lammps:
+            self._open()
+        try:
+            return self._fly(start, most_steps)
+        except DeckError as error:
+            self.close()
+            return End(start.center, start.velocity, start.quaternion, start.momentum, *([0] * 5), "lost", str(error))
+
+    def _fly(self, start, most_steps):
+        command = self.lammps.command
+        command(f"unfix {self.line.id}")
+        command("reset_timestep 0 time 0.0")
+        omega = self._place(start)
+        command(f"timestep {self._first_step(start, omega):.17g}")
+        self._command(self._command_of_fix)
+        self._command(f"run {STEPS} post no")
+        positions, velocities = (self.lammps.numpy.extract_atom(name)[: len(self._tags)] for name in "xv")
+        steps, turnings, before, closest, beyond = STEPS, 0, -1.0, np.inf, self.reach**2
+        while True:
+            (one, two), (v_one, v_two) = self.weights @ positions, self.weights @ velocities
+            away = two - one
+            square, radial = away @ away, away @ (v_two - v_one)
+            closest = min(closest, square)
+            if radial * before < 0.0:
+                turnings, before = turnings + 1, radial
+            if (square >= beyond and radial > 0.0) or steps >= most_steps:
+                break
+            self._command(f"run {STEPS} pre no post no")
+            steps += STEPS
+        return self._end(positions, velocities, steps, turnings, float(np.sqrt(closest)), bool(square >= beyond))
+
+    def _end(self, positions, velocities, steps, turnings, closest, parted):
+        """End of the flight at hand."""
+        bodies = self.bodies
+        x, v = positions[bodies.index], velocities[bodies.index]
+        center, velocity = bodies.center(x), bodies.center(v)
+        arms, rest = x - center[bodies.of], v - velocity[bodies.of]
+        momentum = bodies.sum(bodies.masses[:, None] * np.cross(arms, rest))
+        return End(
+            center,
+            velocity,
+            superpose(bodies, arms)[0] if self.freedoms.any() else np.tile(UNTURNED, (2, 1)),
+            momentum,
+            self.lammps.get_thermo("time"),
+            steps,
+            int(self.lammps.extract_fix(self.line.id, 0, 1, 15)),
+            turnings,
+            closest,
+            "parted" if parted else "unparted",
+        )
+
+    def rotational_energy(self, quaternion, momentum):
+        """Kinetic energy (2,) of the rotation of both bodies."""
+        omega = self.bodies.divided_by_inertia(quaternion, momentum)
+        return 0.5 * self.units.energy * np.einsum("ij,ij->i", omega, momentum)

@@ -1,0 +1,149 @@
+"""The folder of results: settings.json, what is flown; flights.csv, what has been flown; and parts joined.
+
+A run that was ended goes on after the last whole line, and lines are written in the order of the flights, so
+the file is the same as that of a run that was not.
+"""
+
+import csv
+import hashlib
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from ..trials.script import DeckError
+from . import flights
+from .largest import Largest
+from .pool import Facts
+from .sampling import Plan
+
+SETTINGS, FLIGHTS, RESULTS = "settings.json", "flights.csv", "results.json"
+
+
+def settings(facts, plan, largest, most_steps):
+    """What determines every flight, ready for JSON; the commands of the deck as a digest."""
+    known = asdict(facts)
+    known["text"] = hashlib.sha256("\n".join(facts.text).encode()).hexdigest()
+    asked = asdict(plan)
+    return json.loads(json.dumps({"pair": known, "plan": asked, "largest": asdict(largest), "most_steps": most_steps}))
+
+
+def facts_of(settings):
+    """(Facts, Plan, Largest) of settings."""
+    plan = Plan(**{**settings["plan"], "seed": tuple(settings["plan"]["seed"])})
+    return Facts(**settings["pair"]), plan, Largest(**settings["largest"])
+
+
+def read_settings(folder):
+    """Settings of a folder of results.  Raises DeckError if it has none."""
+    path = Path(folder) / SETTINGS
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise DeckError(f"{folder}: a folder with results of gearquat scatter is required: {error}") from error
+
+
+def write_json(path, value):
+    """Written whole or not at all."""
+    draft = path.with_suffix(".tmp")
+    draft.write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    draft.replace(path)
+
+
+def begin(folder, wanted):
+    """Make ``folder`` that of these settings.  Raises DeckError if it has flights of others."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if (folder / SETTINGS).exists():
+        _same(folder, read_settings(folder), wanted)
+    write_json(folder / SETTINGS, wanted)
+
+
+def _same(folder, known, wanted):
+    """Raise DeckError if settings differ, naming what does."""
+    differing = [
+        f"{part} {name}" if isinstance(wanted[part], dict) else part
+        for part in wanted
+        for name in (wanted[part] if isinstance(wanted[part], dict) else (part,))
+        if _get(known, part, name) != _get(wanted, part, name) and part != "largest"
+    ]
+    if differing:
+        raise DeckError(f"{folder} has flights of other settings ({', '.join(differing)}): another --out is required")
+
+
+def _get(settings, part, name):
+    value = settings.get(part)
+    return value.get(name) if isinstance(value, dict) else value
+
+
+def read_lines(folder):
+    """Whole lines of flights.csv, without its header; what is after the last whole line is cut off."""
+    path = Path(folder) / FLIGHTS
+    if not path.exists():
+        return []
+    data = path.read_bytes()
+    whole = data[: data.rfind(b"\n") + 1]
+    if len(whole) < len(data):
+        path.write_bytes(whole)
+    lines = whole.decode("utf-8").splitlines()
+    if lines and lines[0] != ",".join(flights.HEADER):
+        raise DeckError(f"{path}: its columns are not those of gearquat scatter: another --out is required")
+    return lines[1:]
+
+
+def parse(lines):
+    """Rows of words of lines."""
+    return list(csv.reader(lines))
+
+
+def number_of(line):
+    """Number of the flight of a line."""
+    return int(line.partition(",")[0])
+
+
+class Writer:
+    """Appends Flights to flights.csv; use it in a with statement."""
+
+    def __init__(self, folder):
+        self.path = folder / FLIGHTS
+
+    def __enter__(self):
+        fresh = not self.path.exists() or not self.path.stat().st_size
+        self.file = self.path.open("a", newline="", encoding="utf-8")
+        self.writer = csv.writer(self.file, lineterminator="\n")
+        if fresh:
+            self.writer.writerow(flights.HEADER)
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+    def append(self, some):
+        """Write a list of Flights, and return their rows of words."""
+        rows = [flights.row(flight) for flight in some]
+        self.writer.writerows(rows)
+        self.file.flush()
+        return rows
+
+
+def merge(folders, out):
+    """Join the flights of ``folders`` in ``out``; (settings, rows).  Raises DeckError if they do not fit together."""
+    wanted, lines = read_settings(folders[0]), {}
+    for folder in folders:
+        known = read_settings(folder)
+        _same(folder, known, wanted)
+        for line in read_lines(folder):
+            number = number_of(line)
+            if lines.setdefault(number, line) != line:
+                raise DeckError(f"{folder}: flight {number} differs from that in another part: parts of one seed are required")
+    begin(out, wanted)
+    ordered = [lines[number] for number in sorted(lines)]
+    text = "\n".join([",".join(flights.HEADER), *ordered]) + "\n"
+    (out / FLIGHTS).write_text(text, encoding="utf-8")
+    return wanted, parse(ordered)
+
+
+def rewrite(folder, known):
+    """Write flights.csv with ``known``, number -> row of words, in the order of the flights."""
+    path = folder / FLIGHTS
+    path.unlink()
+    with Writer(folder) as writer:
+        writer.writer.writerows(known[number] for number in sorted(known))

@@ -1,0 +1,213 @@
+"""gearquat scatter in LAMMPS: single flights against exact results, and runs of the command."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import colliding
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from lammps_gearquat.cli import main
+from lammps_gearquat.scatter import Plan, flights, open_pair
+
+WHOLE = ("--temperature", "1", "--largest", "3", "--seed", "4")
+
+
+@pytest.fixture(scope="module")
+def dumbbells(tmp_path_factory):
+    with open_pair(colliding.write(tmp_path_factory.mktemp("dumbbells"), colliding.DUMBBELLS, cutoff=4.0, inner=2.5)) as pair:
+        yield pair
+
+
+def run(deck, out, *options):
+    """Output of the command."""
+    result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), "--processes", "1", *options])
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def contents(out):
+    return {name: (out / name).read_bytes() for name in ("flights.csv", "results.json")}
+
+
+def deflection(b, energy):
+    """Of two atoms of the deck, by quadrature, with r = r0 / sin(t)."""
+
+    def inner(r):
+        return 1.0 - (b / r) ** 2 - colliding.smoothed(r) / energy
+
+    grid = np.linspace(7.0, 0.7, 4000)
+    first = np.argmax(inner(grid) < 0.0)
+    closest = brentq(inner, grid[first], grid[first - 1], xtol=1e-15)
+
+    def integrand(t):
+        return closest * np.cos(t) / np.sin(t) ** 2 * b / (closest / np.sin(t)) ** 2 / np.sqrt(inner(closest / np.sin(t)))
+
+    corners = [np.arcsin(closest / r) for r in (6.0, 7.0) if r > closest]
+    edges = [0.0, *sorted(corners), np.pi / 2 - 1e-7]
+    whole = sum(quad(integrand, *pair, epsabs=1e-11, limit=200)[0] for pair in zip(edges, edges[1:]))
+    # at the turning point the integrand is finite
+    whole += 1e-7 * integrand(np.pi / 2 - 1e-4)
+    return abs((np.pi - 2.0 * whole + np.pi) % (2.0 * np.pi) - np.pi)
+
+
+def test_deflection_of_atoms(tmp_path):
+    with open_pair(colliding.write(tmp_path)) as pair:
+        for flight in flights.fly(pair, Plan((1,), 2.0, None, 0.0, 3.0), range(12), 10_000):
+            assert flight.fate == "parted" and flight.turnings == 1
+            assert flight.angle == pytest.approx(deflection(flight.b, flight.energy), abs=2e-6)
+            assert flight.error_energy < 1e-8 and flight.error_angular < 1e-8 and flight.error_momentum < 1e-13
+
+
+def test_time_reversal(dumbbells):
+    """Turned round, a flight ends with the velocities and angular momenta it began with."""
+    plan = Plan((2,), 2.0, None, 2.0, 2.0)
+    for number in range(10):
+        start = plan.start(dumbbells, number)
+        end = dumbbells.fly(start)
+        back = dumbbells.fly(end.reversed())
+        assert np.abs(end.momentum - start.momentum).max() > 1e-3
+        # orbiting bodies amplify errors exponentially
+        error = 1e-7 if end.turnings == 1 else 1e-3
+        assert back.velocity == pytest.approx(-start.velocity, abs=error)
+        assert back.momentum == pytest.approx(-start.momentum, abs=error)
+
+
+def test_a_flight_does_not_depend_on_those_before(dumbbells):
+    plan = Plan((2,), 2.0, None, 2.0, 2.0)
+    every = flights.fly(dumbbells, plan, range(6), 10_000)
+    assert flights.fly(dumbbells, plan, [5, 2], 10_000) == [every[5], every[2]]
+
+
+def test_poses(dumbbells):
+    """A flight that meets nothing turns both bodies by what their rotation says."""
+    start = Plan((3,), 1.0, None, 1.0, 4.5).starts(dumbbells, [0], 4.45)[0][2]
+    end = dumbbells.fly(start)
+    assert end.velocity == pytest.approx(start.velocity, abs=1e-12)
+    before, after = (dumbbells.turned(state.quaternion, dumbbells.bodies.shape) for state in (start, end))
+    omega = dumbbells.bodies.divided_by_inertia(start.quaternion, start.momentum)
+    for k in range(2):
+        own = np.flatnonzero(dumbbells.bodies.of == k)[0]
+        angle, axis = np.linalg.norm(omega[k]) * end.time, omega[k] / np.linalg.norm(omega[k])
+        arm = before[own]
+        turned = np.cos(angle) * arm + np.sin(angle) * np.cross(axis, arm) + (1 - np.cos(angle)) * (axis @ arm) * axis
+        assert after[own] == pytest.approx(turned, abs=1e-7)
+
+
+def neufeld(temperature):
+    """Omega(1,1)* and Omega(2,2)* of Lennard-Jones atoms, to 0.1 %.
+
+    P. D. Neufeld, A. R. Janzen, R. A. Aziz, J. Chem. Phys. 57, 1100 (1972), without the oscillating terms.
+    """
+    one = 1.06036 * temperature**-0.1561 + 0.193 * np.exp(-0.47635 * temperature)
+    one += 1.03587 * np.exp(-1.52996 * temperature) + 1.76474 * np.exp(-3.89411 * temperature)
+    two = 1.16145 * temperature**-0.14874 + 0.52487 * np.exp(-0.7732 * temperature)
+    return {"Omega(1,1)*": one, "Omega(2,2)*": two + 2.16178 * np.exp(-2.43787 * temperature)}
+
+
+def test_collision_integrals_of_argon(tmp_path):
+    run(colliding.write(tmp_path), tmp_path / "out", "--temperature", "2", "--sigma", "1", "--count", "2048")
+    found = json.loads((tmp_path / "out" / "results.json").read_text())
+    for name, known in neufeld(2.0).items():
+        quantity = found["quantities"][name]
+        assert quantity["error"] < 0.01 * known
+        assert abs(quantity["value"] - known) < 3.0 * quantity["error"] + 0.001 * known, name
+    assert found["flights"]["unparted"] == found["flights"]["lost"] == 0
+
+
+def test_detailed_balance(tmp_path):
+    """At equal temperatures rotation gains nothing, and with cold rotation it does."""
+    deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5)
+    gains = []
+    for rotation in ("1", "0.2"):
+        out = tmp_path / rotation
+        run(deck, out, *WHOLE, "--rotation", rotation, "--count", "512")
+        gains.append(json.loads((out / "results.json").read_text())["quantities"]["gain"])
+    equal, cold = gains
+    assert abs(equal["value"]) < 3.0 * equal["error"]
+    assert cold["value"] > 3.0 * cold["error"]
+
+
+def test_any_number_of_processes_and_parts(tmp_path):
+    """The same files on two processes, continued after having been cut off anywhere, and merged."""
+    deck = colliding.write(tmp_path)
+    run(deck, tmp_path / "whole", *WHOLE, "--count", "120")
+    expected = contents(tmp_path / "whole")
+    run(deck, tmp_path / "two", *WHOLE, "--count", "120", "--processes", "2")
+    assert contents(tmp_path / "two") == expected
+
+    cut = tmp_path / "two" / "flights.csv"
+    cut.write_bytes(expected["flights.csv"][:5003])
+    (tmp_path / "two" / "results.json").unlink()
+    run(deck, tmp_path / "two", *WHOLE, "--count", "120")
+    assert contents(tmp_path / "two") == expected
+
+    for name, first, count in (("b", "50", "70"), ("a", "0", "50")):
+        run(deck, tmp_path / name, *WHOLE, "--first", first, "--count", count)
+    parts = ["--merge", str(tmp_path / "b"), "--merge", str(tmp_path / "a")]
+    result = CliRunner().invoke(main, ["scatter", *parts, "--out", str(tmp_path / "merged")])
+    assert result.exit_code == 0, result.output
+    assert contents(tmp_path / "merged") == expected
+
+    # and a gap that is filled later
+    run(deck, tmp_path / "b", *WHOLE, "--count", "120")
+    assert contents(tmp_path / "b") == expected
+
+
+def test_killed_and_continued(tmp_path):
+    deck, out = colliding.write(tmp_path), tmp_path / "out"
+    options = [*WHOLE, "--count", "400", "--processes", "1", "--out", str(out)]
+    code = "from lammps_gearquat.cli import main; main()"
+    process = subprocess.Popen([sys.executable, "-c", code, "scatter", str(deck), *options], start_new_session=True)
+    table = out / "flights.csv"
+    while not (table.exists() and table.stat().st_size > 5000):
+        assert process.poll() is None
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    flown = len(table.read_bytes().splitlines())
+    assert flown < 401
+    run(deck, out, *options)
+    run(deck, tmp_path / "whole", *WHOLE, "--count", "400")
+    assert contents(out) == contents(tmp_path / "whole")
+
+
+def test_it_flies_until_errors_are_small(tmp_path):
+    deck = colliding.write(tmp_path)
+    output = run(deck, tmp_path / "out", "--temperature", "2", "--error", "0.03")
+    found = json.loads((tmp_path / "out" / "results.json").read_text())
+    for name in ("Omega(1,1)", "Omega(2,2)"):
+        assert found["quantities"][name]["error"] <= 0.03 * found["quantities"][name]["value"]
+    # what is beyond the largest impact parameter is a tenth of that
+    assert max(found["settings"]["largest"]["left"].values()) < 3e-3
+    assert 1.5 < found["settings"]["plan"]["largest"] < 3.0
+    assert "orbiting" in output and {path.name for path in Path(tmp_path / "out").glob("*.png")} == {
+        "deflection.png",
+        "convergence.png",
+    }
+
+
+def test_flights_that_never_part_are_named(tmp_path):
+    output = run(colliding.write(tmp_path), tmp_path / "out", *WHOLE, "--count", "32", "--steps", "160")
+    counts = json.loads((tmp_path / "out" / "results.json").read_text())["flights"]
+    assert 0 < counts["unparted"] < 32 and "Unparted: " in output
+
+
+def test_flights_that_lammps_ends_are_lost(tmp_path):
+    """Here because the fix is refused."""
+    with open_pair(colliding.write(tmp_path)) as pair:
+        plan = Plan((1,), 2.0, None, 0.0, 3.0)
+        pair._command_of_fix = "fix move all gear/quat molecule tolerance -1 energy"
+        (lost,) = flights.fly(pair, plan, [0], 1000)
+        assert lost.fate == "lost" and "tolerance" in lost.message and np.isnan(lost.angle)
+        # and flights after it are as ever
+        (flight,) = flights.fly(pair, plan, [1], 1000)
+        assert flight.fate == "parted"
