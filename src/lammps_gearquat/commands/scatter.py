@@ -15,9 +15,9 @@ OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count")
 
 
 @command(
-    "gearquat scatter examples/collisions/in.argon --temperature 300 --error 0.01",
-    "gearquat scatter examples/collisions/in.argon --temperature 300 --count 500 --first 0 --out part1",
-    "gearquat scatter examples/collisions/in.argon --temperature 300 --count 500 --first 500 --out part2",
+    "gearquat scatter examples/collisions/in.argon --temperature 300 --error 0.1",
+    "gearquat scatter examples/collisions/in.argon --temperature 300 --largest 8 --count 200 --out part1",
+    "gearquat scatter examples/collisions/in.argon --temperature 300 --largest 8 --first 200 --count 200 --out part2",
     "gearquat scatter --merge part1 --merge part2 --out whole",
 )
 @cloup.argument("deck", type=FILE, required=False, help="LAMMPS input script with two rigid bodies.")
