@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 
 from lammps_gearquat.cli import main
 from lammps_gearquat.scatter import Plan, flights, open_pair
+from running import EXAMPLES
 
 WHOLE = ("--temperature", "1", "--largest", "3", "--seed", "4")
 
@@ -211,3 +212,19 @@ def test_flights_that_lammps_ends_are_lost(tmp_path):
         # and flights after it are as ever
         (flight,) = flights.fly(pair, plan, [1], 1000)
         assert flight.fate == "parted"
+
+
+def test_lists_of_hybrid_styles():
+    """In a flight every style has the neighbors that it would have in a new run at that place."""
+    close = 0
+    with open_pair(EXAMPLES / "collisions" / "in.nitrogen") as pair:
+        plan, lammps = Plan((1,), 300.0, None, 300.0, 5.0), pair.lammps
+        for number in range(3):
+            for steps in (200, 400, 600, 800):
+                end = pair.fly(plan.start(pair, number), steps)
+                before = lammps.numpy.extract_atom("f")[:6].copy()
+                lammps.command("run 0 post no")
+                # the pose of a new run is the corrected one
+                assert lammps.numpy.extract_atom("f")[:6] == pytest.approx(before, abs=1e-6 * (1 + np.abs(before).max()))
+                close += end.closest < 4.0
+    assert close

