@@ -32,19 +32,31 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Largest values with which a shrinking step is stable: in the second-order form errors of rescaled
-/// rows, as velocities, hardly fade from 10 on, and grow from 11 on (tests/unit/test_step_control.cpp).
-constexpr int VARIABLE_MOST = 9;
+/// Largest values with which a shrinking step is stable (tests/unit/test_step_control.cpp).
+constexpr int VARIABLE_MOST = 10;
 
 /// Local errors of a step with one value fewer, the present number, one more.
 struct StepErrors {
   double fewer = 0.0, same = 0.0, more = 0.0;
+
+  /// By how much they exceed what rounding makes of them.
+  StepErrors beyond(double rounding) const
+  {
+    return {excess(fewer, rounding), excess(same, rounding), excess(more, rounding)};
+  }
 
   void include(const StepErrors &other)
   {
     fewer = std::max(fewer, other.fewer);
     same = std::max(same, other.same);
     more = std::max(more, other.more);
+  }
+
+ private:
+  /// Not a number stays so.
+  static double excess(double error, double rounding)
+  {
+    return error <= rounding ? 0.0 : error - rounding;
   }
 };
 
@@ -57,6 +69,11 @@ struct StepMeasures {
   {
     length.include(other.length);
     energy.include(other.energy);
+  }
+  /// Of a body: what rounding of its sites makes of them is left out; force: on the body.
+  StepMeasures beyond(double rounding_of_sites, double force) const
+  {
+    return {length.beyond(rounding_of_sites), energy.beyond(rounding_of_sites * force)};
   }
 };
 
@@ -93,6 +110,15 @@ class VariableOrder {
     errors.energy = {energy(worth, fewer, last), energy(worth, same, trial),
                      energy(worth, more, change)};
     return correction;
+  }
+
+  /// Half of the last digit of a site's coordinates.  Forces belong to rounded coordinates, so the
+  /// energy is off by as much times the force, however short the steps are.
+  double rounding_of_sites(double reach, const double *rows) const
+  {
+    const double *x = rows + Scheme::POSITION;
+    const double farthest = std::max({std::fabs(x[0]), std::fabs(x[1]), std::fabs(x[2])}) + reach;
+    return 0.5 * std::numeric_limits<double>::epsilon() * farthest;
   }
 
   /// Errors of a step from the rows alone, those of the present number of values.
@@ -224,6 +250,8 @@ class StepControl {
   static constexpr double CLEARLY_MORE = 1.02;
   /// A step that fails within so few of another one has rows that are of no use.
   static constexpr int SOON = 4;
+  /// After so many steps errors of rescaled rows have faded; until then a step that holds stays.
+  static constexpr int FADED = 5;
 
   double eps = 0.0;                        ///< error a step may make, a length or an energy
   bool energy = false;                     ///< which of the two
@@ -287,10 +315,13 @@ class StepControl {
       }
     }
     double size = std::fabs(step);
-    if (ratio < NO_SHORTER || ratio > NO_LONGER)
+    const bool shorter = ratio < NO_SHORTER && (steady.step >= FADED || errors.same > eps);
+    if (shorter || ratio > NO_LONGER)
       size *= std::max(SHRINK, ratio);
     else if (choice.values < values || ratio < CLEARLY_MORE * same)
       choice.values = values;
+    if (errors.same > eps && steady.step < FADED && values > fewest)    // it was not repeated
+      choice.values = values - 1;
     if (size > farthest || (ratio > NO_LONGER && size > CLEAR_OF_LIMIT * farthest))
       size = std::min(
           size,

@@ -8,8 +8,9 @@ using namespace Drive;
 
 namespace {
 
-/// By what factor the rows that a scheme sets anew grow in a step when nothing but the step changes.
-double growth(const Scheme &scheme, double ratio)
+/// By what factor the rows that a scheme sets anew grow from one change of the step to the next, when
+/// nothing else changes; every: steps between them.
+double growth(const Scheme &scheme, double ratio, int every)
 {
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
   const Fractions exact = scheme.first() ? first_order_coefficients(n)
@@ -17,11 +18,13 @@ double growth(const Scheme &scheme, double ratio)
   double c[MAX_VALUES], rows[MAX_VALUES] = {}, before = 1.0;
   for (int j = 0; j < n; ++j) c[j] = exact[j].value();
   for (int j = order; j < n; ++j) rows[j] = 1.0 / (1 + j);
-  const int settled = 300, steps = 400;
-  for (int k = 0; k < steps; ++k) {
-    Nordsieck<1>::predict(rows, n);
-    const double residual = -rows[order];
-    Nordsieck<1>::correct<1>(rows, n, c, 0, &residual);
+  const int settled = 300, changes = 400;
+  for (int k = 0; k < changes; ++k) {
+    for (int step = 0; step < every; ++step) {
+      Nordsieck<1>::predict(rows, n);
+      const double residual = -rows[order];
+      Nordsieck<1>::correct<1>(rows, n, c, 0, &residual);
+    }
     Nordsieck<1>::rescale(rows, n, ratio);
     double size = 0.0;
     for (int j = order; j < n; ++j) size = std::max(size, std::fabs(rows[j]));
@@ -30,7 +33,7 @@ double growth(const Scheme &scheme, double ratio)
     if (k > settled) before *= size;
     for (int j = order; j < n; ++j) rows[j] /= size;
   }
-  return std::pow(before, 1.0 / (steps - 1 - settled));
+  return std::pow(before, 1.0 / (changes - 1 - settled));
 }
 
 /// A polynomial of degree `degree` in every column, about t, as rows for the step h.
@@ -84,22 +87,22 @@ struct Following : Follower {
 
 }    // namespace
 
-TEST(StepControl, AShrinkingStepIsStableToNineValues)
+TEST(StepControl, AShrinkingStepIsStable)
 {
   // errors of rows have to fade faster than the step shrinks: in the second formulation they count as
   // velocities, times the step
 
-  const auto worst = [](const Scheme &scheme) {
+  const auto worst = [](const Scheme &scheme, int every) {
     double most = 0.0;
     for (double ratio = StepControl::SHRINK_FAILED; ratio < 1.0; ratio += 0.01)
-      most = std::max(most, growth(scheme, ratio) / (scheme.first() ? 1.0 : ratio));
+      most = std::max(most, growth(scheme, ratio, every) / (scheme.first() ? 1.0 : ratio));
     return most;
   };
-  for (const Scheme &scheme : every_scheme())
-    if (scheme.values() <= VARIABLE_MOST)
-      EXPECT_LT(worst(scheme), 0.85) << scheme;
-    else
-      EXPECT_GT(worst(scheme), 0.88) << scheme;
+  for (const Scheme &scheme : every_scheme()) {
+    if (scheme.values() > VARIABLE_MOST) continue;
+    EXPECT_LT(worst(scheme, StepControl::FADED), 0.5) << scheme;
+  }
+  EXPECT_GT(worst(scheme_of(SECOND, VARIABLE_MOST), 1), 1.0);    // so it stays for a while
 }
 
 TEST(StepControl, RowsComeAndGoWithoutAnError)
@@ -228,7 +231,13 @@ TEST(StepControl, TheLaw)
     EXPECT_DOUBLE_EQ(next({big, error(ratio), big}, 0.1).step, 0.1);
   EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 8, 100}).step, 0.1);
   EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 100, 8}).step, 0.1);
+
+  // one that was just changed stays while it holds
+
+  EXPECT_DOUBLE_EQ(next({big, error(0.92), big}, 0.1, 8, {100, 4, 100}).step, 0.1);
+  EXPECT_DOUBLE_EQ(next({big, error(0.92), big}, 0.1, 8, {100, 5, 100}).step, 0.092);
   EXPECT_DOUBLE_EQ(next({big, error(0.8), big}, 0.1, 8, {100, 1, 1}).step, 0.08);
+  EXPECT_EQ(next({big, error(0.8), big}, 0.1, 8, {100, 1, 1}).values, 7);
 
   // another number of values has to promise more than that the error is smaller
 
@@ -342,6 +351,49 @@ TEST(StepControl, TheErrorFollowsEps)
     EXPECT_GT(slope, 0.75);
     EXPECT_LT(slope, 1.4);
     EXPECT_GT(steps.back(), steps.front());
+  }
+}
+
+TEST(StepControl, RoundedCoordinatesMakeNoStepShorter)
+{
+  // an ellipse about a charge at 100 from the origin, down to a distance of 0.005: the energy is known
+  // to 4e-10 there, and a step that is made for less is of no use
+  const double nearest = 0.005, far = 100.0;
+  RigidBody body = {1.0, {1.0, 1.0, 1.0}};
+  BodyState start = {};
+  start.q[3] = 1.0;
+  start.center[0] = far + 1.0;
+  start.velocity[1] = std::sqrt(2.0 - 2.0 / (1.0 + nearest));
+  const double period = 2.0 * std::acos(-1.0) * std::pow(0.5 * (1.0 + nearest), 1.5);
+  const double rounding = far * std::numeric_limits<double>::epsilon() / (nearest * nearest);
+  for (Formulation formulation : {FIRST, SECOND}) {
+    vector<long> steps;
+    for (const double eps : {1e-11, 1e-13, 1e-15}) {
+      double at[3];
+      const auto place = [&](const BodyState &s) {
+        std::copy_n(s.center, 3, at);
+        at[0] -= far;
+        return length(at);
+      };
+      Follower follower(formulation, eps, true, 1e-4, {{body, 0.0, start}},
+                        [&](const vector<Follower::One> &ones) {
+                          Load load = {};
+                          const double r = place(ones[0].state);
+                          for (int i = 0; i < 3; ++i) load.force[i] = -at[i] / (r * r * r);
+                          return vector<Load>{load};
+                        });
+      const auto energy = [&] {
+        const BodyState &s = follower.bodies[0].state;
+        return translational_energy(body, s.velocity) - 1.0 / place(s);
+      };
+      const double e0 = energy();
+      follower.begin_with_loads();
+      follower.run(period, [] {
+      });
+      EXPECT_LT(std::fabs(energy() - e0), 10.0 * rounding);
+      steps.push_back(follower.steps);
+    }
+    EXPECT_LT(steps[2], 4 * steps[0]) << steps[0] << " " << steps[1] << " " << steps[2];
   }
 }
 
