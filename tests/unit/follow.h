@@ -117,8 +117,7 @@ struct Follower {
       double *rows = bodies[k].rows.data();
       order.correct(integrator, bodies[k].body, bodies[k].reach, met[k],
                     integrator.axes_of(rows).data(), rows, errors);
-      const double rounding = rounded ? order.rounding_of_sites(bodies[k].reach, rows) : 0.0;
-      all.include(errors.beyond(rounding, length(met[k].force)));
+      all.include(rounded ? errors.beyond_rounding() : errors);
     }
     take_states();
     return control.measured(all);

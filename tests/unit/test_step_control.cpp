@@ -8,9 +8,8 @@ using namespace Drive;
 
 namespace {
 
-/// By what factor the rows that a scheme sets anew grow from one change of the step to the next, when
-/// nothing else changes; every: steps between them.
-double growth(const Scheme &scheme, double ratio, int every)
+/// By what factor the rows that a scheme sets anew grow in a step when nothing but the step changes.
+double growth(const Scheme &scheme, double ratio)
 {
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
   const Fractions exact = scheme.first() ? first_order_coefficients(n)
@@ -18,13 +17,11 @@ double growth(const Scheme &scheme, double ratio, int every)
   double c[MAX_VALUES], rows[MAX_VALUES] = {}, before = 1.0;
   for (int j = 0; j < n; ++j) c[j] = exact[j].value();
   for (int j = order; j < n; ++j) rows[j] = 1.0 / (1 + j);
-  const int settled = 300, changes = 400;
-  for (int k = 0; k < changes; ++k) {
-    for (int step = 0; step < every; ++step) {
-      Nordsieck<1>::predict(rows, n);
-      const double residual = -rows[order];
-      Nordsieck<1>::correct<1>(rows, n, c, 0, &residual);
-    }
+  const int settled = 300, steps = 400;
+  for (int k = 0; k < steps; ++k) {
+    Nordsieck<1>::predict(rows, n);
+    const double residual = -rows[order];
+    Nordsieck<1>::correct<1>(rows, n, c, 0, &residual);
     Nordsieck<1>::rescale(rows, n, ratio);
     double size = 0.0;
     for (int j = order; j < n; ++j) size = std::max(size, std::fabs(rows[j]));
@@ -33,7 +30,7 @@ double growth(const Scheme &scheme, double ratio, int every)
     if (k > settled) before *= size;
     for (int j = order; j < n; ++j) rows[j] /= size;
   }
-  return std::pow(before, 1.0 / (changes - 1 - settled));
+  return std::pow(before, 1.0 / (steps - 1 - settled));
 }
 
 /// A polynomial of degree `degree` in every column, about t, as rows for the step h.
@@ -92,17 +89,20 @@ TEST(StepControl, AShrinkingStepIsStable)
   // errors of rows have to fade faster than the step shrinks: in the second formulation they count as
   // velocities, times the step
 
-  const auto worst = [](const Scheme &scheme, int every) {
+  const auto worst = [](const Scheme &scheme, double least) {
     double most = 0.0;
-    for (double ratio = StepControl::SHRINK_FAILED; ratio < 1.0; ratio += 0.01)
-      most = std::max(most, growth(scheme, ratio, every) / (scheme.first() ? 1.0 : ratio));
+    for (double ratio = least; ratio < 1.0; ratio += 0.01)
+      most = std::max(most, growth(scheme, ratio) / (scheme.first() ? 1.0 : ratio));
     return most;
   };
-  for (const Scheme &scheme : every_scheme()) {
-    if (scheme.values() > VARIABLE_MOST) continue;
-    EXPECT_LT(worst(scheme, StepControl::FADED), 0.5) << scheme;
-  }
-  EXPECT_GT(worst(scheme_of(SECOND, VARIABLE_MOST), 1), 1.0);    // so it stays for a while
+  for (const Scheme &scheme : every_scheme())
+    if (scheme.values() <= VARIABLE_MOST)
+      EXPECT_LT(worst(scheme, StepControl::GENTLE), 0.85) << scheme;
+  for (const Scheme &scheme : every_scheme())
+    if (scheme.values() < VARIABLE_MOST)
+      EXPECT_LT(worst(scheme, StepControl::SHRINK_FAILED), 0.85) << scheme;
+  EXPECT_GT(worst(scheme_of(SECOND, VARIABLE_MOST), StepControl::SHRINK_FAILED), 1.0);
+  EXPECT_GT(worst(scheme_of(SECOND, VARIABLE_MOST + 1), StepControl::GENTLE), 0.95);
 }
 
 TEST(StepControl, RowsComeAndGoWithoutAnError)
@@ -159,6 +159,7 @@ TEST(StepControl, EstimatesAreThoseOfTheOtherNumbersOfValues)
 {
   auto errors_at = [](Formulation formulation, int values, double h) {
     Following body(formulation, 1.0, h, values);
+    body.rounded = false;
     StepErrors errors;
     for (int n = 0; n < 3 * values; ++n) errors = body.step();
     while (body.t < 8.0 - 0.5 * h) errors = body.step();
@@ -232,10 +233,10 @@ TEST(StepControl, TheLaw)
   EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 8, 100}).step, 0.1);
   EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 100, 8}).step, 0.1);
 
-  // one that was just changed stays while it holds
+  // one that was just changed is made shorter gently while it holds; if not, the last row is of no use
 
-  EXPECT_DOUBLE_EQ(next({big, error(0.92), big}, 0.1, 8, {100, 4, 100}).step, 0.1);
-  EXPECT_DOUBLE_EQ(next({big, error(0.92), big}, 0.1, 8, {100, 5, 100}).step, 0.092);
+  EXPECT_DOUBLE_EQ(next({big, error(0.91), big}, 0.1, 8, {100, 4, 100}).step, 0.095);
+  EXPECT_DOUBLE_EQ(next({big, error(0.91), big}, 0.1, 8, {100, 5, 100}).step, 0.091);
   EXPECT_DOUBLE_EQ(next({big, error(0.8), big}, 0.1, 8, {100, 1, 1}).step, 0.08);
   EXPECT_EQ(next({big, error(0.8), big}, 0.1, 8, {100, 1, 1}).values, 7);
 
@@ -320,7 +321,7 @@ TEST(StepControl, AFailedStepLeavesNoTrace)
     body.follow(body.step());
     other.follow(other.step());
   }
-  body.set_step(8.0 * body.h);
+  body.set_step(16.0 * body.h);
   body.step();
   EXPECT_GT(body.repeated, 0);
   EXPECT_LE(body.largest, 1.0);
@@ -393,7 +394,7 @@ TEST(StepControl, RoundedCoordinatesMakeNoStepShorter)
       EXPECT_LT(std::fabs(energy() - e0), 10.0 * rounding);
       steps.push_back(follower.steps);
     }
-    EXPECT_LT(steps[2], 4 * steps[0]) << steps[0] << " " << steps[1] << " " << steps[2];
+    EXPECT_LT(steps[2], 50 * steps[0]) << steps[0] << " " << steps[1] << " " << steps[2];
   }
 }
 
