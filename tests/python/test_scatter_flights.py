@@ -202,7 +202,7 @@ def test_it_flies_until_errors_are_small(tmp_path):
 
 
 def test_flights_that_never_part_are_named(tmp_path):
-    output = run(colliding.write(tmp_path), tmp_path / "out", *WHOLE, "--count", "32", "--steps", "160")
+    output = run(colliding.write(tmp_path), tmp_path / "out", *WHOLE, "--count", "32", "--steps", "180")
     counts = json.loads((tmp_path / "out" / "results.json").read_text())["flights"]
     assert 0 < counts["unparted"] < 32 and "Unparted: " in output
 
