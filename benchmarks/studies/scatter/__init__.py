@@ -1,0 +1,231 @@
+"""Collisions in the gas: results of ``gearquat scatter`` beside quadrature, measurements and other methods."""
+
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+
+from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, draw
+from benchmarks.reference.central import CollisionIntegrals, Gromacs
+from benchmarks.studies.collisions import evaluations as work_at
+
+from . import flown, rivals
+
+PARTS = ("integrals", "molecules", "conservation", "reference", "methods")
+#: reduced temperatures; in.argon has this diameter, well depth and these ends of the cut-off
+REDUCED = (0.5, 1.0, 2.0, 5.0, 10.0)
+SIGMA, WELL, CUT = 3.405, 119.8, (12.0, 30.0)
+#: standard errors that are asked for, relative: of the whole study, and of --quick
+ERRORS = {"argon": (0.0018, 0.03), "nitrogen": (0.004, 0.04), "helium": (0.004, 0.04), "ion": (0.01, 0.1)}
+#: flights of the test of conservation, beside DOP853 (of each deck), and of each method
+FLIGHTS = {"conservation": (100_000, 1000), "reference": (100, 3), "methods": (10, 2)}
+EPS, STEPS = 10.0 ** -np.arange(5.0, 13.0), (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
+SOLVERS = dict.fromkeys(("DOP853", "LSODA"), 10.0 ** -np.arange(4.0, 14.0))
+QUICK_STEPS = STEPS[:3]
+#: errors of the energy at which methods are compared
+LEVELS = 10.0 ** -np.arange(4, 11)
+#: published: viscosity of nitrogen at 300 K without pressure (E. W. Lemmon and R. T Jacobsen, Int. J. Thermophys.
+#: 25, 21 (2004), Eqs. 2 and 3, with an uncertainty of 0.5 %), and computed cross sections of choline at 301 K with
+#: their standard deviations (files of the program of Campuzano et al. 2012, see examples/collisions/README)
+VISCOSITY, CHOLINE = (17.877, 0.09), {"helium": (55.402, 0.510), "nitrogen": (115.92, 1.27)}
+LOOKS = {
+    "fix gear/quat": ("second", "o"),
+    "fix rigid/nve/small": ("rigid", "D"),
+    "DOP853": ("total", "^"),
+    "LSODA": ("rotation", "v"),
+}
+
+
+@dataclass(frozen=True)
+class Results:
+    """Each part is None if it was not asked for.
+
+    ``integrals``: reduced temperature -> Run; ``molecules``: name -> Run; ``conservation``: a Run;
+    ``reference``: deck -> array (n, 4), see ``flown.beside_reference``; ``methods``: label -> array
+    (settings, 3), see ``rivals.points``.
+    """
+
+    integrals: dict = None
+    molecules: dict = None
+    conservation: flown.Run = None
+    reference: dict = None
+    methods: dict = None
+
+
+# --- measuring ----------------------------------------------------------------------------------
+def _integrals(lab, sized):
+    found = {}
+    for reduced in REDUCED:
+        options = ("--temperature", reduced * WELL, "--rotation", 0, "--sigma", SIGMA, "--error", sized(ERRORS["argon"]))
+        found[reduced] = flown.command(lab, f"argon_{reduced:g}", "in.argon", *options)
+        lab.advance(1 / len(REDUCED))
+    return found
+
+
+def _molecules(lab, sized):
+    runs = {
+        "nitrogen": ("in.nitrogen", 300, "nitrogen"),
+        "helium": ("in.choline_helium", 301, "helium"),
+        "ion": ("in.choline_nitrogen", 301, "ion"),
+    }
+    found = {}
+    for name, (deck, temperature, error) in runs.items():
+        options = ("--temperature", temperature, "--error", sized(ERRORS[error]))
+        found[name] = flown.command(lab, name, deck, *options)
+        lab.advance(1 / len(runs))
+    return found
+
+
+def _conservation(lab, sized):
+    options = ("--temperature", 2, "--count", sized(FLIGHTS["conservation"]))
+    return flown.command(lab, "conservation", "in.dumbbells", *options)
+
+
+def _reference(lab, sized):
+    count = sized(FLIGHTS["reference"])
+    scenes = {"in.dumbbells": (2.0, 3.5), "in.nitrogen": (300.0, 8.0)}
+    tick = partial(lab.advance, 1 / (count * len(scenes)))
+    return {deck: flown.beside_reference(deck, *own, count, tick) for deck, own in scenes.items()}
+
+
+def _methods(lab, sized):
+    steps = sized((STEPS, QUICK_STEPS))
+    runs = len(EPS) + len(steps) + sum(map(len, SOLVERS.values()))
+    return rivals.points(sized(FLIGHTS["methods"]), EPS, steps, SOLVERS, partial(lab.advance, 1 / runs))
+
+
+def measure(lab):
+    """Results of the parts that were asked for."""
+    parts = lab.parts or PARTS
+    found = {}
+    for part in parts:
+        with lab.share(1 / len(parts)):
+            found[part] = globals()[f"_{part}"](lab, lambda pair: pair[lab.quick])
+    return Results(**found)
+
+
+# --- judging ------------------------------------------------------------------------------------
+@cache
+def _quadratures():
+    """Of the whole potential, and of that with the cut-off of the deck."""
+    return CollisionIntegrals(), CollisionIntegrals(Gromacs(*(end / SIGMA for end in CUT)))
+
+
+def _of_integrals(runs):
+    """Measurements and Table: Omega* beside quadrature, with and without the cut-off of the deck."""
+    whole, cut = _quadratures()
+    rows, cells, worst, left, largest = [], [], 0.0, 0.0, 0.0
+    for reduced, run in runs.items():
+        for order, power in ((1, 1), (2, 2), (1, 2)):
+            value, error = run.quantities[f"Omega({order},{power})*"]
+            exact, with_cut = whole(order, power, reduced), cut(order, power, reduced)
+            away = (value - exact) / error
+            cells.append(
+                (f"{reduced:g}", f"Ω({order},{power})*", f"{value:.4f}", f"{error:.4f}", f"{exact:.4f}", f"{away:+.1f}")
+            )
+            worst, left = max(worst, abs(away)), max(left, abs(with_cut / exact - 1.0))
+            if power == order:
+                largest = max(largest, error / exact)
+    rows.append(Measurement("Ω*: largest deviation from quadrature, in standard errors", worst, spec=".1f", most=3.5))
+    rows.append(Measurement("Ω*(1,1), Ω*(2,2): largest standard error, relative", largest, most=0.002))
+    rows.append(Measurement("Ω*: what the cut-off of the deck changes at most, relative, by quadrature", left, most=1e-4))
+    header = ("T*", "integral", "flights", "standard error", "quadrature", "deviation / standard error")
+    return rows, {"integrals": Table(header, cells)}
+
+
+def _of_molecules(runs):
+    """Measurements: viscosity and cross sections beside published values."""
+    value, error = runs["nitrogen"].quantities["viscosity"]
+    rows = [
+        Measurement("viscosity of nitrogen at 300 K", value, error, ".2f", "µPa s"),
+        Measurement("the same by measured one, less 1", value / VISCOSITY[0] - 1.0, error / VISCOSITY[0], ".3f", least=-0.1, most=0.1),
+    ]
+    for name, gas in (("helium", "helium"), ("ion", "nitrogen")):
+        value, error = runs[name].quantities["cross section"]
+        published = CHOLINE[gas][0]
+        rows.append(Measurement(f"cross section of choline in {gas} at 301 K", value, error, ".2f", "Å²"))
+        away = value / published - 1.0
+        rows.append(Measurement("the same by the published computed one, less 1", away, error / published, ".3f", least=-0.1, most=0.1))
+    counts = [(name, *(run.counts[key] for key in ("flights", "orbiting", "unparted", "lost"))) for name, run in runs.items()]
+    return rows, {"molecules": Table(("pair", "flights", "orbiting", "unparted", "lost"), counts)}
+
+
+def _of_conservation(run):
+    """Measurements: what 100 000 flights keep, and no net transfer at equal temperatures."""
+    counts = run.counts
+    gone = counts["lost"] + counts["unparted"]
+    rows = [
+        Measurement("flights of dumbbells", counts["flights"], spec=".0f"),
+        Measurement("of them lost or not parted", gone, spec=".0f", most=0),
+        Measurement("of them with a repeated step", counts["repeated"], spec=".0f"),
+        Measurement("of them orbiting", counts["orbiting"], spec=".0f"),
+    ]
+    rows += [Measurement(f"largest error of the {name} in a flight, relative", value, most=1e-9) for name, value in run.errors.items()]
+    value, error = run.quantities["gain"]
+    rows.append(Measurement("net transfer to rotation at equal temperatures, in standard errors", value / error, spec=".1f", least=-3.5, most=3.5))
+    return rows, {}
+
+
+def _of_reference(arrays):
+    """Measurements: deviations from DOP853 with forces of its own, and of flights that are flown back."""
+    every = np.concatenate(list(arrays.values()))
+    simple = every[every[:, 2] <= 1]
+    rows = [
+        Measurement("flights beside DOP853", len(every), spec=".0f"),
+        Measurement("of them orbiting", len(every) - len(simple), spec=".0f"),
+        Measurement("largest deviation of a velocity (not orbiting)", simple[:, 0].max(), most=1e-8),
+        Measurement("largest deviation of an angular momentum (not orbiting)", simple[:, 1].max(), most=1e-8),
+        Measurement("largest deviation of a velocity after the way back (not orbiting)", simple[:, 3].max(), most=1e-7),
+    ]
+    return rows, {}
+
+
+def _of_methods(points):
+    """Measurements, tables: flights per second and evaluations at equal errors of the energy."""
+    seconds = {label: work_at(own[:, [0, 2]], LEVELS) for label, own in points.items()}
+    calls = {label: work_at(own[:, [1, 2]], LEVELS) for label, own in points.items()}
+    header = ("method", *(f"{level:.0e}" for level in LEVELS))
+    tables = {
+        "rates": Table(header, [(label, *(f"{1 / x:.3g}" for x in own)) for label, own in seconds.items()]),
+        "evaluations": Table(header, [(label, *(f"{x:.0f}" for x in own)) for label, own in calls.items()]),
+    }
+    at = int(np.flatnonzero(np.isclose(LEVELS, 1e-7))[0])
+    ours, rows = seconds["fix gear/quat"][at], []
+    rows.append(Measurement("fix gear/quat: flights per second and core at an error of 1e-7", 1 / ours, spec=".0f"))
+    for label in points:
+        if label != "fix gear/quat":
+            ratio, of_calls = seconds[label][at] / ours, calls[label][at] / calls["fix gear/quat"][at]
+            rows.append(Measurement(f"time of {label} by that of the fix at 1e-7", ratio, spec=".1f", least=10.0))
+            rows.append(Measurement(f"evaluations of {label} by those of the fix at 1e-7", of_calls, spec=".2f"))
+    return rows, tables
+
+
+def find(results):
+    """Finding of Results."""
+    rows, tables, pictures = [], {}, {}
+    for part in PARTS:
+        data = getattr(results, part)
+        if data is not None:
+            more, own = globals()[f"_of_{part}"](data)
+            rows, tables = rows + more, tables | own
+    context = {}
+    if results.methods is not None:
+        pictures["scatter"] = partial(draw, panels=panels(results.methods))
+        seconds, calls, _ = results.methods["DOP853"].sum(axis=0)
+        context["microseconds"] = 1e6 * seconds / calls
+    context |= {"viscosity": VISCOSITY, "choline": CHOLINE, "flights": FLIGHTS, "errors": ERRORS, "deck": rivals.DECK}
+    return Finding(rows, tables, pictures, context)
+
+
+def panels(points):
+    """Time and evaluations of a flight against the error of the energy."""
+    found = []
+    for column, title, words in ((0, "Time of a flight", "seconds"), (1, "Evaluations in a flight", "evaluations")):
+        curves = [
+            Curve(label, own[:, 2], own[:, column], LOOKS[label][0], "-", LOOKS[label][1]) for label, own in points.items()
+        ]
+        found.append(Panel(title, "largest error of the energy on the way", words, curves, "xy", columns=1))
+    return tuple(found)
+
+
+STUDY = Study("scatter", "Collisions in the gas", 1800.0, measure, find, parts=PARTS)
