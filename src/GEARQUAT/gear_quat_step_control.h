@@ -32,13 +32,18 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Largest values with which a shrinking step is stable: in the second-order form errors of rescaled
-/// rows, as velocities, hardly fade from 10 on, and grow from 11 on (tests/unit/test_step_control.cpp).
-constexpr int VARIABLE_MOST = 9;
+/// Largest values with which a shrinking step is stable (tests/unit/test_step_control.cpp).
+constexpr int VARIABLE_MOST = 10;
 
 /// Local errors of a step with one value fewer, the present number, one more.
 struct StepErrors {
   double fewer = 0.0, same = 0.0, more = 0.0;
+
+  /// By how much they exceed what rounding makes of them.
+  StepErrors beyond(double rounding) const
+  {
+    return {excess(fewer, rounding), excess(same, rounding), excess(more, rounding)};
+  }
 
   void include(const StepErrors &other)
   {
@@ -46,17 +51,32 @@ struct StepErrors {
     same = std::max(same, other.same);
     more = std::max(more, other.more);
   }
+
+ private:
+  /// Not a number stays so.
+  static double excess(double error, double rounding)
+  {
+    return error <= rounding ? 0.0 : error - rounding;
+  }
 };
 
 /// As a length: of the position, or of the orientation times the reach of the body, whichever is larger.
 /// As an energy: how much of it the errors of position, orientation and velocities may be worth.
 struct StepMeasures {
   StepErrors length, energy;
+  struct {
+    double length = 0.0, energy = 0.0;
+  } rounding;    ///< of the state of one body
 
   void include(const StepMeasures &other)
   {
     length.include(other.length);
     energy.include(other.energy);
+  }
+  /// Without what rounding makes of them.
+  StepMeasures beyond_rounding() const
+  {
+    return {length.beyond(rounding.length), energy.beyond(rounding.energy), {}};
   }
 };
 
@@ -92,6 +112,9 @@ class VariableOrder {
     const Worth worth = worth_of(integrator, body, load, axes, rows);
     errors.energy = {energy(worth, fewer, last), energy(worth, same, trial),
                      energy(worth, more, change)};
+    errors.rounding.length = rounding_of_sites(reach, rows);
+    errors.rounding.energy =
+        worth.position * errors.rounding.length + LAST_DIGIT * worth.twice_kinetic;
     return correction;
   }
 
@@ -138,8 +161,9 @@ class VariableOrder {
   };
   /// What an error of a unit costs in energy; rates: of the velocities times the step.
   struct Worth {
-    double position, rate, angle, turn[3], q[4], norm2;
+    double position, rate, angle, turn[3], q[4], norm2, twice_kinetic;
   };
+  static constexpr double LAST_DIGIT = std::numeric_limits<double>::epsilon();
 
   Scheme scheme;
   int n;
@@ -157,6 +181,14 @@ class VariableOrder {
     return std::max(length(x), 2.0 * reach * std::sqrt(dot4(q, q)));
   }
 
+  /// Forces belong to rounded coordinates, so the energy is off by as much times the force, however
+  /// short the steps are.
+  double rounding_of_sites(double reach, const double *rows) const
+  {
+    const double *x = rows + Scheme::POSITION;
+    return LAST_DIGIT * (std::max({std::fabs(x[0]), std::fabs(x[1]), std::fabs(x[2])}) + reach);
+  }
+
   Worth worth_of(const Integrator &integrator, const RigidBody &body, const Load &load,
                  const double *axes, const double *rows) const
   {
@@ -171,6 +203,9 @@ class VariableOrder {
     for (int i = 0; i < 3; ++i)
       worth.turn[i] =
           body.inertia[i] * std::fabs(state.omega_body[i]) * (scheme.first() ? 1.0 : per_h);
+    worth.twice_kinetic = body.mass * dot3(state.velocity, state.velocity);
+    for (int i = 0; i < 3; ++i)
+      worth.twice_kinetic += body.inertia[i] * state.omega_body[i] * state.omega_body[i];
     std::copy_n(state.q, 4, worth.q);
     worth.norm2 = scheme.norm2(state.q);
     return worth;
@@ -224,6 +259,10 @@ class StepControl {
   static constexpr double CLEARLY_MORE = 1.02;
   /// A step that fails within so few of another one has rows that are of no use.
   static constexpr int SOON = 4;
+  /// With ten values, errors of rows grow if each step is shorter by 0.78 to 0.88, and fade if by this
+  /// or more.  So a step that holds is not made much shorter within so many steps of another change.
+  static constexpr double GENTLE = 0.95;
+  static constexpr int FADED = 5;
 
   double eps = 0.0;                        ///< error a step may make, a length or an energy
   bool energy = false;                     ///< which of the two
@@ -287,10 +326,14 @@ class StepControl {
       }
     }
     double size = std::fabs(step);
-    if (ratio < NO_SHORTER || ratio > NO_LONGER)
-      size *= std::max(SHRINK, ratio);
+    const bool recent = steady.step < FADED, holds = errors.same <= eps;
+    if (ratio < NO_SHORTER)
+      size *= std::max(recent && holds ? GENTLE : SHRINK, ratio);
+    else if (ratio > NO_LONGER)
+      size *= ratio;
     else if (choice.values < values || ratio < CLEARLY_MORE * same)
       choice.values = values;
+    if (recent && !holds && values > fewest) choice.values = values - 1;    // it was not repeated
     if (size > farthest || (ratio > NO_LONGER && size > CLEAR_OF_LIMIT * farthest))
       size = std::min(
           size,

@@ -76,7 +76,7 @@ Correction Tolerance::correct(const Integrator &integrator, int ibody, const Loa
                                               bodies.axes(ibody), bodies.history(ibody), one);
   double &same = control.energy ? one.energy.same : one.length.same;
   if (!std::isfinite(same)) same = std::numeric_limits<double>::infinity();
-  errors.include(one);
+  errors.include(one.beyond_rounding());
   return correction;
 }
 

@@ -10,7 +10,11 @@ from .commands.scatter import scatter
 
 
 @cloup.group(
-    sections=[cloup.Section("Before a long run", [cost, horizon]), cloup.Section("After it", [analyze]), cloup.Section("Instead of it", [scatter])],
+    sections=[
+        cloup.Section("Before a long run", [cost, horizon]),
+        cloup.Section("After it", [analyze]),
+        cloup.Section("Many short runs", [scatter]),
+    ],
     context_settings=HELP,
     epilog=epilog(
         "gearquat cost examples/water/in.water --var method rigid --budget 30",

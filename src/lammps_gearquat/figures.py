@@ -232,9 +232,10 @@ def draw_convergence(path, name, numbers, series):
     colors = (COLOR["second"], COLOR["first"])
     with _picture(path, f"Convergence: {name}", ncols=2, figsize=(10, 4)) as (_, (left, right)):
         for (label, (values, errors)), color in zip(series.items(), colors):
+            look = {"color": color, "marker": "o", "markersize": 3, "label": label}
             last = values[-1]
-            left.errorbar(numbers, values / last - 1.0, errors / abs(last), color=color, marker="o", markersize=3, label=label)
-            right.loglog(numbers, errors / abs(last), color=color, marker="o", markersize=3, label=label)
+            left.errorbar(numbers, values / last - 1.0, errors / abs(last), **look)
+            right.loglog(numbers, errors / abs(last), **look)
         left.set_xscale("log")
         left.set_ylabel("relative difference from the last value")
         right.set_ylabel("relative standard error")

@@ -255,7 +255,7 @@ def test_a_collision_out_of_free_flight(lmp_tree):
         # force times eps in each step, and the bend of the force where it begins
         assert off(run, "TotEng") < 50 * e * len(steps) + 1e-6
         assert 2.0 * steps.max() < 0.25 * 0.3 * 1.001  # a quarter of the skin
-        assert (run[VALUES][run["Time"] < 5] == 9).all()  # until they meet
+        assert (run[VALUES][run["Time"] < 5] == 10).all()  # until they meet
         assert run[LARGEST][-1] <= 1
     for run in runs[3:]:  # a force and an energy that jump cost what they jump by
         assert run["Time"][-1] >= 12.5

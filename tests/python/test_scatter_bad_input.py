@@ -10,16 +10,28 @@ THIRD = "set atom 2 mol 2\n"
 FIX = "fix move all gear/quat molecule tolerance 1e-10 energy"
 SHORT = {"cutoff": 2.5, "inner": 2.4}
 DECKS = {
-    "three bodies": ({THIRD: THIRD + "create_atoms 1 single 0 9 0\nset atom 3 mol 3\n"}, "two bodies are required: fix move has 3"),
+    "three bodies": (
+        {THIRD: THIRD + "create_atoms 1 single 0 9 0\nset atom 3 mol 3\n"},
+        "two bodies are required: fix move has 3",
+    ),
     "one body": ({THIRD: "set atom 2 mol 1\n"}, "two bodies are required: fix move has 1"),
-    "an atom more": ({FIX: "group pair id 1 2\ncreate_atoms 1 single 0 9 0\n" + FIX.replace("all", "pair")}, "1 atoms are in no body"),
+    "an atom more": (
+        {FIX: "group pair id 1 2\ncreate_atoms 1 single 0 9 0\n" + FIX.replace("all", "pair")},
+        "1 atoms are in no body",
+    ),
     "periodic": ({"boundary s s s": "boundary s s p"}, "boundary s s s is required"),
     "no tolerance": ({" tolerance 1e-10 energy": ""}, "keyword tolerance is required"),
-    "another method": ({FIX: "fix move all rigid/nve/small molecule", "atoms": colliding.DUMBBELLS}, "one fix gear/quat is required"),
+    "another method": (
+        {FIX: "fix move all rigid/nve/small molecule", "atoms": colliding.DUMBBELLS},
+        "one fix gear/quat that moves both bodies is required",
+    ),
     "an infile": ({FIX: FIX + " infile no.such"}, "LAMMPS refuses"),
     "a masked force": ({FIX: FIX + " force 1 off off off"}, "keyword force has to be left out"),
     "no forces": ({"pair_style lj/smooth 6.0 7.0\npair_coeff 1 1 1.0 1.0": ""}, "has no forces between atoms"),
-    "spheres": ({"atom_style bond": "atom_style hybrid bond sphere", "mass 1 1.0": "set type 1 density 1.0"}, "atoms have to be points"),
+    "spheres": (
+        {"atom_style bond": "atom_style hybrid bond sphere", "mass 1 1.0": "set type 1 density 1.0"},
+        "atoms have to be points",
+    ),
 }
 EXTRAS = {
     "thermostat": ("fix heat all langevin 1 1 1 4711", "its forces are random"),
@@ -72,7 +84,9 @@ def test_other_settings_in_the_folder(tmp_path):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     options = ("--largest", "3", "--count", "8", "--processes", "1", "--out", str(out))
     assert CliRunner().invoke(main, ["scatter", str(deck), "--temperature", "1", *options]).exit_code == 0
-    assert "flights of other settings (plan temperature, plan rotation)" in refused(deck, "--temperature", "2", *options)
+    assert "flights of other settings (plan temperature, plan rotation)" in refused(
+        deck, "--temperature", "2", *options
+    )
     assert "flights of other settings (plan seed)" in refused(deck, "--temperature", "1", "--seed", "2", *options)
     other = tmp_path / "other"
     second = [*options[:-1], str(other)]

@@ -41,6 +41,7 @@ struct Follower {
   Steady steady;
   long steps = 0, evaluations = 0, repeated = 0;
   bool repeats = true;    ///< steps that fail
+  bool rounded = true;    ///< coordinates, whose rounding does not count as an error
   Integrator integrator;
   VariableOrder order;
 
@@ -116,7 +117,7 @@ struct Follower {
       double *rows = bodies[k].rows.data();
       order.correct(integrator, bodies[k].body, bodies[k].reach, met[k],
                     integrator.axes_of(rows).data(), rows, errors);
-      all.include(errors);
+      all.include(rounded ? errors.beyond_rounding() : errors);
     }
     take_states();
     return control.measured(all);

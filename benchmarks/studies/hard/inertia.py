@@ -131,7 +131,7 @@ def measure(lab, bodies=tuple(BODIES), **options):
 
     steps = [COARSEST * 2**k for k in range(HALVINGS)]
     axes = {"body": bodies, "formulation": FORMULATIONS, "steps": steps}
-    runs = lab.sweep("inertia", deck("hard/inertia"), axes, lambda run: run, settings, True)
+    runs = lab.sweep("inertia", deck("hard/inertia"), axes, lambda run: run, settings, may_fail=True)
     results = {}
     for (body, formulation, steps), finished in runs.items():
         promise = error = (float("inf"), float("inf"))

@@ -32,7 +32,9 @@ OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count")
         help="Temperature of rotation, 0 for none.  Default: --temperature; 0 with --energy.",
     ),
     cloup.option(
-        "--largest", type=POSITIVE, help="Largest impact parameter.  Default: found by pilot flights, from --error."
+        "--largest",
+        type=POSITIVE,
+        help="Largest impact parameter.  Default: found by pilot flights, from --error.",
     ),
     cloup.option("--seed", type=FROM_ZERO, default=1, help="Flights are a function of it and of their number."),
 )

@@ -32,17 +32,28 @@ def scatter(scene, asked, numbers, error, most, out, progress):
 
 
 def _settle(pool, asked, error, out):
-    """The Plan with its largest impact parameter, and the settings."""
+    """The Plan with its largest impact parameter, and the settings.
+
+    If the folder has flights of the same settings, with an impact parameter that is large enough, it stays.
+    """
     scale = asked["energy"]
     if scale is None:
         scale = UNITS[pool.facts.style].boltzmann * asked["temperature"]
     plan = Plan((asked["seed"],), asked["temperature"], asked["energy"], asked["rotation"], 0.0)
+    allowed, steps = LEFT_OUT * error, asked["most_steps"]
+    if (out / store.SETTINGS).exists():
+        known = store.read_settings(out)
+        _, _, farthest = store.facts_of(known)
+        plan_then = replace(plan, largest=farthest.value)
+        enough = farthest.left and max(farthest.left.values()) <= allowed
+        if enough and not asked["largest"] and store.settings(pool.facts, plan_then, farthest, steps) == known:
+            return plan_then, known
     if asked["largest"]:
         farthest = largest.given(pool.facts, asked["largest"])
     else:
-        farthest = largest.find(pool, plan, scale, LEFT_OUT * error)
+        farthest = largest.find(pool, plan, scale, allowed)
     plan = replace(plan, largest=farthest.value)
-    return plan, store.settings(pool.facts, plan, farthest, asked["most_steps"])
+    return plan, store.settings(pool.facts, plan, farthest, steps)
 
 
 def _until(pool, plan, numbers, error, most, out, progress, sigma):

@@ -4,6 +4,8 @@ from dataclasses import astuple, dataclass, fields
 
 import numpy as np
 
+from .pair import cross
+
 WORDS = ("fate", "message")
 WHOLE = ("flight", "turnings", "steps", "repeats")
 
@@ -58,7 +60,8 @@ def columns(rows):
 
 def fly(pair, plan, numbers, most_steps, b=None):
     """List of the Flights with these numbers; ``b``: all with this impact parameter."""
-    return [judge(pair, number, start, pair.fly(start[2], most_steps)) for number, start in zip(numbers, plan.starts(pair, numbers, b))]
+    planned = plan.starts(pair, numbers, b)
+    return [judge(pair, number, one, pair.fly(one[2], most_steps)) for number, one in zip(numbers, planned)]
 
 
 def judge(pair, number, planned, end):
@@ -71,7 +74,7 @@ def judge(pair, number, planned, end):
         return Flight(*known, *[np.nan] * 4, *course, *[np.nan] * 3, end.fate, end.message)
     mass, length = pair.bodies.mass[:, None], end.closest
     g, g_after = (state.velocity[1] - state.velocity[0] for state in (start, end))
-    angle = np.arctan2(np.linalg.norm(np.cross(g, g_after)), g @ g_after)
+    angle = np.arctan2(np.linalg.norm(cross(g, g_after)), g @ g_after)
     energy_after = 0.5 * pair.units.energy * pair.reduced_mass * (g_after @ g_after)
     after = pair.rotational_energy(end.quaternion, end.momentum)
     change = energy_after + after.sum() - energy - before.sum()
@@ -85,4 +88,4 @@ def judge(pair, number, planned, end):
 
 def _angular_momentum(mass, state):
     """Of both bodies together about the origin, (3,)."""
-    return (mass * np.cross(state.center, state.velocity) + state.momentum).sum(axis=0)
+    return (mass * cross(state.center, state.velocity) + state.momentum).sum(axis=0)

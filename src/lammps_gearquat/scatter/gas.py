@@ -63,8 +63,9 @@ def reduced(facts, temperature, sigma):
     """Collision integrals by those of rigid spheres of diameter ``sigma``, HCB (8.2-8), in the form of ratios."""
     sphere = thermal_speed(facts, temperature) * np.pi * sigma**2
     spheres = {"Omega(1,1)": sphere, "Omega(2,2)": 2.0 * sphere, "Omega(1,2)": 3.0 * sphere}
+    about = "by that of rigid spheres"
     return {
-        f"{name}*": (lambda means, name=name, whole=whole: means[name] / whole, "", f"{name} by that of rigid spheres")
+        f"{name}*": (lambda means, name=name, whole=whole: means[name] / whole, "", f"{name} {about}")
         for name, whole in spheres.items()
     }
 
@@ -89,7 +90,8 @@ def derived(facts, plan, sigma=None):
     found["diffusion"] = (_times(diffusion(facts, temperature), scale), unit, about)
     ion = _charge_of_ion(facts)
     if ion:
-        found["mobility"] = (_mobility(facts, temperature, ion), "cm^2/(V s)", "reduced mobility in a weak field, MM (5-3-1)")
+        about = "reduced mobility in a weak field, MM (5-3-1)"
+        found["mobility"] = (_mobility(facts, temperature, ion), "cm^2/(V s)", about)
     return found
 
 

@@ -97,10 +97,17 @@ def _at_energy(columns, plan, facts):
         "Q(1)": (area * pairs.f11, "length^2", "momentum-transfer cross section"),
         "Q(2)": (area * pairs.f22, "length^2", "viscosity cross section"),
     }
-    if any(facts.freedoms):
-        found["transfer"] = (area * pairs.gain**2, "length^2", "cross section of the squared energy given to rotation")
-        found["gain"] = (area * pairs.gain, "length^2", "cross section of the energy given to rotation")
-    return found
+    return found | _of_rotation(area, pairs, facts)
+
+
+def _of_rotation(area, pairs, facts):
+    """What rotation gains, if there is any; ``area`` is that of a flight."""
+    if not any(facts.freedoms):
+        return {}
+    return {
+        "transfer": (area * pairs.gain**2, "length^2", "of the squared energy given to rotation"),
+        "gain": (area * pairs.gain, "length^2", "of the energy given to rotation"),
+    }
 
 
 def _at_temperature(columns, plan, facts):
@@ -112,15 +119,12 @@ def _at_temperature(columns, plan, facts):
     weight = 2.0 / pairs.x
     part, unit = 0.5 * area * weight, "length^3/time"
     found = {
-        "cross section": (part * pairs.f11, "length^2", "collision cross section, averaged over energies and orientations"),
+        "cross section": (part * pairs.f11, "length^2", "averaged over energies and orientations"),
         "Omega(1,1)": (speed * part * pairs.f11, unit, "collision integral of diffusion"),
         "Omega(2,2)": (speed * part * pairs.f22, unit, "collision integral of viscosity"),
         "Omega(1,2)": (speed * part * pairs.x * pairs.f11, unit, "collision integral of thermal diffusion"),
     }
-    if any(facts.freedoms):
-        found["transfer"] = (area * weight * pairs.gain**2, "length^2", "cross section of the squared energy given to rotation")
-        found["gain"] = (area * weight * pairs.gain, "length^2", "cross section of the energy given to rotation")
-    return found
+    return found | _of_rotation(area * weight, pairs, facts)
 
 
 class Averages:
@@ -151,6 +155,8 @@ class Averages:
 
     def correlations(self, names):
         """Matrix (k, k) of the correlations between the errors of ``names`` (k,)."""
+        if self.replicas < 2:
+            return np.full((len(names), len(names)), np.nan)
         kept = self.means[1:, [self.names.index(name) for name in names]]
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.corrcoef(kept.T)

@@ -77,9 +77,9 @@ def find(pool, plan, scale, allowed):
     if (left[-1] > allowed).any():
         worst = int(np.argmax(left[-1]))
         raise DeckError(
-            f"the cutoff of {facts.cutoff:.6g} is inside the largest impact parameter: the forces that it takes away are"
-            f" {left[-1, worst]:.1e} of the loss of {LOSSES[worst]}, and {allowed:.1e} is allowed, a tenth of --error;"
-            " a longer cutoff or a larger --error is required"
+            f"the cutoff of {facts.cutoff:.6g} is inside the largest impact parameter: the forces that it takes"
+            f" away are {left[-1, worst]:.1e} of the loss of {LOSSES[worst]}, and {allowed:.1e} is allowed, a tenth of"
+            " --error; a longer cutoff or a larger --error is required"
         )
     first = int(np.argmax((left <= allowed).all(axis=1)))
     return Largest(rounded(b[first]), dict(zip(LOSSES, left[first].tolist())), DISTANCES * FLIGHTS)

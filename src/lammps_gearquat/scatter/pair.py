@@ -73,6 +73,12 @@ class End(Start):
     message: str = ""
 
 
+def cross(a, b):
+    """Vector products (..., 3); NumPy's function takes several times as long for so few."""
+    first, second = [1, 2, 0], [2, 0, 1]
+    return a[..., first] * b[..., second] - a[..., second] * b[..., first]
+
+
 def open_pair(path, variables=(), without=(), which=None, say=lambda text: None):
     """The Pair of a deck, to be used in a with statement.
 
@@ -87,7 +93,8 @@ class Pair:
     ``bodies``, a Bodies whose body frame is that of the deck; ``cutoff``, the largest distance at which two
     sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the
     distance of the centers at which flights begin and end; ``units``, a row of UNITS, and ``style``, its name;
-    ``charge`` (2,) if atoms have one, else None; ``text``, the commands that lead to the run.
+    ``freedoms`` (2,), of rotation; ``turning``, whether bodies have more than one site; ``charge`` (2,) if atoms
+    have one, else None; ``text``, the commands that lead to the run.
     """
 
     def __init__(self, path, variables=(), without=(), which=None, say=lambda text: None):
@@ -137,7 +144,9 @@ class Pair:
         movers = [command.mover for command in start.commands if command.mover]
         if len(movers) != 1 or movers[0].style != "gear/quat":
             found = ", ".join(f"{line.id} {line.style}" for line in movers)
-            raise DeckError(f"one fix gear/quat is required that moves both bodies, and no other; the deck has {found}")
+            raise DeckError(
+                f"one fix gear/quat that moves both bodies is required, and no other; the deck has {found}"
+            )
         line = movers[0]
         given = dict(line.keywords)
         who = f"fix {line.id} {line.style}"
@@ -149,12 +158,11 @@ class Pair:
         for key in REFUSED_KEYWORDS:
             if key in given:
                 raise DeckError(f"{who}: keyword {key} has to be left out, for the command places the bodies")
-        others = [f"{id_} {style}" for id_, style in start.fixes.items() if id_ != line.id and not IDLE.fullmatch(style)]
-        if others:
-            raise DeckError(
-                f"fix {others[0]} acts beside the two bodies: the pair has to be alone;"
-                f" --without {others[0].split()[0]} leaves it out"
-            )
+        for id_, style in start.fixes.items():
+            if id_ != line.id and not IDLE.fullmatch(style):
+                raise DeckError(
+                    f"fix {id_} {style} acts beside the two bodies: the pair has to be alone; --without {id_} leaves it out"
+                )
         if not start.pair_style or start.pair_style[0] == "none":
             raise DeckError("the deck has no forces between atoms: a pair style with a cutoff is required")
         self._check_box()
@@ -167,7 +175,7 @@ class Pair:
         if any(lammps.extract_box()[5]):
             raise DeckError("the box is periodic: boundary s s s is required, so that bodies meet once and part")
         if any(text.split()[0] == "kspace_style" and "none" not in text for text in self.text if text.split()):
-            raise DeckError("forces of kspace_style do not vanish with the distance: a pair style with a cutoff is required")
+            raise DeckError("forces of kspace_style do not vanish: a pair style with a cutoff is required")
         extended = [name for name in EXTENDED if lammps.extract_atom(name)]
         if extended:
             raise DeckError(
@@ -179,8 +187,9 @@ class Pair:
         lammps = self.lammps
         labels = process.body_labels(lammps, [self.line])
         if (labels[:, 0] < 0).any():
+            outside = (labels[:, 0] < 0).sum()
             raise DeckError(
-                f"{(labels[:, 0] < 0).sum()} atoms are in no body of fix {self.line.id}: the two bodies have to be alone"
+                f"{outside} atoms are in no body of fix {self.line.id}: the two bodies have to be alone"
             )
         values = np.unique(labels[:, 1])
         if len(values) != 2:
@@ -192,19 +201,23 @@ class Pair:
         self.extent = bodies.largest(np.linalg.norm(bodies.shape, axis=1))
         self.reduced_mass = float(np.prod(bodies.mass) / bodies.mass.sum())
         self.freedoms = np.where(bodies.point, 0, np.where(bodies.linear, 2, 3))
+        self.turning = len(bodies.index) > 2
         self.style = lammps.extract_global("units")
         self.units = UNITS[self.style]
         charges = lammps.numpy.extract_atom("q")
         self.charge = None if charges is None else bodies.sum(charges[bodies.index])
+        types = lammps.numpy.extract_atom("type")
+        self._kinds = np.column_stack([types if charges is None else charges, types])[bodies.index]
         self.weights = np.zeros((2, len(bodies.index)))
         self.weights[bodies.of, bodies.index] = bodies.masses / bodies.mass[bodies.of]
 
     @property
     def identical(self):
         """Whether both bodies are the same, so that the pair is that of a gas of one kind."""
-        one, two = self.bodies.mass, self.bodies.moments
-        same = np.allclose(one[0], one[1], rtol=1e-9) and np.allclose(two[0], two[1], rtol=1e-6)
-        return bool(same and self.bodies.counts[0] == self.bodies.counts[1])
+        mass, moments = self.bodies.mass, self.bodies.moments
+        first, second = (sorted(self._kinds[self.bodies.of == k].tolist()) for k in range(2))
+        same = np.allclose(mass[0], mass[1], rtol=1e-9) and np.allclose(moments[0], moments[1], rtol=1e-6)
+        return bool(same) and first == second
 
     def _prepare(self, log):
         """Sets ``cutoff`` and ``reach``, and turns off what only costs time."""
@@ -225,13 +238,14 @@ class Pair:
         )
         self._command("run 0 post no")
         lammps.command("log none")
-        (*_, listed) = _CUTOFF.findall(log.read_text(encoding="utf-8", errors="replace"))
+        *_, listed = _CUTOFF.findall(log.read_text(encoding="utf-8", errors="replace"))
         self.cutoff = float(listed) - 1.0
         self.reach = MARGIN * (self.cutoff + self.extent.sum())
         # no list is ever renewed: it has all pairs of sites
         lammps.command(f"neighbor {6.0 * self.reach:.17g} nsq")
         self._command_of_fix = replace(
-            self.line, keywords=(*(pair for pair in self.line.keywords if pair[0] != "report"), ("report", ("no",)))
+            self.line,
+            keywords=(*(pair for pair in self.line.keywords if pair[0] != "report"), ("report", ("no",))),
         ).text()
 
     def _command(self, text):
@@ -239,7 +253,9 @@ class Pair:
         try:
             self.lammps.command(text)
         except Exception as error:  # the only class LAMMPS' module raises
-            raise DeckError(f"LAMMPS refuses '{text}': {str(error).split(chr(10) + 'Last input line')[0]}") from error
+            raise DeckError(
+                f"LAMMPS refuses '{text}': {str(error).split(chr(10) + 'Last input line')[0]}"
+            ) from error
 
     def _check_forces(self):
         """Refuse forces that act where a flight begins."""
@@ -252,8 +268,8 @@ class Pair:
             on_bodies = np.abs(self.bodies.sum(forces)).max()
             if on_bodies > ROUNDING * np.abs(forces).sum():
                 raise DeckError(
-                    f"forces do not vanish: {on_bodies:.3g} acts on a body at a distance of {self.reach:.6g}, beyond the"
-                    f" cutoff of {self.cutoff:.6g}; a pair style with a cutoff is required, and nothing else may act"
+                    f"forces do not vanish: {on_bodies:.3g} acts on a body at a distance of {self.reach:.6g}, beyond"
+                    f" the cutoff of {self.cutoff:.6g}; a pair style with a cutoff is required, and nothing else may act"
                 )
 
     # --- flights ----------------------------------------------------------------------------------
@@ -264,12 +280,15 @@ class Pair:
 
     def _place(self, state):
         """Put the sites where a Start has them; returns angular velocities (2, 3) along the axes of space."""
-        bodies = self.bodies
-        arms = self.turned(state.quaternion, bodies.shape)
-        omega = bodies.divided_by_inertia(state.quaternion, state.momentum)
+        bodies, omega = self.bodies, np.zeros((2, 3))
         positions, velocities = (self.lammps.numpy.extract_atom(name) for name in "xv")
-        positions[bodies.index] = state.center[bodies.of] + arms
-        velocities[bodies.index] = state.velocity[bodies.of] + np.cross(omega[bodies.of], arms)
+        positions[bodies.index] = state.center[bodies.of]
+        velocities[bodies.index] = state.velocity[bodies.of]
+        if self.turning:
+            arms = self.turned(state.quaternion, bodies.shape)
+            omega = bodies.divided_by_inertia(state.quaternion, state.momentum)
+            positions[bodies.index] += arms
+            velocities[bodies.index] += cross(omega[bodies.of], arms)
         return omega
 
     def _first_step(self, state, omega):
@@ -286,7 +305,9 @@ class Pair:
             return self._fly(start, most_steps)
         except DeckError as error:
             self.close()
-            return End(start.center, start.velocity, start.quaternion, start.momentum, *([0] * 5), "lost", str(error))
+            return End(
+                start.center, start.velocity, start.quaternion, start.momentum, *([0] * 5), "lost", str(error)
+            )
 
     def _fly(self, start, most_steps):
         command = self.lammps.command
@@ -315,13 +336,17 @@ class Pair:
         """End of the flight at hand."""
         bodies = self.bodies
         x, v = positions[bodies.index], velocities[bodies.index]
-        center, velocity = bodies.center(x), bodies.center(v)
-        arms, rest = x - center[bodies.of], v - velocity[bodies.of]
-        momentum = bodies.sum(bodies.masses[:, None] * np.cross(arms, rest))
+        center, velocity = x, v
+        quaternion, momentum = np.tile(UNTURNED, (2, 1)), np.zeros((2, 3))
+        if self.turning:
+            center, velocity = bodies.center(x), bodies.center(v)
+            arms, rest = x - center[bodies.of], v - velocity[bodies.of]
+            quaternion, _ = superpose(bodies, arms)
+            momentum = bodies.sum(bodies.masses[:, None] * cross(arms, rest))
         return End(
             center,
             velocity,
-            superpose(bodies, arms)[0] if self.freedoms.any() else np.tile(UNTURNED, (2, 1)),
+            quaternion,
             momentum,
             self.lammps.get_thermo("time"),
             steps,
@@ -333,5 +358,7 @@ class Pair:
 
     def rotational_energy(self, quaternion, momentum):
         """Kinetic energy (2,) of the rotation of both bodies."""
+        if not self.turning:
+            return np.zeros(2)
         omega = self.bodies.divided_by_inertia(quaternion, momentum)
         return 0.5 * self.units.energy * np.einsum("ij,ij->i", omega, momentum)

@@ -46,8 +46,8 @@ def text(facts, plan, farthest, found):
         if numbers:
             more = "" if len(numbers) <= NAMED else f" and {len(numbers) - NAMED} more"
             lines.append(
-                f"{fate.capitalize()}: {', '.join(map(str, numbers[:NAMED]))}{more}; averages count them as if they had left"
-                " in all directions alike, without transfer of energy"
+                f"{fate.capitalize()}: {', '.join(map(str, numbers[:NAMED]))}{more}; averages count them as if they"
+                " had left in all directions alike, without transfer of energy"
             )
     return "\n".join(lines)
 
@@ -63,8 +63,10 @@ def _conditions(plan, style):
 
 def _distance(farthest, unit):
     words = f"Largest impact parameter: {f'{farthest.value:g} {unit}'.strip()}"
-    left = max(farthest.left.values(), default=None)
-    return words if left is None else f"{words}; what is beyond it is {left:.1e} of the whole, by {farthest.pilots} pilot flights"
+    if not farthest.left:
+        return words
+    left = max(farthest.left.values())
+    return f"{words}; what is beyond it is {left:.1e} of the whole, by {farthest.pilots} pilot flights"
 
 
 def as_json(settings, found):
@@ -79,7 +81,8 @@ def as_json(settings, found):
         }
         for name, estimate in found.estimates.items()
     }
-    matrix = [[value if np.isfinite(value) else None for value in row] for row in np.atleast_2d(found.correlations).tolist()]
+    rows = np.atleast_2d(found.correlations).tolist()
+    matrix = [[value if np.isfinite(value) else None for value in row] for row in rows]
     errors = {words: {"largest": values[0], "median": values[1]} for words, values in found.errors.items()}
     return {
         "settings": settings,

@@ -66,7 +66,8 @@ def errors(columns):
     parted = columns["fate"] == "parted"
     if not parted.any():
         return {words: (np.nan, np.nan) for words in ERRORS.values()}
-    return {words: (float(columns[name][parted].max()), float(np.median(columns[name][parted]))) for name, words in ERRORS.items()}
+    kept = {words: columns[name][parted] for name, words in ERRORS.items()}
+    return {words: (float(values.max()), float(np.median(values))) for words, values in kept.items()}
 
 
 def unfinished(columns):

@@ -27,8 +27,8 @@ BITS = 30
 
 @dataclass(frozen=True)
 class Plan:
-    """What is sampled: ``seed``, a list of numbers; ``temperature`` of translation, or one ``energy`` of it; ``rotation``, its
-    temperature, 0 for none; ``largest``, the largest impact parameter.  Units are those of the deck.
+    """What is sampled: ``seed``, a tuple of numbers; ``temperature`` of translation, or one ``energy`` of it;
+    ``rotation``, its temperature, 0 for none; ``largest``, the largest impact parameter.  Units are those of the deck.
     """
 
     seed: tuple
@@ -99,7 +99,7 @@ def uniform(seed, numbers, dimension):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that a part of a sequence is not as even as the whole
             points[own] = sequence.random(last - first + 1)[wanted - first]
-    return points + 0.5**(BITS + 1)
+    return points + 0.5 ** (BITS + 1)
 
 
 def _orientations(first, second, third):

@@ -23,8 +23,8 @@ def settings(facts, plan, largest, most_steps):
     """What determines every flight, ready for JSON; the commands of the deck as a digest."""
     known = asdict(facts)
     known["text"] = hashlib.sha256("\n".join(facts.text).encode()).hexdigest()
-    asked = asdict(plan)
-    return json.loads(json.dumps({"pair": known, "plan": asked, "largest": asdict(largest), "most_steps": most_steps}))
+    found = {"pair": known, "plan": asdict(plan), "largest": asdict(largest), "most_steps": most_steps}
+    return json.loads(json.dumps(found))
 
 
 def facts_of(settings):
@@ -66,7 +66,9 @@ def _same(folder, known, wanted):
         if _get(known, part, name) != _get(wanted, part, name) and part != "largest"
     ]
     if differing:
-        raise DeckError(f"{folder} has flights of other settings ({', '.join(differing)}): another --out is required")
+        raise DeckError(
+            f"{folder} has flights of other settings ({', '.join(differing)}): another --out is required"
+        )
 
 
 def _get(settings, part, name):
@@ -133,7 +135,9 @@ def merge(folders, out):
         for line in read_lines(folder):
             number = number_of(line)
             if lines.setdefault(number, line) != line:
-                raise DeckError(f"{folder}: flight {number} differs from that in another part: parts of one seed are required")
+                raise DeckError(
+                    f"{folder}: flight {number} differs from that in another part: parts of one run are required"
+                )
     begin(out, wanted)
     ordered = [lines[number] for number in sorted(lines)]
     text = "\n".join([",".join(flights.HEADER), *ordered]) + "\n"
