@@ -99,9 +99,19 @@ def test_the_form_of_monchick_yun_and_mason():
     """With detailed balance both forms of the momentum flux have one mean."""
     x, gain = mixed(3, 1.0)
     sine2 = np.random.default_rng(4).random(len(x))
-    pairs = Collisions(x, x - gain, np.sqrt(1.0 - sine2), sine2)
+    pairs = Collisions(x, x - gain, np.sqrt(1.0 - sine2), sine2, balanced=True)
     other = x**2 * sine2 + gain**2 / 3.0 - gain**2 * sine2 / 2.0
     assert pairs.f22.mean() == pytest.approx(other.mean(), rel=0.01)
+
+
+def test_detailed_balance_changes_errors_only():
+    """Means are the same with and without it; here velocities turn by any angle."""
+    x, gain = mixed(5, 1.0)
+    cosine = 2.0 * np.random.default_rng(6).random(len(x)) ** (1 / 3) - 1.0
+    direct, both = (Collisions(x, x - gain, cosine, 1.0 - cosine**2, balanced) for balanced in (False, True))
+    for some in (lambda pairs: pairs.change(0), lambda pairs: pairs.change(1), lambda pairs: pairs.f22):
+        assert some(both).mean() == pytest.approx(some(direct).mean(), rel=0.02)
+        assert np.std(some(both)) < np.std(some(direct))
 
 
 def test_standard_errors():

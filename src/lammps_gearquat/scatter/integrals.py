@@ -8,12 +8,20 @@ Phys. Rev. 110, 1235 (1958)) the collision integrals are
 
     Omega(l,s) = (k T / (2 pi mu))^(1/2) 1/2 integral of x exp(-x) bar(F_ls) dx,
 
-    F_11 = x - (x y)^(1/2) cos chi,    F_12 = x F_11,    F_22 = x y sin^2 chi + d^2 / 3.
+    F_11 = x - (x y)^(1/2) cos chi,    F_12 = x F_11,    F_22 = x y sin^2 chi + 2 x d / 3.
 
 If rotation gains nothing they are those of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular
-Theory of Gases and Liquids, Wiley (1954), eq. (8.2-3), with F_ls = x^s (1 - cos^l chi).  By detailed balance
-the mean of F_22 is that of x^2 sin^2 chi + d^2 / 3 - d^2 sin^2 chi / 2, the form of L. Monchick, K. S. Yun and
-E. A. Mason, J. Chem. Phys. 39, 654 (1963).
+Theory of Gases and Liquids, Wiley (1954), eq. (8.2-3), with F_ls = x^s (1 - cos^l chi).
+
+If rotation has the temperature of translation, then by detailed balance the mean of a function of x and y is
+that of the same with x and y exchanged.  Means of both have much smaller errors, because what is of
+first order in d cancels:
+
+    F_11 = (x + y) / 2 - (x y)^(1/2) cos chi,    F_22 = x y sin^2 chi + d^2 / 3,
+    F_12 = (x^2 + y^2) / 2 - (x + y) / 2 (x y)^(1/2) cos chi.
+
+The mean of this F_22 is that of x^2 sin^2 chi + d^2 / 3 - d^2 sin^2 chi / 2, the form of L. Monchick, K. S.
+Yun and E. A. Mason, J. Chem. Phys. 39, 654 (1963).
 
 Flights that have not parted count as if they had left in all directions alike, without transfer of energy.
 """
@@ -46,36 +54,41 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Collisions:
-    """Columns (n,) of flights in units of ``scale``: ``x``, ``y``, ``cosine`` and ``sine2`` = sin^2 chi."""
+    """Columns (n,) of flights: ``x``, ``y``, ``cosine`` and ``sine2`` = sin^2 chi; ``balanced``: detailed balance holds."""
 
     x: np.ndarray
     y: np.ndarray
     cosine: np.ndarray
     sine2: np.ndarray
+    balanced: bool = False
 
     @classmethod
-    def of(cls, columns, scale):
+    def of(cls, columns, scale, balanced=False):
         """From the columns of flights, with ``scale`` the unit of energy."""
         parted = columns["fate"] == "parted"
         x = columns["energy"] / scale
         y = np.where(parted, columns["energy_after"] / scale, x)
         sine2 = np.where(parted, np.sin(columns["angle"]) ** 2, ISOTROPIC[0])
-        return cls(x, y, np.where(parted, np.cos(columns["angle"]), ISOTROPIC[1]), sine2)
+        return cls(x, y, np.where(parted, np.cos(columns["angle"]), ISOTROPIC[1]), sine2, balanced)
 
     @property
     def gain(self):
         """What rotation has gained."""
         return self.x - self.y
 
-    @property
-    def f11(self):
-        """Change of the relative velocity along itself; for small angles without loss of digits."""
-        return self.x - np.sqrt(self.x * self.y) * self.cosine
+    def change(self, power):
+        """F_11 for ``power`` 0, and F_12 for 1: the change of the velocity along itself, times x^power."""
+        turned = np.sqrt(self.x * self.y) * self.cosine
+        if not self.balanced:
+            return self.x**power * (self.x - turned)
+        before, after = self.x**power, self.y**power
+        return 0.5 * (self.x * before + self.y * after - (before + after) * turned)
 
     @property
     def f22(self):
         """Change of the momentum flux."""
-        return self.x * self.y * self.sine2 + self.gain**2 / 3.0
+        rest = self.gain**2 / 3.0 if self.balanced else 2.0 * self.x * self.gain / 3.0
+        return self.x * self.y * self.sine2 + rest
 
 
 def thermal_speed(facts, temperature):
@@ -94,7 +107,7 @@ def integrands(columns, plan, facts):
 def _at_energy(columns, plan, facts):
     pairs, area = Collisions.of(columns, plan.energy), np.pi * plan.largest**2
     found = {
-        "Q(1)": (area * pairs.f11, "length^2", "momentum-transfer cross section"),
+        "Q(1)": (area * pairs.change(0), "length^2", "momentum-transfer cross section"),
         "Q(2)": (area * pairs.f22, "length^2", "viscosity cross section"),
     }
     return found | _of_rotation(area, pairs, facts)
@@ -112,17 +125,18 @@ def _of_rotation(area, pairs, facts):
 
 def _at_temperature(columns, plan, facts):
     units, area = UNITS[facts.style], np.pi * plan.largest**2
-    pairs = Collisions.of(columns, units.boltzmann * plan.temperature)
+    balanced = plan.rotation == plan.temperature or not any(facts.freedoms)
+    pairs = Collisions.of(columns, units.boltzmann * plan.temperature, balanced)
     speed = thermal_speed(facts, plan.temperature)
     # x exp(-x) by the density of x, x^2 exp(-x) / 2
     assert SHAPE == 3.0
     weight = 2.0 / pairs.x
     part, unit = 0.5 * area * weight, "length^3/time"
     found = {
-        "cross section": (part * pairs.f11, "length^2", "averaged over energies and orientations"),
-        "Omega(1,1)": (speed * part * pairs.f11, unit, "collision integral of diffusion"),
+        "cross section": (part * pairs.change(0), "length^2", "averaged over energies and orientations"),
+        "Omega(1,1)": (speed * part * pairs.change(0), unit, "collision integral of diffusion"),
         "Omega(2,2)": (speed * part * pairs.f22, unit, "collision integral of viscosity"),
-        "Omega(1,2)": (speed * part * pairs.x * pairs.f11, unit, "collision integral of thermal diffusion"),
+        "Omega(1,2)": (speed * part * pairs.change(1), unit, "collision integral of thermal diffusion"),
     }
     return found | _of_rotation(area * weight, pairs, facts)
 
