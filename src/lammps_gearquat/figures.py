@@ -209,7 +209,7 @@ def draw_correlations(path, functions):
 DOTS = 20_000
 
 
-def draw_deflection(path, name, columns, plan):
+def draw_deflection(path, name, columns, plan, units):
     """Deflection against impact parameter, by energy; orbiting flights are rings."""
     parted = np.flatnonzero(columns["fate"] == "parted")[:DOTS]
     b, angle, energy = (columns[key][parted] for key in ("b", "angle", "energy"))
@@ -219,10 +219,10 @@ def draw_deflection(path, name, columns, plan):
         rings = {"s": 16, "facecolors": "none", "edgecolors": COLOR["first"], "linewidths": 0.7}
         axis.scatter(b[orbiting], np.degrees(angle[orbiting]), label=f"orbiting ({orbiting.sum()})", **rings)
         if plan.energy is None:
-            figure.colorbar(dots, ax=axis, label="energy")
+            figure.colorbar(dots, ax=axis, label="energy of the relative translation (units of the script)")
         axis.set_xlim(0, plan.largest)
         axis.set_ylim(0, 180)
-        axis.set_xlabel("impact parameter")
+        axis.set_xlabel(_named("impact parameter", units.length))
         axis.set_ylabel("deflection (degrees)")
         axis.legend(loc="upper right")
 
@@ -239,6 +239,8 @@ def draw_convergence(path, name, numbers, series):
         left.set_xscale("log")
         left.set_ylabel("relative difference from the last value")
         right.set_ylabel("relative standard error")
+        _ticks(right.yaxis)
         for axis in (left, right):
+            _ticks(axis.xaxis)
             axis.set_xlabel("flights")
             axis.legend()

@@ -48,6 +48,16 @@ def test_rigid_spheres():
     assert found.estimates["diffusion"].value == pytest.approx(3.0 / 8.0 * np.sqrt(1.0 / np.pi), rel=5e-3)
 
 
+def test_what_is_within_the_core():
+    """Spheres again, with three quarters of the flights within 1.1 diameters."""
+    columns, plan = flown()
+    within = Plan((1,), 1.0, None, 0.0, 1.5, core=1.1)
+    columns["b"] = within._impact((columns["b"] / 1.5) ** 2)
+    columns["angle"] = 2.0 * np.arccos(np.minimum(columns["b"], 1.0))
+    for name, exact in (("cross section", np.pi), ("A*", 1.0)):
+        assert agrees(results(columns, within, facts()).estimates[name], exact)
+
+
 def test_one_energy():
     columns, plan = flown()
     columns["energy"] = columns["energy_after"] = np.full(N, 2.0)

@@ -56,6 +56,17 @@ def test_impact_parameters_and_energies(drawn):
     near(np.column_stack([x, x**2, 1 / x]), [3.0, 12.0, 0.5], 0.05)
 
 
+def test_a_core():
+    """Three quarters of the flights are in it, and areas make averages right."""
+    flights = Plan((3,), 2.0, None, 0.5, 4.0, core=2.0).starts(made_up_pair(), range(N))
+    b = np.array([flight[0] for flight in flights])
+    assert np.mean(b < 2.0) == 0.75 and 3.99 < b.max() < 4.0
+    area = Plan((3,), 2.0, None, 0.5, 4.0, core=2.0).area(b)
+    for power in (0, 1, 2, 5):
+        # the integral of 2 pi b^(1 + power)
+        near(area * b**power, 2.0 * np.pi * 4.0 ** (2 + power) / (2 + power), 2e-3 * 4.0 ** (2 + power))
+
+
 def test_the_frame_is_that_of_the_center_of_mass(drawn):
     pair, flights = drawn
     for b, energy, start in flights[:50]:

@@ -44,7 +44,7 @@ def _settle(pool, asked, error, out):
     if (out / store.SETTINGS).exists():
         known = store.read_settings(out)
         _, _, farthest = store.facts_of(known)
-        plan_then = replace(plan, largest=farthest.value)
+        plan_then = replace(plan, largest=farthest.value, core=farthest.core)
         enough = farthest.left and max(farthest.left.values()) <= allowed
         if enough and not asked["largest"] and store.settings(pool.facts, plan_then, farthest, steps) == known:
             return plan_then, known
@@ -52,7 +52,7 @@ def _settle(pool, asked, error, out):
         farthest = largest.given(pool.facts, asked["largest"])
     else:
         farthest = largest.find(pool, plan, scale, allowed)
-    plan = replace(plan, largest=farthest.value)
+    plan = replace(plan, largest=farthest.value, core=farthest.core)
     return plan, store.settings(pool.facts, plan, farthest, steps)
 
 
@@ -87,7 +87,7 @@ def conclude(out, settings, rows, sigma):
     columns = flights.columns(rows)
     found = results(columns, plan, facts, sigma)
     store.write_json(out / store.RESULTS, report.as_json(settings, found))
-    figures.draw_deflection(out / "deflection.png", facts.name, columns, plan)
+    figures.draw_deflection(out / "deflection.png", facts.name, columns, plan, UNITS[facts.style])
     figures.draw_convergence(out / "convergence.png", facts.name, *convergence(columns, plan, facts))
     return report.text(facts, plan, farthest, found)
 

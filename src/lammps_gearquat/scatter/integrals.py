@@ -105,7 +105,7 @@ def integrands(columns, plan, facts):
 
 
 def _at_energy(columns, plan, facts):
-    pairs, area = Collisions.of(columns, plan.energy), np.pi * plan.largest**2
+    pairs, area = Collisions.of(columns, plan.energy), plan.area(columns["b"])
     found = {
         "Q(1)": (area * pairs.change(0), "length^2", "momentum-transfer cross section"),
         "Q(2)": (area * pairs.f22, "length^2", "viscosity cross section"),
@@ -124,7 +124,7 @@ def _of_rotation(area, pairs, facts):
 
 
 def _at_temperature(columns, plan, facts):
-    units, area = UNITS[facts.style], np.pi * plan.largest**2
+    units, area = UNITS[facts.style], plan.area(columns["b"])
     balanced = plan.rotation == plan.temperature or not any(facts.freedoms)
     pairs = Collisions.of(columns, units.boltzmann * plan.temperature, balanced)
     speed = thermal_speed(facts, plan.temperature)

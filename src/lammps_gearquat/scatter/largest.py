@@ -18,6 +18,8 @@ from .sampling import REPLICAS
 DISTANCES, NEAREST, FLIGHTS = 24, 0.04, 2 * REPLICAS
 #: part of the cutoff in which the decay is fitted
 NEAR, FAR = 0.4, 0.75
+#: part of the losses of momentum and of viscosity that is outside of the core
+OUTSIDE = 0.1
 #: losses below this are rounding
 NOTHING = 1e-14
 #: marks the random numbers of pilot flights
@@ -27,11 +29,13 @@ LOSSES = ("momentum", "viscosity", "rotation")
 
 @dataclass(frozen=True)
 class Largest:
-    """``value``, the largest impact parameter; ``left``: name -> part of the whole beyond it; ``pilots``, flights."""
+    """``value``, the largest impact parameter; ``left``: name -> part of the whole beyond it; ``pilots``, flights;
+    ``core``, the impact parameter within which most of every loss is, 0 if that is not known."""
 
     value: float
     left: dict
     pilots: int
+    core: float = 0.0
 
 
 def losses(columns, scale):
@@ -82,7 +86,9 @@ def find(pool, plan, scale, allowed):
             " --error; a longer cutoff or a larger --error is required"
         )
     first = int(np.argmax((left <= allowed).all(axis=1)))
-    return Largest(rounded(b[first]), dict(zip(LOSSES, left[first].tolist())), DISTANCES * FLIGHTS)
+    within = int(np.argmax((left[:, :2] <= OUTSIDE).all(axis=1)))
+    core = rounded(b[min(within, first - 1)])
+    return Largest(rounded(b[first]), dict(zip(LOSSES, left[first].tolist())), DISTANCES * FLIGHTS, core)
 
 
 def given(facts, value):

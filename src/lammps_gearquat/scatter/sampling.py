@@ -21,6 +21,8 @@ REPLICAS = 16
 #: energies of translation in units of kT are drawn from the Gamma distribution of this shape, which is that
 #: of the integrand of Omega(1,1)
 SHAPE = 3.0
+#: part of the flights within the core, if there is one
+WITHIN = 0.75
 #: points of a sequence are multiples of 2^-BITS; flights have those between
 BITS = 30
 
@@ -28,7 +30,8 @@ BITS = 30
 @dataclass(frozen=True)
 class Plan:
     """What is sampled: ``seed``, a tuple of numbers; ``temperature`` of translation, or one ``energy`` of it;
-    ``rotation``, its temperature, 0 for none; ``largest``, the largest impact parameter.  Units are those of the deck.
+    ``rotation``, its temperature, 0 for none; ``largest``, the largest impact parameter; ``core``, that within which
+    a part WITHIN of the flights is, 0 if they are uniform over the whole area.  Units are those of the deck.
     """
 
     seed: tuple
@@ -36,6 +39,7 @@ class Plan:
     energy: float
     rotation: float
     largest: float
+    core: float = 0.0
 
     @property
     def kind(self):
@@ -47,7 +51,7 @@ class Plan:
         points = uniform(self.seed, np.asarray(numbers), dimensions(pair))
         columns = iter(points.T)
         drawn = next(columns)
-        b = self.largest * np.sqrt(drawn) if b is None else np.full(len(drawn), b)
+        b = self._impact(drawn) if b is None else np.full(len(drawn), b)
         energy = self._energies(pair, next(columns))
         speed = np.sqrt(2.0 * energy / (pair.reduced_mass * pair.units.energy))
         turned = [_orientations(next(columns), next(columns), next(columns)) for _ in range(2)]
@@ -57,6 +61,20 @@ class Plan:
             (float(b[i]), float(energy[i]), start_of(pair, b[i], speed[i], quaternion[i], momentum[i]))
             for i in range(len(b))
         ]
+
+    def _impact(self, u):
+        """Impact parameters (n,), with uniform squares within the core and outside of it."""
+        core, outside = self.core**2, self.largest**2 - self.core**2
+        if not core:
+            return self.largest * np.sqrt(u)
+        return np.sqrt(np.where(u < WITHIN, core * u / WITHIN, core + outside * (u - WITHIN) / (1.0 - WITHIN)))
+
+    def area(self, b):
+        """What flights with impact parameters b (n,) stand for: the area by the number of them, (n,)."""
+        core, outside = self.core**2, self.largest**2 - self.core**2
+        if not core:
+            return np.full(len(b), np.pi * self.largest**2)
+        return np.pi * np.where(b < self.core, core / WITHIN, outside / (1.0 - WITHIN))
 
     def start(self, pair, number):
         """The Start of one flight."""
