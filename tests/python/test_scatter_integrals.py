@@ -17,7 +17,7 @@ N = 16384
 
 
 def facts(style="lj", mass=1.0, freedoms=(0, 0), charge=None):
-    return SimpleNamespace(style=style, reduced_mass=mass / 2, freedoms=freedoms, charge=charge, identical=True)
+    return SimpleNamespace(style=style, reduced_mass=mass / 2, freedoms=freedoms, charge=charge, identical=True, moments=[[0.0] * 3] * 2)
 
 
 def flown(temperature=1.0, diameter=1.0, largest=1.5, boltzmann=1.0, n=N):

@@ -53,7 +53,7 @@ def test_impact_parameters_and_energies(drawn):
     near((b / 4.0) ** 2, 1 / 2, 1e-3)
     near((b / 4.0) ** 4, 1 / 3, 1e-3)
     x = energy / 2.0
-    near(np.column_stack([x, x**2, 1 / x]), [3.0, 12.0, 0.5], 0.05)
+    near(np.column_stack([x, x**2, 1 / x]), [2.0, 6.0, 1.0], 0.05)
 
 
 def test_a_core():

@@ -31,7 +31,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..units import UNITS
-from .sampling import REPLICAS, SHAPE
+from .sampling import REPLICAS, weight
 
 #: mean of sin^2 and of cos over all directions
 ISOTROPIC = (2.0 / 3.0, 0.0)
@@ -128,17 +128,15 @@ def _at_temperature(columns, plan, facts):
     balanced = plan.rotation == plan.temperature or not any(facts.freedoms)
     pairs = Collisions.of(columns, units.boltzmann * plan.temperature, balanced)
     speed = thermal_speed(facts, plan.temperature)
-    # x exp(-x) by the density of x, x^2 exp(-x) / 2
-    assert SHAPE == 3.0
-    weight = 2.0 / pairs.x
-    part, unit = 0.5 * area * weight, "length^3/time"
+    area = area * weight(pairs.x, facts.moments)
+    part, unit = 0.5 * area, "length^3/time"
     found = {
         "cross section": (part * pairs.change(0), "length^2", "averaged over energies and orientations"),
         "Omega(1,1)": (speed * part * pairs.change(0), unit, "collision integral of diffusion"),
         "Omega(2,2)": (speed * part * pairs.f22, unit, "collision integral of viscosity"),
         "Omega(1,2)": (speed * part * pairs.change(1), unit, "collision integral of thermal diffusion"),
     }
-    return found | _of_rotation(area * weight, pairs, facts)
+    return found | _of_rotation(area, pairs, facts)
 
 
 class Averages:

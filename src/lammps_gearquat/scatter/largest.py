@@ -12,7 +12,7 @@ import numpy as np
 from ..trials.script import DeckError
 from . import flights
 from .integrals import Collisions
-from .sampling import REPLICAS
+from .sampling import REPLICAS, weight
 
 #: distances of pilot flights, the nearest by the cutoff, and how many flights at each
 DISTANCES, NEAREST, FLIGHTS = 24, 0.04, 2 * REPLICAS
@@ -38,11 +38,11 @@ class Largest:
     core: float = 0.0
 
 
-def losses(columns, scale):
-    """Array (3,): means of 1 - cos chi, of sin^2 chi and of the squared gain of rotation, weighted by energy."""
+def losses(columns, scale, moments):
+    """Array (3,): means of x (1 - cos chi), x^2 sin^2 chi and of the squared gain of rotation over the flux."""
     pairs = Collisions.of(columns, scale)
-    unit = [1.0 - pairs.cosine, pairs.x * pairs.sine2, pairs.gain**2 / pairs.x]
-    return np.array([value.mean() for value in unit])
+    parts = [pairs.x * (1.0 - pairs.cosine), pairs.x**2 * pairs.sine2, pairs.gain**2]
+    return np.array([(weight(pairs.x, moments) * part).mean() for part in parts])
 
 
 def beyond(b, h):
@@ -71,7 +71,8 @@ def find(pool, plan, scale, allowed):
     b = facts.cutoff * np.geomspace(NEAREST, 1.0, DISTANCES)
     pilots = replace(plan, seed=(*plan.seed, PILOT))
     flown = pool.fly_at(pilots, range(FLIGHTS), b)
-    h = np.array([losses(flights.columns([flights.row(one) for one in some]), scale) for some in flown])
+    rows = [[flights.row(one) for one in some] for some in flown]
+    h = np.array([losses(flights.columns(some), scale, facts.moments) for some in rows])
     h[h < NOTHING] = 0.0
     outer = beyond(b, h)
     whole = outer[0] + np.pi * b[0] ** 2 * h[0]

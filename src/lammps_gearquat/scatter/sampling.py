@@ -11,16 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from scipy.special import gammaincinv, ndtri
+from scipy.special import gamma, gammaincinv, ndtri
 from scipy.stats import qmc
 
 from .pair import Start
 
 #: independent sequences
 REPLICAS = 16
-#: energies of translation in units of kT are drawn from the Gamma distribution of this shape, which is that
-#: of the integrand of Omega(1,1)
-SHAPE = 3.0
 #: part of the flights within the core, if there is one
 WITHIN = 0.75
 #: points of a sequence are multiples of 2^-BITS; flights have those between
@@ -83,7 +80,7 @@ class Plan:
     def _energies(self, pair, u):
         if self.energy is not None:
             return np.full(len(u), self.energy)
-        return gammaincinv(SHAPE, u) * pair.units.boltzmann * self.temperature
+        return gammaincinv(shape(pair.bodies.moments), u) * pair.units.boltzmann * self.temperature
 
     def _momenta(self, pair, quaternion, columns):
         """Angular momenta (n, 2, 3) of a Boltzmann distribution."""
@@ -96,6 +93,21 @@ class Plan:
                 along[:, axis] = np.sqrt(bodies.moments[k, axis] * thermal) * ndtri(next(columns))
             found[:, k] = Rotation.from_quat(quaternion[:, k], scalar_first=True).apply(along @ bodies.axes[k])
         return found
+
+
+def shape(moments):
+    """That of the Gamma distribution of energies of translation in units of kT, from principal moments (2, 3).
+
+    It is the flux of collisions, x exp(-x), where rotation can give energy to slow ones, and otherwise the density
+    of the integrand of Omega(1,1).
+    """
+    return 2 if np.any(np.asarray(moments) > 0.0) else 3
+
+
+def weight(x, moments):
+    """The flux x exp(-x) by the density from which energies x (n,) are drawn."""
+    number = shape(moments)
+    return gamma(number) * x ** (2.0 - number)
 
 
 def dimensions(pair):
