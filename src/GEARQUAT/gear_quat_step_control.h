@@ -39,24 +39,11 @@ constexpr int VARIABLE_MOST = 10;
 struct StepErrors {
   double fewer = 0.0, same = 0.0, more = 0.0;
 
-  /// By how much they exceed what rounding makes of them.
-  StepErrors beyond(double rounding) const
-  {
-    return {excess(fewer, rounding), excess(same, rounding), excess(more, rounding)};
-  }
-
   void include(const StepErrors &other)
   {
     fewer = std::max(fewer, other.fewer);
     same = std::max(same, other.same);
     more = std::max(more, other.more);
-  }
-
- private:
-  /// Not a number stays so.
-  static double excess(double error, double rounding)
-  {
-    return error <= rounding ? 0.0 : error - rounding;
   }
 };
 
@@ -66,17 +53,12 @@ struct StepMeasures {
   StepErrors length, energy;
   struct {
     double length = 0.0, energy = 0.0;
-  } rounding;    ///< of the state of one body
+  } rounding;    ///< what rounding of its state may make of those of a body
 
   void include(const StepMeasures &other)
   {
     length.include(other.length);
     energy.include(other.energy);
-  }
-  /// Without what rounding makes of them.
-  StepMeasures beyond_rounding() const
-  {
-    return {length.beyond(rounding.length), energy.beyond(rounding.energy), {}};
   }
 };
 
@@ -277,6 +259,15 @@ class StepControl {
     int values;
     bool held;    ///< would be shorter, but for the limit
   };
+
+  /// Errors of a body by the part of eps that rounding leaves: no step is short enough to remove it.
+  StepMeasures counted(StepMeasures of_body) const
+  {
+    StepErrors &errors = energy ? of_body.energy : of_body.length;
+    const double rounding = energy ? of_body.rounding.energy : of_body.rounding.length;
+    for (double *one : {&errors.fewer, &errors.same, &errors.more}) *one *= eps / (eps + rounding);
+    return of_body;
+  }
 
   const StepErrors &measured(const StepMeasures &both) const
   {

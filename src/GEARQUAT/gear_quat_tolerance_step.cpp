@@ -74,9 +74,10 @@ Correction Tolerance::correct(const Integrator &integrator, int ibody, const Loa
   const Body &body = bodies.body_at(ibody);
   const Correction correction = order.correct(integrator, body.rigid, body.reach(), load,
                                               bodies.axes(ibody), bodies.history(ibody), one);
+  one = control.counted(one);
   double &same = control.energy ? one.energy.same : one.length.same;
   if (!std::isfinite(same)) same = std::numeric_limits<double>::infinity();
-  errors.include(one.beyond_rounding());
+  errors.include(one);
   return correction;
 }
 

@@ -117,7 +117,7 @@ struct Follower {
       double *rows = bodies[k].rows.data();
       order.correct(integrator, bodies[k].body, bodies[k].reach, met[k],
                     integrator.axes_of(rows).data(), rows, errors);
-      all.include(rounded ? errors.beyond_rounding() : errors);
+      all.include(rounded ? control.counted(errors) : errors);
     }
     take_states();
     return control.measured(all);
