@@ -56,7 +56,8 @@ class Results:
 def _integrals(lab, sized):
     found = {}
     for reduced in REDUCED:
-        options = ("--temperature", reduced * WELL, "--rotation", 0, "--sigma", SIGMA, "--error", sized(ERRORS["argon"]))
+        options = ("--temperature", reduced * WELL, "--rotation", 0, "--sigma", SIGMA)
+        options += ("--error", sized(ERRORS["argon"]))
         found[reduced] = flown.command(lab, f"argon_{reduced:g}", "in.argon", *options)
         lab.advance(1 / len(REDUCED))
     return found
@@ -120,15 +121,16 @@ def _of_integrals(runs):
             value, error = run.quantities[f"Omega({order},{power})*"]
             exact, with_cut = whole(order, power, reduced), cut(order, power, reduced)
             away = (value - exact) / error
-            cells.append(
-                (f"{reduced:g}", f"Ω({order},{power})*", f"{value:.4f}", f"{error:.4f}", f"{exact:.4f}", f"{away:+.1f}")
-            )
+            numbers = (f"{value:.4f}", f"{error:.4f}", f"{exact:.4f}", f"{away:+.1f}")
+            cells.append((f"{reduced:g}", f"Ω({order},{power})*", *numbers))
             worst, left = max(worst, abs(away)), max(left, abs(with_cut / exact - 1.0))
             if power == order:
                 largest = max(largest, error / exact)
-    rows.append(Measurement("Ω*: largest deviation from quadrature, in standard errors", worst, spec=".1f", most=3.5))
+    words = "Ω*: largest deviation from quadrature, in standard errors"
+    rows.append(Measurement(words, worst, spec=".1f", most=3.5))
     rows.append(Measurement("Ω*(1,1), Ω*(2,2): largest standard error, relative", largest, most=0.002))
-    rows.append(Measurement("Ω*: what the cut-off of the deck changes at most, relative, by quadrature", left, most=1e-4))
+    words = "Ω*: what the cut-off of the deck changes at most, relative, by quadrature"
+    rows.append(Measurement(words, left, most=1e-4))
     header = ("T*", "integral", "flights", "standard error", "quadrature", "deviation / standard error")
     return rows, {"integrals": Table(header, cells)}
 
@@ -138,16 +140,21 @@ def _of_molecules(runs):
     value, error = runs["nitrogen"].quantities["viscosity"]
     rows = [
         Measurement("viscosity of nitrogen at 300 K", value, error, ".2f", "µPa s"),
-        Measurement("the same by measured one, less 1", value / VISCOSITY[0] - 1.0, error / VISCOSITY[0], ".3f", least=-0.1, most=0.1),
+        _near("the same by the measured one, less 1", value, error, VISCOSITY[0]),
     ]
     for name, gas in (("helium", "helium"), ("ion", "nitrogen")):
         value, error = runs[name].quantities["cross section"]
-        published = CHOLINE[gas][0]
         rows.append(Measurement(f"cross section of choline in {gas} at 301 K", value, error, ".2f", "Å²"))
-        away = value / published - 1.0
-        rows.append(Measurement("the same by the published computed one, less 1", away, error / published, ".3f", least=-0.1, most=0.1))
-    counts = [(name, *(run.counts[key] for key in ("flights", "orbiting", "unparted", "lost"))) for name, run in runs.items()]
-    return rows, {"molecules": Table(("pair", "flights", "orbiting", "unparted", "lost"), counts)}
+        rows.append(_near("the same by the published computed one, less 1", value, error, CHOLINE[gas][0]))
+    kinds = ("flights", "orbiting", "unparted", "lost")
+    counts = [(name, *(run.counts[kind] for kind in kinds)) for name, run in runs.items()]
+    return rows, {"molecules": Table(("pair", *kinds), counts)}
+
+
+def _near(what, value, error, published):
+    """Measurement of the relative deviation from a published value."""
+    away = value / published - 1.0
+    return Measurement(what, away, error / published, ".3f", least=-0.1, most=0.1)
 
 
 def _of_conservation(run):
@@ -160,9 +167,11 @@ def _of_conservation(run):
         Measurement("of them with a repeated step", counts["repeated"], spec=".0f"),
         Measurement("of them orbiting", counts["orbiting"], spec=".0f"),
     ]
-    rows += [Measurement(f"largest error of the {name} in a flight, relative", value, most=1e-9) for name, value in run.errors.items()]
+    for name, value in run.errors.items():
+        rows.append(Measurement(f"largest error of the {name} in a flight, relative", value, most=1e-9))
     value, error = run.quantities["gain"]
-    rows.append(Measurement("net transfer to rotation at equal temperatures, in standard errors", value / error, spec=".1f", least=-3.5, most=3.5))
+    words = "net transfer to rotation at equal temperatures, in standard errors"
+    rows.append(Measurement(words, value / error, spec=".1f", least=-3.5, most=3.5))
     return rows, {}
 
 
@@ -195,8 +204,10 @@ def _of_methods(points):
     for label in points:
         if label != "fix gear/quat":
             ratio, of_calls = seconds[label][at] / ours, calls[label][at] / calls["fix gear/quat"][at]
-            rows.append(Measurement(f"time of {label} by that of the fix at 1e-7", ratio, spec=".1f", least=10.0))
-            rows.append(Measurement(f"evaluations of {label} by those of the fix at 1e-7", of_calls, spec=".2f"))
+            words = f"time of {label} by that of the fix at 1e-7"
+            rows.append(Measurement(words, ratio, spec=".1f", least=10.0))
+            words = f"evaluations of {label} by those of the fix at 1e-7"
+            rows.append(Measurement(words, of_calls, spec=".2f"))
     return rows, tables
 
 
@@ -213,7 +224,7 @@ def find(results):
         pictures["scatter"] = partial(draw, panels=panels(results.methods))
         seconds, calls, _ = results.methods["DOP853"].sum(axis=0)
         context["microseconds"] = 1e6 * seconds / calls
-    context |= {"viscosity": VISCOSITY, "choline": CHOLINE, "flights": FLIGHTS, "errors": ERRORS, "deck": rivals.DECK}
+    context |= {"viscosity": VISCOSITY, "choline": CHOLINE}
     return Finding(rows, tables, pictures, context)
 
 
@@ -222,7 +233,8 @@ def panels(points):
     found = []
     for column, title, words in ((0, "Time of a flight", "seconds"), (1, "Evaluations in a flight", "evaluations")):
         curves = [
-            Curve(label, own[:, 2], own[:, column], LOOKS[label][0], "-", LOOKS[label][1]) for label, own in points.items()
+            Curve(label, own[:, 2], own[:, column], LOOKS[label][0], "-", LOOKS[label][1])
+            for label, own in points.items()
         ]
         found.append(Panel(title, "largest error of the energy on the way", words, curves, "xy", columns=1))
     return tuple(found)

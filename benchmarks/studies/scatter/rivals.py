@@ -100,8 +100,9 @@ def points(count, tolerances, steps, solvers, tick):
         for start in starts:
             driver.fly(start, f"fix {name} all gear/quat molecule tolerance 1e-9 energy report no", None, LOOK)
             ends.append(driver.end)
-        runs = [("fix gear/quat", f"fix {name} all gear/quat molecule tolerance {eps} energy report no", None) for eps in tolerances]
-        runs += [("fix rigid/nve/small", f"fix {name} all rigid/nve/small molecule", step) for step in steps]
+        gear, rigid = "all gear/quat molecule tolerance {} energy report no", "all rigid/nve/small molecule"
+        runs = [("fix gear/quat", f"fix {name} {gear.format(eps)}", None) for eps in tolerances]
+        runs += [("fix rigid/nve/small", f"fix {name} {rigid}", step) for step in steps]
         for label, fix, step in runs:
             found.setdefault(label, []).append(driver.cost(starts, fix, step))
             tick()
