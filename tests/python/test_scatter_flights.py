@@ -225,7 +225,7 @@ def test_lists_of_hybrid_styles():
     with open_pair(EXAMPLES / "collisions" / "in.nitrogen") as pair:
         plan, lammps = Plan((1,), 300.0, None, 300.0, 5.0), pair.lammps
         for number in range(3):
-            for steps in (200, 400, 600, 800):
+            for steps in (300, 600, 900, 1200, 1500):
                 end = pair.fly(plan.start(pair, number), steps)
                 before = lammps.numpy.extract_atom("f")[:6].copy()
                 lammps.command("run 0 post no")

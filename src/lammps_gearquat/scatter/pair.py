@@ -21,8 +21,9 @@ from ..trials.interpreter import Interpreter
 from ..trials.script import DeckError
 from ..units import UNITS
 
-#: a flight begins and ends so much farther apart than the bodies can feel each other
-MARGIN = 1.0 + 1e-3
+#: a flight begins and ends so much farther apart than the bodies can feel each other: several first steps, for
+#: the derivatives of the start know nothing of a force that begins within its step
+MARGIN = 1.05
 #: what the first step may be: part of the way to the place of the encounter, and angle in radians
 FIRST_STEP, FIRST_TURN = 0.01, 0.05
 #: steps between two looks at the distance
