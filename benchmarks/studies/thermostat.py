@@ -216,6 +216,18 @@ def measurements(results):
     return rows
 
 
+def deviations_table(results):
+    """A row for each model and quantity, all in standard errors."""
+    rows, plan = [], results.plan
+    for model, (quantity, title) in itertools.product(plan.models, QUANTITIES.items()):
+        largest = [farthest(results, model, method, quantity)[0] for method in (RIGID, OURS)]
+        numbers = [f"{number:.1f}" for number in (*largest, answer(results, model, quantity))]
+        rows.append([f"{MODELS[model]}: {title.partition(',')[0]}", *numbers])
+    both = f"{plan.longest:g} fs of {METHODS[OURS]} less {plan.finest:g} fs of {METHODS[RIGID]}"
+    header = ("deviation in standard errors", f"{METHODS[RIGID]}, largest", f"{METHODS[OURS]}, largest", both)
+    return Table(header, rows)
+
+
 def averages_table(results, model):
     """A row for each method and step."""
     rows, plan = [], results.plan
@@ -235,6 +247,8 @@ def panels(results, model):
     dts, found = results.plan.dts, []
     for quantity, title in QUANTITIES.items():
         curves = []
+        if quantity == "difference":
+            curves.append(Curve("", np.array(dts), np.zeros(len(dts)), "#666666", width=0.6))
         for method, words in METHODS.items():
             means = [results.mean(model, method, dt, quantity) for dt in dts]
             value, error = (np.array([getattr(m, name) for m in means], float) for name in ("value", "error"))
@@ -254,8 +268,10 @@ def find(results):
     """Finding of Results."""
     plan = results.plan
     tables = {model: averages_table(results, model) for model in plan.models}
+    tables["deviations"] = deviations_table(results)
     pictures = {model: partial(draw, panels=panels(results, model), columns=2) for model in plan.models}
     context = {"plan": plan, "molecules": MOLECULES, "temperature": TEMPERATURE}
+    context["ratios"] = {MODELS[model]: cost_ratio(results, model) for model in plan.models}
     context["confidence"] = statistics.CONFIDENCE
     context |= {"models": {model: MODELS[model] for model in plan.models}}
     return Finding(measurements(results), tables, pictures, context)
