@@ -139,12 +139,12 @@ class Lab:
             names.rotate(-1)
         return finished_runs
 
-    def sweep(self, name, deck, axes, read, settings=None, may_fail=False):
+    def sweep(self, name, deck, axes, read, settings=None, **options):
         """Run a deck for every combination of ``axes``, a dictionary variable -> values.
 
         ``settings``: further variables, or a function of the combination (a dictionary) that returns
-        them; "steps" must be among all of them.  Returns tuple of values -> ``read(finished)``; a tuple
-        of one value is that value.
+        them; "steps" must be among all of them.  ``options`` are those of ``many``.  Returns tuple of
+        values -> ``read(finished)``; a tuple of one value is that value.
         """
         jobs, keys = {}, {}
         for values in itertools.product(*axes.values()):
@@ -153,7 +153,7 @@ class Lab:
             of_run = "_".join([name, *map(str, values)])
             jobs[of_run] = Job(deck, variables, int(variables["steps"]))
             keys[of_run] = values if len(values) > 1 else values[0]
-        finished_runs = self.many(jobs, may_fail)
+        finished_runs = self.many(jobs, **options)
         return {keys[of_run]: read(finished) for of_run, finished in finished_runs.items()}
 
     def _run(self, name, job, may_fail, stop, total, keep=False):

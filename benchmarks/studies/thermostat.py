@@ -15,7 +15,7 @@ from benchmarks.engine.statistics import Mean, blocks_of, deviation, mean_of_blo
 MODELS = {"spce": "SPC/E", "tip4p2005": "TIP4P/2005"}
 OURS, RIGID = "gear", "rigid"
 METHODS = {OURS: "`fix gear/quat temp`", RIGID: "`fix rigid/nvt/small`"}
-MOLECULES, TEMPERATURE = 216, 300.0
+MOLECULES, TEMPERATURE = 125, 300.0
 BOLTZMANN = 0.0019872067
 FREEDOMS = 6 * MOLECULES - 3
 #: kcal/mol of all molecules in kJ/mol per mole of molecules
@@ -29,15 +29,25 @@ QUANTITIES = {
 
 @dataclass(frozen=True)
 class Plan:
-    """Sizes of all runs; times in fs."""
+    """Sizes of all runs; times in fs.
+
+    ``times``: length of the runs at each of ``dts``.  A short step costs more for the same time, so its
+    runs are shorter.  ``start``: length of the run of a model that leaves the start of all others, which
+    ``equilibrate`` for a while with velocities of their own.
+    """
 
     models: tuple = tuple(MODELS)
     dts: tuple = (0.25, 0.5, 1.0, 2.0)
-    time: float = 10_000.0
-    equilibrate: float = 5_000.0
-    sample: float = 20.0
-    blocks: int = 10
-    seeds: tuple = (4711, 2718)
+    times: tuple = (75_000.0, 100_000.0, 150_000.0, 240_000.0)
+    start: float = 30_000.0
+    equilibrate: float = 2_500.0
+    sample: float = 10.0
+    blocks: int = 15
+    seeds: tuple = (4711,)
+
+    def time(self, dt):
+        """Length of the runs with a step."""
+        return self.times[self.dts.index(dt)]
 
     @property
     def finest(self):
@@ -50,11 +60,9 @@ class Plan:
         return self.dts[-1]
 
 
-#: days of computing, for standard errors that show the shift of fix rigid/nvt/small
-FULL = Plan(time=1_000_000.0, equilibrate=50_000.0)
-QUICK = Plan(
-    models=("spce",), dts=(1.0, 2.0), time=400.0, equilibrate=100.0, sample=4.0, blocks=3, seeds=(4711,)
-)
+#: a day of computing
+FULL = Plan(times=(1_000_000.0,) * 4, equilibrate=10_000.0, blocks=25)
+QUICK = Plan(("spce",), (1.0, 2.0), (400.0, 400.0), 200.0, 100.0, blocks=3)
 
 
 @dataclass(frozen=True)
@@ -114,17 +122,23 @@ def read(finished):
 def measure(lab, plan=None):
     """Results."""
     plan = plan or (QUICK if lab.quick else FULL if lab.full else Plan())
+    deck = EXAMPLES / "water_nvt" / "in.models"
+    axes = {"model": plan.models, "method": tuple(METHODS), "dt": plan.dts, "seed": plan.seeds}
+    sizes = {"equilibrate": 0, "dt": plan.longest, "steps": round(plan.start / plan.longest)}
+    with lab.share(0.03):
+        lab.sweep("start", deck, {"model": plan.models}, lambda _: None, sizes, keep=True)
 
     def settings(variables):
-        dt = float(variables["dt"])
+        dt = variables["dt"]
         return {
-            "steps": round(plan.time / dt),
+            "start": lab.dump(f"start_{variables['model']}").with_suffix(".data").resolve(),
+            "steps": round(plan.time(dt) / dt),
             "equilibrate": round(plan.equilibrate / dt),
             "every": round(plan.sample / dt),
         }
 
-    axes = {"model": plan.models, "method": tuple(METHODS), "dt": plan.dts, "seed": plan.seeds}
-    return Results(plan, lab.sweep("models", EXAMPLES / "water_nvt" / "in.models", axes, read, settings))
+    with lab.share(0.97):
+        return Results(plan, lab.sweep("models", deck, axes, read, settings, keep=True))
 
 
 # --- judging ------------------------------------------------------------------------------------
