@@ -42,6 +42,17 @@ def blocks_of(values, count):
     return np.asarray(values)[-length * count :].reshape(count, length).mean(axis=1)
 
 
+def mean_of_series(series, count):
+    """Mean of several series (n,) without their first samples; its standard error is from ``count`` blocks of each."""
+    return mean_of_blocks(np.concatenate([blocks_of(one, count) for one in series]))
+
+
+def with_error(value, error, sign=""):
+    """Value ± error with two digits of the error; ``sign``: "+" to show that of a positive value."""
+    digits = min(max(0, 1 - math.floor(math.log10(error))), 4) if error > 0 else 4
+    return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
+
+
 def deviation(mean, other):
     """Difference of two Means in units of its standard error."""
     return (mean.value - other.value) / np.hypot(mean.error, other.error)

@@ -14,7 +14,7 @@ import numpy as np
 from benchmarks.engine import EXAMPLES, Curve, Finding, Job, Measurement, Panel, Study, Table
 from benchmarks.engine import statistics
 from benchmarks.engine.panels import draw, floor
-from benchmarks.engine.statistics import Mean, blocks_of, deviation, mean_of_blocks, slope
+from benchmarks.engine.statistics import Mean, deviation, mean_of_blocks, mean_of_series, slope
 
 CONSTRAINTS, THERMOSTAT = ("total", "separate"), "nvt"
 METHODS = (*CONSTRAINTS, THERMOSTAT)
@@ -120,8 +120,7 @@ class Results:
 
     def energy(self, method):
         """Mean potential energy of all molecules, from the blocks of all seeds."""
-        blocks = [blocks_of(water.potential, self.plan.blocks) for water in self.waters(method)]
-        return mean_of_blocks(np.concatenate(blocks))
+        return mean_of_series([water.potential for water in self.waters(method)], self.plan.blocks)
 
     def kinetic(self, method):
         """Mean kinetic energy of all molecules and standard deviation of one configuration's."""

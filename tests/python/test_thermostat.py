@@ -7,13 +7,13 @@ from benchmarks.engine.lab import Lab
 from benchmarks.engine.page import render
 from benchmarks.studies import thermostat as runs
 
-PLAN = runs.Plan(models=("spce",), blocks=5, seeds=(1, 2))
+PLAN = runs.Plan(models=("spce",), times=(10_000.0,) * 4, blocks=5, seeds=(1, 2))
 RIGHT = {"difference": 0.0, "pressure": -100.0, "potential": -46.0}
 SCATTER = {"difference": 3.0, "pressure": 300.0, "potential": 0.3}
 
 
 def made_up(shift=1.0, of_rigid=8.0, **of_ours):
-    """Uncorrelated samples about means; rigid's translation becomes colder with the square of the step.
+    """Uncorrelated samples about means; rigid's rotation becomes colder with the square of the step.
 
     ``of_ours``: a quantity -> by how many standard errors of a mean ours is off at the longest step.
     """
@@ -29,11 +29,16 @@ def made_up(shift=1.0, of_rigid=8.0, **of_ours):
             if method == runs.OURS and dt == PLAN.longest:
                 series[name] += of_ours.get(name, 0.0) * error
             if method == runs.RIGID and name == "difference":
-                series[name] -= of_rigid * error * (dt / 2.0) ** 2
-        time = np.linspace(0.0, PLAN.time, n)
+                series[name] += of_rigid * error * (dt / 2.0) ** 2
+        time = np.linspace(0.0, PLAN.time(dt), n)
         conserved = 1e-6 * time + 0.01 * rng.normal(size=n)
-        found["spce", method, dt, seed] = runs.Run(time, *series.values(), conserved, 100.0 / dt)
-    return runs.Results(PLAN, found)
+        found["spce", method, dt, seed] = runs.Run(time, *series.values(), conserved)
+    seconds = {("spce", method, dt): [0.003, 0.002] for method in runs.METHODS for dt in PLAN.dts}
+    return runs.Results(PLAN, found, seconds)
+
+
+FINEST, APART = "that at 0.25 fs", "difference of 2 fs of ours and 0.25 fs of `rigid/nvt/small`"
+COLDER = "T translation − T rotation, largest deviation from 0 at any step"
 
 
 def broken(results):
@@ -47,9 +52,16 @@ def test_what_is_right_is_within_the_bounds():
 @pytest.mark.parametrize(
     "fault, what",
     [
-        (dict(pressure=15.0), ["pressure: ours, by the step", "pressure: ours at the longest step"]),
-        (dict(potential=-15.0), ["potential energy: ours, by the step", "potential energy: ours at the longest step"]),
-        (dict(of_rigid=0.0), ["temperatures: rigid, by the step"]),
+        (
+            dict(pressure=15.0),
+            [f"pressure, largest deviation from {FINEST} at any step: ours", f"pressure, {APART}"],
+        ),
+        (
+            dict(potential=-15.0),
+            [f"potential energy, largest deviation from {FINEST} at any step: ours", f"potential energy, {APART}"],
+        ),
+        (dict(of_rigid=0.0), [f"{COLDER}: `rigid/nvt/small`"]),
+        (dict(difference=15.0), [f"{COLDER}: ours", f"T translation − T rotation, {APART}"]),
     ],
 )
 def test_what_is_wrong_is_refused(fault, what):
@@ -66,21 +78,35 @@ def test_drift_and_cost():
 
 def test_the_page_shows_what_was_found():
     text = render("thermostat.md.j2", runs.STUDY, runs.find(made_up(of_rigid=20.0)), "Somewhere.")
-    assert "## SPC/E" in text and "| `fix rigid/nvt/small` | 0.25 |" in text
-    assert "| SPC/E: time to that answer, ratio | 8.0 |" in text
+    assert "## SPC/E" in text and "| `fix rigid/nvt/small` | 0.25 | 10 |" in text
+    assert "| SPC/E, ratio of times to that answer," in text and "| 8.0 |" in text
 
 
 def test_a_small_run(lmp_wheel, tmp_path):
     plan = runs.Plan(
-        models=("tip4p2005",), dts=(1.0, 2.0), time=120.0, equilibrate=20.0, sample=4.0, blocks=3, seeds=(1,)
+        models=("tip4p2005",),
+        dts=(1.0, 2.0),
+        times=(120.0, 200.0),
+        start=400.0,
+        equilibrate=20.0,
+        sample=4.0,
+        blocks=3,
+        seeds=(1,),
+        timed_steps=10,
+        rounds=2,
     )
     done = []
     results = runs.measure(Lab(tmp_path, str(lmp_wheel.executable), 1, advance=done.append), plan)
     assert sum(done) == pytest.approx(1.0)
     changes = {}
     for (_, method, dt, _), run in results.runs.items():
-        assert len(run.time) == 31 and run.seconds > 0.0
+        assert len(run.time) == 1 + plan.time(dt) / plan.sample
+        assert run.potential.mean() == pytest.approx(-46.0, abs=3.0)
         changes[method, dt] = np.abs(run.conserved - run.conserved[0]).max()
     for dt in plan.dts:
         assert changes[runs.OURS, dt] < 0.05 * changes[runs.RIGID, dt]
-    assert runs.find(results).tables["tip4p2005"].rows
+    assert all(len(seconds) == 2 and min(seconds) > 0.0 for seconds in results.seconds.values())
+    finding = runs.find(results)
+    assert len(finding.tables["tip4p2005"].rows) == 4
+    finding.pictures["tip4p2005"](tmp_path / "averages.png")
+    assert (tmp_path / "averages.png").stat().st_size > 10_000

@@ -11,6 +11,7 @@ import numpy as np
 
 from benchmarks.engine.methods import GEARS, looks
 from benchmarks.engine.panels import Curve, Panel, draw
+from benchmarks.engine.statistics import with_error
 from benchmarks.engine.study import Finding, Measurement, Study, Table
 
 from . import quantities as of
@@ -29,12 +30,6 @@ LINEAR = 0.01
 LARGEST = 100.0
 #: the darker of a kind come last
 LOOKS = looks(ALL_METHODS[::-1])
-
-
-def with_error(value, error, sign=""):
-    """Value ± error with two digits of the error."""
-    digits = min(max(0, 1 - math.floor(math.log10(error))), 4) if error > 0 else 4
-    return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
 
 
 def lost_text(run):

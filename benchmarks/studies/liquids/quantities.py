@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.stats import linregress
 
-from benchmarks.engine.statistics import Mean, blocks_of, mean_of_blocks
+from benchmarks.engine.statistics import Mean, blocks_of, mean_of_series
 
 BOLTZMANN, FEMTOSECONDS = 0.0019872067, 1e6  # kcal/mol/K; in a nanosecond
 BLOCKS = 10
@@ -38,7 +38,7 @@ def temperatures(run, liquid):
 
 def block_mean(series):
     """Mean of a series without its first sample, with a standard error from blocks."""
-    return mean_of_blocks(blocks_of(series, BLOCKS))
+    return mean_of_series([series], BLOCKS)
 
 
 def cooler(run, liquid) -> Mean:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from benchmarks.engine.statistics import Mean, blocks_of, mean_of_blocks
+from benchmarks.engine.statistics import Mean, mean_of_series
 
 from .runs import MOLECULES, NVE_SMALL, bodies_of
 
@@ -22,7 +22,7 @@ AXES = ("normal to the plane", "along the dipole", "from H to H")
 
 def block_mean(series):
     """Mean of a series (n,) whose first sample, the start that all runs share, is left out."""
-    return mean_of_blocks(blocks_of(series, BLOCKS))
+    return mean_of_series([series], BLOCKS)
 
 
 def spread(values):
