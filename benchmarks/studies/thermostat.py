@@ -46,13 +46,13 @@ class Plan:
 
     models: tuple = tuple(MODELS)
     dts: tuple = (0.25, 0.5, 1.0, 2.0)
-    times: tuple = (75_000.0, 50_000.0, 100_000.0, 200_000.0)
+    times: tuple = (75_000.0, 40_000.0, 70_000.0, 150_000.0)
     start: float = 30_000.0
     equilibrate: float = 2_500.0
     sample: float = 10.0
     blocks: int = 15
     seeds: tuple = (4711,)
-    timed_steps: int = 1000
+    timed_steps: int = 500
     rounds: int = 3
 
     def time(self, dt):
@@ -261,4 +261,4 @@ def find(results):
     return Finding(measurements(results), tables, pictures, context)
 
 
-STUDY = Study("thermostat", "Constant temperature", 1_200.0, measure, find)
+STUDY = Study("thermostat", "Constant temperature", 1_000.0, measure, find)
