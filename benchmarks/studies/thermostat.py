@@ -273,6 +273,12 @@ def find(results):
     context = {"plan": plan, "molecules": MOLECULES, "temperature": TEMPERATURE}
     context["ratios"] = {MODELS[model]: cost_ratio(results, model) for model in plan.models}
     context["confidence"] = statistics.CONFIDENCE
+    context["beyond"] = [
+        f"the {QUANTITIES[quantity].partition(',')[0]} of {MODELS[model]}"
+        for model, quantity in itertools.product(plan.models, QUANTITIES)
+        for largest, most in [farthest(results, model, OURS, quantity)]
+        if largest > most
+    ]
     context |= {"models": {model: MODELS[model] for model in plan.models}}
     return Finding(measurements(results), tables, pictures, context)
 
