@@ -294,6 +294,27 @@ def test_ranks_agree(lmp_tree, words):
             assert same == pytest.approx(frame, rel=1e-10, abs=1e-10)
 
 
+def test_a_restart_between_repeated_steps(lmp_tree):
+    """On four ranks, in a collision, with steps that end at even times."""
+    begin = "units lj\natom_modify map array sort 0 0.0\n"
+    deck = scene("1e-10 energy", words="every/time 0.05").replace(UNTIL.format(8.0), "\nrun {}\n")
+    _, style, rest = deck.partition("pair_style zero")
+    goes_on = f"{begin}read_restart at.{{}}\n{style}{rest}"
+
+    def run(deck):
+        return tables(lmp_tree.succeed("processors 2 2 1\n" + deck, ranks=4))[0]
+
+    whole = run(deck.format(700))
+    again = np.flatnonzero(np.diff(whole[REPEATED]))
+    half = int(again[len(again) // 2])  # the next step is repeated
+    assert 100 < half < 650 and whole["PotEng"][half] != 0
+    whole = run(deck.replace("run {}", f"restart {half} at.*\nrun 700"))
+    second = run(goes_on.format(half, 700 - half))
+    assert second[REPEATED][1] > second[REPEATED][0]
+    for column in ("Time", "PotEng", "KinEng", NEXT, VALUES, LARGEST, REPEATED):
+        assert second[column][1:].tolist() == whole[column][half + 1 :].tolist(), column
+
+
 def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, "gear/quat molecule tolerance 1e-6", dt=1.0, steps=500)
