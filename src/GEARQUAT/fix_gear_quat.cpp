@@ -284,6 +284,12 @@ void FixGearQuat::end_of_step()
   motion->choose_step();
 }
 
+/// However the run has ended.
+void FixGearQuat::post_run()
+{
+  motion->end_run();
+}
+
 /// Virial of the constraint forces m a - f, at the pose where the forces were taken.  Those of a body
 /// add up to zero, so any origin serves; for the centroid form it is the mean place of its sites.
 void FixGearQuat::tally_virial(double **f)

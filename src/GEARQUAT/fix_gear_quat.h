@@ -54,6 +54,7 @@ class FixGearQuat : public Fix {
   void initial_integrate_respa(int, int, int) override;
   void final_integrate_respa(int, int) override;
   void end_of_step() override;
+  void post_run() override;
   void reset_dt() override;
 
   double compute_scalar() override;

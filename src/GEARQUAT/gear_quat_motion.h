@@ -73,6 +73,10 @@ class Motion : protected Pointers {
   void evaluate(int vflag) { tolerance->evaluate(vflag); }
   /// To be called with tolerance only, when all fixes have finished the step.  Collective.
   void choose_step();
+  void end_run()
+  {
+    if (tolerance) tolerance->end_run();
+  }
 
   // elements of the fix's vector behind those of Sums
 

@@ -85,6 +85,8 @@ class Tolerance : protected Pointers {
   /// With thermo 0 there is thermo output at the multiples of every_time: now, if the step that ends is
   /// at one of them.  To be called after change_step().
   void order_output();
+  /// Rank 0 says if a constant step would have done.
+  void end_run();
   /// Restores `step`, that of the histories: the timestep command sets the first step only.
   void keep_step(double step);
   /// The same in a run with pre no, whose first step has begun with another length already.  Ends the
@@ -141,7 +143,6 @@ class Tolerance : protected Pointers {
   double shown(double error) const;
   void refuse_lost() const;
   void note_step(double size, int values);
-  void tell_of_little_gain();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -190,7 +190,6 @@ double Tolerance::choose()
   if (next.values != values) change_values(next.values);
   next.step = even(next.step, time());
   if (std::fabs(next.step - step) > ROUNDING_OF_TIME * std::fabs(step)) steady.step = 0;
-  if (update->ntimestep == update->laststep) tell_of_little_gain();
   return next.step;
 }
 
@@ -270,8 +269,7 @@ void Tolerance::note_step(double size, int values)
   settled.smallest = settled.steps == 1.0 ? size : std::min(settled.smallest, size);
 }
 
-/// At the end of a run.
-void Tolerance::tell_of_little_gain()
+void Tolerance::end_run()
 {
   const double more = settled.time / (settled.steps * settled.smallest) - 1.0;
   if (settled.steps > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)

@@ -1,7 +1,10 @@
 """Keyword tolerance: a step that fails is made again, and nothing else in LAMMPS can tell."""
 
+import re
+
 import numpy as np
 import pytest
+from running import EXAMPLES
 from scenes import frames, one_after_the_other, placed, water, water_data
 from test_tolerance import (
     ENERGY,
@@ -90,6 +93,7 @@ def test_forces_that_jump(lmp_tree, formulation):
 
 
 UNFOLLOWED = {
+    "fix other others gear/quat molecule": "fix other (gear/quat) moves atoms",
     "fix other others nve": "moves atoms",
     "fix other others langevin 1.0 1.0 1.0 4711": "acts on forces in a way that cannot be followed",
 }
@@ -99,6 +103,7 @@ UNFOLLOWED = {
 def test_where_steps_are_not_repeated_the_log_says_so(lmp_tree, command):
     before = f"create_atoms 2 single 0 -9 9\ngroup others type 2\ngroup ones type 1\n{command}"
     deck = scene("1e-8", before=before).replace("fix move all", "fix move ones")
+    deck = deck.replace("create_atoms 2 single 0 -9 9", "create_atoms 2 single 0 -9 9\nset type 2 mol 9")
     result = lmp_tree.succeed(deck)
     assert result.output.count("no step is repeated, because") == 1
     assert UNFOLLOWED[command] in result.output
@@ -318,8 +323,80 @@ def test_a_restart_between_repeated_steps(lmp_tree):
 def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, "gear/quat molecule tolerance 1e-6", dt=1.0, steps=500)
-    assert "the control does not pay here" in lmp_tree.succeed(deck).output
-    assert "the control does not pay" not in lmp_tree.succeed(scene("1e-8")).output
+    said = "the control does not pay here"
+    assert lmp_tree.succeed(deck).output.count(said) == 1
+    halted = deck.replace("run 500", UNTIL.format(300.0))
+    assert halted != deck and lmp_tree.succeed(halted).output.count(said) == 1
+    assert said not in lmp_tree.succeed(scene("1e-8")).output
+
+
+WATER_216 = """
+units real
+atom_style full
+newton on
+atom_modify sort 0 0.0
+read_data {}
+pair_style lj/charmm/coul/charmm 6.0 8.0
+pair_coeff 1 1 0.1553 3.166
+pair_coeff * 2 0.0 1.0
+neighbor 1.0 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+velocity all create 300.0 4711 loop geom
+fix move all gear/quat molecule
+run 0 post no
+velocity all zero linear
+unfix move
+timestep {}
+fix move all gear/quat molecule {}
+thermo_style custom step time {}
+dump poses all custom {} poses.dump id xu yu zu
+dump_modify poses sort id format float %.17g {}
+{}
+"""
+
+
+def test_216_molecules_of_water(lmp_tree):
+    """The log says that a constant step would do, and the one that it names is about as accurate."""
+    duration, data = 200.0, EXAMPLES / "isokinetic" / "data.water"
+
+    def fixed(steps):
+        dt = duration / steps
+        deck = WATER_216.format(data, f"{dt:.17g}", "", "pe", steps, "", f"run {steps}")
+        lmp_tree.succeed(deck)
+        return frames(lmp_tree.folder / "poses.dump")[steps]
+
+    def controlled(eps, end):
+        words, every = f"tolerance {eps} every/time {duration:g}", f"every/time {duration:g}"
+        deck = WATER_216.format(data, 0.5, words, REPEATED, 1, every, UNTIL.format(end))
+        result = lmp_tree.succeed(deck)
+        _, (step, poses), *_ = frames(lmp_tree.folder / "poses.dump").items()
+        return step, poses, re.findall("does not pay here: a fixed time step of (.*?) without", result.words)
+
+    right = fixed(800)
+
+    def error(poses):
+        return np.linalg.norm((poses - right)[:, 1:], axis=1).max()
+
+    for eps, least, most in (("1e-5", 1e-5, 1e-4), ("1e-4", 5e-5, 5e-4)):
+        steps, poses, named = controlled(eps, duration)
+        assert least < error(poses) < most and not named  # a hundred steps settle
+        *_, (named,) = controlled(eps, 2 * duration)
+        number = round(duration / float(named))
+        assert error(fixed(number)) < 2 * error(poses) < error(fixed(number // 2))
+        assert float(named) > 0.7 * duration / steps
+
+
+def test_a_tolerance_that_nothing_can_meet(lmp_tree):
+    message = "or the tolerance is smaller than their rounding"
+    result = lmp_tree.refuse(scene("1e-200 energy", until=1.0), message)
+    assert "step 1 was made 41 times, and its error is" in result.words
+
+
+def test_a_tolerance_that_anything_meets(lmp_tree):
+    """Then the limit of the motion alone holds the step, and bodies still bounce off each other."""
+    (run,) = tables(lmp_tree.succeed(scene("1e30", until=8.0)))
+    assert run["PotEng"].min() < -0.5 and run[REPEATED][-1] == 0 and run["Time"][-1] >= 8.0
+    assert run[NEXT].max() < 0.25 * 0.3 / 2.0 * 1.5  # a quarter of the skin at a speed of 2
 
 
 def test_a_longest_step_beyond_the_motion(lmp_tree):

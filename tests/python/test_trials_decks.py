@@ -262,7 +262,7 @@ def test_unusable_decks_are_told_why(refused, change, said):
 
 @pytest.mark.parametrize(
     ("tried", "said"),
-    [("valus 3", "pairs of a keyword"), ("values 99", "--try 'values 99': .*99 is not from 4 ")],
+    [("valus 3", "pairs of a keyword"), ("tolerance 1e-6", "pairs of a keyword"), ("values 99", "--try 'values 99': .*99 is not from 4 ")],
 )
 def test_words_to_try_are_checked_first(make_deck, tried, said):
     result = CliRunner().invoke(cost_command, [str(make_deck()), "--budget", "9", "--try", tried])
