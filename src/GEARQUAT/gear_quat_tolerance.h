@@ -9,8 +9,9 @@
    The fix calls when histories begin scheme_of_start(), begin() and shorten_first_step(); in every
    step begin_step(); correct() for every body, and judge(); if that says so, it puts back the
    histories, calls shorten_values() and shorten_step(), and makes the step again; and at the end of the
-   step, when all fixes have finished it, choose(), change_step() and order_output().  Where the number of values may
-   have changed, after begin(), shorten_values() and choose(), the fix makes its integrator anew. */
+   step, when all fixes have finished it, choose(), change_step() and order_output().  Where the number
+   of values may have changed, after begin(), shorten_values() and choose(), the fix makes its integrator
+   anew.  Beside that, announce_output() before the first step of a run, and end_run(). */
 
 #ifndef LMP_GEAR_QUAT_TOLERANCE_H
 #define LMP_GEAR_QUAT_TOLERANCE_H

@@ -202,15 +202,15 @@ double Tolerance::time() const
 /// time, or of every_time.  step: positive; now: when it begins.
 double Tolerance::next_output(double step, double now) const
 {
-  const double nearest =
-      now + ROUNDING_OF_TIME * step;    // before, output belongs to the last step
+  const double nearest = now + ROUNDING_OF_TIME * step;    // until then it is of the last step
   double next = std::numeric_limits<double>::infinity();
-  if (every_time > 0.0) next = (std::floor(nearest / every_time) + 1.0) * every_time;
+  if (every_time > 0.0) next = (std::floor(now / every_time) + 1.0) * every_time;
+  if (next <= nearest) next += every_time;
   for (int n = 0; n < output->ndump; ++n) {
     if (output->mode_dump[n] == 0) continue;
     double at = output->next_time_dump[n];
-    if (at < nearest) at += output->every_time_dump[n];    // it is written now
-    if (at >= nearest) next = std::min(next, at);
+    if (at <= nearest) at += output->every_time_dump[n];    // it is written now
+    if (at > nearest) next = std::min(next, at);
   }
   return next;
 }
@@ -221,7 +221,7 @@ double Tolerance::even(double step, double now) const
 {
   if (step <= 0.0) return step;
   const double next = next_output(step, now), way = next - now;
-  if (!std::isfinite(next)) return step;
+  if (!std::isfinite(next) || !(way > 0.0)) return step;
   const double size = even_step(step, way);
   if (way > 1.5 * size)    // rounding of the time is no reason to change the step
     return std::fabs(size - step) < ROUNDING_OF_TIME * step ? step : size;
