@@ -377,7 +377,7 @@ def test_216_molecules_of_water(lmp_tree):
     def error(poses):
         return np.linalg.norm((poses - right)[:, 1:], axis=1).max()
 
-    for eps, least, most in (("1e-5", 1e-5, 1e-4), ("1e-4", 5e-5, 5e-4)):
+    for eps, least, most in (("1e-5", 1e-5, 3e-4), ("1e-4", 5e-5, 1e-3)):
         steps, poses, named = controlled(eps, duration)
         assert least < error(poses) < most and not named  # a hundred steps settle
         *_, (named,) = controlled(eps, 2 * duration)
@@ -386,10 +386,10 @@ def test_216_molecules_of_water(lmp_tree):
         assert float(named) > 0.7 * duration / steps
 
 
-def test_a_tolerance_that_nothing_can_meet(lmp_tree):
-    message = "or the tolerance is smaller than their rounding"
-    result = lmp_tree.refuse(scene("1e-200 energy", until=1.0), message)
-    assert "step 1 was made 41 times, and its error is" in result.words
+def test_a_tolerance_far_below_rounding(lmp_tree):
+    """What rounding makes of an error shortens no step."""
+    (run,) = tables(lmp_tree.succeed(scene("1e-200 energy", until=1.0)))
+    assert run["Time"][-1] >= 1.0 and off(run, "TotEng") < 1e-12
 
 
 def test_a_tolerance_that_anything_meets(lmp_tree):
