@@ -1,10 +1,7 @@
 """Keyword tolerance: a step that fails is made again, and nothing else in LAMMPS can tell."""
 
-import re
-
 import numpy as np
 import pytest
-from running import EXAMPLES
 from scenes import frames, one_after_the_other, placed, water, water_data
 from test_tolerance import (
     ENERGY,
@@ -299,27 +296,6 @@ def test_ranks_agree(lmp_tree, words):
             assert same == pytest.approx(frame, rel=1e-10, abs=1e-10)
 
 
-def test_a_restart_between_repeated_steps(lmp_tree):
-    """On four ranks, in a collision, with steps that end at even times."""
-    begin = "units lj\natom_modify map array sort 0 0.0\n"
-    deck = scene("1e-10 energy", words="every/time 0.05").replace(UNTIL.format(8.0), "\nrun {}\n")
-    _, style, rest = deck.partition("pair_style zero")
-    goes_on = f"{begin}read_restart at.{{}}\n{style}{rest}"
-
-    def run(deck):
-        return tables(lmp_tree.succeed("processors 2 2 1\n" + deck, ranks=4))[0]
-
-    whole = run(deck.format(700))
-    again = np.flatnonzero(np.diff(whole[REPEATED]))
-    half = int(again[len(again) // 2])  # the next step is repeated
-    assert 100 < half < 650 and whole["PotEng"][half] != 0
-    whole = run(deck.replace("run {}", f"restart {half} at.*\nrun 700"))
-    second = run(goes_on.format(half, 700 - half))
-    assert second[REPEATED][1] > second[REPEATED][0]
-    for column in ("Time", "PotEng", "KinEng", NEXT, VALUES, LARGEST, REPEATED):
-        assert second[column][1:].tolist() == whole[column][half + 1 :].tolist(), column
-
-
 def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, "gear/quat molecule tolerance 1e-6", dt=1.0, steps=500)
@@ -328,62 +304,6 @@ def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
     halted = deck.replace("run 500", UNTIL.format(300.0))
     assert halted != deck and lmp_tree.succeed(halted).output.count(said) == 1
     assert said not in lmp_tree.succeed(scene("1e-8")).output
-
-
-WATER_216 = """
-units real
-atom_style full
-newton on
-atom_modify sort 0 0.0
-read_data {}
-pair_style lj/charmm/coul/charmm 6.0 8.0
-pair_coeff 1 1 0.1553 3.166
-pair_coeff * 2 0.0 1.0
-neighbor 1.0 bin
-neigh_modify every 1 delay 0 check yes exclude molecule/intra all
-velocity all create 300.0 4711 loop geom
-fix move all gear/quat molecule
-run 0 post no
-velocity all zero linear
-unfix move
-timestep {}
-fix move all gear/quat molecule {}
-thermo_style custom step time {}
-dump poses all custom {} poses.dump id xu yu zu
-dump_modify poses sort id format float %.17g {}
-{}
-"""
-
-
-def test_216_molecules_of_water(lmp_tree):
-    """The log says that a constant step would do, and the one that it names is about as accurate."""
-    duration, data = 200.0, EXAMPLES / "isokinetic" / "data.water"
-
-    def fixed(steps):
-        dt = duration / steps
-        deck = WATER_216.format(data, f"{dt:.17g}", "", "pe", steps, "", f"run {steps}")
-        lmp_tree.succeed(deck)
-        return frames(lmp_tree.folder / "poses.dump")[steps]
-
-    def controlled(eps, end):
-        words, every = f"tolerance {eps} every/time {duration:g}", f"every/time {duration:g}"
-        deck = WATER_216.format(data, 0.5, words, REPEATED, 1, every, UNTIL.format(end))
-        result = lmp_tree.succeed(deck)
-        _, (step, poses), *_ = frames(lmp_tree.folder / "poses.dump").items()
-        return step, poses, re.findall("does not pay here: a fixed time step of (.*?) without", result.words)
-
-    right = fixed(800)
-
-    def error(poses):
-        return np.linalg.norm((poses - right)[:, 1:], axis=1).max()
-
-    for eps, least, most in (("1e-5", 1e-5, 3e-4), ("1e-4", 5e-5, 1e-3)):
-        steps, poses, named = controlled(eps, duration)
-        assert least < error(poses) < most and not named  # a hundred steps settle
-        *_, (named,) = controlled(eps, 2 * duration)
-        number = round(duration / float(named))
-        assert error(fixed(number)) < 2 * error(poses) < error(fixed(number // 2))
-        assert float(named) > 0.7 * duration / steps
 
 
 def test_a_tolerance_far_below_rounding(lmp_tree):
