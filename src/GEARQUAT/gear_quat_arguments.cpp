@@ -106,6 +106,7 @@ void Arguments::parse_keywords(int narg, char **arg)
   check_conditions();
   check_ranges();
   if (is_on("tolerance", "")) check_control();
+  thermostat.may_wait = !mol.empty();
   if (!infile.empty()) reinit = false;    // what a file states is not computed again from the atoms
 }
 
@@ -198,6 +199,13 @@ void Arguments::check_control()
   if (control.longest > 0.0 && control.shortest > control.longest)
     error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                control.longest);
+  if (thermostat.start != thermostat.stop)
+    error->all(
+        FLERR,
+        "Fix gear/quat temp: Tstart {} and Tstop {} differ, which cannot be used with "
+        "tolerance: the target changes with the number of the step, and steps have no common "
+        "length; use several runs with a target each",
+        thermostat.start, thermostat.stop);
 }
 
 /* ----------------------------------------------------------------------

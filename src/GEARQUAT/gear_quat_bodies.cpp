@@ -55,12 +55,18 @@ void Bodies::create(const std::vector<tagint> &ids, const GivenBodies &given)
   add(ids, given, false);
 }
 
+void Bodies::set_number(bigint all)
+{
+  nchanges += nbodies != all;
+  nbodies = all;
+}
+
 void Bodies::count()
 {
   bigint here[2] = {nown, 0};
   for (int ibody = 0; ibody < nown; ++ibody) here[1] += body[ibody].natoms;
   const auto all = over_ranks(MPI_SUM, here, world);
-  nbodies = all[0];
+  set_number(all[0]);
   natoms = all[1];
   box.assign(domain->h, domain->h + 6);
 }
@@ -281,7 +287,7 @@ bool Bodies::take_stock()
   }
   for (const Site &site : sites) here[5] += site.body >= nmove;
   const auto all = over_ranks(MPI_SUM, here, world);
-  nbodies = all[0];
+  set_number(all[0]);
   natoms = all[1];
   any_ghosts = all[5] > 0;
   nlarge = all[6];

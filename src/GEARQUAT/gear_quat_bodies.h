@@ -158,6 +158,8 @@ class Bodies : protected Pointers {
   /// Bodies on all ranks and atoms in them, as of create() or update_ghosts().
   bigint number() const { return nbodies; }
   bigint number_of_sites() const { return natoms; }
+  /// How often bodies have come or gone, the same on all ranks.
+  int changes() const { return nchanges; }
   /// An atom of the fix group was created that is in no body yet; it may be added to one.
   void note_stranger(int change) { strangers += change; }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
@@ -223,6 +225,7 @@ class Bodies : protected Pointers {
   int nown = 0, nmove = 0;           ///< owned bodies; with copies of large ones
   bigint nbodies = 0, natoms = 0;    ///< on all ranks: bodies, and atoms in them
   bigint nlarge = 0;                 ///< on all ranks
+  int nchanges = 0;                  ///< of nbodies
   std::vector<double> box;    ///< shape of the box that the bodies were last seen in; may be empty
   int strangers = 0;          ///< atoms created since the fix was defined, in no body
   bool warned_strangers = false;    ///< that there are such atoms
@@ -270,6 +273,7 @@ class Bodies : protected Pointers {
 
   void clear(bool extended = false);
   void count();
+  void set_number(bigint all);
   void follow_atom_ids();
   void drop_ghosts();
   void tell_ghosts();

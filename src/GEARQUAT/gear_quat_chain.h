@@ -23,8 +23,9 @@
 
    The variables xi_1 ... xi_M and S have histories of n rows, and behind them the trial row of
    gear_quat_step_control.h.  The host calls, for the start: rates(), and seed() for every variable; once
-   a step predict(), and correct() in every pass, with the kinetic energy that is known then; where step
-   or number of values change rescale() and set_values(). */
+   a step predict(), correct() in every pass, with the kinetic energy that is known then, and conclude();
+   where step or number of values change rescale() and set_values(); and where degrees of freedom come or
+   go replace_target(). */
 
 #ifndef GEAR_QUAT_CHAIN_H
 #define GEAR_QUAT_CHAIN_H
@@ -121,6 +122,16 @@ class Chain {
   void conclude(int n)
   {
     for (int v = 0; v < size(); ++v) rows[v][n] = (rows[v][n - 1] - last[v]) / n;
+  }
+
+  /// Degrees of freedom have changed: E and all xi stay, and the first derivatives become those of the
+  /// new target and kinetic energy.
+  void replace_target(const ChainTarget &before, const ChainTarget &target, double twice_kinetic,
+                      double h)
+  {
+    const Variables y = values(), rate = rates(target, twice_kinetic, y);
+    for (int v = 0; v < size(); ++v) rows[v][1] = h * rate[v];
+    rows[length][0] += moving(before, y) - moving(target, y);
   }
 
   /// Rows and trial row for another step.

@@ -133,9 +133,7 @@ static std::vector<Keyword> make_table()
               a.thermostat.stop = v.numbers[1];
               a.thermostat.damp = v.numbers[2];
             }).follows(Keyword::NUMBERS, {"Tstart", "Tstop", "Tdamp"})
-        .cannot_go_with({"isokinetic", "", ONE_TEMPERATURE})
-        .cannot_go_with({"tolerance", "", "the variables of a thermostat have one number of values"})
-        .cannot_go_with({"mol", "", "bodies that come bring degrees of freedom"}),
+        .cannot_go_with({"isokinetic", "", ONE_TEMPERATURE}),
     Keyword("tchain", PHYSICS, "how many variables a thermostat has",
             [](Arguments &a, const Value &v) { a.thermostat.length = v.integer; })
         .integer({{1, Chain::LONGEST, 3}}).requires_also({"temp", "", ""}),

@@ -132,6 +132,7 @@ void Motion::predict(double **f)
   const double h = step();
   if (tolerance && update->dt != h) tolerance->put_back_begun_step(h);
   if (tolerance) tolerance->begin_step();
+  if (thermostat && tolerance) thermostat->keep_chains();
   predict_bodies(f);
 }
 
@@ -204,12 +205,23 @@ template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int 
 /// Constraint and thermostat couple all bodies, so they are corrected pass by pass.
 void Motion::correct_together(double **f)
 {
+  if (tolerance) tolerance->note_prediction();
   if (isokinetic)
     isokinetic->correct(*integrator);
   else
     thermostat->correct(*integrator, present_scheme());
+  if (tolerance)
+    tolerance->note_correction(*integrator);
+  else
+    hold_step(f);
+}
+
+/// The step is not made again.
+void Motion::hold_step(double **f)
+{
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) check_limits(ibody, f);
+  begin_fresh(f);
 }
 
 /// The histories of bodies that came in this step begin with the derivatives that are known.
@@ -218,26 +230,27 @@ void Motion::begin_fresh(double **f)
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
     blowup.check_load(ibody, step(), f);
-    Bootstrap::seed_body(bodies, ibody, bodies.acting(ibody), present_scheme(), step(), known);
+    Bootstrap::seed_body(bodies, ibody, acting(ibody), present_scheme(), step(), known);
   }
   bodies.take_in_fresh();
+  if (thermostat) thermostat->follow_bodies(step());
 }
 
 bool Motion::repeats_step(double **f)
 {
   if (!tolerance) return false;
   if (!tolerance->judge()) {
-    for (const auto *list : {&bodies.points, &bodies.tops})
-      for (const int ibody : *list) check_limits(ibody, f);
-    begin_fresh(f);
+    hold_step(f);
     return false;
   }
   bodies.put_back_histories();
+  if (thermostat) thermostat->put_back_chains();
   const int values = present_scheme().values();
   tolerance->shorten_values();
-  if (present_scheme().values() != values) make_integrator(step());
+  if (present_scheme().values() != values) take_over_values();
   tolerance->shorten_step();
   bodies.keep_histories();
+  if (thermostat) thermostat->keep_chains();
   predict_bodies(f);
   return true;
 }
@@ -246,9 +259,16 @@ void Motion::choose_step()
 {
   const int values = tolerance->scheme().values();
   const double next = tolerance->choose();
-  if (tolerance->scheme().values() != values) make_integrator(step());
+  if (tolerance->scheme().values() != values) take_over_values();
   tolerance->change_step(next);
   tolerance->order_output();
+}
+
+/// The histories of bodies have the number of values that the tolerance has chosen.
+void Motion::take_over_values()
+{
+  make_integrator(step());
+  if (thermostat) thermostat->set_values(present_scheme().values());
 }
 
 /* ----------------------------------------------------------------------

@@ -148,6 +148,8 @@ class Motion : protected Pointers {
   template <bool MASKED> void correct_bodies(double **f);
   template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody, double **f);
   void correct_together(double **f);
+  void hold_step(double **f);
+  void take_over_values();
   void measure();
   void begin_fresh(double **f);
   void predict_bodies(double **f);

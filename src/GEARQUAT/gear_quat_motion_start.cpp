@@ -77,7 +77,7 @@ const char *Motion::reason_to_start_anew(double **f)
     return "the time step is less than half of that of the last steps";
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
-  if (thermostat && thermostat->target_jumps() && can_start_anew())
+  if (thermostat && thermostat->target_jumps() && bootstraps() && forces_can_be_followed())
     return "the thermostat has another target than in the last steps";
   return forces_changed(f) ? "forces are not those of the last step" : nullptr;
 }
@@ -185,5 +185,5 @@ void Motion::begin(bool full)
   started = true;
   if (!tolerance) return;
   tolerance->begin(full);
-  make_integrator(step());
+  take_over_values();
 }

@@ -16,9 +16,10 @@
    Source: C. W. Gear, "Numerical Initial Value Problems in Ordinary Differential Equations" (1971),
    chapter 9, for the comparison of three orders.
 
-   The host calls, for every body and once a step: correct() in place of Integrator::correct(); then,
-   with the largest errors of all bodies, StepControl::fails().  If so, and if the host has kept the
-   histories, it puts them back and makes the step again as StepControl::repeat() says.  Otherwise
+   The host calls, for every body and once a step: correct() in place of Integrator::correct(), or
+   last_row() and errors() around a correction of all bodies together; then, with the largest errors of
+   all bodies, StepControl::fails().  If so, and if the host has kept the histories, it puts them back
+   and makes the step again as StepControl::repeat() says.  Otherwise
    Steady::count() and StepControl::next().  If values change, add_row() or drop_row() for every body;
    then Integrator::rescale(). */
 
@@ -28,6 +29,7 @@
 #include "gear_quat_integrator.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace LAMMPS_NS::GearQuat {
@@ -77,18 +79,36 @@ class VariableOrder {
   /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a rotation
   /// by a radian moves what is far out on the body.
   Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
-                     const Load &load, const double *axes, double *rows, StepMeasures &errors) const
+                     const Load &load, const double *axes, double *rows, StepMeasures &found) const
+  {
+    const Row before = last_row(rows);
+    const Correction correction = integrator.correct(body, load, axes, rows);
+    found = errors(integrator, body, reach, load, axes, before, rows);
+    return correction;
+  }
+
+  /// The last row of a predicted history.
+  using Row = std::array<double, Scheme::FIRST_WIDTH>;
+  Row last_row(const double *rows) const
+  {
+    Row row;
+    std::copy_n(rows + (n - 1) * scheme.width(), scheme.width(), row.begin());
+    return row;
+  }
+
+  /// The errors of the step of a history that was corrected since last_row() and has a trial row after
+  /// the call.  axes: of any pose of the step.
+  StepMeasures errors(const Integrator &integrator, const RigidBody &body, double reach,
+                      const Load &load, const double *axes, const Row &before, double *rows) const
   {
     const double *last = rows + (n - 1) * scheme.width();
-    double *trial = rows + scheme.trial_row();
-    double before[Scheme::FIRST_WIDTH], change[Scheme::FIRST_WIDTH];
-    std::copy_n(last, scheme.width(), before);
-    const Correction correction = integrator.correct(body, load, axes, rows);
+    double *trial = rows + scheme.trial_row(), change[Scheme::FIRST_WIDTH];
     for (int i = 0; i < scheme.width(); ++i) {
       const double found = (last[i] - before[i]) / n;
       change[i] = found - trial[i];
       trial[i] = found;
     }
+    StepMeasures errors;
     errors.length = {fewer.pose * size(last, reach), same.pose * size(trial, reach),
                      more.pose * size(change, reach)};
     const Worth worth = worth_of(integrator, body, load, axes, rows);
@@ -97,7 +117,7 @@ class VariableOrder {
     errors.rounding.length = rounding_of_sites(reach, rows);
     errors.rounding.energy =
         worth.position * errors.rounding.length + LAST_DIGIT * worth.twice_kinetic;
-    return correction;
+    return errors;
   }
 
   /// Errors of a step from the rows alone, those of the present number of values.

@@ -99,6 +99,7 @@ void Thermostat::count_freedoms()
   freedoms[TRANSLATION] = std::max(0.0, all[TRANSLATION] - of_total);
   freedoms[ROTATION] = all[ROTATION];
   counted = bodies.number();
+  changes = bodies.changes();
 }
 
 /// True if nothing outside of the bodies has a force on them.
@@ -166,6 +167,7 @@ void Thermostat::refuse_masks() const
 /// Friction warms nothing that stands still.
 void Thermostat::refuse_nothing() const
 {
+  if (words.may_wait && counted == 0) return;
   if (freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0)
     error->all(FLERR,
                "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
@@ -258,119 +260,67 @@ void Thermostat::measure()
 
 void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
 {
-  const int n = bodies.nmoved(), values = integrator.values();
+  const int values = integrator.values();
   const double h = integrator.step();
-  if (counted != bodies.number()) count_freedoms();    // some were removed
+  const bool same_bodies = changes == bodies.changes();
   line = line_of_step(update->ntimestep);
   for (auto &chain : chains) chain.predict(values);
 
   Sums here;
   double velocity[3], omega_body[3];
   unit = scale();
-  pending.resize(n);
-  for (int ibody = 0; ibody < n; ++ibody) {
+  pending.resize(bodies.nmoved());
+  for_moved([&](int ibody) {
     const BodyState &s = bodies.state_of(ibody);
     pending[ibody] =
         integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
     if (ibody < bodies.nowned()) add_kinetic(ibody, s.velocity, s.omega_body, here);
-  }
+  });
 
   for (int pass = 0; pass < scheme.passes; ++pass) {
     sum_kinetic(here);
-    for (size_t c = 0; c < chains.size(); ++c)
+    for (size_t c = 0; c < chains.size() && same_bodies; ++c)
       chains[c].correct(target_of(c, 0.0, h), twice_of(c), h, values,
                         integrator.scalar_coefficients().data());
     note_friction();
     here[TRANSLATION] = here[ROTATION] = ExactSum();
-    for (int ibody = 0; ibody < n; ++ibody) {
+    for_moved([&](int ibody) {
       const RigidBody &rigid = bodies.rigid_of(ibody);
       double *rows = bodies.history(ibody);
       integrator.correct_pass(rigid, bodies.acting(ibody), friction_of(ibody), rows,
                               pending[ibody]);
-      if (ibody >= bodies.nowned() || pass + 1 == scheme.passes) continue;
+      if (ibody >= bodies.nowned() || pass + 1 == scheme.passes) return;
       integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
       add_kinetic(ibody, velocity, omega_body, here);
-    }
+    });
   }
   for (auto &chain : chains) chain.conclude(values);
-  finish_bodies(integrator);
+  for_moved([&](int ibody) {
+    finish_body(integrator, ibody);
+  });
 }
 
-void Thermostat::finish_bodies(const Integrator &integrator)
+void Thermostat::finish_body(const Integrator &integrator, int ibody)
 {
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    double *rows = bodies.history(ibody);
-    BodyState &state = bodies.change_state(ibody);
-    Correction &last = bodies.change_last(ibody);
-    const bool masked = bodies.body_at(ibody).off != 0;
-    const BodyState before = masked ? state : BodyState();
-    last = integrator.finish(bodies.acting(ibody), rows, pending[ibody]);
-    integrator.body_state(bodies.rigid_of(ibody), rows, state, bodies.change_frame(ibody));
-    if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
-  }
+  double *rows = bodies.history(ibody);
+  BodyState &state = bodies.change_state(ibody);
+  Correction &last = bodies.change_last(ibody);
+  const bool masked = bodies.body_at(ibody).off != 0;
+  const BodyState before = masked ? state : BodyState();
+  last = integrator.finish(bodies.acting(ibody), rows, pending[ibody]);
+  integrator.body_state(bodies.rigid_of(ibody), rows, state, bodies.change_frame(ibody));
+  if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
 }
 
-/* ----------------------------------------------------------------------
-   start
-------------------------------------------------------------------------- */
-
-void Thermostat::begin_start(const Collocation &collocation, double of, double h)
+void Thermostat::follow_bodies(double h)
 {
-  spacing = of;
-  step_of_start = h;
-  nodes.resize(chains.size());
-  for (size_t c = 0; c < chains.size(); ++c) {
-    const auto y = chains[c].values();
-    const auto rate = chains[c].rates(target_of(c, 0.0, h), twice_of(c), y);
-    for (int v = 0; v < chains[c].size(); ++v) collocation.begin(y[v], rate[v], nodes[c][v]);
-  }
-}
-
-void Thermostat::foretell(const Collocation &collocation)
-{
-  for (auto &chain : nodes)
-    for (auto &one : chain) collocation.foretell(one);
-}
-
-void Thermostat::measure_node(const Collocation &collocation, int node)
-{
+  if (changes == bodies.changes()) return;
+  ChainTarget before[2];
+  for (size_t c = 0; c < chains.size(); ++c) before[c] = target_of(c, 0.0, h);
+  count_freedoms();
   sum_present();
-  for (size_t c = 0; c < chains.size(); ++c) {
-    Chain::Variables y = {};
-    for (int v = 0; v < chains[c].size(); ++v)
-      y[v] = collocation.value_at(node, nodes[c][v], spacing);
-    friction[c] = y[0];
-    const ChainTarget target = target_of(c, node * spacing / step_of_start, step_of_start);
-    const auto rate = chains[c].rates(target, twice_of(c), y);
-    for (int v = 0; v < chains[c].size(); ++v) collocation.set_rate(node, rate[v], nodes[c][v]);
-  }
-}
-
-void Thermostat::settle(const Collocation &collocation, int pair)
-{
-  for (auto &chain : nodes)
-    for (auto &one : chain) collocation.settle(pair, one);
-}
-
-void Thermostat::seed(const Collocation &collocation, int pairs)
-{
-  std::vector<double> series(collocation.number_of_nodes() + 1);
   for (size_t c = 0; c < chains.size(); ++c)
-    for (int v = 0; v < chains[c].size(); ++v) {
-      const int terms = collocation.integrate(nodes[c][v].rate, pairs, spacing, series.data());
-      chains[c].seed(v, series.data(), terms, spacing, step_of_start);
-    }
-}
-
-void Thermostat::seed_local(double h)
-{
-  for (size_t c = 0; c < chains.size(); ++c) {
-    const auto rate = chains[c].rates(target_of(c, 0.0, h), twice_of(c), chains[c].values());
-    for (int v = 0; v < chains[c].size(); ++v) {
-      const double series[2] = {0.0, h * rate[v]};
-      chains[c].seed(v, series, 2, h, h);
-    }
-  }
+    chains[c].replace_target(before[c], target_of(c, 0.0, h), twice_of(c), h);
 }
 
 /* ----------------------------------------------------------------------

@@ -5,10 +5,14 @@
 
 /* Keyword temp: Nose-Hoover chains (gear_quat_chain.h) that hold the temperature of all bodies.  They
    need the kinetic energies of all bodies on all ranks: a reduction of two numbers in every pass of the
-   corrector, each an exact sum, so that a run does not depend on where bodies are.  A component of a momentum that keywords force and torque turn off belongs to no chain.
+   corrector, each an exact sum, so that a run does not depend on where bodies are.  A component of a
+   momentum that keywords force and torque turn off belongs to no chain.
 
    The target of a step is that of LAMMPS' thermostats: it changes linearly with the number of the step
-   from the beginning to the end of the run. */
+   from the beginning to the end of the run.
+
+   Bodies that come or go in a step change degrees of freedom and kinetic energy at its end.  In that
+   step the chains are predicted and not corrected; then they receive the derivatives of the new ones. */
 
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H
@@ -25,6 +29,7 @@ struct ThermostatWords {
   double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
   int length = 0;
   bool separate = false;
+  bool may_wait = false;    ///< bodies may come later, so that there may be none
 };
 
 class Thermostat : protected Pointers {
@@ -42,6 +47,8 @@ class Thermostat : protected Pointers {
   void measure();
   /// One step of h: correct the predicted histories and states.
   void correct(const Integrator &integrator, const Scheme &scheme);
+  /// Bodies that have come in this step have histories, and none is left of those that have gone.
+  void follow_bodies(double h);
 
   /// True if the target jumps where this run begins; after begin_run().
   bool target_jumps() const { return jumps; }
@@ -58,7 +65,7 @@ class Thermostat : protected Pointers {
   /// What the chains have taken from the bodies.
   double energy() const;
 
-  // the start, of all bodies at the same nodes (gear_quat_startup.h)
+  // the start, of all bodies at the same nodes (gear_quat_startup.h), in gear_quat_thermostat_start.cpp
 
   void begin_start(const Collocation &collocation, double spacing, double h);
   void foretell(const Collocation &collocation);
@@ -71,6 +78,9 @@ class Thermostat : protected Pointers {
 
   void rescale_step(double ratio);
   void set_values(int values);
+  // As Bodies::keep_histories(), for a step that may be undone.
+  void keep_chains() { kept = chains; }
+  void put_back_chains() { chains = kept; }
 
   /// What a restart file holds, the same on all ranks.
   struct Checkpoint {
@@ -92,14 +102,15 @@ class Thermostat : protected Pointers {
     double kt = 0.0, kt_step = 0.0;
   };
 
-  std::vector<Chain> chains;    ///< of both parts, or one for both
-  double freedoms[2] = {};      ///< of both parts
-  double twice[2] = {};         ///< twice the kinetic energies, as of the last sum
-  bigint counted = 0;           ///< bodies that the freedoms belong to
-  Line line;                    ///< the target of the present step
-  double damp_before = 0.0;     ///< of the steps so far
-  double friction[2] = {};      ///< xi_1 of the chains
-  double unit = 1.0;            ///< of the sums, see scale()
+  std::vector<Chain> chains, kept;    ///< of both parts, or one for both
+  double freedoms[2] = {};            ///< of both parts
+  double twice[2] = {};               ///< twice the kinetic energies, as of the last sum
+  bigint counted = 0;                 ///< bodies that the freedoms belong to
+  int changes = 0;                    ///< Bodies::changes() then
+  Line line;                          ///< the target of the present step
+  double damp_before = 0.0;           ///< of the steps so far
+  double friction[2] = {};            ///< xi_1 of the chains
+  double unit = 1.0;                  ///< of the sums, see scale()
   bool jumps = false;
   bool conserved = false;    ///< the total momentum, which has no temperature
   std::vector<Integrator::Pending> pending;
@@ -124,7 +135,13 @@ class Thermostat : protected Pointers {
   double scale() const;
   void sum_present();
   void note_friction();
-  void finish_bodies(const Integrator &integrator);
+  /// act: of the index of every body on this rank that has a history, owned or large.
+  template <class Act> void for_moved(Act act) const
+  {
+    for (const auto *list : {&bodies.points, &bodies.tops})
+      for (const int ibody : *list) act(ibody);
+  }
+  void finish_body(const Integrator &integrator, int ibody);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -7,7 +7,8 @@
    gear_quat_step_control.h, and LAMMPS' time step.
 
    The fix calls when histories begin scheme_of_start(), begin() and shorten_first_step(); in every
-   step begin_step(); correct() for every body, and judge(); if that says so, it puts back the
+   step begin_step(); correct() for every body, or note_prediction() and note_correction() around
+   another correction, and judge(); if that says so, it puts back the
    histories, calls shorten_values() and shorten_step(), and makes the step again; and at the end of the
    step, when all fixes have finished it, choose(), change_step() and order_output().  Where the number
    of values may have changed, after begin(), shorten_values() and choose(), the fix makes its integrator
@@ -68,6 +69,9 @@ class Tolerance : protected Pointers {
   void begin_step();
   /// Correct one body.
   Correction correct(const Integrator &integrator, int ibody, const Load &load);
+  // The same around a correction of all bodies together: of the predicted, then of the corrected ones.
+  void note_prediction();
+  void note_correction(const Integrator &integrator);
   /// All bodies are corrected: true if the step has failed and is to be made again.  Collective.
   bool judge();
   /// Histories as they were when the step began get the values, then the length of the next try.
@@ -108,6 +112,7 @@ class Tolerance : protected Pointers {
   double every_time;
   VariableOrder order;
   Repeat repeat;
+  std::vector<VariableOrder::Row> predicted;    ///< last rows, of bodies corrected together
   StepMeasures errors;         ///< of the bodies corrected so far; of all, once judged
   double speed = 0.0;          ///< no site of a body is faster
   double begun_with = 0.0;     ///< length of the first try of the present step
@@ -136,6 +141,7 @@ class Tolerance : protected Pointers {
   double next_output(double step, double now) const;
   double even(double step, double now) const;
   double step_error() const { return control.measured(errors).same; }
+  void include(StepMeasures of_body);
   double first_error() const;
   double first_step_of_low_order() const;
   void begin_run();

@@ -74,11 +74,33 @@ Correction Tolerance::correct(const Integrator &integrator, int ibody, const Loa
   const Body &body = bodies.body_at(ibody);
   const Correction correction = order.correct(integrator, body.rigid, body.reach(), load,
                                               bodies.axes(ibody), bodies.history(ibody), one);
-  one = control.counted(one);
-  double &same = control.energy ? one.energy.same : one.length.same;
-  if (!std::isfinite(same)) same = std::numeric_limits<double>::infinity();
-  errors.include(one);
+  include(one);
   return correction;
+}
+
+void Tolerance::include(StepMeasures of_body)
+{
+  of_body = control.counted(of_body);
+  double &same = control.energy ? of_body.energy.same : of_body.length.same;
+  if (!std::isfinite(same)) same = std::numeric_limits<double>::infinity();
+  errors.include(of_body);
+}
+
+void Tolerance::note_prediction()
+{
+  predicted.resize(bodies.nmoved());
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    predicted[ibody] = order.last_row(bodies.history(ibody));
+}
+
+void Tolerance::note_correction(const Integrator &integrator)
+{
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) {
+      const Body &body = bodies.body_at(ibody);
+      include(order.errors(integrator, body.rigid, body.reach(), bodies.acting(ibody),
+                           bodies.axes(ibody), predicted[ibody], bodies.history(ibody)));
+    }
 }
 
 /// No site on this rank is faster.

@@ -308,6 +308,25 @@ TEST(Chain, ARecordIsTheChain)
   EXPECT_NE(other.friction(), 0.0);
 }
 
+TEST(Chain, OtherDegreesOfFreedomLeaveItsEnergyAndChangeItsDerivatives)
+{
+  const TargetOf target = constant_target(0.5, 12.0, 0.7);
+  Host host = tied(with(SECOND, 8, false), 3, 0.02, target);
+  host.run(1.0, [] {
+  });
+  const ChainTarget before = target(0.0), more = {0.5, 0.0, 18.0, 0.7};
+  const Chain was = host.chain;
+  host.chain.replace_target(before, more, 9.3, 0.02);
+  EXPECT_DOUBLE_EQ(host.chain.energy(more), was.energy(before));
+  EXPECT_EQ(host.chain.friction(), was.friction());
+  EXPECT_GT(std::fabs(was.energy(more) - was.energy(before)), 1.0e-2);
+  const auto y = host.chain.values(), rate = host.chain.rates(more, 9.3, y);
+  const auto rows = host.chain.record();
+  for (int v = 0; v < host.chain.size(); ++v) {
+    EXPECT_DOUBLE_EQ(rows[v * (MAX_VALUES + 1) + 1], 0.02 * rate[v]);
+  }
+}
+
 TEST(Chain, WithoutDegreesOfFreedomNothingMoves)
 {
   const Chain chain(3);

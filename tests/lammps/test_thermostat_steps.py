@@ -1,0 +1,246 @@
+"""Keyword temp where the step follows the error (tolerance), and where bodies come and go (mol)."""
+
+import numpy as np
+import pytest
+from scenes import (
+    FORMULATIONS,
+    MOLECULES,
+    difference,
+    frames,
+    last_frame,
+    one_after_the_other,
+    water,
+    water_data,
+)
+from test_coming_and_going import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
+from test_thermostat import END, KINDS, cluster, continued, largest_change
+from test_tolerance import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, tables
+
+TEMP = "temp 0.5 0.5 0.3"
+TAKEN, XI = "f_move[19]", "f_move[23]"  # with tolerance
+BESIDE = " ".join(["econserve ecouple", *ELEMENTS, TAKEN, XI])
+UNTIL = "variable now equal time\nfix stop all halt 1 v_now >= {} error continue\nrun 5000"
+
+
+def changing(words, eps, run=UNTIL.format(1.6), **settings):
+    settings = dict(every=1, columns=BESIDE) | settings
+    return cluster(f"{words} tolerance {eps}", run=run, **settings)
+
+
+# --- tolerance ----------------------------------------------------------------------------------
+
+
+# a damping time of some twenty steps, too
+@pytest.mark.parametrize("temp", [TEMP, "temp 0.5 0.5 0.05"])
+def test_the_conserved_quantity_follows_eps(lmp_tree, formulation, temp):
+    eps = [f"1e-{k}{unit}" for unit in ("", " energy") for k in (6, 9, 12) if unit == "" or k < 12]
+    decks = [changing(f"formulation {formulation} {temp} thermostat separate", e) for e in eps]
+    runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
+    changes = [largest_change(run, "Econserve") for run in runs]
+    for of_unit in (slice(0, 3), slice(3, 5)):
+        first, last = changes[of_unit][0], changes[of_unit][-1]
+        decades = 3 * (len(changes[of_unit]) - 1)
+        assert 0.6 < np.log10(first / last) / decades < 1.2
+    for run, change in zip(runs, changes):
+        assert run[LARGEST][-1] <= 1 and run["Time"][-1] >= 1.6
+        assert largest_change(run, "TotEng") > 20 * change
+        assert len(set(run[NEXT])) > 5
+    assert any(np.ptp(run[VALUES]) > 0 for run in runs)
+    assert sum(run[REPEATED][-1] for run in runs) > 5
+
+
+def test_a_step_made_again_leaves_the_chains_as_if_met_at_once(lmp_tree):
+    """A dump at the end of the repeated step makes it as long in the first place."""
+    words = f"{TEMP} thermostat separate"
+    found = []
+    for formulation in FORMULATIONS:
+        name = f"formulation {formulation} {words}"
+        (whole,) = tables(lmp_tree.succeed(changing(name, "1e-8 energy", "run 200")))
+        again = np.flatnonzero(np.diff(whole[REPEATED]) == 1) + 1
+        fails = again[again > 3][0]
+        at = f"{whole['Time'][fails]:.17g}"
+        ends = []
+        for dump in ("", f"dump even all custom 1 even.dump id\ndump_modify even every/time {at}"):
+            run = f"run {fails - 2}\n{dump}\nrun 2\n{END.format('a')}"
+            *_, last = tables(lmp_tree.succeed(changing(name, "1e-8 energy", run)))
+            ends.append((last, last_frame(lmp_tree.folder / "a.end")))
+        (repeated, end), (at_once, same) = ends
+        found.append(repeated[REPEATED][-1] - at_once[REPEATED][-1])
+        assert repeated["Time"][-1] == pytest.approx(at_once["Time"][-1], rel=1e-13)
+        assert repeated[VALUES][-2] == at_once[VALUES][-2]
+        assert difference(end, same) < 1e-13
+        for column in (TAKEN, XI):
+            assert repeated[column][-1] == pytest.approx(at_once[column][-1], rel=1e-11, abs=1e-13)
+            assert repeated[column][-1] != pytest.approx(repeated[column][-2], rel=1e-6, abs=0)
+    assert found == [1, 1]
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
+    """On several ranks a second run sums forces in another order than one long run."""
+    decks, names = [], []
+    for formulation in FORMULATIONS:
+        for kind in KINDS:
+            words = f"formulation {formulation} {TEMP} thermostat {kind}"
+            name = f"{formulation}-{kind}"
+            names.append(name)
+            for part, commands in {
+                "whole": "run 100",
+                "halves": f"run 40\nwrite_restart {name}.half\nrun 60",
+                "again": "run 60",
+            }.items():
+                deck = changing(words, "1e-9", f"{commands}\n{END.format(f'{name}-{part}')}")
+                decks.append(continued(deck, f"{name}.half") if part == "again" else deck)
+    result = lmp_tree.succeed(one_after_the_other(decks), ranks=ranks)
+    ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
+    for n, name in enumerate(names):
+        assert ends[f"{name}-halves"] == ends[f"{name}-again"], name
+        whole, first, half, again = result.thermo[4 * n : 4 * n + 4]
+        for column in (TAKEN, XI, NEXT, VALUES, REPEATED, "Econserve"):
+            assert half[column][-1] == again[column][-1], column
+            assert ranks > 1 or whole[column][-1] == half[column][-1], column
+        assert ranks > 1 or ends[f"{name}-whole"] == ends[f"{name}-halves"]
+        assert again[REPEATED][-1] > first[REPEATED][-1]
+    assert len({ends[f"{name}-again"] for name in names}) == len(names)
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_ranks_agree(lmp_tree, formulation):
+    """At the same times, for rounding moves the steps."""
+    fix = f"gear/quat molecule formulation {formulation} temp 300 300 20 tolerance 1e-12"
+    deck = water(water_data(lmp_tree.folder / "data"), fix, dt=0.5, steps=120)
+    deck = deck.replace("fix_modify move energy yes", "")
+    deck = deck.replace("dump poses all custom 120", "dump poses all custom 1")
+    deck = deck.replace("dump_modify poses", "dump_modify poses every/time 0.5")
+    found = []
+    for ranks in (1, 2, 4):
+        lmp_tree.succeed(deck.replace("poses.dump", f"{ranks}.dump"), ranks=ranks)
+        found.append(list(frames(lmp_tree.folder / f"{ranks}.dump").values()))
+    assert len(found[0]) > 2
+    for other in found[1:]:
+        for frame, same in zip(found[0], other):
+            assert same == pytest.approx(frame, rel=1e-10, abs=1e-10)
+
+
+def test_another_target_starts_anew(lmp_tree, formulation):
+    """Between runs; the step goes on."""
+    fix = f"gear/quat molecule formulation {formulation} temp 0.9 0.9 0.3 tolerance 1e-9"
+    run = f"run 100\nunfix move\nfix move all {fix}\nrun 100"
+    cold = changing(f"formulation {formulation} {TEMP}", "1e-9", f"run 100\nwrite_restart cold\n{run}")
+    hot = changing(f"formulation {formulation} temp 0.9 0.9 0.3", "1e-9", "run 200")
+    result = lmp_tree.succeed(one_after_the_other([cold, continued(hot, "cold")]))
+    assert result.log.count("the thermostat has another target") == 1
+    before, after = result.thermo[0], result.thermo[-1]
+    assert after[XI][0] == before[XI][-1] != 0.0 and after[TAKEN][0] != 0.0
+    for table in result.thermo:
+        assert largest_change(table, "Econserve") < 1e-5
+    assert largest_change(after, "TotEng") > 1e-1
+
+
+# --- bodies that come and go --------------------------------------------------------------------
+
+TRIANGLE = "tri\n\n3 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n3 0 1.1 0.2\n\nTypes\n\n1 1\n2 1\n3 1\n"
+COMES = """
+region there block 4.0 4.1 1.5 1.6 1.5 1.6
+fix in all deposit 1 0 1 4711 region there near 0.5 mol tri rigid move vx -0.3 -0.3 vy 0.1 0.1 vz 0.1 0.1
+"""
+BOLTZMANN = 0.0019872067  # kcal/mol/K
+
+
+def joined(lmp, words, dt, columns="econserve", run=None, comes=COMES, **settings):
+    """A fifth molecule comes to the cluster in the first step."""
+    (lmp.folder / "tri").write_text(TRIANGLE)
+    deck = cluster(f"{words} mol tri", dt, every=1, columns=columns, run=run, **settings)
+    return deck.replace("fix move", "molecule tri tri\nfix move").replace("timestep", f"{comes}timestep")
+
+
+def kinetic_and_potential(table):
+    return table["PotEng"] + table["f_move[1]"] + table["f_move[2]"]
+
+
+def test_what_is_conserved_when_a_body_comes(lmp_tree, formulation):
+    """From the insertion on, as far as without a thermostat, and the chains take what they did."""
+    steps = (0.004, 0.002, 0.001)
+    words = f"formulation {formulation}"
+    columns = "econserve f_move[9] f_move[10] f_move[11] f_move[13]"
+    decks = [joined(lmp_tree, words, dt) for dt in steps]
+    decks += [joined(lmp_tree, f"{words} {TEMP}", dt, columns=columns) for dt in steps]
+    runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
+    without = [np.ptp(kinetic_and_potential(run)[1:]) for run in runs[:3]]
+    changes = []
+    for run, dt in zip(runs[3:], steps):
+        taken = run["f_move[9]"]
+        changes.append(np.ptp((kinetic_and_potential(run) + taken)[1:]))
+        power = 2 * run["f_move[13]"] * (run["f_move[1]"] + run["f_move[2]"])
+        assert np.abs(np.diff(taken)[1:] - dt * (power[1:] + power[:-1])[1:] / 2).max() < 20 * dt**2
+        assert abs(np.diff(taken)[0]) < 20 * dt**2  # xi grows from zero
+        for kinetic, temperature, freedoms in (("1", "10", (9, 12)), ("2", "11", (11, 14))):
+            found = 2 * run[f"f_move[{kinetic}]"] / run[f"f_move[{temperature}]"]
+            assert found == pytest.approx([freedoms[0]] + [freedoms[1]] * (len(found) - 1), rel=1e-10)
+    for change, one in zip(changes, without):
+        assert change < 3 * one
+    assert np.log2(changes[0] / changes[-1]) / 2 > 0.9
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_molecules_come_and_go(lmp_tree, ranks):
+    """Their degrees of freedom follow, on any number of ranks."""
+    show = "thermo_style custom step f_move[1] f_move[2] f_move[10] f_move[11] f_move[13]\n"
+    commands = evaporating() + INSERT.format(count=3).replace("0 5 4711", "0 7 4711")
+    commands += f"{show}thermo_modify lost error format float %.17g\nthermo 1\nrun 20"
+    ends = []
+    for number in {1, ranks}:
+        deck = liquid(lmp_tree, commands, f"{MOL} temp 300 300 50 thermostat separate", TEMPLATE, dt=0.1)
+        deck = deck.replace("fix_modify move energy yes", "")
+        (table,) = tables(lmp_tree.succeed(deck, ranks=number))
+        steps = np.arange(21)
+        present = N + (steps >= 1) + (steps >= 8) + (steps >= 15) - (steps >= 5) - (steps >= 10)
+        for kinetic, temperature, extra in (("1", "10", 3), ("2", "11", 0)):
+            freedoms = 2 * table[f"f_move[{kinetic}]"] / (table[f"f_move[{temperature}]"] * BOLTZMANN)
+            assert freedoms == pytest.approx(3.0 * present - extra, rel=1e-6)
+        assert (np.diff(table["f_move[13]"]) != 0).all()
+        ends.append(poses(lmp_tree))
+    close(ends[0], ends[-1], 1e-9)
+
+
+def test_no_bodies_yet(lmp_tree):
+    """Chains without degrees of freedom rest, and begin to move when the first ones come."""
+    columns = "econserve f_move[9] f_move[10] f_move[11] f_move[13]"
+    comes = COMES.replace("4.0 4.1 1.5 1.6 1.5 1.6", "0 4 0 4 0 4").replace("deposit 1 0 1", "deposit 2 0 10")
+    run = f"run 20\n{comes}\nrun 200"
+    deck = joined(lmp_tree, TEMP, 0.002, columns, run, comes="", bodies=[])
+    deck = deck.replace("velocity all create 0.6 4711 loop geom", "")
+    empty, table = tables(lmp_tree.succeed(deck))
+    for column in ("f_move[9]", "f_move[11]", "f_move[13]"):
+        assert (empty[column] == 0).all()
+    assert table["f_move[10]"][5] == 0  # of a single body only the total momentum moves
+    freedoms = [2 * table[f"f_move[{k}]"][-1] / table[f"f_move[{k + 9}]"][-1] for k in (1, 2)]
+    assert freedoms == pytest.approx([3, 6], rel=1e-10)
+    energy = kinetic_and_potential(table) + table["f_move[9]"]
+    assert np.ptp(energy[12:]) < 0.01 * np.ptp(kinetic_and_potential(table)[12:])
+
+
+def test_a_restart_with_an_inserted_body(lmp_tree):
+    words, tail = f"{TEMP} thermostat separate", END.format("{}")
+    whole = joined(lmp_tree, words, 0.004, run=f"run 40\n{tail.format('whole')}")
+    halves = joined(lmp_tree, words, 0.004, run="run 20\nwrite_restart half")
+    again = joined(lmp_tree, words, 0.004, run=f"run 20\n{tail.format('again')}")
+    again = continued(again, "half").replace(COMES, "\n")
+    lmp_tree.succeed(one_after_the_other([whole, halves, again]))
+    ends = [(lmp_tree.folder / f"{name}.end").read_text() for name in ("whole", "again")]
+    assert ends[0] == ends[1] and len(ends[0].splitlines()) == 9 + 14
+
+
+def test_a_body_comes_where_the_step_follows_the_error(lmp_tree, formulation):
+    """Where the forces jump, the error is that of bodies without a thermostat."""
+    run = UNTIL.format(1.0).replace("run 5000", "run 1\nrun 5000")
+    eps, changes = ("1e-7", "1e-10", "1e-13"), []
+    for temp, more in (("", ""), (TEMP, TAKEN)):
+        words, columns = f"formulation {formulation} {temp}", f"{LARGEST} {VALUES} {more}"
+        decks = [joined(lmp_tree, f"{words} tolerance {e}", 0.004, columns, run) for e in eps]
+        runs = tables(lmp_tree.succeed(one_after_the_other(decks)))[1::2]
+        assert all(run[LARGEST][-1] <= 1 and run[VALUES][-1] > 5 for run in runs)
+        changes.append([np.ptp(kinetic_and_potential(run) + run.get(more, 0.0)) for run in runs])
+    without, with_chains = changes
+    assert all(change < 1.5 * one for change, one in zip(with_chains, without))
+    assert with_chains[-1] < 1e-3 * with_chains[0]
