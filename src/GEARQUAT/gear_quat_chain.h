@@ -18,8 +18,10 @@
      S' = kT (g xi_1 + xi_2 + ... + xi_M) - (sum_k Q_k xi_k^2/2) T'/T                         (T4)
 
    also while the target T and with it the masses change.
-   Source: G. J. Martyna, M. L. Klein, M. Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II, where
-   p_eta_k = Q_k xi_k.
+   Sources: G. J. Martyna, M. L. Klein, M. Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II, where
+   p_eta_k = Q_k xi_k; the masses: G. J. Martyna, M. E. Tuckerman, D. J. Tobias, M. L. Klein, Mol. Phys.
+   87, 1117 (1996), section 2.5.  A chain of a single variable is that of W. G. Hoover, Phys. Rev. A 31,
+   1695 (1985), after S. Nose, J. Chem. Phys. 81, 511 (1984).
 
    The variables xi_1 ... xi_M and S have histories of n rows, and behind them the trial row of
    gear_quat_step_control.h.  The host calls, for the start: rates(), and seed() for every variable; once

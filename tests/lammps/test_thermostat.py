@@ -64,6 +64,18 @@ def test_econserve_to_the_order_of_the_method(lmp_tree, formulation, kind):
     assert largest_change(tables[2], "TotEng") > 1e4 * largest_change(tables[2], "Econserve")
 
 
+@pytest.mark.parametrize("corrector", ["tuned", "gear"])
+def test_chains_cost_no_accuracy(lmp_tree, formulation, corrector):
+    """The conserved quantity changes less than the energy without them, at a short and at a long step."""
+    words = f"formulation {formulation} values {8 if formulation == 'first' else 9} corrector {corrector}"
+    decks = [cluster(f"{words} temp 0.5 0.5 0.6", dt, 1.6, every=1) for dt in (0.006, 0.012)]
+    decks += [cluster(words, dt, 1.6, every=1, columns="") for dt in (0.006, 0.012)]
+    *chained, short, long = run(lmp_tree, decks).thermo
+    for table, alone in zip(chained, (short, long)):
+        energy = sum(np.array(alone[column]) for column in ("PotEng", "f_move[1]", "f_move[2]"))
+        assert np.ptp(table["Econserve"]) < np.ptp(energy) < 1e-2
+
+
 def test_the_columns_belong_together(lmp_tree, formulation):
     deck = cluster(f"formulation {formulation} temp 0.5 0.7 0.3 thermostat separate tchain 2", 0.016)
     result = run(lmp_tree, [deck])

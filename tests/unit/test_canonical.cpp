@@ -3,13 +3,15 @@
 
 #include "thermostatted.h"
 
+#include <cstdio>
+
 using namespace Thermostatted;
 
 namespace {
 
 constexpr int SAMPLES = 10000;
 constexpr double KT = 1.0;
-/// What one in a hundred runs of all these tests falls below.
+/// What one in a hundred runs of all these tests falls below (C. E. Bonferroni, 1936).
 constexpr double RARE = 0.01 / 14;
 
 /// Kolmogorov's test: the probability that samples of this distribution are farther from it.
@@ -162,12 +164,15 @@ double correlation(const vector<double> &x)
   return product / square;
 }
 
-/// Samples that are independent and of this distribution.
-template <class Cdf> void expect_samples(const vector<double> &samples, Cdf cdf)
+/// Samples that are independent and of this distribution.  what: of the line that shows the probability.
+template <class Cdf>
+void expect_samples(const char *what, Formulation formulation, const vector<double> &samples, Cdf cdf)
 {
+  const double p = probability(samples, cdf);
+  printf("p = %.4f  %s, %s\n", p, what, formulation == FIRST ? "first" : "second");
   EXPECT_EQ(samples.size(), (size_t) SAMPLES);
   EXPECT_LT(std::fabs(correlation(samples)), 0.05);
-  EXPECT_GT(probability(samples, cdf), RARE);
+  EXPECT_GT(p, RARE);
 }
 
 }    // namespace
@@ -195,9 +200,9 @@ TEST(Canonical, AHarmonicRotorNeedsAChain)
       return chi_square(x, 2);
     };
     const Rotor chained = rotor(formulation, 3), alone = rotor(formulation, 1);
-    expect_samples(chained.angle, normal);
-    expect_samples(chained.rate, normal);
-    expect_samples(chained.energy, energy_of);
+    expect_samples("angle of the rotor", formulation, chained.angle, normal);
+    expect_samples("rate of the rotor", formulation, chained.rate, normal);
+    expect_samples("energy of the rotor", formulation, chained.energy, energy_of);
     EXPECT_LT(probability(alone.angle, normal), 1.0e-4);
     EXPECT_LT(probability(alone.energy, energy_of), 1.0e-10);
   }
@@ -210,10 +215,10 @@ TEST(Canonical, ABodyOnSpringsInAField)
     const auto in_this_field = [](double u) {
       return in_field(u, FIELD / KT);
     };
-    expect_samples(found.cosine, in_this_field);
-    expect_samples(found.spring, normal);
-    expect_samples(found.momentum, normal);
-    expect_samples(found.energy, [](double x) {
+    expect_samples("orientation in the field", formulation, found.cosine, in_this_field);
+    expect_samples("place on the springs", formulation, found.spring, normal);
+    expect_samples("momentum", formulation, found.momentum, normal);
+    expect_samples("energy", formulation, found.energy, [](double x) {
       return chi_square(x, 9);
     });
 

@@ -2,6 +2,7 @@
    the conserved quantity, another step and another number of values. */
 
 #include "thermostatted.h"
+#include "tied_bodies.h"
 
 using namespace Thermostatted;
 using Check::slopes;
@@ -16,52 +17,14 @@ Scheme with(Formulation formulation, int values, bool tuned)
   return scheme;
 }
 
-// --- two bodies tied to each other and to the origin at sites off their centers
-
-const double ARMS[2][3] = {{0.6, -0.3, 0.4}, {-0.2, 0.5, 0.7}};
-
-void site_of(const BodyState &s, const double *arm_body, double *arm, double *x)
-{
-  double a[9];
-  rotation_matrix(s.q, dot4(s.q, s.q), a);
-  to_space(a, arm_body, arm);
-  for (int k = 0; k < 3; ++k) x[k] = s.center[k] + arm[k];
-}
-
-vector<Load> springs(const vector<BodyState> &states, double *energy = nullptr)
-{
-  vector<Load> loads(2);
-  double arm[2][3], x[2][3], sum = 0.0;
-  for (int b = 0; b < 2; ++b) site_of(states[b], ARMS[b], arm[b], x[b]);
-  for (int b = 0; b < 2; ++b) {
-    for (int k = 0; k < 3; ++k) {
-      loads[b].force[k] = x[1 - b][k] - 2.0 * x[b][k];
-      sum += 0.5 * x[b][k] * x[b][k] + 0.25 * std::pow(x[0][k] - x[1][k], 2);
-    }
-    cross3(arm[b], loads[b].force, loads[b].torque_space);
-  }
-  if (energy) *energy = sum;
-  return loads;
-}
-
 Host tied(const Scheme &scheme, int length, double h, const TargetOf &target_of)
 {
-  const vector<RigidBody> bodies = {{1.0, {1.3, 0.9, 0.6}}, {2.0, {2.2, 1.7, 1.1}}};
-  vector<BodyState> states = {
-      {{0.5, 0.1, -0.8}, {0.1, -0.7, 0.3, 0.6}, {0.2, -0.4, 0.4}, {1.0, 0.3, -0.8}},
-      {{-0.9, 0.6, 0.2}, {0.4, 0.2, -0.8, 0.3}, {-0.3, 0.1, 0.5}, {-0.4, 0.6, 0.5}}};
-  for (auto &s : states) project_norm(s.q);
-  auto loads = [](const vector<BodyState> &s) {
-    return springs(s);
-  };
-  return Host{bodies, states, loads, target_of, scheme, length, h};
+  return Host{TiedBodies::BODIES, TiedBodies::at_start(), TiedBodies::loads, target_of, scheme, length, h};
 }
 
 double all_energy(const Host &host)
 {
-  double energy;
-  springs(host.states, &energy);
-  return energy + host.kinetic_and_chain();
+  return TiedBodies::springs(host.states).energy + host.kinetic_and_chain();
 }
 
 /// Largest change of the conserved quantity, and of kinetic and potential energy.
@@ -75,8 +38,7 @@ Change change(const Scheme &scheme, int length, double h, const TargetOf &target
   const double before = all_energy(host);
   Change worst;
   host.run(time, [&] {
-    double potential;
-    springs(host.states, &potential);
+    const double potential = TiedBodies::springs(host.states).energy;
     worst.all = std::max(worst.all, std::fabs(all_energy(host) - before));
     worst.of_bodies =
         std::max(worst.of_bodies, std::fabs(potential + 0.5 * host.twice_kinetic() - before));

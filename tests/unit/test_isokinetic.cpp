@@ -3,6 +3,7 @@
 
 #include "checks.h"
 #include "drive.h"
+#include "tied_bodies.h"
 
 using namespace Drive;
 using Check::slopes;
@@ -223,53 +224,14 @@ double ball_error(Isokinetic mode, const Scheme &scheme, double h, bool start_kn
                                    6);
 }
 
-// --- two asymmetric bodies tied to each other and to the origin at sites off their centers
-
-const double ARMS[2][3] = {{0.6, -0.3, 0.4}, {-0.2, 0.5, 0.7}};
-
-void site_of(const BodyState &s, const double *arm_body, double *arm, double *x)
-{
-  double a[9];
-  rotation_matrix(s.q, dot4(s.q, s.q), a);
-  to_space(a, arm_body, arm);
-  for (int k = 0; k < 3; ++k) x[k] = s.center[k] + arm[k];
-}
-
-/// Springs of strength 1 between the sites, and from each site to the origin.
-vector<Load> springs(const vector<BodyState> &states, double *energy = nullptr)
-{
-  vector<Load> loads(2);
-  double arm[2][3], x[2][3], sum = 0.0;
-  for (int b = 0; b < 2; ++b) site_of(states[b], ARMS[b], arm[b], x[b]);
-  for (int b = 0; b < 2; ++b) {
-    for (int k = 0; k < 3; ++k) {
-      loads[b].force[k] = x[1 - b][k] - 2.0 * x[b][k];
-      sum += 0.5 * x[b][k] * x[b][k] + 0.25 * std::pow(x[0][k] - x[1][k], 2);
-    }
-    cross3(arm[b], loads[b].force, loads[b].torque_space);
-  }
-  if (energy) *energy = sum;
-  return loads;
-}
-
 Host tied(Isokinetic mode, const Scheme &scheme, double h)
 {
-  const vector<RigidBody> bodies = {{1.0, {1.3, 0.9, 0.6}}, {2.0, {2.2, 1.7, 1.1}}};
-  vector<BodyState> states = {
-      {{0.5, 0.1, -0.8}, {0.1, -0.7, 0.3, 0.6}, {0.2, -0.4, 0.4}, {1.0, 0.3, -0.8}},
-      {{-0.9, 0.6, 0.2}, {0.4, 0.2, -0.8, 0.3}, {-0.3, 0.1, 0.5}, {-0.4, 0.6, 0.5}}};
-  for (auto &s : states) project_norm(s.q);
-  auto loads = [](const vector<BodyState> &s) {
-    return springs(s);
-  };
-  return Host{bodies, states, loads, scheme, mode, h};
+  return Host{TiedBodies::BODIES, TiedBodies::at_start(), TiedBodies::loads, scheme, mode, h};
 }
 
 double total(const Host &host)
 {
-  double energy;
-  springs(host.states, &energy);
-  return energy + host.kinetic() + host.heat[0];
+  return TiedBodies::springs(host.states).energy + host.kinetic() + host.heat[0];
 }
 
 /// What a run loses at most of the kinetic energy, and of potential + kinetic + heat.
@@ -303,7 +265,7 @@ TEST(Isokinetic, TheConstraintTakesWhatTheLoadsDo)
     EXPECT_TRUE(mode == Isokinetic::SEPARATE ? of_forces < 1.0e-14 : of_forces > 1.0e-2);
 
     // with a multiplier 1 % off it does not
-    const vector<Load> met = springs(host.states);
+    const vector<Load> met = TiedBodies::loads(host.states);
     Multipliers alpha = multipliers(mode, host.sums(met));
     alpha.translation *= 1.01;
     KineticSums wrong;
