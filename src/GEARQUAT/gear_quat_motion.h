@@ -67,6 +67,7 @@ class Motion : protected Pointers {
   void correct(double **f);
 
   bool changes_step() const { return tolerance != nullptr; }
+  bool is_tuned() const { return args.scheme.tuned; }
   /// After correct(): true if the step has failed.  After the call histories and states are those of
   /// the prediction of a shorter one.  f: as in correct().  Collective.
   bool repeats_step(double **f);

@@ -57,6 +57,17 @@ void Tolerance::refuse_scene() const
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
           "do so",
           other->id, other->style);
+    if (same && same->is_tuned())
+      error->all(FLERR,
+                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and tuned "
+                 "coefficients forget a change too slowly; give it corrector gear, or let this fix "
+                 "move its bodies",
+                 other->id, other->style);
+    if (same && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat tolerance: nothing controls the errors of the bodies of fix {} "
+                     "({}), which follows the time step of this fix",
+                     other->id, other->style);
   }
 }
 
@@ -123,6 +134,16 @@ double Tolerance::first_step_of_low_order() const
   return over_ranks(MPI_MIN, least, world);
 }
 
+void Tolerance::bound_first_step()
+{
+  const double given = std::fabs(update->dt);
+  double size = std::min(given, farthest_step(over_ranks(MPI_MAX, largest_speed(), world)));
+  if (control.longest > 0.0) size = std::min(size, control.longest);
+  size = std::max(size, control.shortest);
+  if (size != given && !integrated_before(first_mover()))
+    set_begun_step(std::copysign(size, update->dt));
+}
+
 void Tolerance::shorten_first_step(bool full)
 {
   double here[2] = {full ? first_error() : 0.0, largest_speed()};
@@ -135,19 +156,12 @@ void Tolerance::shorten_first_step(bool full)
   const bigint steps = update->ntimestep - 1 - update->atimestep;    // until this one began
   size = std::fabs(even(std::copysign(size, update->dt), update->atime + steps * update->dt));
   if (size >= std::fabs(update->dt)) return;
-  const Fix *first = fix;    // gear/quat, which starts histories for all before it begins the step
-  for (const auto *other : modify->get_fix_list())
-    if (utils::strmatch(other->style, "^gear/quat")) {
-      first = other;
-      break;
-    }
-  if (const Fix *other = integrated_before(first)) {
+  if (const Fix *other = integrated_before(first_mover())) {
     if (comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix gear/quat tolerance: the error of the first step is estimated as {:.2g}, "
-          "more than {:.2g}; define fix {} ({}) after this fix, or use a time step of {:.2g}",
-          shown(largest), shown(control.eps), other->id, other->style, size);
+      error->warning(FLERR,
+                     "Fix gear/quat tolerance: the first step of {:.3g} should be no longer than "
+                     "{:.3g}; define fix {} ({}) after this fix, or use that time step",
+                     std::fabs(update->dt), size, other->id, other->style);
     return;
   }
   const double instead = update->dt;
@@ -161,6 +175,14 @@ void Tolerance::tell_of_first_step(double instead) const
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
                    update->dt, instead);
+}
+
+/// The first fix gear/quat, which starts histories for all before it begins the step.
+const Fix *Tolerance::first_mover() const
+{
+  for (auto *other : modify->get_fix_list())
+    if (motion_of(other)) return other;
+  return fix;
 }
 
 /// A fix that has begun this step when `begins` begins it, null for none.

@@ -61,6 +61,9 @@ class Tolerance : protected Pointers {
   Scheme scheme_of_start() const;
   /// Histories are seeded.  full: to the last row; otherwise they begin with the fewest values.
   void begin(bool full);
+  /// Before histories are made: the first step is within dtmin, dtmax and the motion that is allowed.
+  /// Collective.
+  void bound_first_step();
   /// Makes the first step shorter if its error would be too large.  full: of what begin() says.
   /// Collective.
   void shorten_first_step(bool full);
@@ -133,9 +136,11 @@ class Tolerance : protected Pointers {
   void set_step(double step);
   void set_begun_step(double step);
   void tell_of_step(double step) const;
+  const Fix *first_mover() const;
   const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
   double farthest_step(double speed) const;
+  double steps_unseen() const;
   double limit_of_motion() const;
   double time() const;
   double next_output(double step, double now) const;

@@ -31,6 +31,10 @@ using namespace GearQuat;
 
 static constexpr double PART_OF_SKIN = 0.25;
 
+// and by no more than this part in the steps between two in which lists may be rebuilt
+
+static constexpr double PART_UNSEEN = 0.5;
+
 // a step that has failed so often is not repeated any more
 
 static constexpr int MOST_TRIES = 40;
@@ -115,12 +119,20 @@ double Tolerance::largest_speed() const
   return largest;
 }
 
+/// Steps in which LAMMPS does not ask whether neighbor lists are still right.
+double Tolerance::steps_unseen() const
+{
+  const double every = neighbor->every;
+  if (neighbor->build_once) return 1.0;
+  return every * std::max(1.0, std::ceil(neighbor->delay / every));
+}
+
 /// How far a site may move in a step, infinite if nothing is known of the forces' range.
 double Tolerance::limit_of_motion() const
 {
   double range = neighbor->skin > 0.0 ? neighbor->skin : std::numeric_limits<double>::infinity();
   if (force->pair && force->pair->cutforce > 0.0) range = std::min(range, force->pair->cutforce);
-  return PART_OF_SKIN * range;
+  return range * std::min(PART_OF_SKIN, PART_UNSEEN / steps_unseen());
 }
 
 /// Where nothing moves nothing is known of what a longer step would do.
@@ -202,9 +214,9 @@ double Tolerance::choose()
     if (!warned_held && comm->me == 0)
       error->warning(
           FLERR,
-          "Fix gear/quat tolerance: step {} makes an error of {:.2g}, more than {:.2g}, but "
-          "dtmin keeps the time step at {:.3g}; further such steps are counted",
-          update->ntimestep, shown(step_error()), shown(control.eps), control.shortest);
+          "Fix gear/quat tolerance: after step {} dtmin keeps the time step at {:.3g}, longer than "
+          "the tolerance or the motion permits; further such steps are counted",
+          update->ntimestep, control.shortest);
     warned_held = true;
   }
   errors = StepMeasures();

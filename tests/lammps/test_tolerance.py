@@ -267,6 +267,30 @@ def test_a_collision_out_of_free_flight(lmp_tree):
         assert abs(run["TotEng"][-1] - run["TotEng"][0]) < 0.02
 
 
+LATE = ("every 10 delay 20 check yes", "delay 10", "every 100 check no")
+
+
+@pytest.mark.parametrize("often", LATE)
+def test_neighbor_lists_that_are_looked_at_late(lmp_tree, often):
+    """No site has moved by more than half the skin when LAMMPS looks whether to make the list anew."""
+    deck = meeting(1e-9, "lj/charmm/coul/charmm 4.0 6.0", f"neigh_modify {often}\n{UNTIL}")
+    (run,) = tables(lmp_tree.succeed(deck))
+    assert run["PotEng"].min() < -1 and off(run, "TotEng") < 1e-6
+
+
+@pytest.mark.parametrize("words, shortest, longest", [
+    ("", 0, 0.0375), ("dtmax 0.02", 0, 0.02), ("dtmin 0.01 dtmax 0.02", 0.01, 0.02)
+])  # fmt: skip
+@pytest.mark.parametrize("given", [0.001, 10.0])
+def test_the_first_step_is_within_the_limits(lmp_tree, words, shortest, longest, given):
+    """However long or short the time step of the script is."""
+    deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", f"timestep {given}\nrun 20", words=words)
+    (run,) = tables(lmp_tree.succeed(deck))
+    steps = np.diff(run["Time"])
+    assert (steps >= 0.999 * shortest).all() and (steps <= 1.001 * longest).all()
+    assert off(run, "TotEng") < 1e-12
+
+
 INSERTED = """
 run 100
 region in block -5 5 -5 5 -5 5
