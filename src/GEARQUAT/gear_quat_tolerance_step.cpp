@@ -39,10 +39,10 @@ static constexpr double PART_UNSEEN = 0.5;
 
 static constexpr int MOST_TRIES = 40;
 
-// steps that belong to the start, and by how much more steps of the smallest length the control has to
-// save to be worth while
+// steps that belong to the start; by how many standard deviations of its logarithm a step is as short as
+// few others are; and by how much more of such steps the control has to save to be worth while
 
-static constexpr double UNSETTLED = 100.0, LITTLE_GAIN = 0.6;
+static constexpr double UNSETTLED = 100.0, SPREADS = 2.0, LITTLE_GAIN = 0.6;
 
 // the part of a step that counts as no time
 
@@ -300,17 +300,21 @@ void Tolerance::note_step(double size, int values)
   if (record.steps <= UNSETTLED) return;
   settled.steps += 1.0;
   settled.time += size;
-  settled.smallest = settled.steps == 1.0 ? size : std::min(settled.smallest, size);
+  settled.log += std::log(size);
+  settled.log2 += std::log(size) * std::log(size);
 }
 
 void Tolerance::end_run()
 {
-  const double more = settled.time / (settled.steps * settled.smallest) - 1.0;
-  if (settled.steps > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
+  const double n = settled.steps, mean = settled.log / n;
+  const double spread = std::sqrt(std::max(0.0, settled.log2 / n - mean * mean));
+  const double shortest = std::exp(mean - SPREADS * spread);
+  const double more = settled.time / (n * shortest) - 1.0;
+  if (n > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
     utils::logmesg(lmp,
                    "Fix gear/quat tolerance: the step has changed little, and the control does not "
                    "pay here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
                    "steps with Gear's coefficients, and tuned ones permit longer steps\n",
-                   settled.smallest, 100.0 * more);
+                   shortest, 100.0 * more);
   settled = Settled();
 }
