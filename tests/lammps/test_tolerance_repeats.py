@@ -1,7 +1,10 @@
 """Keyword tolerance: a step that fails is made again, and nothing else in LAMMPS can tell."""
 
+import re
+
 import numpy as np
 import pytest
+from running import EXAMPLES
 from scenes import frames, one_after_the_other, placed, water, water_data
 from test_tolerance import (
     ENERGY,
@@ -90,7 +93,7 @@ def test_forces_that_jump(lmp_tree, formulation):
 
 
 UNFOLLOWED = {
-    "fix other others gear/quat molecule": "fix other (gear/quat) moves atoms",
+    "fix other others gear/quat molecule corrector gear": "fix other (gear/quat) moves atoms",
     "fix other others nve": "moves atoms",
     "fix other others langevin 1.0 1.0 1.0 4711": "acts on forces in a way that cannot be followed",
 }
@@ -333,3 +336,59 @@ def test_a_shortest_step_is_not_made_again(lmp_tree):
     assert run[SMALLEST][-1] == pytest.approx(0.004) and run[HELD][-1] >= 1
     assert result.output.count("dtmin keeps") == 1
     assert run[LARGEST][-1] > 1 and run["Time"][-1] >= 8.0
+
+
+WATER_216 = """
+units real
+atom_style full
+newton on
+atom_modify sort 0 0.0
+read_data {}
+pair_style lj/charmm/coul/charmm 6.0 8.0
+pair_coeff 1 1 0.1553 3.166
+pair_coeff * 2 0.0 1.0
+neighbor 1.0 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+velocity all create 300.0 4711 loop geom
+fix move all gear/quat molecule
+run 0 post no
+velocity all zero linear
+unfix move
+timestep {}
+fix move all gear/quat molecule {}
+thermo_style custom step time {}
+dump poses all custom {} poses.dump id xu yu zu
+dump_modify poses sort id format float %.17g {}
+{}
+"""
+
+
+def test_216_molecules_of_water(lmp_tree):
+    """The log says that a constant step would do, and the one that it names is about as accurate."""
+    duration, data = 200.0, EXAMPLES / "isokinetic" / "data.water"
+
+    def fixed(steps):
+        dt = duration / steps
+        deck = WATER_216.format(data, f"{dt:.17g}", "", "pe", steps, "", f"run {steps}")
+        lmp_tree.succeed(deck)
+        return frames(lmp_tree.folder / "poses.dump")[steps]
+
+    def controlled(eps, end):
+        words, every = f"tolerance {eps} every/time {duration:g}", f"every/time {duration:g}"
+        deck = WATER_216.format(data, 0.5, words, REPEATED, 1, every, UNTIL.format(end))
+        result = lmp_tree.succeed(deck)
+        _, (step, poses), *_ = frames(lmp_tree.folder / "poses.dump").items()
+        return step, poses, re.findall("does not pay here: a fixed time step of (.*?) without", result.words)
+
+    right = fixed(800)
+
+    def error(poses):
+        return np.linalg.norm((poses - right)[:, 1:], axis=1).max()
+
+    for eps, least, most in (("1e-5", 1e-5, 3e-4), ("1e-4", 5e-5, 1e-3)):
+        steps, poses, named = controlled(eps, duration)
+        assert least < error(poses) < most and not named  # a hundred steps settle
+        *_, (named,) = controlled(eps, 2 * duration)
+        number = round(duration / float(named))
+        assert error(fixed(number)) < 2 * error(poses) < error(fixed(number // 2))
+        assert float(named) > 0.7 * duration / steps
