@@ -128,8 +128,8 @@ class Tolerance : protected Pointers {
   bigint announced = -1;       ///< the last step of announce_output()
   Checkpoint record = {};
   struct Settled {
-    double steps = 0.0, time = 0.0, log = 0.0, log2 = 0.0;    ///< log: of the steps
-  } settled;                                                  ///< of this run, without its start
+    double steps = 0.0, time = 0.0, squares = 0.0;
+  } settled;    ///< of this run, without its start: number, sum and sum of squares
 
   void set_values(int values);
   void change_values(int values);

@@ -39,8 +39,8 @@ static constexpr double PART_UNSEEN = 0.5;
 
 static constexpr int MOST_TRIES = 40;
 
-// steps that belong to the start; by how many standard deviations of its logarithm a step is as short as
-// few others are; and by how much more of such steps the control has to save to be worth while
+// steps that belong to the start; by how many relative standard deviations a step is shorter than the
+// mean that is as short as few others; and how many more of such steps the control has to save to pay
 
 static constexpr double UNSETTLED = 100.0, SPREADS = 2.0, LITTLE_GAIN = 0.6;
 
@@ -300,16 +300,15 @@ void Tolerance::note_step(double size, int values)
   if (record.steps <= UNSETTLED) return;
   settled.steps += 1.0;
   settled.time += size;
-  settled.log += std::log(size);
-  settled.log2 += std::log(size) * std::log(size);
+  settled.squares += size * size;
 }
 
 void Tolerance::end_run()
 {
-  const double n = settled.steps, mean = settled.log / n;
-  const double spread = std::sqrt(std::max(0.0, settled.log2 / n - mean * mean));
-  const double shortest = std::exp(mean - SPREADS * spread);
-  const double more = settled.time / (n * shortest) - 1.0;
+  const double n = settled.steps, mean = settled.time / n;
+  const double spread = std::sqrt(std::max(0.0, settled.squares / n - mean * mean)) / mean;
+  const double shortest = mean * std::exp(-SPREADS * spread);
+  const double more = mean / shortest - 1.0;
   if (n > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
     utils::logmesg(lmp,
                    "Fix gear/quat tolerance: the step has changed little, and the control does not "
