@@ -28,6 +28,16 @@ DECKS = {
     "an infile": ({FIX: FIX + " infile no.such"}, "LAMMPS refuses"),
     "a masked force": ({FIX: FIX + " force 1 off off off"}, "keyword force has to be left out"),
     "no forces": ({"pair_style lj/smooth 6.0 7.0\npair_coeff 1 1 1.0 1.0": ""}, "has no forces between atoms"),
+    "no forces at all": ({"1 1 1.0 1.0": "1 1 0.0 1.0"}, "the bodies exert no forces on each other"),
+    "a force that jumps": ({"lj/smooth 6.0 7.0": "lj/cut 2.5"}, "jumps where they are 2.5 apart"),
+    "one that jumps between sites": (
+        {"lj/smooth 6.0 7.0": "lj/cut 2.5", "atoms": colliding.DUMBBELLS},
+        "the force between the bodies jumps",
+    ),
+    "a thermostat of the fix": (
+        {" tolerance 1e-10 energy": " temp 1 1 1"},
+        "keyword temp has to be left out, and 'tolerance 1e-9 energy' put in its place",
+    ),
     "spheres": (
         {"atom_style bond": "atom_style hybrid bond sphere", "mass 1 1.0": "set type 1 density 1.0"},
         "atoms have to be points",
@@ -45,7 +55,8 @@ OPTIONS = {
     "negative temperature": (("--temperature", "-1"), "-1.0 is not in the range"),
     "negative rotation": (("--temperature", "1", "--rotation", "-1"), "-1.0 is not in the range"),
     "neither": ((), "either --temperature or --energy is required"),
-    "both": (("--temperature", "1", "--energy", "1"), "either --temperature or --energy is required"),
+    "both": (("--temperature", "1", "--energy", "1"), "not both --temperature and --energy"),
+    "spheres and one energy": (("--energy", "1", "--sigma", "1"), "--sigma is for collision integrals"),
     "first alone": (("--temperature", "1", "--first", "3"), "--first needs --count"),
     "too far": (("--temperature", "1", "--largest", "7.5"), "a longer cutoff is required"),
 }
@@ -84,13 +95,14 @@ def test_other_settings_in_the_folder(tmp_path):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     options = ("--largest", "3", "--count", "8", "--processes", "1", "--out", str(out))
     assert CliRunner().invoke(main, ["scatter", str(deck), "--temperature", "1", *options]).exit_code == 0
-    assert "flights of other settings (plan temperature, plan rotation)" in refused(
+    assert "flights of other settings (--temperature, the temperature of rotation)" in refused(
         deck, "--temperature", "2", *options
     )
-    assert "flights of other settings (plan seed)" in refused(deck, "--temperature", "1", "--seed", "2", *options)
+    assert "flights of other settings (--seed)" in refused(deck, "--temperature", "1", "--seed", "2", *options)
     other = tmp_path / "other"
     second = [*options[:-1], str(other)]
     assert CliRunner().invoke(main, ["scatter", str(deck), "--temperature", "2", *second]).exit_code == 0
-    assert "other settings" in refused("--merge", out, "--merge", other, "--out", tmp_path / "merged")
+    words = refused("--merge", out, "--merge", other, "--out", tmp_path / "merged")
+    assert "(--temperature, the temperature of rotation): parts have to be made with the same deck and options" in words
     assert "temperature has to be left out" in refused("--merge", out, "--temperature", "1")
     assert "a folder with results" in refused("--merge", tmp_path)

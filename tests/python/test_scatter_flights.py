@@ -166,6 +166,19 @@ def test_any_number_of_processes_and_parts(tmp_path):
     assert contents(tmp_path / "b") == expected
 
 
+def test_what_is_known_of_flights_is_said(tmp_path):
+    """Flights that were there before, that are in two parts, and that are in none."""
+    deck, (one, two, three) = colliding.write(tmp_path), (tmp_path / name for name in "abc")
+    run(deck, one, *WHOLE, "--count", "24")
+    assert "16 of the 24 flights were in the folder before" in run(deck, one, *WHOLE, "--count", "8")
+    run(deck, two, *WHOLE, "--first", "32", "--count", "8")
+    parts = [word for part in (one, one, two) for word in ("--merge", str(part))]
+    result = CliRunner().invoke(main, ["scatter", *parts, "--out", str(three)])
+    assert "in several parts are counted once: 24" in result.output
+    assert "Flights that no part has: 24 to 31" in result.output
+    assert len((three / "flights.csv").read_text().splitlines()) == 1 + 32
+
+
 def test_killed_and_continued(tmp_path):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     options = [*WHOLE, "--count", "400", "--processes", "1", "--out", str(out)]

@@ -73,8 +73,8 @@ def scatter(deck, variables, without, which, first, count, error, most, steps, p
     """Cross sections and collision integrals of the two rigid bodies of DECK.
 
     DECK is a LAMMPS input script with any pair style that has a cutoff, and with a fix gear/quat with
-    tolerance that moves two bodies in a box that is not periodic.  It is followed up to its run, which
-    thousands of flights take the place of.  Impact parameters, velocities, orientations and angular momenta
+    tolerance that moves two bodies in a box that is not periodic.  The command follows it
+    up to its run, and makes thousands of flights instead of that run.  Impact parameters, velocities, orientations and angular momenta
     are drawn evenly, and every average comes with its standard error.  A run that was ended goes on where it
     was if it is started again.
     """
@@ -84,7 +84,7 @@ def scatter(deck, variables, without, which, first, count, error, most, steps, p
         _refuse({"deck": deck, "first": first, "count": count, **asked})
         text = conduct.merge(parts, out, sigma)
     else:
-        asked = _settled(deck, first, count, asked)
+        asked = _settled(deck, first, count, sigma, asked)
         scene = {"path": deck, "variables": variables, "without": without, "which": which}
         numbers = count and range(first or 0, (first or 0) + count)
         with progress_bar(total=0, unit=" flights", desc="reading the deck") as progress:
@@ -100,12 +100,16 @@ def _refuse(given):
             raise DeckError(f"--merge joins flights that were flown: {name} has to be left out")
 
 
-def _settled(deck, first, count, asked):
+def _settled(deck, first, count, sigma, asked):
     """``asked`` with its defaults.  Raises DeckError for what does not go together."""
     if deck is None:
         raise DeckError("DECK is required, or --merge with the folders to join")
-    if (asked["temperature"] is None) == (asked["energy"] is None):
+    if asked["temperature"] is None and asked["energy"] is None:
         raise DeckError("either --temperature or --energy is required")
+    if asked["temperature"] is not None and asked["energy"] is not None:
+        raise DeckError("not both --temperature and --energy: translation has either of them")
+    if sigma is not None and asked["energy"] is not None:
+        raise DeckError("--sigma is for collision integrals at a temperature: it has to be left out with --energy")
     if first is not None and count is None:
         raise DeckError("--first needs --count, the number of flights")
     if asked["rotation"] is None:

@@ -2,6 +2,7 @@
 
 pair       the two bodies of a deck, and one flight of them in LAMMPS
 sampling   the starts of the flights, each a function of the seed and of its number
+cutoff     whether forces vanish smoothly at the cutoff
 pool       flights on several processes
 store      the folder of results: what is flown, what has been flown, and parts of it joined
 largest    the largest impact parameter, from pilot flights

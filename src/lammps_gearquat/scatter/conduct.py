@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from .. import figures
+from ..trials.script import DeckError
 from ..units import UNITS
 from . import flights, largest, report, store
 from .pool import Pool
@@ -28,7 +29,10 @@ def scatter(scene, asked, numbers, error, most, out, progress):
         store.begin(out, wanted)
         progress.set_description("flights")
         rows = _until(pool, plan, numbers, error, most, out, progress, asked["sigma"])
-    return conclude(out, wanted, rows, asked["sigma"])
+    text, others = conclude(out, wanted, rows, asked["sigma"]), numbers and len(rows) - len(numbers)
+    if others:
+        text += f"\n{others} of the {len(rows)} flights were in the folder before and are not among those asked for"
+    return text
 
 
 def _settle(pool, asked, error, out):
@@ -39,6 +43,7 @@ def _settle(pool, asked, error, out):
     scale = asked["energy"]
     if scale is None:
         scale = UNITS[pool.facts.style].boltzmann * asked["temperature"]
+    pool.check(scale)
     plan = Plan((asked["seed"],), asked["temperature"], asked["energy"], asked["rotation"], 0.0)
     allowed, steps = LEFT_OUT * error, asked["most_steps"]
     if (out / store.SETTINGS).exists():
@@ -94,5 +99,7 @@ def conclude(out, settings, rows, sigma):
 
 def merge(parts, out, sigma):
     """Join the folders ``parts`` in ``out``; the results as text.  Raises DeckError."""
-    settings, rows = store.merge(parts, out)
-    return conclude(out, settings, rows, sigma)
+    settings, rows, notes = store.merge(parts, out)
+    if sigma is not None and settings["plan"]["energy"] is not None:
+        raise DeckError("the parts have one energy: --sigma, for collision integrals at a temperature, has to be left out")
+    return "\n".join([conclude(out, settings, rows, sigma), *notes])

@@ -74,6 +74,8 @@ def find(pool, plan, scale, allowed):
     rows = [[flights.row(one) for one in some] for some in flown]
     h = np.array([losses(flights.columns(some), scale, facts.moments) for some in rows])
     h[h < NOTHING] = 0.0
+    if not any(facts.freedoms):
+        h[:, LOSSES.index("rotation")] = 0.0  # what atoms gain is the error of a flight
     outer = beyond(b, h)
     whole = outer[0] + np.pi * b[0] ** 2 * h[0]
     missing = taken_away(b, h, facts.cutoff)
@@ -81,6 +83,12 @@ def find(pool, plan, scale, allowed):
         left = np.where(whole > 0.0, (outer + missing) / whole, 0.0)
     if (left[-1] > allowed).any():
         worst = int(np.argmax(left[-1]))
+        if not np.isfinite(left[-1, worst]):
+            raise DeckError(
+                f"the loss of {LOSSES[worst]} does not decay towards the cutoff of {facts.cutoff:.6g}, so what the"
+                " cutoff takes away is not known; a longer cutoff is required, or the largest impact parameter with"
+                " --largest"
+            )
         raise DeckError(
             f"the cutoff of {facts.cutoff:.6g} is inside the largest impact parameter: the forces that it takes"
             f" away are {left[-1, worst]:.1e} of the loss of {LOSSES[worst]}, and {allowed:.1e} is allowed, a tenth of"

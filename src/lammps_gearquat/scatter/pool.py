@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from multiprocessing import get_context, parent_process
 
 from ..trials.worker import TrialError
-from . import flights
+from . import cutoff, flights
 from .pair import open_pair
 
 #: flights that a process makes before it hands them over
@@ -76,6 +76,10 @@ def _ask(scene, function, *arguments):
     return function(*arguments)
 
 
+def _check(scale):
+    cutoff.check(_pair, scale)
+
+
 def _fly(*arguments):
     return flights.fly(_pair, *arguments)
 
@@ -111,6 +115,10 @@ class Pool:
             return [future.result() for future in futures]
         except BrokenProcessPool as error:
             raise TrialError("LAMMPS ended its process; lmp -in DECK may say why") from error
+
+    def check(self, scale):
+        """Raise DeckError if forces do not vanish smoothly, for flights with energies of about ``scale``."""
+        self._results([self._submit(_check, scale)])
 
     def fly(self, plan, numbers):
         """Flights with these ``numbers``, a range, in lists of up to BLOCK, in their order."""

@@ -64,7 +64,7 @@ def _conditions(plan, style):
 def _distance(farthest, unit):
     words = f"Largest impact parameter: {f'{farthest.value:g} {unit}'.strip()}"
     if not farthest.left:
-        return words
+        return f"{words}, as stated; what is beyond it is not in the averages, and has not been estimated"
     left = max(farthest.left.values())
     return f"{words}; what is beyond it is {left:.1e} of the whole, by {farthest.pilots} pilot flights"
 

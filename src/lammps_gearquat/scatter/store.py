@@ -16,6 +16,8 @@ from .largest import Largest
 from .pool import Facts
 from .sampling import Plan
 
+#: gaps between flights that are named at most
+NAMED = 10
 SETTINGS, FLIGHTS, RESULTS = "settings.json", "flights.csv", "results.json"
 
 
@@ -57,18 +59,38 @@ def begin(folder, wanted):
     write_json(folder / SETTINGS, wanted)
 
 
-def _same(folder, known, wanted):
-    """Raise DeckError if settings differ, naming what does."""
-    differing = [
+#: what the settings that may differ are to the user, by the names in settings.json
+WORDS = {
+    "pair text": "the commands of the deck",
+    "pair name": "the name of the deck",
+    "plan seed": "--seed",
+    "plan temperature": "--temperature",
+    "plan energy": "--energy",
+    "plan rotation": "the temperature of rotation",
+    "plan largest": "the largest impact parameter",
+    "plan core": "the core that pilot flights found",
+    "most_steps": "--steps",
+}
+
+
+def _differing(known, wanted):
+    """Words for what differs between settings, "" for nothing."""
+    names = [
         f"{part} {name}" if isinstance(wanted[part], dict) else part
         for part in wanted
         for name in (wanted[part] if isinstance(wanted[part], dict) else (part,))
         if _get(known, part, name) != _get(wanted, part, name) and part != "largest"
     ]
+    # other facts of the bodies differ because the decks do
+    told = [WORDS[name] for name in names if name in WORDS] or names
+    return ", ".join(told)
+
+
+def _same(folder, known, wanted):
+    """Raise DeckError if settings differ, naming what does."""
+    differing = _differing(known, wanted)
     if differing:
-        raise DeckError(
-            f"{folder} has flights of other settings ({', '.join(differing)}): another --out is required"
-        )
+        raise DeckError(f"{folder} has flights of other settings ({differing}): another --out is required")
 
 
 def _get(settings, part, name):
@@ -127,13 +149,22 @@ class Writer:
 
 
 def merge(folders, out):
-    """Join the flights of ``folders`` in ``out``; (settings, rows).  Raises DeckError if they do not fit together."""
-    wanted, lines = read_settings(folders[0]), {}
+    """Join the flights of ``folders`` in ``out``; (settings, rows, notes).
+
+    Notes are sentences about flights that are in several parts or in none.  Raises DeckError if parts do not fit
+    together.
+    """
+    wanted, lines, again = read_settings(folders[0]), {}, 0
     for folder in folders:
-        known = read_settings(folder)
-        _same(folder, known, wanted)
+        differing = _differing(read_settings(folder), wanted)
+        if differing:
+            raise DeckError(
+                f"{folder} has flights of other settings than {folders[0]} ({differing}): parts have to be made with"
+                " the same deck and options"
+            )
         for line in read_lines(folder):
             number = number_of(line)
+            again += number in lines
             if lines.setdefault(number, line) != line:
                 raise DeckError(
                     f"{folder}: flight {number} differs from that in another part: parts of one run are required"
@@ -142,7 +173,18 @@ def merge(folders, out):
     ordered = [lines[number] for number in sorted(lines)]
     text = "\n".join([",".join(flights.HEADER), *ordered]) + "\n"
     (out / FLIGHTS).write_text(text, encoding="utf-8")
-    return wanted, parse(ordered)
+    return wanted, parse(ordered), _notes(sorted(lines), again)
+
+
+def _notes(numbers, again):
+    """Sentences about flights ``again`` in another part, and about those missing among sorted ``numbers``."""
+    notes = [f"Flights that are in several parts are counted once: {again}"] if again else []
+    gaps = [(a + 1, b - 1) for a, b in zip([-1, *numbers], numbers) if b > a + 1]
+    if gaps:
+        named = ", ".join(str(a) if a == b else f"{a} to {b}" for a, b in gaps[:NAMED])
+        more = "" if len(gaps) <= NAMED else " and more"
+        notes.append(f"Flights that no part has: {named}{more}")
+    return notes
 
 
 def rewrite(folder, known):

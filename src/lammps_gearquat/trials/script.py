@@ -328,8 +328,8 @@ def translate(line):
 
 
 # --- what leaves no trajectory to compare ---------------------------------------------------------
-_RANDOM = "its forces are random, so there is no trajectory to compare"
-_ATOMS = "it adds, removes or swaps atoms, so there is no trajectory to compare"
+_RANDOM = "its forces are random, so the motion has no exact solution"
+_ATOMS = "it adds, removes or swaps atoms, so the motion has no exact solution"
 _STEPS = "it acts once in so many steps, so the motion changes with the time step"
 _BOX = "it changes the box, which fix gear/quat does not allow"
 _UNUSABLE = (
