@@ -80,7 +80,7 @@ const char *Motion::reason_to_start_anew(double **f)
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
   if (thermostat && thermostat->target_jumps() && bootstraps() && forces_can_be_followed())
-    return "the thermostat has another target than in the last steps";
+    return "the thermostat has another target, or other degrees of freedom, than in the last steps";
   return forces_changed(f) ? "forces are not those of the last step" : nullptr;
 }
 

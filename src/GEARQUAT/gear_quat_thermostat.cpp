@@ -13,8 +13,10 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "group.h"
 #include "modify.h"
 #include "update.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +31,10 @@ static constexpr double NOTHING = 1.0e-24;
 // targets that differ by less are the same but for rounding
 
 static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
+
+// with a shorter damping time by the step the equations of the chain become unstable
+
+static constexpr double FEWEST_STEPS = 10.0;
 
 static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
 
@@ -111,8 +117,11 @@ bool Thermostat::conserves_momentum() const
     for (int k = 0; k < domain->dimension; ++k) held |= !is_thermostatted(ibody, TRANSLATION, k);
   if (over_ranks(MPI_MAX, held, world)) return false;
   constexpr int EXERTS = FixConst::POST_FORCE | FixConst::POST_FORCE_RESPA;
-  for (auto *other : modify->get_fix_list())
-    if (other != fix && (modify->get_fix_mask(other) & EXERTS)) return false;
+  for (auto *other : modify->get_fix_list()) {
+    // what it sets to zero along z belongs to no degree of freedom
+    if (other == fix || utils::strmatch(other->style, "^enforce2d")) continue;
+    if ((modify->get_fix_mask(other) & EXERTS) && group->count(other->igroup) > 0) return false;
+  }
   return true;
 }
 
@@ -131,13 +140,20 @@ void Thermostat::begin_run()
   const auto differs = [&](double a, double b) {
     return std::fabs(a - b) > ROUNDING_OF_TARGET * line.kt;
   };
-  jumps = differs(before.kt, line.kt) || differs(before.kt_step, line.kt_step) ||
-      had[TRANSLATION] != freedoms[TRANSLATION] || had[ROTATION] != freedoms[ROTATION] ||
+  const bool changed = had[TRANSLATION] != freedoms[TRANSLATION] ||
+      had[ROTATION] != freedoms[ROTATION];
+  jumps = differs(before.kt, line.kt) || differs(before.kt_step, line.kt_step) || changed ||
       damp_before != words.damp;
   damp_before = words.damp;
   measure();
   refuse_nothing();
-  if (first && comm->me == 0)
+  if (words.damp < FEWEST_STEPS * std::fabs(update->dt) && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "
+        "the motion may become unstable",
+        words.damp, FEWEST_STEPS);
+  if ((first || changed) && comm->me == 0)
     utils::logmesg(lmp,
                    "Fix gear/quat {}: thermostat of {:.0f} degrees of freedom of translation{} and "
                    "{:.0f} of rotation\n",

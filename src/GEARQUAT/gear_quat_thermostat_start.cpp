@@ -26,8 +26,8 @@ void Thermostat::begin_start(const Collocation &collocation, double of, double h
 
 void Thermostat::foretell(const Collocation &collocation)
 {
-  for (auto &chain : nodes)
-    for (auto &one : chain) collocation.foretell(one);
+  for (size_t c = 0; c < chains.size(); ++c)
+    for (int v = 0; v < chains[c].size(); ++v) collocation.foretell(nodes[c][v]);
 }
 
 void Thermostat::measure_node(const Collocation &collocation, int node)
@@ -46,8 +46,8 @@ void Thermostat::measure_node(const Collocation &collocation, int node)
 
 void Thermostat::settle(const Collocation &collocation, int pair)
 {
-  for (auto &chain : nodes)
-    for (auto &one : chain) collocation.settle(pair, one);
+  for (size_t c = 0; c < chains.size(); ++c)
+    for (int v = 0; v < chains[c].size(); ++v) collocation.settle(pair, nodes[c][v]);
 }
 
 void Thermostat::seed(const Collocation &collocation, int pairs)

@@ -287,3 +287,20 @@ def test_another_thermostat_after_a_restart_begins_anew(lmp_tree):
     assert result.log.count("another target") == 1
     for table in result.thermo[2:]:
         assert largest_change(table, "Econserve" if "Econserve" in table else "TotEng") < 1e-6
+
+
+def test_degrees_of_freedom_come_and_go(lmp_tree):
+    """A force from outside releases the total momentum; what acts on nothing, or along z in 2d, does not."""
+    with_force = "fix pull all addforce 0 0 1\nrun 2\nunfix pull\nrun 2\n"
+    words = f"{TEMP} thermostat separate"
+    result = run(lmp_tree, [cluster(words, run=4 * with_force)])
+    counts = re.findall(r"thermostat of (\d+) degrees of freedom", result.log)
+    assert [int(n) for n in counts] == 4 * [12, 9] and "or other degrees of freedom" in result.log
+    idle = "group none empty\nfix pull none addforce 0 0 1\nrun 2"
+    assert "of 9 degrees" in run(lmp_tree, [cluster(words, run=idle)]).log
+
+
+def test_a_damping_time_that_is_too_short(lmp_tree):
+    for damp, warned in ((0.03, True), (0.05, False)):
+        result = run(lmp_tree, [cluster(f"temp 0.5 0.5 {damp}", run="run 1")])
+        assert ("is less than 10 time steps" in result.output + result.log) == warned
