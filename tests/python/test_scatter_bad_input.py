@@ -88,7 +88,7 @@ def test_options(tmp_path, options, words):
 def test_a_cutoff_inside_the_largest_impact_parameter(tmp_path):
     deck = colliding.write(tmp_path, **SHORT)
     words = refused(deck, "--temperature", "1", "--out", tmp_path / "out")
-    assert "the cutoff of 2.5 is inside the largest impact parameter" in words
+    assert "does not decay towards the cutoff of 2.5" in words and "longer cutoff is required" in words
 
 
 def test_other_settings_in_the_folder(tmp_path):
