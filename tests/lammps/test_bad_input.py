@@ -73,7 +73,7 @@ ARGUMENTS = {
     "molecule tolerance 1e-8 dtmin 0": "dtmin: 0 is not a positive number",
     "molecule tolerance 1e-8 dtmax -1": "dtmax: -1 is not a positive number",
     "molecule tolerance 1e-8 dtmin 0.2 dtmax 0.1": "dtmin: 0.2 is larger than dtmax, 0.1",
-    "molecule tolerance 1e-8 values 10": "10 values are more than 9",
+    "molecule tolerance 1e-8 values 11": "11 values are more than 10",
     "molecule tolerance 1e-8 enrgy": "Unknown fix gear/quat keyword: enrgy",
     "molecule tolerance energy 1e-8": "tolerance: energy is not a positive number",
     "molecule tolerance -1 energy": "tolerance: -1 is not a positive number",

@@ -290,6 +290,7 @@ def test_a_fix_that_goes(lmp_tree):
 
 def test_tolerance_beside_another_fix(lmp_tree):
     """The first step is made shorter before either has begun it."""
-    result, _ = two_fixes(lmp_tree, 10, 0.5, second="tolerance 1e-9")
-    assert "first step" in result.stdout and "WARNING" not in result.output
-    assert "start of order 8 and 11 from" in result.stdout
+    result, _ = two_fixes(lmp_tree, 10, 0.5, "corrector gear values 8", "tolerance 1e-9")
+    assert "first step" in result.stdout and result.output.count("WARNING") == 1
+    assert "nothing controls the errors of the bodies of fix" in result.output
+    assert "start of order 9 and 11 from" in result.stdout
