@@ -254,7 +254,7 @@ def valid(rng):
     choices |= {"passes": str(rng.randint(1, 3)), "infile": "bodies", "mol": "two"}
     choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
     choices["dtmin"], choices["dtmax"] = "1e-5", rng.choice(("1e-5", "0.1", "1"))
-    choices["every/time"], choices["temp"] = rng.choice(("0.05", "1")), "1.5 1.5 0.1"
+    choices["every/time"], choices["temp"] = rng.choice(("0.05", "1")), "1.5 1.5 1.5"
     choices["tchain"] = str(rng.randint(*bounds("tchain", {})))
     given = {key: value for key, value in choices.items() if rng.random() < 0.35}
     given["formulation"] = choices["formulation"]
