@@ -6,7 +6,6 @@ from scenes import (
     FORMULATIONS,
     MOLECULES,
     difference,
-    frames,
     last_frame,
     one_after_the_other,
     water,
@@ -14,7 +13,7 @@ from scenes import (
 )
 from test_coming_and_going import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
 from test_thermostat import END, KINDS, cluster, continued, largest_change
-from test_tolerance import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, tables
+from test_tolerance import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
 TAKEN, XI = "f_move[19]", "f_move[23]"  # with tolerance
@@ -110,16 +109,7 @@ def test_ranks_agree(lmp_tree, formulation):
     fix = f"gear/quat molecule formulation {formulation} temp 300 300 20 tolerance 1e-12"
     deck = water(water_data(lmp_tree.folder / "data"), fix, dt=0.5, steps=120)
     deck = deck.replace("fix_modify move energy yes", "")
-    deck = deck.replace("dump poses all custom 120", "dump poses all custom 1")
-    deck = deck.replace("dump_modify poses", "dump_modify poses every/time 0.5")
-    found = []
-    for ranks in (1, 2, 4):
-        lmp_tree.succeed(deck.replace("poses.dump", f"{ranks}.dump"), ranks=ranks)
-        found.append(list(frames(lmp_tree.folder / f"{ranks}.dump").values()))
-    assert len(found[0]) > 2
-    for other in found[1:]:
-        for frame, same in zip(found[0], other):
-            assert same == pytest.approx(frame, rel=1e-10, abs=1e-10)
+    agree_on_ranks(lmp_tree, deck)
 
 
 def test_another_target_starts_anew(lmp_tree, formulation):

@@ -11,6 +11,7 @@ from running import EXAMPLES
 from scenes import (
     UNITS,
     assigned,
+    frames,
     one_after_the_other,
     placed,
     restarted,
@@ -35,6 +36,20 @@ def case1(run="run ${steps}", before="", **settings):
 def tables(result):
     """The thermo table of each run, columns as arrays."""
     return [{key: np.array(column) for key, column in run.items()} for run in result.thermo]
+
+
+def agree_on_ranks(lmp, deck):
+    """Poses of water at equal times, on 1, 2 and 4 ranks; deck: of scenes.water, with 120 steps."""
+    deck = deck.replace("dump poses all custom 120", "dump poses all custom 1")
+    deck = deck.replace("dump_modify poses", "dump_modify poses every/time 0.5")
+    found = []
+    for ranks in (1, 2, 4):
+        lmp.succeed(deck.replace("poses.dump", f"{ranks}.dump"), ranks=ranks)
+        found.append(list(frames(lmp.folder / f"{ranks}.dump").values()))
+    assert len(found[0]) > 2
+    for other in found[1:]:
+        for frame, same in zip(found[0], other):
+            assert same == pytest.approx(frame, rel=1e-10, abs=1e-10)
 
 
 def off(run, column="v_total"):

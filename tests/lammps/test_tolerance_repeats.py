@@ -18,6 +18,7 @@ from test_tolerance import (
     SMALLEST,
     TWO,
     VALUES,
+    agree_on_ranks,
     meeting,
     off,
     tables,
@@ -287,16 +288,7 @@ def test_ranks_agree(lmp_tree, words):
     """At the same time, for rounding moves the steps."""
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, f"gear/quat molecule tolerance {words}", dt=0.5, steps=120)
-    deck = deck.replace("dump poses all custom 120", "dump poses all custom 1")
-    deck = deck.replace("dump_modify poses", "dump_modify poses every/time 0.5")
-    found = []
-    for ranks in (1, 2, 4):
-        lmp_tree.succeed(deck.replace("poses.dump", f"{ranks}.dump"), ranks=ranks)
-        found.append(list(frames(lmp_tree.folder / f"{ranks}.dump").values()))
-    assert len(found[0]) > 2
-    for other in found[1:]:
-        for frame, same in zip(found[0], other):
-            assert same == pytest.approx(frame, rel=1e-10, abs=1e-10)
+    agree_on_ranks(lmp_tree, deck)
 
 
 def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
