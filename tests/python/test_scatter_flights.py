@@ -141,7 +141,7 @@ def test_detailed_balance(tmp_path):
 
 
 def test_any_number_of_processes_and_parts(tmp_path):
-    """The same files on two processes, continued after having been cut off anywhere, and merged."""
+    """The same files on two processes, continued after having been cut off anywhere, and merged from eight parts."""
     deck = colliding.write(tmp_path)
     run(deck, tmp_path / "whole", *WHOLE, "--count", "120")
     expected = contents(tmp_path / "whole")
@@ -154,16 +154,19 @@ def test_any_number_of_processes_and_parts(tmp_path):
     run(deck, tmp_path / "two", *WHOLE, "--count", "120")
     assert contents(tmp_path / "two") == expected
 
-    for name, first, count in (("b", "50", "70"), ("a", "0", "50")):
-        run(deck, tmp_path / name, *WHOLE, "--first", first, "--count", count)
-    parts = ["--merge", str(tmp_path / "b"), "--merge", str(tmp_path / "a")]
+    parts = []
+    for first in range(105, -1, -15):
+        out = tmp_path / f"part{first}"
+        run(deck, out, *WHOLE, "--first", str(first), "--count", "15")
+        parts += ["--merge", str(out)]
     result = CliRunner().invoke(main, ["scatter", *parts, "--out", str(tmp_path / "merged")])
     assert result.exit_code == 0, result.output
     assert contents(tmp_path / "merged") == expected
 
     # and a gap that is filled later
-    run(deck, tmp_path / "b", *WHOLE, "--count", "120")
-    assert contents(tmp_path / "b") == expected
+    run(deck, out, *WHOLE, "--first", "30", "--count", "90")
+    run(deck, out, *WHOLE, "--count", "120")
+    assert contents(out) == expected
 
 
 def test_what_is_known_of_flights_is_said(tmp_path):

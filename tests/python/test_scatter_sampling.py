@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from lammps_gearquat.analysis.bodies import Bodies
 from lammps_gearquat.scatter import Plan
-from lammps_gearquat.scatter.sampling import REPLICAS, uniform
+from lammps_gearquat.scatter.sampling import REPLICAS, uniform, weight
 from lammps_gearquat.units import UNITS
 
 N = 4096
@@ -53,7 +53,8 @@ def test_impact_parameters_and_energies(drawn):
     near((b / 4.0) ** 2, 1 / 2, 1e-3)
     near((b / 4.0) ** 4, 1 / 3, 1e-3)
     x = energy / 2.0
-    near(np.column_stack([x, x**2, 1 / x]), [2.0, 6.0, 1.0], 0.05)
+    near(np.column_stack([x, x**2, 1 / x]), [2.5, 8.75, 2 / 3], 0.05)
+    near(weight(x, [[1.0] * 3] * 2)[:, None] * np.column_stack([np.ones_like(x), x, x**2]), [1.0, 2.0, 6.0], 0.05)
 
 
 def test_a_core():

@@ -98,10 +98,11 @@ class Plan:
 def shape(moments):
     """That of the Gamma distribution of energies of translation in units of kT, from principal moments (2, 3).
 
-    It is the flux of collisions, x exp(-x), where rotation can give energy to slow ones, and otherwise the density
-    of the integrand of Omega(1,1).
+    Integrands are the flux of collisions, x exp(-x), times what a flight changes: about x for Omega(1,1), and x^2
+    for Omega(2,2).  3 suits atoms.  To slow molecules rotation can give energy, so weights must not grow like 1 / x:
+    2.5 leaves all integrals of rotating molecules a small variance.
     """
-    return 2 if np.any(np.asarray(moments) > 0.0) else 3
+    return 2.5 if np.any(np.asarray(moments) > 0.0) else 3
 
 
 def weight(x, moments):
