@@ -9,7 +9,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from lammps_gearquat.style import COLOR, STYLE  # noqa: E402
+from gearquat_analysis.style import COLOR, STYLE  # noqa: E402
+
+#: what pictures of the paper's cases say of the cage
+RECONSTRUCTED = "charges of the cage: reconstructed"
 
 
 @dataclass(frozen=True)

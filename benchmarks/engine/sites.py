@@ -6,9 +6,9 @@ import numpy as np
 
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis import open_dump
-from lammps_gearquat.analysis.bodies import Bodies
-from lammps_gearquat.analysis.superposition import superpose
+from gearquat_analysis import open_dump
+from gearquat_analysis.bodies import Bodies
+from gearquat_analysis.superposition import superpose
 from benchmarks.reference import bodies_from_sites
 
 

@@ -2,9 +2,6 @@
 
 import os
 
-#: where a module comes from that the commands and the analysis need, and LAMMPS does not
-EXTRA = "which the extra [analysis] brings: run pip install '.[analysis]' in a checkout of the repository"
-
 
 def plugin_folder() -> str:
     """The folder with gearquatplugin.so; in an editable install it is not that of `__file__`."""

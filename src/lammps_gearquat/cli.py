@@ -1,9 +1,16 @@
-"""The command ``gearquat``; each of its commands is a module of ``commands``."""
+"""The command ``gearquat``: ``analyze`` of the package gearquat_analysis, and the modules of ``commands``."""
 
-import cloup
+try:
+    import cloup
 
-from .commands.analyze import analyze
-from .commands.common import HELP, epilog
+    from gearquat_analysis.command import analyze
+    from gearquat_analysis.options import HELP, epilog
+except ModuleNotFoundError as error:
+    raise SystemExit(
+        f"Error: gearquat needs {error.name}, which the extra [analysis] brings: run"
+        " pip install ./analysis '.[analysis]' in a checkout of the repository"
+    ) from error
+
 from .commands.cost import cost
 from .commands.horizon import horizon
 from .commands.scatter import scatter

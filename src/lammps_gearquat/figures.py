@@ -1,35 +1,19 @@
-"""The pictures of ``gearquat cost``, ``horizon``, ``analyze`` and ``scatter``.  Nothing is computed here."""
-
-from contextlib import contextmanager
+"""The pictures of ``gearquat cost``, ``horizon`` and ``scatter``.  Nothing is computed here."""
 
 import matplotlib
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-matplotlib.use("Agg")
+from gearquat_analysis.pictures import named, picture
+from gearquat_analysis.style import COLOR
 
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
-
-from .style import COLOR, STYLE  # noqa: E402
-from .trials import NORMS  # noqa: E402
+from .trials import NORMS
 
 OWN = "#666666"
 FAINT = "#888888"
 FORMULATION = {"second": "Blues", "first": "Oranges"}
 #: with more decades than this on an axis, powers of ten are ticks enough
 FEW_DECADES = 2.5
-PRINCIPAL_AXES = ("#0072b2", "#d55e00", "#009e73")
-
-
-@contextmanager
-def _picture(path, title="", **layout):
-    """(figure, axes) in the common style, saved at the end; ``layout`` goes to plt.subplots."""
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(**{"layout": "constrained", **layout})
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        yield figure, axes
-        figure.savefig(path)
-        plt.close(figure)
 
 
 def _ticks(axis):
@@ -39,10 +23,6 @@ def _ticks(axis):
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
     axis.set_minor_formatter(NullFormatter())
-
-
-def _named(quantity, unit):
-    return f"{quantity} ({unit})" if unit else quantity
 
 
 # --- cost -----------------------------------------------------------------------------------------
@@ -60,7 +40,7 @@ def _look(keywords, methods):
     kin = [method for method in methods if method and f"formulation {family}" in method]
     kin.sort(key=_rank)
     place = kin.index(keywords) / max(len(kin) - 1, 1) if keywords in kin else 0.5
-    color = plt.get_cmap(FORMULATION[family])(0.35 + 0.6 * place)
+    color = matplotlib.colormaps[FORMULATION[family]](0.35 + 0.6 * place)
     return {"color": color, "marker": "o", "label": keywords.replace("formulation ", "")}
 
 
@@ -69,7 +49,7 @@ def draw_cost(path, deck, costs):
     time = deck.time_unit or "time unit"
     title = f"What accuracy costs: {deck.path.name}, errors at t = {costs.end:.6g} {deck.time_unit}"
     panels = {"evaluations": "evaluations of the forces", "seconds": "seconds"}
-    with _picture(path, title, ncols=2, figsize=(11, 4.8), sharey=True) as (figure, axes):
+    with picture(path, title, ncols=2, figsize=(11, 4.8), sharey=True) as (figure, axes):
         for axis, (name, words) in zip(axes, panels.items()):
             _draw_prices(axis, name, costs)
             axis.set_xlabel(f"{words} per {time}")
@@ -79,7 +59,7 @@ def draw_cost(path, deck, costs):
         largest = max(errors + [point.error for point in points])
         axes[0].set_ylim(min([costs.doubt, *errors]) / 4, 4 * largest)
         unit = deck.length_unit if costs.norm < 2 else "rad"
-        axes[0].set_ylabel(_named(f"{NORMS[costs.norm]} error", unit))
+        axes[0].set_ylabel(named(f"{NORMS[costs.norm]} error", unit))
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside right upper", fontsize=8)
 
@@ -122,7 +102,7 @@ def draw_horizon(path, deck, horizon):
     title = f"{deck.path.name}: {first}\nagainst {second}"
     curves = {"largest": "#0072b2", "rms": "#56b4e9", "angle": "#d55e00"}
     labels = {"largest": "largest distance", "rms": "rms distance", "angle": "largest angle (rad)"}
-    with _picture(path, title, figsize=(8, 5)) as (figure, axis):
+    with picture(path, title, figsize=(8, 5)) as (figure, axis):
         for name, color in curves.items():
             axis.semilogy(time, getattr(horizon, name), color=color, label=labels[name])
         if growth:
@@ -139,69 +119,11 @@ def draw_horizon(path, deck, horizon):
                 threshold += f", passed at {parted:.6g} {deck.time_unit}"
             axis.text(0.01, level, threshold, **note)
         axis.set_ylim(top=3 * max(axis.get_ylim()[1], horizon.parting[-1][0]))  # room for the last note
-        axis.set_xlabel(_named("time", deck.time_unit))
+        axis.set_xlabel(named("time", deck.time_unit))
         axis.set_ylabel(
-            _named("difference of the two runs", ", ".join(filter(None, [deck.length_unit, "rad"])))
+            named("difference of the two runs", ", ".join(filter(None, [deck.length_unit, "rad"])))
         )
         figure.legend(fontsize=8, loc="outside lower center", ncols=4)
-
-
-# --- analyze --------------------------------------------------------------------------------------
-ENERGIES = {"ke_translation": "translation", "ke_rotation": "rotation", "potential": "potential"}
-RESIDUALS = {"residual": "sites", "velocity_residual": "velocities"}
-
-
-def draw_totals(path, poses, totals):
-    """Energies of all bodies, and how far they are from rigid, against time."""
-    time = poses.results.time
-    residuals = {name: label for name, label in RESIDUALS.items() if totals.get(name, np.zeros(1)).any()}
-    panels = [(_named("energy", poses.units and f"units {poses.units}"), ENERGIES)]
-    panels += [("largest deviation\nfrom a rigid body", residuals)]
-    panels = [(title, [n for n in labels if n in totals], labels) for title, labels in panels]
-    panels = [panel for panel in panels if panel[1]]
-    shape = {"nrows": len(panels), "figsize": (8, 2.7 * len(panels)), "sharex": True, "squeeze": False}
-    with _picture(path, **shape) as (_, axes):
-        for axis, (title, names, labels) in zip(axes[:, 0], panels):
-            for name in names:
-                label = labels[name]
-                axis.plot(time, totals[name], color=COLOR.get(label), label=label)
-            axis.set_ylabel(title)
-            if labels is residuals:
-                axis.set_yscale("log")
-            axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
-        axes[-1, 0].set_xlabel("time")
-
-
-def draw_correlations(path, functions):
-    """Mean squares, autocorrelations of velocities and of axes, against the lag on a logarithmic axis."""
-    lag = functions["lag"]
-    # at later lags there are too few origins
-    shown = slice(1, max(2, 2 * len(lag) // 3))
-    panels = {"mean square": [], "normalized autocorrelation": [], "correlation of the principal axes": []}
-    squares, velocities, axes_in_space = panels.values()
-    for name, values in functions.items():
-        kind = COLOR["rotation" if "rotation" in name or "omega" in name else "translation"]
-        if name.startswith("mean_square"):
-            unit = "rad²" if "rotation" in name else "length²"
-            squares.append((values, {"color": kind, "label": f"{name.split('_')[-1]} ({unit})"}))
-        elif name.endswith("autocorrelation") and values[0] > 0:
-            label = "angular velocity" if "omega" in name else "velocity"
-            velocities.append((values / values[0], {"color": kind, "label": label}))
-        elif name.startswith("axis"):
-            number, order = name[4], name[-1]
-            look = {"color": PRINCIPAL_AXES[int(number) - 1], "linestyle": "-" if order == "1" else "--"}
-            axes_in_space.append((values, {"label": f"axis {number}, P{order}", **look}))
-    panels = {title: curves for title, curves in panels.items() if curves}
-    shape = {"ncols": len(panels), "figsize": (4 * len(panels), 3.8), "squeeze": False}
-    with _picture(path, **shape) as (_, axes):
-        for axis, (title, curves) in zip(axes[0], panels.items()):
-            for values, look in curves:
-                axis.plot(lag[shown], values[shown], **look)
-            axis.set_title(title, fontsize=10, loc="left")
-            axis.set_xscale("log")
-            axis.set_yscale("log" if curves is squares else "linear")
-            axis.set_xlabel("lag")
-            axis.legend(fontsize=8)
 
 
 # --- scatter --------------------------------------------------------------------------------------
@@ -214,7 +136,7 @@ def draw_deflection(path, name, columns, plan, units):
     parted = np.flatnonzero(columns["fate"] == "parted")[:DOTS]
     b, angle, energy = (columns[key][parted] for key in ("b", "angle", "energy"))
     orbiting = columns["turnings"][parted] > 1
-    with _picture(path, f"Deflection: {name}", figsize=(8, 5)) as (figure, axis):
+    with picture(path, f"Deflection: {name}", figsize=(8, 5)) as (figure, axis):
         dots = axis.scatter(b[~orbiting], np.degrees(angle[~orbiting]), s=3, c=energy[~orbiting], cmap="viridis")
         rings = {"s": 16, "facecolors": "none", "edgecolors": COLOR["first"], "linewidths": 0.7}
         axis.scatter(b[orbiting], np.degrees(angle[orbiting]), label=f"orbiting ({orbiting.sum()})", **rings)
@@ -222,7 +144,7 @@ def draw_deflection(path, name, columns, plan, units):
             figure.colorbar(dots, ax=axis, label="energy of the relative translation (units of the script)")
         axis.set_xlim(0, plan.largest)
         axis.set_ylim(0, 180)
-        axis.set_xlabel(_named("impact parameter", units.length))
+        axis.set_xlabel(named("impact parameter", units.length))
         axis.set_ylabel("deflection (degrees)")
         axis.legend(loc="upper right")
 
@@ -230,7 +152,7 @@ def draw_deflection(path, name, columns, plan, units):
 def draw_convergence(path, name, numbers, series):
     """Values with standard errors, by their last ones, and the errors, against numbers of flights."""
     colors = (COLOR["second"], COLOR["first"])
-    with _picture(path, f"Convergence: {name}", ncols=2, figsize=(10, 4)) as (_, (left, right)):
+    with picture(path, f"Convergence: {name}", ncols=2, figsize=(10, 4)) as (_, (left, right)):
         for (label, (values, errors)), color in zip(series.items(), colors):
             look = {"color": color, "marker": "o", "markersize": 3, "label": label}
             last = values[-1]

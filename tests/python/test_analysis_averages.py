@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis import averages
-from lammps_gearquat.analysis.report import average_lines, write_averages
+from gearquat_analysis import averages
+from gearquat_analysis.report import average_lines, write_averages
 
 FRAMES, BODIES = 2000, 60
 MOMENTS = np.array([3.0, 2.0, 1.0])

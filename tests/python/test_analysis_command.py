@@ -12,9 +12,9 @@ from click.testing import CliRunner
 from dumps import analyze, columns
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis import Poses, TablePoses, open_dump, open_table
+from gearquat_analysis import Poses, TablePoses, open_dump, open_table
 from lammps_gearquat.cli import main
-from lammps_gearquat.units import UNITS
+from gearquat_analysis.units import UNITS
 from benchmarks.reference import paper_problem, reference_state
 from benchmarks.reference import quaternion as qt
 from benchmarks.reference.lammps_forces import _open_lammps

@@ -5,9 +5,9 @@ import MDAnalysis
 import numpy as np
 import pytest
 
-from lammps_gearquat.analysis import DumpError, Poses, open_any, open_dump
-from lammps_gearquat.analysis.convert import convert
-from lammps_gearquat.units import UNITS
+from gearquat_analysis import DumpError, Poses, open_any, open_dump
+from gearquat_analysis.convert import convert
+from gearquat_analysis.units import UNITS
 from running import make_lmp_wheel
 
 pytestmark = pytest.mark.filterwarnings("ignore:::MDAnalysis")
@@ -140,7 +140,7 @@ def test_lj_is_labeled(flights, tmp_path, suffix):
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch):
     for name in ("draw_totals", "draw_correlations"):
-        monkeypatch.setattr(f"lammps_gearquat.figures.{name}", lambda *_: None)
+        monkeypatch.setattr(f"gearquat_analysis.pictures.{name}", lambda *_: None)
 
 
 @pytest.mark.parametrize("kind", ["plain", "timed", "table"])

@@ -6,7 +6,7 @@ import pytest
 from MDAnalysis.lib.correlations import autocorrelation
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis import Poses, correlations, open_dump, residence
+from gearquat_analysis import Poses, correlations, open_dump, residence
 
 RNG = np.random.default_rng(8)
 FRAMES, BODIES = 40, 7

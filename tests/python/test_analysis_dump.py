@@ -4,7 +4,7 @@ import dumps
 import numpy as np
 import pytest
 
-from lammps_gearquat.analysis import DumpError, Poses, open_any, open_dump, open_table
+from gearquat_analysis import DumpError, Poses, open_any, open_dump, open_table
 
 MOTION = dumps.Motion([3, 4, 5])
 TIMES = [0.0, 1.0, 2.0]

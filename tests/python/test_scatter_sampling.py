@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis.bodies import Bodies
+from gearquat_analysis.bodies import Bodies
+from gearquat_analysis.units import UNITS
 from lammps_gearquat.scatter import Plan
 from lammps_gearquat.scatter.sampling import REPLICAS, uniform, weight
-from lammps_gearquat.units import UNITS
 
 N = 4096
 

@@ -16,7 +16,7 @@ from clumps import FIX, FOR_GEAR
 
 from lammps_gearquat.commands.cost import cost as cost_command
 from lammps_gearquat.commands.horizon import horizon as horizon_command
-from lammps_gearquat.analysis.bodies import Bodies
+from gearquat_analysis.bodies import Bodies
 from lammps_gearquat.trials import cost, evaluate, horizon, measure, report
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError

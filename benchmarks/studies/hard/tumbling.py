@@ -5,7 +5,7 @@ import numpy as np
 from benchmarks.engine import FORMULATIONS, Curve, Finding, Measurement, Panel, deck, floor
 from benchmarks.reference import quaternion as qt
 from benchmarks.reference.free_top import FreeTop
-from lammps_gearquat.analysis import Poses, open_dump
+from gearquat_analysis import Poses, open_dump
 
 TITLE, SECONDS = "Spin about the intermediate axis", 15.0
 MOST = 1e-6

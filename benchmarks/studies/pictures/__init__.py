@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from benchmarks.engine import Finding, Job, Study, deck, series
-from lammps_gearquat.analysis import Poses, open_dump
+from gearquat_analysis import Poses, open_dump
 
 from .figures import draw_energy, draw_orbit, draw_tumbling
 from .film import draw_film

@@ -6,8 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from benchmarks.engine import floor
+from benchmarks.engine.panels import RECONSTRUCTED
 from benchmarks.reference import Cage
-from lammps_gearquat.style import COLOR, RECONSTRUCTED, STYLE
+from gearquat_analysis.style import COLOR, STYLE
 
 from .view import Camera, Stage
 

@@ -4,19 +4,12 @@ from time import monotonic
 
 import cloup
 
+from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly, out_option, progress_bar
+
 from ..trials import NORMS
 from ..trials.script import DeckError, pairs
 from ..trials.worker import TrialError
-from .common import (
-    COUNT,
-    POSITIVE,
-    announce,
-    command,
-    deck_options,
-    failing_clearly,
-    out_option,
-    progress_bar,
-)
+from .common import announce, deck_options
 
 
 @command(

@@ -2,9 +2,11 @@
 
 import cloup
 
+from gearquat_analysis.options import POSITIVE, command, failing_clearly, out_option, progress_bar
+
 from ..trials.script import DeckError
 from ..trials.worker import TrialError
-from .common import POSITIVE, announce, command, deck_options, failing_clearly, out_option, progress_bar
+from .common import announce, deck_options
 
 
 @command(

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import cloup
 
+from gearquat_analysis.options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
+
 from ..trials.script import DeckError
 from ..trials.worker import TrialError
-from .common import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar, reading_options
+from .common import reading_options
 
 FROM_ZERO = cloup.IntRange(min=0)
 #: what flights need, and parts that are merged have

@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
+from gearquat_analysis.units import UNITS
+
 from .. import figures
 from ..trials.script import DeckError
-from ..units import UNITS
 from . import flights, largest, report, store
 from .pool import Pool
 from .results import convergence, results

@@ -7,7 +7,8 @@ Monchick, K. S. Yun and E. A. Mason, J. Chem. Phys. 39, 654 (1963), below as HCB
 
 import numpy as np
 
-from ..units import UNITS
+from gearquat_analysis.units import UNITS
+
 from .integrals import Estimate, thermal_speed
 
 #: exact constants of the SI: Boltzmann's, J/K, and the elementary charge, C

@@ -30,7 +30,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..units import UNITS
+from gearquat_analysis.units import UNITS
+
 from .sampling import REPLICAS, weight
 
 #: mean of sin^2 and of cos over all directions

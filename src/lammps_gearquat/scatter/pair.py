@@ -14,12 +14,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..analysis.bodies import Bodies
-from ..analysis.superposition import superpose
+from gearquat_analysis.bodies import Bodies
+from gearquat_analysis.superposition import superpose
+from gearquat_analysis.units import UNITS
+
 from ..trials import process
 from ..trials.interpreter import Interpreter
 from ..trials.script import DeckError
-from ..units import UNITS
 
 #: a flight begins and ends so much farther apart than the bodies can feel each other: several first steps, for
 #: the derivatives of the start know nothing of a force that begins within its step

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from ..tables import aligned
-from ..units import UNITS
+from gearquat_analysis.tables import aligned
+from gearquat_analysis.units import UNITS
+
 from .results import NAMED
 
 

@@ -12,7 +12,8 @@ import os
 
 import numpy as np
 
-from ..analysis.bodies import places
+from gearquat_analysis.bodies import places
+
 from .script import DeckError
 
 #: arrays of atoms that a run may change, as far as the atom style has them

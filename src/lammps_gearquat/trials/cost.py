@@ -15,7 +15,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..analysis.superposition import angles
+from gearquat_analysis.superposition import angles
+
 from . import evaluate
 from .script import DeckError
 from .worker import TrialError

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..analysis.superposition import angles
+from gearquat_analysis.superposition import angles
+
 from . import evaluate
 from .cost import Budget, Study, warnings_of
 from .script import DeckError

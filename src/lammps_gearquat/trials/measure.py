@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..analysis.bodies import Bodies, places
-from ..units import UNITS
+from gearquat_analysis.bodies import Bodies, places
+from gearquat_analysis.units import UNITS
+
 from . import script
 from .worker import TrialError, Worker
 

@@ -2,7 +2,8 @@
 
 import math
 
-from ..tables import aligned, write_rows
+from gearquat_analysis.tables import aligned, write_rows
+
 from . import NORMS
 from .evaluate import usable_step
 

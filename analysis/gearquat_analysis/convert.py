@@ -12,7 +12,7 @@ import MDAnalysis
 import numpy as np
 from MDAnalysis.lib.util import guess_format
 
-from ..units import UNITS
+from .units import UNITS
 from .bodies import Bodies
 
 #: formats that say themselves what their atoms are

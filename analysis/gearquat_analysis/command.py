@@ -1,4 +1,4 @@
-"""The command ``gearquat analyze``."""
+"""The command ``gearquat analyze``, also ``python -m gearquat_analysis`` where there is no LAMMPS."""
 
 import resource
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 import cloup
 from cloup.constraints import all_or_none
 
-from ..units import UNITS
-from .common import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
+from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
+from .units import UNITS
 
 
 def _frames(_context, _option, text):
@@ -89,8 +89,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     bodies.csv, totals.csv, correlations.csv with pictures of both, and averages.csv: temperatures, diffusion
     and rotational correlation times with standard errors, which it also prints.
     """
-    from .. import figures
-    from ..analysis import report
+    from . import pictures, report
 
     if wrap and not converted:
         raise ValueError("--wrap needs --convert, whose trajectory it is about")
@@ -99,7 +98,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     poses = _run(dump, out, frames, converted, options)
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
-    figures.draw_totals(out / "totals.png", poses, totals)
+    pictures.draw_totals(out / "totals.png", poses, totals)
     if as_csv:
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)
@@ -122,7 +121,7 @@ def _bar(what, unit):
 
 def _settle(trajectory, converted, options):
     """Put units and time step, from the dump or the options, into ``options``; say what is missing."""
-    from ..analysis.convert import has_times
+    from .convert import has_times
 
     style, units, timestep = trajectory.unit_style, options["units"], options["timestep"]
     if style and units and style != units:
@@ -163,8 +162,8 @@ def _points(option, path, others=""):
 def _run(dump, out, frames, converted, options):
     from MDAnalysis.exceptions import SelectionError
 
-    from ..analysis import Poses, TablePoses, open_any
-    from ..analysis.backends import Processes
+    from . import Poses, TablePoses, open_any
+    from .backends import Processes
 
     names = ("data", "atom_style", "body", "potential")
     timestep = 1.0 if options["timestep"] is None else options["timestep"]
@@ -198,9 +197,8 @@ def _correlate(out, poses):
     """Write correlations.csv and its picture, unless frames are too few or unevenly spaced."""
     import numpy as np
 
-    from .. import figures
-    from ..analysis import correlations
-    from ..tables import write_columns
+    from . import correlations, pictures
+    from .tables import write_columns
 
     if len(poses.results.time) < 3:
         return cloup.echo("There are fewer than three frames, so there are no correlations.")
@@ -215,12 +213,12 @@ def _correlate(out, poses):
             " rotation, and dump more often."
         )
     write_columns(out / "correlations.csv", functions)
-    return figures.draw_correlations(out / "correlations.png", functions)
+    return pictures.draw_correlations(out / "correlations.png", functions)
 
 
 def _average(out, poses):
     """Write averages.csv and print it, unless frames are too few or unevenly spaced."""
-    from ..analysis import averages, report
+    from . import averages, report
 
     try:
         found = averages.averages(poses)
@@ -232,8 +230,8 @@ def _average(out, poses):
 
 def _stay(out, poses, places, radius):
     """Write stays.csv and survival.csv, and say how long bodies stay."""
-    from ..analysis import report, residence
-    from ..tables import write_columns
+    from . import report, residence
+    from .tables import write_columns
 
     results = poses.results
     bar = _bar("finding stays", "frame")
@@ -248,7 +246,7 @@ def _stay(out, poses, places, radius):
 
 
 def _convert(poses, path, wrap, frames):
-    from ..analysis.convert import convert, remark
+    from .convert import convert, remark
 
     bar = _bar("writing", "frame")
     written = convert(poses.atoms, path, poses.units, wrap, frames, poses.results.time, bar)

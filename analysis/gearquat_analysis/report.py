@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..tables import write_columns, write_rows
+from .tables import write_columns, write_rows
 
 
 def write_totals(path, poses):

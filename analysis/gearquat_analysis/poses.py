@@ -18,8 +18,8 @@ import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
 from MDAnalysis.analysis.results import ResultsGroup
 
-from ..tables import flat
-from ..units import UNITS
+from .tables import flat
+from .units import UNITS
 from . import mapped
 from .bodies import Bodies
 from .superposition import rotate, superpose

@@ -4,18 +4,13 @@
 squares and autocorrelations of their results; ``residence``: stays near given places; ``convert``:
 trajectories for other viewers.  Beneath them ``bodies`` (who is in which body) and ``superposition``.
 
-    from lammps_gearquat.analysis import Poses, correlations, open_dump
+    from gearquat_analysis import Poses, correlations, open_dump
 
     poses = Poses(open_dump("water.dump").atoms).run()
     squares = correlations.mean_square_displacement(poses.results.center)   # (F,)
 """
 
 import importlib.util
-
-from .. import EXTRA
-
-if importlib.util.find_spec("MDAnalysis") is None:
-    raise ModuleNotFoundError(f"lammps_gearquat.analysis needs MDAnalysis, {EXTRA}", name="MDAnalysis")
 
 _HOME = dict.fromkeys(("DumpError", "open_any", "open_dump", "open_table"), ".dump")
 _HOME |= dict.fromkeys(("Poses", "TablePoses"), ".poses")

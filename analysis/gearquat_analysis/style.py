@@ -1,4 +1,4 @@
-"""How all pictures look: colors, matplotlib's settings, and what is said of the cage."""
+"""How all pictures look: colors and matplotlib's settings."""
 
 COLOR = {
     "potential": "#0072b2",
@@ -24,5 +24,3 @@ STYLE = {
     "lines.linewidth": 0.9,
     "legend.frameon": False,
 }
-
-RECONSTRUCTED = "charges of the cage: reconstructed"

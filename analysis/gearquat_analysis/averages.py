@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..units import UNITS
+from .units import UNITS
 from . import correlations
 from .superposition import rotate
 

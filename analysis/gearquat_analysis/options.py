@@ -1,0 +1,41 @@
+"""What all commands have in common: types of options, help pages, progress bars, errors that say what to do."""
+
+from contextlib import contextmanager
+from pathlib import Path
+
+import cloup
+from tqdm import tqdm
+
+HELP = {"help_option_names": ["-h", "--help"], "show_default": True}
+POSITIVE = cloup.FloatRange(min=0, min_open=True)
+COUNT = cloup.IntRange(min=1)
+FILE = cloup.Path(exists=True, dir_okay=False, path_type=Path)
+
+
+def epilog(*examples):
+    """The end of a help page: ``examples`` are lines that can be pasted into a shell in a checkout."""
+    return "\n  ".join(["\b\nExamples, to be run in a checkout of the repository:", *examples])
+
+
+def command(*examples):
+    return cloup.command(epilog=epilog(*examples), show_constraints=True, context_settings=HELP)
+
+
+def out_option(name, holds):
+    """Option --out: the folder for the results; ``holds``: what it gets."""
+    folder = cloup.Path(file_okay=False, path_type=Path)
+    return cloup.option("--out", type=folder, default=Path(name), help=f"Folder for {holds}.")
+
+
+@contextmanager
+def failing_clearly(*errors):
+    """Decorator: ``errors``, which a user can mend, become messages of the command."""
+    try:
+        yield
+    except errors as error:
+        raise cloup.ClickException(str(error)) from error
+
+
+def progress_bar(iterable=None, **options):
+    """tqdm's progress bar, silent where the output is no terminal."""
+    return tqdm(iterable, disable=None, **options)
