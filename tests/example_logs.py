@@ -73,7 +73,7 @@ def logs(deck: Path, ranks: int | str = "*") -> list[Path]:
 
 def copy_examples(to: Path) -> Path:
     """The folders with decks, in the place that LAMMPS has for those of a package."""
-    target = to / "examples" / "PACKAGES" / "gear_quat"
+    target = to / "examples" / "PACKAGES" / "gearquat"
     for name in ("common", *FOLDERS):
         shutil.copytree(
             EXAMPLES / name, target / name, ignore=shutil.ignore_patterns("log.lammps", "out.*")

@@ -45,7 +45,6 @@ using namespace GearQuat;
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
-  add_citations(lmp);
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;
   global_freq = local_freq = 1;
@@ -62,6 +61,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   restart_global = restart_peratom = restart_file = 1;
 
   args.reset(new Arguments(lmp, narg, arg));
+  add_citations(lmp, *args);
   ecouple_flag = args->thermostat.damp > 0.0;
   bodies.reset(new Bodies(lmp, this, args->scheme));
   motion.reset(new Motion(lmp, this, *args, *bodies));
@@ -71,7 +71,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   table.reset(new BodyTable(lmp, *bodies));
   sums.reset(new Sums(lmp, *bodies));
   size_vector = Sums::ELEMENTS + motion->elements();
-  extracts.reset(new Extract(lmp, *bodies, *sums, *motion, args->mol));
+  extracts.reset(new Extract(lmp, *bodies, *sums, args->mol));
   readers.reset(new Readers);
   maxexchange = bodies->max_exchange();
   comm_forward = bodies->max_forward();
@@ -112,6 +112,12 @@ int FixGearQuat::setmask()
   resume();
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR | INITIAL_INTEGRATE_RESPA |
       FINAL_INTEGRATE_RESPA | (motion->changes_step() ? END_OF_STEP : 0);
+}
+
+const Motion *GearQuat::motion_of(Fix *fix)
+{
+  const auto *same = dynamic_cast<FixGearQuat *>(fix);
+  return same ? same->motion.get() : nullptr;
 }
 
 /* ----------------------------------------------------------------------

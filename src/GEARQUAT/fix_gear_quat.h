@@ -37,6 +37,7 @@ namespace GearQuat {
   struct Arguments;
   struct Readers;
   struct StatedMolecule;
+  const Motion *motion_of(Fix *);
 }    // namespace GearQuat
 
 class FixGearQuat : public Fix {
@@ -86,6 +87,8 @@ class FixGearQuat : public Fix {
   void *extract(const char *, int &) override;
 
  private:
+  friend const GearQuat::Motion *GearQuat::motion_of(Fix *);
+
   // in the order in which they depend on each other; a constructor that ends in an error frees them
   std::unique_ptr<GearQuat::Arguments> args;
   std::unique_ptr<GearQuat::Bodies> bodies;

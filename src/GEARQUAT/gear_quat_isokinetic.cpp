@@ -28,11 +28,11 @@ IsokineticConstraint::IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Sc
 {
 }
 
-KineticSums IsokineticConstraint::over_all(const KineticSums &here) const
+KineticSums IsokineticConstraint::over_all(KineticSums here) const
 {
   static constexpr int N = sizeof(KineticSums) / sizeof(double);
   KineticSums all;
-  MPI_Allreduce((void *) &here, (void *) &all, N, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&here, &all, N, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 

@@ -76,7 +76,7 @@ class IsokineticConstraint : protected Pointers {
   std::vector<Integrator::Pending> pending;
 
   void refuse_rest() const;
-  KineticSums over_all(const KineticSums &here) const;
+  KineticSums over_all(KineticSums here) const;
   KineticSums of_pending() const;
 };
 

@@ -163,7 +163,6 @@ void *Extract::extract(const std::string &name, int &dim)
   dim = 0;
   nbody = bodies.nhere();
   if (name == "nbody") return &nbody;
-  if (name == "motion") return &motion;
   if (name == "onemol") return find_template(lmp, template_id);
   if (name == "ke") {
     ke = sums.element(Sums::KE_TRANSLATION, nullptr);

@@ -101,10 +101,8 @@ class BodyTable : protected Pointers {
 class Extract : protected Pointers {
  public:
   /// template_id: that of keyword mol, or empty.
-  Extract(LAMMPS *lmp, const Bodies &bodies, const Sums &sums, Motion &motion,
-          const std::string &template_id) :
-      Pointers(lmp),
-      bodies(bodies), sums(sums), motion(motion), template_id(template_id)
+  Extract(LAMMPS *lmp, const Bodies &bodies, const Sums &sums, const std::string &template_id) :
+      Pointers(lmp), bodies(bodies), sums(sums), template_id(template_id)
   {
     find_template(lmp, template_id);    // it has to exist
   }
@@ -117,14 +115,12 @@ class Extract : protected Pointers {
   ///   inertia      double **  the same: principal moments
   ///   ke           double *   translational kinetic energy of all bodies; collective
   ///   erotational  double *   rotational kinetic energy of all bodies; collective
-  ///   motion       Motion *   how this fix moves its bodies, see motion_of()
   ///   onemol       Molecule **  the molecules of the template of keyword mol, null without
   void *extract(const std::string &name, int &dim);
 
  private:
   const Bodies &bodies;
   const Sums &sums;
-  Motion &motion;
   std::string template_id;
 
   std::vector<int> body;

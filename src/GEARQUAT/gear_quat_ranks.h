@@ -49,12 +49,13 @@ std::vector<T> send_to_ranks(Comm *comm, std::vector<T> items, std::vector<int> 
   items.emplace_back();    // no null pointers on a rank without items
   ranks.push_back(0);
   const auto receive = [](int count, char *in, int &flag, int *&, char *&, void *where) {
-    ((std::vector<T> *) where)->assign((const T *) in, (const T *) in + count);
+    const auto *first = reinterpret_cast<const T *>(in);
+    static_cast<std::vector<T> *>(where)->assign(first, first + count);
     return flag = 0;    // no reply
   };
   char *no_reply = nullptr;
-  comm->rendezvous(IRREGULAR, n, (char *) items.data(), sizeof(T), UNSORTED, ranks.data(), receive,
-                   UNSORTED, no_reply, sizeof(T), &received);
+  comm->rendezvous(IRREGULAR, n, reinterpret_cast<char *>(items.data()), sizeof(T), UNSORTED,
+                   ranks.data(), receive, UNSORTED, no_reply, sizeof(T), &received);
   return received;
 }
 

@@ -84,10 +84,48 @@ static const char cite_cases[] =
     "Field}\n"
     "}\n\n";
 
-void GearQuat::add_citations(LAMMPS *lmp)
+static const char cite_isokinetic[] =
+    "fix gear/quat isokinetic: constant kinetic energy by Gauss' principle: "
+    "https://doi.org/10.1103/PhysRevA.28.1016\n\n"
+    "@Article{EvansGauss1983,\n"
+    " author = {Denis J. Evans and William G. Hoover and Bruce H. Failor and Bill Moran and "
+    "Anthony "
+    "J. C. Ladd},\n"
+    " title = {Nonequilibrium Molecular Dynamics via {Gauss's} Principle of Least Constraint},\n"
+    " journal = {Physical Review A},\n"
+    " year = 1983,\n"
+    " volume = 28,\n"
+    " pages = {1016--1021}\n"
+    "}\n\n";
+
+static const char cite_chains[] =
+    "fix gear/quat temp: chains of thermostats: https://doi.org/10.1063/1.463940\n\n"
+    "@Article{Martyna1992,\n"
+    " author = {Glenn J. Martyna and Michael L. Klein and Mark Tuckerman},\n"
+    " title = {{Nos\\'e--Hoover} Chains: The Canonical Ensemble via Continuous Dynamics},\n"
+    " journal = {Journal of Chemical Physics},\n"
+    " year = 1992,\n"
+    " volume = 97,\n"
+    " pages = {2635--2643}\n"
+    "}\n\n";
+
+static const char cite_gear[] =
+    "fix gear/quat corrector gear and tolerance: coefficients, and control of step and order\n\n"
+    "@Book{Gear1971,\n"
+    " author = {C. William Gear},\n"
+    " title = {Numerical Initial Value Problems in Ordinary Differential Equations},\n"
+    " publisher = {Prentice-Hall},\n"
+    " year = 1971\n"
+    "}\n\n";
+
+void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
 {
   if (!lmp->citeme) return;
-  for (const char *paper : {cite_first, cite_second, cite_cases}) lmp->citeme->add(paper);
+  lmp->citeme->add(cite_cases);
+  lmp->citeme->add(args.scheme.formulation == Formulation::FIRST ? cite_first : cite_second);
+  if (!args.scheme.tuned) lmp->citeme->add(cite_gear);
+  if (args.isokinetic != Isokinetic::NONE) lmp->citeme->add(cite_isokinetic);
+  if (args.thermostat.damp > 0.0) lmp->citeme->add(cite_chains);
 }
 
 /* ----------------------------------------------------------------------

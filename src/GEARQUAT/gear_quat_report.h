@@ -22,8 +22,8 @@ namespace LAMMPS_NS::GearQuat {
 class Bodies;
 struct Arguments;
 
-/// The papers that LAMMPS asks users of the fix to cite.
-void add_citations(LAMMPS *lmp);
+/// The papers that LAMMPS asks users of the fix to cite: of the fix, and of each feature in use.
+void add_citations(LAMMPS *lmp, const Arguments &args);
 
 /// Writes the report to screen and log on rank 0, as long as args.report wants it.  Collective; to be
 /// called in setup(), when neighbor lists are built and bodies have their ghosts.

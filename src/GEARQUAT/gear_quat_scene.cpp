@@ -33,13 +33,6 @@ std::string GearQuat::name_of(const Fix *fix)
   return fmt::format("fix {} ({})", fix->id, fix->style);
 }
 
-const Motion *GearQuat::motion_of(Fix *fix)
-{
-  int dim;
-  return utils::strmatch(fix->style, "^gear/quat") ? (const Motion *) fix->extract("motion", dim)
-                                                   : nullptr;
-}
-
 /* ----------------------------------------------------------------------
    what the fix refuses
 ------------------------------------------------------------------------- */
@@ -75,7 +68,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Bodies &
     int dim;
     const int *its_body =
         utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
-        ? (int *) other->extract("body", dim)
+        ? static_cast<const int *>(other->extract("body", dim))
         : nullptr;
     const Atom *atom = lmp->atom;
     tagint shared = 0;

