@@ -5,12 +5,13 @@ Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91, 461 (1989)), which is right if 
 it averages remembers.  All functions take finished ``Poses``, which know masses and moments.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from .units import UNITS
-from . import correlations
+from . import correlations, export
 from .superposition import rotate
 
 #: of the averages of series, and of functions of time
@@ -30,6 +31,30 @@ class Average(NamedTuple):
     value: float
     error: float
     unit: str
+
+    @property
+    def known(self):
+        return bool(np.isfinite([self.value, self.error]).all())
+
+    def text(self):
+        """Value and error, the latter with two digits: 0.312 ± 0.015 Å²/ps, (2.74 ± 0.19)e-4 Å²/fs."""
+        if not self.known or not self.error > 0.0:
+            return f"{self.value:.4g} ± {self.error:.2g} {self.unit}".rstrip()
+        last = math.floor(math.log10(self.error)) - 1
+        power = math.floor(math.log10(abs(self.value) or self.error))
+        power = power if not -4 < power < 6 else 0
+        value, error = (f"{number / 10.0**power:.{max(power - last, 0)}f}" for number in (self.value, self.error))
+        both = f"({value} ± {error})e{power}" if power else f"{value} ± {error}"
+        return f"{both} {self.unit}".rstrip()
+
+
+class Averages(list):
+    """A list of every Average."""
+
+    def to_dataframe(self):
+        """pandas.DataFrame with the columns name, value, error and unit."""
+        columns = dict(zip(Average._fields, zip(*self)))
+        return export.dataframe(columns, {})
 
 
 def of_blocks(values):
@@ -137,20 +162,18 @@ def rotational_time(time, q, axis, order):
 
 
 def averages(poses):
-    """Every Average that finished ``Poses`` or ``TablePoses`` have the data for.
+    """The Averages that finished ``Poses`` or ``TablePoses`` have the data for.
 
     Raises ValueError if frames are not evenly spaced in time.
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
-    units = UNITS[poses.units or "lj"]
-    degree = "K" if poses.units not in (None, "lj") else ""
-    found = [
-        Average(f"temperature of {name}", *of_series(series), degree)
+    found = Averages(
+        Average(f"temperature of {name}", *of_series(series), poses.unit("temperature"))
         for name, series in temperatures(poses).items()
-    ]
+    )
     correlations.lags(results.time)
-    per_time = f"{units.length}^2/{units.time}" if units.time else ""
-    found.append(Average("diffusion coefficient", *diffusion(results.time, results.center), per_time))
+    name = "diffusion coefficient"
+    found.append(Average(name, *diffusion(results.time, results.center), poses.unit(name)))
     if bodies is not None and bodies.point.all():
         return found
     linear = bodies is not None and (bodies.linear | bodies.point).any()
@@ -158,5 +181,6 @@ def averages(poses):
         axis = np.eye(3)[k] if bodies is None else bodies.axes[:, k]
         for order in (1, 2):
             time = rotational_time(results.time, results.q, axis, order)
-            found.append(Average(f"correlation time of axis {k + 1}, order {order}", *time, units.time))
+            unit = poses.unit("correlation time")
+            found.append(Average(f"correlation time of axis {k + 1}, order {order}", *time, unit))
     return found

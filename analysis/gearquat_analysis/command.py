@@ -86,8 +86,8 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
     the table of fix gear/quat.  The command leaves poses.npy (poses and energies, by frame and body),
-    bodies.csv, totals.csv, correlations.csv with pictures of both, and averages.csv: temperatures, diffusion
-    and rotational correlation times with standard errors, which it also prints.
+    bodies.csv, totals.csv, correlations.csv, and averages.csv: temperatures, diffusion and rotational
+    correlation times with standard errors, which it also prints.  The last three have pictures.
     """
     from . import pictures, report
 
@@ -98,11 +98,10 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     poses = _run(dump, out, frames, converted, options)
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
-    pictures.draw_totals(out / "totals.png", poses, totals)
+    pictures.draw_totals(poses, totals, out / "totals.png")
     if as_csv:
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)
-    _average(out, poses)
     if near:
         _stay(out, poses, places, radius)
     if converted:
@@ -166,8 +165,7 @@ def _run(dump, out, frames, converted, options):
     from .backends import Processes
 
     names = ("data", "atom_style", "body", "potential")
-    timestep = 1.0 if options["timestep"] is None else options["timestep"]
-    universe, local = open_any(dump, timestep, **{name: options[name] for name in names})
+    universe, local = open_any(dump, options["timestep"], **{name: options[name] for name in names})
     _settle(universe.trajectory, converted, options)
     try:
         atoms = universe.select_atoms(options["select"])
@@ -194,38 +192,29 @@ def _run(dump, out, frames, converted, options):
 
 
 def _correlate(out, poses):
-    """Write correlations.csv and its picture, unless frames are too few or unevenly spaced."""
+    """Write correlations and averages with their pictures, unless frames are too few or unevenly spaced."""
     import numpy as np
 
-    from . import correlations, pictures
+    from . import averages, correlations, pictures, report
     from .tables import write_columns
 
     if len(poses.results.time) < 3:
         return cloup.echo("There are fewer than three frames, so there are no correlations.")
     try:
-        bar = _bar("correlating", "function")
-        functions, turn = correlations.all_correlations(poses, bar)
+        found = correlations.all_correlations(poses, _bar("correlating", "function"))
     except ValueError as error:
         return cloup.echo(f"There are no correlations: {error}.")
-    if turn > np.pi / 2:
+    if found.largest_turn > np.pi / 2:
         cloup.echo(
-            f"A body turned by {turn:.2g} radians from one frame to the next: do not trust the mean-square"
+            f"A body turned by {found.largest_turn:.2g} radians from one frame to the next: do not trust the mean-square"
             " rotation, and dump more often."
         )
-    write_columns(out / "correlations.csv", functions)
-    return pictures.draw_correlations(out / "correlations.png", functions)
-
-
-def _average(out, poses):
-    """Write averages.csv and print it, unless frames are too few or unevenly spaced."""
-    from . import averages, report
-
-    try:
-        found = averages.averages(poses)
-    except ValueError:
-        return  # said with the correlations
-    report.write_averages(out / "averages.csv", found)
-    cloup.echo(report.average_lines(found))
+    known = averages.averages(poses)
+    write_columns(out / "correlations.csv", found.functions)
+    report.write_averages(out / "averages.csv", known)
+    pictures.draw_correlations(found, known, out / "correlations.png")
+    pictures.draw_averages(known, out / "averages.png")
+    return cloup.echo(report.average_lines(known))
 
 
 def _stay(out, poses, places, radius):

@@ -6,11 +6,13 @@ of k frames, see ``lags``; the last entries have few origins of time behind them
 products of Fourier transforms (V. Calandrini et al., Collection SFN 12, 201 (2011), Sec. 4.2).
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import fft
 from scipy.spatial.transform import Rotation
 
-from . import mapped
+from . import export, mapped
 
 #: numbers held at once in one array
 HELD = 1_000_000
@@ -136,11 +138,32 @@ def orientation_correlation(q, axis, order=1):
     return mean if order == 1 else 1.5 * mean - 0.5
 
 
-def all_correlations(poses, progress=iter):
-    """Every function above that finished ``Poses`` or ``TablePoses`` have the data for.
+@dataclass(frozen=True)
+class Correlations:
+    """Functions of the lag.
 
-    Returns name -> (F,), ``lag`` first, and the largest turn between two frames, radians.  Axes 1 to 3 are the
-    principal ones, the largest moment first; of linear bodies only the third, which is the body's own, and
+    ``functions``: name -> (F,), ``lag`` first; ``units``: name -> unit, as text; ``largest_turn`` of a body
+    between two frames, radians: above pi / 2 do not trust ``mean_square_rotation``.
+    """
+
+    functions: dict
+    units: dict
+    largest_turn: float
+
+    def to_dataframe(self):
+        """pandas.DataFrame with a row for each lag."""
+        return export.dataframe(self.functions, self.units)
+
+    def to_xarray(self):
+        """xarray.Dataset with the dimension lag."""
+        variables = {name: ("lag", values) for name, values in self.functions.items()}
+        return export.dataset(variables, {"lag": variables.pop("lag")[1]}, self.units)
+
+
+def all_correlations(poses, progress=iter):
+    """Correlations with every function above that finished ``Poses`` or ``TablePoses`` have the data for.
+
+    Axes 1 to 3 are the principal ones, the largest moment first; of linear bodies only the third, which is the body's own, and
     of points none.  ``progress`` goes over the list of functions, as tqdm does.  Raises ValueError if
     frames are not evenly spaced in time.
     """
@@ -162,4 +185,5 @@ def all_correlations(poses, progress=iter):
     largest = 0.0
     if "mean_square_rotation" in functions:
         functions["mean_square_rotation"], largest = functions["mean_square_rotation"]
-    return {"lag": lag, **functions}, largest
+    functions = {"lag": lag, **functions}
+    return Correlations(functions, {name: poses.unit(name) for name in functions}, largest)

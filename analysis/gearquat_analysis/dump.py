@@ -127,17 +127,19 @@ class DumpFrames(DumpReader):
     * each of ``additional_columns`` (n,)
 
     Rows are sorted by ID.  Raises DumpError if IDs are missing, occur twice or change, if positions
-    are missing, or if the number of rows changes.  ``unit_style``, ``timed`` and ``cut_off`` tell of
-    the dump: LAMMPS' units or None, whether it has times, and whether its last frame is not whole; that
-    one is left out.
+    are missing, or if the number of rows changes.  ``unit_style``, ``timed``, ``counted`` and ``cut_off`` tell of
+    the dump: LAMMPS' units or None, whether it has times, whether numbers of steps stand for times because neither
+    the dump nor ``dt`` gives them, and whether its last frame is not whole; that one is left out.
 
     ``names`` renames columns: of a ``dump local`` those of LAMMPS are ``f_ID[1]`` and so on.
     """
 
-    def __init__(self, filename, additional_columns=(), names=None, **kwargs):
+    def __init__(self, filename, additional_columns=(), names=None, dt=None, **kwargs):
         self._names, self._ids = names or {}, None
         self._scan(filename)
-        super().__init__(filename, additional_columns=list(additional_columns), **kwargs)
+        self.counted = dt is None and not self.timed
+        dt = 1.0 if dt is None else dt
+        super().__init__(filename, additional_columns=list(additional_columns), dt=dt, **kwargs)
 
     def _scan(self, filename):
         """Where whole frames begin, and what the first one says."""
@@ -292,7 +294,7 @@ def _from_data_file(data, atom_style, ids):
     return known.masses, known.resids, known.types
 
 
-def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_style=None):
+def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_style=None):
     """Universe of a ``dump custom``.
 
     The dump needs ``id`` and positions (``xu yu zu``, or ``x y z`` with ``ix iy iz`` in a periodic box; scaled
@@ -326,7 +328,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=1.0, atom_st
     return _universe(reader, bodies, masses, known["type"].astype(int) if "type" in known else types)
 
 
-def open_table(path, timestep=1.0):
+def open_table(path, timestep=None):
     """Universe of a ``dump local`` of the fix's local data: an atom a body, at its center of mass.
 
     ``dump ID group local N FILE index f_FIX[1] f_FIX[2] ...`` with at least the columns 1 to 6, 13 to 25 and 28.
@@ -346,7 +348,7 @@ def open_table(path, timestep=1.0):
     return _universe(reader, reader.ids, np.full(number, np.nan), np.ones(number, int))
 
 
-def open_any(path, timestep=1.0, **options):
+def open_any(path, timestep=None, **options):
     """Universe of a dump of either kind, and whether it is a ``dump local`` of the fix."""
     local = columns_of(path)[1]
     if local:

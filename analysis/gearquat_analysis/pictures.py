@@ -1,4 +1,7 @@
-"""The pictures of ``gearquat analyze``, and how all pictures are made.  Nothing is computed here."""
+"""The pictures of ``gearquat analyze``, and how all pictures are made.  Nothing is computed here.
+
+Each function returns a Figure of matplotlib, and saves it where a path is given.
+"""
 
 from contextlib import contextmanager
 
@@ -9,16 +12,19 @@ from matplotlib.figure import Figure
 from .style import COLOR, STYLE
 
 PRINCIPAL_AXES = ("#0072b2", "#d55e00", "#009e73")
+#: height of a row of a picture of averages, and of what is above and below the rows
+ROW, AROUND = 0.24, 0.75
 
 
 @contextmanager
-def picture(path, title="", figsize=None, **layout):
+def picture(path=None, title="", figsize=None, **layout):
     """(figure, axes) in the common style, saved at the end; ``layout`` goes to Figure.subplots."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=figsize, layout="constrained")
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
         yield figure, figure.subplots(**layout)
-        figure.savefig(path)
+        if path:
+            figure.savefig(path)
 
 
 def named(quantity, unit):
@@ -29,54 +35,99 @@ ENERGIES = {"ke_translation": "translation", "ke_rotation": "rotation", "potenti
 RESIDUALS = {"residual": "sites", "velocity_residual": "velocities"}
 
 
-def draw_totals(path, poses, totals):
-    """Energies of all bodies, and how far they are from rigid, against time."""
-    time = poses.results.time
-    residuals = {name: label for name, label in RESIDUALS.items() if totals.get(name, np.zeros(1)).any()}
-    panels = [(named("energy", poses.units and f"units {poses.units}"), ENERGIES)]
+def draw_totals(poses, totals, path=None):
+    """Energies of all bodies, and how far they are from rigid, against time; ``totals`` are those of ``poses``."""
+    residuals = {
+        name: named(label, poses.unit(name)) for name, label in RESIDUALS.items() if totals.get(name, np.zeros(1)).any()
+    }
+    panels = [(named("energy", poses.unit("potential")), ENERGIES)]
     panels += [("largest deviation\nfrom a rigid body", residuals)]
     panels = [(title, [n for n in labels if n in totals], labels) for title, labels in panels]
     panels = [panel for panel in panels if panel[1]]
     shape = {"nrows": len(panels), "figsize": (8, 2.7 * len(panels)), "sharex": True, "squeeze": False}
-    with picture(path, **shape) as (_, axes):
+    with picture(path, **shape) as (figure, axes):
         for axis, (title, names, labels) in zip(axes[:, 0], panels):
             for name in names:
-                label = labels[name]
-                axis.plot(time, totals[name], color=COLOR.get(label), label=label)
+                color = COLOR.get(ENERGIES.get(name))
+                axis.plot(poses.results.time, totals[name], color=color, label=labels[name])
             axis.set_ylabel(title)
             if labels is residuals:
                 axis.set_yscale("log")
             axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
-        axes[-1, 0].set_xlabel("time")
+        axes[-1, 0].set_xlabel(named("time", poses.unit("time")))
+    return figure
 
 
-def draw_correlations(path, functions):
-    """Mean squares, autocorrelations of velocities and of axes, against the lag on a logarithmic axis."""
-    lag = functions["lag"]
-    # at later lags there are too few origins
-    shown = slice(1, max(2, 2 * len(lag) // 3))
+def _panels(correlations, averages):
+    """Title -> curves (values, how they look) of the panels of the correlations."""
+    known = {one.name: one for one in averages if one.known}
+
+    def label(text, symbol, name):
+        return f"{text}\n{symbol} = {known[name].text()}" if name in known else text
+
     panels = {"mean square": [], "normalized autocorrelation": [], "correlation of the principal axes": []}
     squares, velocities, axes_in_space = panels.values()
-    for name, values in functions.items():
-        kind = COLOR["rotation" if "rotation" in name or "omega" in name else "translation"]
+    for name, values in correlations.functions.items():
+        color = COLOR["rotation" if "rotation" in name or "omega" in name else "translation"]
         if name.startswith("mean_square"):
-            unit = "rad²" if "rotation" in name else "length²"
-            squares.append((values, {"color": kind, "label": f"{name.split('_')[-1]} ({unit})"}))
+            text = named(name.split("_")[-1], correlations.units[name])
+            if name == "mean_square_displacement":
+                text = label(text, "D", "diffusion coefficient")
+            squares.append((values, {"color": color, "label": text}))
         elif name.endswith("autocorrelation") and values[0] > 0:
-            label = "angular velocity" if "omega" in name else "velocity"
-            velocities.append((values / values[0], {"color": kind, "label": label}))
+            text = "angular velocity" if "omega" in name else "velocity"
+            velocities.append((values / values[0], {"color": color, "label": text}))
         elif name.startswith("axis"):
             number, order = name[4], name[-1]
             look = {"color": PRINCIPAL_AXES[int(number) - 1], "linestyle": "-" if order == "1" else "--"}
-            axes_in_space.append((values, {"label": f"axis {number}, P{order}", **look}))
-    panels = {title: curves for title, curves in panels.items() if curves}
-    shape = {"ncols": len(panels), "figsize": (4 * len(panels), 3.8), "squeeze": False}
-    with picture(path, **shape) as (_, axes):
+            time = f"correlation time of axis {number}, order {order}"
+            axes_in_space.append((values, {"label": label(f"axis {number}, P{order}", f"τ{order}", time), **look}))
+    return {title: curves for title, curves in panels.items() if curves}
+
+
+def draw_correlations(correlations, averages=(), path=None):
+    """Mean squares, autocorrelations of velocities and of axes, against the lag on a logarithmic axis.
+
+    ``averages``: their diffusion coefficient and correlation times go beside the curves they are found from.
+    """
+    lag = correlations.functions["lag"]
+    # at later lags there are too few origins
+    shown = slice(1, max(2, 2 * len(lag) // 3))
+    panels = _panels(correlations, averages)
+    shape = {"ncols": len(panels), "figsize": (4.2 * len(panels), 4), "squeeze": False}
+    with picture(path, **shape) as (figure, axes):
         for axis, (title, curves) in zip(axes[0], panels.items()):
             for values, look in curves:
                 axis.plot(lag[shown], values[shown], **look)
             axis.set_title(title, fontsize=10, loc="left")
             axis.set_xscale("log")
-            axis.set_yscale("log" if curves is squares else "linear")
-            axis.set_xlabel("lag")
-            axis.legend(fontsize=8)
+            axis.set_yscale("log" if title == "mean square" else "linear")
+            axis.set_xlabel(named("lag", correlations.units["lag"]))
+            axis.legend(fontsize=7)
+    return figure
+
+
+def draw_averages(averages, path=None):
+    """Every Average that is known, with its standard error: temperatures, diffusion, correlation times."""
+    groups = {}
+    for one in averages:
+        if not one.known:
+            continue
+        quantity, _, row = one.name.partition(" of ")
+        groups.setdefault(quantity, []).append((row or "center of mass", one))
+    if not groups:
+        return None
+    heights = [AROUND + ROW * len(rows) for rows in groups.values()]
+    shape = {"nrows": len(groups), "figsize": (7, sum(heights)), "height_ratios": heights, "squeeze": False}
+    with picture(path, **shape) as (figure, axes):
+        for axis, (quantity, rows) in zip(axes[:, 0], groups.items()):
+            for place, (_, one) in enumerate(rows):
+                look = {"fmt": "o", "color": COLOR["total"], "markersize": 4, "capsize": 3}
+                axis.errorbar(one.value, place, xerr=one.error, **look)
+                note = {"fontsize": 8, "va": "center", "transform": axis.get_yaxis_transform()}
+                axis.text(1.02, place, one.text(), **note)
+            axis.set_yticks(range(len(rows)), [row for row, _ in rows])
+            axis.set_ylim(len(rows) - 0.5, -0.5)
+            axis.margins(x=0.15)
+            axis.set_xlabel(named(quantity, rows[0][1].unit))
+    return figure

@@ -19,8 +19,8 @@ from MDAnalysis.analysis.base import AnalysisBase
 from MDAnalysis.analysis.results import ResultsGroup
 
 from .tables import flat
-from .units import UNITS
-from . import mapped
+from .units import UNITS, unit_of
+from . import export, mapped
 from .bodies import Bodies
 from .superposition import rotate, superpose
 
@@ -51,10 +51,12 @@ class _FrameTable(AnalysisBase):
     def __init__(self, atoms, ids, fields, units, out, **kwargs):
         if units is not None and units not in UNITS:
             raise ValueError(f"units {units}: one of {', '.join(UNITS)} is required")
-        super().__init__(atoms.universe.trajectory, **kwargs)
+        trajectory = atoms.universe.trajectory
+        super().__init__(trajectory, **kwargs)
         self.atoms, self.ids = atoms, ids
-        self.units = units
-        self._energy = UNITS[units or "lj"].energy
+        self.units = units or getattr(trajectory, "unit_style", None)
+        self._counted = getattr(trajectory, "counted", False)
+        self._energy = UNITS[self.units or "lj"].energy
         self._dtype = np.dtype([(name, *kind) for name, kind in fields.items()])
         self._out = None if out is None else str(out)
 
@@ -142,15 +144,35 @@ class _FrameTable(AnalysisBase):
                 sums["angular_momentum_space"][k] += np.cross(frame["center"], momentum).sum(axis=0)
         return sums
 
-    def columns(self):
-        """Every field as a flat column: name -> (F * B,), frame by frame; for pandas.DataFrame."""
+    def unit(self, result):
+        """Unit of a result, such as "Å/fs" of ``velocity``; "" without units.  Times are steps if the dump tells no more."""
+        return unit_of(result, self.units, "step" if self._counted else None)
+
+    def to_dataframe(self):
+        """pandas.DataFrame, a row for each frame and body, frame by frame; vectors are columns x, y and z."""
         frames, bodies = self.results.table.shape
         columns = {
             "step": np.repeat(self.results.step, bodies),
             "time": np.repeat(self.results.time, bodies),
             "body": np.tile(self.ids, frames),
         }
-        return columns | _flat(self.results.table.reshape(-1))
+        units = {"time": self.unit("time")}
+        for name in self._dtype.names:
+            parts = _flat(self.results.table[[name]].reshape(-1))
+            columns |= parts
+            units |= dict.fromkeys(parts, self.unit(name))
+        return export.dataframe(columns, units)
+
+    def to_xarray(self):
+        """xarray.Dataset with the dimensions time, body, axis (x, y, z) and part (of q)."""
+        results = self.results
+        last = {(): (), (3,): ("axis",), (4,): ("part",)}
+        variables = {
+            name: (("time", "body", *last[self._dtype[name].shape]), results[name]) for name in self._dtype.names
+        }
+        coordinates = {"time": results.time, "body": self.ids, "axis": list("xyz"), "part": range(4)}
+        coordinates["step"] = ("time", results.step)
+        return export.dataset(variables, coordinates, {name: self.unit(name) for name in [*variables, "time"]})
 
     def to_csv(self, path, progress=iter):
         """Write a row for each frame and body, with 17 digits; one frame at a time.
@@ -180,7 +202,7 @@ class Poses(_FrameTable):
         other (a DCD with a topology; single precision then).
     reference: "first", the shape a body has in its first frame; "principal", the same in its principal
         axes, so that q is that of the fix; or positions (n_atoms, 3) of all atoms, in their order.
-    units: style of units of LAMMPS; energies are in its units, without it in mass x velocity^2.
+    units: style of units of LAMMPS, if the dump does not tell; energies are in its units, without it in mass x velocity^2.
     potential: column with potential energies of atoms that ``open_dump`` was told to read.
     out: file (.npy) for the table; without it the table is in memory.
 

@@ -41,8 +41,8 @@ def write_averages(path, averages):
 
 def average_lines(averages):
     """A line for a terminal for each Average that is known, and one about the others."""
-    known = [one for one in averages if np.isfinite([one.value, one.error]).all()]
-    lines = [f"The {one.name} is {one.value:.4g} ± {one.error:.1g} {one.unit}".rstrip() + "." for one in known]
+    known = [one for one in averages if one.known]
+    lines = [f"The {one.name} is {one.text()}." for one in known]
     if len(known) < len(averages):
         lines.append(f"The run is too short for {len(averages) - len(known)} further averages with errors.")
     return "\n".join(lines)
@@ -59,9 +59,8 @@ def summary(poses, totals):
     if "velocity_residual" in totals:
         worst = totals["velocity_residual"].max()
         lines.append(f"Velocities of sites differ by at most {worst:.2g} from those of a rigid body.")
-    unit = f"in units {poses.units}" if poses.units else "in mass x velocity^2, without --units"
-    units = {"ke_translation": unit, "ke_rotation": unit, "potential": "as dumped"}
-    lines += [
-        f"The mean of {name} is {totals[name].mean():.6g}, {units[name]}." for name in units if name in totals
-    ]
+    without = "in mass x velocity^2, without --units"
+    for name in ("ke_translation", "ke_rotation", "potential"):
+        if name in totals:
+            lines.append(f"The mean of {name} is {totals[name].mean():.6g} {poses.unit(name) or without}.")
     return "\n".join(lines)

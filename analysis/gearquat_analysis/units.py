@@ -1,11 +1,11 @@
-"""The styles of LAMMPS' command units."""
+"""The styles of LAMMPS' command units, and the units of results."""
 
 from typing import NamedTuple
 
 
 class Units(NamedTuple):
     """Names of the units of time and length; what they are in ps and Å; mass x velocity^2 in the unit
-    of energy, and Boltzmann's constant (mvv2e and boltz in LAMMPS' update.cpp).
+    of energy, and Boltzmann's constant (mvv2e and boltz in LAMMPS' update.cpp); names of the units of mass and energy.
     """
 
     time: str
@@ -14,16 +14,54 @@ class Units(NamedTuple):
     angstrom: float
     energy: float
     boltzmann: float
+    mass_name: str
+    energy_name: str
 
 
 #: units lj have no ps and Å: one unit becomes one of them
 UNITS = {
-    "lj": Units("", "", 1.0, 1.0, 1.0, 1.0),
-    "real": Units("fs", "Å", 1e-3, 1.0, 48.88821291**2, 0.0019872067),
-    "metal": Units("ps", "Å", 1.0, 1.0, 1.0364269e-4, 8.617343e-5),
-    "si": Units("s", "m", 1e12, 1e10, 1.0, 1.3806504e-23),
-    "cgs": Units("s", "cm", 1e12, 1e8, 1.0, 1.3806504e-16),
-    "electron": Units("fs", "bohr", 1e-3, 0.529177210544, 1.06657236, 3.16681534e-6),
-    "micro": Units("µs", "µm", 1e6, 1e4, 1.0, 1.3806504e-8),
-    "nano": Units("ns", "nm", 1e3, 10.0, 1.0, 0.013806504),
+    "lj": Units("", "", 1.0, 1.0, 1.0, 1.0, "m", "ε"),
+    "real": Units("fs", "Å", 1e-3, 1.0, 48.88821291**2, 0.0019872067, "g/mol", "kcal/mol"),
+    "metal": Units("ps", "Å", 1.0, 1.0, 1.0364269e-4, 8.617343e-5, "g/mol", "eV"),
+    "si": Units("s", "m", 1e12, 1e10, 1.0, 1.3806504e-23, "kg", "J"),
+    "cgs": Units("s", "cm", 1e12, 1e8, 1.0, 1.3806504e-16, "g", "erg"),
+    "electron": Units("fs", "bohr", 1e-3, 0.529177210544, 1.06657236, 3.16681534e-6, "u", "Hartree"),
+    "micro": Units("µs", "µm", 1e6, 1e4, 1.0, 1.3806504e-8, "pg", "pg µm²/µs²"),
+    "nano": Units("ns", "nm", 1e3, 10.0, 1.0, 0.013806504, "ag", "ag nm²/ns²"),
 }
+#: units of results, from those of mass M, length L, time T, energy E and temperature K
+OF_RESULTS = {
+    "time": "T",
+    "lag": "T",
+    "center": "L",
+    "residual": "L",
+    "velocity": "L/T",
+    "velocity_residual": "L/T",
+    "omega_space": "rad/T",
+    "momentum": "M L/T",
+    "angular_momentum_space": "M L²/T",
+    "ke_translation": "E",
+    "ke_rotation": "E",
+    "potential": "E",
+    "mean_square_displacement": "L²",
+    "velocity_autocorrelation": "L²/T²",
+    "omega_space_autocorrelation": "rad²/T²",
+    "mean_square_rotation": "rad²",
+    "temperature": "K",
+    "diffusion coefficient": "L²/T",
+    "correlation time": "T",
+}
+
+
+def unit_of(result, style, time=None):
+    """Unit of a result in a style of units of LAMMPS, such as "Å²/fs"; "" for a pure number or without a style.
+
+    ``time``: the unit of times if it is not that of the style.
+    """
+    kind = OF_RESULTS.get(result, "")
+    if style is None:
+        return time or "" if kind == "T" else ""
+    units = UNITS[style]
+    names = {"M": units.mass_name, "L": units.length or "σ", "T": time or units.time or "τ"}
+    names |= {"E": units.energy_name, "K": "ε/k" if style == "lj" else "K"}
+    return "".join(names.get(letter, letter) for letter in kind)

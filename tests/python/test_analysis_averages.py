@@ -54,7 +54,7 @@ def thermal(translation=1.3, axes=(1.0, 1.1, 1.2), resting=True, moments=MOMENTS
         ke_translation=0.5 * 2.0 * (velocity**2).sum(axis=2),
         ke_rotation=0.5 * (made.moments * omega**2).sum(axis=2),
     )
-    return SimpleNamespace(results=results, bodies=made, units=None)
+    return SimpleNamespace(results=results, bodies=made, units=None, unit=lambda name: "")
 
 
 def near(average, expected):

@@ -132,7 +132,7 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     assert "5 frames of 500 bodies were read, from time 0 to 80." in result.output
     exact = Poses(open_dump(water / "water.dump").atoms, "principal", units="real").run()
     assert np.array_equal(np.load(tmp_path / "poses.npy"), exact.results.table)
-    assert columns(tmp_path / "poses.csv")["q_0"].tolist() == exact.columns()["q_0"].tolist()
+    assert columns(tmp_path / "poses.csv")["q_0"].tolist() == exact.to_dataframe()["q_0"].tolist()
     totals = columns(tmp_path / "totals.csv")
     assert totals["ke_rotation"] == pytest.approx(exact.totals()["ke_rotation"], rel=1e-15)
     found = columns(tmp_path / "correlations.csv")

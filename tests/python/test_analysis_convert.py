@@ -139,7 +139,7 @@ def test_lj_is_labeled(flights, tmp_path, suffix):
 # --- where units and times come from ---------------------------------------------------------------
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch):
-    for name in ("draw_totals", "draw_correlations"):
+    for name in ("draw_totals", "draw_correlations", "draw_averages"):
         monkeypatch.setattr(f"gearquat_analysis.pictures.{name}", lambda *_: None)
 
 

@@ -92,9 +92,10 @@ def test_rotation_of_linear_bodies_is_that_of_their_axes(tmp_path):
     motion.omega *= 0.5 / np.linalg.norm(motion.omega, axis=1, keepdims=True)
     path = dumps.write(tmp_path / "linear.dump", motion, np.arange(30.0))
     poses = Poses(open_dump(path).atoms).run()
-    found, turn = correlations.all_correlations(poses)
+    every = correlations.all_correlations(poses)
+    found = every.functions
     assert found["mean_square_rotation"] == pytest.approx((0.5 * np.arange(30)) ** 2, abs=1e-9)
-    assert turn == pytest.approx(0.5, rel=1e-10)
+    assert every.largest_turn == pytest.approx(0.5, rel=1e-10)
     assert found["axis3_order1"] == pytest.approx(np.cos(0.5 * np.arange(30)), abs=1e-12)
     assert "axis1_order1" not in found
 

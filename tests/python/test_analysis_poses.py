@@ -193,7 +193,7 @@ def test_memory_does_not_grow_with_frames(tmp_path):
 def test_csv_has_every_digit(poses, tmp_path):
     poses.to_csv(tmp_path / "poses.csv")
     found = dumps.columns(tmp_path / "poses.csv")
-    columns = poses.columns()
+    columns = poses.to_dataframe()
     assert list(columns) == list(found.dtype.names) and len(found) == 35
     for name, values in columns.items():
         assert np.array_equal(values, found[name]), name

@@ -1,0 +1,118 @@
+"""Results as tables of pandas and data sets of xarray, and their units."""
+
+import sys
+
+import dumps
+import numpy as np
+import pytest
+
+from gearquat_analysis import Poses, averages, correlations, open_dump, pictures
+from gearquat_analysis.averages import Average, Averages
+from gearquat_analysis.units import OF_RESULTS, UNITS, unit_of
+
+TIMES = np.arange(0.0, 120.0)
+
+
+@pytest.fixture(scope="module")
+def dump(tmp_path_factory):
+    return dumps.write(tmp_path_factory.mktemp("dump") / "made.dump", dumps.Motion([3, 4]), TIMES)
+
+
+@pytest.fixture(scope="module")
+def poses(dump):
+    return Poses(open_dump(dump, timestep=0.5).atoms, units="metal").run()
+
+
+def test_units_of_results(poses, dump):
+    assert poses.unit("velocity") == "Å/ps" and poses.unit("ke_rotation") == "eV"
+    assert poses.unit("angular_momentum_space") == "g/mol Å²/ps" and poses.unit("q") == ""
+    assert unit_of("diffusion coefficient", "lj") == "σ²/τ" and unit_of("temperature", "lj") == "ε/k"
+    # neither units nor times are known
+    bare = Poses(open_dump(dump).atoms)
+    assert bare.unit("time") == "step" and bare.unit("velocity") == ""
+    assert Poses(open_dump(dump).atoms, units="real").unit("velocity") == "Å/step"
+
+
+def test_units_of_the_dump_itself(dump, tmp_path):
+    path = tmp_path / "stated.dump"
+    path.write_text("ITEM: UNITS\nnano\n" + dump.read_text())
+    assert Poses(open_dump(path).atoms).unit("center") == "nm"
+
+
+@pytest.mark.parametrize("style", UNITS)
+def test_every_letter_has_a_name(style):
+    """No M, L, T, E or K for mass, length, time, energy and temperature is left."""
+    for result in OF_RESULTS:
+        names = {word for word in unit_of(result, style).replace("/", " ").replace("²", "").split()}
+        assert not names & {"M", "L", "T", "E"} and ("K" in names) <= (result == "temperature")
+
+
+def test_tables_of_poses(poses):
+    frame, data = poses.to_dataframe(), poses.to_xarray()
+    assert len(frame) == 240 and frame["body"][:3].tolist() == [1, 2, 1]
+    assert frame.attrs["units"]["velocity_x"] == "Å/ps" and "q_0" not in frame.attrs["units"]
+    assert dict(data.sizes) == {"time": 120, "body": 2, "axis": 3, "part": 4}
+    assert data["time"].attrs["units"] == "ps" and data["center"].attrs["units"] == "Å"
+    one = data.sel(time=1.5, body=2)
+    assert float(one["center"].sel(axis="y")) == poses.results.center[3, 1, 1] == frame["center_y"][7]
+    assert one["q"].values.tolist() == poses.results.q[3, 1].tolist()
+
+
+def test_tables_of_functions(poses):
+    found = correlations.all_correlations(poses)
+    frame, data = found.to_dataframe(), found.to_xarray()
+    assert frame["lag"][2] == float(data["lag"][2]) == 1.0
+    assert frame.attrs["units"]["mean_square_rotation"] == data["mean_square_rotation"].attrs["units"] == "rad²"
+    assert data["axis1_order2"].sel(lag=1.0) == found.functions["axis1_order2"][2]
+
+
+def test_table_of_averages(poses):
+    frame = averages.averages(poses).to_dataframe()
+    assert list(frame) == ["name", "value", "error", "unit"]
+    row = frame.set_index("name").loc["diffusion coefficient"]
+    assert row["unit"] == "Å²/ps" and row["value"] > 0.0
+
+
+@pytest.mark.parametrize(("package", "export"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
+def test_without_the_package_it_is_named(poses, monkeypatch, package, export):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(ModuleNotFoundError, match=rf"needs {package}, which the extra \[frames\]"):
+        getattr(poses, export)()
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (77.516, 0.5335, "77.52 ± 0.53 K"),
+        (449.2, 35.03, "449 ± 35 K"),
+        (2.7388e-4, 1.906e-5, "(2.74 ± 0.19)e-4 K"),
+        (3.0e7, 2.0e5, "(3.000 ± 0.020)e7 K"),
+        (0.0, 0.25, "0.00 ± 0.25 K"),
+        (5.0, 0.0, "5 ± 0 K"),
+        (5.0, np.nan, "5 ± nan K"),
+    ],
+)
+def test_errors_have_two_digits(value, error, text):
+    assert Average("temperature", value, error, "K").text() == text
+
+
+def test_pictures_show_values_with_errors(poses):
+    """And the units of the axes."""
+    known = Averages(
+        [
+            Average("temperature of rotation", 77.5, 0.53, "K"),
+            Average("diffusion coefficient", 0.27, 0.02, "Å²/ps"),
+            Average("correlation time of axis 1, order 2", np.nan, np.nan, "ps"),
+        ]
+    )
+    temperature, diffusion = pictures.draw_averages(known).axes
+    assert temperature.get_xlabel() == "temperature (K)" and temperature.texts[0].get_text() == "77.50 ± 0.53 K"
+    (bar,) = diffusion.collections[0].get_segments()
+    assert bar[:, 0] == pytest.approx([0.25, 0.29])
+    assert pictures.draw_averages(known[2:]) is None
+    squares = pictures.draw_correlations(correlations.all_correlations(poses), known).axes[0]
+    labels = [text.get_text() for text in squares.get_legend().get_texts()]
+    assert labels[0] == "displacement (Å²)\nD = 0.270 ± 0.020 Å²/ps"
+    assert squares.get_xlabel() == "lag (ps)"
+    energy, deviation = pictures.draw_totals(poses, poses.totals()).axes
+    assert energy.get_ylabel() == "energy (eV)" and deviation.get_xlabel() == "time (ps)"
