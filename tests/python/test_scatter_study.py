@@ -97,7 +97,7 @@ def test_the_page_of_results_that_hold(tmp_path):
     # logarithms are interpolated between the two settings
     values = {m.what: m.value for m in finding.measurements}
     ours, rigid = (0.002 * (1e-6 / 1e-9) ** (np.log(2) / np.log(1e4)), 0.002 * (1e-4 / 1e-9) ** 0.5)
-    assert values["time of fix rigid/nve/small by that of the fix at 1e-09"] == pytest.approx(rigid / ours)
+    assert values["time of fix rigid/nve/small over that of the fix at 1e-09"] == pytest.approx(rigid / ours)
     text = render("scatter.md.j2", study.STUDY, finding, "Somewhere.")
     assert "| fix gear/quat |" in text and "120 µs" in text
     finding.pictures["scatter"](tmp_path / "scatter.png")

@@ -30,6 +30,7 @@ COMPARED = (1e-7, 1e-9)
 #: 25, 21 (2004), Eqs. 2 and 3, with an uncertainty of 0.5 %), and computed cross sections of choline at 301 K with
 #: their standard deviations (files of the program of Campuzano et al. 2012, see examples/collisions/README)
 VISCOSITY, CHOLINE = (17.877, 0.09), {"helium": (55.402, 0.510), "nitrogen": (115.92, 1.27)}
+PAIRS = {"nitrogen": "two nitrogen molecules", "helium": "choline, helium", "ion": "choline, nitrogen"}
 LOOKS = {
     "fix gear/quat": ("second", "o"),
     "fix rigid/nve/small": ("rigid", "D"),
@@ -133,7 +134,7 @@ def _of_integrals(runs):
     rows.append(Measurement("Ω*(1,1), Ω*(2,2): largest standard error, relative", largest, most=0.002))
     words = "Ω*: what the cut-off of the deck changes at most, relative, by quadrature"
     rows.append(Measurement(words, left, most=1e-4))
-    header = ("T*", "integral", "flights", "standard error", "quadrature", "deviation / standard error")
+    header = ("T*", "integral", "mean over flights", "standard error", "quadrature", "deviation / standard error")
     return rows, {"integrals": Table(header, cells)}
 
 
@@ -142,14 +143,14 @@ def _of_molecules(runs):
     value, error = runs["nitrogen"].quantities["viscosity"]
     rows = [
         Measurement("viscosity of nitrogen at 300 K", value, error, ".2f", "µPa s"),
-        _near("the same by the measured one, less 1", value, error, VISCOSITY[0]),
+        _near("its deviation from the measured one, relative", value, error, VISCOSITY[0]),
     ]
     for name, gas in (("helium", "helium"), ("ion", "nitrogen")):
         value, error = runs[name].quantities["cross section"]
         rows.append(Measurement(f"cross section of choline in {gas} at 301 K", value, error, ".2f", "Å²"))
-        rows.append(_near("the same by the published computed one, less 1", value, error, CHOLINE[gas][0]))
+        rows.append(_near("its deviation from the published computed one, relative", value, error, CHOLINE[gas][0]))
     kinds = ("flights", "orbiting", "unparted", "lost")
-    counts = [(name, *(run.counts[kind] for kind in kinds)) for name, run in runs.items()]
+    counts = [(PAIRS[name], *(run.counts[kind] for kind in kinds)) for name, run in runs.items()]
     return rows, {"molecules": Table(("pair", *kinds), counts)}
 
 
@@ -164,10 +165,10 @@ def _of_conservation(run):
     counts = run.counts
     gone = counts["lost"] + counts["unparted"]
     rows = [
-        Measurement("flights of dumbbells", counts["flights"], spec=".0f"),
-        Measurement("of them lost or not parted", gone, spec=".0f", most=0),
-        Measurement("of them with a repeated step", counts["repeated"], spec=".0f"),
-        Measurement("of them orbiting", counts["orbiting"], spec=".0f"),
+        Measurement("dumbbell flights", counts["flights"], spec=".0f"),
+        Measurement("dumbbell flights that were lost or did not part", gone, spec=".0f", most=0),
+        Measurement("dumbbell flights with a repeated step", counts["repeated"], spec=".0f"),
+        Measurement("dumbbell flights that orbited", counts["orbiting"], spec=".0f"),
     ]
     for name, value in run.errors.items():
         rows.append(Measurement(f"largest error of the {name} in a flight, relative", value, most=1e-9))
@@ -183,7 +184,7 @@ def _of_reference(arrays):
     simple = every[every[:, 2] <= 1]
     rows = [
         Measurement("flights beside DOP853", len(every), spec=".0f"),
-        Measurement("of them orbiting", len(every) - len(simple), spec=".0f"),
+        Measurement("flights beside DOP853 that orbited", len(every) - len(simple), spec=".0f"),
         Measurement("largest deviation of a velocity (not orbiting)", simple[:, 0].max(), most=1e-8),
         Measurement("largest deviation of an angular momentum (not orbiting)", simple[:, 1].max(), most=1e-8),
         Measurement("largest deviation of a velocity after the way back (not orbiting)", simple[:, 3].max(), most=1e-7),
@@ -215,7 +216,7 @@ def _of_methods(points):
         rows.append(Measurement(words, 1 / ours, spec=".0f"))
         for label in points:
             if label != "fix gear/quat":
-                words = f"time of {label} by that of the fix at {level:.0e}"
+                words = f"time of {label} over that of the fix at {level:.0e}"
                 least = 10.0 if level == COMPARED[-1] else None
                 rows.append(Measurement(words, seconds[label][at] / ours, spec=".1f", least=least))
     return rows, tables
