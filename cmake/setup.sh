@@ -47,11 +47,16 @@ python_is_usable() {
     python3 -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 10))' 2>/dev/null
 }
 
-# the Debian packages without which the Python package cannot be built, if they are missing
-missing_for_package() {
-  have g++ || echo g++
+# the Debian packages without which nothing can be installed into .venv, if they are missing
+missing_for_python() {
   python_is_usable || echo python3 python3-venv
   [ -e /etc/ssl/certs/ca-certificates.crt ] || echo ca-certificates
+}
+
+# and those without which the Python package cannot be built
+missing_for_package() {
+  have g++ || echo g++
+  missing_for_python
 }
 
 # and what the tests need beyond that
@@ -153,6 +158,24 @@ install_repository() {
     rm -f "$stamp"
     do_quietly "installing lammps-gearquat[$extra] into .venv" pip_install_repository "[$extra]"
     printf '%s\n%s\n' "$print" "$extra" >"$stamp"
+  fi
+  exec 9>&-
+}
+
+# install_listed EXTRA: what pyproject.toml lists under EXTRA, in .venv, without this repository
+install_listed() {
+  local extra="$1" stamp="$ROOT/.venv/.listed.$1" requirements
+  mkdir -p "$ROOT/build"
+  need_packages missing_for_python
+  exec 9>"$ROOT/build/.lock"
+  if have flock; then flock 9; fi
+  make_venv
+  requirements="$(listed . project optional-dependencies "$extra")"
+  if [ "$(cat "$stamp" 2>/dev/null)" != "$requirements" ]; then
+    printf '%s\n' "$requirements" >"$ROOT/build/$extra.txt"
+    do_quietly "installing the tools for $extra into .venv" \
+      "$ROOT/.venv/bin/python" -m pip install --disable-pip-version-check -r "$ROOT/build/$extra.txt"
+    echo "$requirements" >"$stamp"
   fi
   exec 9>&-
 }

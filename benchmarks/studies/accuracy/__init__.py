@@ -101,5 +101,8 @@ STUDY = Study(
     find,
     page="accuracy_cost",
     parts=(*plan.scenes(False), HELD_OUT),
-    blocks={"README.md": "accuracy_cost.readme.md.j2"},
+    blocks={
+        "README.md": "accuracy_cost.readme.md.j2",
+        "paper/paper.md": "accuracy_cost.paper.md.j2",
+    },
 )
