@@ -189,7 +189,8 @@ def test_the_first_script_runs(lmp_wheel, ranks):
     assert kinetic == pytest.approx(thermo["KinEng"])
 
 
-PAGES = ["README.md", *(str(page.relative_to(ROOT)) for page in (ROOT / "doc").glob("**/*.md"))]
+PAGES = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+PAGES += [str(page.relative_to(ROOT)) for folder in ("doc", ".github") for page in (ROOT / folder).glob("**/*.md")]
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -209,15 +210,18 @@ def test_every_file_that_a_page_names_exists():
         assert missing <= {"test_....py"}, page
 
 
-def test_a_release_has_one_number():
+def test_a_release_has_one_number_and_one_date():
     patterns = {
         "pyproject.toml": r'^version = "(.*)"',
+        "analysis/pyproject.toml": r'^version = "(.*)"',
         "CHANGELOG.md": r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$",
         "CITATION.cff": r"^version: (.*)",
     }
     for name, pattern in patterns.items():
         number = re.search(pattern, (ROOT / name).read_text(), re.M)[1]
         assert number == metadata.version("lammps-gearquat"), name
+    date = re.search(r"^## \[[\d.]+\] - (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.M)[1]
+    assert f'date-released: "{date}"' in (ROOT / "CITATION.cff").read_text()
 
 
 # --- what LAMMPS' own manual asks of a page, from the Makefile of its doc folder ---------------------
