@@ -336,12 +336,13 @@ def test_results_survive_their_file(tmp_path):
     assert read_data(tmp_path / "data.json") == made_up()
 
 
-def test_page_and_readme():
+def test_page_readme_and_paper():
     finding = study.find(made_up(scenes=tuple(plan.scenes(False))))
     text = render("accuracy_cost.md.j2", study.STUDY, finding, "Somewhere.")
     assert "(accuracy_cost/main.png)" in text and "costs 0.87 ms with" in text
-    block = render("accuracy_cost.readme.md.j2", study.STUDY, finding, "Somewhere.")
-    assert "(doc/accuracy_cost/main.png)" in block and block.count("×") == 9
+    for place, folder in (("readme", "doc"), ("paper", "../doc")):
+        block = render(f"accuracy_cost.{place}.md.j2", study.STUDY, finding, "Somewhere.")
+        assert f"({folder}/accuracy_cost/main.png)" in block and block.count("×") == 9
 
 
 def test_one_scene_alone_is_enough(tmp_path):
