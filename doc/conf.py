@@ -23,7 +23,14 @@ html_copy_source = False
 html_show_copyright = False
 html_show_sphinx = False
 
-extensions = ["myst_parser"]
+extensions = ["myst_nb", "sphinx.ext.autodoc"]
+autodoc_typehints = "none"
+# the tutorial runs anew for each site; what a page does not show is written beside it
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_timeout = 300
+nb_execution_raise_on_error = True
+nb_output_stderr = "remove"
 exclude_patterns = ["_static"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3

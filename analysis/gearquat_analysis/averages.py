@@ -25,7 +25,12 @@ TAIL, BEFORE_TAIL = 0.1, 0.3
 
 
 class Average(NamedTuple):
-    """A number of a run with its standard error, NaN if the run is too short for it."""
+    """A number of a run with its standard error, NaN if the run is too short for it.
+
+    >>> from gearquat_analysis.averages import Average
+    >>> Average("diffusion coefficient", 0.3124, 0.0153, "Å²/ps").text()
+    '0.312 ± 0.015 Å²/ps'
+    """
 
     name: str
     value: float
@@ -49,7 +54,13 @@ class Average(NamedTuple):
 
 
 class Averages(list):
-    """A list of every Average."""
+    """A list of every Average.
+
+    >>> from gearquat_analysis import Poses, averages, open_dump
+    >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
+    >>> found.to_dataframe()["name"][1], len(found)
+    ('temperature of rotation', 7)
+    """
 
     def to_dataframe(self):
         """pandas.DataFrame with the columns name, value, error and unit."""

@@ -16,9 +16,13 @@ def _outcome(function, part):
 class Processes(BackendBase):
     """Processes that share parts of a trajectory; ``progress(iterator, total)`` wraps finished parts.
 
-        poses.run(backend=Processes(2, progress), n_parts=100, unsupported_backend=True)
-
     Only results come back from a process.
+
+    >>> from gearquat_analysis import Poses, open_dump
+    >>> from gearquat_analysis.backends import Processes
+    >>> poses = Poses(open_dump("nitrogen.dump").atoms)
+    >>> poses.run(backend=Processes(2), n_parts=4, unsupported_backend=True, step=10).n_frames
+    81
     """
 
     def __init__(self, n_workers, progress=None):

@@ -26,6 +26,11 @@ class Bodies:
     principal axes as rows, in the body frame; ``point`` and ``linear`` (B,): whether a body is one.
 
     Units are those of the run: moments in mass x length squared.
+
+    >>> from gearquat_analysis import Poses, open_dump
+    >>> bodies = Poses(open_dump("nitrogen.dump").atoms).bodies
+    >>> len(bodies), bool(bodies.linear.all()), bodies.shape.shape
+    (64, True, (128, 3))
     """
 
     def __init__(self, numbers, masses):

@@ -53,6 +53,11 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
 
     Returns the files written.  Raises ValueError for a format that MDAnalysis does not write, and for
     frames that it cannot hold.
+
+    >>> from gearquat_analysis import open_dump
+    >>> from gearquat_analysis.convert import convert
+    >>> [str(path) for path in convert(open_dump("nitrogen.dump").atoms, "nitrogen.dcd", "real", frames=slice(10))]
+    ['nitrogen.dcd', 'nitrogen.pdb']
     """
     path, trajectory = Path(path), atoms.universe.trajectory
     length, time = UNITS[units].angstrom, UNITS[units].ps

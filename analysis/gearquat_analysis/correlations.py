@@ -67,7 +67,7 @@ def _square_displacements(x):
 
 
 def mean_square_displacement(center):
-    """Mean of |x(t + lag) - x(t)|^2, (F,), of unwrapped centers (F, B, 3); length squared."""
+    """Mean of ``|x(t + lag) - x(t)|^2``, (F,), of unwrapped centers (F, B, 3); length squared."""
     frames, bodies = center.shape[:2]
     total = sum(_square_displacements(mapped.columns(center, own)) for own in _portions(center))
     return np.maximum(total, 0.0) / (_origins(frames) * bodies)
@@ -94,7 +94,7 @@ def rotation_path(q, axis=None):
 
 
 def mean_square_rotation(q, bodies=None):
-    """Mean of |phi(t + lag) - phi(t)|^2, (F,), radians squared; and the largest turn between frames.
+    """Mean of ``|phi(t + lag) - phi(t)|^2``, (F,), radians squared; and the largest turn between frames.
 
     phi is ``rotation_path``.  Above pi / 2 between frames turns are mistaken for shorter ones, sooner
     or later.  ``q`` (F, B, 4); ``bodies`` (Bodies): needed if some are linear.
@@ -144,6 +144,13 @@ class Correlations:
 
     ``functions``: name -> (F,), ``lag`` first; ``units``: name -> unit, as text; ``largest_turn`` of a body
     between two frames, radians: above pi / 2 do not trust ``mean_square_rotation``.
+
+    >>> from gearquat_analysis import Poses, correlations, open_dump
+    >>> found = correlations.all_correlations(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
+    >>> list(found.functions)[:3], found.units["mean_square_displacement"]
+    (['lag', 'mean_square_displacement', 'velocity_autocorrelation'], 'Å²')
+    >>> found.to_dataframe()["axis3_order1"].shape
+    (201,)
     """
 
     functions: dict

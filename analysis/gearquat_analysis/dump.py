@@ -39,7 +39,15 @@ TABLE |= dict(enumerate(["wx", "wy", "wz", "lx", "ly", "lz"], 20)) | {28: "id"}
 
 
 class DumpError(ValueError):
-    """A dump that cannot be used; the message says what is required."""
+    """A dump that cannot be used; the message says what is required.
+
+    >>> from gearquat_analysis import DumpError, open_dump
+    >>> try:
+    ...     open_dump("nitrogen.table")
+    ... except DumpError as error:
+    ...     print(error)
+    nitrogen.table: a dump local of the fix; open it with open_table
+    """
 
 
 @dataclass(frozen=True)
@@ -305,6 +313,13 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     ``body`` is the column whose value is the ID of an atom's body (0: in none), such as ``i_body``;
     ``potential`` one with energies of atoms, such as ``c_energy``; ``timestep`` that of LAMMPS, so that
     times are in its units (not needed where the dump has times).  Raises DumpError if a column is missing.
+
+    >>> from gearquat_analysis import open_dump
+    >>> universe = open_dump("nitrogen.dump")
+    >>> len(universe.trajectory), len(universe.atoms), len(universe.residues)
+    (801, 128, 64)
+    >>> universe.trajectory[0].data["x"].dtype
+    dtype('float64')
     """
     columns, local = columns_of(path)
     if local:
@@ -333,6 +348,10 @@ def open_table(path, timestep=None):
 
     ``dump ID group local N FILE index f_FIX[1] f_FIX[2] ...`` with at least the columns 1 to 6, 13 to 25 and 28.
     Masses are not among them.  Raises DumpError if a column is missing.
+
+    >>> from gearquat_analysis import open_table
+    >>> len(open_table("nitrogen.table").residues)
+    64
     """
     columns, _ = columns_of(path)
     numbers = {c: re.fullmatch(r"f_\S+\[(\d+)\]", c) for c in columns}
@@ -349,7 +368,14 @@ def open_table(path, timestep=None):
 
 
 def open_any(path, timestep=None, **options):
-    """Universe of a dump of either kind, and whether it is a ``dump local`` of the fix."""
+    """Universe of a dump of either kind, and whether it is a ``dump local`` of the fix.
+
+    ``options`` are those of ``open_dump``.
+
+    >>> from gearquat_analysis import open_any
+    >>> [open_any(path)[1] for path in ("nitrogen.dump", "nitrogen.table")]
+    [False, True]
+    """
     local = columns_of(path)[1]
     if local:
         return open_table(path, timestep), True

@@ -108,7 +108,15 @@ def draw_correlations(correlations, averages=(), path=None):
 
 
 def draw_averages(averages, path=None):
-    """Every Average that is known, with its standard error: temperatures, diffusion, correlation times."""
+    """Every Average that is known, with its standard error: temperatures, diffusion, correlation times.
+
+    None if there is none.
+
+    >>> from gearquat_analysis import Poses, averages, open_dump, pictures
+    >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
+    >>> [panel.get_xlabel() for panel in pictures.draw_averages(found, "averages.png").axes]
+    ['temperature (K)', 'diffusion coefficient (Å²/fs)', 'correlation time (fs)']
+    """
     groups = {}
     for one in averages:
         if not one.known:

@@ -196,19 +196,16 @@ def _flat(records):
 class Poses(_FrameTable):
     """Poses and motion of rigid bodies from the positions and velocities of their sites.
 
-    Parameters
-    ----------
-    atoms: AtomGroup.  Its residues are the bodies, residue 0 is none; a Universe of ``open_dump``, or any
-        other (a DCD with a topology; single precision then).
-    reference: "first", the shape a body has in its first frame; "principal", the same in its principal
-        axes, so that q is that of the fix; or positions (n_atoms, 3) of all atoms, in their order.
-    units: style of units of LAMMPS, if the dump does not tell; energies are in its units, without it in mass x velocity^2.
-    potential: column with potential energies of atoms that ``open_dump`` was told to read.
-    out: file (.npy) for the table; without it the table is in memory.
+    * ``atoms``: AtomGroup.  Its residues are the bodies, residue 0 is none; a Universe of ``open_dump``, or any
+      other (a DCD with a topology; single precision then).
+    * ``reference``: "first", the shape a body has in its first frame; "principal", the same in its principal
+      axes, so that q is that of the fix; or positions (n_atoms, 3) of all atoms, in their order.
+    * ``units``: style of units of LAMMPS, if the dump does not tell; energies are in its units, without it in
+      mass x velocity^2.
+    * ``potential``: column with potential energies of atoms that ``open_dump`` was told to read.
+    * ``out``: file (.npy) for the table; without it the table is in memory.
 
-    Results
-    -------
-    After ``run``, F frames of B bodies, in units of the run; ``results.table`` has all as one array:
+    Results after ``run``, of F frames of B bodies, in units of the run; ``results.table`` has all as one array:
 
     * ``step``, ``time`` (F,); ``ids`` (B,)
     * ``center`` (F, B, 3): center of mass, unwrapped
@@ -230,6 +227,15 @@ class Poses(_FrameTable):
     than half the box) and followed from frame to frame (right if they move less than half the box).
 
     Raises ValueError for bodies without mass and for a reference of another shape.
+
+    >>> from gearquat_analysis import Poses, open_dump
+    >>> poses = Poses(open_dump("nitrogen.dump").atoms, reference="principal").run(step=100)
+    >>> poses.results.center.shape, poses.results.q.shape, poses.unit("omega_space")
+    ((9, 64, 3), (9, 64, 4), 'rad/fs')
+    >>> poses.to_xarray()["velocity"].dims
+    ('time', 'body', 'axis')
+    >>> bool(poses.results.residual.max() < 1e-7)
+    True
     """
 
     def __init__(self, atoms, reference="first", units=None, potential=None, out=None, **kwargs):
@@ -325,6 +331,11 @@ class TablePoses(_FrameTable):
 
     Results are ``step``, ``time``, ``ids``, ``center``, ``q``, ``velocity``, ``omega_space``,
     ``angular_momentum_space`` and ``ke_rotation`` as of ``Poses``.  Masses are not in the table.
+
+    >>> from gearquat_analysis import TablePoses, open_table
+    >>> poses = TablePoses(open_table("nitrogen.table").atoms).run()
+    >>> list(poses.to_dataframe())[:6]
+    ['step', 'time', 'body', 'center_x', 'center_y', 'center_z']
     """
 
     def __init__(self, atoms, units=None, out=None, **kwargs):

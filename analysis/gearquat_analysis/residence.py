@@ -14,6 +14,12 @@ class Stays:
 
     ``body``, ``place`` (K,): counted from 0; ``begin``, ``end`` (K,): first frame and the one after the last;
     ``time`` (F,).
+
+    >>> from gearquat_analysis import Poses, open_dump, residence
+    >>> results = Poses(open_dump("nitrogen.dump").atoms).run(step=10).results
+    >>> found = residence.stays(results.center, results.center[0, :5], 1.0, results.time)
+    >>> found.places, found.survival().shape, bool(found.complete.any())
+    (5, (81,), True)
     """
 
     body: np.ndarray

@@ -8,6 +8,7 @@ from importlib import metadata
 
 import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
@@ -68,8 +69,15 @@ def test_licenses_go_together():
     assert not {"lammps", "lammps_gearquat", "benchmarks"} & imported("gearquat-analysis")
 
 
-def test_one_version():
-    assert metadata.version("gearquat-analysis") == metadata.version("lammps-gearquat")
+def test_the_entry_for_the_registry_of_mdakits():
+    """It has the keys that the registry requires, and says the same as the package."""
+    entry = yaml.safe_load((ROOT / "analysis" / "metadata.yaml").read_text())
+    required = "project_name authors maintainers description keywords license project_home documentation_home documentation_type"
+    assert all(entry[key] for key in required.split())
+    package = metadata.metadata("gearquat-analysis")
+    assert entry["project_name"] == package["Name"] and entry["license"] == package["License-Expression"]
+    assert entry["python_requires"] == package["Requires-Python"]
+    assert f"mdanalysis{entry['mdanalysis_requires']}" in package.get_all("Requires-Dist")
 
 
 def test_without_the_extra_it_is_named():

@@ -1,0 +1,64 @@
+"""The notebook of the tutorial runs, its liquid obeys equipartition, and the examples of the Python interface work."""
+
+import csv
+import doctest
+import importlib
+import inspect
+import os
+import re
+import sysconfig
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+from running import MPI_ENVIRONMENT, ROOT
+
+API = (ROOT / "doc" / "api.md").read_text()
+MODULES = re.findall(r"^\.\. currentmodule:: (\S+)$", API, re.M)
+
+
+@pytest.fixture(scope="module")
+def tutorial(tmp_path_factory):
+    """The folder that the notebook was run in."""
+    folder = tmp_path_factory.mktemp("tutorial")
+    notebook = nbformat.read(ROOT / "doc" / "tutorial.ipynb", as_version=4)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "outputs belong to the site, not to the repository"
+    path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
+    client = NotebookClient(notebook, timeout=200, resources={"metadata": {"path": folder}})
+    client.execute(env={**os.environ, **MPI_ENVIRONMENT, "PATH": path})
+    return folder
+
+
+def test_the_notebook_runs(tutorial):
+    with open(tutorial / "gearquat-analyze" / "averages.csv", newline="") as file:
+        found = {row["average"]: (float(row["value"]), float(row["standard error"])) for row in csv.DictReader(file)}
+    (translation, error), (rotation, other) = (found[f"temperature of {kind}"] for kind in ("translation", "rotation"))
+    combined = (error**2 + other**2) ** 0.5
+    assert abs(translation - rotation) < 4 * combined < 0.1 * rotation
+    assert found["correlation time of axis 3, order 1"][0] > found["correlation time of axis 3, order 2"][0]
+    for name in ("averages.png", "correlations.png", "totals.png"):
+        assert (tutorial / "gearquat-analyze" / name).is_file()
+
+
+@pytest.mark.filterwarnings("ignore:::MDAnalysis")
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_of_the_interface(tutorial, monkeypatch, name):
+    monkeypatch.chdir(tutorial)
+    module = importlib.import_module(name)
+    failed, attempted = doctest.testmod(module)
+    assert attempted and not failed
+
+
+def test_every_class_has_an_example():
+    """And every function and class is on the page or is a part of one that is."""
+    listed = set(re.findall(r"^\.\. auto(?:class|function|exception):: (\w+)$", API, re.M))
+    for name in MODULES:
+        module = importlib.import_module(name)
+        for key, thing in vars(module).items():
+            if key in listed and inspect.isclass(thing) and thing.__module__ == name:
+                assert ">>>" in thing.__doc__, key
+                listed.remove(key)
+            elif key in listed and inspect.isfunction(thing) and thing.__module__ == name:
+                listed.remove(key)
+    assert not listed
