@@ -216,6 +216,7 @@ def test_a_release_has_one_number_and_one_date():
         "analysis/pyproject.toml": r'^version = "(.*)"',
         "CHANGELOG.md": r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$",
         "CITATION.cff": r"^version: (.*)",
+        "cmake/packaging/conda/recipe.yaml": r'^  version: "(.*)"',
     }
     for name, pattern in patterns.items():
         number = re.search(pattern, (ROOT / name).read_text(), re.M)[1]
