@@ -80,8 +80,8 @@ fetch_tree_from_debian() {
     return 1
   fi
   mkdir all
-  # only what a build needs, and decks
-  tar -xf "$archive" -C all --exclude='doc/src/*' --exclude='potentials/*' --exclude='log.*'
+  # only what a build needs, decks, and the manual
+  tar -xf "$archive" -C all --exclude='potentials/*' --exclude='log.*'
   # some of Debian's archives have one folder at their top, some have none
   [ -e all/cmake/CMakeLists.txt ] && mv all tree || mv all/* tree
   keep_decks tree
@@ -99,21 +99,27 @@ keep_decks() {
   mv kept/examples/PACKAGES examples
   mv kept/bench .
   rm -rf kept
-  touch .decks
+  touch .decks .manual
 }
 
-# need_decks: the decks of all packages, for a LAMMPS that was fetched without them
-need_decks() {
+# need_decks, need_manual: for a LAMMPS that an earlier version of this file fetched without them
+need_decks() { need_folders decks examples/PACKAGES bench; }
+need_manual() { need_folders manual doc/src; }
+
+# need_folders MARK FOLDER...: fetches the tree again for these folders, unless the file .MARK says that they are there
+need_folders() {
+  local mark="$1" folder="$CACHE/fetch" part
+  shift
   need_tree_source
-  [ -n "${!TREE_GIVEN:-}" ] || [ -e "$TREE_SOURCE/.decks" ] && return
+  [ -n "${!TREE_GIVEN:-}" ] || [ -e "$TREE_SOURCE/.$mark" ] && return
   exec 7>"$CACHE/.lock"
   if have flock; then flock 7; fi
-  local folder="$CACHE/fetch"
-  do_quietly "fetching the decks of LAMMPS $TREE_VERSION from Debian" fetch_tree_from_debian "$folder"
-  rm -rf "$TREE_SOURCE/examples/PACKAGES" "$TREE_SOURCE/bench"
-  mv "$folder/tree/examples/PACKAGES" "$TREE_SOURCE/examples"
-  mv "$folder/tree/bench" "$TREE_SOURCE"
-  touch "$TREE_SOURCE/.decks"
+  do_quietly "fetching the $mark of LAMMPS $TREE_VERSION from Debian" fetch_tree_from_debian "$folder"
+  for part in "$@"; do
+    rm -rf "${TREE_SOURCE:?}/$part"
+    mv "$folder/tree/$part" "$TREE_SOURCE/$part"
+  done
+  touch "$TREE_SOURCE/.$mark"
   rm -rf "$folder"
   exec 7>&-
 }

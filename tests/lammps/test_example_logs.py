@@ -2,52 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shlex
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-import yaml
 
-from example_logs import RANKS, copy_examples, date_of, decks, logs, name_of, needs_wheel
-from running import EXAMPLES, ROOT, tree_source
-
-CONFIGURATION = ROOT / "tests" / "lammps" / "run_tests.yaml"
-
-
-def run_tests(lmp, decks, ranks, where):
-    """run_tests.py on decks: name of each -> how many checks it passed, or why it did not.
-
-    ``ranks`` picks the logs compared with: 1 takes those of one rank, more the most there are.
-    """
-    configuration = yaml.safe_load(CONFIGURATION.read_text())
-    configuration["mpiexec"] = shlex.join(lmp.launcher[:-1]) if ranks > 1 else ""
-    configuration["mpiexec_numproc_flag"] = lmp.launcher[-1]
-    (where / "decks.txt").write_text("".join(f"{deck}\n" for deck in decks))
-    (where / "config.yaml").write_text(yaml.safe_dump(configuration))
-    tool = tree_source() / "tools" / "regression-tests" / "run_tests.py"
-    done = subprocess.run(
-        [sys.executable, str(tool), f"--lmp-bin={lmp.executable}", "--config-file=config.yaml"]
-        + ["--list-input=decks.txt"],
-        cwd=where,
-        env={**os.environ, **lmp.environment, "OMP_NUM_THREADS": "1"},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    report = (where / "run.log").read_text()
-    found = {}
-    for line in (where / "progress.yaml").read_text().splitlines():
-        ((deck, told),) = yaml.safe_load(line).items()
-        after = report.partition(f"+ {deck} (")[2].partition("\nINFO:__main__:   + ")[0]
-        passed = re.search(r"all (\d+) checks passed", after)
-        status = told["status"], told["failed_checks"]["status"]
-        ok = status == ("completed", "passed") and passed
-        found[deck] = int(passed[1]) if ok else f"{told}\n{after}"
-    return found
+from example_logs import RANKS, copy_examples, date_of, decks, logs, name_of, needs_wheel, run_tests
+from running import EXAMPLES, ROOT
 
 
 @pytest.mark.parametrize("ranks", RANKS)

@@ -5,19 +5,17 @@ Whole builds of LAMMPS without optimization, minutes each; `tests/run upstream` 
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from running import OPEN_MPI_ENVIRONMENT, OPEN_MPI_LAUNCHER, ROOT, Lammps, tree_source
+from shell import CORES, do
 from thrown import DECK, assert_thrown
 
 INSTALL = (ROOT / "doc" / "install.md").read_text()
-CORES = str(len(os.sched_getaffinity(0)))
 
 
 @pytest.fixture
@@ -37,21 +35,6 @@ def folder(tmp_path: Path) -> Path:
 def way_b() -> str:
     """The lines of the page for a LAMMPS tree with one line added."""
     return re.search(r"^\*\*\(b\)[^*].*?\n\n((?:    [^\n]*\n)+)", INSTALL, re.M | re.S)[1]
-
-
-def do(where: Path, lines: str, **environment: str) -> str:
-    """Runs lines of shell, which must succeed; what they said."""
-    done = subprocess.run(
-        ["bash", "-e", "-c", lines],
-        cwd=where,
-        # objects are found again whatever the folder is called
-        env={**os.environ, "CCACHE_BASEDIR": str(where), "CCACHE_NOHASHDIR": "1", **environment},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    assert done.returncode == 0, f"{lines}\n{done.stdout[-5000:]}"
-    return done.stdout
 
 
 def test_cmake_with_one_line_added(folder):
