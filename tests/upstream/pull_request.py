@@ -2,10 +2,11 @@
 
     tests/run patch [--author "NAME (AFFILIATION)"] [--email ADDRESS]
 
-writes ``build/upstream/gearquat.patch`` and ``pull_request.md`` for a source tree of LAMMPS (default: the
-newest release that the tests know). Author and address stand in every place where LAMMPS wants them; without
-the options the words AUTHOR and EMAIL stand there, to be filled in later. `tests/run upstream` rehearses what
-LAMMPS' developers would do with the patch.
+writes ``build/upstream/gearquat.patch`` and ``pull_request.md`` for the newest release that the tests know, or
+for a clone of LAMMPS that LAMMPS_NEWEST_SOURCE_DIR names. A pull request needs the clone: it has two lists that
+no distributor publishes, ``src/.gitignore`` and ``.github/CODEOWNERS``. Author and address stand in every place
+where LAMMPS wants them; without the options the words AUTHOR and EMAIL stand there, to be filled in later.
+`tests/run upstream` rehearses what LAMMPS' developers would do with the patch.
 
 A list of LAMMPS in which the place of an entry is not found ends the program with the name of the list:
 LAMMPS has changed, and the entry needs another rule.
