@@ -70,6 +70,7 @@ def _frames(_context, _option, text):
 @cloup.option_group(
     "What it takes and leaves",
     out_option("gearquat-analyze", "tables and pictures"),
+    cloup.option("--follow", type=int, metavar="ID", help="Also draw the motion of one body, motion.png."),
     cloup.option("--csv", "as_csv", is_flag=True, help="Also write every pose as text, poses.csv."),
     cloup.option(
         "--convert",
@@ -81,7 +82,7 @@ def _frames(_context, _option, text):
     cloup.option("--jobs", type=COUNT, default=1, metavar="N", help="Processes that read."),
 )
 @failing_clearly(ValueError)
-def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options):
+def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **options):
     """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
@@ -99,6 +100,8 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, **options)
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
     pictures.draw_totals(poses, totals, out / "totals.png")
+    if follow is not None:
+        pictures.draw_motion(poses, follow, out / "motion.png")
     if as_csv:
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)

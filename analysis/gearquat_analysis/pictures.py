@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from .style import COLOR, STYLE
 
@@ -137,5 +138,45 @@ def draw_averages(averages, path=None):
             axis.set_yticks(range(len(rows)), [row for row, _ in rows])
             axis.set_ylim(len(rows) - 0.5, -0.5)
             axis.margins(x=0.15)
+            axis.xaxis.set_major_locator(MaxNLocator(5))
             axis.set_xlabel(named(quantity, rows[0][1].unit))
     return figure
+
+
+def draw_motion(poses, body, path=None):
+    """How the center of one body moves, and the paths of its principal axes on the unit sphere.
+
+    ``body``: its ID.  A dot is the first frame.
+
+    >>> from gearquat_analysis import Poses, open_dump, pictures
+    >>> poses = Poses(open_dump("nitrogen.dump").atoms).run(stop=100)
+    >>> pictures.draw_motion(poses, body=5).axes[0].get_ylabel()
+    'center of mass, from its start (Å)'
+    """
+    center, axes = poses.motion(body)
+    with picture(path, f"Body {body}", ncols=2 if axes else 1, figsize=(9, 4.2), squeeze=False) as (figure, panels):
+        left = panels[0, 0]
+        for letter, values in zip("xyz", (center - center[0]).T):
+            left.plot(poses.results.time, values, color=COLOR[letter], label=letter)
+        left.set_xlabel(named("time", poses.unit("time")))
+        left.set_ylabel(named("center of mass, from its start", poses.unit("center")))
+        left.legend()
+        if axes:
+            panels[0, 1].remove()
+            _draw_sphere(figure.add_subplot(1, 2, 2, projection="3d"), axes)
+    return figure
+
+
+def _draw_sphere(panel, axes):
+    """Paths (F, 3) of axes, by their numbers, on the unit sphere."""
+    theta, phi = np.mgrid[0 : np.pi : 13j, 0 : 2 * np.pi : 25j]
+    sphere = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
+    panel.plot_wireframe(*sphere, color="#cccccc", linewidth=0.4, zorder=0)
+    for number, values in axes.items():
+        look = {"color": PRINCIPAL_AXES[number - 1]}
+        panel.plot(*values.T, label=f"axis {number}", **look)
+        panel.plot(*values[:1].T, "o", markersize=5, **look)
+    panel.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
+    panel.set_box_aspect((1, 1, 1), zoom=1.3)
+    panel.set_axis_off()
+    panel.legend(loc="upper left", fontsize=8)
