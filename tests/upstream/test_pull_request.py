@@ -203,6 +203,35 @@ def test_spelling(tree, docenv):
         assert not names & set(re.findall(r"rst:\d+: \((\w+)\)", page.read_text())), page.name
 
 
+@pytest.fixture(scope="session")
+def zig(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The compiler of the package ziglang: Clang with libc++, which has std::format."""
+    folder = tmp_path_factory.mktemp("zig")
+    do(folder, f"{sys.executable} -m venv . && bin/pip install ziglang")
+    return folder / "bin" / "python-zig"
+
+
+def test_cpp23_without_variable_length_arrays(tree, zig, tmp_path):
+    """With C++20 and later LAMMPS takes std::format, which judges format strings when it is compiled."""
+    include = [f"-I{tree / part}" for part in ("src/GEARQUAT", "src", "src/STUBS")]
+    flags = ["-std=c++23", "-Werror=vla", "-O0", "-DLAMMPS_SMALLBIG", "-c", "-o", tmp_path / "object.o"]
+
+    def errors(source: Path) -> list[str]:
+        done = subprocess.run([zig, "c++", *flags, *include, source], capture_output=True, text=True)
+        found = [line for line in done.stderr.splitlines() if "error:" in line]
+        assert bool(found) == (done.returncode != 0), done.stderr
+        return found
+
+    wrong = tmp_path / "wrong.cpp"
+    begin = '#include "pointers.h"\nstd::string text(double x, int n) {'
+    wrong.write_text(begin + ' return fmt::format("{:d}", x); }\n')
+    assert errors(wrong) != []
+    wrong.write_text(begin + " double a[n]; a[0] = x; return fmt::format(\"{:g}\", a[0]); }\n")
+    assert "variable length" in errors(wrong)[0]
+    for source in sorted((tree / "src" / "GEARQUAT").glob("*.cpp")):
+        assert errors(source) == [], source.name
+
+
 # --- LAMMPS' builds -------------------------------------------------------------------------------
 #: without optimization, and with a compiler cache
 SETTINGS = {"CXXFLAGS": "-O0", "CMAKE_CXX_COMPILER_LAUNCHER": "ccache", "CMAKE_GENERATOR": "Ninja"}
