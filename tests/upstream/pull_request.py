@@ -31,7 +31,7 @@ SUMMARY = "accurate motion of rigid bodies"
 
 #: what LAMMPS asks to stand at the head of every source
 NOTICE = """\
-/* {mode}----------------------------------------------------------------------
+/* {mode:-<70}
    LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
    https://www.lammps.org/, Sandia National Laboratories
    LAMMPS development team: developers@lammps.org
@@ -231,6 +231,13 @@ def examples_readme(folder: Path) -> str:
     return text.replace(table[0], kept, 1).rstrip("\n") + "\n"
 
 
+def without_benchmarks(text: str) -> str:
+    """A README or a deck without the sentences that name a command of this repository."""
+    text = re.sub(r'(^|(?<=\.) )([A-Z][^.]*)?"benchmarks/run \w+"[^.]*\. ?', "", text, flags=re.M)
+    text = re.sub(r"\n{3,}", "\n\n", text)
+    return re.sub(r": benchmarks/run \w+\.", ".", text)
+
+
 def new_files(tree: Path, author: str, email: str) -> None:
     """Everything that LAMMPS does not have yet."""
     package = tree / "src" / "GEARQUAT"
@@ -241,6 +248,8 @@ def new_files(tree: Path, author: str, email: str) -> None:
     (tree / "doc" / "src" / "fix_gear_quat.rst").write_text(manual_page())
     examples = copy_examples(tree)
     (examples / "README").write_text(examples_readme(examples))
+    for file in (*examples.glob("*/README"), *examples.glob("*/in.*")):
+        file.write_text(without_benchmarks(file.read_text()))
     tests = tree / "unittest" / "force-styles" / "tests"
     tests.mkdir(parents=True)
     for yaml in (ROOT / "tests" / "lammps").glob("fix-timestep-*.yaml"):

@@ -105,7 +105,10 @@ def test_examples_are_complete_and_speak_of_nothing_else(tree):
     text = (examples / "README").read_text()
     table = re.findall(r"^    (\w+) +\S", text.partition("Two things")[0], re.M)
     assert set(table) == {"common", *FOLDERS}
-    assert "tests/run" not in text and "installs this repository" not in text
+    assert "installs this repository" not in text
+    for path in examples.rglob("*"):
+        if path.is_file() and not path.name.startswith("log."):
+            assert not re.search(r"\b(tests|benchmarks)/", path.read_text()), path
 
 
 def test_entries_that_only_a_clone_needs(release, tmp_path):
