@@ -102,7 +102,7 @@ fingerprint() {
   (
     cd "$ROOT"
     .venv/bin/python -V
-    find CMakeLists.txt pyproject.toml analysis cmake src -type f -not -path '*/__pycache__/*' -print0 |
+    find CMakeLists.txt pyproject.toml cmake src -type f -not -path '*/__pycache__/*' -print0 |
       LC_ALL=C sort -z | xargs -0 sha256sum
   ) | sha256sum | cut -d' ' -f1
 }
@@ -137,11 +137,11 @@ EOF
 pip_install_repository() {
   local extra="$1"
   cd "$ROOT"
-  { listed . build-system requires; listed analysis build-system requires; } >build/requirements.txt
+  { listed . build-system requires; listed src/analysis build-system requires; } >build/requirements.txt
   printf '%s\n' cmake ninja >>build/requirements.txt
   .venv/bin/python -m pip install --disable-pip-version-check -r build/requirements.txt
   PATH="$ROOT/.venv/bin:$PATH" .venv/bin/python -m pip install --disable-pip-version-check \
-    --no-build-isolation --config-settings=build-dir=build/plugin ./analysis ".$extra"
+    --no-build-isolation --config-settings=build-dir=build/plugin ./src/analysis ".$extra"
 }
 
 # install_repository EXTRA: this repository, with the optional dependencies of EXTRA, in .venv

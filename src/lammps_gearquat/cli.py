@@ -8,7 +8,7 @@ try:
 except ModuleNotFoundError as error:
     raise SystemExit(
         f"Error: gearquat needs {error.name}, which the extra [analysis] brings: run"
-        " pip install ./analysis '.[analysis]' in a checkout of the repository"
+        " pip install ./src/analysis '.[analysis]' in a checkout of the repository"
     ) from error
 
 from .commands.cost import cost

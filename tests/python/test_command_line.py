@@ -41,7 +41,7 @@ def test_version():
     assert result.output.strip() == metadata.version("lammps-gearquat")
 
 
-PACKAGES = {"lammps-gearquat": ROOT / "src" / "lammps_gearquat", "gearquat-analysis": ROOT / "analysis" / "gearquat_analysis"}
+PACKAGES = {"lammps-gearquat": ROOT / "src" / "lammps_gearquat", "gearquat-analysis": ROOT / "src" / "analysis" / "gearquat_analysis"}
 
 
 def imported(distribution):
@@ -71,7 +71,7 @@ def test_licenses_go_together():
 
 def test_the_entry_for_the_registry_of_mdakits():
     """It has the keys that the registry requires, and says the same as the package."""
-    entry = yaml.safe_load((ROOT / "analysis" / "metadata.yaml").read_text())
+    entry = yaml.safe_load((ROOT / "src" / "analysis" / "metadata.yaml").read_text())
     required = "project_name authors maintainers description keywords license project_home documentation_home documentation_type"
     assert all(entry[key] for key in required.split())
     package = metadata.metadata("gearquat-analysis")

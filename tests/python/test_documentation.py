@@ -213,7 +213,7 @@ def test_every_file_that_a_page_names_exists():
 def test_a_release_has_one_number_and_one_date():
     patterns = {
         "pyproject.toml": r'^version = "(.*)"',
-        "analysis/pyproject.toml": r'^version = "(.*)"',
+        "src/analysis/pyproject.toml": r'^version = "(.*)"',
         "CHANGELOG.md": r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$",
         "CITATION.cff": r"^version: (.*)",
         "cmake/packaging/conda/recipe.yaml": r'^  version: "(.*)"',

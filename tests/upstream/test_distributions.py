@@ -57,7 +57,7 @@ def test_a_fresh_environment(distributions, kind, tmp_path):
 def test_the_analysis_needs_no_lammps(tmp_path):
     scripts = tmp_path / "venv" / "bin"
     call_well(sys.executable, "-m", "venv", tmp_path / "venv")
-    call_well(scripts / "python", "-m", "pip", "install", ROOT / "analysis")
+    call_well(scripts / "python", "-m", "pip", "install", ROOT / "src" / "analysis")
     assert "DUMP" in call_well(scripts / "python", "-m", "gearquat_analysis", "--help")
     assert call(scripts / "python", "-c", "import lammps").returncode != 0
 
