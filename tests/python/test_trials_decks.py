@@ -431,6 +431,33 @@ def test_a_budget_that_is_too_short_is_told(monkeypatch):
     assert deck.now < 100.0
 
 
+@pytest.mark.parametrize(
+    ("pace", "before", "ended", "enough"),
+    [
+        (1e-3, 14.9, "a first trial", "30"),
+        (1e-3, 13.0, "a first trial", "76"),
+        (0.5, 0.0, "this trial", "1300"),
+    ],
+)
+def test_a_budget_that_ends_before_the_trials_is_told(monkeypatch, pace, before, ended, enough):
+    deck = MadeUpDeck(pace, 3.0)
+    monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
+    budget = cost.Budget(15.0)
+    deck.now += before
+    said = rf"the budget of 15 s was used up before {ended} ended \(.*\); {before:.2g} s .* {enough} s or more$"
+    with pytest.raises(DeckError, match=said):
+        cost.measure(deck, budget)
+
+
+def test_what_lammps_says_is_told_whatever_the_budget(monkeypatch):
+    deck = MadeUpDeck(1e-3, 3.0)
+    monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
+    study = cost.Study(deck, cost.Budget(15.0))
+    deck.now += 20.0
+    study.failures["values 7"] = "lost atoms"
+    assert str(study.refusal("it cannot be tried", "values 7")) == "it cannot be tried: lost atoms"
+
+
 def test_cost_of_a_deck_that_equilibrates(tmp_path):
     """The first run that can be measured is found, and the others are run once."""
     path = pppm_water.write(tmp_path, side=5, steps=100, cutoff=5.0)

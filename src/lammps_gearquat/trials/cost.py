@@ -18,8 +18,9 @@ import numpy as np
 from gearquat_analysis.superposition import angles
 
 from . import evaluate
+from .budget import Budget
 from .script import DeckError
-from .worker import TrialError
+from .worker import NOT_FINISHED, TrialError
 
 CONFIRMATION = "formulation first values 6 compensate yes"
 #: the default first; fewer values follow forces that change quickly, more are better where all is smooth
@@ -38,8 +39,8 @@ RUNS_IN_BUDGET = 100
 SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.25
 FEWEST_STEPS, PROBE_STEPS = 8, 20
 PATIENCE = 30.0  # seconds that any trial may take beyond what was expected
-#: seconds of the budget for tables and pictures, and the part of it that may pass before the trials
-CLOSING, SHARE_BEFORE = 10.0, 0.8
+#: the part of the budget that may pass before the trials
+SHARE_BEFORE = 0.8
 #: trials at interpolated steps, for each error and method
 ATTEMPTS = 3
 #: another fix pays if the deck's own takes longer by this factor
@@ -105,43 +106,18 @@ class Costs:
         return points
 
 
-class Budget:
-    """Seconds of wall time, shown by ``progress`` (an object like a tqdm bar, or None).
-
-    They begin at ``begin`` on the monotonic clock, None: now.
-    """
-
-    def __init__(self, seconds, progress=None, begin=None):
-        self.seconds, self.progress = seconds, progress
-        self.begin = clock.monotonic() if begin is None else begin
-
-    def spent(self):
-        """Seconds since the beginning; moves the bar."""
-        now = clock.monotonic() - self.begin
-        if self.progress is not None:
-            self.progress.update(max(0.0, min(now, self.seconds) - self.progress.n))
-        return now
-
-    def left(self):
-        """Seconds that trials may still take."""
-        return self.seconds - min(CLOSING, 0.1 * self.seconds) - self.spent()
-
-    def say(self, text):
-        if self.progress is not None:
-            self.progress.set_description(text)
-
-
 class Study:
     """The trials of one question about ``deck``.
 
     ``pace``, seconds per step by keywords; ``overhead``, seconds that a trial takes beside its steps;
-    ``truth``, positions and centers at the end of trials.
+    ``before``, seconds of the budget that are spent already; ``truth``, positions and centers at the
+    end of trials.
     """
 
     def __init__(self, deck, budget, timings=5, norm=0):
         self.deck, self.budget, self.timings, self.norm = deck, budget, timings, norm
         self.pace, self.overhead, self.failures = {}, 0.0, {}
-        self.truth = None
+        self.before, self.truth = budget.spent(), None
 
     def attempt(self, keywords, end, steps, samples=1):
         """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
@@ -167,6 +143,22 @@ class Study:
         """Whether so many ``runs`` of this length leave ``reserve`` seconds of the budget."""
         return runs * self.expected(keywords, steps) < self.budget.left() - reserve
 
+    def enough(self):
+        """The seconds that a budget should have, as far as trials tell, as text."""
+        trial = self.expected(None, SAMPLES) if self.pace else self.budget.spent() - self.before
+        return f"{float(f'{2 * self.before + RUNS_IN_BUDGET * trial:.2g}'):g}"
+
+    def refusal(self, what, keywords):
+        """The DeckError where a trial that is necessary did not come to its end."""
+        reason = self.failures[keywords]
+        if self.budget.left() > 0 or not reason.startswith(NOT_FINISHED):
+            return DeckError(f"{what}: {reason}")
+        return DeckError(
+            f"the budget of {self.budget.seconds:g} s was used up before {'this' if self.pace else 'a first'}"
+            f" trial ended ({keywords or 'own fix'}); {self.before:.2g} s had passed before the trials:"
+            f" try a budget of {self.enough()} s or more"
+        )
+
     # --- 0. how long ----------------------------------------------------------------------------------
     def probe(self):
         """Find out what a step costs with the deck's own fix, from a run of a few tenths of a second."""
@@ -174,7 +166,7 @@ class Study:
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
             if trial is None:
-                raise DeckError(f"LAMMPS cannot run the deck as it is: {self.failures[None]}")
+                raise self.refusal("LAMMPS cannot run the deck as it is", None)
             if trial.seconds[0] > 0.2 or steps >= self.deck.start.steps:
                 return
             steps = min(4 * steps, self.deck.start.steps)
@@ -183,7 +175,7 @@ class Study:
         """Raise DeckError for keywords that the fix refuses: a step so short fails for no other reason."""
         for keywords in tries:
             if self.attempt(keywords, 1e-3 * self.deck.dt, 1) is None:
-                raise DeckError(f"--try '{keywords}': {self.failures[keywords]}")
+                raise self.refusal(f"--try '{keywords}'", keywords)
             del self.pace[keywords]
 
     def affordable_end(self):
@@ -221,7 +213,7 @@ class Study:
             # the confirmation takes somewhat more than the last trial
             affordable = self.affords(accurate, steps, reserve, runs=4)
             if failed > 6 or not (finer or self.affords(accurate, steps, runs=4)):
-                raise DeckError(f"fix gear/quat cannot run this deck: {self.failures[accurate]}")
+                raise self.refusal("fix gear/quat cannot run this deck", accurate)
             if finer and not affordable:
                 break
             steps *= 2
@@ -229,7 +221,7 @@ class Study:
         steps = SAMPLES * math.ceil(1.25 * reference.steps / SAMPLES)
         confirmation = self.attempt(CONFIRMATION, end, steps, SAMPLES)
         if confirmation is None:
-            raise DeckError(f"the reference cannot be confirmed: {self.failures[CONFIRMATION]}")
+            raise self.refusal("the reference cannot be confirmed", CONFIRMATION)
         return reference, confirmation
 
     def gap(self, first, second):
@@ -347,7 +339,6 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     unit = evaluate.decade(deck.size) if norm < 2 else 1.0
     errors = sorted(errors or [unit * decade for decade in DECADES], reverse=True)
     study = Study(deck, budget, timings, norm)
-    before = budget.spent()
     study.probe()
     study.check(tries)
     whole, reason = (time, "") if time else study.affordable_end()
@@ -355,7 +346,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
     last, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
     end = whole * (last + 1) / SAMPLES
-    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=before)
+    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=study.before)
     costs.notes += deck.notes
     if reason:
         costs.notes.append(f"{reason} allows trials until t = {whole:g}, and the run ends at {deck.end:g}")
@@ -365,10 +356,9 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     wanted = judged or errors[:1]
     study.climb_all(costs, wanted, tries)
     if not costs.trials:
-        enough = before + RUNS_IN_BUDGET * study.expected(None, SAMPLES)
         raise DeckError(
             f"a step takes {study.pace[None]:.2g} s, so {budget.seconds:g} s are too few to compare methods:"
-            f" try --budget {float(f'{enough:.2g}'):g}"
+            f" try --budget {study.enough()}"
         )
     study.refine(costs, wanted)
     for _ in range(ATTEMPTS):  # other methods may matter when times are known better

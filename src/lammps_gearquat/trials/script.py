@@ -249,7 +249,9 @@ def parse_fix(words):
     while rest:
         key = rest[0]
         if key not in known:
-            raise DeckError(f"{who}: unknown keyword {key}")
+            before = given[-1][0] if options and given else ""
+            behind = f"; behind {before} there is {keywords.table()[before].values}" if before else ""
+            raise DeckError(f"{who}: unknown keyword {key}{behind}")
         if len(rest) <= known[key]:
             raise DeckError(f"{who}: keyword {key} lacks its arguments")
         if key not in MASKS:  # the last one counts

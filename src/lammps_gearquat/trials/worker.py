@@ -19,6 +19,8 @@ from .script import DeckError
 
 #: seconds that the processes may take to come up
 PATIENCE = 60.0
+#: how the message begins where an answer comes too late
+NOT_FINISHED = "not finished"
 
 
 class TrialError(RuntimeError):
@@ -185,7 +187,7 @@ class Worker:
             if failed and not ready:
                 break
             if end is not None and time.monotonic() > end and not failed:
-                raise TrialError(f"not finished after {timeout:.3g} s")
+                raise TrialError(f"{NOT_FINISHED} after {timeout:.3g} s")
         return answers
 
     def _last_words(self):
