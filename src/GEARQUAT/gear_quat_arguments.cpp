@@ -91,14 +91,16 @@ int Arguments::parse_bodystyle(int narg, char **arg)
 
 void Arguments::parse_keywords(int narg, char **arg)
 {
+  const Keyword *before = nullptr;
   for (int iarg = 0; iarg < narg; ++iarg) {
-    const Keyword &row = find_keyword(lmp, arg[iarg]);
+    const Keyword &row = find_keyword(lmp, arg[iarg], before);
     if (row.kind != Keyword::MASK && given.count(row.name))
       error->all(FLERR, "Fix gear/quat keyword {} is given twice", row.name);
     KeywordValue value;
     iarg += row.read(lmp, narg - iarg, arg + iarg, value);
     row.store(*this, value);
     given[row.name] = value;
+    before = &row;
   }
   for (const auto &row : keyword_table())
     if (row.kind == Keyword::WORD && !given.count(row.name))
@@ -206,6 +208,18 @@ void Arguments::check_control()
         "tolerance: the target changes with the number of the step, and steps have no common "
         "length; use several runs with a target each",
         thermostat.start, thermostat.stop);
+}
+
+std::string Arguments::words_of_control() const
+{
+  if (!is_on("tolerance", "")) return "";
+  const KeywordValue &eps = given.at("tolerance");
+  std::string text =
+      fmt::format("tolerance {:g} {}", eps.number, control.energy ? "energy" : "length");
+  if (eps.unit != 1.0) text += fmt::format(" {:g}", eps.unit);
+  for (const char *keyword : {"dtmin", "dtmax", "every/time"})
+    if (given.count(keyword)) text += fmt::format(", {} {:g}", keyword, given.at(keyword).number);
+  return text;
 }
 
 /* ----------------------------------------------------------------------

@@ -47,6 +47,9 @@ struct Arguments : protected Pointers {
   /// names the word and what is required.
   Arguments(LAMMPS *lmp, int narg, char **arg);
 
+  /// Keyword tolerance and those that bound its steps, as in the command; empty without it.
+  std::string words_of_control() const;
+
   /// Body of every owned atom, 0 for atoms in none; faults name the atom.  Collective.
   std::vector<tagint> body_ids(int groupbit) const;
 

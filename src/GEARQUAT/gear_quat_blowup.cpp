@@ -181,7 +181,9 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   }
   if (bodies.is_large(ibody)) bodies.tell_ids_to_ghosts();
   const Meeting met = nearest(ibody, bad);
-  const std::string change = scheme.trial
+  const std::string change = std::fabs(h) <= shortest
+      ? fmt::format("a dtmin smaller than {:g},", shortest)
+      : scheme.trial
       ? fmt::format("a smaller tolerance, or a dtmax shorter than {:g},", std::fabs(h))
       : fmt::format("a smaller time step than {:g} or fewer values than {},", std::fabs(h),
                     scheme.values());

@@ -23,8 +23,9 @@ void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, double
 
 class Blowup : protected Pointers {
  public:
-  Blowup(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme) :
-      Pointers(lmp), bodies(bodies), scheme(scheme)
+  /// shortest: what keyword dtmin says, or 0.
+  Blowup(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, double shortest) :
+      Pointers(lmp), bodies(bodies), scheme(scheme), shortest(shortest)
   {
   }
 
@@ -45,6 +46,7 @@ class Blowup : protected Pointers {
  private:
   Bodies &bodies;
   const Scheme &scheme;
+  double shortest;
 
   struct Meeting {
     int site, other;    ///< atoms; -1 for none

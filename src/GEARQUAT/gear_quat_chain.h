@@ -36,6 +36,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -123,7 +124,27 @@ class Chain {
   /// The step is complete: the trial row n from the change of the last row.
   void conclude(int n)
   {
-    for (int v = 0; v < size(); ++v) rows[v][n] = (rows[v][n - 1] - last[v]) / n;
+    for (int v = 0; v < size(); ++v) {
+      const double trial = (rows[v][n - 1] - last[v]) / n;
+      change[v] = trial - rows[v][n];
+      rows[v][n] = trial;
+    }
+  }
+
+  /// The largest of the variables xi in rows n - 1 and n (1/time), and how much row n changed in the
+  /// step; after conclude().
+  struct HighRows {
+    double last = 0.0, trial = 0.0, change = 0.0;
+  };
+  HighRows high_rows(int n) const
+  {
+    HighRows largest;
+    for (int k = 0; k < length; ++k) {
+      largest.last = std::max(largest.last, std::fabs(rows[k][n - 1]));
+      largest.trial = std::max(largest.trial, std::fabs(rows[k][n]));
+      largest.change = std::max(largest.change, std::fabs(change[k]));
+    }
+    return largest;
   }
 
   /// Degrees of freedom have changed: E and all xi stay, and the first derivatives become those of the
@@ -161,7 +182,8 @@ class Chain {
  private:
   int length;
   double rows[MOST][MAX_VALUES + 1] = {};
-  double last[MOST] = {};    ///< last rows before the step
+  double last[MOST] = {};      ///< last rows before the step
+  double change[MOST] = {};    ///< of trial rows in the step
 
   /// sum_k Q_k xi_k^2/2
   double moving(const ChainTarget &target, const Variables &y) const

@@ -207,7 +207,7 @@ const std::vector<Keyword> &GearQuat::keyword_table()
   return table;
 }
 
-const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name)
+const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before)
 {
   for (const auto &row : keyword_table())
     if (row.name == name) return row;
@@ -216,7 +216,9 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name)
     lmp->error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", name, instead);
   std::vector<std::string> names;
   for (const auto &row : keyword_table()) names.emplace_back(row.name);
-  lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}; the keywords are {}", name,
+  const std::string values =
+      before ? fmt::format("; behind {} there is {}", before->name, before->required()) : "";
+  lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}{}; the keywords are {}", name, values,
                   utils::join_words(names, ", "));
 }
 

@@ -154,9 +154,9 @@ struct Keyword {
 /// All rows, in the order of the manual.
 const std::vector<Keyword> &keyword_table();
 
-/// The row of a keyword.  An unknown one ends the run on all ranks, with what to write
-/// instead if it is a keyword of the rigid fixes.
-const Keyword &find_keyword(LAMMPS *lmp, const std::string &name);
+/// The row of a keyword.  An unknown one ends the run on all ranks, with what to write instead if it
+/// is a keyword of the rigid fixes, or else with what may follow `before`, the keyword ahead of it.
+const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
 
 /// The numbers of values of a formulation that have tuned coefficients, in a row.
 std::string tuned_numbers(bool first, const std::string &between);

@@ -25,7 +25,8 @@ using namespace GearQuat;
 /* ---------------------------------------------------------------------- */
 
 Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
-    Pointers(lmp), fix(fix), args(args), bodies(bodies), blowup(lmp, bodies, args.scheme)
+    Pointers(lmp), fix(fix), args(args), bodies(bodies),
+    blowup(lmp, bodies, args.scheme, args.control.shortest)
 {
   if (args.control.eps > 0.0)
     tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, args.every_time, bodies));
@@ -210,10 +211,10 @@ void Motion::correct_together(double **f)
     isokinetic->correct(*integrator);
   else
     thermostat->correct(*integrator, present_scheme());
-  if (tolerance)
-    tolerance->note_correction(*integrator);
-  else
-    hold_step(f);
+  if (tolerance) tolerance->note_correction(*integrator);
+  if (tolerance && thermostat)
+    tolerance->note_chains(thermostat->high_rows(integrator->values()), thermostat->kt());
+  if (!tolerance) hold_step(f);
 }
 
 /// The step is not made again.
@@ -221,6 +222,7 @@ void Motion::hold_step(double **f)
 {
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) check_limits(ibody, f);
+  if (thermostat) thermostat->watch_cold(step());
   begin_fresh(f);
 }
 

@@ -282,7 +282,7 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
        NOTHING},
       compensation(args, scene),
       {"changing step", args.control.eps > 0.0,
-       args.control.eps > 0.0 ? fmt::format("tolerance {:g}", args.control.eps) : "no tolerance",
+       args.control.eps > 0.0 ? args.words_of_control() : "no tolerance",
        "control of the error of a step: it is what the time step makes it"},
   };
 }

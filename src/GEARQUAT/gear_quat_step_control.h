@@ -26,6 +26,7 @@
 #ifndef GEAR_QUAT_STEP_CONTROL_H
 #define GEAR_QUAT_STEP_CONTROL_H
 
+#include "gear_quat_chain.h"
 #include "gear_quat_integrator.h"
 
 #include <algorithm>
@@ -129,6 +130,21 @@ class VariableOrder {
     errors.length.same = same.pose * size(trial, reach);
     errors.energy.same = energy(worth_of(integrator, body, load, axes, rows), same, trial);
     return errors;
+  }
+
+  /// What the errors of the chains of a thermostat in this step would do to a body of this mass in
+  /// thermal motion: an error d of the friction makes the error h d v of a velocity v.  A cold body
+  /// hardly feels the friction, so its own errors do not show whether the chains are accurate, or even
+  /// stable.  Errors of all xi count as that of the first, which is more than the others do.
+  StepMeasures errors_of_chain(const Chain::HighRows &rows, double kt, double mass, double h) const
+  {
+    const double way = h * h * std::sqrt(3.0 * kt / mass), worth = std::fabs(h) * 3.0 * kt;
+    const StepErrors errors = {fewer.pose * rows.last, same.pose * rows.trial,
+                               more.pose * rows.change};
+    StepMeasures found;
+    found.length = {way * errors.fewer, way * errors.same, way * errors.more};
+    found.energy = {worth * errors.fewer, worth * errors.same, worth * errors.more};
+    return found;
   }
 
   /// One value more.  After the call the rows are those of n + 1 values; their trial row is zero

@@ -36,6 +36,11 @@ static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
 static constexpr double FEWEST_STEPS = 10.0;
 
+// a part of a kinetic energy that is below this fraction of its target for as many damping times is not
+// about to become warm: chains of its own make it grow by several powers of ten in that time
+
+static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
+
 static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
 
 /* ---------------------------------------------------------------------- */
@@ -326,6 +331,36 @@ void Thermostat::finish_body(const Integrator &integrator, int ibody)
   last = integrator.finish(bodies.acting(ibody), rows, pending[ibody]);
   integrator.body_state(bodies.rigid_of(ibody), rows, state, bodies.change_frame(ibody));
   if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
+}
+
+Chain::HighRows Thermostat::high_rows(int values) const
+{
+  Chain::HighRows all;
+  for (const auto &chain : chains) {
+    const Chain::HighRows rows = chain.high_rows(values);
+    all = {std::max(all.last, rows.last), std::max(all.trial, rows.trial),
+           std::max(all.change, rows.change)};
+  }
+  return all;
+}
+
+void Thermostat::watch_cold(double h)
+{
+  for (const Part part : {TRANSLATION, ROTATION}) {
+    const bool is_cold = twice[part] < COLD * freedoms[part] * line.kt;
+    cold[part] = is_cold ? cold[part] + std::fabs(h) : 0.0;
+    if (warned[part] || cold[part] < COLD_TIMES * words.damp) continue;
+    warned[part] = true;
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat temp: until step {} the {} kinetic energy of the bodies was below {:g} % "
+          "of its target for {:g} damping times; a thermostat only scales it, so bodies that "
+          "hardly "
+          "{} stay cold for long; velocity create gives them velocities between runs",
+          update->ntimestep, part == ROTATION ? "rotational" : "translational", 100.0 * COLD,
+          COLD_TIMES, part == ROTATION ? "rotate" : "move");
+  }
 }
 
 void Thermostat::follow_bodies(double h)

@@ -47,6 +47,12 @@ class Thermostat : protected Pointers {
   void measure();
   /// One step of h: correct the predicted histories and states.
   void correct(const Integrator &integrator, const Scheme &scheme);
+  /// Of all chains in this step.
+  Chain::HighRows high_rows(int values) const;
+  /// The target.
+  double kt() const { return line.kt; }
+  /// A step of h holds: warns once of bodies that a thermostat cannot warm.
+  void watch_cold(double h);
   /// Bodies that have come in this step have histories, and none is left of those that have gone.
   void follow_bodies(double h);
 
@@ -111,6 +117,8 @@ class Thermostat : protected Pointers {
   double damp_before = 0.0;           ///< of the steps so far
   double friction[2] = {};            ///< xi_1 of the chains
   double unit = 1.0;                  ///< of the sums, see scale()
+  double cold[2] = {};                ///< for how long the parts have been cold
+  bool warned[2] = {};                ///< of that
   bool jumps = false;
   bool conserved = false;    ///< the total momentum, which has no temperature
   std::vector<Integrator::Pending> pending;

@@ -153,8 +153,7 @@ void Tolerance::shorten_first_step(bool full)
       std::min(1.0, StepControl::SAFETY * control.allowed(largest, present.values()));
   if (!full) size = std::min(size, first_step_of_low_order());
   size = std::max(control.shortest, std::min(size, farthest_step(all[1])));
-  const bigint steps = update->ntimestep - 1 - update->atimestep;    // until this one began
-  size = std::fabs(even(std::copysign(size, update->dt), update->atime + steps * update->dt));
+  size = std::fabs(even(std::copysign(size, update->dt), begun_at()));
   if (size >= std::fabs(update->dt)) return;
   if (const Fix *other = integrated_before(first_mover())) {
     if (comm->me == 0)

@@ -75,6 +75,8 @@ class Tolerance : protected Pointers {
   // The same around a correction of all bodies together: of the predicted, then of the corrected ones.
   void note_prediction();
   void note_correction(const Integrator &integrator);
+  /// The chains of a thermostat are corrected, too; kt: of its target.
+  void note_chains(const Chain::HighRows &rows, double kt);
   /// All bodies are corrected: true if the step has failed and is to be made again.  Collective.
   bool judge();
   /// Histories as they were when the step began get the values, then the length of the next try.
@@ -154,6 +156,8 @@ class Tolerance : protected Pointers {
   /// An error as the user counts it.
   double shown(double error) const;
   void refuse_lost() const;
+  double begun_at() const;
+  void refuse_frozen() const;
   void note_step(double size, int values);
 };
 

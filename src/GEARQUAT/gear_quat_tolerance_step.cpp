@@ -55,6 +55,7 @@ void Tolerance::begin_step()
   if (update->ntimestep == update->firststep + 1) begin_run();
   tries = 0;
   begun_with = update->dt;
+  refuse_frozen();
   if (repeat.possible()) bodies.keep_histories();
 }
 
@@ -65,7 +66,8 @@ void Tolerance::begin_run()
   settled = Settled();
   const double fastest = over_ranks(MPI_MAX, largest_speed(), world);
   const double farthest = farthest_step(fastest);
-  if (fastest > 0.0 && control.longest > farthest && comm->me == 0)
+  const bool moves_limit = fastest > 0.0 && farthest >= control.shortest;
+  if (moves_limit && control.longest > farthest && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat tolerance: dtmax {:.3g} is longer than the {:.3g} in which the "
                    "fastest site moves by {:.3g}; steps are not longer than that",
@@ -105,6 +107,12 @@ void Tolerance::note_correction(const Integrator &integrator)
       include(order.errors(integrator, body.rigid, body.reach(), bodies.acting(ibody),
                            bodies.axes(ibody), predicted[ibody], bodies.history(ibody)));
     }
+}
+
+void Tolerance::note_chains(const Chain::HighRows &rows, double kt)
+{
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    include(order.errors_of_chain(rows, kt, bodies.rigid_of(ibody).mass, update->dt));
 }
 
 /// No site on this rank is faster.
@@ -183,6 +191,29 @@ void Tolerance::refuse_lost() const
              update->ntimestep);
 }
 
+/// When the present step began.
+double Tolerance::begun_at() const
+{
+  return update->atime + (update->ntimestep - 1 - update->atimestep) * update->dt;
+}
+
+/// No time would pass in a step below its last digit.
+void Tolerance::refuse_frozen() const
+{
+  const double begun = begun_at();
+  const auto refuse = [&](const char *keyword, double interval, const char *remedy) {
+    if (interval > 0.0 && begun + interval == begun)
+      error->all(
+          FLERR,
+          "Fix gear/quat {}: in step {} an interval of {:.3g} is below the last digit of the "
+          "time {:.9g}, which would stand still; {}",
+          keyword, update->ntimestep, interval, begun, remedy);
+  };
+  refuse("dtmax", control.longest, "use a larger dtmax");
+  refuse("every/time", every_time, "use a larger interval");
+  refuse("tolerance", std::fabs(update->dt), "use a larger tolerance, or dtmin");
+}
+
 void Tolerance::shorten_values()
 {
   if (failed.values != present.values()) change_values(failed.values);
@@ -192,6 +223,7 @@ void Tolerance::shorten_step()
 {
   steady.step = 0;
   set_begun_step(failed.step);
+  refuse_frozen();
 }
 
 double Tolerance::shown(double error) const

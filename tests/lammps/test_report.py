@@ -52,6 +52,16 @@ def test_once_and_short_by_default(lmp):
     assert 5 <= len(effects(lines)) <= len(lines) - 1 <= 14
 
 
+@pytest.mark.parametrize("words, said", [
+    ("tolerance 1e-8", "tolerance 1e-08 length"),
+    ("tolerance 2e-8 energy 0.5 every/time 3", "tolerance 2e-08 energy 0.5, every/time 3"),
+    ("dtmax 0.02 tolerance 1e-8 length dtmin 1e-9", "tolerance 1e-08 length, dtmin 1e-09, dtmax 0.02"),
+])  # fmt: skip
+def test_the_tolerance_as_in_the_command(lmp_tree, words, said):
+    lines = report(lmp_tree, two_molecules(f"molecule {words}"))
+    assert effects(lines)["changing step"] == f"on {said}"
+
+
 def test_no_is_silent(lmp_tree):
     assert report(lmp_tree, two_molecules("molecule report no")) == []
 

@@ -240,23 +240,33 @@ def continued(deck, file):
     return f"units lj\natom_modify sort 0 0.0\nread_restart {file}\n{rest}"
 
 
+def whole_and_halves(deck_of, first, second, span=""):
+    """A run, its two halves, and the second one from a restart file; span: behind the steps of a half.
+
+    ``deck_of(words, kind, commands)`` makes a deck. Returns decks, and a name for every three; the atoms
+    at the end are in NAME-whole.end, NAME-halves.end and NAME-again.end.
+    """
+    decks, names = [], []
+    for formulation in FORMULATIONS:
+        for kind in KINDS:
+            name = f"{formulation}-{kind}"
+            names.append(name)
+            halves = f"run {first} {span}\nwrite_restart {name}.half\nrun {second} {span}"
+            parts = {"whole": f"run {first + second}", "halves": halves, "again": f"run {second} {span}"}
+            for part, commands in parts.items():
+                words = f"formulation {formulation} thermostat {kind}"
+                deck = deck_of(words, kind, f"{commands}\n{END.format(f'{name}-{part}')}")
+                decks.append(continued(deck, f"{name}.half") if part == "again" else deck)
+    return decks, names
+
+
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
-    decks, names = [], []
-    for form in FORMULATIONS:
-        for kind in KINDS:
-            words = f"formulation {form} temp 0.4 0.8 0.3 tchain {3 if kind == 'total' else 2} thermostat {kind}"
-            span = "start 0 stop 100"
-            name = f"{form}-{kind}"
-            names.append(name)
-            for part, commands in {
-                "whole": "run 100",
-                "halves": f"run 50 {span}\nwrite_restart {name}.half\nrun 50 {span}",
-                "again": f"run 50 {span}",
-            }.items():
-                commands += "\n" + END.format(f"{name}-{part}")
-                deck = cluster(words, every=50, run=commands)
-                decks.append(continued(deck, f"{name}.half") if part == "again" else deck)
+    def deck_of(words, kind, commands):
+        chain = f"temp 0.4 0.8 0.3 tchain {3 if kind == 'total' else 2}"
+        return cluster(f"{words} {chain}", every=50, run=commands)
+
+    decks, names = whole_and_halves(deck_of, 50, 50, "start 0 stop 100")
     result = run(lmp_tree, decks, ranks)
     ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
     for n, name in enumerate(names):

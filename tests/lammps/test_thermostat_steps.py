@@ -8,11 +8,13 @@ from scenes import (
     difference,
     last_frame,
     one_after_the_other,
+    placed,
     water,
     water_data,
 )
+from scipy.integrate import solve_ivp
 from test_coming_and_going import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
-from test_thermostat import END, KINDS, cluster, continued, largest_change
+from test_thermostat import END, KINDS, cluster, continued, largest_change, whole_and_halves
 from test_tolerance import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
@@ -77,19 +79,9 @@ def test_a_step_made_again_leaves_the_chains_as_if_met_at_once(lmp_tree):
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
     """On several ranks a second run sums forces in another order than one long run."""
-    decks, names = [], []
-    for formulation in FORMULATIONS:
-        for kind in KINDS:
-            words = f"formulation {formulation} {TEMP} thermostat {kind}"
-            name = f"{formulation}-{kind}"
-            names.append(name)
-            for part, commands in {
-                "whole": "run 100",
-                "halves": f"run 40\nwrite_restart {name}.half\nrun 60",
-                "again": "run 60",
-            }.items():
-                deck = changing(words, "1e-9", f"{commands}\n{END.format(f'{name}-{part}')}")
-                decks.append(continued(deck, f"{name}.half") if part == "again" else deck)
+    decks, names = whole_and_halves(
+        lambda words, _, commands: changing(f"{words} {TEMP}", "1e-9", commands), 40, 60
+    )
     result = lmp_tree.succeed(one_after_the_other(decks), ranks=ranks)
     ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
     for n, name in enumerate(names):
@@ -125,6 +117,80 @@ def test_another_target_starts_anew(lmp_tree, formulation):
     for table in result.thermo:
         assert largest_change(table, "Econserve") < 1e-5
     assert largest_change(after, "TotEng") > 1e-1
+
+
+# --- bodies that hardly rotate ------------------------------------------------------------------
+
+#: of rotation
+FREEDOMS, TARGET, DAMP = 6, 0.5, 0.3
+
+
+def coasting(words, spin, run=UNTIL.format(9.0), columns=f"f_move[24] {LARGEST}", dt=0.004):
+    """Two molecules that never meet; spin: of each about the z axis."""
+    bodies, velocities = [], []
+    for side in (-1.0, 1.0):
+        sites = np.array(MOLECULES[0]) - np.mean(MOLECULES[0], axis=0)
+        bodies.append(sites + [0.0, 5.0 * side, 0.0])
+        velocities += [(0.6 * side - spin * y, spin * x, 0.0) for x, y, _ in sites]
+    return placed(
+        bodies,
+        velocities,
+        boundary="p p p",
+        box="-9 9 -9 9 -9 9",
+        before="pair_style zero 1.0\npair_coeff * *",
+        fix=f"gear/quat molecule temp {TARGET} {TARGET} {DAMP} {words}",
+        dt=dt,
+        thermo=1,
+        columns=columns,
+        run=run,
+    ).replace("fix_modify move energy yes", "")
+
+
+def warming(times, kinetic):
+    """Logarithm of a kinetic energy, and xi of its chain of three, without forces; an independent solution."""
+
+    def rates(_, y):
+        log_kinetic, one, two, three = y
+        pushed = 2 * np.exp(log_kinetic) / (FREEDOMS * TARGET)
+        return [
+            -2 * one,
+            (pushed - 1) / DAMP**2 - one * two,
+            FREEDOMS * one**2 - 1 / DAMP**2 - two * three,
+            two**2 - 1 / DAMP**2,
+        ]
+
+    start = [np.log(kinetic), 0.0, 0.0, 0.0]
+    return solve_ivp(rates, (0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-12).y[:2]
+
+
+@pytest.mark.parametrize("unit", ["length", "energy"])
+def test_a_rotation_that_is_almost_zero_grows_as_it_should(lmp_tree, formulation, unit):
+    """The errors of bodies do not tell that their chain needs short steps."""
+    eps, errors = ("1e-6", "1e-9"), []
+    words = f"formulation {formulation} thermostat separate"
+    decks = [coasting(f"{words} tolerance {e} {unit}", 1e-9) for e in eps]
+    for run in tables(lmp_tree.succeed(one_after_the_other(decks))):
+        kinetic, xi = run["f_move[2]"], run["f_move[24]"]
+        log_kinetic, expected = warming(run["Time"], kinetic[0])
+        assert kinetic[0] < 1e-17 and 0.1 < kinetic[-1] < 10.0
+        assert run[LARGEST][-1] <= 1
+        errors.append([np.abs(np.log(kinetic) - log_kinetic).max(), np.abs(xi - expected).max()])
+    assert np.max(errors[0]) < 0.1
+    assert np.log10(np.divide(*errors)).min() > 1.5
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_cold_rotation_is_warned_of_once(lmp_tree, kind):
+    """With one chain for all it stays cold."""
+    words, run = f"thermostat {kind}", "run {}\nrun 100"
+    shown = dict(columns="")
+    said = "the rotational kinetic energy of the bodies was below 1 % of its target for 10 damping times"
+    for spin, steps, warned in ((1e-9, 600, 0), (1e-9, 1000, 1), (0.8, 1000, 0)):
+        result = lmp_tree.succeed(coasting(words, spin, run.format(steps), **shown))
+        assert result.output.count(said) == warned
+        assert "translational kinetic" not in result.output
+    *_, last = tables(lmp_tree.succeed(coasting(words, 1e-9, "run 2500", **shown)))
+    assert (last["f_move[2]"][-1] < 1e-15) == (kind == "total")
 
 
 # --- bodies that come and go --------------------------------------------------------------------
