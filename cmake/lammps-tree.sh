@@ -81,7 +81,7 @@ fetch_tree_from_debian() {
   fi
   mkdir all
   # only what a build needs, decks, and the manual
-  tar -xf "$archive" -C all --exclude='potentials/*' --exclude='log.*'
+  tar -xf "$archive" -C all --exclude='potentials/*' --exclude='log.[0-9]*'
   # some of Debian's archives have one folder at their top, some have none
   [ -e all/cmake/CMakeLists.txt ] && mv all tree || mv all/* tree
   keep_decks tree
