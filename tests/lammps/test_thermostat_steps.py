@@ -95,6 +95,19 @@ def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
     assert len({ends[f"{name}-again"] for name in names}) == len(names)
 
 
+def test_a_restart_at_times_of_output_bit_for_bit(lmp_tree):
+    """The command restart renews neighbor lists whenever it writes a file, so both runs need it."""
+    decks = [
+        changing(f"{TEMP} every/time 0.05", "1e-9", f"restart 90 {name}.*\nrun {steps}")
+        for name, steps in (("first", 300), ("second", 210))
+    ]
+    decks[1] = continued(decks[1], "first.90")
+    whole, again = tables(lmp_tree.succeed(one_after_the_other(decks), ranks=4))
+    assert whole[REPEATED][-1] > whole[REPEATED][90]
+    for column in ("Time", "PotEng", "Econserve", NEXT, REPEATED, XI):
+        assert again[column][1:].tolist() == whole[column][91:].tolist(), column
+
+
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_ranks_agree(lmp_tree, formulation):
     """At the same times, for rounding moves the steps."""
