@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from gearquat_analysis import averages
+from gearquat_analysis import averages, correlations
 from gearquat_analysis.report import average_lines, write_averages
 
 FRAMES, BODIES = 2000, 60
@@ -47,7 +47,7 @@ def thermal(translation=1.3, axes=(1.0, 1.1, 1.2), resting=True, moments=MOMENTS
     turn = Rotation.from_quat(q, scalar_first=True)
     results = Results(
         time=np.arange(FRAMES, dtype=float),
-        center=np.zeros((FRAMES, BODIES, 3)),
+        center=velocity.cumsum(axis=0),
         q=q.reshape(FRAMES, BODIES, 4),
         velocity=velocity,
         omega_space=turn.apply(omega.reshape(-1, 3)).reshape(FRAMES, BODIES, 3),
@@ -86,7 +86,48 @@ def test_the_error_of_independent_samples():
     values = np.random.default_rng(5).normal(size=(200, 1000))
     errors = [averages.of_series(one)[1] for one in values]
     assert np.mean(np.square(errors)) == pytest.approx(1e-3, rel=0.15)
-    assert np.isnan(averages.of_series(values[0, :5])).all()
+    few = averages.of_series(values[0, :5])
+    assert few[0] == pytest.approx(values[0, :5].mean()) and np.isnan(few[1])
+
+
+def test_all_samples_count():
+    """Also those that are too few for one more in each block."""
+    series = np.arange(19.0) ** 2
+    assert averages.of_series(series)[0] == pytest.approx(series.mean(), rel=1e-14)
+
+
+@pytest.mark.parametrize("resting", [True, False])
+def test_two_dimensions(resting):
+    """Two degrees of freedom of translation and one of rotation; the slope of the mean square is 4 D."""
+    poses = thermal(resting=resting)
+    results, rng = poses.results, np.random.default_rng(4)
+    results.velocity[..., 2] = 0.0
+    results.center = rng.normal(size=(FRAMES, BODIES, 3)).cumsum(axis=0) * [1.0, 1.0, 0.0]
+    spin = rng.normal(size=(FRAMES, BODIES)) * np.sqrt(1.1 / 3.0)
+    results.omega_space = spin[..., None] * [0.0, 0.0, 1.0]
+    results.ke_translation = (results.velocity**2).sum(axis=2)
+    results.ke_rotation = 1.5 * spin**2
+    found = averages.temperatures(poses)
+    assert set(found) == {"translation", "rotation"}
+    near(averages.of_series(found["translation"]), 1.3)
+    near(averages.of_series(found["rotation"]), 1.1)
+    known = {average.name: average for average in averages.averages(poses)}["diffusion coefficient"]
+    assert abs(known.value - 0.5) < 3.0 * known.error < 0.1
+
+
+def test_points_have_no_part_in_rotation():
+    """Averages of rotation with points among the bodies are those without them."""
+    mixed = thermal(moments=np.array([MOMENTS if body % 3 else 0.0 * MOMENTS for body in range(BODIES)]))
+    results, own = mixed.results, ~mixed.bodies.point
+    results.q[:, ~own], results.omega_space[:, ~own] = [1.0, 0.0, 0.0, 0.0], 0.0
+    few = {name: getattr(results, name)[:, own] for name in ("q", "omega_space", "center", "velocity")}
+    made = {name: getattr(mixed.bodies, name)[own] for name in ("mass", "moments", "axes", "point", "linear")}
+    alone = SimpleNamespace(results=Results(time=results.time, **few), bodies=Made(**made), unit=lambda name: "")
+    both = [correlations.all_correlations(poses).functions for poses in (mixed, alone)]
+    assert set(both[0]) == set(both[1]) and "axis1_order1" in both[0]
+    for name in both[0]:
+        if name.startswith(("axis", "omega", "mean_square_rotation")):
+            assert both[0][name] == pytest.approx(both[1][name], rel=1e-12, abs=1e-12), name
 
 
 def test_diffusion_of_a_random_walk():

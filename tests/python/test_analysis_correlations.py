@@ -164,3 +164,12 @@ def test_survival_of_many_is_that_of_mdanalysis():
 def test_impossible_places(places, radius, text):
     with pytest.raises(ValueError, match=text):
         residence.stays(np.zeros((2, 1, 3)), places, radius, [0, 1])
+
+
+def test_times_of_frames():
+    """Those of formats in single precision are even; a repeated frame is named."""
+    single = (1e3 + 0.01 * np.arange(400)).astype(np.float32)
+    assert correlations.lags(single)[-1] == pytest.approx(3.99, abs=1e-3)
+    for time in ([0.0, 1.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 1.01, 2.0, 3.0, 4.0]):
+        with pytest.raises(ValueError, match="after frame 1 at 1 is 1"):
+            correlations.lags(time)

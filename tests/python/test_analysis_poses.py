@@ -1,6 +1,7 @@
 """Poses, velocities, energies and momenta of known motions; the same by every backend."""
 
 import dumps
+import MDAnalysis
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -243,3 +244,12 @@ def test_pages_of_a_mapped_file_are_let_go(tmp_path):
     before = resident()
     assert table["a"].sum() == 20000 * 399 * 200
     assert resident() - before > 0.8 * table.nbytes
+
+
+def test_other_formats_have_the_units_of_mdanalysis():
+    universe = MDAnalysis.Universe.empty(6, n_residues=2, atom_resindex=[0, 0, 0, 1, 1, 1], trajectory=True)
+    universe.add_TopologyAttr("masses", np.ones(6))
+    universe.add_TopologyAttr("resids", [1, 2])
+    with pytest.raises(ValueError, match="units metal are required"):
+        Poses(universe.atoms, units="real")
+    assert Poses(universe.atoms, units="metal").units == "metal"

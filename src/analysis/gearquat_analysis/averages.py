@@ -20,6 +20,8 @@ BLOCKS, LONG_BLOCKS = 10, 5
 FEWEST = 20
 #: a total momentum whose energy is below this part of that of a degree of freedom is at rest
 AT_REST = 1e-3
+#: angular velocities of another axis, by those about z, that are rounding in a run of dimension 2
+IN_PLANE = 1e-6
 #: correlation at which its integral ends, and above which its tail is fitted
 TAIL, BEFORE_TAIL = 0.1, 0.3
 
@@ -75,25 +77,36 @@ def of_blocks(values):
 
 
 def of_series(series, count=BLOCKS):
-    """Mean of a series (F,) and its standard error from ``count`` blocks; a remainder comes first and is left out.
+    """Mean of a series (F,), and its standard error from ``count`` blocks that differ by one sample at most.
 
-    NaN if there are fewer samples than blocks.
+    The error is NaN if there are fewer samples than blocks.
     """
-    length = len(series) // count
-    if length < 1:
-        return float("nan"), float("nan")
-    return of_blocks(series[-length * count :].reshape(count, length).mean(axis=1))
+    if len(series) < count:
+        return float(np.mean(series)), float("nan")
+    blocks = [block.mean() for block in np.array_split(np.asarray(series, dtype=float), count)]
+    return float(np.mean(series)), of_blocks(blocks)[1]
 
 
 def _boltzmann(poses):
     return UNITS[poses.units or "lj"].boltzmann
 
 
+def dimension(results):
+    """2 if no center ever moves along z and no body turns about another axis, as in a run of dimension 2; else 3."""
+    center = results.center
+    if len(center) < 2 or np.ptp(center[..., 2], axis=0).any() or not np.ptp(center[..., :2], axis=0).any():
+        return 3
+    if "omega_space" not in results:
+        return 2
+    largest = np.abs(results.omega_space).max(axis=(0, 1))
+    return 2 if largest[:2].max() <= IN_PLANE * largest[2] else 3
+
+
 def temperatures(poses):
     """Temperatures of all frames, name -> (F,): of translation, of rotation and about each principal axis.
 
-    The degrees of freedom of translation do not contain the total momentum if it is zero.  Empty without
-    velocities or moments.  In LAMMPS' units; without ``units`` in those of mass x velocity^2.
+    The degrees of freedom of translation do not contain the total momentum if it is zero.  In two dimensions
+    (``dimension``) a body has two, and one of rotation.  Empty without velocities or moments.  In LAMMPS' units; without ``units`` in those of mass x velocity^2.
     """
     bodies, results = getattr(poses, "bodies", None), poses.results
     if bodies is None or "velocity" not in results:
@@ -102,11 +115,15 @@ def temperatures(poses):
     momentum = np.einsum("b,fbi->fi", bodies.mass, results.velocity)
     twice = 2.0 * results.ke_translation.sum(axis=1)
     of_total = energy * (momentum**2).sum(axis=1) / bodies.mass.sum()
-    resting = of_total.mean() < AT_REST * twice.mean() / (3 * len(bodies))
-    freedoms = 3 * len(bodies) - (3 if resting and len(bodies) > 1 else 0)
+    dimensions = dimension(results)
+    resting = of_total.mean() < AT_REST * twice.mean() / (dimensions * len(bodies))
+    freedoms = dimensions * (len(bodies) - (1 if resting and len(bodies) > 1 else 0))
     found = {"translation": twice / (freedoms * k)}
     turning = bodies.moments > 0.0
     if not turning.any():
+        return found
+    if dimensions == 2:
+        found["rotation"] = 2.0 * results.ke_rotation.sum(axis=1) / (turning.any(axis=1).sum() * k)
         return found
     found["rotation"] = 2.0 * results.ke_rotation.sum(axis=1) / (turning.sum() * k)
     for axis in range(3):
@@ -129,17 +146,17 @@ def _long_blocks(frames):
     return [slice(first + i * length, first + (i + 1) * length) for i in range(LONG_BLOCKS)] if length >= FEWEST else []
 
 
-def diffusion(time, center):
+def diffusion(time, center, dimensions=3):
     """Diffusion coefficient of centers (F, B, 3) and its standard error, length squared / time.
 
-    A sixth of the slope of the mean-square displacement at lags from a tenth to a half of a block.
-    NaN if blocks have too few frames.
+    The slope of the mean-square displacement at lags from a tenth to a half of a block, divided by twice the
+    number of ``dimensions``.  NaN if blocks have too few frames.
     """
     values = []
     for own in _long_blocks(len(time)):
         lag, square = correlations.lags(time[own]), correlations.mean_square_displacement(center[own])
         part = slice(len(lag) // 10, len(lag) // 2)
-        values.append(np.polyfit(lag[part], square[part], 1)[0] / 6.0)
+        values.append(np.polyfit(lag[part], square[part], 1)[0] / (2.0 * dimensions))
     return of_blocks(values) if values else (float("nan"), float("nan"))
 
 
@@ -184,14 +201,11 @@ def averages(poses):
     )
     correlations.lags(results.time)
     name = "diffusion coefficient"
-    found.append(Average(name, *diffusion(results.time, results.center), poses.unit(name)))
-    if bodies is not None and bodies.point.all():
-        return found
-    linear = bodies is not None and (bodies.linear | bodies.point).any()
-    for k in (2,) if linear else range(3):
-        axis = np.eye(3)[k] if bodies is None else bodies.axes[:, k]
+    found.append(Average(name, *diffusion(results.time, results.center, dimension(results)), poses.unit(name)))
+    q, _, axes = correlations.turning(poses)
+    for k, axis in axes.items():
         for order in (1, 2):
-            time = rotational_time(results.time, results.q, axis, order)
+            time = rotational_time(results.time, q, axis, order)
             unit = poses.unit("correlation time")
             found.append(Average(f"correlation time of axis {k + 1}, order {order}", *time, unit))
     return found

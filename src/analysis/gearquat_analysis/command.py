@@ -10,6 +10,11 @@ from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option
 from .units import UNITS
 
 
+#: files of the command beside poses.npy
+LEAVES = ("bodies.csv", "totals.csv", "totals.png", "motion.png", "poses.csv", "correlations.csv", "correlations.png")
+LEAVES += ("averages.csv", "averages.png", "stays.csv", "survival.csv")
+
+
 def _frames(_context, _option, text):
     """START:STOP:STEP as a slice."""
     try:
@@ -97,6 +102,8 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **
     places = near and _points("--near", near)
     out.mkdir(parents=True, exist_ok=True)
     poses = _run(dump, out, frames, converted, options)
+    for name in LEAVES:  # of another dump that was analyzed before
+        (out / name).unlink(missing_ok=True)
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
     pictures.draw_totals(poses, totals, out / "totals.png")

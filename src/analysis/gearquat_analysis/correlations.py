@@ -7,6 +7,7 @@ products of Fourier transforms (V. Calandrini et al., Collection SFN 12, 201 (20
 """
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 from scipy import fft
@@ -22,8 +23,17 @@ def lags(time):
     """Times (F,) that belong to the lags.  Raises ValueError unless ``time`` (F,) is evenly spaced."""
     time = np.asarray(time, dtype=float)
     gaps = np.diff(time)
-    if len(gaps) and (gaps[0] <= 0 or not np.allclose(gaps, gaps[0], rtol=1e-6)):
-        raise ValueError("correlations need frames at equal distances of time, and these are not")
+    if not len(gaps):
+        return time - time[0]
+    usual = np.median(gaps)
+    # formats such as xtc have times in single precision
+    uneven = np.abs(gaps - usual) > 1e-6 * abs(usual) + 2.0 * np.spacing(np.float32(np.abs(time).max()))
+    if usual <= 0.0 or uneven.any():
+        k = int(np.argmax(uneven))
+        raise ValueError(
+            "correlations need frames at equal distances of time, and these are not: the time after frame"
+            f" {k} at {time[k]:.9g} is {time[k + 1]:.9g}"
+        )
     return time - time[0]
 
 
@@ -167,27 +177,41 @@ class Correlations:
         return export.dataset(variables, {"lag": variables.pop("lag")[1]}, self.units)
 
 
+def turning(poses):
+    """Of the bodies that can turn: q (F, T, 4); their ``linear`` and ``axes`` as Bodies has them, None for a table;
+    and principal axis -> (T, 3) or (3,), only the third if one is linear.  Without q and axes if all are points."""
+    q, bodies = poses.results.q, getattr(poses, "bodies", None)
+    if bodies is None:
+        return q, None, dict(enumerate(np.eye(3)))
+    own = ~bodies.point
+    if not own.any():
+        return None, None, {}
+    some = SimpleNamespace(linear=bodies.linear[own], axes=bodies.axes[own])
+    axes = {k: some.axes[:, k] for k in ((2,) if some.linear.any() else range(3))}
+    return q if own.all() else q[:, own], some, axes
+
+
 def all_correlations(poses, progress=iter):
     """Correlations with every function above that finished ``Poses`` or ``TablePoses`` have the data for.
 
-    Axes 1 to 3 are the principal ones, the largest moment first; of linear bodies only the third, which is the body's own, and
-    of points none.  ``progress`` goes over the list of functions, as tqdm does.  Raises ValueError if
+    Axes 1 to 3 are the principal ones, the largest moment first; with linear bodies only the third, which is the body's
+    own.  Points are left out of all that is about rotation; in the table of the fix they cannot be told from other bodies.  ``progress`` goes over the list of functions, as tqdm does.  Raises ValueError if
     frames are not evenly spaced in time.
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
     lag = lags(results.time)
     tasks = [("mean_square_displacement", mean_square_displacement, (results.center,))]
-    for name in ("velocity", "omega_space"):
-        if name in results:
-            tasks.append((f"{name}_autocorrelation", autocorrelation, (results[name],)))
-    if bodies is None or not bodies.point.all():
-        tasks.append(("mean_square_rotation", mean_square_rotation, (results.q, bodies)))
-        linear = bodies is not None and (bodies.linear | bodies.point).any()
-        for k in (2,) if linear else range(3):
-            axis = np.eye(3)[k] if bodies is None else bodies.axes[:, k]
-            for order in (1, 2):
-                name = f"axis{k + 1}_order{order}"
-                tasks.append((name, orientation_correlation, (results.q, axis, order)))
+    if "velocity" in results:
+        tasks.append(("velocity_autocorrelation", autocorrelation, (results.velocity,)))
+    q, some, axes = turning(poses)
+    if axes:
+        if "omega_space" in results:
+            omega = results.omega_space if bodies is None else results.omega_space[:, ~bodies.point]
+            tasks.append(("omega_space_autocorrelation", autocorrelation, (omega,)))
+        tasks.append(("mean_square_rotation", mean_square_rotation, (q, some)))
+    for k, axis in axes.items():
+        for order in (1, 2):
+            tasks.append((f"axis{k + 1}_order{order}", orientation_correlation, (q, axis, order)))
     functions = {name: function(*arguments) for name, function, arguments in progress(tasks)}
     largest = 0.0
     if "mean_square_rotation" in functions:

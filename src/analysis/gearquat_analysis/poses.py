@@ -53,6 +53,10 @@ class _FrameTable(AnalysisBase):
         if units is not None and units not in UNITS:
             raise ValueError(f"units {units}: one of {', '.join(UNITS)} is required")
         trajectory = atoms.universe.trajectory
+        if units not in (None, "metal") and not hasattr(trajectory, "unit_style"):
+            raise ValueError(
+                f"units {units}: MDAnalysis gives this trajectory in Å and ps, so units metal are required, or none"
+            )
         super().__init__(trajectory, **kwargs)
         self.atoms, self.ids = atoms, ids
         self.units = units or getattr(trajectory, "unit_style", None)
