@@ -4,6 +4,7 @@
 #pragma once
 
 #include "follow.h"
+#include "numbers.h"
 
 namespace Drive {
 

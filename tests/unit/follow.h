@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include "checks.h"
 #include "drive.h"
 #include "gear_quat_step_control.h"
 

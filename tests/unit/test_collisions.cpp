@@ -1,6 +1,7 @@
 /* Collisions out of free flight under a tolerance: none is lost, whatever it is, and the error of the
    energy is what was asked for. */
 
+#include "checks.h"
 #include "collisions.h"
 
 #include <cstdlib>

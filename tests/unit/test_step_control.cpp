@@ -1,6 +1,7 @@
 /* A step and a number of values that follow the error: the rows, the estimates, the law, and what
    comes of them in the paper's cage. */
 
+#include "checks.h"
 #include "follow.h"
 #include "scenes.h"
 
