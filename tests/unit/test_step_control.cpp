@@ -97,11 +97,13 @@ TEST(StepControl, AShrinkingStepIsStable)
     return most;
   };
   for (const Scheme &scheme : every_scheme())
-    if (scheme.values() <= VARIABLE_MOST)
+    if (scheme.values() <= VARIABLE_MOST) {
       EXPECT_LT(worst(scheme, StepControl::GENTLE), 0.85) << scheme;
+    }
   for (const Scheme &scheme : every_scheme())
-    if (scheme.values() < VARIABLE_MOST)
+    if (scheme.values() < VARIABLE_MOST) {
       EXPECT_LT(worst(scheme, StepControl::SHRINK_FAILED), 0.85) << scheme;
+    }
   EXPECT_GT(worst(scheme_of(SECOND, VARIABLE_MOST), StepControl::SHRINK_FAILED), 1.0);
   EXPECT_GT(worst(scheme_of(SECOND, VARIABLE_MOST + 1), StepControl::GENTLE), 0.95);
 }
