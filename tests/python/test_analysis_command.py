@@ -147,6 +147,10 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     assert len(rows) == 500 and rows[0]["kind"] == "general" and float(rows[0]["mass"]) > 18.0
     for name in ("totals.png", "correlations.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+    # files that another analysis does not write are not those of the one before
+    result = analyze(water / "water.dump", tmp_path, "--units", "real", "--frames", ":2")
+    assert result.exit_code == 0, result.output
+    assert {path.name for path in tmp_path.iterdir()} == {"poses.npy", "bodies.csv", "totals.csv", "totals.png"}
 
 
 def test_command_takes_the_table_of_the_fix(water, tmp_path):
