@@ -217,7 +217,7 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, cons
   std::vector<std::string> names;
   for (const auto &row : keyword_table()) names.emplace_back(row.name);
   const std::string values =
-      before ? fmt::format("; behind {} there is {}", before->name, before->required()) : "";
+      before ? fmt::format("; {} takes {}", before->name, before->required()) : "";
   lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}{}; the keywords are {}", name, values,
                   utils::join_words(names, ", "));
 }

@@ -74,9 +74,9 @@ ARGUMENTS = {
     "molecule tolerance 1e-8 dtmax -1": "dtmax: -1 is not a positive number",
     "molecule tolerance 1e-8 dtmin 0.2 dtmax 0.1": "dtmin: 0.2 is larger than dtmax, 0.1",
     "molecule tolerance 1e-8 values 11": "11 values are more than 10",
-    "molecule tolerance 1e-8 enrgy": "keyword: enrgy; behind tolerance there is a positive number and "
+    "molecule tolerance 1e-8 enrgy": "keyword: enrgy; tolerance takes a positive number and "
     "perhaps length or energy and perhaps its unit; the keywords are formulation, values",
-    "molecule temp 1 1 0.1 5": "keyword: 5; behind temp there is Tstart Tstop Tdamp; the keywords are",
+    "molecule temp 1 1 0.1 5": "keyword: 5; temp takes Tstart Tstop Tdamp; the keywords are",
     "molecule spin 5": "Unknown fix gear/quat keyword: spin; the keywords are",
     "molecule tolerance energy 1e-8": "tolerance: energy is not a positive number",
     "molecule tolerance -1 energy": "tolerance: -1 is not a positive number",

@@ -127,7 +127,7 @@ def test_translation(line, translated):
         ("fix 1 a rigid single infile", "infile lacks"),
         ("fix 1 a gear/quat single force 1 off off", "force lacks"),
         ("fix 1 a gear/quat single spin 3", "unknown keyword spin$"),
-        ("fix 1 a gear/quat single tolerance 1 lenght", "keyword lenght; behind tolerance .* length or energy"),
+        ("fix 1 a gear/quat single tolerance 1 lenght", "keyword lenght; tolerance takes .* length or energy"),
     ],
 )
 def test_lines_that_are_refused(line, said):

@@ -250,8 +250,8 @@ def parse_fix(words):
         key = rest[0]
         if key not in known:
             before = given[-1][0] if options and given else ""
-            behind = f"; behind {before} there is {keywords.table()[before].values}" if before else ""
-            raise DeckError(f"{who}: unknown keyword {key}{behind}")
+            takes = f"; {before} takes {keywords.table()[before].values}" if before else ""
+            raise DeckError(f"{who}: unknown keyword {key}{takes}")
         if len(rest) <= known[key]:
             raise DeckError(f"{who}: keyword {key} lacks its arguments")
         if key not in MASKS:  # the last one counts
