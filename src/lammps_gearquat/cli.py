@@ -1,9 +1,13 @@
 """The command ``gearquat``: ``analyze`` of the package gearquat_analysis, and the modules of ``commands``."""
 
+import copy
+import subprocess
+import sys
+
 try:
     import cloup
 
-    from gearquat_analysis.command import analyze
+    from gearquat_analysis import command as analysis
     from gearquat_analysis.options import HELP, epilog
 except ModuleNotFoundError as error:
     raise SystemExit(
@@ -16,10 +20,30 @@ from .commands.horizon import horizon
 from .commands.scatter import scatter
 
 
+def _apart(command, module):
+    """``command``, executed by ``python -m module`` in a process of its own once its words are understood.
+
+    The analysis imports MDAnalysis, which is under the LGPL 3 or later and may not be combined with code
+    under the GPL 2 alone, as this package is.
+    """
+
+    def parse_args(context, words):
+        context.obj = list(words)
+        return command.parse_args(context, words)
+
+    @cloup.pass_context
+    def callback(context, **_options):
+        context.exit(subprocess.call([sys.executable, "-m", module, *context.obj]))
+
+    apart = copy.copy(command)
+    apart.parse_args, apart.callback = parse_args, callback
+    return apart
+
+
 @cloup.group(
     sections=[
         cloup.Section("Before a long run", [cost, horizon]),
-        cloup.Section("After it", [analyze]),
+        cloup.Section("After it", [_apart(analysis.analyze, "gearquat_analysis")]),
         cloup.Section("Many short runs", [scatter]),
     ],
     context_settings=HELP,

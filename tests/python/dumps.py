@@ -4,7 +4,7 @@ import numpy as np
 from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
-from lammps_gearquat.cli import main
+from gearquat_analysis import command
 
 COLUMNS = "id mol type mass xu yu zu vx vy vz"
 
@@ -70,7 +70,7 @@ def write(path, motion, times, change=None, **header):
 
 def analyze(path, out, *arguments):
     """What ``gearquat analyze`` does with a dump."""
-    return CliRunner().invoke(main, ["analyze", *map(str, [path, "--out", out, *arguments])])
+    return CliRunner().invoke(command.analyze, [*map(str, [path, "--out", out, *arguments])])
 
 
 def columns(path):

@@ -69,6 +69,20 @@ def test_licenses_go_together():
     assert not {"lammps", "lammps_gearquat", "benchmarks"} & imported("gearquat-analysis")
 
 
+def test_gearquat_analyze_runs_apart_from_the_rest(tmp_path):
+    """MDAnalysis is in another process, whose status is that of the command."""
+    write(tmp_path / "made.dump", Motion([3]), np.arange(4))
+    code = "import sys; sys.modules['MDAnalysis'] = None; from lammps_gearquat.cli import main; main()"
+
+    def status(*words):
+        return subprocess.run([sys.executable, "-c", code, "analyze", *words], cwd=tmp_path, capture_output=True).returncode
+
+    assert status("made.dump") == 0
+    assert (tmp_path / "gearquat-analyze" / "poses.npy").is_file()
+    assert status("made.dump", "--frames", "99:") == 1
+    assert status("made.dump", "--unknown") == 2
+
+
 def test_the_entry_for_the_registry_of_mdakits():
     """It has the keys that the registry requires, and says the same as the package."""
     entry = yaml.safe_load((ROOT / "src" / "analysis" / "metadata.yaml").read_text())

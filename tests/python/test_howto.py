@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lammps_gearquat.cli import main
+from gearquat_analysis.command import analyze
 from pages import blocks, edited, first_script, paste
 from running import ROOT
 
@@ -181,8 +181,8 @@ def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
     assert (folder / "dumbbells.xtc").stat().st_size > 1000
     assert np.load(folder / "gearquat-analyze/poses.npy", mmap_mode="r").shape[0] == 101
     monkeypatch.chdir(folder)
-    table = "analyze dumbbells.table --units lj --timestep 0.002 --out of-table".split()
-    assert CliRunner().invoke(main, table).exit_code == 0
+    table = "dumbbells.table --units lj --timestep 0.002 --out of-table".split()
+    assert CliRunner().invoke(analyze, table).exit_code == 0
     assert np.load("of-table/poses.npy", mmap_mode="r").shape[0] == 101
 
 
