@@ -76,14 +76,6 @@ static const char cite_second[] =
     " pages = {306--314}\n"
     "}\n\n";
 
-static const char cite_cases[] =
-    "fix gear/quat: both forms side by side, test cases\n\n"
-    "@Misc{PrattZaini,\n"
-    " author = {Ronald M. Pratt and Khairil Mazwan {Bin Mohamad Zaini}},\n"
-    " title = {General Algorithms for {3-D} Motion of a Non-Planar Body in a Steady-State Force "
-    "Field}\n"
-    "}\n\n";
-
 static const char cite_isokinetic[] =
     "fix gear/quat isokinetic: constant kinetic energy by Gauss' principle: "
     "https://doi.org/10.1103/PhysRevA.28.1016\n\n"
@@ -121,7 +113,6 @@ static const char cite_gear[] =
 void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
 {
   if (!lmp->citeme) return;
-  lmp->citeme->add(cite_cases);
   lmp->citeme->add(args.scheme.formulation == Formulation::FIRST ? cite_first : cite_second);
   if (!args.scheme.tuned) lmp->citeme->add(cite_gear);
   if (args.isokinetic != Isokinetic::NONE) lmp->citeme->add(cite_isokinetic);
