@@ -264,7 +264,7 @@ def test_evaluations_beside_the_strongest():
     assert name == "DOP853" and cost.value == pytest.approx(1000)
     short = {row[0]: row[1:] for row in finding.tables["readme"].rows}
     assert short["the strongest of the other methods"][1] == "1 000 (DOP853)"
-    assert short["the strongest over default settings"][1] == "1.1×"
+    assert short["strongest other method / default settings"][1] == "1.1×"
 
 
 def test_a_weak_peer_is_no_headline():

@@ -49,7 +49,9 @@ def columns(results, target):
     ours = list(_of_ours(results, target))
     counts = {f"`fix gear/quat`, {words} settings": count_text(cost) for words, _, cost, _ in ours}
     factors = {
-        f"the strongest over {words} settings": ratio_text(peer and cost and peer.over(cost), False)
+        f"strongest other method / {words} settings": ratio_text(
+            peer and cost and peer.over(cost), False
+        )
         for words, _, cost, _ in ours
     }
     method = ours[-1][1]
