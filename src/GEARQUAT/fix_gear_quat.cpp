@@ -215,7 +215,8 @@ void FixGearQuat::initial_integrate(int vflag)
   begin_step(vflag, atom->f, atom->torque);
 }
 
-/// The first fix gear/quat in the list starts the bodies of all of them, for they act on each other.
+/// The first fix gear/quat in the list starts the bodies of all of them, for they act on each
+/// other.
 void FixGearQuat::begin_steps(double **f, double **torque)
 {
   std::vector<Motion *> all;
@@ -296,8 +297,9 @@ void FixGearQuat::post_run()
   motion->end_run();
 }
 
-/// Virial of the constraint forces m a - f, at the pose where the forces were taken.  Those of a body
-/// add up to zero, so any origin serves; for the centroid form it is the mean place of its sites.
+/// Virial of the constraint forces m a - f, at the pose where the forces were taken.  Those of a
+/// body add up to zero, so any origin serves; for the centroid form it is the mean place of its
+/// sites.
 void FixGearQuat::tally_virial(double **f)
 {
   bodies->spread_loads();

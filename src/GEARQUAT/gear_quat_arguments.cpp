@@ -291,7 +291,8 @@ std::vector<tagint> Arguments::group_ids(int groupbit) const
   return ids;
 }
 
-/// The largest value and the largest difference of values: doubles up to here hold integers exactly.
+/// The largest value and the largest difference of values: doubles up to here hold integers
+/// exactly.
 static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
 
 /// Bodies are numbered from the smallest value in the group, as fix rigid numbers them.

@@ -54,8 +54,8 @@ struct Arguments : protected Pointers {
   std::vector<tagint> body_ids(int groupbit) const;
 
   /// What keywords force and torque turn off, for bodies of which something is off; later keywords
-  /// replace earlier ones.  ids: of all bodies, sorted.  A range that is none, or has bodies that do
-  /// not exist, ends the run, and so does motion out of the plane in two dimensions.
+  /// replace earlier ones.  ids: of all bodies, sorted.  A range that is none, or has bodies that
+  /// do not exist, ends the run, and so does motion out of the plane in two dimensions.
   std::map<tagint, Mask> masks_of(const std::vector<tagint> &ids) const;
 
  private:

@@ -212,9 +212,9 @@ void Assembly::find_frame(const Momenta &momenta, const Site *sites, int n, doub
       faulty[NOT_FINITE] = owned.body.id;
 }
 
-/// Directs the axes by the body itself, not by its orientation at the start: the first and the third
-/// axis point to the side of the heaviest site that is not in the plane across the axis; of equally
-/// heavy sites the first one counts.
+/// Directs the axes by the body itself, not by its orientation at the start: the first and the
+/// third axis point to the side of the heaviest site that is not in the plane across the axis; of
+/// equally heavy sites the first one counts.
 void Assembly::orient_axes(const Site *sites, int n, const double *center, double axes[9]) const
 {
   std::vector<const Site *> order(n);

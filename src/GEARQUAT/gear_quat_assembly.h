@@ -6,8 +6,8 @@
 /* Assembly: from sites with positions and velocities to rigid bodies.
 
    All sites of a body meet on one rank, which the body's ID names.  It sorts them by atom ID and
-   computes owner, mass properties, pose and velocities.  Sums therefore run in the same order on any
-   number of ranks, and nothing is communicated between all bodies. */
+   computes owner, mass properties, pose and velocities.  Sums therefore run in the same order on
+   any number of ranks, and nothing is communicated between all bodies. */
 
 #ifndef LMP_GEAR_QUAT_ASSEMBLY_H
 #define LMP_GEAR_QUAT_ASSEMBLY_H

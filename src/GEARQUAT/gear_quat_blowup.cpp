@@ -37,7 +37,8 @@ static constexpr char MEND[] = "or make the body linear by an infile with a smal
 
 namespace {
 
-/// Finds the axes of the smallest and of the largest moment.  False unless the smallest one is tiny.
+/// Finds the axes of the smallest and of the largest moment.  False unless the smallest one is
+/// tiny.
 bool thin(const RigidBody &body, int &smallest, int &largest)
 {
   smallest = largest = 0;
@@ -126,8 +127,8 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
                              "an angular velocity of"));
 }
 
-/// What to do about a body that is lost while it turns so, if it is nearly linear and turns about its
-/// axis; else empty.
+/// What to do about a body that is lost while it turns so, if it is nearly linear and turns about
+/// its axis; else empty.
 static std::string advice_on_spin(const RigidBody &body, const double *omega_body)
 {
   int smallest, largest;
@@ -196,8 +197,8 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   error->one(FLERR, text);
 }
 
-/// All ranks notice that a large body is unstable, each with its own sites.  Returns the text of the
-/// rank whose site is nearest to another atom.
+/// All ranks notice that a large body is unstable, each with its own sites.  Returns the text of
+/// the rank whose site is nearest to another atom.
 std::string Blowup::agree(const std::string &text, int ibody, int bad, const Meeting &met) const
 {
   const bool any = std::any_of(bodies.sites.begin(), bodies.sites.end(), [&](const auto &site) {

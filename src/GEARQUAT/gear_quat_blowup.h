@@ -4,10 +4,10 @@
 ------------------------------------------------------------------------- */
 
 /* Ends a run before its first step if a body turns faster than the method can follow (mostly nearly
-   linear ones, whose smallest moment of inertia makes them spin about their axis), and at the step in
-   which a body becomes unstable, before its atoms are placed, so before a dump or another fix sees
-   them.  The comparison is in gear_quat_limits.h and is made by the fix for every body and step; what
-   is here is for the run that has to end. */
+   linear ones, whose smallest moment of inertia makes them spin about their axis), and at the step
+   in which a body becomes unstable, before its atoms are placed, so before a dump or another fix
+   sees them.  The comparison is in gear_quat_limits.h and is made by the fix for every body and
+   step; what is here is for the run that has to end. */
 
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
 #define LMP_GEAR_QUAT_BLOWUP_H
@@ -17,8 +17,8 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Ends the run on all ranks if a body turns faster than can be followed at a step h.  Rank 0 warns of
-/// a nearly linear one that will, once it has its share of the kinetic energy.  Collective.
+/// Ends the run on all ranks if a body turns faster than can be followed at a step h.  Rank 0 warns
+/// of a nearly linear one that will, once it has its share of the kinetic energy.  Collective.
 void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, double h);
 
 class Blowup : protected Pointers {
@@ -32,14 +32,14 @@ class Blowup : protected Pointers {
   /// The limits for a step h in the present box.  A box that follows the atoms sets none.
   MotionLimits limits(double h) const;
 
-  /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms are
-  /// where the loads were taken; f: forces on them.
+  /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms
+  /// are where the loads were taken; f: forces on them.
   void check_loads(double h, double **f) const;
   /// The same of one body.
   void check_load(int ibody, double h, double **f) const;
   /// Ends the run on all ranks, from the one that owns the body (of a large one, from all of them
-  /// together): says step, time, body, its site nearest to another atom (or one on which the force is
-  /// no number), and what to change.
+  /// together): says step, time, body, its site nearest to another atom (or one on which the force
+  /// is no number), and what to change.
   /// Atoms are where the load was taken; s: what came of it, beyond the limits.
   [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
 

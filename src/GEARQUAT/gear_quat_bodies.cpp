@@ -207,7 +207,8 @@ void Bodies::share_owners()
     if (sought[i] > 0.0 && owned[i] >= 0 && !is_large(owned[i])) shared[i] = owned[i];
 }
 
-/// The IDs of their bodies for ghost atoms, and the bodies themselves for ghosts of shared owner atoms.
+/// The IDs of their bodies for ghost atoms, and the bodies themselves for ghosts of shared owner
+/// atoms.
 void Bodies::tell_ghosts()
 {
   forward = Forward::GHOSTS;

@@ -8,8 +8,8 @@
    A body belongs to the rank that owns its owner atom and migrates with it.  Owned bodies come
    first, then ghost bodies: copies of pose and velocities for atoms whose owner atom is a ghost
    here.  Few bodies lie across the border of two ranks, so only the owner atoms of these are shared
-   with their ghosts.  Centers of mass are unwrapped; atoms are placed with their own image flags, so
-   that bodies need none.
+   with their ghosts.  Centers of mass are unwrapped; atoms are placed with their own image flags,
+   so that bodies need none.
 
    A body that reaches further than ghost atoms are seen is large: every rank has it, with its
    history, and moves it as its owner does; its loads are summed over all ranks.  Of all other
@@ -106,8 +106,8 @@ class Bodies : protected Pointers {
   const double *axes(int ibody) const { return frame[ibody].axes; }
   double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
-  // Of a scheme with a trial row: histories that are kept for a step that may be undone, also if bodies
-  // change their ranks in it.
+  // Of a scheme with a trial row: histories that are kept for a step that may be undone, also if
+  // bodies change their ranks in it.
   void keep_histories();
   void put_back_histories();
   bool in_body(int atom) const { return body_id[atom] != 0; }
@@ -126,28 +126,29 @@ class Bodies : protected Pointers {
   void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
   /// Build the same bodies anew from the atoms' present masses, positions and velocities.
   void recreate();
-  /// Bodies as a restart file has them, in place of those that the command has just made of the same
-  /// atoms; the command numbers them and may leave some out.  NONE, and no bodies are left, if they
-  /// differ otherwise.  packed: of every owned atom, or null; extended: with such atoms; group: atoms
-  /// outside of it are in what bodies the file says, 0 for none.
+  /// Bodies as a restart file has them, in place of those that the command has just made of the
+  /// same atoms; the command numbers them and may leave some out.  NONE, and no bodies are left, if
+  /// they differ otherwise.  packed: of every owned atom, or null; extended: with such atoms;
+  /// group: atoms outside of it are in what bodies the file says, 0 for none.
   enum class Resumed { ALL, FEWER, NONE };
   Resumed resume(const std::vector<const double *> &packed, bool extended, int group);
   /// Ends the run if an atom of a body is of a kind that cannot be followed.
   void refuse_atoms() const;
   /// Before a run: bodies that reach further than ghost atoms are seen are large.
   void choose_large();
-  /// Find the body of every atom after atoms were exchanged, created or removed; one that not all of
-  /// its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
+  /// Find the body of every atom after atoms were exchanged, created or removed; one that not all
+  /// of its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
   void update_ghosts();
   /// Ghost atoms learn the IDs of their bodies if all bodies are large.  Collective.
   void tell_ids_to_ghosts()
   {
     if (nlarge == nbodies) tell_ghosts();
   }
-  /// True if masses, positions and velocities of all atoms are those of their bodies.  Ends the run if
-  /// image flags or another box have torn a body.
+  /// True if masses, positions and velocities of all atoms are those of their bodies.  Ends the run
+  /// if image flags or another box have torn a body.
   bool atoms_match();
-  /// Ends the run if a body has lost some of its atoms, and follows changed atom IDs; needs no ghosts.
+  /// Ends the run if a body has lost some of its atoms, and follows changed atom IDs; needs no
+  /// ghosts.
   void check_whole();
   /// The IDs of all bodies, sorted, on all ranks.  Collective.
   std::vector<tagint> all_ids() const;
@@ -186,8 +187,8 @@ class Bodies : protected Pointers {
   void spread_loads();
   /// Index of the first site that is not at its center of mass.
   size_t first_arm() const { return ncentered; }
-  /// Constraint force m a - f of a site under the present loads, its arm from the center of mass, and
-  /// its virial: xx yy zz xy xz yz.
+  /// Constraint force m a - f of a site under the present loads, its arm from the center of mass,
+  /// and its virial: xx yy zz xy xz yz.
   struct ConstraintForce {
     double force[1][3], arm[1][3], virial[6];
   };

@@ -56,8 +56,8 @@ struct SiteCount {
 };
 
 /// The sites of every body meet on one rank, which the atom ID of the owner names, and are counted.
-/// Needs no ghost atoms, so it can be taken at any time; once per run, not per step.  The same on all
-/// ranks; bodies are named by their IDs, 0 for none.
+/// Needs no ghost atoms, so it can be taken at any time; once per run, not per step.  The same on
+/// all ranks; bodies are named by their IDs, 0 for none.
 struct Census {
   bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
   tagint broken = 0;              ///< a body that has lost atoms, or that several IDs name
@@ -160,8 +160,9 @@ bool Census::same_masses(const SiteCount *sites, int n, const SiteCount &owner) 
   return true;
 }
 
-/// The user may have moved, rotated or deformed a body between two runs.  It is torn if its atoms are
-/// whole periods further apart than before, or if parts of it have moved with the faces of the box.
+/// The user may have moved, rotated or deformed a body between two runs.  It is torn if its atoms
+/// are whole periods further apart than before, or if parts of it have moved with the faces of the
+/// box.
 void Census::look_for_tears(const SiteCount *sites, int n, const SiteCount &owner)
 {
   for (int i = 0; i < n; ++i) {
@@ -333,7 +334,8 @@ Bodies::Resumed Bodies::resume(const std::vector<const double *> &packed, bool w
   return Resumed::NONE;
 }
 
-/// Owners may have got other atom IDs (reset_atoms id, delete_atoms compress yes): told to their sites.
+/// Owners may have got other atom IDs (reset_atoms id, delete_atoms compress yes): told to their
+/// sites.
 void Bodies::follow_atom_ids()
 {
   std::vector<tagint> changed;    // before and now

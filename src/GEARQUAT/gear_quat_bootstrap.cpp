@@ -221,8 +221,8 @@ struct Bootstrap::Search {
     return true;
   }
 
-  /// Forces at one node; change: grows to what they change.  False, with nothing evaluated, if a site
-  /// would leave the skin.
+  /// Forces at one node; change: grows to what they change.  False, with nothing evaluated, if a
+  /// site would leave the skin.
   bool visit_node(int node, double &change)
   {
     for (auto &party : our.parties) {

@@ -3,8 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Start-up of all bodies inside LAMMPS, those of several fixes together: the loop over nodes and bodies around the kernel's
-   collocation (gear_quat_startup.h), with LAMMPS' own forces at every node. */
+/* Start-up of all bodies inside LAMMPS, those of several fixes together: the loop over nodes and
+   bodies around the kernel's collocation (gear_quat_startup.h), with LAMMPS' own forces at every
+   node. */
 
 #ifndef LMP_GEAR_QUAT_BOOTSTRAP_H
 #define LMP_GEAR_QUAT_BOOTSTRAP_H

@@ -3,31 +3,31 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A Nose-Hoover chain: a thermostat of M variables xi_k (1/time), of which the first is the friction of
-   all momenta that it acts on (doc/theory.md, Eqs. T1 to T4):
+/* A Nose-Hoover chain: a thermostat of M variables xi_k (1/time), of which the first is the
+   friction of all momenta that it acts on (doc/theory.md, Eqs. T1 to T4):
 
      p' = F - xi_1 p,   L' = tau - xi_1 L                                                     (T1)
      xi_1' = (2K/(g kT) - 1)/tau^2 - xi_1 xi_2                                                (T2)
      xi_2' = g xi_1^2 - 1/tau^2 - xi_2 xi_3
      xi_k' = xi_(k-1)^2 - 1/tau^2 - xi_k xi_(k+1)          k > 2, without the last term for k = M
 
-   with the kinetic energy K of g degrees of freedom, and the masses Q_1 = g kT tau^2, Q_k = kT tau^2 of
-   the fixes nvt and rigid/nvt.  Potential energy + K + E is constant, where
+   with the kinetic energy K of g degrees of freedom, and the masses Q_1 = g kT tau^2,
+   Q_k = kT tau^2 of the fixes nvt and rigid/nvt.  Potential energy + K + E is constant, where
 
      E = sum_k Q_k xi_k^2/2 + S                                                               (T3)
      S' = kT (g xi_1 + xi_2 + ... + xi_M) - (sum_k Q_k xi_k^2/2) T'/T                         (T4)
 
    also while the target T and with it the masses change.
-   Sources: G. J. Martyna, M. L. Klein, M. Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II, where
-   p_eta_k = Q_k xi_k; the masses: G. J. Martyna, M. E. Tuckerman, D. J. Tobias, M. L. Klein, Mol. Phys.
-   87, 1117 (1996), section 2.5.  A chain of a single variable is that of W. G. Hoover, Phys. Rev. A 31,
-   1695 (1985), after S. Nose, J. Chem. Phys. 81, 511 (1984).
+   Sources: G. J. Martyna, M. L. Klein, M. Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II,
+   where p_eta_k = Q_k xi_k; the masses: G. J. Martyna, M. E. Tuckerman, D. J. Tobias, M. L. Klein,
+   Mol. Phys. 87, 1117 (1996), section 2.5.  A chain of a single variable is that of W. G. Hoover,
+   Phys. Rev. A 31, 1695 (1985), after S. Nose, J. Chem. Phys. 81, 511 (1984).
 
    The variables xi_1 ... xi_M and S have histories of n rows, and behind them the trial row of
-   gear_quat_step_control.h.  The host calls, for the start: rates(), and seed() for every variable; once
-   a step predict(), correct() in every pass, with the kinetic energy that is known then, and conclude();
-   where step or number of values change rescale() and set_values(); and where degrees of freedom come or
-   go replace_target(). */
+   gear_quat_step_control.h.  The host calls, for the start: rates(), and seed() for every variable;
+   once a step predict(), correct() in every pass, with the kinetic energy that is known then, and
+   conclude(); where step or number of values change rescale() and set_values(); and where degrees
+   of freedom come or go replace_target(). */
 
 #ifndef GEAR_QUAT_CHAIN_H
 #define GEAR_QUAT_CHAIN_H
@@ -131,8 +131,8 @@ class Chain {
     }
   }
 
-  /// The largest of the variables xi in rows n - 1 and n (1/time), and how much row n changed in the
-  /// step; after conclude().
+  /// The largest of the variables xi in rows n - 1 and n (1/time), and how much row n changed in
+  /// the step; after conclude().
   struct HighRows {
     double last = 0.0, trial = 0.0, change = 0.0;
   };
@@ -147,8 +147,8 @@ class Chain {
     return largest;
   }
 
-  /// Degrees of freedom have changed: E and all xi stay, and the first derivatives become those of the
-  /// new target and kinetic energy.
+  /// Degrees of freedom have changed: E and all xi stay, and the first derivatives become those of
+  /// the new target and kinetic energy.
   void replace_target(const ChainTarget &before, const ChainTarget &target, double twice_kinetic,
                       double h)
   {

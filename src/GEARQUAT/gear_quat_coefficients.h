@@ -92,8 +92,9 @@ inline Fractions first_order_coefficients(int values)
   return c;
 }
 
-/// Second-order equation, N values.  velocity_c0: for right sides that depend on velocities, of order
-/// N - 1; otherwise for positions alone, of order N, and of N + 1 for even N where motion swings slowly.
+/// Second-order equation, N values.  velocity_c0: for right sides that depend on velocities, of
+/// order N - 1; otherwise for positions alone, of order N, and of N + 1 for even N where motion
+/// swings slowly.
 inline Fractions second_order_coefficients(int values, bool velocity_c0)
 {
   const Fractions a = first_order_coefficients(values - 1);
@@ -102,8 +103,9 @@ inline Fractions second_order_coefficients(int values, bool velocity_c0)
   return c;
 }
 
-/// What a residual tells of the local error of row 0.  First-order equation: the difference from the
-/// corrector of the next lower order, c_0(N - 1) - c_0(N); the error itself is of one order more.
+/// What a residual tells of the local error of row 0.  First-order equation: the difference from
+/// the corrector of the next lower order, c_0(N - 1) - c_0(N); the error itself is of one order
+/// more.
 inline Fraction first_order_error_weight(int values)
 {
   return adams_moulton(values - 1);

@@ -3,11 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A sum that does not depend on the order of its terms, nor on how they are spread over ranks: integers
-   in units of 2^-73 of a scale that all terms share.  A term is rounded to that; the sum of up to 2^31
-   terms is exact otherwise, while it stays below 2^20 scales.
+/* A sum that does not depend on the order of its terms, nor on how they are spread over ranks:
+   integers in units of 2^-73 of a scale that all terms share.  A term is rounded to that; the sum
+   of up to 2^31 terms is exact otherwise, while it stays below 2^20 scales.
 
-   Every rank adds its terms; the host adds `limbs` of all ranks, number by number, and asks for value(). */
+   Every rank adds its terms; the host adds `limbs` of all ranks, number by number, and asks for
+   value(). */
 
 #ifndef GEAR_QUAT_EXACT_SUM_H
 #define GEAR_QUAT_EXACT_SUM_H

@@ -33,13 +33,15 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// pair styles that draw random numbers, or keep contacts, bonds or charges from one step to the next
+// pair styles that draw random numbers, or keep contacts, bonds or charges from one step to the
+// next
 
 static const char *const UNFOLLOWED_PAIRS[] = {"dpd",      "gran",  "brownian", "^dsmc",
                                                "^reax",    "^bpm",  "^amoeba",  "^hippo",
                                                "^tracker", "^peri", "^rheo",    "^smd"};
 
-// random forces, and the most values that leave bodies at their temperature; collisions last one step
+// random forces, and the most values that leave bodies at their temperature; collisions last one
+// step
 
 static const char *const RANDOM_PAIRS[] = {"dpd", "brownian", "^dsmc"};
 static const char *const RANDOM_FIXES[] = {"langevin", "brownian", "^gle", "^gld", "^ttm"};
@@ -169,8 +171,8 @@ void Forces::look_at_time()
   restore();
 }
 
-/// Forces and torques of the fixes alone at another step; reason() says if one of them reads an energy
-/// or a pressure.
+/// Forces and torques of the fixes alone at another step; reason() says if one of them reads an
+/// energy or a pressure.
 std::vector<double> Forces::external_forces(bigint step)
 {
   const bigint present = update->ntimestep;

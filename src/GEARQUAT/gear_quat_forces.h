@@ -7,8 +7,8 @@
 
    Followed: pair, bonded and kspace forces of styles that depend on positions and velocities only,
    and the post_force() of the fixes in a list (external fields, walls, springs).  Not followed, so
-   that reason() says why: anything that moves or draws by itself, and what depends on the time or on
-   energies and pressures, which LAMMPS knows in steps only.
+   that reason() says why: anything that moves or draws by itself, and what depends on the time or
+   on energies and pressures, which LAMMPS knows in steps only.
 
    And the forces of a step of r-RESPA. */
 
@@ -32,9 +32,9 @@ namespace LAMMPS_NS::GearQuat {
 
 struct Scheme;
 
-/// What LAMMPS notes of computes: in which step each was evaluated last, for which steps it was asked,
-/// and in which step energies and virials were tallied.  A fix whose force is a variable of computes
-/// changes these notes whenever its force is evaluated, between steps too.
+/// What LAMMPS notes of computes: in which step each was evaluated last, for which steps it was
+/// asked, and in which step energies and virials were tallied.  A fix whose force is a variable of
+/// computes changes these notes whenever its force is evaluated, between steps too.
 class Tallies : protected Pointers {
  public:
   explicit Tallies(LAMMPS *lmp) : Pointers(lmp) {}
@@ -76,7 +76,8 @@ class Forces : protected Pointers {
   /// Largest distance of an owned atom from where save() found it, on all ranks.
   double largest_displacement() const;
   /// Forces of owned atoms at their present positions into atom->f.  Without flags energies and
-  /// virials are left as they are; with those of LAMMPS' present step they are those of the positions.
+  /// virials are left as they are; with those of LAMMPS' present step they are those of the
+  /// positions.
   void evaluate(int eflag = 0, int vflag = 0);
 
  private:

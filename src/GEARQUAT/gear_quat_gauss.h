@@ -5,13 +5,13 @@
 
 /* Constant kinetic energy by Gauss's principle of least constraint, for first-order equations:
 
-     p' = F - alpha p,   L' = tau - alpha L      (space frame; body frame: omega' gains -alpha omega)
+     p' = F - alpha p,   L' = tau - alpha L    (space frame; body frame: omega' gains -alpha omega)
      alpha = sum(F.v + tau.omega) / sum(m v.v + omega.I.omega)
 
-   with the sums over all bodies, so that d/dt of the lower one vanishes; the gyroscopic term does no
-   work.  `total` has one alpha, `separate` one for translation and one for rotation, each from its own
-   terms.  For points: D. J. Evans, W. G. Hoover, B. H. Failor, B. Moran, A. J. C. Ladd, Phys. Rev. A
-   28, 1016 (1983). */
+   with the sums over all bodies, so that d/dt of the lower one vanishes; the gyroscopic term does
+   no work.  `total` has one alpha, `separate` one for translation and one for rotation, each from
+   its own terms.  For points: D. J. Evans, W. G. Hoover, B. H. Failor, B. Moran, A. J. C. Ladd,
+   Phys. Rev. A 28, 1016 (1983). */
 
 #ifndef GEAR_QUAT_GAUSS_H
 #define GEAR_QUAT_GAUSS_H
@@ -81,8 +81,8 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
   return {both, both};
 }
 
-/// The rates at which momenta of one body decay, 1/time: of its momentum along the axes of space, and
-/// of its angular momentum.
+/// The rates at which momenta of one body decay, 1/time: of its momentum along the axes of space,
+/// and of its angular momentum.
 struct Friction {
   double translation[3] = {0.0, 0.0, 0.0};
   double rotation = 0.0;

@@ -41,8 +41,8 @@ class Integrator : public Kinematics {
   }
 
   int values() const { return n; }
-  /// Coefficients of scalars with a first-order equation and as many values: in the first-order form
-  /// those of momenta, otherwise Gear's.
+  /// Coefficients of scalars with a first-order equation and as many values: in the first-order
+  /// form those of momenta, otherwise Gear's.
   const CorrectorCoefficients::Array &scalar_coefficients() const { return scalar; }
 
   void predict(double *rows) const
@@ -85,9 +85,9 @@ class Integrator : public Kinematics {
     return correct(body, load, axes_of(rows).data(), rows);
   }
 
-  // Under a friction that depends on all bodies together: the same correction pass by pass, begin(),
-  // passes times [friction] -> correct_pass(), then finish(), and in the first-order form also
-  // scale_momenta().
+  // Under a friction that depends on all bodies together: the same correction pass by pass,
+  // begin(), passes times [friction] -> correct_pass(), then finish(), and in the first-order form
+  // also scale_momenta().
 
   struct Residual {    ///< summed over the passes
     double x[3], q[4];
@@ -385,7 +385,8 @@ class Integrator : public Kinematics {
     if (scheme.project) project(history, rows);
   }
 
-  /// A rescaled q with a radial rate left in would damp the spin: the rate is projected too (Eq. 4).
+  /// A rescaled q with a radial rate left in would damp the spin: the rate is projected too
+  /// (Eq. 4).
   template <int CARRIES> void project(Second<CARRIES> history, double *rows) const
   {
     const double *q = rows + Scheme::SECOND_QUATERNION, *rates = q + Scheme::SECOND_WIDTH;

@@ -3,12 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword isokinetic: bodies whose kinetic energy stays what it is (gear_quat_gauss.h).  The multipliers
-   need sums over all bodies on all ranks: a reduction of four numbers in every pass of the corrector,
-   and one after it.
+/* Keyword isokinetic: bodies whose kinetic energy stays what it is (gear_quat_gauss.h).  The
+   multipliers need sums over all bodies on all ranks: a reduction of four numbers in every pass of
+   the corrector, and one after it.
 
-   The heat that the constraint takes, W' = sum(F.v + tau.omega), is integrated as the bodies are, so
-   that potential and kinetic energy and W are constant to the order of the method. */
+   The heat that the constraint takes, W' = sum(F.v + tau.omega), is integrated as the bodies are,
+   so that potential and kinetic energy and W are constant to the order of the method. */
 
 #ifndef LMP_GEAR_QUAT_ISOKINETIC_H
 #define LMP_GEAR_QUAT_ISOKINETIC_H

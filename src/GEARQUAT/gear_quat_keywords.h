@@ -44,9 +44,9 @@ struct KeywordValue {
 };
 
 struct Keyword {
-  /// WORD: one of some words; NUMBER: a positive one, perhaps with a word behind it, which may have a
-  /// unit, another positive number; NUMBERS: some positive ones; NAME: any word that is not empty;
-  /// MASK: four words, and the keyword may be given many times.
+  /// WORD: one of some words; NUMBER: a positive one, perhaps with a word behind it, which may have
+  /// a unit, another positive number; NUMBERS: some positive ones; NAME: any word that is not
+  /// empty; MASK: four words, and the keyword may be given many times.
   enum Kind { WORD, INTEGER, NUMBER, NAME, MASK, NUMBERS };
   struct Range {
     int fewest, most, standard;
@@ -144,8 +144,8 @@ struct Keyword {
   /// Reads the words behind arg[0] into value and returns how many they are.  Words that cannot be
   /// meant end the run on all ranks.
   int read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const;
-  /// What the words have to be, as a sentence has it: "no, short or long", "1 to 100", "M xflag yflag
-  /// zflag".
+  /// What the words have to be, as a sentence has it: "no, short or long", "1 to 100", "M xflag
+  /// yflag zflag".
   std::string required() const;
   /// The same with what holds for some settings of other keywords.
   std::string possible_values() const;
@@ -154,8 +154,9 @@ struct Keyword {
 /// All rows, in the order of the manual.
 const std::vector<Keyword> &keyword_table();
 
-/// The row of a keyword.  An unknown one ends the run on all ranks, with what to write instead if it
-/// is a keyword of the rigid fixes, or else with what may follow `before`, the keyword ahead of it.
+/// The row of a keyword.  An unknown one ends the run on all ranks, with what to write instead if
+/// it is a keyword of the rigid fixes, or else with what may follow `before`, the keyword ahead of
+/// it.
 const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
 
 /// The numbers of values of a formulation that have tuned coefficients, in a row.

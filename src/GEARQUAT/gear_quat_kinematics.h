@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What the rows of a history say of its body: pose and velocities, before or after a correction; and
-   velocities into a history.  No evolution in time: that is gear_quat_integrator.h. */
+/* What the rows of a history say of its body: pose and velocities, before or after a correction;
+   and velocities into a history.  No evolution in time: that is gear_quat_integrator.h. */
 
 #ifndef GEAR_QUAT_KINEMATICS_H
 #define GEAR_QUAT_KINEMATICS_H
@@ -60,12 +60,12 @@ class Kinematics {
   }
 
   /// Velocities of the state into a history of the same pose, and with them the accelerations that
-  /// depend on velocities: those of the rotation and, of formulation first, those of the load, which
-  /// may be damped.  Other derivatives stay.  load: at this pose.
+  /// depend on velocities: those of the rotation and, of formulation first, those of the load,
+  /// which may be damped.  Other derivatives stay.  load: at this pose.
   ///
-  /// The corrector sets these rows too, but for the second derivative of the quaternion in formulation
-  /// first.  That changes by what the velocities change of it: to set it in every step would be another
-  /// corrector, unstable with 8 values.
+  /// The corrector sets these rows too, but for the second derivative of the quaternion in
+  /// formulation first.  That changes by what the velocities change of it: to set it in every step
+  /// would be another corrector, unstable with 8 values.
   void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
                       double *rows) const
   {

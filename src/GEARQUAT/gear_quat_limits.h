@@ -4,14 +4,14 @@
 ------------------------------------------------------------------------- */
 
 /* What no step can be right about: a body that turns by half a turn in one step (from the poses
-   alone nobody can tell which way round), that crosses the whole scene in one, whose quaternion is so
-   far from unit length that unprojected sites are a hundred times too far out or in, or whose motion
-   is no number.  All are far outside of what is stable, so only runs that are lost end here: the
-   quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h = 1.57,
-   and no method here is stable beyond 1.42.
+   alone nobody can tell which way round), that crosses the whole scene in one, whose quaternion is
+   so far from unit length that unprojected sites are a hundred times too far out or in, or whose
+   motion is no number.  All are far outside of what is stable, so only runs that are lost end here:
+   the quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h =
+   1.57, and no method here is stable beyond 1.42.
 
-   Which of the slower rotations a method follows at a given step depends on the number of values, on
-   the passes and on the moments: a free flight on trial tells, and needs no table. */
+   Which of the slower rotations a method follows at a given step depends on the number of values,
+   on the passes and on the moments: a free flight on trial tells, and needs no table. */
 
 #ifndef GEAR_QUAT_LIMITS_H
 #define GEAR_QUAT_LIMITS_H

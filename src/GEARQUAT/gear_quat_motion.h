@@ -4,13 +4,13 @@
 ------------------------------------------------------------------------- */
 
 /* Motion of all owned bodies: predicted, then corrected with the loads that the store has gathered.
-   Knows which laws hold in this run (masks, isokinetic, thermostat, tolerance) and decides once a step, not once
-   a body, which of them the loop over bodies has to heed.
+   Knows which laws hold in this run (masks, isokinetic, thermostat, tolerance) and decides once a
+   step, not once a body, which of them the loop over bodies has to heed.
 
    The fix calls, before the first step of a run: [gathers present loads] begin_steps(); every step:
-   predict(); [places sites, forces, gathers loads]; correct(); and with a changing step repeats_step(),
-   after which it places sites, calls evaluate(), gathers loads and corrects once more if so; and when
-   all fixes have finished the step choose_step(). */
+   predict(); [places sites, forces, gathers loads]; correct(); and with a changing step
+   repeats_step(), after which it places sites, calls evaluate(), gathers loads and corrects once
+   more if so; and when all fixes have finished the step choose_step(). */
 
 #ifndef LMP_GEAR_QUAT_MOTION_H
 #define LMP_GEAR_QUAT_MOTION_H
@@ -51,9 +51,10 @@ class Motion : protected Pointers {
   void take_velocities(const std::vector<int> &changed);
   /// True before the first step of a run that LAMMPS has set up: begin_steps() has to be called.
   bool begins_steps() const { return set_up; }
-  /// Loads are the present ones of all fixes, f what they were gathered from.  Histories are made from
-  /// them, unless there are some that agree with them.  all: of all fixes gear/quat; those that need a
-  /// start make all others begin anew with them, where a full start is possible.  Collective.
+  /// Loads are the present ones of all fixes, f what they were gathered from.  Histories are made
+  /// from them, unless there are some that agree with them.  all: of all fixes gear/quat; those
+  /// that need a start make all others begin anew with them, where a full start is possible.
+  /// Collective.
   static void begin_steps(const std::vector<Motion *> &all, double **f);
   /// True if a start finds all derivatives, as far as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
@@ -68,8 +69,8 @@ class Motion : protected Pointers {
 
   bool changes_step() const { return tolerance != nullptr; }
   bool is_tuned() const { return args.scheme.tuned; }
-  /// After correct(): true if the step has failed.  After the call histories and states are those of
-  /// the prediction of a shorter one.  f: as in correct().  Collective.
+  /// After correct(): true if the step has failed.  After the call histories and states are those
+  /// of the prediction of a shorter one.  f: as in correct().  Collective.
   bool repeats_step(double **f);
   void evaluate(int vflag) { tolerance->evaluate(vflag); }
   /// To be called with tolerance only, when all fixes have finished the step.  Collective.

@@ -28,10 +28,11 @@ using namespace GearQuat;
 static constexpr double SHORTER = 0.49;
 
 // Forces at a corrected pose differ from those at the predicted one by what the step has corrected,
-// so at a stable step they leave a smaller residual than the last one.  If a residual exceeds the last
-// one OTHER_FORCES times, or OTHER_NOISE times where forces are random, the forces are not those of
-// the last step any more.  Residuals that rounding explains are excepted: rounding of forces, relative
-// to the largest force on an atom, and rounding of the way that a body moves in a step.
+// so at a stable step they leave a smaller residual than the last one.  If a residual exceeds the
+// last one OTHER_FORCES times, or OTHER_NOISE times where forces are random, the forces are not
+// those of the last step any more.  Residuals that rounding explains are excepted: rounding of
+// forces, relative to the largest force on an atom, and rounding of the way that a body moves in a
+// step.
 
 static constexpr double OTHER_FORCES = 1.0, OTHER_NOISE = 10.0;
 static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-13;

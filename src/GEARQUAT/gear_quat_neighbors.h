@@ -4,12 +4,12 @@
 ------------------------------------------------------------------------- */
 
 /* Other fixes that change velocities, places or masses of the atoms of bodies.  One table says, by
-   style, what happens: bodies take the change over, the run ends once the change happens, or it does
-   not begin.  The manual has the same table.  What no table knows is found by samples.
+   style, what happens: bodies take the change over, the run ends once the change happens, or it
+   does not begin.  The manual has the same table.  What no table knows is found by samples.
 
    The fix calls init() before every run; take_velocities() before a step, with the velocities that
-   the step before has left; check_places() after the forces, with the predicted places; note_place()
-   and note_velocity() when it has placed its sites. */
+   the step before has left; check_places() after the forces, with the predicted places;
+   note_place() and note_velocity() when it has placed its sites. */
 
 #ifndef LMP_GEAR_QUAT_NEIGHBORS_H
 #define LMP_GEAR_QUAT_NEIGHBORS_H
@@ -37,18 +37,18 @@ class Neighbors : protected Pointers {
   /// True if some fix may change velocities, and bodies take that over.
   bool any_taken() const { return !taken.empty(); }
 
-  /// Rank 0 warns of fix gravity that bodies do not feel, or feel by masses that are not theirs.  In
-  /// setup(), before loads are gathered.  Collective.
+  /// Rank 0 warns of fix gravity that bodies do not feel, or feel by masses that are not theirs.
+  /// In setup(), before loads are gathered.  Collective.
   void check_gravity();
 
   /// Bodies here whose velocities other fixes have changed in the end of that step: their states
-  /// have the new velocities, on all ranks.  A change that is no rigid motion ends the run if `end`,
-  /// and is left alone otherwise.  Collective.
+  /// have the new velocities, on all ranks.  A change that is no rigid motion ends the run if
+  /// `end`, and is left alone otherwise.  Collective.
   std::vector<int> take_velocities(bigint step, bool end);
 
   // These are local and look at a single site unless a fix is known to move atoms.  A site that is
-  // as note_velocity() and note_place() have seen it, right after the fix had placed it, needs no more
-  // than that comparison.
+  // as note_velocity() and note_place() have seen it, right after the fix had placed it, needs no
+  // more than that comparison.
 
   void note_velocity();
   void check_velocities();

@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Forces without derivatives: random ones, or those of collisions, which last a single step.  What a
-   history makes of their derivatives heats the bodies.
+/* Forces without derivatives: random ones, or those of collisions, which last a single step.  What
+   a history makes of their derivatives heats the bodies.
 
    A force in one step alone, and none afterwards, changes the velocity in the steps that follow by
    d_1, d_2, ..., whose sum is 1 in units of h F/m.  Forces that are independent from step to step

@@ -4,7 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* Nordsieck history of one body: n rows of WIDTH components, row after row,
-   row j = h^j/j! d^j y/dt^j.  Every routine works on one body; loops over bodies live in the caller.
+   row j = h^j/j! d^j y/dt^j.  Every routine works on one body; loops over bodies live in the
+   caller.
 
    Compensated: the first CARRIES rows are integrated, not set anew by the differential equation,
    so their rounding adds up over a run.  Each has a carry behind the n rows that holds what its sum
@@ -45,8 +46,8 @@ struct Scheme {
   /// Doubles of a history: rows, carries, trial row.
   int size() const { return (values() + carries() + trial) * width(); }
   int trial_row() const { return (values() + carries()) * width(); }
-  /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N keep
-  /// N, and N - 1 with velocity_c0).  See gear_quat_tuned.h.
+  /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N
+  /// keep N, and N - 1 with velocity_c0).  See gear_quat_tuned.h.
   int order() const;
   /// The number of values whose start has the order that this scheme needs.
   int start_values() const { return tuned ? std::min(values(), order()) : values(); }

@@ -103,7 +103,8 @@ double BodyTable::global(int row, int column)
   return row < (int) all.size() ? all[row][column] : 0.0;
 }
 
-/// A center in the box and its image flags; also where it has flown so far that flags are no integers.
+/// A center in the box and its image flags; also where it has flown so far that flags are no
+/// integers.
 void BodyTable::wrap(const double *center, double *wrapped, double *image) const
 {
   const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};

@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What users see of the bodies: of all together the fix's scalar and vector, of each a row of numbers
-   in its global array and local data; and what other C++ code may ask for by name. */
+/* What users see of the bodies: of all together the fix's scalar and vector, of each a row of
+   numbers in its global array and local data; and what other C++ code may ask for by name. */
 
 #ifndef LMP_GEAR_QUAT_OUTPUTS_H
 #define LMP_GEAR_QUAT_OUTPUTS_H
@@ -50,8 +50,8 @@ class Sums : protected Pointers {
   double of_body(int n, int ibody, const Integrator *integrator) const;
 };
 
-/// A row of numbers of every body, for the fix's global array (all bodies on all ranks, sorted by ID)
-/// and for its local data (owned bodies).
+/// A row of numbers of every body, for the fix's global array (all bodies on all ranks, sorted by
+/// ID) and for its local data (owned bodies).
 class BodyTable : protected Pointers {
  public:
   /// Columns, counted from 0; the first fifteen are those of fix rigid.
@@ -96,8 +96,8 @@ class BodyTable : protected Pointers {
   void gather_rows();
 };
 
-/// What other C++ code may ask the fix by name, see Fix::extract(): names as those of fix rigid where
-/// it has them.  Bodies are numbered as in the local data of the fix, owned ones first.
+/// What other C++ code may ask the fix by name, see Fix::extract(): names as those of fix rigid
+/// where it has them.  Bodies are numbered as in the local data of the fix, owned ones first.
 class Extract : protected Pointers {
  public:
   /// template_id: that of keyword mol, or empty.

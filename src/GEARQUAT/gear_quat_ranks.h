@@ -71,8 +71,8 @@ inline std::string broadcast(std::string text, MPI_Comm world, int root)
 
 constexpr int EVERY_RANK = -1;
 
-/// What all ranks have, in the order of the ranks: on one of them (empty elsewhere), or on every one.
-/// T: without pointers, for it is sent as bytes.
+/// What all ranks have, in the order of the ranks: on one of them (empty elsewhere), or on every
+/// one.  T: without pointers, for it is sent as bytes.
 template <typename T>
 std::vector<T> gather(std::vector<T> &mine, MPI_Comm world, int root = EVERY_RANK)
 {

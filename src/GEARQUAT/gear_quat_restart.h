@@ -5,8 +5,8 @@
 
 /* Binary restart files.  The global block says what the histories are, the data of atoms hold them.
 
-   LAMMPS hands both to the fix that has just been made from the atoms: read(), note_place() for each
-   atom, and then, when all is there, resume(). */
+   LAMMPS hands both to the fix that has just been made from the atoms: read(), note_place() for
+   each atom, and then, when all is there, resume(). */
 
 #ifndef LMP_GEAR_QUAT_RESTART_H
 #define LMP_GEAR_QUAT_RESTART_H

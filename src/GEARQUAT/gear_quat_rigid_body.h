@@ -5,12 +5,12 @@
 
 /* Mass properties and Euler's equations of one rigid body.  Frames: see gear_quat_quaternion.h.
 
-   Components of the total force and torque, along the axes of space, may be masked: what does not act
-   is taken by something outside of the body, which does no work on it where it stands still.  The
-   load that was met stays what it is for energy and virial, the load that acts moves the body.
+   Components of the total force and torque, along the axes of space, may be masked: what does not
+   act is taken by something outside of the body, which does no work on it where it stands still.
+   The load that was met stays what it is for energy and virial, the load that acts moves the body.
 
-   Sites of finite size have moments of inertia about their own center, in their own frame: `own` in a
-   name stands for the frame of the site. */
+   Sites of finite size have moments of inertia about their own center, in their own frame: `own` in
+   a name stands for the frame of the site. */
 
 #ifndef GEAR_QUAT_RIGID_BODY_H
 #define GEAR_QUAT_RIGID_BODY_H

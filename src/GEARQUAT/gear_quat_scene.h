@@ -36,7 +36,8 @@ const Motion *motion_of(Fix *fix);
 /// that another fix moves too.  Warns of granular walls that do not know the masses of the bodies.
 void refuse_scene(LAMMPS *lmp, const Fix *fix, const Bodies &bodies);
 
-/// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that asks.
+/// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that
+/// asks.
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
 
 /// Whether anything may make a force: styles other than "zero", fixes that act around the forces.

@@ -3,20 +3,21 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Which pair of nodes of the start (gear_quat_startup.h) is evaluated next, and when enough is known.
+/* Which pair of nodes of the start (gear_quat_startup.h) is evaluated next, and when enough is
+   known.
 
-   Pairs are added outwards.  Where the polynomial through 1..m-1 foretells the accelerations at pair
-   m, it errs by e_m, which falls by about z^2 from pair to pair if forces are smooth, with z the angle
-   that the fastest motion turns in a spacing.  Before a pair is added, those inside are evaluated once
-   more with the polynomial that has become better:
+   Pairs are added outwards.  Where the polynomial through 1..m-1 foretells the accelerations at
+   pair m, it errs by e_m, which falls by about z^2 from pair to pair if forces are smooth, with z
+   the angle that the fastest motion turns in a spacing.  Before a pair is added, those inside are
+   evaluated once more with the polynomial that has become better:
 
      1 | 1 2 | 1 2 3 | 1 2 3 4
 
    Each further round gains two orders of the spacing.  An evaluation is left out if the change that
    the contraction seen so far lets expect lies below the tolerance.
 
-   Where e_m does not fall, forces are no polynomial at this scale: they jump, as at a cutoff, and the
-   pairs inside m hold all that a polynomial can tell. */
+   Where e_m does not fall, forces are no polynomial at this scale: they jump, as at a cutoff, and
+   the pairs inside m hold all that a polynomial can tell. */
 
 #ifndef GEAR_QUAT_START_PLAN_H
 #define GEAR_QUAT_START_PLAN_H
@@ -91,8 +92,8 @@ class StartPlan {
   double contraction = 1.0;    ///< of a change when a pair is evaluated once more
   double first[MAX_PAIRS + 1] = {HUGE_VAL}, last[MAX_PAIRS + 1] = {};    ///< changes
 
-  /// What a polynomial of the method's order leaves out: by that much the first pair beyond it would be
-  /// missed.
+  /// What a polynomial of the method's order leaves out: by that much the first pair beyond it
+  /// would be missed.
   double left_out() const
   {
     if (odd || known < 2) return first[known];
@@ -136,8 +137,8 @@ struct StartFound {
 /// The start of all bodies of a host.  The host has
 ///   void begin(double spacing)             all bodies at the start, no pair known
 ///   void foretell()                        one pair more, for all bodies
-///   bool visit(int pair, double &change)   forces at both nodes of the pair; false if they cannot be
-///                                          evaluated there
+///   bool visit(int pair, double &change)   forces at both nodes of the pair; false if they cannot
+///                                          be evaluated there
 template <class Host> StartFound find_start(int values, double spacing, Host &host)
 {
   using Verdict = StartPlan::Verdict;

@@ -13,8 +13,8 @@
    Collocation: the second derivatives at the nodes t = k H, k = -m..m, are interpolated by one
    polynomial; integrating it twice from the exact start gives the state at a node, and the forces
    there give new second derivatives (Picard iteration).  Pairs of nodes are added outwards: each is
-   foretold by the polynomial through the nodes inside it.  Rows 0 and 1 stay exact: no difference of
-   positions enters a velocity.  Nodes on both sides of the start, neither of which is evaluated
+   foretold by the polynomial through the nodes inside it.  Rows 0 and 1 stay exact: no difference
+   of positions enters a velocity.  Nodes on both sides of the start, neither of which is evaluated
    first, make it symmetric under time reversal.
 
    find_start() (gear_quat_start_plan.h) leads; its host calls, for every body: begin(); foretell()
@@ -169,9 +169,9 @@ class Collocation {
     return state;
   }
 
-  /// Note the load met at a node, until settle().  length: the size of the body.  Returns by how much
-  /// the second derivatives there change, relative to the first or second derivatives of that body,
-  /// whichever are larger; infinite if the load is no number.
+  /// Note the load met at a node, until settle().  length: the size of the body.  Returns by how
+  /// much the second derivatives there change, relative to the first or second derivatives of that
+  /// body, whichever are larger; infinite if the load is no number.
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
                   double spacing, double length, Workspace &w) const
   {
@@ -187,8 +187,8 @@ class Collocation {
     return relative(change, met, length, w);
   }
 
-  /// The polynomial goes through what was met at both nodes of a pair: neither side is first, so the
-  /// start is symmetric under time reversal.
+  /// The polynomial goes through what was met at both nodes of a pair: neither side is first, so
+  /// the start is symmetric under time reversal.
   void settle(int pair, Workspace &w) const
   {
     for (int i = 0; i < 7; ++i) {
@@ -220,7 +220,8 @@ class Collocation {
 
   int number_of_nodes() const { return 2 * half + 1; }
 
-  /// A scalar with a first-order equation at the same nodes: its rates there, in the units of the host.
+  /// A scalar with a first-order equation at the same nodes: its rates there, in the units of the
+  /// host.
   struct Scalar {
     int pairs;
     double start;
@@ -266,9 +267,9 @@ class Collocation {
     s.rate[half + pair] = s.met[1];
   }
 
-  /// The rate of a scalar at all nodes, from -half on, of which the innermost `pairs` count, as series
-  /// of the scalar that is zero at the start, in units of the node spacing.  Returns its terms, at
-  /// most number_of_nodes() + 1.
+  /// The rate of a scalar at all nodes, from -half on, of which the innermost `pairs` count, as
+  /// series of the scalar that is zero at the start, in units of the node spacing.  Returns its
+  /// terms, at most number_of_nodes() + 1.
   int integrate(const double *rate, int pairs, double spacing, double *c) const
   {
     c[0] = 0.0;

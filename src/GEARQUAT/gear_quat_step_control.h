@@ -11,17 +11,17 @@
      error of a step with k values    e_k = gamma_(k-1) |h^k y^(k)| = gamma_(k-1) k! |a_k|
 
    is known for k = n - 1 from the last row, for n from the trial row, and for n + 1 from the change
-   of the trial row.  e_n is the estimate of Integrator::correct() (with one pass exactly).  A row less
-   makes the last row the trial row, a row more the trial row the last one.
+   of the trial row.  e_n is the estimate of Integrator::correct() (with one pass exactly).  A row
+   less makes the last row the trial row, a row more the trial row the last one.
    Source: C. W. Gear, "Numerical Initial Value Problems in Ordinary Differential Equations" (1971),
    chapter 9, for the comparison of three orders.
 
    The host calls, for every body and once a step: correct() in place of Integrator::correct(), or
-   last_row() and errors() around a correction of all bodies together; then, with the largest errors of
-   all bodies, StepControl::fails().  If so, and if the host has kept the histories, it puts them back
-   and makes the step again as StepControl::repeat() says.  Otherwise
-   Steady::count() and StepControl::next().  If values change, add_row() or drop_row() for every body;
-   then Integrator::rescale(). */
+   last_row() and errors() around a correction of all bodies together; then, with the largest errors
+   of all bodies, StepControl::fails().  If so, and if the host has kept the histories, it puts them
+   back and makes the step again as StepControl::repeat() says.  Otherwise
+   Steady::count() and StepControl::next().  If values change, add_row() or drop_row() for every
+   body; then Integrator::rescale(). */
 
 #ifndef GEAR_QUAT_STEP_CONTROL_H
 #define GEAR_QUAT_STEP_CONTROL_H
@@ -50,8 +50,9 @@ struct StepErrors {
   }
 };
 
-/// As a length: of the position, or of the orientation times the reach of the body, whichever is larger.
-/// As an energy: how much of it the errors of position, orientation and velocities may be worth.
+/// As a length: of the position, or of the orientation times the reach of the body, whichever is
+/// larger.  As an energy: how much of it the errors of position, orientation and velocities may be
+/// worth.
 struct StepMeasures {
   StepErrors length, energy;
   struct {
@@ -77,8 +78,8 @@ class VariableOrder {
     more = weights(n + 1, factorial * n);    // the change is one of a row n, not n + 1
   }
 
-  /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a rotation
-  /// by a radian moves what is far out on the body.
+  /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a
+  /// rotation by a radian moves what is far out on the body.
   Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
                      const Load &load, const double *axes, double *rows, StepMeasures &found) const
   {
@@ -97,8 +98,8 @@ class VariableOrder {
     return row;
   }
 
-  /// The errors of the step of a history that was corrected since last_row() and has a trial row after
-  /// the call.  axes: of any pose of the step.
+  /// The errors of the step of a history that was corrected since last_row() and has a trial row
+  /// after the call.  axes: of any pose of the step.
   StepMeasures errors(const Integrator &integrator, const RigidBody &body, double reach,
                       const Load &load, const double *axes, const Row &before, double *rows) const
   {
@@ -134,8 +135,8 @@ class VariableOrder {
 
   /// What the errors of the chains of a thermostat in this step would do to a body of this mass in
   /// thermal motion: an error d of the friction makes the error h d v of a velocity v.  A cold body
-  /// hardly feels the friction, so its own errors do not show whether the chains are accurate, or even
-  /// stable.  Errors of all xi count as that of the first, which is more than the others do.
+  /// hardly feels the friction, so its own errors do not show whether the chains are accurate, or
+  /// even stable.  Errors of all xi count as that of the first, which is more than the others do.
   StepMeasures errors_of_chain(const Chain::HighRows &rows, double kt, double mass, double h) const
   {
     const double way = h * h * std::sqrt(3.0 * kt / mass), worth = std::fabs(h) * 3.0 * kt;
@@ -172,8 +173,8 @@ class VariableOrder {
   }
 
  private:
-  /// k! gamma / the part of a_k that is measured: of poses, and of velocities times the step.  In the
-  /// second formulation velocities have a value less.
+  /// k! gamma / the part of a_k that is measured: of poses, and of velocities times the step.  In
+  /// the second formulation velocities have a value less.
   struct Weights {
     double pose, rate;
   };
@@ -242,8 +243,8 @@ class VariableOrder {
   }
 };
 
-/// Steps made so far with the present number of values, with the present length, and since one had to
-/// be repeated.
+/// Steps made so far with the present number of values, with the present length, and since one had
+/// to be repeated.
 struct Steady {
   int values = 0, step = 0, repeat = 0;
 
@@ -277,8 +278,9 @@ class StepControl {
   static constexpr double CLEARLY_MORE = 1.02;
   /// A step that fails within so few of another one has rows that are of no use.
   static constexpr int SOON = 4;
-  /// With ten values, errors of rows grow if each step is shorter by 0.78 to 0.88, and fade if by this
-  /// or more.  So a step that holds is not made much shorter within so many steps of another change.
+  /// With ten values, errors of rows grow if each step is shorter by 0.78 to 0.88, and fade if by
+  /// this or more.  So a step that holds is not made much shorter within so many steps of another
+  /// change.
   static constexpr double GENTLE = 0.95;
   static constexpr int FADED = 5;
 
@@ -286,8 +288,8 @@ class StepControl {
   bool energy = false;                     ///< which of the two
   double shortest = 0.0, longest = 0.0;    ///< limits of the step; longest 0: none
   int fewest = 0, most = 0;                ///< limits of the number of values
-  /// Orders of the step by which the error falls short of the number of values: 1 for energies in the
-  /// second formulation, whose velocities have a value less.
+  /// Orders of the step by which the error falls short of the number of values: 1 for energies in
+  /// the second formulation, whose velocities have a value less.
   int short_of = 0;
 
   struct Next {
@@ -296,7 +298,8 @@ class StepControl {
     bool held;    ///< would be shorter, but for the limit
   };
 
-  /// Errors of a body by the part of eps that rounding leaves: no step is short enough to remove it.
+  /// Errors of a body by the part of eps that rounding leaves: no step is short enough to remove
+  /// it.
   StepMeasures counted(StepMeasures of_body) const
   {
     StepErrors &errors = energy ? of_body.energy : of_body.length;
@@ -328,8 +331,8 @@ class StepControl {
     return {std::copysign(size, step), again && values > fewest ? values - 1 : values, false};
   }
 
-  /// step, values: of the step that made these errors.  farthest: the step is not longer, whatever the
-  /// errors are.  Numbers of values are compared by what they allow as far as a step may grow.
+  /// step, values: of the step that made these errors.  farthest: the step is not longer, whatever
+  /// the errors are.  Numbers of values are compared by what they allow as far as a step may grow.
   Next next(const StepErrors &errors, double step, int values, const Steady &steady,
             double farthest = std::numeric_limits<double>::infinity()) const
   {

@@ -72,8 +72,8 @@ std::vector<double> Surroundings::labels() const
   return made;
 }
 
-/// Entries of the lists that pair styles run over in every step: all, between atoms that nothing moves,
-/// within bodies.
+/// Entries of the lists that pair styles run over in every step: all, between atoms that nothing
+/// moves, within bodies.
 std::array<bigint, 3> Surroundings::count_pairs() const
 {
   bigint here[3] = {0, 0, 0};
@@ -96,7 +96,8 @@ std::array<bigint, 3> Surroundings::count_pairs() const
   return over_ranks(MPI_SUM, here, world);
 }
 
-/// Atoms that nothing moves, atoms of the fix group in no body, those of the latter that nothing moves.
+/// Atoms that nothing moves, atoms of the fix group in no body, those of the latter that nothing
+/// moves.
 std::array<bigint, 3> Surroundings::count_atoms() const
 {
   bigint here[3] = {0, 0, 0};

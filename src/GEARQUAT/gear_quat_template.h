@@ -39,9 +39,9 @@ struct Insertion {
 /// template that does not exist ends the run.
 Molecule **find_template(LAMMPS *lmp, const std::string &template_id);
 
-/// What the molecules of a template state, one entry each; none for an empty ID.  Ends the run, naming
-/// the template, if no body can be so.  Rank 0 tells of what differs from the atoms, or, in a plugin
-/// for a LAMMPS without the header, that it cannot be read.
+/// What the molecules of a template state, one entry each; none for an empty ID.  Ends the run,
+/// naming the template, if no body can be so.  Rank 0 tells of what differs from the atoms, or, in
+/// a plugin for a LAMMPS without the header, that it cannot be read.
 std::vector<StatedMolecule> read_stated(LAMMPS *lmp, const std::string &template_id);
 
 /// True if one of them is not what its atoms add up to.
@@ -53,8 +53,8 @@ inline bool any_differs(const std::vector<StatedMolecule> &stated)
 }
 
 /// One body of the atoms that were just created on all ranks, from index `first` on; its ID is the
-/// smallest molecule ID of its atoms.  It is fresh: its history begins with the forces of this step.
-/// Collective.
+/// smallest molecule ID of its atoms.  It is fresh: its history begins with the forces of this
+/// step.  Collective.
 void add_molecule(LAMMPS *lmp, Bodies &bodies, int first, const StatedMolecule *stated,
                   const Insertion &insertion);
 

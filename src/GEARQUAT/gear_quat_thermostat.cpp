@@ -36,8 +36,8 @@ static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
 static constexpr double FEWEST_STEPS = 10.0;
 
-// a part of a kinetic energy that is below this fraction of its target for as many damping times is not
-// about to become warm: chains of its own make it grow by several powers of ten in that time
+// a part of a kinetic energy that is below this fraction of its target for as many damping times is
+// not about to become warm: chains of its own make it grow by several powers of ten in that time
 
 static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
 

@@ -3,16 +3,17 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword temp: Nose-Hoover chains (gear_quat_chain.h) that hold the temperature of all bodies.  They
-   need the kinetic energies of all bodies on all ranks: a reduction of two numbers in every pass of the
-   corrector, each an exact sum, so that a run does not depend on where bodies are.  A component of a
-   momentum that keywords force and torque turn off belongs to no chain.
+/* Keyword temp: Nose-Hoover chains (gear_quat_chain.h) that hold the temperature of all bodies.
+   They need the kinetic energies of all bodies on all ranks: a reduction of two numbers in every
+   pass of the corrector, each an exact sum, so that a run does not depend on where bodies are.  A
+   component of a momentum that keywords force and torque turn off belongs to no chain.
 
-   The target of a step is that of LAMMPS' thermostats: it changes linearly with the number of the step
-   from the beginning to the end of the run.
+   The target of a step is that of LAMMPS' thermostats: it changes linearly with the number of the
+   step from the beginning to the end of the run.
 
-   Bodies that come or go in a step change degrees of freedom and kinetic energy at its end.  In that
-   step the chains are predicted and not corrected; then they receive the derivatives of the new ones. */
+   Bodies that come or go in a step change degrees of freedom and kinetic energy at its end.  In
+   that step the chains are predicted and not corrected; then they receive the derivatives of the
+   new ones. */
 
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H
@@ -71,7 +72,8 @@ class Thermostat : protected Pointers {
   /// What the chains have taken from the bodies.
   double energy() const;
 
-  // the start, of all bodies at the same nodes (gear_quat_startup.h), in gear_quat_thermostat_start.cpp
+  // the start, of all bodies at the same nodes (gear_quat_startup.h), in
+  // gear_quat_thermostat_start.cpp
 
   void begin_start(const Collocation &collocation, double spacing, double h);
   void foretell(const Collocation &collocation);

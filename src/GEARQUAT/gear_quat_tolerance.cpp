@@ -114,8 +114,8 @@ double Tolerance::first_error() const
   return largest;
 }
 
-/// The first step of histories that know no more than the present loads: forces are taken to change by
-/// themselves while a body moves by its own size, or while they accelerate it that far.
+/// The first step of histories that know no more than the present loads: forces are taken to change
+/// by themselves while a body moves by its own size, or while they accelerate it that far.
 double Tolerance::first_step_of_low_order() const
 {
   double least = std::numeric_limits<double>::infinity();

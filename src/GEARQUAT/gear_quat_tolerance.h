@@ -9,10 +9,11 @@
    The fix calls when histories begin scheme_of_start(), begin() and shorten_first_step(); in every
    step begin_step(); correct() for every body, or note_prediction() and note_correction() around
    another correction, and judge(); if that says so, it puts back the
-   histories, calls shorten_values() and shorten_step(), and makes the step again; and at the end of the
-   step, when all fixes have finished it, choose(), change_step() and order_output().  Where the number
-   of values may have changed, after begin(), shorten_values() and choose(), the fix makes its integrator
-   anew.  Beside that, announce_output() before the first step of a run, and end_run(). */
+   histories, calls shorten_values() and shorten_step(), and makes the step again; and at the end of
+   the step, when all fixes have finished it, choose(), change_step() and order_output().  Where the
+   number of values may have changed, after begin(), shorten_values() and choose(), the fix makes
+   its integrator anew.  Beside that, announce_output() before the first step of a run, and
+   end_run(). */
 
 #ifndef LMP_GEAR_QUAT_TOLERANCE_H
 #define LMP_GEAR_QUAT_TOLERANCE_H
@@ -40,15 +41,15 @@ class Tolerance : protected Pointers {
     ELEMENTS
   };
 
-  /// What a restart file keeps: the next step's values, steps made with them, and the sums behind the
-  /// outputs.
+  /// What a restart file keeps: the next step's values, steps made with them, and the sums behind
+  /// the outputs.
   struct Checkpoint {
     double values, steady[3];
     double steps, time, smallest, values_sum, largest, held, repeated, last_length, last_energy;
   };
 
-  /// scheme: of the fix; its number of values is the largest.  every_time: steps end at the multiples
-  /// of this time, 0: at any.
+  /// scheme: of the fix; its number of values is the largest.  every_time: steps end at the
+  /// multiples of this time, 0: at any.
   Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
             double every_time, Bodies &bodies);
 
@@ -61,8 +62,8 @@ class Tolerance : protected Pointers {
   Scheme scheme_of_start() const;
   /// Histories are seeded.  full: to the last row; otherwise they begin with the fewest values.
   void begin(bool full);
-  /// Before histories are made: the first step is within dtmin, dtmax and the motion that is allowed.
-  /// Collective.
+  /// Before histories are made: the first step is within dtmin, dtmax and the motion that is
+  /// allowed.  Collective.
   void bound_first_step();
   /// Makes the first step shorter if its error would be too large.  full: of what begin() says.
   /// Collective.
@@ -72,7 +73,8 @@ class Tolerance : protected Pointers {
   void begin_step();
   /// Correct one body.
   Correction correct(const Integrator &integrator, int ibody, const Load &load);
-  // The same around a correction of all bodies together: of the predicted, then of the corrected ones.
+  // The same around a correction of all bodies together: of the predicted, then of the corrected
+  // ones.
   void note_prediction();
   void note_correction(const Integrator &integrator);
   /// The chains of a thermostat are corrected, too; kt: of its target.
@@ -89,18 +91,18 @@ class Tolerance : protected Pointers {
   double choose();
   /// update->dt and all that depends on it, this fix too, become those of the next step.
   void change_step(double step);
-  /// Energies of the next step may be printed, although LAMMPS does not expect that: its thermo output
-  /// knows step numbers only.
+  /// Energies of the next step may be printed, although LAMMPS does not expect that: its thermo
+  /// output knows step numbers only.
   void announce_output();
-  /// With thermo 0 there is thermo output at the multiples of every_time: now, if the step that ends is
-  /// at one of them.  To be called after change_step().
+  /// With thermo 0 there is thermo output at the multiples of every_time: now, if the step that
+  /// ends is at one of them.  To be called after change_step().
   void order_output();
   /// Rank 0 says if a constant step would have done.
   void end_run();
   /// Restores `step`, that of the histories: the timestep command sets the first step only.
   void keep_step(double step);
-  /// The same in a run with pre no, whose first step has begun with another length already.  Ends the
-  /// run if other atoms have moved.
+  /// The same in a run with pre no, whose first step has begun with another length already.  Ends
+  /// the run if other atoms have moved.
   void put_back_begun_step(double step);
   /// True while fixes are told of a step that this control has chosen.
   bool is_changing_step() const { return changing_step; }

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword tolerance, in a step: the errors of all bodies, whether it is repeated, and the next one. */
+/* Keyword tolerance, in a step: errors of all bodies, whether it is repeated, and the next one. */
 
 #include "gear_quat_tolerance.h"
 
@@ -26,8 +26,8 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// no step moves a site by more than this part of the neighbor skin: a force that begins on the way is
-// met before the body is deep in it
+// no step moves a site by more than this part of the neighbor skin: a force that begins on the way
+// is met before the body is deep in it
 
 static constexpr double PART_OF_SKIN = 0.25;
 
@@ -39,8 +39,9 @@ static constexpr double PART_UNSEEN = 0.5;
 
 static constexpr int MOST_TRIES = 40;
 
-// steps that belong to the start; by how many relative standard deviations a step is shorter than the
-// mean that is as short as few others; and how many more of such steps the control has to save to pay
+// steps that belong to the start; by how many relative standard deviations a step is shorter than
+// the mean that is as short as few others; and how many more of such steps the control has to save
+// to pay
 
 static constexpr double UNSETTLED = 100.0, SPREADS = 2.0, LITTLE_GAIN = 0.6;
 
@@ -264,8 +265,8 @@ double Tolerance::time() const
   return update->atime + (update->ntimestep - update->atimestep) * update->dt;
 }
 
-/// The next time at which a step has to end, infinite if there is none: that of a dump in intervals of
-/// time, or of every_time.  step: positive; now: when it begins.
+/// The next time at which a step has to end, infinite if there is none: that of a dump in intervals
+/// of time, or of every_time.  step: positive; now: when it begins.
 double Tolerance::next_output(double step, double now) const
 {
   const double nearest = now + ROUNDING_OF_TIME * step;    // until then it is of the last step
@@ -281,8 +282,8 @@ double Tolerance::next_output(double step, double now) const
   return next;
 }
 
-/// Steps of equal length end where output is due within a few steps, the last of them to the last bit.
-/// now: when the step begins.
+/// Steps of equal length end where output is due within a few steps, the last of them to the last
+/// bit.  now: when the step begins.
 double Tolerance::even(double step, double now) const
 {
   if (step <= 0.0) return step;

@@ -6,22 +6,23 @@
 /* Tuned coefficients of the corrector.
 
    Gear's numbers put every spurious root of the corrector at zero.  Order does not ask for this: of
-   the N coefficients it determines one (first-order equation, c_0) or two (second-order, c_0 and c_1),
-   and one is 1 by definition.  The others, the tail, are free, and the table below chooses them for
-   rigid bodies.  Its tails are decimals; what order determines is solved for from them.
+   the N coefficients it determines one (first-order equation, c_0) or two (second-order, c_0 and
+   c_1), and one is 1 by definition.  The others, the tail, are free, and the table below chooses
+   them for rigid bodies.  Its tails are decimals; what order determines is solved for from them.
 
-   Order conditions.  Let the right side be given in time and its solution be a polynomial of degree N,
-   y_N = h^N/N! y^(N) = 1 for all times.  The rows then deviate from the exact ones, y_j = exact + e_j,
-   by an e_j that is steady above row q - 1 (q: the order of the equation), with a steady residual r:
+   Order conditions.  Let the right side be given in time and its solution be a polynomial of degree
+   N, y_N = h^N/N! y^(N) = 1 for all times.  The rows then deviate from the exact ones, y_j = exact
+   + e_j, by an e_j that is steady above row q - 1 (q: the order of the equation), with a steady
+   residual r:
 
      row N-1           c_(N-1) r = N
      rows N-2 ... q    sum_(k>j) binom(k, j) e_k = binom(N, j) - c_j r,   e_q = 0
      row q-1           its deviation does not grow if
                        c_(q-1) r = binom(N, q-1) - sum_(k>=q) binom(k, q-1) e_k             (1)
 
-   For q = 1 this makes order N.  For q = 2 it makes order N - 1, and one degree more determines c_0.
-   With y_(N+1) = 1, y_N = (N + 1) n after n steps, deviations and residual are (N + 1) e_j n + b_j
-   and (N + 1) r n + s:
+   For q = 1 this makes order N.  For q = 2 it makes order N - 1, and one degree more determines
+   c_0.  With y_(N+1) = 1, y_N = (N + 1) n after n steps, deviations and residual are (N + 1) e_j n
+   + b_j and (N + 1) r n + s:
 
      row N-1           c_(N-1) s = binom(N+1, N-1) + (N + 1) e_(N-1)
      rows N-2 ... 2    sum_(k>j) binom(k, j) b_k = binom(N+1, j) - c_j s + (N + 1) e_j,   b_2 = 0
@@ -49,8 +50,8 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Columns that forces drive: momenta and angular velocities, in the second formulation positions and
-/// quaternions.  Columns that integrate others: positions and quaternions of the first one.
+/// Columns that forces drive: momenta and angular velocities, in the second formulation positions
+/// and quaternions.  Columns that integrate others: positions and quaternions of the first one.
 enum class Columns { DRIVEN, INTEGRATED };
 
 // ---------------------------------------------------------------------------------------------
@@ -241,7 +242,8 @@ struct CorrectorCoefficients {
   Array driven = {}, integrated = {};    ///< see Columns; second: driven alone
   double weight2;                        ///< of the residuals of positions and quaternions, squared
 
-  /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned set.
+  /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned
+  /// set.
   explicit CorrectorCoefficients(const Scheme &scheme)
   {
     double weight = fill(scheme, Columns::DRIVEN, driven);
@@ -265,8 +267,8 @@ struct CorrectorCoefficients {
     return (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
   }
 
-  /// First-order equation: h^N y^(N) has the weight that it has with Gear's coefficients, or more if
-  /// the error, of one order higher, is larger than Gear's.
+  /// First-order equation: h^N y^(N) has the weight that it has with Gear's coefficients, or more
+  /// if the error, of one order higher, is larger than Gear's.
   static double fill_tuned(const Scheme &scheme, Columns columns, Array &c)
   {
     const int n = scheme.values();
