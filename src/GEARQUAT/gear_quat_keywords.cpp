@@ -216,8 +216,8 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, cons
     lmp->error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", name, instead);
   std::vector<std::string> names;
   for (const auto &row : keyword_table()) names.emplace_back(row.name);
-  const std::string values =
-      before ? fmt::format("; {} takes {}", before->name, before->required()) : "";
+  const std::string values = before ? fmt::format("; {} takes {}", before->name, before->required())
+                                    : "";
   lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}{}; the keywords are {}", name, values,
                   utils::join_words(names, ", "));
 }
