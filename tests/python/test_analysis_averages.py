@@ -96,6 +96,28 @@ def test_all_samples_count():
     assert averages.of_series(series)[0] == pytest.approx(series.mean(), rel=1e-14)
 
 
+def test_uneven_times():
+    """Frames that are denser in time do not count more; what needs even times is left out, and a warning says why."""
+    poses = thermal()
+    results, even = poses.results, averages.averages(thermal())
+    hot = np.arange(FRAMES) < FRAMES // 2
+    results.time = np.cumsum(np.where(hot, 0.1, 1.0))
+    results.ke_translation = results.ke_translation * np.where(hot, 2.0, 1.0)[:, None]
+    with pytest.warns(UserWarning, match="no averages but temperatures: .* the time after frame 0 at 0.1 is 0.2"):
+        found = averages.averages(poses)
+    assert [one.name for one in found] == [one.name for one in even if one.name.startswith("temperature")]
+    assert found[0].value == pytest.approx(1.3 * (2.0 * 0.1 + 1.0) / 1.1, rel=0.01)
+    assert found[0].value < 1.3 * 1.2  # 1.3 x 1.5 if all counted alike
+
+
+def test_the_error_of_weighted_samples():
+    """Of weights 1 and 3 it is sqrt(5 / 4) of that of as many equal ones."""
+    values = np.random.default_rng(6).normal(size=(400, 1000))
+    weights = np.where(np.arange(1000) % 2, 1.0, 3.0)
+    errors = [averages.of_series(one, weights=weights)[1] for one in values]
+    assert np.mean(np.square(errors)) == pytest.approx(1.25e-3, rel=0.1)
+
+
 @pytest.mark.parametrize("resting", [True, False])
 def test_two_dimensions(resting):
     """Two degrees of freedom of translation and one of rotation; the slope of the mean square is 4 D."""
@@ -167,7 +189,7 @@ def test_what_is_too_short_is_told(tmp_path):
     assert "The temperature of translation is 1.3" in text and " ± " in text
     assert "too short for" not in average_lines(found[:5])
     short = [*found[:1], averages.Average("correlation time", float("nan"), float("nan"), "")]
-    assert "The run is too short for 1 further averages" in average_lines(short)
+    assert "The run is too short for 1 further average with" in average_lines(short)
     write_averages(tmp_path / "a.csv", short)
     rows = (tmp_path / "a.csv").read_text().splitlines()
     assert rows[0] == "average,value,standard error,unit" and rows[2] == "correlation time,,,"

@@ -153,6 +153,34 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     assert {path.name for path in tmp_path.iterdir()} == {"poses.npy", "bodies.csv", "totals.csv", "totals.png"}
 
 
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--data", __file__], "leave out what is about atoms: data"),
+        (["--body", "i_body"], "leave out what is about atoms: body"),
+        (["--reference", "first"], "--reference is about atoms"),
+    ],
+)
+def test_options_about_atoms_are_refused_with_a_table(water, tmp_path, arguments, text):
+    result = analyze(water / "water.table", tmp_path, *arguments)
+    assert result.exit_code == 1 and text in result.output
+
+
+def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path):
+    rows = dumps.Motion([3]).rows(0.0)
+    frames = [f"ITEM: TIME\n{time}\n" + dumps.frame(k, rows) for k, time in enumerate((0.0, 1.0, 2.5))]
+    rows[0, 4] += 1.0
+    path = tmp_path / "made.dump"
+    path.write_text("".join(frames) + "ITEM: TIME\n3.0\n" + dumps.frame(3, rows))
+    result = analyze(path, tmp_path)
+    assert result.exit_code == 0, result.output
+    assert "Warning: there are no averages but temperatures" in result.output
+    assert "made.dump: body 1 is not rigid: at step 3" in result.output
+    assert (tmp_path / "averages.csv").exists() and not (tmp_path / "correlations.csv").exists()
+    result = analyze(path, tmp_path, "--frames", ":1")
+    assert "1 frame of 1 body was read" in result.output
+
+
 def test_command_takes_the_table_of_the_fix(water, tmp_path):
     result = analyze(water / "water.table", tmp_path, "--units", "real")
     assert result.exit_code == 0, result.output
@@ -222,7 +250,7 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--near", __file__], "should be provided together"),
         (
             ["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"],
-            "MDAnalysis writes no such format; one such as dcd, xtc,",
+            "MDAnalysis writes no trajectories in this format; one such as dcd, xtc,",
         ),
         (["--body", "i_body"], "(--body), or give a data file with molecules (--data)"),
         (["--potential", "c_pe"], "no column c_pe"),

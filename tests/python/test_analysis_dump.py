@@ -199,9 +199,48 @@ def test_a_last_frame_that_is_cut_off(write, lost):
     path = write(MOTION, TIMES)
     text = path.read_text()
     path.write_text(text[:-lost])
-    trajectory = open_dump(path).trajectory
+    with pytest.warns(UserWarning, match="poses.dump: the last frame is not whole, and is left out"):
+        trajectory = open_dump(path).trajectory
     assert trajectory.cut_off and len(trajectory) == 2 and len(list(trajectory)) == 2
     assert not open_dump(write(MOTION, TIMES)).trajectory.cut_off
+
+
+@pytest.mark.parametrize("kept", [30, 120, 172, 190, 400, -1])
+def test_a_first_frame_that_is_cut_off(write, kept):
+    path = write(MOTION, TIMES[:1])
+    path.write_text(path.read_text()[:kept])
+    with pytest.raises(DumpError, match="poses.dump: the dump ends within (its first frame|the header of a frame)"):
+        open_dump(path)
+
+
+def test_columns_in_another_order_from_frame_to_frame(write):
+    """As after a restart with another script, which appends; a set of other columns is refused."""
+    path = write(MOTION, TIMES)
+    turned = np.arange(10)[::-1]
+    names = dumps.COLUMNS.split()
+    path.write_text(
+        path.read_text()
+        + dumps.frame(3, MOTION.rows(3.0)[:, turned], columns=" ".join(names[k] for k in turned))
+    )
+    found = Poses(open_dump(path).atoms).run().results
+    assert found.center[3] == pytest.approx(MOTION.centers(3.0), abs=1e-13)
+    assert found.velocity[3] == pytest.approx(MOTION.velocity, abs=1e-14)
+    for kept, text in ((names[:7], "columns xu yu zu, in the first frame xu yu zu vx vy vz"), (names[1:], "no column id")):
+        rows = MOTION.rows(4.0)[:, [name in kept for name in names]]
+        path.write_text(path.read_text() + dumps.frame(4, rows, columns=" ".join(kept)))
+        with pytest.raises(DumpError, match=f"poses.dump, step 4: {text}"):
+            Poses(open_dump(path).atoms).run()
+        write(MOTION, TIMES)
+
+
+@pytest.mark.parametrize("column", [4, 8])
+def test_what_is_not_finite(write, column):
+    def spoil(time, rows):
+        rows[5, column] = np.nan if time == 1.0 else rows[5, column]
+        return rows
+
+    with pytest.raises(ValueError, match="poses.dump, step 1: a site's (position|velocity) .*nan.* of body 2: finite"):
+        Poses(open_dump(write(MOTION, TIMES, spoil)).atoms).run()
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,15 @@
 """Poses, velocities, energies and momenta of known motions; the same by every backend."""
 
+import warnings
+
 import dumps
 import MDAnalysis
 import numpy as np
 import pytest
+from MDAnalysis.exceptions import NoDataError
 from scipy.spatial.transform import Rotation
 
-from gearquat_analysis import Poses, open_dump
+from gearquat_analysis import Poses, averages, open_dump
 from gearquat_analysis.backends import Processes
 
 COUNTS = [4, 3, 6, 2, 1]
@@ -244,6 +247,37 @@ def test_pages_of_a_mapped_file_are_let_go(tmp_path):
     before = resident()
     assert table["a"].sum() == 20000 * 399 * 200
     assert resident() - before > 0.8 * table.nbytes
+
+
+def test_a_universe_will_do(dump, poses):
+    assert np.array_equal(Poses(open_dump(dump)).run().results.table, poses.results.table)
+
+
+@pytest.mark.parametrize("use", [averages.averages, Poses.totals, Poses.to_dataframe, lambda poses: poses.results.q])
+def test_results_need_a_run(dump, use):
+    with pytest.raises(NoDataError, match="there is no results.* yet: call run"):
+        use(Poses(open_dump(dump)))
+
+
+def test_bodies_that_are_not_rigid(tmp_path):
+    """They are named; of rigid ones six digits say nothing else, however far from the origin."""
+
+    def bent(time, rows):
+        rows[0, 4] += 0.02 * time * (time < 21.0)
+        return rows
+
+    path = dumps.write(tmp_path / "bent.dump", MOTION, TIMES, bent)
+    with pytest.warns(UserWarning, match="bent.dump: body 1 is not rigid: at step 4 a site is 0.* of the body's size"):
+        Poses(open_dump(path)).run()
+    for spread in (10.0, 1e3, 1e5):
+        far = dumps.Motion(COUNTS, linear=[3], spread=spread)
+        path = dumps.write(tmp_path / "far.dump", far, TIMES)
+        lines = (line.split() for line in path.read_text().splitlines())
+        text = [" ".join(f"{float(x):g}" for x in line) if len(line) == 10 else " ".join(line) for line in lines]
+        path.write_text("\n".join(text) + "\n")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            Poses(open_dump(path)).run()
 
 
 def test_other_formats_have_the_units_of_mdanalysis():

@@ -6,6 +6,7 @@ it averages remembers.  All functions take finished ``Poses``, which know masses
 """
 
 import math
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -76,15 +77,20 @@ def of_blocks(values):
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
 
 
-def of_series(series, count=BLOCKS):
+def of_series(series, count=BLOCKS, weights=None):
     """Mean of a series (F,), and its standard error from ``count`` blocks that differ by one sample at most.
 
-    The error is NaN if there are fewer samples than blocks.
+    ``weights`` (F,) of the samples, equal unless given.  The error is NaN if there are fewer samples than blocks.
     """
+    series = np.asarray(series, dtype=float)
+    weights = np.ones(len(series)) if weights is None else np.asarray(weights, dtype=float)
+    mean = float(np.average(series, weights=weights))
     if len(series) < count:
-        return float(np.mean(series)), float("nan")
-    blocks = [block.mean() for block in np.array_split(np.asarray(series, dtype=float), count)]
-    return float(np.mean(series)), of_blocks(blocks)[1]
+        return mean, float("nan")
+    parts = np.array_split(series * weights, count), np.array_split(weights, count)
+    # how much each block moves the mean; of equal weights this is the standard error of the blocks' mean
+    moves = [(part.sum() - mean * weight.sum()) / weights.sum() for part, weight in zip(*parts)]
+    return mean, math.sqrt(count / (count - 1) * np.sum(np.square(moves)))
 
 
 def _boltzmann(poses):
@@ -106,7 +112,8 @@ def temperatures(poses):
     """Temperatures of all frames, name -> (F,): of translation, of rotation and about each principal axis.
 
     The degrees of freedom of translation do not contain the total momentum if it is zero.  In two dimensions
-    (``dimension``) a body has two, and one of rotation.  Empty without velocities or moments.  In LAMMPS' units; without ``units`` in those of mass x velocity^2.
+    (``dimension``) a body has two, and one of rotation.  Empty without velocities or masses.  In LAMMPS' units;
+    without ``units`` in those of mass x velocity^2.
     """
     bodies, results = getattr(poses, "bodies", None), poses.results
     if bodies is None or "velocity" not in results:
@@ -192,14 +199,22 @@ def rotational_time(time, q, axis, order):
 def averages(poses):
     """The Averages that finished ``Poses`` or ``TablePoses`` have the data for.
 
-    Raises ValueError if frames are not evenly spaced in time.
+    A frame counts for the time it stands for: to the middle between it and those beside it.  Of frames that are not
+    evenly spaced in time there are only temperatures, with a warning; if times go back, all of them count alike.
     """
-    results, bodies = poses.results, getattr(poses, "bodies", None)
+    results = poses.results
+    times = results.time
+    gaps = np.diff(times)
+    weights = np.gradient(times) if gaps.any() and (gaps >= 0.0).all() else None
     found = Averages(
-        Average(f"temperature of {name}", *of_series(series), poses.unit("temperature"))
+        Average(f"temperature of {name}", *of_series(series, weights=weights), poses.unit("temperature"))
         for name, series in temperatures(poses).items()
     )
-    correlations.lags(results.time)
+    try:
+        correlations.lags(times)
+    except ValueError as error:
+        warnings.warn(f"there are no averages but temperatures: {error}", stacklevel=2)
+        return found
     name = "diffusion coefficient"
     found.append(Average(name, *diffusion(results.time, results.center, dimension(results)), poses.unit(name)))
     q, _, axes = correlations.turning(poses)

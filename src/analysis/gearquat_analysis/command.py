@@ -1,6 +1,8 @@
 """The command ``gearquat analyze``, also ``python -m gearquat_analysis`` where there is no LAMMPS."""
 
 import resource
+import warnings
+from contextlib import contextmanager
 from pathlib import Path
 
 import cloup
@@ -21,6 +23,14 @@ def _frames(_context, _option, text):
         return slice(*(int(part) if part else None for part in (text or ":").split(":")))
     except (TypeError, ValueError) as error:
         raise cloup.BadParameter("START:STOP:STEP is required, such as ::10") from error
+
+
+@contextmanager
+def _telling_warnings():
+    """Decorator: warnings become lines of the command."""
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_: cloup.echo(f"Warning: {message}", err=True)
+        yield
 
 
 @command(
@@ -87,6 +97,7 @@ def _frames(_context, _option, text):
     cloup.option("--jobs", type=COUNT, default=1, metavar="N", help="Processes that read."),
 )
 @failing_clearly(ValueError)
+@_telling_warnings()
 def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **options):
     """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
 
@@ -96,7 +107,10 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **
     correlation times with standard errors, which it also prints.  The last three have pictures.
     """
     from . import pictures, report
+    from .convert import require_format
 
+    if converted:
+        require_format(converted)
     if wrap and not converted:
         raise ValueError("--wrap needs --convert, whose trajectory it is about")
     places = near and _points("--near", near)
@@ -136,8 +150,6 @@ def _settle(trajectory, converted, options):
     if style and units and style != units:
         raise ValueError(f"--units {units}: the dump says units {style}")
     options["units"] = style or units
-    if trajectory.cut_off:
-        cloup.echo("The last frame of the dump is not whole, and is left out.")
     if converted and not options["units"]:
         raise ValueError(
             "--convert needs the units of the dump: give --units, or write the dump with dump_modify units yes"
@@ -185,6 +197,8 @@ def _run(dump, out, frames, converted, options):
         raise ValueError(f"--select '{options['select']}' selects no atom")
     common = {"units": options["units"], "out": out / "poses.npy"}
     if local:
+        if options["reference"] != "principal":
+            raise ValueError("--reference is about atoms; a table of the fix has quaternions")
         poses = TablePoses(atoms, **common)
     else:
         reference = options["reference"]
@@ -202,7 +216,7 @@ def _run(dump, out, frames, converted, options):
 
 
 def _correlate(out, poses):
-    """Write correlations and averages with their pictures, unless frames are too few or unevenly spaced."""
+    """Write correlations and averages with their pictures, as far as frames are enough and evenly spaced."""
     import numpy as np
 
     from . import averages, correlations, pictures, report
@@ -212,17 +226,18 @@ def _correlate(out, poses):
         return cloup.echo("There are fewer than three frames, so there are no correlations.")
     try:
         found = correlations.all_correlations(poses, _bar("correlating", "function"))
-    except ValueError as error:
-        return cloup.echo(f"There are no correlations: {error}.")
-    if found.largest_turn > np.pi / 2:
+        write_columns(out / "correlations.csv", found.functions)
+    except ValueError:  # uneven times, of which averages tell
+        found = None
+    if found and found.largest_turn > np.pi / 2:
         cloup.echo(
             f"A body turned by {found.largest_turn:.2g} radians from one frame to the next: do not trust the mean-square"
             " rotation, and dump more often."
         )
     known = averages.averages(poses)
-    write_columns(out / "correlations.csv", found.functions)
     report.write_averages(out / "averages.csv", known)
-    pictures.draw_correlations(found, known, out / "correlations.png")
+    if found:
+        pictures.draw_correlations(found, known, out / "correlations.png")
     pictures.draw_averages(known, out / "averages.png")
     return cloup.echo(report.average_lines(known))
 
@@ -239,7 +254,8 @@ def _stay(out, poses, places, radius):
     lag = stays.time - stays.time[0]
     write_columns(out / "survival.csv", {"lag": lag, "survival": stays.survival()})
     cloup.echo(
-        f"Bodies made {len(stays.body)} stays within {radius:g} of {len(places)} places, in"
+        f"Bodies made {report.counted(len(stays.body), 'stay')} within {radius:g} of"
+        f" {report.counted(len(places), 'place')}, in"
         f" {stays.fraction().sum():.1%} of the time."
     )
 

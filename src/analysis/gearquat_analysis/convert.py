@@ -10,6 +10,7 @@ from pathlib import Path
 
 import MDAnalysis
 import numpy as np
+from MDAnalysis.core._get_readers import get_writer_for
 from MDAnalysis.lib.util import guess_format
 
 from .units import UNITS
@@ -42,6 +43,15 @@ def has_times(path):
     return guess_format(str(path)) not in SELF_CONTAINED
 
 
+def require_format(path):
+    """Raises ValueError if MDAnalysis does not write trajectories in the format that the suffix of ``path`` names."""
+    try:
+        get_writer_for(str(path), multiframe=True)
+    except (TypeError, ValueError) as error:
+        known = "one such as dcd, xtc, trr, nc, xyz or pdb is required"
+        raise ValueError(f"{path}: MDAnalysis writes no trajectories in this format; {known}") from error
+
+
 def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=None):
     """Write ``atoms`` in all frames to ``path``; its suffix names the format (dcd, xtc, pdb, ...).
 
@@ -59,6 +69,7 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
     >>> [str(path) for path in convert(open_dump("nitrogen.dump").atoms, "nitrogen.dcd", "real", frames=slice(10))]
     ['nitrogen.dcd', 'nitrogen.pdb']
     """
+    require_format(path)
     path, trajectory = Path(path), atoms.universe.trajectory
     length, time = UNITS[units].angstrom, UNITS[units].ps
     iterator = trajectory[frames or slice(None)]
@@ -74,7 +85,7 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of what a dump does not tell and a PDB file has room for
         try:
-            with _writer(path, len(atoms), options) as writer:
+            with MDAnalysis.Writer(str(path), n_atoms=len(atoms), multiframe=True, **options) as writer:
                 for number, ts in enumerate(progress(iterator) if progress else iterator):
                     ts.positions = _placed(ts, bodies, wrap) * length
                     if kind == "XTC" and np.abs(ts.positions).max() > XTC_MOST:
@@ -88,14 +99,6 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
         except (NotImplementedError, OSError, RuntimeError) as error:
             raise ValueError(f"{path}: MDAnalysis cannot write it: {error}") from error
     return written
-
-
-def _writer(path, number, options):
-    try:
-        return MDAnalysis.Writer(str(path), n_atoms=number, multiframe=True, **options)
-    except (TypeError, ValueError) as error:
-        known = "one such as dcd, xtc, trr, nc, xyz or pdb is required"
-        raise ValueError(f"{path}: MDAnalysis writes no such format; {known}") from error
 
 
 def _rescale(ts, length, time):

@@ -31,8 +31,8 @@ def lags(time):
     if usual <= 0.0 or uneven.any():
         k = int(np.argmax(uneven))
         raise ValueError(
-            "correlations need frames at equal distances of time, and these are not: the time after frame"
-            f" {k} at {time[k]:.9g} is {time[k + 1]:.9g}"
+            "correlations and diffusion need frames at equal distances of time (dump_modify every/time), and these are"
+            f" not: the time after frame {k} at {time[k]:.9g} is {time[k + 1]:.9g}"
         )
     return time - time[0]
 

@@ -77,6 +77,8 @@ def read_header(file, name):
             extra[item] = read(file.readline())
             line = file.readline()
     lines = [line] + [file.readline() for _ in range(HEADER_LINES - 1)]
+    if lines[0].startswith("ITEM: TIMESTEP") and not lines[-1].endswith("\n"):
+        raise DumpError(f"{name}: the dump ends within the header of a frame; a whole frame is required")
     expected = "ITEM: TIMESTEP", "ITEM: NUMBER OF", "ITEM: BOX BOUNDS"
     if not all(line.startswith(word) for line, word in zip(lines[0:5:2], expected)):
         raise DumpError(f"{name}: no frame of a LAMMPS dump begins where one should")
@@ -134,16 +136,19 @@ class DumpFrames(DumpReader):
     * ``box`` (3, 3): edges as rows; ``origin`` (3,); ``periodic`` (3,)
     * each of ``additional_columns`` (n,)
 
-    Rows are sorted by ID.  Raises DumpError if IDs are missing, occur twice or change, if positions
-    are missing, or if the number of rows changes.  ``unit_style``, ``timed``, ``counted`` and ``cut_off`` tell of
+    Rows are sorted by ID, and columns may be in another order in each frame.  Raises DumpError if IDs are missing,
+    occur twice or change, if positions are missing, if the number of rows or the set of the columns that are read
+    changes, or if the first frame is not whole.  ``unit_style``, ``timed``, ``counted`` and ``cut_off`` tell of
     the dump: LAMMPS' units or None, whether it has times, whether numbers of steps stand for times because neither
-    the dump nor ``dt`` gives them, and whether its last frame is not whole; that one is left out.
+    the dump nor ``dt`` gives them, and whether its last frame is not whole; that one is left out with a warning.
 
     ``names`` renames columns: of a ``dump local`` those of LAMMPS are ``f_ID[1]`` and so on.
     """
 
+    _auxs = {}  # which MDAnalysis closes, also of a reader that was refused
+
     def __init__(self, filename, additional_columns=(), names=None, dt=None, **kwargs):
-        self._names, self._ids = names or {}, None
+        self._names, self._ids, self._groups = names or {}, None, None
         self._scan(filename)
         self.counted = dt is None and not self.timed
         dt = 1.0 if dt is None else dt
@@ -166,7 +171,10 @@ class DumpFrames(DumpReader):
                         raise
                     self.cut_off = True
                 if self.cut_off and first:
+                    warnings.warn(f"{filename}: the last frame is not whole, and is left out", stacklevel=2)
                     break
+                if self.cut_off:
+                    raise DumpError(f"{filename}: the dump ends within its first frame; a whole frame is required")
                 first = first or header
                 self._offsets.append(here)
                 here = file.tell()
@@ -177,21 +185,26 @@ class DumpFrames(DumpReader):
 
     def _columns(self, header):
         """Index of each column that is read; the kind of its positions."""
-        index = {self._names.get(name, name): k for k, name in enumerate(header)}
+        where = f"{self.filename}, step {header.step}"
+        index = {self._names.get(name, name): k for k, name in enumerate(header.columns)}
         kind = next((k for k, names in POSITIONS.items() if set(names) <= set(index)), None)
         if "id" not in index:
-            raise DumpError(
-                f"{self.filename}: no column id; without it a row cannot be followed from frame to frame"
-            )
+            raise DumpError(f"{where}: no column id; without it a row cannot be followed from frame to frame")
         if kind is None:
-            raise DumpError(f"{self.filename}: no positions; columns xu yu zu or x y z are required")
+            raise DumpError(f"{where}: no positions; columns xu yu zu or x y z are required")
         missing = [name for name in self._additional_columns if name not in index]
         if missing:
-            raise DumpError(f"{self.filename}: no column {' '.join(missing)}")
-        wanted = ["id", *POSITIONS[kind], *self._additional_columns]
+            raise DumpError(f"{where}: no column {' '.join(missing)}")
+        groups = [*POSITIONS[kind]]
         for group in (VELOCITIES, IMAGES):
-            wanted += group if set(group) <= set(index) else ()
-        return {name: index[name] for name in wanted}, kind
+            groups += group if set(group) <= set(index) else ()
+        self._groups = self._groups or groups
+        if groups != self._groups:
+            raise DumpError(
+                f"{where}: columns {' '.join(groups)}, in the first frame {' '.join(self._groups)}: all frames must"
+                " have the same columns"
+            )
+        return {name: index[name] for name in ["id", *groups, *self._additional_columns]}, kind
 
     def _read_next_timestep(self):
         ts = self.ts
@@ -204,7 +217,7 @@ class DumpFrames(DumpReader):
                 f"{self.filename}: {header.rows} rows at step {header.step}, {self.n_atoms} in the first"
                 " frame; the number must not change: dump a group whose atoms stay"
             )
-        columns, kind = self._columns(header.columns)
+        columns, kind = self._columns(header)
         # not by iteration: a file that is iterated over cannot tell where it is
         lines = [self._file.readline() for _ in range(header.rows)]
         try:
@@ -370,13 +383,18 @@ def open_table(path, timestep=None):
 def open_any(path, timestep=None, **options):
     """Universe of a dump of either kind, and whether it is a ``dump local`` of the fix.
 
-    ``options`` are those of ``open_dump``.
+    ``options`` are those of ``open_dump``.  Raises DumpError if one is given with a table, which does not need it.
 
     >>> from gearquat_analysis import open_any
     >>> [open_any(path)[1] for path in ("nitrogen.dump", "nitrogen.table")]
     [False, True]
     """
     local = columns_of(path)[1]
+    unused = [name for name, value in options.items() if value not in (None, "mol")]
+    if local and unused:
+        raise DumpError(
+            f"{path}: a table of the fix, whose rows are bodies; leave out what is about atoms: {' '.join(unused)}"
+        )
     if local:
         return open_table(path, timestep), True
     return open_dump(path, timestep=timestep, **options), False

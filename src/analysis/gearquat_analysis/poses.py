@@ -13,10 +13,12 @@ that is mapped into memory: each frame is written when it is read, and only its 
 """
 
 import csv
+import warnings
 
 import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
-from MDAnalysis.analysis.results import ResultsGroup
+from MDAnalysis.analysis.results import Results, ResultsGroup
+from MDAnalysis.exceptions import NoDataError
 from scipy.spatial.transform import Rotation
 
 from .tables import flat
@@ -37,6 +39,19 @@ MOTION = {
 }
 TABLE_MOTION = ("velocity", "omega_space", "angular_momentum_space", "ke_rotation")
 POTENTIAL = {"potential": ONE}
+#: residuals above this part of a body's size belong to no rigid body, unless coordinates, of which a dump may have six
+#: digits, are rounded more: by up to 5e-6 of them in each direction, of a site and of its center, in two frames
+NOT_RIGID, ROUNDED = 0.05, 4e-5
+
+
+class _NoResults(Results):
+    """Results before a run."""
+
+    def __getattr__(self, name):
+        try:
+            return super().__getattr__(name)
+        except AttributeError:
+            raise NoDataError(f"there is no results.{name} yet: call run() first") from None
 
 
 class _FrameTable(AnalysisBase):
@@ -58,6 +73,7 @@ class _FrameTable(AnalysisBase):
                 f"units {units}: MDAnalysis gives this trajectory in Å and ps, so units metal are required, or none"
             )
         super().__init__(trajectory, **kwargs)
+        self.results = _NoResults()
         self.atoms, self.ids = atoms, ids
         self.units = units or getattr(trajectory, "unit_style", None)
         self._counted = getattr(trajectory, "counted", False)
@@ -81,12 +97,13 @@ class _FrameTable(AnalysisBase):
         return super().run(start, stop, step, frames, **kwargs)
 
     def _prepare(self):
+        self.results = Results()
         self.results.step = np.zeros(self.n_frames, dtype=np.int64)
         if not self._out:
             self.results.table = np.zeros((self.n_frames, len(self.ids)), self._dtype)
 
     def _single_frame(self):
-        self.results.step[self._frame_index] = self._ts.data.get("step", self._ts.frame)
+        self.results.step[self._frame_index] = self._step()
         if self._out:
             # opened anew: no process holds more than the pages of its frame
             table, row = np.load(self._out, mmap_mode="r+"), self._row[self._ts.frame]
@@ -98,6 +115,18 @@ class _FrameTable(AnalysisBase):
     def _frame(self):
         """Fields of the frame at hand: name -> (B, ...)."""
         raise NotImplementedError
+
+    def _step(self):
+        return self._ts.data.get("step", self._ts.frame)
+
+    def _require_finite(self, name, values, ids):
+        """Raises ValueError that names the first body, of ``ids`` (n,), with values (n, ...) that are not finite."""
+        bad = np.flatnonzero(~np.isfinite(values).reshape(len(values), -1).all(axis=1))
+        if len(bad):
+            raise ValueError(
+                f"{self._trajectory.filename}, step {self._step()}: {name} {values[bad[0]]} of body {ids[bad[0]]}:"
+                " finite numbers are required"
+            )
 
     def _get_aggregator(self):
         return ResultsGroup({"step": np.concatenate, "table": np.concatenate})
@@ -216,8 +245,8 @@ def _flat(records):
 class Poses(_FrameTable):
     """Poses and motion of rigid bodies from the positions and velocities of their sites.
 
-    * ``atoms``: AtomGroup.  Its residues are the bodies, residue 0 is none; a Universe of ``open_dump``, or any
-      other (a DCD with a topology; single precision then).
+    * ``atoms``: AtomGroup or Universe.  Residues are the bodies, residue 0 is none; of ``open_dump``, or of any
+      other trajectory (a DCD with a topology; single precision then).
     * ``reference``: "first", the shape a body has in its first frame; "principal", the same in its principal
       axes, so that q is that of the fix; or positions (n_atoms, 3) of all atoms, in their order.
     * ``units``: style of units of LAMMPS, if the dump does not tell; energies are in its units, without it in
@@ -246,7 +275,10 @@ class Poses(_FrameTable):
     Where only wrapped positions are known, bodies are made whole by nearest images (right if smaller
     than half the box) and followed from frame to frame (right if they move less than half the box).
 
-    Raises ValueError for bodies without mass and for a reference of another shape.
+    Raises ValueError for bodies without mass, a reference of another shape and coordinates that are not finite.
+    ``run`` warns of bodies that are not rigid: if a residual is above 5 % of the largest distance of a site from the
+    center of mass and above 4e-5 of a coordinate, as six digits round it.  ``results`` of an analysis that has not run
+    raise NoDataError of MDAnalysis.
 
     >>> from gearquat_analysis import Poses, open_dump
     >>> poses = Poses(open_dump("nitrogen.dump").atoms, reference="principal").run(step=100)
@@ -259,6 +291,7 @@ class Poses(_FrameTable):
     """
 
     def __init__(self, atoms, reference="first", units=None, potential=None, out=None, **kwargs):
+        atoms = atoms.atoms
         self.bodies = Bodies(atoms.resids, atoms.masses)
         self.mass = self.bodies.mass
         trajectory = atoms.universe.trajectory
@@ -284,6 +317,8 @@ class Poses(_FrameTable):
             raise ValueError(
                 f"reference: positions of shape {(len(self.atoms), 3)} are required, not {reference.shape}"
             )
+        if not np.isfinite(reference).all():
+            raise ValueError("reference: finite numbers are required")
         self.bodies.set_shape(reference[self.bodies.index])
 
     def _sites(self):
@@ -296,10 +331,14 @@ class Poses(_FrameTable):
             v = ts.velocities if ts.has_velocities else None
             box = ts.triclinic_dimensions
             whole = box is None
+        v = None if v is None else v[own].astype(float)
+        for name, values in (("position", x), ("velocity", v)):
+            if values is not None:
+                self._require_finite(f"a site's {name}", values, self.ids[self.bodies.of])
         if not whole:
             self._check_box(box)
             x = self.bodies.whole(x, box, ts.data.get("periodic", np.ones(3)))
-        return x, None if v is None else v[own].astype(float)
+        return x, v
 
     def _check_box(self, box):
         if self._box is None:
@@ -311,6 +350,24 @@ class Poses(_FrameTable):
 
     def _images(self):
         return self._box
+
+    def _conclude(self):
+        super()._conclude()
+        bodies, (center, residual) = self.bodies, (self.results.center, self.results.residual)
+        size = bodies.largest(np.linalg.norm(bodies.shape, axis=1))
+        worst = 0.0, 0, 0
+        for k in mapped.rows(residual):
+            rounded = residual[k] <= ROUNDED * np.abs(center[k]).max(axis=1)
+            ratio = np.where(rounded, 0.0, residual[k]) / np.where(size > 0.0, size, np.inf)
+            worst = max(worst, (ratio.max(), k, int(ratio.argmax())))
+        ratio, k, body = worst
+        if ratio > NOT_RIGID:
+            warnings.warn(
+                f"{self._trajectory.filename}: body {self.ids[body]} is not rigid: at step {self.results.step[k]} a site"
+                f" is {residual[k, body]:.2g} away from where the rigid body has it, {ratio:.0%} of the body's size. "
+                " Are these the bodies, and are positions across the box's boundaries unwrapped?",
+                stacklevel=4,
+            )
 
     def _frame(self):
         bodies = self.bodies
@@ -361,7 +418,7 @@ class TablePoses(_FrameTable):
     def __init__(self, atoms, units=None, out=None, **kwargs):
         fields = {name: POSE[name] for name in ("center", "q")}
         fields |= {name: MOTION[name] for name in TABLE_MOTION}
-        super().__init__(atoms, atoms.ids, fields, units, out, **kwargs)
+        super().__init__(atoms.atoms, atoms.atoms.ids, fields, units, out, **kwargs)
 
     def _frame(self):
         data, own = self._ts.data, self.atoms.ix
@@ -369,6 +426,8 @@ class TablePoses(_FrameTable):
         def columns(letter, parts):
             return np.column_stack([data[f"{letter}{part}"][own] for part in parts])
 
+        for name, values in (("center", data["x"][own]), ("quaternion", columns("q", "0123"))):
+            self._require_finite(name, values, self.ids)
         q, momentum = columns("q", "0123"), columns("l", "xyz")
         omega = rotate(q, columns("w", "xyz"))
         return {

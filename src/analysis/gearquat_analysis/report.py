@@ -44,15 +44,21 @@ def average_lines(averages):
     known = [one for one in averages if one.known]
     lines = [f"The {one.name} is {one.text()}." for one in known]
     if len(known) < len(averages):
-        lines.append(f"The run is too short for {len(averages) - len(known)} further averages with errors.")
+        missing = counted(len(averages) - len(known), "further average")
+        lines.append(f"The run is too short for {missing} with errors.")
     return "\n".join(lines)
+
+
+def counted(number, noun, many=None):
+    """ "1 frame", "2 frames"; ``many``: the plural if it is not the noun with an s."""
+    return f"{number} {noun if number == 1 else many or noun + 's'}"
 
 
 def summary(poses, totals):
     """A few lines for a terminal."""
     time, (frames, number) = poses.results.time, poses.results.table.shape
-    many = "body" if number == 1 else "bodies"
-    lines = [f"{frames} frames of {number} {many} were read, from time {time[0]:g} to {time[-1]:g}."]
+    many = f"{counted(frames, 'frame')} of {counted(number, 'body', 'bodies')}"
+    lines = [f"{many} {'was' if frames == 1 else 'were'} read, from time {time[0]:g} to {time[-1]:g}."]
     if "residual" in totals:
         worst = totals["residual"].max()
         lines.append(f"Sites are at most {worst:.2g} away from the rigid body of the first frame.")
