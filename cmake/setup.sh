@@ -1,4 +1,5 @@
-# Sourced by benchmarks/run and tests/run: system packages, .venv, this repository in it.
+# Sourced by benchmarks/run, examples/run, tests/run, doc/build, paper/build and cmake/packaging/check:
+# system packages, .venv, this repository in it.
 # ROOT is the repository. Nothing here runs by itself.
 
 CACHE="$(realpath -m "${GEARQUAT_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/gearquat}")"
