@@ -94,6 +94,51 @@ def test_the_entry_for_the_registry_of_mdakits():
     assert f"mdanalysis{entry['mdanalysis_requires']}" in package.get_all("Requires-Dist")
 
 
+#: Stand-ins for git, which clones what has the release TAG or none, and for pip, which knows what it has installed.
+GIT_AND_PIP = """
+git() {
+  case "$1" in
+    clone) mkdir -p "$3/src/analysis" ;;
+    describe) [ -n "$TAG" ] && echo "$TAG" ;;
+    checkout) echo "git checkout $2" >&3 ;;
+    *) return 1 ;;
+  esac
+}
+pip() {
+  case "$1" in
+    install) shift; echo "pip install $*" >&3; touch "$TOP/installed" ;;
+    show) test -e "$TOP/installed" ;;
+  esac
+}
+"""
+
+
+@pytest.mark.parametrize(
+    "first, tag, done",
+    [
+        ("src_install", "", ["pip install ./src/analysis", "pip install .[test]"]),
+        ("src_install", "v1.2.3", ["pip install ./src/analysis", "pip install .[test]"]),
+        ("", "", ["git checkout main", "pip install ./src/analysis", "pip install .[test]"]),
+        ("pip install gearquat-analysis", "v1.2.3", ["pip install gearquat-analysis", "git checkout v1.2.3", "pip install .[test]"]),
+    ],
+)
+def test_the_registry_of_mdakits_can_test_the_source_and_the_release(tmp_path, first, tag, done):
+    """It joins the commands of an entry by semicolons, makes all letters small, and starts each entry in the same folder."""
+    entry = yaml.safe_load((ROOT / "src" / "analysis" / "metadata.yaml").read_text())
+    steps = [";".join(entry.get(first, [first])), ";".join(entry["test_dependencies"])]
+    for step in steps:
+        code = f"TOP=$PWD TAG={tag}\nexec 3>>log\n{GIT_AND_PIP}\n{step.lower()}"
+        subprocess.run(["bash", "-c", code], cwd=tmp_path, check=True)
+    assert (tmp_path / "log").read_text().splitlines() == done
+
+
+@pytest.mark.parametrize("distribution", PACKAGES)
+def test_links_of_its_page_on_pypi_lead_out_of_the_repository(distribution):
+    page = metadata.metadata(distribution).json["description"]
+    links = re.findall(r"\]\(([^)]*)\)", page)
+    assert links and all(link.startswith("https://") for link in links)
+
+
 def test_without_the_extra_it_is_named():
     code = "import sys; sys.modules['gearquat_analysis'] = None; import lammps_gearquat.cli"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
