@@ -55,7 +55,8 @@ static constexpr char NOTHING[] = "nothing: the trajectory is the same to the la
 ------------------------------------------------------------------------- */
 
 static const char cite_first[] =
-    "fix gear/quat: quaternions in the equations of motion, first-order form\n\n"
+    "fix gear/quat: quaternions in the equations of motion, first-order form: "
+    "https://doi.org/10.1080/00268977700101751\n\n"
     "@Article{Evans1977,\n"
     " author = {Denis J. Evans},\n"
     " title = {On the Representation of Orientation Space},\n"
@@ -66,7 +67,8 @@ static const char cite_first[] =
     "}\n\n";
 
 static const char cite_second[] =
-    "fix gear/quat: quaternions in the equations of motion, second-order form\n\n"
+    "fix gear/quat: quaternions in the equations of motion, second-order form: "
+    "https://doi.org/10.1016/0021-9991(85)90009-9\n\n"
     "@Article{Rapaport1985,\n"
     " author = {Dennis C. Rapaport},\n"
     " title = {Molecular Dynamics Simulation Using Quaternions},\n"
