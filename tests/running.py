@@ -261,6 +261,16 @@ def tree_source(build: Path = TREE_BUILD) -> Path:
     return Path(re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)/cmake$", cache, re.MULTILINE)[1])
 
 
+def source_trees() -> list[Path]:
+    """Sources of LAMMPS on this machine: those that LAMMPS_SOURCE_DIR names, and fetched ones."""
+    cache = Path(os.environ.get("GEARQUAT_CACHE", Path.home() / ".cache" / "gearquat"))
+    given = os.environ.get("LAMMPS_SOURCE_DIR")
+    trees = [*([Path(given)] if given else []), *sorted(cache.glob("lammps-*"))]
+    trees = [tree for tree in trees if (tree / "src" / "fix.h").is_file()]
+    assert trees, "no source tree of LAMMPS: run `tests/run build`, or set LAMMPS_SOURCE_DIR"
+    return trees
+
+
 def tree_version() -> str:
     """Their version, like "4 Feb 2025"."""
     header = (tree_source() / "src" / "version.h").read_text()

@@ -43,6 +43,15 @@ def test_a_profile_is_read():
     assert count.parse(PART.replace("0 1000", "0 1010")).fix == 710
 
 
+def test_a_stub_of_the_linker_is_no_function():
+    """What it calls is called by its caller, and is left out as if it were called directly."""
+    shown = "LAMMPS_NS::FixGearQuat::show_bodies()"
+    through = PART.replace(f"cfn={shown}\ncalls=1 0\n0 300", "cfn=0x00000000049e61e0\ncalls=1 0\n0 303")
+    through += f"fn=0x00000000049e61e0\n0 3\ncfn={shown}\ncalls=1 0\n0 300\n"
+    assert count.parse(through).fix == 1000 - 303
+    assert count.parse(through.replace("0x00000000049e61e0", "somebody()")).fix == 1000
+
+
 def made_up(cost=lambda scene, number: 100 * number + 7):
     """Results in which a scene's step takes cost(scene, its number) instructions per body."""
     sizes, profiles, seconds = runs.QUICK, {}, {}

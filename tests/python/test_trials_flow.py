@@ -1,8 +1,6 @@
 """Decks with loops, branches, files and second thoughts, and those of LAMMPS: trials end where LAMMPS ends."""
 
-import os
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +13,7 @@ from lammps_gearquat.trials import script
 from lammps_gearquat.trials.cost import Budget, measure
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
+from running import source_trees
 
 RUNS = "run 0\nrun 500\nrun 1000000"
 AGAIN = FIX.replace("${style}", "rigid/nve")
@@ -232,11 +231,7 @@ def test_earlier_runs_are_announced(make_deck, tmp_path):
 @pytest.fixture
 def rigid_examples():
     """The folder examples of a LAMMPS source tree."""
-    cache = Path(os.environ.get("GEARQUAT_CACHE", Path.home() / ".cache" / "gearquat"))
-    trees = [Path(os.environ.get("LAMMPS_SOURCE_DIR", "/nowhere")), *sorted(cache.glob("lammps-*"))]
-    folders = [tree / "examples" for tree in trees if (tree / "examples/rigid").is_dir()]
-    assert folders, "no source tree of LAMMPS: run `tests/run build`, or set LAMMPS_SOURCE_DIR"
-    return folders[0]
+    return source_trees()[0] / "examples"
 
 
 VARIANTS = ".small .nve .early .atomfile .atomvar .property .infile .small.infile .molecule".split()

@@ -22,6 +22,7 @@ FIX = re.compile(r"LAMMPS_NS::FixGearQuat::")
 ASIDE = re.compile(
     r"FixGearQuat::(show_bodies|begin_steps)\(|Comm\w+::forward_comm\(int\)|GearQuat::Neighbors::(check|take)_\w+\("
 )
+ADDRESS = re.compile("0x[0-9a-f]+")
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")
 
 
@@ -66,7 +67,18 @@ def parse(text):
             callee = None
         elif function and re.match(r"[+\-*\d]", line):
             own[function] += int(line.split()[-1])
-    return Profile(own, called)
+    return Profile(own, _without_stubs(called))
+
+
+def _without_stubs(called):
+    """``called`` as if functions called each other directly: stubs of the linker have addresses for names."""
+    callees = Counter(caller for caller, _ in called)
+    behind = {stub: name for stub, name in called if ADDRESS.fullmatch(stub) and callees[stub] == 1}
+    direct = Counter()
+    for (caller, name), instructions in called.items():
+        if caller not in behind:
+            direct[caller, behind.get(name, name)] += instructions
+    return direct
 
 
 def find_valgrind():
