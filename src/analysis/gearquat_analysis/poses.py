@@ -364,8 +364,8 @@ class Poses(_FrameTable):
         if ratio > NOT_RIGID:
             warnings.warn(
                 f"{self._trajectory.filename}: body {self.ids[body]} is not rigid: at step {self.results.step[k]} a site"
-                f" is {residual[k, body]:.2g} away from where the rigid body has it, {ratio:.0%} of the body's size. "
-                " Are these the bodies, and are positions across the box's boundaries unwrapped?",
+                f" is {residual[k, body]:.2g} away from where the rigid body has it, {ratio:.0%} of the body's size. Are"
+                " these the bodies, and are positions across the box's boundaries unwrapped?",
                 stacklevel=4,
             )
 
