@@ -251,11 +251,11 @@ def valid(rng):
     """Words that the fix accepts, but for a few that look so."""
     words = bodies_at_random(rng)
     choices = {key: rng.choice(values) for key, values in WORDS.items()}
+    choices |= {key: rng.choice(("1e-5", "0.1", "1")) for key in NUMBERS}
     choices |= {"passes": str(rng.randint(1, 3)), "infile": "bodies", "mol": "two"}
     choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
-    choices["dtmin"], choices["dtmax"] = "1e-5", rng.choice(("1e-5", "0.1", "1"))
-    choices["every/time"], choices["temp"] = rng.choice(("0.05", "1")), "1.5 1.5 1.5"
-    choices["tchain"] = str(rng.randint(*bounds("tchain", {})))
+    choices["dtmin"], choices["every/time"] = "1e-5", rng.choice(("0.05", "1"))
+    choices["temp"], choices["tchain"] = "1.5 1.5 1.5", str(rng.randint(*bounds("tchain", {})))
     given = {key: value for key, value in choices.items() if rng.random() < 0.35}
     given["formulation"] = choices["formulation"]
     given |= {key: "*" for key in MASKS if rng.random() < 0.2}
