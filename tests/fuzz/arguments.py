@@ -58,7 +58,7 @@ FILES = {
 }
 
 #: groups of bodies whose energies are measured before, a word of every refusal, errors that may follow
-ALONE, NAMED, PARDONED = {}, "ERROR", ("no temperature",)
+ALONE, NAMED, PARDONED = {}, "ERROR", ("no temperature", "Use a dtmin smaller")
 
 GROUPS = {"all": {1, 2, 3, 4, 5, 6}, "left": {1, 2, 3}, "right": {4, 5, 6}, "most": {1, 2, 3, 4}}
 GROUPS["nobody"] = set()
@@ -228,6 +228,9 @@ def is_valid(words):
     if not has_coefficients(given):
         return False
     if {"dtmin", "dtmax"} <= set(given) and positive(given["dtmin"]) > positive(given["dtmax"]):
+        return False
+    ends = [{positive(word) for word in behind[:2]} for key, behind in single if key == "temp"]
+    if ends and len(ends[0]) == 2 and "tolerance" in given:  # a ramp
         return False
     if not all(is_mask(behind, bodies) for key, behind in pairs if key in MASKS):
         return False
