@@ -21,7 +21,7 @@ ATOMS = {
     "2": np.array([[5, 5, 5], [6, 5, 5], [5, 6.2, 5.1]]),
 }
 ALONE = {"1": "left", "2": "right"}
-NAMED, PARDONED = "bod", ("blow-up", "values can follow")
+NAMED, PARDONED = "bod", ("blow-up in step", "turns with an angular velocity")
 STYLES = ("molecule", "molecule formulation first", "group 2 left right")
 
 #: what a rounded tensor may be off by, and what no body has; between them either is right

@@ -34,6 +34,7 @@ TRIED = {
     "fix poems": ("", "file bodies.dat", "", "Unknown fix gear/quat bodystyle: file"),
     "infile": "test_infile_out.py",
     "reinit": ("", "molecule reinit no", "run 1\nrun 1", ""),
+    "a body with a single atom": ("set atom 1 mol 3", "molecule", "run 1", ""),
     "mol": "test_coming_and_going.py",
     "force": ("", "molecule force 1 off off off torque 2* off off on", "run 1", ""),
     "langevin": ("", "molecule langevin 1 1 1 4711", "", "define fix langevin on the same group"),
