@@ -43,7 +43,7 @@ from .common import announce, deck_options
         "--b",
         "second",
         metavar="KEYWORDS",
-        help='Second run, in the same way.  Default: "formulation second values 8 compensate yes".',
+        help="Second run, in the same way.  Default: keywords for small errors, which the command prints.",
     ),
     cloup.option("--step-a", type=POSITIVE, help="First time step.  Default: that of the deck."),
     cloup.option(
