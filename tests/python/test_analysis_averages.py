@@ -1,7 +1,10 @@
 """Temperatures, diffusion and rotational correlation times of made-up motions whose values are known."""
 
+import csv
+import re
 from types import SimpleNamespace
 
+import dumps
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -108,6 +111,30 @@ def test_uneven_times():
     assert [one.name for one in found] == [one.name for one in even if one.name.startswith("temperature")]
     assert found[0].value == pytest.approx(1.3 * (2.0 * 0.1 + 1.0) / 1.1, rel=0.01)
     assert found[0].value < 1.3 * 1.2  # 1.3 x 1.5 if all counted alike
+
+
+def test_energies_are_weighted_as_temperatures(tmp_path):
+    """The mean energy that the command prints is the temperature's: half of k T for each of 3 B degrees of freedom."""
+
+    def slower(time, rows):
+        rows[:, 7:10] *= 2.0 / (1.0 + time)
+        return rows
+
+    times = np.arange(60.0) ** 2 / 60.0
+    path = dumps.write(tmp_path / "uneven.dump", dumps.Motion([3, 4]), times, slower)
+    frames = path.read_text().split("ITEM: TIMESTEP")[1:]
+    path.write_text("".join(f"ITEM: TIME\n{t}\nITEM: TIMESTEP{frame}" for t, frame in zip(times, frames)))
+    result = dumps.analyze(path, tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    with open(tmp_path / "out" / "averages.csv") as file:
+        known = {row["average"]: float(row["value"]) for row in csv.DictReader(file)}
+    printed = float(re.search("The mean of ke_translation is ([^ ]+)", result.output)[1])
+    totals = dumps.columns(tmp_path / "out" / "totals.csv")["ke_translation"]
+    assert printed == pytest.approx(0.5 * 6 * known["temperature of translation"], rel=1e-5)
+    assert printed != pytest.approx(0.5 * 6 * 1.01 * known["temperature of translation"], rel=1e-5)
+    # the integral over the time by trapezoids with longer ends, and not the plain mean
+    assert printed == pytest.approx(np.average(totals, weights=np.gradient(times)), rel=1e-5)
+    assert printed < 0.9 * totals.mean()
 
 
 def test_the_error_of_weighted_samples():

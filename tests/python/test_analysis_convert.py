@@ -160,7 +160,7 @@ def test_options_or_the_dump_itself(flights, tmp_path, kind):
     [
         ("plain", ["--timestep", "1"], "--convert needs the units of the dump: give --units, or"),
         ("plain", ["--units", "real"], "needs the times of the frames: give --timestep, or write"),
-        ("timed", ["--units", "lj"], "--units lj: the dump says units real"),
+        ("timed", ["--units", "lj"], "units lj: the dump says units real"),
     ],
 )
 def test_what_is_missing_is_named(flights, tmp_path, kind, arguments, text):

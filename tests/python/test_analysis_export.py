@@ -8,6 +8,7 @@ import pytest
 
 from gearquat_analysis import Poses, averages, correlations, open_dump, pictures
 from gearquat_analysis.averages import Average, Averages
+from gearquat_analysis.convert import convert
 from gearquat_analysis.units import OF_RESULTS, UNITS, unit_of
 
 TIMES = np.arange(0.0, 120.0)
@@ -30,21 +31,42 @@ def test_units_of_results(poses, dump):
     # neither units nor times are known
     bare = Poses(open_dump(dump).atoms)
     assert bare.unit("time") == "step" and bare.unit("velocity") == ""
-    assert Poses(open_dump(dump).atoms, units="real").unit("velocity") == "Å/step"
+
+
+def test_without_times_only_what_is_found_from_frames_is_in_steps(dump):
+    """A velocity is that of the dump: 5 times the slope of the center by the step, if a step is 5 fs long."""
+    poses = Poses(open_dump(dump).atoms, units="real").run()
+    units = {"velocity": "Å/fs", "omega_space": "rad/fs", "angular_momentum_space": "g/mol Å²/fs", "momentum": "g/mol Å/fs"}
+    units |= {"velocity_autocorrelation": "Å²/fs²", "time": "step", "lag": "step", "correlation time": "step"}
+    units |= {"diffusion coefficient": "Å²/step", "velocity_residual": "Å/fs", "mean_square_displacement": "Å²"}
+    assert {name: poses.unit(name) for name in units} == units
+    assert poses.to_dataframe().attrs["units"]["velocity_x"] == poses.to_xarray()["velocity"].attrs["units"] == "Å/fs"
+    found = correlations.all_correlations(poses)
+    assert found.units["velocity_autocorrelation"] == "Å²/fs²" and found.units["lag"] == "step"
+    timed = Poses(open_dump(dump, timestep=5.0).atoms, units="real").run()
+    assert np.array_equal(timed.results.velocity, poses.results.velocity) and timed.unit("velocity") == "Å/fs"
+    assert timed.unit("diffusion coefficient") == "Å²/fs"
+    _, deviation = pictures.draw_totals(poses, poses.totals()).axes
+    labels = [text.get_text() for text in deviation.get_legend().get_texts()]
+    assert labels == ["sites (Å)", "velocities (Å/fs)"] and deviation.get_xlabel() == "time (step)"
 
 
 def test_units_of_the_dump_itself(dump, tmp_path):
     path = tmp_path / "stated.dump"
     path.write_text("ITEM: UNITS\nnano\n" + dump.read_text())
-    assert Poses(open_dump(path).atoms).unit("center") == "nm"
+    assert Poses(open_dump(path).atoms).unit("center") == Poses(open_dump(path).atoms, units="nano").unit("center") == "nm"
+    with pytest.raises(ValueError, match="units metal: the dump says units nano"):
+        Poses(open_dump(path), units="metal")
+    with pytest.raises(ValueError, match="units real: the dump says units nano"):
+        convert(open_dump(path).atoms, tmp_path / "x.dcd", "real")
 
 
 @pytest.mark.parametrize("style", UNITS)
 def test_every_letter_has_a_name(style):
-    """No M, L, T, E or K for mass, length, time, energy and temperature is left."""
+    """No M, L, T, t, E or K for mass, length, time, energy and temperature is left."""
     for result in OF_RESULTS:
         names = {word for word in unit_of(result, style).replace("/", " ").replace("²", "").split()}
-        assert not names & {"M", "L", "T", "E"} and ("K" in names) <= (result == "temperature")
+        assert not names & {"M", "L", "T", "t", "E"} and ("K" in names) <= (result == "temperature")
 
 
 def test_tables_of_poses(poses):

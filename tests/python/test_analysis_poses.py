@@ -287,3 +287,17 @@ def test_other_formats_have_the_units_of_mdanalysis():
     with pytest.raises(ValueError, match="units metal are required"):
         Poses(universe.atoms, units="real")
     assert Poses(universe.atoms, units="metal").units == "metal"
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("parts", [1, 2])
+def test_the_dump_reader_of_mdanalysis_has_no_units(dump, parts):
+    """Its velocities stay in LAMMPS' units, and its times are in ps."""
+    same = MDAnalysis.Universe.empty(16, n_residues=5, atom_resindex=MOTION.of)
+    same.add_TopologyAttr("masses", MOTION.masses)
+    same.add_TopologyAttr("resids", range(1, 6))
+    same.load_new([str(dump)] * parts if parts > 1 else str(dump), format="LAMMPSDUMP")
+    for units in ("metal", "real", "lj"):
+        with pytest.raises(ValueError, match=f"units {units}: .*(LAMMPSDUMP).*gearquat_analysis.open_dump is required"):
+            Poses(same, units=units)
+    assert Poses(same).units is None and Poses(open_dump(dump), units="metal").units == "metal"

@@ -93,6 +93,16 @@ def of_series(series, count=BLOCKS, weights=None):
     return mean, math.sqrt(count / (count - 1) * np.sum(np.square(moves)))
 
 
+def weights_of(time):
+    """Weights (F,) of frames at ``time`` (F,): the time to the middle between a frame and those beside it.
+
+    The first and the last count for the whole of it, so that even times have equal weights.  None, which is equal
+    weights, if times go back or all are the same.
+    """
+    gaps = np.diff(time)
+    return np.gradient(time) if gaps.any() and (gaps >= 0.0).all() else None
+
+
 def _boltzmann(poses):
     return UNITS[poses.units or "lj"].boltzmann
 
@@ -199,13 +209,12 @@ def rotational_time(time, q, axis, order):
 def averages(poses):
     """The Averages that finished ``Poses`` or ``TablePoses`` have the data for.
 
-    A frame counts for the time it stands for: to the middle between it and those beside it.  Of frames that are not
-    evenly spaced in time there are only temperatures, with a warning; if times go back, all of them count alike.
+    A frame counts for the time it stands for (``weights_of``).  Of frames that are not evenly spaced in time there are
+    only temperatures, with a warning.
     """
     results = poses.results
     times = results.time
-    gaps = np.diff(times)
-    weights = np.gradient(times) if gaps.any() and (gaps >= 0.0).all() else None
+    weights = weights_of(times)
     found = Averages(
         Average(f"temperature of {name}", *of_series(series, weights=weights), poses.unit("temperature"))
         for name, series in temperatures(poses).items()

@@ -9,7 +9,7 @@ import cloup
 from cloup.constraints import all_or_none
 
 from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
-from .units import UNITS
+from .units import UNITS, style_of
 
 
 #: files of the command beside poses.npy
@@ -143,14 +143,11 @@ def _bar(what, unit):
 
 
 def _settle(trajectory, converted, options):
-    """Put units and time step, from the dump or the options, into ``options``; say what is missing."""
+    """Say which units and times are missing, and which option is not used."""
     from .convert import has_times
 
-    style, units, timestep = trajectory.unit_style, options["units"], options["timestep"]
-    if style and units and style != units:
-        raise ValueError(f"--units {units}: the dump says units {style}")
-    options["units"] = style or units
-    if converted and not options["units"]:
+    timestep = options["timestep"]
+    if converted and not style_of(trajectory, options["units"]):
         raise ValueError(
             "--convert needs the units of the dump: give --units, or write the dump with dump_modify units yes"
         )

@@ -13,7 +13,7 @@ import numpy as np
 from MDAnalysis.core._get_readers import get_writer_for
 from MDAnalysis.lib.util import guess_format
 
-from .units import UNITS
+from .units import UNITS, style_of
 from .bodies import Bodies
 
 #: formats that say themselves what their atoms are
@@ -71,6 +71,7 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
     """
     require_format(path)
     path, trajectory = Path(path), atoms.universe.trajectory
+    units = style_of(trajectory, units)
     length, time = UNITS[units].angstrom, UNITS[units].ps
     iterator = trajectory[frames or slice(None)]
     kind = guess_format(str(path))

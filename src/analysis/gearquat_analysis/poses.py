@@ -22,7 +22,7 @@ from MDAnalysis.exceptions import NoDataError
 from scipy.spatial.transform import Rotation
 
 from .tables import flat
-from .units import UNITS, unit_of
+from .units import UNITS, style_of, unit_of
 from . import export, mapped
 from .bodies import Bodies
 from .superposition import rotate, superpose
@@ -65,17 +65,11 @@ class _FrameTable(AnalysisBase):
         return ("serial", "multiprocessing", "dask")
 
     def __init__(self, atoms, ids, fields, units, out, **kwargs):
-        if units is not None and units not in UNITS:
-            raise ValueError(f"units {units}: one of {', '.join(UNITS)} is required")
         trajectory = atoms.universe.trajectory
-        if units not in (None, "metal") and not hasattr(trajectory, "unit_style"):
-            raise ValueError(
-                f"units {units}: MDAnalysis gives this trajectory in Å and ps, so units metal are required, or none"
-            )
+        self.units = style_of(trajectory, units)
         super().__init__(trajectory, **kwargs)
         self.results = _NoResults()
         self.atoms, self.ids = atoms, ids
-        self.units = units or getattr(trajectory, "unit_style", None)
         self._counted = getattr(trajectory, "counted", False)
         self._energy = UNITS[self.units or "lj"].energy
         self._dtype = np.dtype([(name, *kind) for name, kind in fields.items()])
@@ -194,7 +188,11 @@ class _FrameTable(AnalysisBase):
         return np.array(self.results.center[:, place]), {k + 1: turn.apply(own[k]) for k in known}
 
     def unit(self, result):
-        """Unit of a result, such as "Å/fs" of ``velocity``; "" without units.  Times are steps if the dump tells no more."""
+        """Unit of a result, such as "Å/fs" of ``velocity``; "" without units.
+
+        Times of frames, and what is found from them (lags, diffusion, correlation times), are in steps if the dump tells
+        no more.
+        """
         return unit_of(result, self.units, "step" if self._counted else None)
 
     def to_dataframe(self):

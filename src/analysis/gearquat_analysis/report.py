@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .averages import weights_of
 from .tables import write_columns, write_rows
 
 
@@ -68,5 +69,6 @@ def summary(poses, totals):
     without = "in mass x velocity^2, without --units"
     for name in ("ke_translation", "ke_rotation", "potential"):
         if name in totals:
-            lines.append(f"The mean of {name} is {totals[name].mean():.6g} {poses.unit(name) or without}.")
+            mean = np.average(totals[name], weights=weights_of(time))
+            lines.append(f"The mean of {name} is {mean:.6g} {poses.unit(name) or without}.")
     return "\n".join(lines)

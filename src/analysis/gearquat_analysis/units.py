@@ -29,10 +29,11 @@ UNITS = {
     "micro": Units("µs", "µm", 1e6, 1e4, 1.0, 1.3806504e-8, "pg", "pg µm²/µs²"),
     "nano": Units("ns", "nm", 1e3, 10.0, 1.0, 0.013806504, "ag", "ag nm²/ns²"),
 }
-#: units of results, from those of mass M, length L, time T, energy E and temperature K
+#: units of results, from those of mass M, length L, time T, energy E and temperature K; t is the unit of the times of
+#: frames, which are numbers of steps where the dump tells no more, while velocities are always in LAMMPS' units
 OF_RESULTS = {
-    "time": "T",
-    "lag": "T",
+    "time": "t",
+    "lag": "t",
     "center": "L",
     "residual": "L",
     "velocity": "L/T",
@@ -48,20 +49,46 @@ OF_RESULTS = {
     "omega_space_autocorrelation": "rad²/T²",
     "mean_square_rotation": "rad²",
     "temperature": "K",
-    "diffusion coefficient": "L²/T",
-    "correlation time": "T",
+    "diffusion coefficient": "L²/t",
+    "correlation time": "t",
 }
+
+
+def style_of(trajectory, units=None):
+    """Style of units of a trajectory: what its dump says, or else ``units``; None if neither is known.
+
+    Raises ValueError for an unknown style, one that is not that of the dump, and one that is not what MDAnalysis has
+    made of the numbers of another format.
+    """
+    ours, stated = hasattr(trajectory, "unit_style"), getattr(trajectory, "unit_style", None)
+    if units is None:
+        return stated
+    if units not in UNITS:
+        raise ValueError(f"units {units}: one of {', '.join(UNITS)} is required")
+    if stated not in (None, units):
+        raise ValueError(f"units {units}: the dump says units {stated}")
+    # of several files there is a reader for each
+    if not ours and any("LAMMPSDUMP" in one.format for one in getattr(trajectory, "readers", [trajectory])):
+        raise ValueError(
+            f"units {units}: MDAnalysis' own reader of LAMMPS dumps (LAMMPSDUMP) has times in ps, but velocities as they"
+            " stand in the dump; a universe of gearquat_analysis.open_dump is required"
+        )
+    if not ours and units != "metal":
+        raise ValueError(
+            f"units {units}: MDAnalysis gives this trajectory in Å and ps, so units metal are required, or none"
+        )
+    return units
 
 
 def unit_of(result, style, time=None):
     """Unit of a result in a style of units of LAMMPS, such as "Å²/fs"; "" for a pure number or without a style.
 
-    ``time``: the unit of times if it is not that of the style.
+    ``time``: the unit of the times of frames if it is not that of the style.
     """
     kind = OF_RESULTS.get(result, "")
     if style is None:
-        return time or "" if kind == "T" else ""
+        return time or "" if kind == "t" else ""
     units = UNITS[style]
-    names = {"M": units.mass_name, "L": units.length or "σ", "T": time or units.time or "τ"}
+    names = {"M": units.mass_name, "L": units.length or "σ", "T": units.time or "τ", "t": time or units.time or "τ"}
     names |= {"E": units.energy_name, "K": "ε/k" if style == "lj" else "K"}
     return "".join(names.get(letter, letter) for letter in kind)
