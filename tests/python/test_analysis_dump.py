@@ -1,5 +1,7 @@
 """Dumps as universes: every kind of columns gives the same bodies; unusable dumps are refused clearly."""
 
+import re
+
 import dumps
 import numpy as np
 import pytest
@@ -142,6 +144,58 @@ def test_masses_and_molecules_of_a_data_file(write, tmp_path):
         open_dump(path, data=data)
 
 
+def data_of(tmp_path, atoms="", masses="1 2.5"):
+    """A data file of all atoms of MOTION, type 1, with more text behind them."""
+    rows = "\n".join(f"{k + 1} {MOTION.of[k] + 1} 1 0 0 0" for k in range(12))
+    path = tmp_path / "data.made"
+    path.write_text(DATA.replace("1 2.5", masses) + rows + "\n" + atoms)
+    return path
+
+
+VELOCITIES = "\nVelocities\n\n" + "".join(f"{k + 1} 0 0 0\n" for k in range(12))
+PROPERTY = "\ni_body\n\n" + "".join(f"{k + 1} 7\n" for k in range(12))
+
+
+def test_a_data_file_with_sections_of_fixes(write, tmp_path):
+    """Behind velocities they do no harm; elsewhere the file is named, and what it must not have."""
+    path = write(MOTION, TIMES, lambda t, r: r[:, [0, 4, 5, 6]], columns="id xu yu zu")
+    atoms = open_dump(path, data=data_of(tmp_path, VELOCITIES + PROPERTY)).atoms
+    assert atoms.masses.tolist() == [2.5] * 12 and atoms.resids.tolist() == (MOTION.of + 1).tolist()
+    required = "data.made: MDAnalysis cannot read this data file .*; sections Masses and Atoms .*write_data ... nofix"
+    with pytest.raises(DumpError, match=required):
+        open_dump(path, data=data_of(tmp_path, PROPERTY))
+    style = "id type x y z"  # all atoms are one residue to MDAnalysis, which is no body
+    atomic = data_of(tmp_path)
+    atomic.write_text(re.sub(r"(?m)^(\d+) \d+ 1 0 0 0$", r"\1 1 0 0 0", atomic.read_text()))
+    with pytest.raises(DumpError, match="no column mol; .*a data file with molecules"):
+        open_dump(path, data=atomic, atom_style=style)
+    bare = data_of(tmp_path)
+    bare.write_text(bare.read_text().replace("Masses\n\n1 2.5\n", ""))
+    with pytest.raises(DumpError, match=required):
+        open_dump(path, data=bare)
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "wrong", "text"),
+    [("type", 2, 2, "type 1 of atom 4, which has 2 in the dump"), ("mass", 3, 2.525, "mass 2.5 of atom 4, .* 2.525 in the")],
+)
+def test_a_data_file_of_another_run(write, tmp_path, name, column, wrong, text):
+    """Types or masses disagree, here by 1 %; six digits of a mass are enough."""
+    data, names = data_of(tmp_path, masses="1 2.50000001"), np.array(dumps.COLUMNS.split())
+    for value in (2.5 if name == "mass" else 1, wrong):
+
+        def change(time, rows):
+            rows[:, 3] = 2.5
+            rows[3, column] = value
+            return rows[:, names != "mol"]
+
+        path = write(MOTION, TIMES, change, columns=" ".join(names[names != "mol"]))
+        if value != wrong:
+            assert open_dump(path, data=data).atoms.resids.tolist() == (MOTION.of + 1).tolist()
+    with pytest.raises(DumpError, match=f"data.made: {text}"):
+        open_dump(path, data=data)
+
+
 def test_bodies_of_another_column(write):
     columns = dumps.COLUMNS.replace("mol", "i_body")
     assert centers(write(MOTION, TIMES, columns=columns), body="i_body").shape == (3, 3, 3)
@@ -231,6 +285,15 @@ def test_columns_in_another_order_from_frame_to_frame(write):
         with pytest.raises(DumpError, match=f"poses.dump, step 4: {text}"):
             Poses(open_dump(path).atoms).run()
         write(MOTION, TIMES)
+
+
+def test_a_row_with_a_missing_column(write):
+    path = write(MOTION, TIMES)
+    lines = path.read_text().splitlines()
+    lines[-3] = lines[-3].rsplit(" ", 1)[0]
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(DumpError, match="poses.dump, step 2: a row with 9 columns; 10 are required"):
+        Poses(open_dump(path)).run()
 
 
 @pytest.mark.parametrize("column", [4, 8])

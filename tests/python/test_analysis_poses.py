@@ -253,6 +253,13 @@ def test_a_universe_will_do(dump, poses):
     assert np.array_equal(Poses(open_dump(dump)).run().results.table, poses.results.table)
 
 
+def test_atoms_that_are_there_twice(dump, poses):
+    atoms = open_dump(dump).atoms
+    with pytest.raises(ValueError, match="an atom is in the group twice; .* atoms.unique"):
+        Poses(atoms + atoms[3:4])
+    assert np.array_equal(Poses((atoms + atoms[3:4]).unique).bodies.mass, poses.bodies.mass)
+
+
 @pytest.mark.parametrize("use", [averages.averages, Poses.totals, Poses.to_dataframe, lambda poses: poses.results.q])
 def test_results_need_a_run(dump, use):
     with pytest.raises(NoDataError, match="there is no results.* yet: call run"):

@@ -16,9 +16,11 @@ from pathlib import Path
 import MDAnalysis
 import numpy as np
 from MDAnalysis.coordinates.LAMMPS import DumpReader
+from MDAnalysis.exceptions import NoDataError
 from MDAnalysis.guesser.tables import masses as MASSES
 from MDAnalysis.lib.mdamath import triclinic_box
 from MDAnalysis.lib.util import anyopen
+from MDAnalysis.topology.LAMMPSParser import DATAParser
 
 from .bodies import places
 
@@ -223,7 +225,10 @@ class DumpFrames(DumpReader):
         try:
             table = np.loadtxt(lines, usecols=list(columns.values()), ndmin=2)
         except ValueError as error:
-            raise DumpError(f"{self.filename}, step {header.step}: {error}") from error
+            number = len(header.columns)
+            short = next((len(line.split()) for line in lines if len(line.split()) < number), None)
+            cause = f"a row with {short} columns; {number} are required" if short else error
+            raise DumpError(f"{self.filename}, step {header.step}: {cause}") from error
         self._fill(dict(zip(columns, table.T)), kind, header)
         return ts
 
@@ -303,16 +308,37 @@ def _universe(reader, bodies, masses, types):
 
 
 def _from_data_file(data, atom_style, ids):
-    """Masses, bodies (molecule IDs) and types of the atoms ``ids``, from a LAMMPS data file."""
+    """Masses, bodies (molecule IDs; None if it has none) and types of the atoms ``ids``, from a LAMMPS data file."""
     style = {"atom_style": atom_style} if atom_style else {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        known = MDAnalysis.Universe(str(data), topology_format="DATA", format="DATA", **style).atoms
+    try:
+        # without its velocities, which are not needed, and whose section goes on to the next one that MDAnalysis knows
+        with DATAParser(str(data)) as parser, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            known = MDAnalysis.Universe(parser.parse(**style), to_guess=()).atoms
+        known.masses
+    except (ValueError, LookupError, OSError, NoDataError) as error:
+        raise DumpError(
+            f"{data}: MDAnalysis cannot read this data file ({error}); sections Masses and Atoms are required, with the"
+            " columns of atom style full or molecular unless others are named (--atom-style), and no sections of fixes"
+            " (write_data ... nofix)"
+        ) from error
     place = places(known.ids, ids)
     if (place < 0).any():
         raise DumpError(f"{data}: no atom {ids[place < 0][0]}, which the dump has")
     known = known[place]
-    return known.masses, known.resids, known.types
+    molecules = not atom_style or "resid" in atom_style.split()
+    return known.masses, known.resids if molecules else None, known.types
+
+
+def _check_same(what, found, dumped, ids):
+    """Raises DumpError if numbers (n,) of a data file are not those of the dump, which may have six digits, or be None."""
+    other = np.zeros(0, int) if dumped is None else np.flatnonzero(~np.isclose(found, dumped, rtol=1e-5, atol=0.0))
+    if len(other):
+        k = other[0]
+        raise DumpError(
+            f"{what} {found[k]:g} of atom {ids[k]}, which has {dumped[k]:g} in the dump: the data file of the dumped run is"
+            " required"
+        )
 
 
 def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_style=None):
@@ -325,7 +351,8 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
 
     ``body`` is the column whose value is the ID of an atom's body (0: in none), such as ``i_body``;
     ``potential`` one with energies of atoms, such as ``c_energy``; ``timestep`` that of LAMMPS, so that
-    times are in its units (not needed where the dump has times).  Raises DumpError if a column is missing.
+    times are in its units (not needed where the dump has times).  Raises DumpError if a column is missing, and for a
+    data file that cannot be read, or has other types or masses than the dump.
 
     >>> from gearquat_analysis import open_dump
     >>> universe = open_dump("nitrogen.dump")
@@ -343,6 +370,9 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     known = reader.pop_columns(extra)
     if data is not None:
         masses, bodies, types = _from_data_file(data, atom_style, reader.ids)
+        if np.char.isdigit(types.astype(str)).all():  # and no labels
+            _check_same(f"{data}: type", types.astype(int), known.get("type"), reader.ids)
+        _check_same(f"{data}: mass", masses, known.get("mass"), reader.ids)
     else:
         masses, bodies, types = known.get("mass"), None, np.ones(reader.n_atoms, int)
     if masses is None:

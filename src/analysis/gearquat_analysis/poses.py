@@ -66,6 +66,8 @@ class _FrameTable(AnalysisBase):
 
     def __init__(self, atoms, ids, fields, units, out, **kwargs):
         trajectory = atoms.universe.trajectory
+        if len(np.unique(atoms.ix)) < len(atoms):
+            raise ValueError("an atom is in the group twice; each is required once, as atoms.unique has them")
         self.units = style_of(trajectory, units)
         super().__init__(trajectory, **kwargs)
         self.results = _NoResults()
@@ -273,7 +275,7 @@ class Poses(_FrameTable):
     Where only wrapped positions are known, bodies are made whole by nearest images (right if smaller
     than half the box) and followed from frame to frame (right if they move less than half the box).
 
-    Raises ValueError for bodies without mass, a reference of another shape and coordinates that are not finite.
+    Raises ValueError for bodies without mass, atoms that are in the group twice, a reference of another shape and coordinates that are not finite.
     ``run`` warns of bodies that are not rigid: if a residual is above 5 % of the largest distance of a site from the
     center of mass and above 4e-5 of a coordinate, as six digits round it.  ``results`` of an analysis that has not run
     raise NoDataError of MDAnalysis.
