@@ -79,9 +79,48 @@ def test_temperatures(resting):
 
 def test_without_a_moment_there_is_no_temperature():
     found = averages.temperatures(thermal(moments=np.array([3.0, 3.0, 0.0])))
-    assert set(found) == {"translation", "rotation", "rotation about axis 1", "rotation about axis 2"}
+    assert set(found) == {"translation", "rotation"}  # both axes of a linear body are equal
     near(averages.of_series(found["rotation"]), 1.05)
     assert set(averages.temperatures(thermal(moments=np.zeros(3)))) == {"translation"}
+
+
+#: moments of tops, turns that leave their inertia as it is, and temperatures of groups of axes with 1, 1.1 and 1.2
+TOPS = [
+    ([3.0, 2.001, 2.0], [1.0, 0.0, 0.0], {"axis 1": 1.0, "axes 2 and 3": 1.15}),
+    ([3.0, 2.999, 1.0], [0.0, 0.0, 1.0], {"axes 1 and 2": 1.05, "axis 3": 1.2}),
+    ([3.0, 2.999, 2.998], [0.5, 0.3, 0.8], {}),
+]
+
+
+@pytest.mark.parametrize(("moments", "turn", "expected"), TOPS)
+def test_axes_of_equal_moments_are_arbitrary(moments, turn, expected):
+    """One average stands for them, which does not depend on which axes they are."""
+    poses = thermal(moments=np.array(moments))
+    found, before = averages.temperatures(poses), correlations.all_correlations(poses).functions
+    about = {name.removeprefix("rotation about "): series for name, series in found.items() if " about " in name}
+    assert set(about) == set(expected)
+    for name, value in expected.items():
+        near(averages.of_series(about[name]), value)
+    assert not {"axis2_order1", "axis2_order2"} & set(before)
+    angles = np.linspace(0.0, 2.0, BODIES)[:, None]  # in each body another
+    turns = Rotation.from_rotvec(angles * turn / np.linalg.norm(turn))
+    poses.bodies.axes = np.swapaxes(turns.as_matrix(), 1, 2).copy()
+    again, after = averages.temperatures(poses), correlations.all_correlations(poses).functions
+    for name in found:  # moments differ by 5e-4
+        assert again[name] == pytest.approx(found[name], rel=1e-3), name
+        assert again[name] != pytest.approx(1.01 * found[name], rel=1e-3), name
+    for name in before:
+        assert after[name] == pytest.approx(before[name], abs=1e-12 * np.abs(before[name]).max()), name
+
+
+def test_the_axis_of_some_is_arbitrary():
+    """Among others that have three: names are those of three axes, and a symmetric top counts alike for two of them."""
+    poses = thermal(moments=np.array([[3.0, 2.0, 2.0 - (body % 2)] for body in range(BODIES)]), axes=(1.0, 1.1, 1.2))
+    found = averages.temperatures(poses)
+    expected = {"axis 1": 1.0, "axis 2": (1.1 + 1.15) / 2.0, "axis 3": (1.2 + 1.15) / 2.0}
+    for name, value in expected.items():
+        near(averages.of_series(found[f"rotation about {name}"]), value)
+    assert {"axis2_order2", "axis3_order2"} <= set(correlations.all_correlations(poses).functions)
 
 
 def test_the_error_of_independent_samples():

@@ -6,6 +6,7 @@ import pytest
 from MDAnalysis.lib.correlations import autocorrelation
 from scipy.spatial.transform import Rotation
 
+from gearquat_analysis.bodies import directions
 from gearquat_analysis import Poses, correlations, open_dump, residence
 
 RNG = np.random.default_rng(8)
@@ -69,6 +70,27 @@ def test_rotation_is_not_bounded(held):
     assert found == pytest.approx(expected, rel=1e-10, abs=1e-10)
     assert found != pytest.approx(1.01 * expected, rel=5e-3)
     assert largest == pytest.approx(0.9, rel=1e-12)
+
+
+@pytest.mark.parametrize(("moments", "first", "number"), [([3, 2, 2], 1, 3), ([3, 3, 1], 0, 3), ([2, 2, 2], 0, 6)])
+def test_directions_stand_for_all(moments, first, number):
+    """P1 and P2 of few directions are those of many in the plane, or in space, of the axes with equal moments."""
+    q, _, _ = rotating(RNG.normal(size=(BODIES, 3)))
+    few = directions(np.tile(moments, (BODIES, 1)), np.tile(np.eye(3), (BODIES, 1, 1)), first)
+    assert few.shape == (number, BODIES, 3) and np.linalg.norm(few, axis=2) == pytest.approx(np.ones((number, BODIES)))
+    azimuth = 2.0 * np.pi * np.arange(16) / 16
+    circle = np.column_stack([np.cos(azimuth), np.sin(azimuth)])
+    # in space: a rule of Gauss along the third axis, exact for polynomials of degree 15
+    heights, weights = np.polynomial.legendre.leggauss(8) if number == 6 else ([0.0], [1.0])
+    for order in (1, 2):
+        found, expected = correlations.orientation_correlation(q, few, order), np.zeros(FRAMES)
+        for z, weight in zip(heights, np.array(weights) / np.sum(weights)):
+            for x, y in circle * np.sqrt(1.0 - z**2):
+                u = np.roll([x, y, z], first)
+                expected += weight / 16 * correlations.orientation_correlation(q, u, order)
+        assert found == pytest.approx(expected, abs=1e-12)
+        if number == 3:  # and a single one of them is not
+            assert correlations.orientation_correlation(q, few[0], order) != pytest.approx(expected, abs=1e-2)
 
 
 def test_orientation_of_an_even_rotation(held):

@@ -10,10 +10,11 @@ import warnings
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from .units import UNITS
 from . import correlations, export
-from .superposition import rotate
+from .bodies import axes_named, axis_groups, equal_moments
 
 #: of the averages of series, and of functions of time
 BLOCKS, LONG_BLOCKS = 10, 5
@@ -62,7 +63,7 @@ class Averages(list):
     >>> from gearquat_analysis import Poses, averages, open_dump
     >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
     >>> found.to_dataframe()["name"][1], len(found)
-    ('temperature of rotation', 7)
+    ('temperature of rotation', 5)
     """
 
     def to_dataframe(self):
@@ -121,6 +122,8 @@ def dimension(results):
 def temperatures(poses):
     """Temperatures of all frames, name -> (F,): of translation, of rotation and about each principal axis.
 
+    Axes of equal moments are arbitrary, and each has their mean; if they are equal in all bodies, it is given once.
+
     The degrees of freedom of translation do not contain the total momentum if it is zero.  In two dimensions
     (``dimension``) a body has two, and one of rotation.  Empty without velocities or masses.  In LAMMPS' units;
     without ``units`` in those of mass x velocity^2.
@@ -143,17 +146,25 @@ def temperatures(poses):
         found["rotation"] = 2.0 * results.ke_rotation.sum(axis=1) / (turning.any(axis=1).sum() * k)
         return found
     found["rotation"] = 2.0 * results.ke_rotation.sum(axis=1) / (turning.sum() * k)
-    for axis in range(3):
-        own = turning[:, axis]
-        if not own.any():
-            continue
-        sums = np.empty(len(results.time))
-        for frame in range(len(sums)):
-            along = rotate(results.q[frame, own], bodies.axes[own, axis])
-            spin = np.einsum("bi,bi->b", along, results.omega_space[frame, own])
-            sums[frame] = (bodies.moments[own, axis] * spin**2).sum()
-        found[f"rotation about axis {axis + 1}"] = energy * sums / (own.sum() * k)
+    twice = energy * _about_axes(bodies, results)
+    groups = [axes for axes in axis_groups(bodies.moments[turning[:, 0]]) if turning[:, axes[0]].any()]
+    if len(groups) > 1:  # one is that of rotation
+        for axes in groups:
+            own = turning[:, axes[0]].sum()
+            found[f"rotation about {axes_named(axes)}"] = twice[:, axes[0]] / (own * k)
     return found
+
+
+def _about_axes(bodies, results):
+    """Twice the kinetic energies (F, 3) about the principal axes, mass x velocity^2; of equal moments their mean."""
+    equal = equal_moments(bodies.moments)
+    share = equal / equal.sum(axis=1, keepdims=True)
+    sums = np.empty((len(results.time), 3))
+    for frame, (q, omega) in enumerate(zip(results.q, results.omega_space)):
+        omega_body = Rotation.from_quat(q, scalar_first=True).inv().apply(omega)
+        spin = np.einsum("bkj,bj->bk", bodies.axes, omega_body)
+        sums[frame] = np.einsum("bkl,bl->k", share, bodies.moments * spin**2)
+    return sums
 
 
 def _long_blocks(frames):
@@ -227,9 +238,9 @@ def averages(poses):
     name = "diffusion coefficient"
     found.append(Average(name, *diffusion(results.time, results.center, dimension(results)), poses.unit(name)))
     q, _, axes = correlations.turning(poses)
-    for k, axis in axes.items():
+    for group, axis in axes.items():
         for order in (1, 2):
             time = rotational_time(results.time, q, axis, order)
             unit = poses.unit("correlation time")
-            found.append(Average(f"correlation time of axis {k + 1}, order {order}", *time, unit))
+            found.append(Average(f"correlation time of {axes_named(group)}, order {order}", *time, unit))
     return found

@@ -7,6 +7,13 @@ from scipy.spatial.transform import Rotation
 LINEAR_FRACTION = 1.0e-7
 #: a site nearer to a plane than this fraction of the body's size is on neither side, as in the fix
 ON_AXIS = 1.0e-6
+#: principal moments that differ by less than this fraction of the largest count as equal.  Six digits leave sites of a
+#: molecule about 1e-4 of its size uncertain, and its axes by about that divided by the relative difference of moments
+EQUAL = 1.0e-3
+#: directions in a plane, and in space (the diagonals of an icosahedron), whose mean of P1 or P2 is that of all directions
+PLANE = np.column_stack([np.cos(np.pi / 3.0 * np.arange(3)), np.sin(np.pi / 3.0 * np.arange(3))])
+_GOLDEN = (1.0 + np.sqrt(5.0)) / 2.0
+SPACE = np.array([np.roll([0.0, 1.0, sign * _GOLDEN], k) for k in range(3) for sign in (1, -1)]) / np.hypot(1.0, _GOLDEN)
 
 
 def places(ids, wanted):
@@ -14,6 +21,55 @@ def places(ids, wanted):
     order = np.argsort(ids)
     nearest = np.append(order, -1)[np.searchsorted(ids, wanted, sorter=order)]
     return np.where(np.append(ids, -1)[nearest] == wanted, nearest, -1)
+
+
+def equal_moments(moments):
+    """Whether principal moments k and l of a body are equal, (B, 3, 3), of ``moments`` (B, 3), the largest first.
+
+    Axes of equal moments are arbitrary: any others in their plane (of three moments, in space) would do.
+
+    >>> from gearquat_analysis.bodies import equal_moments
+    >>> equal_moments([[3.0, 2.0001, 2.0]])[0].astype(int).tolist()
+    [[1, 0, 0], [0, 1, 1], [0, 1, 1]]
+    """
+    moments = np.asarray(moments, dtype=float)
+    near = moments[:, :2] - moments[:, 1:] <= EQUAL * moments[:, :1]
+    equal = np.zeros((len(moments), 3, 3), dtype=bool)
+    equal[:, [0, 1, 2], [0, 1, 2]] = True
+    for k, l, both in ((0, 1, near[:, 0]), (1, 2, near[:, 1]), (0, 2, near.all(axis=1))):
+        equal[:, k, l] = equal[:, l, k] = both
+    return equal
+
+
+def axis_groups(moments):
+    """Principal axes, counted from 0, as tuples of those whose moments are equal in all bodies with ``moments`` (B, 3)."""
+    equal = equal_moments(moments).all(axis=0)
+    return sorted({tuple(np.flatnonzero(row).tolist()) for row in equal})
+
+
+def axes_named(axes):
+    """ "axis 3" of (2,), "axes 2 and 3" of (1, 2), "axes 1, 2 and 3" of (0, 1, 2)."""
+    *first, last = (str(k + 1) for k in axes)
+    return f"axes {', '.join(first)} and {last}" if first else f"axis {last}"
+
+
+def directions(moments, axes, k):
+    """Unit vectors (N, B, 3) in the body frame whose mean of P1 or P2 is that of principal axis ``k`` (0 to 2).
+
+    ``moments`` (B, 3) and ``axes`` (B, 3, 3) as of Bodies.  N is 1 if the axis is one in all bodies; if in some its
+    moment is equal to others, they stand for all directions in the plane or in space of these.
+    """
+    equal = equal_moments(moments)[:, k]
+    count = equal.sum(axis=1)
+    number = {1: 1, 2: len(PLANE), 3: len(SPACE)}[count.max(initial=1)]
+    parts = np.zeros((number, len(count), 3))
+    parts[:, count == 1, k] = 1.0
+    pairs = np.flatnonzero(count == 2)
+    both = np.nonzero(equal[pairs])[1].reshape(-1, 2)
+    parts[:, pairs[:, None], both] = np.resize(PLANE, (number, 2))[:, None]
+    if number == len(SPACE):
+        parts[:, count == 3] = SPACE[:, None]
+    return np.einsum("nbk,bkj->nbj", parts, axes)
 
 
 class Bodies:
@@ -79,7 +135,7 @@ class Bodies:
         """Take sites at ``positions`` (n, 3) for the shape; the body frame has their axes.
 
         ``principal``: instead the principal axes, sorted and directed as by the fix, so that
-        quaternions become those of its array.
+        quaternions become those of its array, except of bodies with equal moments, whose axes are arbitrary.
         """
         arms = positions - self.center(positions)[self.of]
         square = np.einsum("ij,ij->i", arms, arms)

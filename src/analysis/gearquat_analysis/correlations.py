@@ -14,6 +14,7 @@ from scipy import fft
 from scipy.spatial.transform import Rotation
 
 from . import export, mapped
+from .bodies import axis_groups, directions
 
 #: numbers held at once in one array
 HELD = 1_000_000
@@ -126,8 +127,10 @@ def orientation_correlation(q, axis, order=1):
     """Mean of P(u(t) . u(t + lag)), (F,), of a body's axis u; P is Legendre's polynomial of ``order``.
 
     ``q`` (F, B, 4); ``axis`` (3,) or (B, 3), in the body frame; ``order`` 1 or 2.  Raises ValueError for
-    another order or an axis without length.
+    another order or an axis without length.  Of axes (N, B, 3), such as ``directions`` of Bodies gives, the mean.
     """
+    if np.ndim(axis) == 3:
+        return np.mean([orientation_correlation(q, single, order) for single in axis], axis=0)
     if order not in (1, 2):
         raise ValueError(f"order {order}: 1 or 2 is required")
     axis = np.broadcast_to(np.asarray(axis, dtype=float), (q.shape[1], 3))
@@ -179,15 +182,17 @@ class Correlations:
 
 def turning(poses):
     """Of the bodies that can turn: q (F, T, 4); their ``linear`` and ``axes`` as Bodies has them, None for a table;
-    and principal axis -> (T, 3) or (3,), only the third if one is linear.  Without q and axes if all are points."""
+    and groups of principal axes with equal moments -> directions (N, T, 3) or (3,), only the third axis if one is
+    linear.  Without q and axes if all are points."""
     q, bodies = poses.results.q, getattr(poses, "bodies", None)
     if bodies is None:
-        return q, None, dict(enumerate(np.eye(3)))
+        return q, None, {(k,): axis for k, axis in enumerate(np.eye(3))}
     own = ~bodies.point
     if not own.any():
         return None, None, {}
-    some = SimpleNamespace(linear=bodies.linear[own], axes=bodies.axes[own])
-    axes = {k: some.axes[:, k] for k in ((2,) if some.linear.any() else range(3))}
+    some, moments = SimpleNamespace(linear=bodies.linear[own], axes=bodies.axes[own]), bodies.moments[own]
+    groups = [(2,)] if some.linear.any() else axis_groups(moments)
+    axes = {group: directions(moments, some.axes, group[0]) for group in groups}
     return q if own.all() else q[:, own], some, axes
 
 
@@ -195,8 +200,10 @@ def all_correlations(poses, progress=iter):
     """Correlations with every function above that finished ``Poses`` or ``TablePoses`` have the data for.
 
     Axes 1 to 3 are the principal ones, the largest moment first; with linear bodies only the third, which is the body's
-    own.  Points are left out of all that is about rotation; in the table of the fix they cannot be told from other bodies.  ``progress`` goes over the list of functions, as tqdm does.  Raises ValueError if
-    frames are not evenly spaced in time.
+    own.  Axes whose moments are equal in all bodies, which are arbitrary, have one function, the mean over all
+    directions in their plane or in space (``axes23_order1``).  Points are left out of all that is about rotation; in the
+    table of the fix they cannot be told from other bodies.  ``progress`` goes over the list of functions, as tqdm does.
+    Raises ValueError if frames are not evenly spaced in time.
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
     lag = lags(results.time)
@@ -209,9 +216,10 @@ def all_correlations(poses, progress=iter):
             omega = results.omega_space if bodies is None else results.omega_space[:, ~bodies.point]
             tasks.append(("omega_space_autocorrelation", autocorrelation, (omega,)))
         tasks.append(("mean_square_rotation", mean_square_rotation, (q, some)))
-    for k, axis in axes.items():
+    for group, axis in axes.items():
+        name = ("axis" if len(group) == 1 else "axes") + "".join(str(k + 1) for k in group)
         for order in (1, 2):
-            tasks.append((f"axis{k + 1}_order{order}", orientation_correlation, (q, axis, order)))
+            tasks.append((f"{name}_order{order}", orientation_correlation, (q, axis, order)))
     functions = {name: function(*arguments) for name, function, arguments in progress(tasks)}
     largest = 0.0
     if "mean_square_rotation" in functions:

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from .bodies import axes_named
 from .style import COLOR, STYLE
 
 PRINCIPAL_AXES = ("#0072b2", "#d55e00", "#009e73")
@@ -78,11 +79,11 @@ def _panels(correlations, averages):
         elif name.endswith("autocorrelation") and values[0] > 0:
             text = "angular velocity" if "omega" in name else "velocity"
             velocities.append((values / values[0], {"color": color, "label": text}))
-        elif name.startswith("axis"):
-            number, order = name[4], name[-1]
-            look = {"color": PRINCIPAL_AXES[int(number) - 1], "linestyle": "-" if order == "1" else "--"}
-            time = f"correlation time of axis {number}, order {order}"
-            axes_in_space.append((values, {"label": label(f"axis {number}, P{order}", f"τ{order}", time), **look}))
+        elif name.startswith(("axis", "axes")):
+            group, order = [int(digit) - 1 for digit in name[4:].split("_")[0]], name[-1]
+            look = {"color": PRINCIPAL_AXES[group[0]], "linestyle": "-" if order == "1" else "--"}
+            time = f"correlation time of {axes_named(group)}, order {order}"
+            axes_in_space.append((values, {"label": label(f"{axes_named(group)}, P{order}", f"τ{order}", time), **look}))
     return {title: curves for title, curves in panels.items() if curves}
 
 

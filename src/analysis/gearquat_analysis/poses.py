@@ -248,7 +248,7 @@ class Poses(_FrameTable):
     * ``atoms``: AtomGroup or Universe.  Residues are the bodies, residue 0 is none; of ``open_dump``, or of any
       other trajectory (a DCD with a topology; single precision then).
     * ``reference``: "first", the shape a body has in its first frame; "principal", the same in its principal
-      axes, so that q is that of the fix; or positions (n_atoms, 3) of all atoms, in their order.
+      axes, so that q is that of the fix (not of bodies with equal moments, whose axes are arbitrary); or positions (n_atoms, 3) of all atoms, in their order.
     * ``units``: style of units of LAMMPS, if the dump does not tell; energies are in its units, without it in
       mass x velocity^2.
     * ``potential``: column with potential energies of atoms that ``open_dump`` was told to read.
