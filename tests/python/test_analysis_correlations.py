@@ -156,6 +156,17 @@ def test_stays_are_those_made_up():
     assert residence.stays(center, PLACES, 0.05, time).body.tolist() == []
 
 
+def test_stays_at_uneven_times():
+    """A frame counts for the time it stands for, and there is no lag for a survival."""
+    time = np.array([0.0, 0.1, 0.2, 0.3, 1.3, 2.3, 3.3])
+    found = residence.stays(visiting([0, 0, 0, 0, 1, 1, -1]), PLACES, 1.0, time)
+    expected = np.array([0.1 + 0.1 + 0.1 + 0.55, 1.0 + 1.0]) / (0.1 + 0.1 + 0.1 + 0.55 + 1.0 + 1.0 + 1.0)
+    assert found.fraction() == pytest.approx(expected, rel=1e-12)
+    assert found.fraction() != pytest.approx(1.01 * expected, rel=5e-3)
+    with pytest.raises(ValueError, match="frames at equal distances of time"):
+        found.survival()
+
+
 def test_the_nearest_place_counts():
     points = np.array([[4.0, 0, 0], [6.0, 0, 0], [-9.5, 0, 0], [0, 30, 0]])
     found = residence.stays(points[None], PLACES, 7.0, [0.0])

@@ -248,8 +248,11 @@ def _stay(out, poses, places, radius):
     bar = _bar("finding stays", "frame")
     stays = residence.stays(results.center, places, radius, results.time, progress=bar)
     report.write_stays(out / "stays.csv", stays, results.ids)
-    lag = stays.time - stays.time[0]
-    write_columns(out / "survival.csv", {"lag": lag, "survival": stays.survival()})
+    try:
+        lag = stays.time - stays.time[0]
+        write_columns(out / "survival.csv", {"lag": lag, "survival": stays.survival()})
+    except ValueError:
+        cloup.echo("There is no survival.csv, which needs frames at equal distances of time.")
     cloup.echo(
         f"Bodies made {report.counted(len(stays.body), 'stay')} within {radius:g} of"
         f" {report.counted(len(places), 'place')}, in"

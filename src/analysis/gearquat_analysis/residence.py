@@ -6,6 +6,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from . import mapped
+from .averages import weights_of
+from .correlations import lags
 
 
 @dataclass(frozen=True)
@@ -40,15 +42,19 @@ class Stays:
         return (self.begin > 0) & (self.end < len(self.time))
 
     def fraction(self):
-        """Part of all bodies and frames that is spent at each place, (S,)."""
-        spent = np.bincount(self.place, self.frames, self.places)
-        return spent / (self.bodies * len(self.time))
+        """Part of the time of all bodies that is spent at each place, (S,); frames count as in averages."""
+        weights = weights_of(self.time)
+        passed = np.concatenate([[0.0], np.cumsum(np.ones(len(self.time)) if weights is None else weights)])
+        spent = np.bincount(self.place, passed[self.end] - passed[self.begin], self.places)
+        return spent / (self.bodies * passed[-1])
 
     def survival(self):
         """Probability that a body at a place has been there without a break a lag later, (F,).
 
-        Over all origins from which the trajectory is long enough; NaN where there is none.
+        Over all origins from which the trajectory is long enough; NaN where there is none.  Raises ValueError unless
+        frames are evenly spaced in time.
         """
+        lags(self.time)
         frames = len(self.time)
         # a stay of n frames lasts a lag from n - lag origins; sums over longer stays, twice
         longer = np.cumsum(np.bincount(self.frames, minlength=frames + 1)[::-1])[::-1]
