@@ -248,7 +248,8 @@ class Poses(_FrameTable):
     * ``atoms``: AtomGroup or Universe.  Residues are the bodies, residue 0 is none; of ``open_dump``, or of any
       other trajectory (a DCD with a topology; single precision then).
     * ``reference``: "first", the shape a body has in its first frame; "principal", the same in its principal
-      axes, so that q is that of the fix (not of bodies with equal moments, whose axes are arbitrary); or positions (n_atoms, 3) of all atoms, in their order.
+      axes, so that q is that of the fix (not of bodies with equal moments, whose axes are arbitrary); or positions
+      (n_atoms, 3) of all atoms, in their order.
     * ``units``: style of units of LAMMPS, if the dump does not tell; energies are in its units, without it in
       mass x velocity^2.
     * ``potential``: column with potential energies of atoms that ``open_dump`` was told to read.
@@ -275,7 +276,8 @@ class Poses(_FrameTable):
     Where only wrapped positions are known, bodies are made whole by nearest images (right if smaller
     than half the box) and followed from frame to frame (right if they move less than half the box).
 
-    Raises ValueError for bodies without mass, atoms that are in the group twice, a reference of another shape and coordinates that are not finite.
+    Raises ValueError for bodies without mass, atoms that are in the group twice, a reference of another shape and
+    coordinates that are not finite.
     ``run`` warns of bodies that are not rigid: if a residual is above 5 % of the largest distance of a site from the
     center of mass and above 4e-5 of a coordinate, as six digits round it.  ``results`` of an analysis that has not run
     raise NoDataError of MDAnalysis.
