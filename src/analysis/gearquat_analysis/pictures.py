@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogFormatter, MaxNLocator
 
 from .bodies import axes_named
 from .style import COLOR, STYLE
@@ -103,6 +103,7 @@ def draw_correlations(correlations, averages=(), path=None):
                 axis.plot(lag[shown], values[shown], **look)
             axis.set_title(title, fontsize=10, loc="left")
             axis.set_xscale("log")
+            axis.xaxis.set_minor_formatter(LogFormatter())  # short numbers; only within few decades
             axis.set_yscale("log" if title == "mean square" else "linear")
             axis.set_xlabel(named("lag", correlations.units["lag"]))
             axis.legend(fontsize=7)
