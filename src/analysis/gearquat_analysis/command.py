@@ -223,7 +223,6 @@ def _correlate(out, poses):
         return cloup.echo("There are fewer than three frames, so there are no correlations.")
     try:
         found = correlations.all_correlations(poses, _bar("correlating", "function"))
-        write_columns(out / "correlations.csv", found.functions)
     except ValueError:  # uneven times, of which averages tell
         found = None
     if found and found.largest_turn > np.pi / 2:
@@ -234,6 +233,7 @@ def _correlate(out, poses):
     known = averages.averages(poses)
     report.write_averages(out / "averages.csv", known)
     if found:
+        write_columns(out / "correlations.csv", found.functions)
         pictures.draw_correlations(found, known, out / "correlations.png")
     pictures.draw_averages(known, out / "averages.png")
     return cloup.echo(report.average_lines(known))
