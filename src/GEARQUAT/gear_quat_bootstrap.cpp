@@ -36,13 +36,13 @@ Load Party::acting(int ibody) const
 void Party::seed_local(int terms, double h)
 {
   measure();
+  if (thermostat) thermostat->seed_local(h);
   for (int ibody = 0; ibody < bodies->nmoved(); ++ibody)
     Bootstrap::seed_body(*bodies, ibody, acting(ibody), scheme, h, terms);
   if (isokinetic) {
     const double heat[2] = {0.0, h * isokinetic->power()};
     isokinetic->seed_heat(heat, 2, h, h);
   }
-  if (thermostat) thermostat->seed_local(h);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -296,7 +296,7 @@ void Bootstrap::seed_all(const StartFound &start)
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
       seed(party.scheme, bodies.rigid_of(ibody), collocation.series(party.work[ibody], start.pairs),
            start.spacing, h, bodies.history(ibody));
-    if (party.thermostat) party.thermostat->seed(collocation, start.pairs);
+    if (party.thermostat) party.thermostat->seed(collocation, start.pairs, party.scheme.values());
     if (!party.isokinetic) continue;
     std::vector<double> heat(party.power.size() + 1);
     const int terms =

@@ -23,16 +23,20 @@
    Mol. Phys. 87, 1117 (1996), section 2.5.  A chain of a single variable is that of W. G. Hoover,
    Phys. Rev. A 31, 1695 (1985), after S. Nose, J. Chem. Phys. 81, 511 (1984).
 
-   The variables xi_1 ... xi_M and S have histories of n rows, and behind them the trial row of
-   gear_quat_step_control.h.  The host calls, for the start: rates(), and seed() for every variable;
-   once a step predict(), correct() in every pass, with the kinetic energy that is known then, and
-   conclude(); where step or number of values change rescale() and set_values(); and where degrees
-   of freedom come or go replace_target(). */
+   Far from the target, or with many degrees of freedom, xi_2 grows as g xi_1^2: the chain is stiff,
+   although the bodies move smoothly.  So only K(t) is interpolated over a step of the bodies, by
+   the polynomial through 2K at the end of the step and at the ends of earlier ones.  Eqs. T2 and T4
+   have quadratic right-hand sides, so the Taylor series of their solution under this polynomial is
+   a recursion.  It is summed in sub-steps as short as its last terms require.
+
+   The host calls, for the start: flow() for the friction at another time, and seed() with 2K there;
+   once a step advance() in every pass, with the 2K that is known then, and conclude(); and where
+   degrees of freedom or velocities change join(). */
 
 #ifndef GEAR_QUAT_CHAIN_H
 #define GEAR_QUAT_CHAIN_H
 
-#include "gear_quat_nordsieck.h"
+#include "gear_quat_coefficients.h"
 
 #include <algorithm>
 #include <array>
@@ -48,142 +52,232 @@ struct ChainTarget {
   double period = 0.0;    ///< tau
 };
 
+/// A polynomial in the time since a chain's present one, in units of a step.
+struct ChainDrive {
+  static constexpr int MOST = 2 * ((MAX_VALUES + 1) / 2) + 1;    ///< terms, those of a start
+  int terms = 0;
+  std::array<double, MOST> c = {};
+
+  /// Through the values y at the times x, by Newton's divided differences.
+  static ChainDrive through(int points, const double *x, const double *y)
+  {
+    ChainDrive drive;
+    drive.terms = points;
+    double d[MOST];
+    std::copy_n(y, points, d);
+    for (int j = 1; j < points; ++j)
+      for (int i = points - 1; i >= j; --i) d[i] = (d[i] - d[i - 1]) / (x[i] - x[i - j]);
+    for (int i = points - 1; i >= 0; --i) {
+      for (int j = points - 1; j > 0; --j) drive.c[j] = drive.c[j - 1] - drive.c[j] * x[i];
+      drive.c[0] = d[i] - drive.c[0] * x[i];
+    }
+    return drive;
+  }
+};
+
 class Chain {
  public:
   static constexpr int LONGEST = 10;    ///< most variables xi
   static constexpr int MOST = LONGEST + 1;
   using Variables = std::array<double, MOST>;    ///< xi_1 ... xi_M, S
+  /// Sums 2K that are kept: those of the polynomial, and two more for its error.
+  static constexpr int MOST_SUMS = MAX_VALUES + 2;
+  /// A chain of so many sub-steps in a step is stiff; and one of so many more is given up.
+  static constexpr int STIFF = 4, GIVEN_UP = 200000;
+  static constexpr double SETTLING = 10.0;    ///< steps until a stiff chain moves slowly
 
   explicit Chain(int length) : length(length) {}
 
   /// Of variables: xi and S.
   int size() const { return length + 1; }
-  double friction() const { return rows[0][0]; }
-  /// The present values.
-  Variables values() const
-  {
-    Variables y = {};
-    for (int v = 0; v < size(); ++v) y[v] = rows[v][0];
-    return y;
-  }
-
-  /// Eqs. T2 and T4 at y; without degrees of freedom nothing moves.
-  Variables rates(const ChainTarget &target, double twice_kinetic, const Variables &y) const
-  {
-    Variables rate = {};
-    if (target.freedoms <= 0.0) return rate;
-    const double per_period2 = 1.0 / (target.period * target.period);
-    double sum = target.freedoms * y[0];
-    for (int k = 0; k < length; ++k) {
-      const double pushed = k == 0 ? twice_kinetic / (target.freedoms * target.kt) * per_period2
-          : k == 1                 ? target.freedoms * y[0] * y[0]
-                                   : y[k - 1] * y[k - 1];
-      rate[k] = pushed - per_period2 - (k + 1 < length ? y[k] * y[k + 1] : 0.0);
-      if (k > 0) sum += y[k];
-    }
-    rate[length] = target.kt * sum - moving(target, y) * target.kt_rate / target.kt;
-    return rate;
-  }
+  /// In the present pass.
+  double friction() const { return now[0]; }
+  const Variables &values() const { return now; }
 
   /// E, Eq. T3: what the chain has taken from the bodies.
-  double energy(const ChainTarget &target) const
-  {
-    return moving(target, values()) + rows[length][0];
-  }
+  double energy(const ChainTarget &target) const { return moving(target, now) + now[length]; }
 
-  /// Row 0 stays, the others become those of a series of `terms` terms in units of series_step.
-  void seed(int variable, const double *series, int terms, double series_step, double h)
-  {
-    double power = 1.0;
-    for (int j = 1; j < MAX_VALUES + 1; ++j) {
-      power *= h / series_step;
-      rows[variable][j] = j < terms ? power * series[j] : 0.0;
-    }
-  }
-
-  /// To t + h, with n rows.
-  void predict(int n)
-  {
-    for (int v = 0; v < size(); ++v) {
-      last[v] = rows[v][n - 1];
-      Nordsieck<1>::predict(rows[v], n);
-    }
-  }
-
-  /// One pass: the residuals of Eqs. T2 and T4 at the present values and this kinetic energy.
-  void correct(const ChainTarget &target, double twice_kinetic, double h, int n,
-               const double *coefficients)
-  {
-    const Variables rate = rates(target, twice_kinetic, values());
-    for (int v = 0; v < size(); ++v) {
-      const double residual = h * rate[v] - rows[v][1];
-      Nordsieck<1>::correct<1>(rows[v], n, coefficients, 0, &residual);
-    }
-  }
-
-  /// The step is complete: the trial row n from the change of the last row.
-  void conclude(int n)
-  {
-    for (int v = 0; v < size(); ++v) {
-      const double trial = (rows[v][n - 1] - last[v]) / n;
-      change[v] = trial - rows[v][n];
-      rows[v][n] = trial;
-    }
-  }
-
-  /// The largest of the variables xi in rows n - 1 and n (1/time), and how much row n changed in
-  /// the step; after conclude().
-  struct HighRows {
-    double last = 0.0, trial = 0.0, change = 0.0;
+  /// The solution of Eqs. T2 and T4 that begins with the variables at the beginning of the step.
+  struct Flow {
+    Variables y;
+    int substeps;    ///< GIVEN_UP: y is not the solution
   };
-  HighRows high_rows(int n) const
+
+  /// At the time `until`, in units of the step h, of either sign.  target: at the beginning of the
+  /// step.  Without degrees of freedom nothing moves.
+  Flow flow(const ChainTarget &target, const ChainDrive &drive, double h, double until) const
   {
-    HighRows largest;
-    for (int k = 0; k < length; ++k) {
-      largest.last = std::max(largest.last, std::fabs(rows[k][n - 1]));
-      largest.trial = std::max(largest.trial, std::fabs(rows[k][n]));
-      largest.change = std::max(largest.change, std::fabs(change[k]));
+    Flow found = {begun, 0};
+    if (target.freedoms <= 0.0) return found;
+    Series series(length, target, h);
+    series.begin(begun);
+    double s = 0.0;
+    while (s != until) {
+      if (++found.substeps == GIVEN_UP) return found;
+      series.expand(drive, s);
+      const double left = until - s;
+      double sigma = std::min(series.longest_substep(), std::fabs(left));
+      if (!(sigma > 0.0) || s + sigma == s) {
+        found.substeps = GIVEN_UP;
+        return found;
+      }
+      sigma = std::copysign(sigma, left);
+      series.sum(sigma);
+      s = sigma == left ? until : s + sigma;
     }
-    return largest;
+    found.y = series.end();
+    return found;
   }
 
-  /// Degrees of freedom have changed: E and all xi stay, and the first derivatives become those of
-  /// the new target and kinetic energy.
-  void replace_target(const ChainTarget &before, const ChainTarget &target, double twice_kinetic,
-                      double h)
+  /// True if histories of bodies cannot begin with the motion of the chain: it is stiff over a step
+  /// of h, or would be unstable backwards in time over so many.
+  bool is_stiff(const ChainTarget &target, double twice_kinetic, double h, int steps) const
   {
-    const Variables y = values(), rate = rates(target, twice_kinetic, y);
-    for (int v = 0; v < size(); ++v) rows[v][1] = h * rate[v];
-    rows[length][0] += moving(before, y) - moving(target, y);
+    double largest = 0.0;
+    for (int k = 0; k < length; ++k) largest = std::max(largest, std::fabs(begun[k]));
+    const ChainDrive constant = ChainDrive::through(1, &h, &twice_kinetic);
+    return largest * steps * std::fabs(h) > 0.5 || flow(target, constant, h, 1.0).substeps >= STIFF;
   }
 
-  /// Rows and trial row for another step.
-  void rescale(double ratio)
+  /// A chain that has never moved and is stiff moves at once and then slowly: what it does in its
+  /// first steps of h, with a constant 2K, is its past.  E stays zero.
+  void begin_settled(const ChainTarget &target, double twice_kinetic, double h)
   {
-    for (int v = 0; v < size(); ++v) Nordsieck<1>::rescale(rows[v], MAX_VALUES + 1, ratio);
+    if (known > 0 || begun != Variables() || !is_stiff(target, twice_kinetic, h, 1)) return;
+    const ChainDrive constant = ChainDrive::through(1, &h, &twice_kinetic);
+    const Flow found = flow(target, constant, std::fabs(h), SETTLING);
+    if (found.substeps == GIVEN_UP) return;
+    now = found.y;
+    now[length] = -moving(target, now);
+    begun = now;
   }
 
-  /// Of n rows from now on: the row behind them is the trial row.
-  void set_values(int n)
+  /// One pass of a step of h: the variables at its end, where the bodies have 2K = twice_kinetic.
+  /// target: at the beginning of the step.  values: of the method.  False if the chain changes too
+  /// fast to be followed.
+  bool advance(const ChainTarget &target, double twice_kinetic, double h, int values)
   {
-    for (int v = 0; v < size(); ++v) std::fill(rows[v] + n + 1, rows[v] + MAX_VALUES + 1, 0.0);
+    latest = twice_kinetic;
+    width = h;
+    double x[MOST_SUMS + 1] = {1.0}, y[MOST_SUMS + 1] = {twice_kinetic};
+    const int before = std::min(values - 1, known);
+    for (int i = 0; i < before; ++i) {
+      x[i + 1] = -ages[i] / h;
+      y[i + 1] = sums[i];
+    }
+    const Flow found = flow(target, ChainDrive::through(before + 1, x, y), h, 1.0);
+    now = found.y;
+    return found.substeps < GIVEN_UP;
   }
 
-  /// All rows, for restart files.
-  using Record = std::array<double, MOST *(MAX_VALUES + 1)>;
-  Record record() const
+  /// 2K at the end of a step of h, as earlier sums foretell it.
+  double foretold(double h, int values) const
   {
-    Record all;
-    std::copy_n(rows[0], all.size(), all.begin());
-    return all;
+    double x[MOST_SUMS];
+    const int points = std::min(values, known);
+    for (int i = 0; i < points; ++i) x[i] = -ages[i] / h;
+    const ChainDrive drive = ChainDrive::through(points, x, sums.data());
+    double sum = 0.0;
+    for (int j = 0; j < points; ++j) sum += drive.c[j];
+    return sum;
   }
-  void restore(const Record &all) { std::copy_n(all.begin(), all.size(), rows[0]); }
+
+  /// The step is complete: the 2K of its last pass is the first of the earlier ones.
+  void conclude()
+  {
+    begun = now;
+    known = std::min(known + 1, MOST_SUMS);
+    for (int i = known - 1; i > 0; --i) {
+      sums[i] = sums[i - 1];
+      ages[i] = ages[i - 1] + width;
+    }
+    sums[0] = latest;
+    ages[0] = 0.0;
+  }
+
+  /// The start.  twice: points at 2K of the present time; behind and before it in memory are those
+  /// of `pairs` later and earlier times of this spacing.  Of earlier ones `count` are kept, and
+  /// those without a node follow from the polynomial through all nodes, whose next difference is
+  /// zero.
+  void seed(const double *twice, int pairs, double spacing, int count)
+  {
+    const int order = 2 * pairs + 1;
+    std::array<double, ChainDrive::MOST + MOST_SUMS> y;
+    known = std::min(count, MOST_SUMS);
+    for (int k = 0; k < pairs + std::max(known, pairs + 1); ++k) {
+      y[k] = 0.0;
+      if (k < order) y[k] = twice[pairs - k];
+      double binomial = 1.0;
+      for (int j = 1; k >= order && j <= order; ++j) {
+        binomial *= -double(order - j + 1) / j;
+        y[k] -= binomial * y[k - j];
+      }
+    }
+    for (int k = 0; k < known; ++k) {
+      sums[k] = y[pairs + k];
+      ages[k] = k * spacing;
+    }
+  }
+
+  /// Velocities have changed, or bodies have come or gone: 2K is another from one moment to the
+  /// next.  E and all xi stay, and earlier sums are scaled as the last one.
+  void join(const ChainTarget &before, const ChainTarget &target, double twice_kinetic)
+  {
+    now[length] += moving(before, now) - moving(target, now);
+    begun = now;
+    if (known == 0 || !(sums[0] > 0.0))
+      known = 1;
+    else
+      for (int k = 1; k < known; ++k) sums[k] *= twice_kinetic / sums[0];
+    sums[0] = twice_kinetic;
+    ages[0] = 0.0;
+  }
+
+  /// The highest derivative that a polynomial through 2K at `values` times leaves out of the rate
+  /// of the friction, with powers of h (1/time): h^(j+1) (2K)^(j)/(g kT tau^2) for j = values - 1,
+  /// values and values + 1; after conclude().
+  struct LeftOut {
+    double fewer = 0.0, same = 0.0, more = 0.0;
+  };
+  LeftOut left_out(const ChainTarget &target, double h, int values) const
+  {
+    LeftOut found;
+    if (target.freedoms <= 0.0) return found;
+    double factor = std::fabs(h) / (target.freedoms * target.kt * target.period * target.period);
+    double d[MOST_SUMS];
+    std::copy_n(sums.begin(), known, d);
+    for (int j = 1; j < known && j <= values + 1; ++j) {
+      for (int i = known - 1; i >= j; --i) d[i] = (d[i - 1] - d[i]) * h / (ages[i] - ages[i - j]);
+      factor *= j;
+      found.more = factor * std::fabs(d[j]);
+      if (j <= values) found.same = found.more;
+      if (j < values) found.fewer = found.more;
+    }
+    return found;
+  }
+
+  /// Everything, for restart files: the variables, and the sums with their ages.
+  struct Record {
+    Variables y;
+    double known;
+    std::array<double, MOST_SUMS> sums, ages;
+  };
+  Record record() const { return {now, (double) known, sums, ages}; }
+  void restore(const Record &all)
+  {
+    now = begun = all.y;
+    known = (int) all.known;
+    sums = all.sums;
+    ages = all.ages;
+  }
 
  private:
   int length;
-  double rows[MOST][MAX_VALUES + 1] = {};
-  double last[MOST] = {};      ///< last rows before the step
-  double change[MOST] = {};    ///< of trial rows in the step
+  Variables begun = {};                                  ///< at the beginning of the step
+  Variables now = {};                                    ///< in the present pass
+  int known = 0;                                         ///< earlier sums
+  std::array<double, MOST_SUMS> sums = {}, ages = {};    ///< 2K, and how long ago
+  double latest = 0.0, width = 0.0;                      ///< 2K and length of the present step
 
   /// sum_k Q_k xi_k^2/2
   double moving(const ChainTarget &target, const Variables &y) const
@@ -192,6 +286,121 @@ class Chain {
     for (int k = 1; k < length; ++k) sum += y[k] * y[k];
     return 0.5 * target.kt * target.period * target.period * sum;
   }
+
+  /// Taylor series of u_k = h xi_k and of S in the time s in units of h.  With the part kappa of
+  /// the target that 2K is, and rho = (h/tau)^2, the coefficients of powers of s obey
+  ///   (j+1) u_1[j+1] = rho (kappa[j] - delta_j0) - (u_1 u_2)[j]
+  ///   (j+1) u_2[j+1] = g (u_1 u_1)[j] - rho delta_j0 - (u_2 u_3)[j],   and so on,
+  /// where (a b)[j] is the sum of a[i] b[j-i].
+  class Series {
+   public:
+    Series(int length, const ChainTarget &target, double h) :
+        length(length), g(target.freedoms), kt0(target.kt), kt_rate(h * target.kt_rate), h(h),
+        unit(std::fabs(h / target.period)), rho(unit * unit)
+    {
+    }
+
+    void begin(const Variables &y)
+    {
+      for (int k = 0; k < length; ++k) u[k][0] = h * y[k];
+      u[length][0] = y[length];
+    }
+    Variables end() const
+    {
+      Variables y = {};
+      for (int k = 0; k < length; ++k) y[k] = u[k][0] / h;
+      y[length] = u[length][0];
+      return y;
+    }
+
+    /// All terms about s.
+    void expand(const ChainDrive &drive, double s)
+    {
+      kt = kt0 + kt_rate * s;
+      expand_drive(drive, s);
+      for (int j = 0; j < TERMS; ++j) {
+        const double per = 1.0 / (j + 1);
+        for (int k = 0; k < length; ++k) {
+          double rate = k == 0 ? rho * kappa[j] : (k == 1 ? g : 1.0) * product(k - 1, k - 1, j);
+          if (j == 0) rate -= rho;
+          if (k + 1 < length) rate -= product(k, k + 1, j);
+          u[k][j + 1] = per * rate;
+        }
+        u[length][j + 1] = per * rate_of_heat(j);
+      }
+    }
+
+    /// With which the last two terms are rounding: a power of two, so that all ranks agree.
+    double longest_substep() const
+    {
+      int shorter = 0;
+      for (int k = 0; k < length; ++k) {
+        const double scale =
+            std::max(std::fabs(u[k][0]), k == 0 ? unit / std::sqrt(std::max(1.0, g)) : unit);
+        for (int j = TERMS - 1; j <= TERMS; ++j) {
+          const double term = std::fabs(u[k][j]);
+          if (!std::isfinite(term)) return 0.0;
+          const int excess = term > 0.0 ? std::ilogb(term) + 1 - std::ilogb(ROUNDING * scale) : 0;
+          shorter = std::max(shorter, (excess + j - 1) / j);
+        }
+      }
+      return std::ldexp(1.0, -shorter);
+    }
+
+    void sum(double sigma)
+    {
+      for (int k = 0; k <= length; ++k) {
+        double value = u[k][TERMS];
+        for (int j = TERMS - 1; j >= 0; --j) value = value * sigma + u[k][j];
+        u[k][0] = value;
+      }
+    }
+
+   private:
+    static constexpr int TERMS = 16;
+    static constexpr double ROUNDING = 1.0e-14;
+
+    int length;
+    double g, kt0, kt_rate, h, unit, rho;
+    double kt = 0.0;
+    double u[MOST][TERMS + 1], kappa[TERMS + 1];
+
+    double product(int a, int b, int j) const
+    {
+      double sum = 0.0;
+      for (int i = 0; i <= j; ++i) sum += u[a][i] * u[b][j - i];
+      return sum;
+    }
+
+    /// kappa = 2K/(g kT) about s
+    void expand_drive(const ChainDrive &drive, double s)
+    {
+      std::array<double, ChainDrive::MOST> about = drive.c;
+      for (int i = 0; i + 1 < drive.terms; ++i)
+        for (int j = drive.terms - 2; j >= i; --j) about[j] += s * about[j + 1];
+      for (int j = 0; j <= TERMS; ++j) {
+        const double twice = j < drive.terms ? about[j] / g : 0.0;
+        kappa[j] = (twice - (j > 0 ? kt_rate * kappa[j - 1] : 0.0)) / kt;
+      }
+    }
+
+    /// Eq. T4
+    double rate_of_heat(int j) const
+    {
+      double rate = kt * sum_of_frictions(j);
+      if (kt_rate == 0.0) return rate;
+      if (j > 0) rate += kt_rate * sum_of_frictions(j - 1);
+      double squares = g * product(0, 0, j);
+      for (int k = 1; k < length; ++k) squares += product(k, k, j);
+      return rate - 0.5 * kt_rate / rho * squares;
+    }
+    double sum_of_frictions(int j) const
+    {
+      double sum = g * u[0][j];
+      for (int k = 1; k < length; ++k) sum += u[k][j];
+      return sum;
+    }
+  };
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -96,6 +96,13 @@ struct Friction {
 
   double force(int i, double met, double p) const { return met - translation[i] * p; }
   double torque(double met, double l) const { return met - rotation * l; }
+
+  // A residual r changes a velocity by `share` * r / step, and thereby the friction in it: the part
+  // of an explicit residual that solves for both, of component i and of rotation.  share: with the
+  // units of a time.
+
+  double implicit_force(int i, double share) const { return 1.0 / (1.0 + share * translation[i]); }
+  double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
 };
 
 /// The load with the forces of friction, -alpha p and -alpha L.
@@ -118,6 +125,8 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
 struct Undamped {
   double force(int, double met, double) const { return met; }
   double torque(double met, double) const { return met; }
+  double implicit_force(int, double) const { return 1.0; }
+  double implicit_torque(double) const { return 1.0; }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

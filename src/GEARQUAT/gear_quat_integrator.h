@@ -36,14 +36,9 @@ class Integrator : public Kinematics {
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       Kinematics(scheme, h), n(scheme.values()), c(coefficients)
   {
-    const Fractions gear = first_order_coefficients(n);
-    for (int j = 0; j < n; ++j) scalar[j] = scheme.first() ? c.driven[j] : gear[j].value();
   }
 
   int values() const { return n; }
-  /// Coefficients of scalars with a first-order equation and as many values: in the first-order
-  /// form those of momenta, otherwise Gear's.
-  const CorrectorCoefficients::Array &scalar_coefficients() const { return scalar; }
 
   void predict(double *rows) const
   {
@@ -194,7 +189,6 @@ class Integrator : public Kinematics {
 
   int n;
   CorrectorCoefficients c;
-  CorrectorCoefficients::Array scalar = {};
 
   /// Residual of a column is target - row, row that of the order of the equation.
   template <int COUNT, class History>
@@ -202,6 +196,12 @@ class Integrator : public Kinematics {
                  const double *row, int component, double *target, double *total = nullptr) const
   {
     for (int i = 0; i < COUNT; ++i) target[i] -= row[component + i];
+    feed_back<COUNT>(history, coefficients, rows, component, target, total);
+  }
+  template <int COUNT, class History>
+  void feed_back(History history, const CorrectorCoefficients::Array &coefficients, double *rows,
+                 int component, const double *target, double *total = nullptr) const
+  {
     history.template correct<COUNT>(rows, n, coefficients.data(), component, target);
     if (total)
       for (int i = 0; i < COUNT; ++i) total[i] += target[i];
@@ -215,8 +215,10 @@ class Integrator : public Kinematics {
     const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
     double before[3], target[3];
     copy(momentum, 3, before);
-    for (int i = 0; i < 3; ++i) target[i] = h * damper.force(i, load.force[i], before[i]);
-    feed_back<3>(history, c.driven, rows, rates, Scheme::MOMENTUM, target);
+    for (int i = 0; i < 3; ++i)
+      target[i] = (h * damper.force(i, load.force[i], before[i]) - rates[Scheme::MOMENTUM + i]) *
+          damper.implicit_force(i, h * c.driven[0]);
+    feed_back<3>(history, c.driven, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
     feed_back<3>(history, c.integrated, rows, rates, Scheme::POSITION, target, residual);
@@ -234,8 +236,9 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i)
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * before[i]);
     angular_acceleration(body, torque, before, target);
-    for (int i = 0; i < 3; ++i) target[i] *= h;
-    feed_back<3>(history, c.driven, rows, rates, Scheme::OMEGA, target);
+    const double part = damper.implicit_torque(h * c.driven[0]);
+    for (int i = 0; i < 3; ++i) target[i] = (h * target[i] - rates[Scheme::OMEGA + i]) * part;
+    feed_back<3>(history, c.driven, rows, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
     feed_back<4>(history, c.integrated, rows, rates, quat, target, residual);
@@ -360,19 +363,35 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
   }
 
-  /// Finds residuals alone: rows stay predicted until finish_passes().
+  /// Finds residuals alone: rows stay predicted until finish_passes().  Friction is taken of the
+  /// velocities that these residuals make, so that a strong one is stable in longer steps.
   template <int CARRIES>
   void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Friction &friction,
             double *rows, Pending &pending) const
   {
-    double velocity[3], per_inertia[3];
-    Load damped = load;
-    velocity_of_pass(rows, pending.total.x, velocity);
+    const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
+    const double half_h = 0.5 * h, share = half_h * c.driven[1];
+    double per_inertia[3], before[4];
+    position_residual(body, load, rows, pending.total.x);
     for (int i = 0; i < 3; ++i)
-      damped.force[i] = friction.force(i, load.force[i], body.mass * velocity[i]);
-    position_residual(body, damped, rows, pending.total.x);
+      pending.total.x[i] = friction.force(i, pending.total.x[i], half_h * rates[i]) *
+          friction.implicit_force(i, share);
+
+    copy(pending.total.q, 4, before);
     inverse_moments(body, per_inertia);
     rotation_residual(body, per_inertia, pending.torque_body, friction, rows, pending.total.q);
+    withhold(rows, before, 1.0 - friction.implicit_torque(share), pending.total.q);
+  }
+
+  /// Takes back a part of how a residual has changed, but for its radial part, which keeps |q| and
+  /// has no friction.
+  void withhold(const double *rows, const double *before, double part, double *total) const
+  {
+    const double *q = rows + Scheme::SECOND_QUATERNION;
+    double change[4];
+    for (int i = 0; i < 4; ++i) change[i] = total[i] - before[i];
+    const double radial = dot4(q, change) / dot4(q, q);
+    for (int i = 0; i < 4; ++i) total[i] -= part * (change[i] - radial * q[i]);
   }
 
   template <int CARRIES>

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -34,7 +35,7 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
     isokinetic.reset(
         new IsokineticConstraint(lmp, bodies, args.scheme, args.isokinetic, args.rescale));
   if (args.thermostat.damp > 0.0)    // not with isokinetic
-    thermostat.reset(new Thermostat(lmp, fix, bodies, args.thermostat));
+    thermostat.reset(new Thermostat(lmp, fix, bodies, args.thermostat, args.scheme));
   coupled = isokinetic || thermostat;
 }
 
@@ -78,7 +79,6 @@ void Motion::follow_time_step()
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     integrator->rescale(bodies.history(ibody), ratio);
   if (isokinetic) isokinetic->rescale_step(ratio);
-  if (thermostat) thermostat->rescale_step(ratio);
 }
 
 void Motion::forget(const std::string &why)
@@ -103,7 +103,8 @@ void Motion::begin_run()
 {
   if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, step());
   if (isokinetic) isokinetic->begin_run(!started);
-  if (thermostat) thermostat->begin_run();
+  if (thermostat)
+    thermostat->begin_run(tolerance ? std::min(step(), thermostat->longest_step()) : step());
   if (tolerance) tolerance->announce_output();
   set_up = true;
 }
@@ -116,6 +117,8 @@ void Motion::take_velocities(const std::vector<int> &changed)
 {
   if (!started) return;
   measure();
+  if (thermostat && over_ranks(MPI_MAX, (int) !changed.empty(), world))
+    thermostat->follow_velocities(step());
   for (const int ibody : changed)
     integrator->set_velocities(bodies.rigid_of(ibody), bodies.state_of(ibody), acting(ibody),
                                bodies.history(ibody));
@@ -213,7 +216,7 @@ void Motion::correct_together(double **f)
     thermostat->correct(*integrator, present_scheme());
   if (tolerance) tolerance->note_correction(*integrator);
   if (tolerance && thermostat)
-    tolerance->note_chains(thermostat->high_rows(integrator->values()), thermostat->kt());
+    tolerance->note_chains(thermostat->left_out(step(), integrator->values()), thermostat->kt());
   if (!tolerance) hold_step(f);
 }
 
@@ -222,7 +225,10 @@ void Motion::hold_step(double **f)
 {
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) check_limits(ibody, f);
-  if (thermostat) thermostat->watch_cold(step());
+  if (thermostat) {
+    thermostat->watch_cold(step());
+    thermostat->watch_friction(step());
+  }
   begin_fresh(f);
 }
 
@@ -257,10 +263,16 @@ bool Motion::repeats_step(double **f)
   return true;
 }
 
+/// Positive; infinite where nothing but errors and dtmax limits it.
+double Motion::longest_step() const
+{
+  return thermostat ? thermostat->longest_step() : std::numeric_limits<double>::infinity();
+}
+
 void Motion::choose_step()
 {
   const int values = tolerance->scheme().values();
-  const double next = tolerance->choose();
+  const double next = tolerance->choose(longest_step());
   if (tolerance->scheme().values() != values) take_over_values();
   tolerance->change_step(next);
   tolerance->order_output();
@@ -270,7 +282,6 @@ void Motion::choose_step()
 void Motion::take_over_values()
 {
   make_integrator(step());
-  if (thermostat) thermostat->set_values(present_scheme().values());
 }
 
 /* ----------------------------------------------------------------------

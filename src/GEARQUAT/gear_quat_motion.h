@@ -125,6 +125,7 @@ class Motion : protected Pointers {
   double step() const { return integrator ? integrator->step() : 0.0; }
   const Scheme &present_scheme() const;
   int elements_of_tolerance() const { return tolerance ? (int) Tolerance::ELEMENTS : 0; }
+  double longest_step() const;
   void make_integrator(double step);
   bool has_to_start(double **f);
   Party party(bool needed);

@@ -44,7 +44,7 @@ void Motion::begin_steps(const std::vector<Motion *> &all, double **f)
   std::vector<Motion *> full;
   std::vector<bool> needed;
   for (auto *one : all)
-    if (one->tolerance && !one->started) one->tolerance->bound_first_step();
+    if (one->tolerance && !one->started) one->tolerance->bound_first_step(one->longest_step());
   for (auto *one : all) {
     one->set_up = false;
     const bool needs = one->has_to_start(f);

@@ -22,7 +22,7 @@ using namespace GearQuat;
 // files of releases up to 0.2.0 begin with the formulation, 0 or 1
 
 static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
-static constexpr double FORMAT = 4;
+static constexpr double FORMAT = 5;
 
 Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
     Pointers(lmp), fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)

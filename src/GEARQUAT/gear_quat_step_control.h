@@ -76,6 +76,7 @@ class VariableOrder {
     fewer = weights(n - 1, factorial);
     same = weights(n, factorial * n);
     more = weights(n + 1, factorial * n);    // the change is one of a row n, not n + 1
+    chain = {adams_moulton(n - 1).value(), adams_moulton(n).value(), adams_moulton(n + 1).value()};
   }
 
   /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a
@@ -133,15 +134,16 @@ class VariableOrder {
     return errors;
   }
 
-  /// What the errors of the chains of a thermostat in this step would do to a body of this mass in
-  /// thermal motion: an error d of the friction makes the error h d v of a velocity v.  A cold body
-  /// hardly feels the friction, so its own errors do not show whether the chains are accurate, or
-  /// even stable.  Errors of all xi count as that of the first, which is more than the others do.
-  StepMeasures errors_of_chain(const Chain::HighRows &rows, double kt, double mass, double h) const
+  /// What the error of a chain in this step would do to a body of this mass in thermal motion: an
+  /// error d of the friction makes the error h d v of a velocity v.  A cold body hardly feels the
+  /// friction, so its own errors do not show whether the chain is accurate.  left_out: of the
+  /// polynomial through 2K.
+  StepMeasures errors_of_chain(const Chain::LeftOut &left_out, double kt, double mass,
+                               double h) const
   {
     const double way = h * h * std::sqrt(3.0 * kt / mass), worth = std::fabs(h) * 3.0 * kt;
-    const StepErrors errors = {fewer.pose * rows.last, same.pose * rows.trial,
-                               more.pose * rows.change};
+    const StepErrors errors = {chain.fewer * left_out.fewer, chain.same * left_out.same,
+                               chain.more * left_out.more};
     StepMeasures found;
     found.length = {way * errors.fewer, way * errors.same, way * errors.more};
     found.energy = {worth * errors.fewer, worth * errors.same, worth * errors.more};
@@ -187,6 +189,7 @@ class VariableOrder {
   Scheme scheme;
   int n;
   Weights fewer, same, more;
+  StepErrors chain;    ///< weights of what a polynomial of 2K leaves out
 
   Weights weights(int k, double factorial) const
   {

@@ -5,6 +5,7 @@
 
 #include "gear_quat_thermostat.h"
 
+#include "gear_quat_friction.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -32,10 +33,6 @@ static constexpr double NOTHING = 1.0e-24;
 
 static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
-// with a shorter damping time by the step the equations of the chain become unstable
-
-static constexpr double FEWEST_STEPS = 10.0;
-
 // a part of a kinetic energy that is below this fraction of its target for as many damping times is
 // not about to become warm: chains of its own make it grow by several powers of ten in that time
 
@@ -45,9 +42,11 @@ static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
 
 /* ---------------------------------------------------------------------- */
 
-Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words) :
-    Pointers(lmp), fix(fix), bodies(bodies), words(words),
-    chains(words.separate ? 2 : 1, Chain(words.length))
+Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
+                       const Scheme &scheme) :
+    Pointers(lmp),
+    fix(fix), bodies(bodies), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
+    most_friction(FrictionLimit::of(scheme))
 {
 }
 
@@ -134,7 +133,7 @@ bool Thermostat::conserves_momentum() const
    before a run
 ------------------------------------------------------------------------- */
 
-void Thermostat::begin_run()
+void Thermostat::begin_run(double h)
 {
   refuse_masks();
   const Line before = line;
@@ -152,6 +151,7 @@ void Thermostat::begin_run()
   damp_before = words.damp;
   measure();
   refuse_nothing();
+  refuse_friction(h);
   if (words.damp < FEWEST_STEPS * std::fabs(update->dt) && comm->me == 0)
     error->warning(
         FLERR,
@@ -285,7 +285,6 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
   const double h = integrator.step();
   const bool same_bodies = changes == bodies.changes();
   line = line_of_step(update->ntimestep);
-  for (auto &chain : chains) chain.predict(values);
 
   Sums here;
   double velocity[3], omega_body[3];
@@ -300,9 +299,8 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
 
   for (int pass = 0; pass < scheme.passes; ++pass) {
     sum_kinetic(here);
-    for (size_t c = 0; c < chains.size() && same_bodies; ++c)
-      chains[c].correct(target_of(c, 0.0, h), twice_of(c), h, values,
-                        integrator.scalar_coefficients().data());
+    for (size_t c = 0; c < chains.size(); ++c)
+      advance(c, same_bodies ? twice_of(c) : chains[c].foretold(h, values), h, values);
     note_friction();
     here[TRANSLATION] = here[ROTATION] = ExactSum();
     for_moved([&](int ibody) {
@@ -315,10 +313,25 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
       add_kinetic(ibody, velocity, omega_body, here);
     });
   }
-  for (auto &chain : chains) chain.conclude(values);
+  for (auto &chain : chains) chain.conclude();
   for_moved([&](int ibody) {
     finish_body(integrator, ibody);
   });
+}
+
+/// A kinetic energy that is no number belongs to a body that is lost, which ends the run.
+void Thermostat::advance(int chain, double twice_kinetic, double h, int values)
+{
+  if (!std::isfinite(twice_kinetic)) return;
+  const ChainTarget target = target_of(chain, -1.0, h);
+  if (chains[chain].advance(target, twice_kinetic, h, values)) return;
+  const double degree = force->mvv2e / force->boltz;
+  error->all(FLERR,
+             "Fix gear/quat temp: in step {} the bodies have a temperature of {:.4g}, {:.3g} times "
+             "the target, and the thermostat cannot follow it; begin nearer to the target, or use "
+             "a longer damping time than {:g}",
+             update->ntimestep, degree * twice_kinetic / target.freedoms,
+             twice_kinetic / (target.freedoms * target.kt), words.damp);
 }
 
 void Thermostat::finish_body(const Integrator &integrator, int ibody)
@@ -333,13 +346,13 @@ void Thermostat::finish_body(const Integrator &integrator, int ibody)
   if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
 }
 
-Chain::HighRows Thermostat::high_rows(int values) const
+Chain::LeftOut Thermostat::left_out(double h, int values) const
 {
-  Chain::HighRows all;
-  for (const auto &chain : chains) {
-    const Chain::HighRows rows = chain.high_rows(values);
-    all = {std::max(all.last, rows.last), std::max(all.trial, rows.trial),
-           std::max(all.change, rows.change)};
+  Chain::LeftOut all;
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const Chain::LeftOut one = chains[c].left_out(target_of(c, 0.0, h), h, values);
+    all = {std::max(all.fewer, one.fewer), std::max(all.same, one.same),
+           std::max(all.more, one.more)};
   }
   return all;
 }
@@ -371,21 +384,16 @@ void Thermostat::follow_bodies(double h)
   count_freedoms();
   sum_present();
   for (size_t c = 0; c < chains.size(); ++c)
-    chains[c].replace_target(before[c], target_of(c, 0.0, h), twice_of(c), h);
+    chains[c].join(before[c], target_of(c, 0.0, h), twice_of(c));
 }
 
-/* ----------------------------------------------------------------------
-   another step
-------------------------------------------------------------------------- */
-
-void Thermostat::rescale_step(double ratio)
+void Thermostat::follow_velocities(double h)
 {
-  for (auto &chain : chains) chain.rescale(ratio);
-}
-
-void Thermostat::set_values(int values)
-{
-  for (auto &chain : chains) chain.set_values(values);
+  measure();
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const ChainTarget target = target_of(c, 0.0, h);
+    chains[c].join(target, target, twice_of(c));
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -432,7 +440,7 @@ Thermostat::Checkpoint Thermostat::checkpoint() const
                       words.damp,
                       {freedoms[TRANSLATION], freedoms[ROTATION]},
                       {}};
-  for (size_t c = 0; c < chains.size(); ++c) saved.rows[c] = chains[c].record();
+  for (size_t c = 0; c < chains.size(); ++c) saved.chains[c] = chains[c].record();
   return saved;
 }
 
@@ -442,6 +450,6 @@ void Thermostat::restore(const Checkpoint &saved)
   line = {saved.kt, saved.kt_step};
   damp_before = saved.period;
   std::copy_n(saved.freedoms, 2, freedoms);
-  for (size_t c = 0; c < chains.size(); ++c) chains[c].restore(saved.rows[c]);
+  for (size_t c = 0; c < chains.size(); ++c) chains[c].restore(saved.chains[c]);
   note_friction();
 }

@@ -12,8 +12,8 @@
    step from the beginning to the end of the run.
 
    Bodies that come or go in a step change degrees of freedom and kinetic energy at its end.  In
-   that step the chains are predicted and not corrected; then they receive the derivatives of the
-   new ones. */
+   that step the chains follow the kinetic energy that earlier ones foretell; then they join the new
+   one. */
 
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H
@@ -36,26 +36,36 @@ struct ThermostatWords {
 class Thermostat : protected Pointers {
  public:
   /// Elements of the fix's vector behind those of Sums, and of Tolerance.
+  static constexpr double FEWEST_STEPS = 10.0;    ///< of a damping time, otherwise a warning
   enum { ENERGY, T_TRANSLATION, T_ROTATION, TARGET, XI_TRANSLATION, XI_ROTATION, ELEMENTS };
 
-  Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words);
+  /// scheme: the one with most values.
+  Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
+             const Scheme &scheme);
 
   // all collective
 
-  /// Before a run.  Ends it if there is nothing to be thermostatted, or another thermostat.
-  void begin_run();
+  /// Before a run of steps of h.  Ends it if there is nothing to be thermostatted, or if the
+  /// friction would be too strong.
+  void begin_run(double h);
   /// Friction by the present states and chains, whose rates are known then.
   void measure();
   /// One step of h: correct the predicted histories and states.
   void correct(const Integrator &integrator, const Scheme &scheme);
-  /// Of all chains in this step.
-  Chain::HighRows high_rows(int values) const;
+  /// The most of all chains in this step.
+  Chain::LeftOut left_out(double h, int values) const;
   /// The target.
   double kt() const { return line.kt; }
+  /// A next step should not be longer.
+  double longest_step() const;
   /// A step of h holds: warns once of bodies that a thermostat cannot warm.
   void watch_cold(double h);
+  /// And of a friction that is nearly too strong.
+  void watch_friction(double h);
   /// Bodies that have come in this step have histories, and none is left of those that have gone.
   void follow_bodies(double h);
+  /// Bodies have received other velocities.
+  void follow_velocities(double h);
 
   /// True if the target jumps where this run begins; after begin_run().
   bool target_jumps() const { return jumps; }
@@ -80,12 +90,11 @@ class Thermostat : protected Pointers {
   /// As measure(), at another node.
   void measure_node(const Collocation &collocation, int node);
   void settle(const Collocation &collocation, int pair);
-  void seed(const Collocation &collocation, int pairs);
-  /// From the first derivatives alone.
+  /// values: of the method.
+  void seed(const Collocation &collocation, int pairs, int values);
+  /// From the present alone.
   void seed_local(double h);
 
-  void rescale_step(double ratio);
-  void set_values(int values);
   // As Bodies::keep_histories(), for a step that may be undone.
   void keep_chains() { kept = chains; }
   void put_back_chains() { chains = kept; }
@@ -94,7 +103,7 @@ class Thermostat : protected Pointers {
   struct Checkpoint {
     double mode, length, bodies;                ///< mode: number of chains, 0 without a thermostat
     double kt, kt_step, period, freedoms[2];    ///< the target when the file was written
-    Chain::Record rows[2];
+    Chain::Record chains[2];
   };
   Checkpoint checkpoint() const;
   /// saved: of as many chains of as many variables.
@@ -118,15 +127,18 @@ class Thermostat : protected Pointers {
   Line line;                          ///< the target of the present step
   double damp_before = 0.0;           ///< of the steps so far
   double friction[2] = {};            ///< xi_1 of the chains
+  const double most_friction;         ///< times the step, that bodies can follow
   double unit = 1.0;                  ///< of the sums, see scale()
   double cold[2] = {};                ///< for how long the parts have been cold
   bool warned[2] = {};                ///< of that
+  bool warned_friction = false;
   bool jumps = false;
   bool conserved = false;    ///< the total momentum, which has no temperature
   std::vector<Integrator::Pending> pending;
 
   double spacing = 0.0, step_of_start = 0.0;
-  std::vector<std::array<Collocation::Scalar, Chain::MOST>> nodes;    ///< of the chains
+  std::vector<Collocation::Scalar> nodes;    ///< 2K of the chains
+  std::vector<bool> held;                    ///< chains that do not move while bodies start
 
   int mode() const { return words.separate ? 2 : 1; }
   Line line_of_step(bigint step) const;
@@ -139,6 +151,9 @@ class Thermostat : protected Pointers {
   bool conserves_momentum() const;
   void refuse_masks() const;
   void refuse_nothing() const;
+  void refuse_friction(double h) const;
+  double strongest_friction() const;
+  void settle_fresh(double h);
   using Sums = ExactSum[2];
   void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &here) const;
   void sum_kinetic(const Sums &here);
@@ -151,6 +166,7 @@ class Thermostat : protected Pointers {
     for (const auto *list : {&bodies.points, &bodies.tops})
       for (const int ibody : *list) act(ibody);
   }
+  void advance(int chain, double twice_kinetic, double h, int values);
   void finish_body(const Integrator &integrator, int ibody);
 };
 

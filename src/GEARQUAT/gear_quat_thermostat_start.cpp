@@ -3,70 +3,157 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword temp, the start: chains at the nodes of the bodies' collocation. */
+/* Keyword temp, the start: kinetic energies at the nodes of the bodies' collocation, and the chains
+   that they drive from the start to each node. */
 
 #include "gear_quat_thermostat.h"
+
+#include "gear_quat_friction.h"
+
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
+// a friction that is nearly too strong, as a part of the limit
+
+static constexpr double SAFE = 0.8;
+
+/* ----------------------------------------------------------------------
+   before a run: is the friction going to be stronger than the bodies can follow?
+------------------------------------------------------------------------- */
+
+/// Ends the run if so.
+void Thermostat::refuse_friction(double h) const
+{
+  const double limit = most_friction / std::fabs(h);
+  for (int c = 0; c < (int) chains.size(); ++c) {
+    ChainTarget target = target_of(c, 0.0, h);
+    if (!(twice_of(c) > 0.0) || !(target.freedoms > 0.0)) continue;
+    if (friction_bound(chains[c], target, twice_of(c)) < limit) continue;
+    const auto strongest = [&] {
+      return friction_on_trial(chains[c], target, twice_of(c), h);
+    };
+    const double found = strongest();
+    if (found < limit) continue;
+    const double damp = target.period;
+    while (target.period < 1.0e6 * std::fabs(h) && strongest() > SAFE * limit)
+      target.period *= 1.25;
+    error->all(FLERR,
+               "Fix gear/quat temp: the {}temperature is {:.3g}, {:.3g} times its target, and with "
+               "a damping time of {:.3g} the thermostat would have a friction of {:.2g}/step, "
+               "where a step of {:.3g} permits {:.2g}; use a damping time of {:.2g} or longer",
+               !words.separate     ? ""
+                   : c == ROTATION ? "rotational "
+                                   : "translational ",
+               twice_of(c) / target.freedoms * force->mvv2e / force->boltz,
+               twice_of(c) / (target.freedoms * target.kt), damp, found * std::fabs(h), h,
+               limit * std::fabs(h), 1.05 * target.period);
+  }
+}
+
+/// The longest step that the friction, and the damping time, permit.
+double Thermostat::longest_step() const
+{
+  const double longest = words.damp / FEWEST_STEPS, strongest = strongest_friction();
+  return strongest > 0.0 ? std::min(longest, SAFE * most_friction / strongest) : longest;
+}
+
+double Thermostat::strongest_friction() const
+{
+  double strongest = 0.0;
+  for (const auto &chain : chains) strongest = std::max(strongest, std::fabs(chain.friction()));
+  return strongest;
+}
+
+/// Warns once of a friction that is nearly too strong.
+void Thermostat::watch_friction(double h)
+{
+  const double part = std::fabs(h) * strongest_friction() / most_friction;
+  if (warned_friction || part < SAFE) return;
+  warned_friction = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat temp: in step {} the thermostat has a friction of {:.2g}/step, "
+                   "{:.0f} % of what the method can follow at this time step; the temperatures of "
+                   "translation and rotation are {:.4g} and {:.4g}, the target is {:.4g}; use a "
+                   "longer damping time than {:g}",
+                   update->ntimestep, std::fabs(h) * strongest_friction(), 100.0 * part,
+                   element(T_TRANSLATION), element(T_ROTATION), element(TARGET), words.damp);
+}
+
 /* ---------------------------------------------------------------------- */
+
+/// Chains that have never moved begin near to where they go.
+void Thermostat::settle_fresh(double h)
+{
+  for (size_t c = 0; c < chains.size(); ++c)
+    chains[c].begin_settled(target_of(c, 0.0, h), twice_of(c), h);
+  note_friction();
+}
 
 void Thermostat::begin_start(const Collocation &collocation, double of, double h)
 {
   spacing = of;
   step_of_start = h;
+  settle_fresh(h);
   nodes.resize(chains.size());
+  held.resize(chains.size());
   for (size_t c = 0; c < chains.size(); ++c) {
-    const auto y = chains[c].values();
-    const auto rate = chains[c].rates(target_of(c, 0.0, h), twice_of(c), y);
-    for (int v = 0; v < chains[c].size(); ++v) collocation.begin(y[v], rate[v], nodes[c][v]);
+    held[c] = chains[c].is_stiff(target_of(c, 0.0, h), twice_of(c), h, collocation.pairs());
+    collocation.begin(0.0, twice_of(c), nodes[c]);
   }
 }
 
 void Thermostat::foretell(const Collocation &collocation)
 {
-  for (size_t c = 0; c < chains.size(); ++c)
-    for (int v = 0; v < chains[c].size(); ++v) collocation.foretell(nodes[c][v]);
+  for (auto &node : nodes) collocation.foretell(node);
+}
+
+/// 2K about the start, in units of the node spacing.
+static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &node)
+{
+  double at[ChainDrive::MOST];
+  const int points = 2 * node.pairs + 1;
+  for (int i = 0; i < points; ++i) at[i] = i - node.pairs;
+  return ChainDrive::through(points, at, node.rate + collocation.pairs() - node.pairs);
 }
 
 void Thermostat::measure_node(const Collocation &collocation, int node)
 {
   sum_present();
   for (size_t c = 0; c < chains.size(); ++c) {
-    Chain::Variables y = {};
-    for (int v = 0; v < chains[c].size(); ++v)
-      y[v] = collocation.value_at(node, nodes[c][v], spacing);
-    friction[c] = y[0];
-    const ChainTarget target = target_of(c, node * spacing / step_of_start, step_of_start);
-    const auto rate = chains[c].rates(target, twice_of(c), y);
-    for (int v = 0; v < chains[c].size(); ++v) collocation.set_rate(node, rate[v], nodes[c][v]);
+    if (!held[c])
+      friction[c] = chains[c]
+                        .flow(target_of(c, 0.0, step_of_start), drive_of(collocation, nodes[c]),
+                              spacing, node)
+                        .y[0];
+    collocation.set_rate(node, twice_of(c), nodes[c]);
   }
 }
 
 void Thermostat::settle(const Collocation &collocation, int pair)
 {
-  for (size_t c = 0; c < chains.size(); ++c)
-    for (int v = 0; v < chains[c].size(); ++v) collocation.settle(pair, nodes[c][v]);
+  for (auto &node : nodes) collocation.settle(pair, node);
 }
 
-void Thermostat::seed(const Collocation &collocation, int pairs)
+void Thermostat::seed(const Collocation &collocation, int pairs, int values)
 {
-  std::vector<double> series(collocation.number_of_nodes() + 1);
   for (size_t c = 0; c < chains.size(); ++c)
-    for (int v = 0; v < chains[c].size(); ++v) {
-      const int terms = collocation.integrate(nodes[c][v].rate, pairs, spacing, series.data());
-      chains[c].seed(v, series.data(), terms, spacing, step_of_start);
-    }
+    chains[c].seed(nodes[c].rate + collocation.pairs(), pairs, spacing, values + 1);
 }
 
 void Thermostat::seed_local(double h)
 {
+  settle_fresh(h);
   for (size_t c = 0; c < chains.size(); ++c) {
-    const auto rate = chains[c].rates(target_of(c, 0.0, h), twice_of(c), chains[c].values());
-    for (int v = 0; v < chains[c].size(); ++v) {
-      const double series[2] = {0.0, h * rate[v]};
-      chains[c].seed(v, series, 2, h, h);
-    }
+    const double now = twice_of(c);
+    chains[c].seed(&now, 0, 0.0, 1);
   }
 }

@@ -134,10 +134,11 @@ double Tolerance::first_step_of_low_order() const
   return over_ranks(MPI_MIN, least, world);
 }
 
-void Tolerance::bound_first_step()
+void Tolerance::bound_first_step(double permitted)
 {
   const double given = std::fabs(update->dt);
-  double size = std::min(given, farthest_step(over_ranks(MPI_MAX, largest_speed(), world)));
+  double size =
+      std::min({given, permitted, farthest_step(over_ranks(MPI_MAX, largest_speed(), world))});
   if (control.longest > 0.0) size = std::min(size, control.longest);
   size = std::max(size, control.shortest);
   if (size != given && !integrated_before(first_mover()))

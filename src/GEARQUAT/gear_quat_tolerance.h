@@ -62,9 +62,9 @@ class Tolerance : protected Pointers {
   Scheme scheme_of_start() const;
   /// Histories are seeded.  full: to the last row; otherwise they begin with the fewest values.
   void begin(bool full);
-  /// Before histories are made: the first step is within dtmin, dtmax and the motion that is
-  /// allowed.  Collective.
-  void bound_first_step();
+  /// Before histories are made: the first step is within dtmin, dtmax, the motion that is allowed,
+  /// and what is permitted beside that.  Collective.
+  void bound_first_step(double permitted);
   /// Makes the first step shorter if its error would be too large.  full: of what begin() says.
   /// Collective.
   void shorten_first_step(bool full);
@@ -78,7 +78,7 @@ class Tolerance : protected Pointers {
   void note_prediction();
   void note_correction(const Integrator &integrator);
   /// The chains of a thermostat are corrected, too; kt: of its target.
-  void note_chains(const Chain::HighRows &rows, double kt);
+  void note_chains(const Chain::LeftOut &left_out, double kt);
   /// All bodies are corrected: true if the step has failed and is to be made again.  Collective.
   bool judge();
   /// Histories as they were when the step began get the values, then the length of the next try.
@@ -87,8 +87,8 @@ class Tolerance : protected Pointers {
   /// Forces of the next try.  vflag: what LAMMPS asked of the virial when the step began.
   void evaluate(int vflag) { repeat.evaluate(vflag); }
   /// Choose values and length of the next step, and return the length.  After the call histories
-  /// have the new number of values.  Collective.
-  double choose();
+  /// have the new number of values.  permitted: it is not longer.  Collective.
+  double choose(double permitted);
   /// update->dt and all that depends on it, this fix too, become those of the next step.
   void change_step(double step);
   /// Energies of the next step may be printed, although LAMMPS does not expect that: its thermo

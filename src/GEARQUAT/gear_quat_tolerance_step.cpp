@@ -110,10 +110,10 @@ void Tolerance::note_correction(const Integrator &integrator)
     }
 }
 
-void Tolerance::note_chains(const Chain::HighRows &rows, double kt)
+void Tolerance::note_chains(const Chain::LeftOut &left_out, double kt)
 {
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    include(order.errors_of_chain(rows, kt, bodies.rigid_of(ibody).mass, update->dt));
+    include(order.errors_of_chain(left_out, kt, bodies.rigid_of(ibody).mass, update->dt));
 }
 
 /// No site on this rank is faster.
@@ -232,12 +232,13 @@ double Tolerance::shown(double error) const
   return control.energy ? error * force->mvv2e : error;
 }
 
-double Tolerance::choose()
+double Tolerance::choose(double permitted)
 {
   const double step = update->dt;
   const int values = present.values();
   note_step(std::fabs(step), values);
-  auto next = control.next(control.measured(errors), step, values, steady, farthest_step(speed));
+  auto next = control.next(control.measured(errors), step, values, steady,
+                           std::min(permitted, farthest_step(speed)));
   if (fresh) {    // rows above are zero in a fresh history
     next.values = control.fewest;
     next.step = std::copysign(std::min(std::fabs(next.step), first_step_of_low_order()), step);

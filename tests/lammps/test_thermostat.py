@@ -54,7 +54,7 @@ def test_econserve_to_the_order_of_the_method(lmp_tree, formulation, kind):
     values, steps = (6, (0.008, 0.004, 0.002)) if formulation == "first" else (7, (0.016, 0.008, 0.004))
     words = f"formulation {formulation} values {values} temp 0.4 0.8 0.3 thermostat {kind}"
     decks = [cluster(words, dt) for dt in steps]
-    few = "run 2 start 0 stop {}"
+    few = "run 4 start 0 stop {}"
     decks += [cluster(words, dt, every=1, run=few.format(round(0.8 / dt))) for dt in steps]
     tables = run(lmp_tree, decks).thermo
     errors = [largest_change(table, "Econserve") for table in tables[:3]]

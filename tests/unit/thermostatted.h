@@ -53,11 +53,10 @@ struct Host {
     const Collocation &collocation;
     vector<BodyState> at_start;
     vector<Collocation::Workspace> work;
-    vector<Collocation::Scalar> scalars;
+    Collocation::Scalar twice = {};
 
     Search(Host &our, const Collocation &collocation) :
-        our(our), collocation(collocation), at_start(our.states), work(our.bodies.size()),
-        scalars(our.chain.size())
+        our(our), collocation(collocation), at_start(our.states), work(our.bodies.size())
     {
     }
     vector<Load> acting(double friction) const
@@ -68,44 +67,47 @@ struct Host {
             damped_load(our.bodies[b], our.states[b], loads[b], Multipliers{friction, friction});
       return loads;
     }
-    Chain::Variables rates(double time, const Chain::Variables &y) const
+    double friction_at(int node) const
     {
-      return our.length ? our.chain.rates(our.target_of(time), our.twice_kinetic(), y)
-                        : Chain::Variables();
+      if (!our.length || held) return our.chain.friction();
+      vector<double> at;
+      for (int k = -twice.pairs; k <= twice.pairs; ++k) at.push_back(k);
+      const ChainDrive drive = ChainDrive::through(
+          at.size(), at.data(), twice.rate + collocation.pairs() - twice.pairs);
+      return our.chain.flow(our.target_of(our.time()), drive, our.h, node).y[0];
     }
+    bool held = false;
     void begin(double)
     {
       our.states = at_start;
-      const auto y = our.chain.values(), rate = rates(0.0, y);
-      const vector<Load> loads = acting(y[0]);
+      const vector<Load> loads = acting(our.chain.friction());
+      held = our.length &&
+          our.chain.is_stiff(our.target_of(our.time()), our.twice_kinetic(), our.h,
+                             collocation.pairs());
       for (size_t b = 0; b < work.size(); ++b)
         collocation.begin(local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
-      for (size_t v = 0; v < scalars.size(); ++v) collocation.begin(y[v], rate[v], scalars[v]);
+      collocation.begin(0.0, our.twice_kinetic(), twice);
     }
     void foretell()
     {
       for (auto &w : work) collocation.foretell(w);
-      for (auto &s : scalars) collocation.foretell(s);
+      collocation.foretell(twice);
     }
     bool visit(int pair, double &change)
     {
       change = 0.0;
       for (const int node : {-pair, pair}) {
-        Chain::Variables y = {};
-        for (size_t v = 0; v < scalars.size(); ++v)
-          y[v] = collocation.value_at(node, scalars[v], our.h);
         for (size_t b = 0; b < work.size(); ++b)
           our.states[b] = collocation.state_at(node, work[b], our.h);
-        const vector<Load> loads = acting(y[0]);
-        const auto rate = rates(node * our.h, y);
-        for (size_t v = 0; v < scalars.size(); ++v) collocation.set_rate(node, rate[v], scalars[v]);
+        const vector<Load> loads = acting(friction_at(node));
+        collocation.set_rate(node, our.twice_kinetic(), twice);
         for (size_t b = 0; b < work.size(); ++b)
           change = std::max(change,
                             collocation.set_load(node, our.bodies[b], our.states[b], loads[b],
                                                  our.h, 1.0, work[b]));
       }
       for (auto &w : work) collocation.settle(pair, w);
-      for (auto &s : scalars) collocation.settle(pair, s);
+      collocation.settle(pair, twice);
       return true;
     }
   };
@@ -113,6 +115,7 @@ struct Host {
   void start()
   {
     const Collocation collocation(scheme.start_values());
+    if (length) chain.begin_settled(target_of(0.0), twice_kinetic(), h);
     Search search(*this, collocation);
     const StartFound found = find_start(scheme.start_values(), h, search);
     states = search.at_start;
@@ -121,12 +124,7 @@ struct Host {
     for (size_t b = 0; b < bodies.size(); ++b)
       seed(scheme, bodies[b], collocation.series(search.work[b], found.pairs), h, h,
            rows[b].data());
-    vector<double> series(collocation.number_of_nodes() + 1);
-    for (int v = 0; v < chain.size(); ++v) {
-      const int terms =
-          collocation.integrate(search.scalars[v].rate, found.pairs, h, series.data());
-      chain.seed(v, series.data(), terms, h, h);
-    }
+    chain.seed(search.twice.rate + collocation.pairs(), found.pairs, h, scheme.values() + 1);
     pending.resize(bodies.size());
   }
 
@@ -138,15 +136,14 @@ struct Host {
       integrator.predict(rows[b].data());
       states[b] = integrator.body_state(bodies[b], rows[b].data());
     }
-    if (length) chain.predict(n);
     const vector<Load> loads = loads_of(states);
     for (size_t b = 0; b < bodies.size(); ++b)
       pending[b] =
           integrator.begin(loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data());
     for (int pass = 0; pass < scheme.passes; ++pass) {
-      if (length)
-        chain.correct(target_of(time()), twice_kinetic(), h, n,
-                      integrator.scalar_coefficients().data());
+      if (length) {
+        ASSERT_TRUE(chain.advance(target_of(time() - h), twice_kinetic(), h, n));
+      }
       const double xi = length ? chain.friction() : 0.0;
       for (size_t b = 0; b < bodies.size(); ++b) {
         integrator.correct_pass(bodies[b], loads[b], Multipliers{xi, xi}, rows[b].data(),
@@ -155,11 +152,20 @@ struct Host {
                                       states[b].omega_body);
       }
     }
-    if (length) chain.conclude(n);
+    if (length) chain.conclude();
     for (size_t b = 0; b < bodies.size(); ++b) {
       integrator.finish(loads[b], rows[b].data(), pending[b]);
       states[b] = integrator.body_state(bodies[b], rows[b].data());
     }
+  }
+
+  /// Steps are longer by this factor from now on.
+  void change_step(double ratio)
+  {
+    steps = std::lround(time() / (h * ratio));    // targets that move are not meant
+    h *= ratio;
+    integrator.set_step(h);
+    for (auto &one : rows) integrator.rescale(one.data(), ratio);
   }
 
   /// Calls what watches after each step.

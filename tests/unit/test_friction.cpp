@@ -1,0 +1,75 @@
+/* The strongest friction that a method follows, beside bodies under a constant friction, and the
+   strongest that a chain makes. */
+
+#include "thermostatted.h"
+
+#include "gear_quat_friction.h"
+
+using namespace Thermostatted;
+
+namespace {
+
+/// The speed and the spin of a free body after so many steps of 1 under a constant friction, as
+/// parts of those at the start; both have to fade.
+double remains(const Scheme &scheme, double friction)
+{
+  const RigidBody body = {1.3, {0.7, 0.7, 0.7}};
+  const BodyState start = {{}, {0, 0, 0, 1}, {0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}};
+  const Integrator integrator(scheme, 1.0);
+  vector<double> rows(scheme.size());
+  seed(scheme, body, local_series(body, start, Load{}, 1.0), 1.0, 1.0, rows.data());
+  BodyState state = start;
+  for (int step = 0; step < 5000; ++step) {
+    integrator.predict(rows.data());
+    auto pending =
+        integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
+    for (int pass = 0; pass < 2; ++pass)
+      integrator.correct_pass(body, Load{}, Multipliers{friction, friction}, rows.data(), pending);
+    integrator.finish(Load{}, rows.data(), pending);
+    state = integrator.body_state(body, rows.data());
+    const double most = std::max(std::fabs(state.velocity[0]), std::fabs(state.omega_body[1]));
+    if (!(most < 1.0e3)) return HUGE_VAL;
+  }
+  return std::max(std::fabs(state.velocity[0]), std::fabs(state.omega_body[1])) / 0.01;
+}
+
+}    // namespace
+
+TEST(FrictionLimit, IsWhereAFreeBodyBecomesUnstable)
+{
+  int found = 0;
+  for (const Formulation formulation : {FIRST, SECOND})
+    for (const bool tuned : {false, true})
+      for (int values = formulation == FIRST ? 4 : 5; values <= (formulation == FIRST ? 8 : 12);
+           ++values) {
+        Scheme scheme = scheme_of(formulation, values, 2);
+        scheme.tuned = tuned;
+        const double limit = FrictionLimit::of(scheme);
+        EXPECT_LT(remains(scheme, 0.95 * limit), 1.0e-3) << scheme << tuned;
+        if (limit == FrictionLimit::MOST) continue;
+        EXPECT_GT(remains(scheme, 1.05 * limit), 1.0e3) << scheme << tuned << " " << limit;
+        ++found;
+      }
+  EXPECT_GT(found, 15);
+}
+
+TEST(Friction, ABoundAndATrialHoldForAGas)
+{
+  // a chain of one variable has a first integral; longer ones and other starts stay below it
+  const double g = 3000.0, kt = 0.7;
+  for (const double part : {0.01, 0.3, 4.0, 40.0})
+    for (const double damp : {12.0, 150.0})
+      for (const int length : {1, 2, 3}) {
+        const ChainTarget target = {kt, 0.0, g, damp};
+        const Chain chain(length);
+        const double twice = part * g * kt;
+        const double bound = friction_bound(chain, target, twice);
+        const double trial = friction_on_trial(chain, target, twice, 1.0);
+        const double first_integral = std::sqrt(part - 1.0 - std::log(part)) / damp;
+        EXPECT_NEAR(bound, first_integral, 1.0e-12);
+        EXPECT_LT(trial, 1.02 * bound) << part << " " << damp << " " << length;
+        if (length == 1 && damp > 100.0 && part > 1.0) {
+          EXPECT_NEAR(trial, bound, 0.005 * bound) << part;
+        }
+      }
+}
