@@ -370,12 +370,13 @@ class Integrator : public Kinematics {
             double *rows, Pending &pending) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
-    const double half_h = 0.5 * h, share = half_h * c.driven[1];
+    const double mass_per_h = body.mass * per_h, share = 0.5 * h * c.driven[1];
     double per_inertia[3], before[4];
-    position_residual(body, load, rows, pending.total.x);
+    Load damped = load;
     for (int i = 0; i < 3; ++i)
-      pending.total.x[i] = friction.force(i, pending.total.x[i], half_h * rates[i]) *
-          friction.implicit_force(i, share);
+      damped.force[i] = friction.force(i, load.force[i], mass_per_h * rates[i]);
+    position_residual(body, damped, rows, pending.total.x);
+    for (int i = 0; i < 3; ++i) pending.total.x[i] *= friction.implicit_force(i, share);
 
     copy(pending.total.q, 4, before);
     inverse_moments(body, per_inertia);

@@ -49,7 +49,7 @@ void Restart::read(const char *buf)
                "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
                "data of fix {} this one cannot read; continue with the release that wrote it, or "
                "let that one write a data file with write_data and start from this",
-               older ? "an older (0.2.0 or before)" : "a newer", fix->id);
+               older ? "an older (0.3.0 or before)" : "a newer", fix->id);
   std::memcpy(&block, buf, sizeof(block));
   waiting = true;
 }

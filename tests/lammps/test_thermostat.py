@@ -107,12 +107,12 @@ def test_what_chains_take_is_what_friction_does(lmp_tree, formulation):
 
 def test_the_trajectory_that_rigid_nvt_approaches(lmp_tree, formulation):
     """With the same degrees of freedom: those chains count the total momentum, as ours do where
-    another fix exerts forces.  They are of first order in the step, so two steps are extrapolated."""
-    nothing = dict(after="fix nothing all addforce 0.0 0.0 0.0", columns="")
+    forces on it do not add up to zero.  They are of first order in the step, so two steps are extrapolated."""
+    field = dict(after="fix field all addforce 0.02 0.01 -0.03", columns="")
     words = f"formulation {formulation} values 8 temp 0.4 0.8 0.3 thermostat separate tchain 3"
 
     def end(words, dt):
-        result = run(lmp_tree, [cluster(words, dt, **nothing)])
+        result = run(lmp_tree, [cluster(words, dt, **field)])
         return last_frame(lmp_tree.folder / "poses.dump"), result.log
 
     exact, log = end(words, 0.002)
