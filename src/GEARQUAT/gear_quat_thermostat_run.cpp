@@ -188,7 +188,7 @@ void Thermostat::refuse_nothing() const
     missing = "rotational ";
   if (missing)
     error->all(FLERR,
-               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero, and a thermostat "
+               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero{}, and a thermostat "
                "only scales it; give them velocities first",
-               missing);
+               missing, total.twice_energy() > 0.0 ? " but for a motion of all together" : "");
 }
