@@ -82,11 +82,14 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
 }
 
 /// The rates at which momenta of one body decay, 1/time: of its momentum along the axes of space,
-/// and of its angular momentum.  common: what it has of a motion of all bodies that does not decay.
+/// and of its angular momentum.  common: what it has of a motion of all bodies that does not decay,
+/// and common_force of the difference between the force on all and the one that their rows are
+/// predicted with.
 struct Friction {
   double translation[3] = {0.0, 0.0, 0.0};
   double rotation = 0.0;
   double common[3] = {0.0, 0.0, 0.0};
+  double common_force[3] = {0.0, 0.0, 0.0};
 
   Friction(const Multipliers &alpha) : rotation(alpha.rotation)
   {
@@ -98,11 +101,16 @@ struct Friction {
   double force(int i, double met, double p) const { return met - translation[i] * (p - common[i]); }
   double torque(double met, double l) const { return met - rotation * l; }
 
-  // A residual r changes a velocity by `share` * r / step, and thereby the friction in it: the part
-  // of an explicit residual that solves for both, of component i and of rotation.  share: with the
-  // units of a time.
+  // A residual r changes a velocity by `share` * r, and thereby the friction: what solves for both
+  // instead of an explicit residual, and the part of one that does so for rotation.  share: with the
+  // units of a time.  per_force: the residual that a force makes.  The common motion has no friction,
+  // so its residual is the explicit one.
 
-  double implicit_force(int i, double share) const { return 1.0 / (1.0 + share * translation[i]); }
+  double implicit_force(int i, double share, double residual, double per_force) const
+  {
+    const double damped = share * translation[i];
+    return (residual + damped * per_force * common_force[i]) / (1.0 + damped);
+  }
   double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
 };
 
@@ -126,7 +134,7 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
 struct Undamped {
   double force(int, double met, double) const { return met; }
   double torque(double met, double) const { return met; }
-  double implicit_force(int, double) const { return 1.0; }
+  double implicit_force(int, double, double residual, double) const { return residual; }
   double implicit_torque(double) const { return 1.0; }
 };
 

@@ -111,6 +111,16 @@ class Integrator : public Kinematics {
     });
   }
 
+  /// The force that predicted rows are those of: h times its difference from the one that is met is
+  /// the residual of a momentum.
+  void force_of_rows(const RigidBody &body, const double *rows, double *force) const
+  {
+    const double *row = scheme.first() ? rows + scheme.width() + Scheme::MOMENTUM
+                                       : rows + 2 * scheme.width() + Scheme::POSITION;
+    const double unit = scheme.first() ? per_h : 2.0 * body.mass * per_h * per_h;
+    for (int i = 0; i < 3; ++i) force[i] = unit * row[i];
+  }
+
   /// The velocities after so many passes.
   void velocities_of_pass(const RigidBody &body, const double *rows, const Pending &pending,
                           double *velocity, double *omega_body) const
@@ -216,8 +226,9 @@ class Integrator : public Kinematics {
     double before[3], target[3];
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i)
-      target[i] = (h * damper.force(i, load.force[i], before[i]) - rates[Scheme::MOMENTUM + i]) *
-          damper.implicit_force(i, h * c.driven[0]);
+      target[i] = damper.implicit_force(
+          i, h * c.driven[0],
+          h * damper.force(i, load.force[i], before[i]) - rates[Scheme::MOMENTUM + i], h);
     feed_back<3>(history, c.driven, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
@@ -237,7 +248,8 @@ class Integrator : public Kinematics {
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * before[i]);
     angular_acceleration(body, torque, before, target);
     const double part = damper.implicit_torque(h * c.driven[0]);
-    for (int i = 0; i < 3; ++i) target[i] = (h * target[i] - rates[Scheme::OMEGA + i]) * part;
+    for (int i = 0; i < 3; ++i)
+      target[i] = (h * target[i] - rates[Scheme::OMEGA + i]) * (body.inertia[i] > 0.0 ? part : 1.0);
     feed_back<3>(history, c.driven, rows, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
@@ -376,23 +388,29 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i)
       damped.force[i] = friction.force(i, load.force[i], mass_per_h * rates[i]);
     position_residual(body, damped, rows, pending.total.x);
-    for (int i = 0; i < 3; ++i) pending.total.x[i] *= friction.implicit_force(i, share);
+    const double half_h2_per_mass = 0.5 * h * h / body.mass;
+    for (int i = 0; i < 3; ++i)
+      pending.total.x[i] =
+          friction.implicit_force(i, share, pending.total.x[i], half_h2_per_mass);
 
     copy(pending.total.q, 4, before);
     inverse_moments(body, per_inertia);
     rotation_residual(body, per_inertia, pending.torque_body, friction, rows, pending.total.q);
-    withhold(rows, before, 1.0 - friction.implicit_torque(share), pending.total.q);
+    withhold(body, rows, before, 1.0 - friction.implicit_torque(share), pending.total.q);
   }
 
-  /// Takes back a part of how a residual has changed, but for its radial part, which keeps |q| and
-  /// has no friction.
-  void withhold(const double *rows, const double *before, double part, double *total) const
+  /// Takes back a part of how a residual has changed, where there is friction: neither its radial
+  /// part, which keeps |q|, nor a rotation about an axis without inertia has any.
+  void withhold(const RigidBody &body, const double *rows, const double *before, double part,
+                double *total) const
   {
     const double *q = rows + Scheme::SECOND_QUATERNION;
-    double change[4];
+    double change[4], turn[3], back[4];
     for (int i = 0; i < 4; ++i) change[i] = total[i] - before[i];
-    const double radial = dot4(q, change) / dot4(q, q);
-    for (int i = 0; i < 4; ++i) total[i] -= part * (change[i] - radial * q[i]);
+    angular_velocity(q, dot4(q, q), change, turn);
+    for (int i = 0; i < 3; ++i) turn[i] *= body.inertia[i] > 0.0 ? part : 0.0;
+    quaternion_rate(q, turn, back);
+    for (int i = 0; i < 4; ++i) total[i] -= back[i];
   }
 
   template <int CARRIES>

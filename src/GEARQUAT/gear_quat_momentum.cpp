@@ -76,11 +76,23 @@ void TotalMomentum::weigh()
    sums
 ------------------------------------------------------------------------- */
 
-void TotalMomentum::add_up(double kt, bigint *limbs)
+void TotalMomentum::begin_sums(double kt)
 {
+  for (auto &sum : differences) sum = ExactSum();
   thermal = std::sqrt(kt * std::max({mass[0], mass[1], mass[2]}));
   unit_momentum = LARGE_MOMENTA * ExactSum::scale_of(thermal);
   unit_force = LARGE_FORCES * ExactSum::scale_of(thermal / period);
+}
+
+void TotalMomentum::add_predicted(int ibody, const double *of_rows)
+{
+  for (int k = 0; k < 3; ++k)
+    if (counts(k) && belongs(ibody, k))
+      differences[k].add(bodies.load_of(ibody).force[k] - of_rows[k], unit_force);
+}
+
+void TotalMomentum::add_up(bigint *limbs)
+{
   for (int k = 0; k < 3; ++k) {
     ExactSum sums[2];
     for (int ibody = 0; counts(k) && ibody < bodies.nowned(); ++ibody) {
@@ -88,17 +100,19 @@ void TotalMomentum::add_up(double kt, bigint *limbs)
       sums[0].add(bodies.rigid_of(ibody).mass * bodies.state_of(ibody).velocity[k], unit_momentum);
       sums[1].add(bodies.load_of(ibody).force[k], unit_force);
     }
-    for (int n = 0; n < 2; ++n) std::copy_n(sums[n].limbs, 2, limbs + 4 * k + 2 * n);
+    for (int n = 0; n < 2; ++n) std::copy_n(sums[n].limbs, 2, limbs + 6 * k + 2 * n);
+    std::copy_n(differences[k].limbs, 2, limbs + 6 * k + 4);
   }
 }
 
 void TotalMomentum::take(const bigint *limbs)
 {
   for (int k = 0; k < 3; ++k) {
-    ExactSum sums[2];
-    for (int n = 0; n < 2; ++n) std::copy_n(limbs + 4 * k + 2 * n, 2, sums[n].limbs);
+    ExactSum sums[3];
+    for (int n = 0; n < 3; ++n) std::copy_n(limbs + 6 * k + 2 * n, 2, sums[n].limbs);
     momentum[k] = sums[0].value(unit_momentum);
     force[k] = sums[1].value(unit_force);
+    unforeseen[k] = sums[2].value(unit_force);
   }
 }
 
@@ -114,6 +128,12 @@ void TotalMomentum::share(int ibody, double *of_body) const
 {
   for (int k = 0; k < 3; ++k)
     of_body[k] = counts(k) ? momentum[k] * (bodies.rigid_of(ibody).mass / mass[k]) : 0.0;
+}
+
+void TotalMomentum::share_force(int ibody, double *of_body) const
+{
+  for (int k = 0; k < 3; ++k)
+    of_body[k] = counts(k) ? unforeseen[k] * (bodies.rigid_of(ibody).mass / mass[k]) : 0.0;
 }
 
 /* ----------------------------------------------------------------------

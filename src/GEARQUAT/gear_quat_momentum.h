@@ -35,7 +35,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class TotalMomentum : protected Pointers {
  public:
-  static constexpr int LIMBS = 12;
+  static constexpr int LIMBS = 18;
   static constexpr double IN_ALL = 7.0;    ///< record() if P is constant in all directions
 
   /// period: the damping time of the thermostat.
@@ -47,8 +47,12 @@ class TotalMomentum : protected Pointers {
   /// Counts and masses of the bodies by direction.  Collective.
   void weigh();
 
-  /// Momenta and forces of owned bodies by their present states and loads.  kt: of the thermostat.
-  void add_up(double kt, bigint *limbs);
+  /// Before the sums of a step.  kt: of the thermostat.
+  void begin_sums(double kt);
+  /// The force that the predicted rows of an owned body are those of, in a step.
+  void add_predicted(int ibody, const double *force);
+  /// Momenta and forces of owned bodies by their present states and loads.
+  void add_up(bigint *limbs);
   void take(const bigint *limbs);
 
   // after take()
@@ -60,6 +64,8 @@ class TotalMomentum : protected Pointers {
   double twice_energy() const;
   /// What this body has of the momentum in these directions.
   void share(int ibody, double *momentum) const;
+  /// And of the difference between present and predicted forces, in a step.
+  void share_force(int ibody, double *force) const;
 
   /// Degrees of freedom of translation, after weigh().
   double freedoms() const;
@@ -76,7 +82,8 @@ class TotalMomentum : protected Pointers {
 
   bool constant[3] = {true, true, true};
   double count[3] = {}, mass[3] = {};
-  double momentum[3] = {}, force[3] = {};
+  double momentum[3] = {}, force[3] = {}, unforeseen[3] = {};    ///< force - that of the rows
+  ExactSum differences[3];                                      ///< of this rank, for unforeseen
   double thermal = 0.0;    ///< momentum of all bodies together at the target
   double unit_momentum = 1.0, unit_force = 1.0;
 

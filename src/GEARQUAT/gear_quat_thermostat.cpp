@@ -82,6 +82,7 @@ Friction Thermostat::friction_of(int ibody) const
   const double of_rotation = friction[words.separate ? ROTATION : TRANSLATION];
   Friction found = Multipliers{friction[TRANSLATION], of_rotation};
   total.share(ibody, found.common);
+  total.share_force(ibody, found.common_force);
   if (bodies.body_at(ibody).off == 0) return found;
   for (int k = 0; k < 3; ++k)
     if (!is_thermostatted(ibody, TRANSLATION, k)) found.translation[k] = 0.0;
@@ -113,7 +114,7 @@ void Thermostat::sum_kinetic(const Sums &here, bool of_states)
 {
   bigint limbs[4 + TotalMomentum::LIMBS] = {};
   for (int part = 0; part < 2; ++part) std::copy_n(here[part].limbs, 2, limbs + 2 * part);
-  if (of_states) total.add_up(line.kt, limbs + 4);
+  if (of_states) total.add_up(limbs + 4);
   const auto all = over_ranks(MPI_SUM, limbs, world);
   if (of_states) total.take(all.data() + 4);
   for (int part = 0; part < 2; ++part) {
@@ -130,6 +131,7 @@ void Thermostat::sum_present()
 {
   Sums here;
   unit = scale();
+  total.begin_sums(line.kt);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
     add_kinetic(ibody, s.velocity, s.omega_body, here);
@@ -157,14 +159,18 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
   line = line_of_step(update->ntimestep);
 
   Sums here;
-  double velocity[3], omega_body[3];
+  double velocity[3], omega_body[3], force_of_rows[3];
   unit = scale();
+  total.begin_sums(line.kt);
   pending.resize(bodies.nmoved());
   for_moved([&](int ibody) {
     const BodyState &s = bodies.state_of(ibody);
     pending[ibody] =
         integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
-    if (ibody < bodies.nowned()) add_kinetic(ibody, s.velocity, s.omega_body, here);
+    if (ibody >= bodies.nowned()) return;
+    add_kinetic(ibody, s.velocity, s.omega_body, here);
+    integrator.force_of_rows(bodies.rigid_of(ibody), bodies.history(ibody), force_of_rows);
+    total.add_predicted(ibody, force_of_rows);
   });
 
   for (int pass = 0; pass < scheme.passes; ++pass) {
