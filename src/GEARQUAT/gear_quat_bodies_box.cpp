@@ -85,28 +85,35 @@ static bool is_deformed(const Domain *domain, const double *box_before, const Me
 static Change change_of(const Domain *domain, const double *box_before, const Member *atoms, int n,
                         double *center)
 {
-  const double *before = atoms[0].state.center;
+  const auto expected = [](const Member &one) {
+    return one.expected;
+  };
+  const auto remapped = [](const Member &one) {
+    return one.remapped;
+  };
+  const Member &owner = atoms[0];
+  const double *before = owner.state.center;
   const double size = std::max({domain->xprd, domain->yprd, domain->zprd}) + length(before);
-  double remapped[3];
-  follow_box(domain, box_before, before, remapped);
-  bool stretched = false;
+  const double same = SAME * size;
+  double after[3];
+  follow_box(domain, box_before, before, after);
+  bool follows = false;
   for (int k = 0; k < 3; ++k) {
-    const auto expected_of = [](const Member &one) {
-      return one.expected;
-    };
-    const auto remapped_of = [](const Member &one) {
-      return one.remapped;
-    };
-    if (are_off_together(atoms, n, k, SAME * size, expected_of)) {
-      center[k] = before[k] + atoms[0].found[k] - atoms[0].expected[k];
-    } else if (are_off_together(atoms, n, k, SAME * size, remapped_of)) {
-      center[k] = remapped[k] + atoms[0].found[k] - atoms[0].remapped[k];
-      stretched = true;
-    } else {
+    const double off = owner.found[k] - owner.expected[k];
+    const double off_remapped = owner.found[k] - owner.remapped[k];
+    const bool keeps_shape = are_off_together(atoms, n, k, same, expected);
+    const bool is_remapped = are_off_together(atoms, n, k, same, remapped);
+    if (!keeps_shape && !is_remapped)
       return is_deformed(domain, box_before, atoms, n) ? Change::DEFORMED : Change::NONE;
-    }
+    // an atom alone, or atoms that the remap has not moved apart
+    const bool only_remapped = std::fabs(off) > same && std::fabs(off_remapped) <= same;
+    if (is_remapped && (!keeps_shape || only_remapped)) {
+      center[k] = after[k] + off_remapped;
+      follows = true;
+    } else
+      center[k] = before[k] + off;
   }
-  return stretched ? Change::REMAPPED : Change::NONE;
+  return follows ? Change::REMAPPED : Change::NONE;
 }
 
 /// Where the body has its atoms, and where the new box takes these positions.

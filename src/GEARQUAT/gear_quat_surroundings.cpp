@@ -174,21 +174,25 @@ std::vector<std::string> Surroundings::advice() const
 void Surroundings::warn_of_own_pairs() const
 {
   if (!force->pair || std::strcmp(force->pair_style, "zero") == 0 || meets_itself()) return;
-  std::vector<std::array<tagint, 3>> found;    // one of each rank: body, two of its atoms
+  using Example = std::array<tagint, 3>;    // body, two of its atoms
+  std::vector<Example> found;               // the first one on this rank
   visit_pairs([&](int i, int j, int bonded) {
-    if (label[i] != label[j] || label[i] <= STILL || !found.empty()) return;
+    if (label[i] != label[j] || label[i] <= STILL) return;
     if (force->special_lj[bonded] == 0.0 && force->special_coul[bonded] == 0.0) return;
     if (distance2(atom->x[i], atom->x[j]) >= force->pair->cutsq[atom->type[i]][atom->type[j]])
       return;
-    found.push_back({(tagint) label[i], atom->tag[i], atom->tag[j]});
+    const auto [one, other] = std::minmax(atom->tag[i], atom->tag[j]);
+    const Example example = {(tagint) label[i], one, other};
+    if (found.empty() || example < found[0]) found.assign(1, example);
   });
   const auto all = gather_sorted(found, world);
   if (all.empty() || comm->me != 0) return;
   const auto [body, one, other] = all.front();
   error->warning(FLERR,
-                 "Fix gear/quat {}: pair style {} acts between atoms within bodies, such as {} and "
-                 "{} of body {}: it moves nothing, but adds a constant to the energy, large if "
-                 "atoms overlap, and takes time; without it{}: {}",
+                 "Fix gear/quat {}: pair style {} acts between atoms of the same body, such as {} "
+                 "and {} of body {}; these forces do not move bodies, but they take time and add a "
+                 "constant to the energy, which is large where atoms overlap; the line that leaves "
+                 "them out{}: {}",
                  fix->id, force->pair_style, one, other, body, force->kspace ? WITH_KSPACE : "",
                  exclude_own());
 }
