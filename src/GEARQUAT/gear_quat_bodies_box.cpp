@@ -222,10 +222,11 @@ bool Bodies::tell_of_box(bigint remapped, tagint deformed) const
                    "their shapes and orientations, and their centers of mass are remapped",
                    all);
   if (any && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: the shape of body {} was changed between two runs in which the "
-                   "box has changed as well, and not by a remap from the box of the first one; if "
-                   "several commands have changed the box, separate them by run 0",
-                   any);
+    error->warning(
+        FLERR,
+        "Fix gear/quat: body {} has another shape than in the last run, and a remap from "
+        "the old box to the new one does not explain it; if several commands have "
+        "changed the box, put run 0 between them",
+        any);
   return all > 0;
 }
