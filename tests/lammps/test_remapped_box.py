@@ -93,9 +93,9 @@ def test_shapes_stay_and_centers_follow(lmp_tree, change, ranks):
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
-def test_in_a_tilted_box(lmp_tree, ranks):
+def test_in_a_tilted_box(lmp, ranks):
     """Edges that get other directions shear the box, and no body."""
-    before, after, _ = before_and_after(lmp_tree, TILTS, tilt=2.0, ranks=ranks)
+    before, after, _ = before_and_after(lmp, TILTS, tilt=2.0, ranks=ranks)
     check_remap(before, after)
     with pytest.raises(AssertionError):
         check_remap(before, (1.01 * after[0], *after[1:]))
