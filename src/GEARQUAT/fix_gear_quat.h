@@ -47,6 +47,7 @@ class FixGearQuat : public Fix {
 
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override;
   void setup_pre_neighbor() override;
   void setup(int) override;
   void pre_neighbor() override;

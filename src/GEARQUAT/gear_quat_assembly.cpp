@@ -18,8 +18,9 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
-static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
+static constexpr double ON_AXIS = 1.0e-6;      // of the body's size: neither side
+static constexpr double ROUNDED = 1.0e-3;      // of a moment that was written with few digits
+static constexpr double ROUNDING = 1.0e-14;    // of positions: an arm that is shorter is none
 
 /// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
 void Assembly::warn_of_clumps() const
@@ -76,7 +77,7 @@ void Assembly::place(const Site *sites, int n, PlacedSite *replies)
   std::vector<const double *> positions;
   for (int i = 0; i < n; ++i) {
     double arm[3];
-    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - body.state.center[k];
+    find_arm(sites[i], body.state.center, arm);
     to_body(axes, arm, replies[i].site_body);
     std::copy_n(body.state.q, 4, replies[i].q_body);
     replies[i].local = sites[i].local;
@@ -134,6 +135,14 @@ Assembly::OwnedBody Assembly::make_body(const Site *sites, int n, double axes[9]
   return owned;
 }
 
+/// From the center of mass to a site; zero if the site is there up to rounding.
+void Assembly::find_arm(const Site &site, const double *center, double arm[3]) const
+{
+  for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - center[k];
+  const double size = domain->xprd + domain->yprd + domain->zprd + length(site.x);
+  if (length(arm) <= ROUNDING * size) std::fill_n(arm, 3, 0.0);
+}
+
 /// Mass, center, inertia and momenta as sums over the sites.
 Assembly::Momenta Assembly::average(const Site *sites, int n, OwnedBody &owned) const
 {
@@ -162,7 +171,7 @@ Assembly::Momenta Assembly::average(const Site *sites, int n, OwnedBody &owned) 
 
   for (int i = 0; i < n; ++i) {
     double arm[3], spin[3];
-    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - owned.state.center[k];
+    find_arm(sites[i], owned.state.center, arm);
     cross3(arm, sites[i].v, spin);
     const double r2 = dot3(arm, arm);
     for (int k = 0; k < 3; ++k) {

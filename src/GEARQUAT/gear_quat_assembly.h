@@ -90,6 +90,7 @@ class Assembly : protected Pointers {
     double inertia_space[9];
     double angular_momentum_space[3];
   };
+  void find_arm(const Site &site, const double *center, double arm[3]) const;
   Momenta average(const Site *sites, int n, OwnedBody &owned) const;
   Momenta take_given(const GivenBody &given_body, OwnedBody &owned) const;
   void find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],

@@ -68,7 +68,7 @@ void Bodies::count()
   const auto all = over_ranks(MPI_SUM, here, world);
   set_number(all[0]);
   natoms = all[1];
-  box.assign(domain->h, domain->h + 6);
+  note_box();
 }
 
 void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh)

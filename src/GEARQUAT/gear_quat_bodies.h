@@ -134,6 +134,13 @@ class Bodies : protected Pointers {
   Resumed resume(const std::vector<const double *> &packed, bool extended, int group);
   /// Ends the run if an atom of a body is of a kind that cannot be followed.
   void refuse_atoms() const;
+  /// Before a run, and before atoms are exchanged: where change_box has remapped the atoms of
+  /// bodies, these get back their shapes and orientations, and their centers are remapped.  True,
+  /// with a warning, if there are any; warns of bodies that another box has deformed otherwise.
+  /// Needs no ghosts.  Collective.
+  bool follow_box();
+  /// The present box is the one that positions of atoms are those of.
+  void note_box();
   /// Before a run: bodies that reach further than ghost atoms are seen are large.
   void choose_large();
   /// Find the body of every atom after atoms were exchanged, created or removed; one that not all
@@ -227,7 +234,7 @@ class Bodies : protected Pointers {
   bigint nbodies = 0, natoms = 0;    ///< on all ranks: bodies, and atoms in them
   bigint nlarge = 0;                 ///< on all ranks
   int nchanges = 0;                  ///< of nbodies
-  std::vector<double> box;    ///< shape of the box that the bodies were last seen in; may be empty
+  std::vector<double> box;    ///< that the bodies were last seen in: shape, corner; may be empty
   int strangers = 0;          ///< atoms created since the fix was defined, in no body
   bool warned_strangers = false;    ///< that there are such atoms
   std::vector<double> rows;         ///< histories of moved bodies
@@ -301,6 +308,7 @@ class Bodies : protected Pointers {
   Census compare_sites() const;
   void describe(const Site &site, SiteCount &count) const;
   void refuse_tears(const Census &found) const;
+  bool tell_of_box(bigint remapped, tagint deformed) const;
 
   int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + row_size; }
   /// of a large body: atom ID of its owner atom, and what an owner has

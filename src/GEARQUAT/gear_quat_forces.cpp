@@ -60,10 +60,11 @@ static const char *const FOLLOWED_FIXES[] = {
     "^spring/self",  "^viscous$",     "^wall/harmonic", "^wall/lj",  "^wall/morse",
     "^wall/colloid", "^wall/region$", "^wall/table"};
 
-// those of them that read no variables
+// those of them that read no variables, and the pair style that may read some
 
 static const char *const WITHOUT_VARIABLES[] = {"^enforce2d",  "^freeze$", "^lineforce",
                                                 "^planeforce", "^spring$", "^viscous$"};
+static constexpr char PAIRS_WITH_VARIABLES[] = "^hybrid/scaled";
 
 // functions and styles of variables that give another value whenever they are evaluated
 
@@ -72,6 +73,10 @@ static const char *const UNREPEATABLE[] = {"random(", "normal(", "next(", "py_",
 // step numbers for a look at forces that depend on time: multiples of everything and of nothing
 
 static constexpr bigint EVERY_TIMES = 0, AT_NO_TIMES = 1000003;
+
+// forces are the same that differ by this part of the largest one: sums may run in another order
+
+static constexpr double SAME = 1.0e-13;
 
 template <int N> static bool among(const char *const (&styles)[N], const Fix *fix)
 {
@@ -121,11 +126,14 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
 {
   const int during_force =
       FixConst::PRE_FORCE | FixConst::PRE_REVERSE | FixConst::POST_FORCE | FixConst::POST_INTEGRATE;
+  const int within_step = FixConst::INITIAL_INTEGRATE | FixConst::FINAL_INTEGRATE;
   for (auto *fix : modify->get_fix_list()) {
     if (std::find(owners.begin(), owners.end(), fix) != owners.end()) continue;
     const int mask = modify->get_fix_mask(fix);
     if (fix->time_integrate)
       why = name_of(fix) + " moves atoms";
+    else if (mask & within_step)
+      why = name_of(fix) + " acts within the step";
     else if (utils::strmatch(fix->style, "^OMP"))
       pre_force.push_back(fix);
     else if (among(FOLLOWED_FIXES, fix))
@@ -136,13 +144,21 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
   }
 }
 
+/// Whose force may be that of a variable, empty for none.
+std::string Forces::reader_of_variables() const
+{
+  if (force->pair && force->pair_match(PAIRS_WITH_VARIABLES, 0, 1))
+    return fmt::format("pair style {}", force->pair_style);
+  for (const auto *fix : post_force)
+    if (!among(WITHOUT_VARIABLES, fix)) return name_of(fix);
+  return "";
+}
+
 /// A variable that draws or counts must not be evaluated more often than without this fix.
 void Forces::look_at_variables()
 {
-  const auto reader = std::find_if(post_force.begin(), post_force.end(), [](const Fix *fix) {
-    return !among(WITHOUT_VARIABLES, fix);
-  });
-  if (reader == post_force.end()) return;
+  const std::string reader = reader_of_variables();
+  if (reader.empty()) return;
   Info info(lmp);
   int number = 0;
   const auto names = info.get_variable_names(number);
@@ -151,38 +167,55 @@ void Forces::look_at_variables()
     for (const auto *word : UNREPEATABLE)
       if (text.find(word) != std::string::npos)
         why = fmt::format("{} may read variable {}, which is another one whenever it is evaluated",
-                          name_of(*reader), names[i]);
+                          reader, names[i]);
   }
 }
 
-/// A fix that follows a variable of time, or acts every few steps, gives another force at another
+/// What follows a variable of the time, or acts every few steps, gives another force at another
 /// step.
 void Forces::look_at_time()
 {
-  if (post_force.empty()) return;
   save();
-  const std::vector<double> now = external_forces(update->ntimestep);
-  for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
-    if (!why.empty()) break;
-    const int differs = now != external_forces(step);
-    if (over_ranks(MPI_MAX, differs, world) && why.empty())
-      why = "an external force depends on time";
+  for (const bool of_fixes : {false, true}) {
+    if (!why.empty() || (of_fixes && post_force.empty())) continue;
+    const std::vector<double> now = loads_at(update->ntimestep, of_fixes);
+    double largest = 0.0;
+    for (const double load : now) largest = std::max(largest, std::fabs(load));
+    const double same = SAME * over_ranks(MPI_MAX, largest, world);
+    for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
+      if (!why.empty()) break;
+      const std::vector<double> then = loads_at(step, of_fixes);
+      int differs = 0;
+      for (size_t k = 0; k < now.size(); ++k)
+        if (std::fabs(then[k] - now[k]) > same) differs = 1;
+      if (over_ranks(MPI_MAX, differs, world) && why.empty())
+        why = of_fixes ? "an external force depends on time"
+                       : fmt::format("forces depend on time (pair style {})", force->pair_style);
+    }
   }
   restore();
 }
 
-/// Forces and torques of the fixes alone at another step; reason() says if one of them reads an
-/// energy or a pressure.
-std::vector<double> Forces::external_forces(bigint step)
+/// Forces and torques of the styles, or of the fixes, at another step; reason() says if one of
+/// them reads an energy or a pressure.
+std::vector<double> Forces::loads_at(bigint step, bool of_fixes)
 {
   const bigint present = update->ntimestep;
-  clear_forces();
   update->ntimestep = step;
   tallies.pretend();
-  for (auto *fix : post_force) {
-    fix->post_force(0);
+  const auto look_at_tallies = [this](const std::string &reader) {
     if (why.empty() && tallies.used())
-      why = name_of(fix) + " depends on energies or pressures, which are known in steps only";
+      why = reader + " depends on energies or pressures, which are known in steps only";
+  };
+  if (of_fixes) {
+    clear_owned();
+    for (auto *fix : post_force) {
+      fix->post_force(0);
+      look_at_tallies(name_of(fix));
+    }
+  } else {
+    evaluate_styles(0, 0);
+    look_at_tallies(fmt::format("pair style {}", force->pair_style));
   }
   update->ntimestep = present;
   const size_t n = 3 * (size_t) atom->nlocal;
@@ -194,40 +227,35 @@ std::vector<double> Forces::external_forces(bigint step)
 
 /* ---------------------------------------------------------------------- */
 
-static void save_array(double **array, int n, std::vector<double> &copy)
-{
-  if (array && n) copy.assign(array[0], array[0] + 3 * (size_t) n);
-}
-
-static void restore_array(double **array, const std::vector<double> &copy)
-{
-  if (!copy.empty()) std::copy(copy.begin(), copy.end(), array[0]);
-}
-
 void Forces::save()
 {
   tallies.save();
-  const int n = atom->nlocal + atom->nghost;
-  save_array(atom->x, n, x);
-  save_array(atom->v, n, v);
-  save_array(atom->f, n, f);
-  if (atom->torque_flag) save_array(atom->torque, n, torque);
+  const size_t n = (size_t) atom->nlocal + atom->nghost;
+  copies.clear();
+  const auto keep = [this, n](double *data, int columns) {
+    if (data && n > 0) copies.push_back({data, std::vector<double>(data, data + n * columns)});
+  };
+  if (n) keep(atom->x[0], 3);
+  for (const auto &one : atom->peratom) {
+    if (one.datatype != Atom::DOUBLE || one.cols < 0 || one.name == "x") continue;
+    if (one.cols == 0)
+      keep(*static_cast<double **>(one.address), 1);
+    else if (double **rows = *static_cast<double ***>(one.address))
+      keep(rows[0], one.cols);
+  }
 }
 
 void Forces::restore()
 {
   tallies.restore();
-  restore_array(atom->x, x);
-  restore_array(atom->v, v);
-  restore_array(atom->f, f);
-  if (atom->torque_flag) restore_array(atom->torque, torque);
+  for (const auto &copy : copies) std::copy(copy.values.begin(), copy.values.end(), copy.data);
 }
 
 double Forces::largest_displacement() const
 {
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) {
-    const double d2 = distance2(atom->x[i], &x[3 * (size_t) i]);
+    const double d2 = distance2(atom->x[i], &copies[0].values[3 * (size_t) i]);
     largest = std::isfinite(d2) ? std::max(largest, d2) : std::numeric_limits<double>::infinity();
   }
   return std::sqrt(over_ranks(MPI_MAX, largest, world));
@@ -235,18 +263,24 @@ double Forces::largest_displacement() const
 
 void Forces::evaluate(int eflag, int vflag)
 {
+  evaluate_styles(eflag, vflag);
+  for (auto *fix : post_force) fix->post_force(vflag);
+}
+
+void Forces::evaluate_styles(int eflag, int vflag)
+{
   comm->forward_comm();
-  clear_forces();
+  clear();
   for (auto *fix : pre_force) fix->pre_force(vflag);
   compute_forces(eflag, vflag);
   for (auto *fix : pre_force) fix->pre_reverse(eflag, vflag);
   if (force->newton) comm->reverse_comm();
-  for (auto *fix : post_force) fix->post_force(vflag);
 }
 
-void Forces::clear_forces()
+/// For the fixes alone.
+void Forces::clear_owned()
 {
-  const size_t n = 3 * (size_t) (atom->nlocal + (force->newton ? atom->nghost : 0));
+  const size_t n = 3 * (size_t) atom->nlocal;
   if (n == 0) return;
   std::fill_n(atom->f[0], n, 0.0);
   if (atom->torque_flag) std::fill_n(atom->torque[0], n, 0.0);

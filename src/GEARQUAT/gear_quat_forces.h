@@ -7,8 +7,9 @@
 
    Followed: pair, bonded and kspace forces of styles that depend on positions and velocities only,
    and the post_force() of the fixes in a list (external fields, walls, springs).  Not followed, so
-   that reason() says why: anything that moves or draws by itself, and what depends on the time or
-   on energies and pressures, which LAMMPS knows in steps only.
+   that reason() says why: anything that moves atoms, changes their data or draws random numbers,
+   and what depends on the time or on energies and pressures, which LAMMPS knows in steps only.
+   Whether forces depend on the time is measured: they are evaluated at other steps.
 
    And the forces of a step of r-RESPA. */
 
@@ -69,7 +70,8 @@ class Forces : protected Pointers {
   /// Which forces without derivatives act on the atoms that `in_body` tells.  Collective.
   Noise noise(const std::function<bool(int)> &in_body) const;
 
-  /// Keep positions, velocities, forces and torques of all atoms, ghosts too.
+  /// Keep all data of all atoms, ghosts too, whatever the atom style has: positions, velocities,
+  /// forces, and what pair styles sum up or overwrite besides, such as rates of energies.
   void save();
   /// Put back what save() kept.
   void restore();
@@ -83,15 +85,22 @@ class Forces : protected Pointers {
  private:
   std::string why;
   std::vector<Fix *> pre_force, post_force;
-  std::vector<double> x, v, f, torque;
+  struct Copy {
+    double *data;
+    std::vector<double> values;
+  };
+  std::vector<Copy> copies;    ///< of the per-atom arrays of the atom style, positions first
   Tallies tallies;
 
   void look_at_styles();
   void look_at_fixes(const std::vector<const Fix *> &owners);
+  std::string reader_of_variables() const;
   void look_at_variables();
   void look_at_time();
-  std::vector<double> external_forces(bigint step);
-  void clear_forces();
+  std::vector<double> loads_at(bigint step, bool of_fixes);
+  void clear();
+  void clear_owned();
+  void evaluate_styles(int eflag, int vflag);
   void compute_forces(int eflag, int vflag);
 };
 

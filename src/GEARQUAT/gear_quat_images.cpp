@@ -103,6 +103,21 @@ bool GearQuat::moved_with_faces(const Domain *domain, const double *box_before,
   return false;
 }
 
+void GearQuat::follow_box(const Domain *domain, const double *box_before, const double *position,
+                          double *moved)
+{
+  const double *h = box_before, *corner = box_before + 6;
+  double periods[3];
+  for (int k = 2; k >= 0; --k) {    // back substitution: tilts are h[3] yz, h[4] xz, h[5] xy
+    double way = position[k] - corner[k];
+    if (k == 0) way -= h[5] * periods[1] + h[4] * periods[2];
+    if (k == 1) way -= h[3] * periods[2];
+    periods[k] = way / h[k];
+  }
+  through(domain->h, periods, moved);
+  for (int k = 0; k < 3; ++k) moved[k] += domain->boxlo[k];
+}
+
 bool GearQuat::lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions)
 {
   std::vector<double> along(positions.size());

@@ -29,6 +29,11 @@ bool whole_periods_away(const Domain *domain, const double *change, double furth
 /// box_before: as Domain::h.
 bool moved_with_faces(const Domain *domain, const double *box_before, const double *change);
 
+/// Where another box takes an unwrapped position: its coordinates in units of the periods stay.
+/// box_before: as Domain::h, and behind it the corner of the box.
+void follow_box(const Domain *domain, const double *box_before, const double *position,
+                double *moved);
+
 /// True if atoms at these unwrapped positions leave more than half of a period empty between them.
 bool lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions);
 

@@ -5,11 +5,8 @@
 
 #include "gear_quat_repeat.h"
 
-#include "gear_quat_scene.h"
-
 #include "comm.h"
 #include "compute.h"
-#include "fix.h"
 #include "force.h"
 #include "modify.h"
 #include "update.h"
@@ -36,10 +33,6 @@ void Repeat::begin_run()
 std::string Repeat::reason() const
 {
   if (!forces->reason().empty()) return forces->reason();
-  for (auto *other : modify->get_fix_list())
-    if (other != owner &&
-        (modify->get_fix_mask(other) & (FixConst::INITIAL_INTEGRATE | FixConst::FINAL_INTEGRATE)))
-      return name_of(other) + " acts within the step";
   for (const auto *one : modify->get_compute_list())
     if (utils::strmatch(one->style, "/tally"))
       return fmt::format("compute {} ({}) adds up every evaluation of forces", one->id, one->style);

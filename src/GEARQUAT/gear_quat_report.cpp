@@ -294,9 +294,9 @@ static std::string settings(const Arguments &args)
 
 void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies)
 {
+  const auto advice = advice_on_surroundings(lmp, fix, args, bodies);
   if (args.report == Arguments::Report::NO) return;
   const Scene scene = look_at(lmp, bodies);
-  const auto advice = advice_on_surroundings(lmp, fix, args, bodies);
   const auto rows = effects(lmp, fix, args, scene);
   if (lmp->comm->me != 0) return;
 

@@ -10,16 +10,21 @@
 #include "gear_quat_scene.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
+#include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "pair.h"
 #include "utils.h"
 
 #include <algorithm>
+#include <cstring>
+#include <functional>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -29,6 +34,10 @@ using namespace GearQuat;
 static constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
 
 static constexpr double WORTH = 0.01;    // share of pairs that is worth a line of the script
+
+static constexpr char WITH_KSPACE[] =
+    " (LAMMPS then warns of exclusions with a kspace style, whose share in that energy stays: a "
+    "constant, too)";
 
 static constexpr int MOST_GROUPS = 8 * sizeof(int);    // a bit of the mask each
 
@@ -41,6 +50,7 @@ class Surroundings : protected Pointers {
   {
   }
   std::vector<std::string> advice() const;
+  void warn_of_own_pairs() const;
 
  private:
   const Fix *fix;
@@ -49,6 +59,7 @@ class Surroundings : protected Pointers {
   const std::vector<double> label;    ///< of atoms, ghosts too: what moves them
 
   std::vector<double> labels() const;
+  void visit_pairs(const std::function<void(int, int, int)> &visit) const;
   std::array<bigint, 3> count_pairs() const;
   std::array<bigint, 3> count_atoms() const;
   std::string exclude_still(bigint still) const;
@@ -72,11 +83,9 @@ std::vector<double> Surroundings::labels() const
   return made;
 }
 
-/// Entries of the lists that pair styles run over in every step: all, between atoms that nothing
-/// moves, within bodies.
-std::array<bigint, 3> Surroundings::count_pairs() const
+/// Entries of the lists that pair styles run over in every step: two atoms, and how they are bonded.
+void Surroundings::visit_pairs(const std::function<void(int, int, int)> &visit) const
 {
-  bigint here[3] = {0, 0, 0};
   for (int which = 0; which < neighbor->nlist; ++which) {
     const NeighList *list = neighbor->lists[which];
     if (!list || list->requestor_type != NeighList::PAIR || list->occasional || list->kokkos ||
@@ -85,14 +94,21 @@ std::array<bigint, 3> Surroundings::count_pairs() const
     for (int ii = 0; ii < list->inum; ++ii) {
       const int i = list->ilist[ii];
       const int *neighbors = list->firstneigh[i];
-      here[0] += list->numneigh[i];
-      for (int jj = 0; jj < list->numneigh[i]; ++jj) {
-        const int j = neighbors[jj] & NEIGHMASK;
-        if (label[i] != label[j] || label[i] == MOVED_BY_OTHERS) continue;
-        ++here[label[i] == STILL ? 1 : 2];
-      }
+      for (int jj = 0; jj < list->numneigh[i]; ++jj)
+        visit(i, neighbors[jj] & NEIGHMASK, neighbors[jj] >> SBBITS & 3);
     }
   }
+}
+
+/// All pairs, those between atoms that nothing moves, those within bodies.
+std::array<bigint, 3> Surroundings::count_pairs() const
+{
+  bigint here[3] = {0, 0, 0};
+  visit_pairs([&](int i, int j, int /*bonded*/) {
+    ++here[0];
+    if (label[i] != label[j] || label[i] == MOVED_BY_OTHERS) return;
+    ++here[label[i] == STILL ? 1 : 2];
+  });
   return over_ranks(MPI_SUM, here, world);
 }
 
@@ -126,10 +142,7 @@ std::vector<std::string> Surroundings::advice() const
   const auto worth = [pairs = pairs](bigint some) {
     return (double) some >= WORTH * (double) pairs && some > 0;
   };
-  const char *kspace = force->kspace
-      ? " (LAMMPS then warns of exclusions with a kspace style, whose "
-        "share in that energy stays: a constant, too)"
-      : "";
+  const char *kspace = force->kspace ? WITH_KSPACE : "";
   if (worth(still_pairs)) {
     text.push_back(
         share(still_pairs) +
@@ -155,6 +168,33 @@ std::vector<std::string> Surroundings::advice() const
                                utils::join_words(args.groups, " "), fix->id));
   }
   return text;
+}
+
+/// Atoms of a body that overlap may have an energy beside which all others are rounding.
+void Surroundings::warn_of_own_pairs() const
+{
+  if (!force->pair || std::strcmp(force->pair_style, "zero") == 0 || meets_itself()) return;
+  using Example = std::array<tagint, 3>;    // body, two of its atoms
+  std::vector<Example> found;               // the first one on this rank
+  visit_pairs([&](int i, int j, int bonded) {
+    if (label[i] != label[j] || label[i] <= STILL) return;
+    if (force->special_lj[bonded] == 0.0 && force->special_coul[bonded] == 0.0) return;
+    if (distance2(atom->x[i], atom->x[j]) >= force->pair->cutsq[atom->type[i]][atom->type[j]])
+      return;
+    const auto [one, other] = std::minmax(atom->tag[i], atom->tag[j]);
+    const Example example = {(tagint) label[i], one, other};
+    if (found.empty() || example < found[0]) found.assign(1, example);
+  });
+  const auto all = gather_sorted(found, world);
+  if (all.empty() || comm->me != 0) return;
+  const auto [body, one, other] = all.front();
+  error->warning(FLERR,
+                 "Fix gear/quat {}: pair style {} acts between atoms of the same body, such as {} "
+                 "and {} of body {}; these forces do not move bodies, but they take time and add a "
+                 "constant to the energy, which is large where atoms overlap; the line that leaves "
+                 "them out{}: {}",
+                 fix->id, force->pair_style, one, other, body, force->kspace ? WITH_KSPACE : "",
+                 exclude_own());
 }
 
 /// True if a body may be so large that it meets its own periodic image: that moves it.
@@ -220,5 +260,7 @@ std::string Surroundings::exclude_own() const
 std::vector<std::string> GearQuat::advice_on_surroundings(LAMMPS *lmp, const Fix *fix,
                                                           const Arguments &args, Bodies &bodies)
 {
-  return Surroundings(lmp, fix, args, bodies).advice();
+  const Surroundings surroundings(lmp, fix, args, bodies);
+  surroundings.warn_of_own_pairs();
+  return surroundings.advice();
 }

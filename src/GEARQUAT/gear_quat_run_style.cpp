@@ -3,6 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
+// what LAMMPS' run styles know and do
+
 #include "gear_quat_forces.h"
 
 #include "respa.h"
@@ -16,4 +18,9 @@ std::vector<double> RespaForces::steps(LAMMPS *lmp)
   const auto *respa = dynamic_cast<Respa *>(lmp->update->integrate);
   if (!respa) return {};
   return std::vector<double>(respa->step, respa->step + respa->nlevels);
+}
+
+void Forces::clear()
+{
+  update->integrate->force_clear();
 }

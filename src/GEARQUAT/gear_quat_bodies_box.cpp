@@ -1,0 +1,232 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Body store, before a run: bodies in a box that has changed.
+
+   change_box remap takes every atom to the same place of the new box, relative to its faces, and so
+   stretches bodies.  Here the atoms of each body meet on one rank, which compares their positions
+   with those that the body had in the old box, direction by direction. */
+
+#include "gear_quat_bodies.h"
+
+#include "gear_quat_images.h"
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+static constexpr double SAME = 1.0e-11;       // of the box: rounding of positions
+static constexpr double DEFORMED = 1.0e-3;    // of a distance: more than digits that a file lacks
+
+namespace {
+
+/// An atom of a body as its rank knows it.
+struct Member {
+  int rank, local;
+  tagint owner, id;    ///< atom ID of the body's owner, the user's ID of the body
+  tagint natoms;       ///< of the body; this and all below 0 unless the atom is its owner
+  BodyState state;
+  double arm_body[3];
+  double found[3];    ///< unwrapped position
+
+  double expected[3], remapped[3];    ///< by the body in the old box, and taken to the new one
+};
+
+/// What its rank has to do: move the atom, and if it is the owner of its body the center.
+struct Order {
+  int local, owns;
+  double way[3], center[3];
+};
+
+/// What another box has done to a body.
+enum class Change { NONE, REMAPPED, DEFORMED };
+
+}    // namespace
+
+/// Whether all atoms are off by the same from those positions in one direction.
+template <class Position>
+static bool are_off_together(const Member *atoms, int n, int k, double same, Position position)
+{
+  const double off = atoms[0].found[k] - position(atoms[0])[k];
+  return std::all_of(atoms, atoms + n, [&](const Member &one) {
+    return std::fabs(one.found[k] - position(one)[k] - off) <= same;
+  });
+}
+
+/// Not where the faces of the box have torn the body: that is an error of its own.
+static bool is_deformed(const Domain *domain, const double *box_before, const Member *atoms, int n)
+{
+  bool deformed = false;
+  for (int i = 1; i < n; ++i) {
+    double before[3], now[3], change[3];
+    for (int k = 0; k < 3; ++k) {
+      before[k] = atoms[i].expected[k] - atoms[0].expected[k];
+      now[k] = atoms[i].found[k] - atoms[0].found[k];
+      change[k] = now[k] - before[k];
+    }
+    if (moved_with_faces(domain, box_before, change)) return false;
+    if (std::fabs(length(now) - length(before)) > DEFORMED * length(before)) deformed = true;
+  }
+  return deformed;
+}
+
+/// The atoms of a body, its owner first, have positions `expected` and `remapped`.  center: becomes
+/// that of a remapped body.
+static Change change_of(const Domain *domain, const double *box_before, const Member *atoms, int n,
+                        double *center)
+{
+  const auto expected = [](const Member &one) {
+    return one.expected;
+  };
+  const auto remapped = [](const Member &one) {
+    return one.remapped;
+  };
+  const Member &owner = atoms[0];
+  const double *before = owner.state.center;
+  const double size = std::max({domain->xprd, domain->yprd, domain->zprd}) + length(before);
+  const double same = SAME * size;
+  double after[3];
+  follow_box(domain, box_before, before, after);
+  bool follows = false;
+  for (int k = 0; k < 3; ++k) {
+    const double off = owner.found[k] - owner.expected[k];
+    const double off_remapped = owner.found[k] - owner.remapped[k];
+    const bool keeps_shape = are_off_together(atoms, n, k, same, expected);
+    const bool is_remapped = are_off_together(atoms, n, k, same, remapped);
+    if (!keeps_shape && !is_remapped)
+      return is_deformed(domain, box_before, atoms, n) ? Change::DEFORMED : Change::NONE;
+    // an atom alone, or atoms that the remap has not moved apart
+    const bool only_remapped = std::fabs(off) > same && std::fabs(off_remapped) <= same;
+    if (is_remapped && (!keeps_shape || only_remapped)) {
+      center[k] = after[k] + off_remapped;
+      follows = true;
+    } else
+      center[k] = before[k] + off;
+  }
+  return follows ? Change::REMAPPED : Change::NONE;
+}
+
+/// Where the body has its atoms, and where the new box takes these positions.
+static void place_members(const Domain *domain, const double *box_before, Member *atoms, int n)
+{
+  const BodyState &state = atoms[0].state;
+  double axes[9];
+  rotation_matrix(state.q, dot4(state.q, state.q), axes);
+  for (int i = 0; i < n; ++i) {
+    Member &one = atoms[i];
+    to_space(axes, one.arm_body, one.expected);
+    for (int k = 0; k < 3; ++k) one.expected[k] += state.center[k];
+    follow_box(domain, box_before, one.expected, one.remapped);
+    undo_image_flag_overflow(domain, one.remapped, one.found);
+  }
+}
+
+/// What is to be done with the atoms of all bodies that meet here, and on which ranks.  remapped:
+/// grows by the number of bodies; deformed: becomes the ID of one.
+static std::vector<Order> orders_to(const Domain *domain, const double *box_before,
+                                    std::vector<Member> &all, std::vector<int> &ranks,
+                                    bigint &remapped, tagint &deformed)
+{
+  std::sort(all.begin(), all.end(), [](const Member &a, const Member &b) {
+    return a.owner != b.owner ? a.owner < b.owner : a.natoms > b.natoms;
+  });
+  std::vector<Order> orders;
+  ranks.clear();
+  for (size_t first = 0, last; first < all.size(); first = last) {
+    for (last = first; last < all.size() && all[last].owner == all[first].owner;) ++last;
+    Member *atoms = &all[first];
+    const int n = (int) (last - first);
+    if (atoms->natoms != n) continue;    // Bodies::check_whole() ends the run
+    place_members(domain, box_before, atoms, n);
+    double center[3];
+    const Change change = change_of(domain, box_before, atoms, n, center);
+    if (change == Change::DEFORMED) deformed = atoms->id;
+    if (change != Change::REMAPPED) continue;
+    ++remapped;
+    for (int i = 0; i < n; ++i) {
+      Order order = {atoms[i].local, i == 0, {}, {}};
+      for (int k = 0; k < 3; ++k) {
+        const double arm = atoms[i].expected[k] - atoms->state.center[k];
+        order.center[k] = center[k];
+        order.way[k] = center[k] + arm - atoms[i].found[k];
+      }
+      orders.push_back(order);
+      ranks.push_back(atoms[i].rank);
+    }
+  }
+  return orders;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Bodies::note_box()
+{
+  box.assign(domain->h, domain->h + 6);
+  box.insert(box.end(), domain->boxlo, domain->boxlo + 3);
+}
+
+bool Bodies::follow_box()
+{
+  if (box.empty() ||
+      (std::equal(domain->h, domain->h + 6, box.begin()) &&
+       std::equal(domain->boxlo, domain->boxlo + 3, box.begin() + 6)))
+    return false;
+
+  std::vector<Member> mine;
+  std::vector<int> ranks;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!in_body(i)) continue;
+    Member one = Member();
+    one.rank = comm->me;
+    one.local = i;
+    one.owner = owner_tag[i];
+    one.id = body_id[i];
+    std::copy_n(site_body[i].data(), 3, one.arm_body);
+    domain->unmap(atom->x[i], atom->image[i], one.found);
+    if (owned[i] >= 0) {
+      one.natoms = body[owned[i]].natoms;
+      one.state = state[owned[i]];
+    }
+    mine.push_back(one);
+    ranks.push_back((int) (one.owner % comm->nprocs));
+  }
+  std::vector<Member> all = send_to_ranks(comm, mine, ranks);
+  bigint remapped = 0;
+  tagint deformed = 0;
+  const auto orders = orders_to(domain, box.data(), all, ranks, remapped, deformed);
+  for (const Order &order : send_to_ranks(comm, orders, ranks)) {
+    for (int k = 0; k < 3; ++k) atom->x[order.local][k] += order.way[k];
+    if (order.owns) std::copy_n(order.center, 3, state[owned[order.local]].center);
+  }
+  return tell_of_box(remapped, deformed);
+}
+
+/// True if any bodies were remapped.  Rank 0 warns.
+bool Bodies::tell_of_box(bigint remapped, tagint deformed) const
+{
+  const bigint all = over_ranks(MPI_SUM, remapped, world);
+  const tagint any = over_ranks(MPI_MAX, deformed, world);
+  if (all && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: atoms of {} bodies were remapped with the box; the bodies keep "
+                   "their shapes and orientations, and their centers of mass are remapped",
+                   all);
+  if (any && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat: body {} has another shape than in the last run, and a remap from "
+        "the old box to the new one does not explain it; if several commands have "
+        "changed the box, put run 0 between them",
+        any);
+  return all > 0;
+}
