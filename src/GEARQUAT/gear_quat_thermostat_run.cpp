@@ -34,6 +34,10 @@ static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
 static constexpr double FEWEST_STEPS = 10.0;
 
+// a motion of all bodies together with less kinetic energy, in kT, is not worth a line
+
+static constexpr double TOLD_MOTION = 0.01;
+
 static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
 
 /* ----------------------------------------------------------------------
@@ -84,6 +88,12 @@ void Thermostat::tell_freedoms(const std::string &why)
                  "Fix gear/quat {}: {}thermostat of {:.0f} degrees of freedom of translation{} and "
                  "{:.0f} of rotation\n",
                  fix->id, why, freedoms[TRANSLATION], total.description(), freedoms[ROTATION]);
+  const double common = 0.5 * total.twice_energy() / line.kt;
+  if (common > TOLD_MOTION)
+    utils::logmesg(lmp,
+                   "Fix gear/quat {}: the bodies move together with a kinetic energy of {:.3g} kT, "
+                   "which is not part of their temperature; velocity zero linear removes it\n",
+                   fix->id, common);
 }
 
 void Thermostat::follow_changes(double h)

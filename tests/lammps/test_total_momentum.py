@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from running import EXAMPLES
 from scenes import MOLECULES, last_frame, one_after_the_other
-from test_thermostat import END, KINDS, TEMP, cluster, continued, largest_change
+from test_thermostat import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, largest_change
 from test_tolerance import tables
 
 DUMBBELL = """d
@@ -324,7 +324,19 @@ def test_momentum_left_by_langevin(lmp_tree):
     assert relative(table) / table["f_move[10]"] == pytest.approx(21, rel=1e-10)
     for k in "xyz":
         assert table[f"v_c{k}"] == pytest.approx(table[f"v_c{k}"][0], rel=1e-9)
-    assert sum(table[f"v_c{k}"][0] for k in "xyz") > 0.1
+    energy = sum(table[f"v_c{k}"][0] for k in "xyz") / 2
+    assert energy > 0.1
+    told = re.search("move together with a kinetic energy of (.*) kT", result.log)
+    assert float(told[1]) == pytest.approx(energy, rel=6e-3)
+
+
+def test_the_advice_removes_it(lmp_tree):
+    deck = moving(TEMP, (1.0, 0.0, 0.0), run="run 10\nvelocity all zero linear\nrun 10", style=COMMON)
+    deck = deck.replace("run 10\n", "velocity all set 1 0 0 sum yes\nrun 10\n", 1)
+    result = lmp_tree.succeed(deck.replace(COLUMNS, f"{COLUMNS} v_common"))
+    first, second = tables(result)
+    assert min(first["v_common"]) > 1.0 and max(second["v_common"]) < 1e-25
+    assert result.log.count("move together") == 1
 
 
 def test_bodies_that_only_move_together_are_cold(lmp_tree):
