@@ -30,6 +30,10 @@ static constexpr double NOTHING = 1.0e-24;
 
 static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
+// a motion of all bodies together with less kinetic energy, in kT, is not worth a line
+
+static constexpr double TOLD_MOTION = 0.01;
+
 static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
 
 /* ----------------------------------------------------------------------
@@ -80,6 +84,12 @@ void Thermostat::tell_freedoms(const std::string &why)
                  "Fix gear/quat {}: {}thermostat of {:.0f} degrees of freedom of translation{} and "
                  "{:.0f} of rotation\n",
                  fix->id, why, freedoms[TRANSLATION], total.description(), freedoms[ROTATION]);
+  const double common = 0.5 * total.twice_energy() / line.kt;
+  if (common > TOLD_MOTION)
+    utils::logmesg(lmp,
+                   "Fix gear/quat {}: the bodies move together with a kinetic energy of {:.3g} kT, "
+                   "which is not part of their temperature; velocity zero linear removes it\n",
+                   fix->id, common);
 }
 
 void Thermostat::follow_changes(double h)
@@ -119,7 +129,7 @@ void Thermostat::begin_run(bool begins, double h)
   line = moves ? line_of_step(update->ntimestep) : made.line;
   meet_forces();
   note_friction();
-  refuse_nothing();
+  refuse_nothing(false);
   refuse_friction(h);
   if (words.damp < FEWEST_STEPS * std::fabs(update->dt) && comm->me == 0)
     error->warning(
@@ -134,9 +144,11 @@ void Thermostat::meet_forces()
   judge(anew ? TotalMomentum::IN_ALL : made.constant);
 }
 
-void Thermostat::judge_anew()
+void Thermostat::begin_steps(bool begins)
 {
-  judge(TotalMomentum::IN_ALL);
+  if (begins) judge(TotalMomentum::IN_ALL);
+  tell_freedoms();
+  refuse_nothing(true);
 }
 
 bool Thermostat::target_jumps() const
@@ -169,18 +181,23 @@ void Thermostat::refuse_masks() const
 }
 
 /// Friction warms nothing that stands still.
-void Thermostat::refuse_nothing() const
+void Thermostat::refuse_nothing(bool meets_all) const
 {
   if (words.may_wait && counted == 0) return;
-  if (freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0)
+  if (!total.any() && freedoms[ROTATION] == 0.0)
     error->all(FLERR,
                "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
                "torque leave on, so they have no temperature");
-  const char *missing = nullptr;
-  const auto rests = [this](Part part) {
-    return freedoms[part] > 0.0 && twice[part] <= NOTHING * (twice[TRANSLATION] + twice[ROTATION]);
+  // what may still turn out to be heat
+  const double common = meets_all ? 0.0 : total.twice_energy();
+  const double energy[2] = {twice[TRANSLATION] + common, twice[ROTATION]};
+  const double all = energy[TRANSLATION] + energy[ROTATION];
+  const bool any = !meets_all || freedoms[TRANSLATION] + freedoms[ROTATION] > 0.0;
+  const auto rests = [&](Part part) {
+    return freedoms[part] > 0.0 && energy[part] <= NOTHING * all;
   };
-  if (twice[TRANSLATION] + twice[ROTATION] <= 0.0)
+  const char *missing = nullptr;
+  if (any && all <= 0.0)
     missing = "";
   else if (words.separate && rests(TRANSLATION))
     missing = "translational ";
