@@ -1,4 +1,4 @@
-"""Errors of bodies, what an error costs, and how a difference grows.  Arrays in, numbers out."""
+"""Errors of bodies, what an error costs, how the energy drifts, and how a difference grows.  Arrays in, numbers out."""
 
 import math
 from dataclasses import dataclass
@@ -114,6 +114,32 @@ def candidates(points, error):
         at_aim = {key: getattr(p, cost) * p.dt / p.aim for key, p in prices.items() if key is not None}
         kept.update(sorted(at_aim, key=at_aim.get)[:2])
     return {key: prices[key] for key in prices if key in kept}
+
+
+# --- how the energy drifts -------------------------------------------------------------------------
+#: fewest samples of a slope
+FEWEST = 20
+
+
+def slope(time, values):
+    """Least-squares slope of ``values`` (n,) against ``time`` (n,), and its standard error.
+
+    Neighboring errors are alike, so the scatter about the line does not shrink as it would with n
+    independent samples: the standard error is that of W. K. Newey and K. D. West, Econometrica 55,
+    703 (1987), Eq. 5, with lags up to a twentieth of the series.  Raises ValueError for fewer than
+    FEWEST samples.
+    """
+    n = len(time)
+    if n < FEWEST:
+        raise ValueError(f"a slope needs {FEWEST} samples or more, not {n}")
+    x = time - np.mean(time)
+    rate = x @ values / (x @ x)
+    score = x * (values - np.mean(values) - rate * x)
+    lags = n // FEWEST
+    total = score @ score
+    for lag in range(1, lags + 1):
+        total += 2 * (1 - lag / (lags + 1)) * (score[lag:] @ score[:-lag])
+    return float(rate), float(math.sqrt(max(total, 0.0) * n / (n - 2)) / (x @ x))
 
 
 # --- how a difference grows -----------------------------------------------------------------------

@@ -209,6 +209,14 @@ class FixLine:
         return " ".join(f"{key} {values[0]}" for key, values in (own | new).items())
 
 
+def conserved(lines):
+    """(energy that is conserved while these FixLines move the bodies, in words of LAMMPS; commands that it needs)."""
+    own = [line for line in lines if line.style == "gear/quat"]
+    heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which econserve does not have
+    poses = [f"fix_modify {line.id} energy yes" for line in own if not line.has_chains]
+    return "+".join(["econserve", *heats]), poses
+
+
 def pairs(text):
     """Keywords of fix gear/quat in ``text``: pairs (keyword, (value,))."""
     words, known = text.split(), keywords.names("integration")

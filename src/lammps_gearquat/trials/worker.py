@@ -11,7 +11,7 @@ import socket
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
@@ -57,7 +57,7 @@ class Situation:
 
 @dataclass
 class Outcome:
-    """What one trial left on one rank: ``samples``, a list of Sites; and on rank 0
+    """What one trial left on one rank: ``samples``, a list of Sites, and ``energies`` (S, 2) or (0,), see Trial; on rank 0
 
     ``seconds``, wall time of the steps; ``start_seconds``, of the set-up and of the start of the
     fix; ``start_evaluations``, evaluations of the forces that the start of fix gear/quat took;
@@ -70,6 +70,7 @@ class Outcome:
     start_seconds: float = 0.0
     start_evaluations: int = 0
     warnings: tuple = ()
+    energies: list = field(default_factory=list)
 
 
 def launcher(ranks):
