@@ -6,9 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-# the commands judge drifts with the same function
-from lammps_gearquat.trials.evaluate import slope as slope
-
 #: how sure a deviation must be to count as one, over all values that are compared at once
 CONFIDENCE = 0.99
 
@@ -73,6 +70,27 @@ def allowed(count, freedoms):
     correction.
     """
     return float(stats.t.ppf(1 - (1 - CONFIDENCE) / (2 * count), freedoms))
+
+
+def slope(time, values):
+    """Least-squares slope of ``values`` (n,) against ``time`` (n,), and its standard error.
+
+    Neighboring errors are alike, so the scatter about the line does not shrink as it would with n
+    independent samples: the standard error is that of W. K. Newey and K. D. West, Econometrica 55,
+    703 (1987), Eq. 5, with lags up to a twentieth of the series.  Raises ValueError for fewer than 20
+    samples.
+    """
+    n = len(time)
+    if n < 20:
+        raise ValueError(f"a slope needs 20 samples or more, not {n}")
+    x = time - time.mean()
+    rate = x @ values / (x @ x)
+    score = x * (values - values.mean() - rate * x)
+    lags = n // 20
+    total = score @ score
+    for lag in range(1, lags + 1):
+        total += 2 * (1 - lag / (lags + 1)) * (score[lag:] @ score[:-lag])
+    return float(rate), float(math.sqrt(max(total, 0.0) * n / (n - 2)) / (x @ x))
 
 
 def order(steps, errors):

@@ -55,7 +55,7 @@ def of_trial(trial, nanosecond):
     thermal = 2.0 * kinetic.mean()  # kT times the number of degrees of freedom
     if not thermal > 0.0:
         return Drift(time=trial.time[-1], reason="there is no kinetic energy")
-    rate, error = (nanosecond * number / thermal for number in evaluate.slope(trial.time, energy))
+    rate, error = (nanosecond * number / thermal for number in evaluate.trend(trial.time, energy))
     return Drift(rate, error, float(trial.time[-1]))
 
 

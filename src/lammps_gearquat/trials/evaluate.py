@@ -117,29 +117,44 @@ def candidates(points, error):
 
 
 # --- how the energy drifts -------------------------------------------------------------------------
-#: fewest samples of a slope
+#: fewest samples of a trend
 FEWEST = 20
+#: the part of a random walk in the noise about a trend, as variances per sample
+WALKS = np.concatenate([[0.0], np.logspace(-5, 0, 21)])
 
 
-def slope(time, values):
-    """Least-squares slope of ``values`` (n,) against ``time`` (n,), and its standard error.
+def trend(time, values):
+    """Slope of ``values`` (n,) against equidistant ``time`` (n,), and its standard error.
 
-    Neighboring errors are alike, so the scatter about the line does not shrink as it would with n
-    independent samples: the standard error is that of W. K. Newey and K. D. West, Econometrica 55,
-    703 (1987), Eq. 5, with lags up to a twentieth of the series.  Raises ValueError for fewer than
-    FEWEST samples.
+    The noise about the line is a sum of white noise and a random walk, which the errors of many collisions are, in any
+    proportion: A. C. Harvey, Forecasting, Structural Time Series Models and the Kalman Filter, Cambridge (1989), Section 2.3.
+    Slope and error are averages over proportions, weighted by their restricted likelihood (H. D. Patterson and R. Thompson,
+    Biometrika 58, 545 (1971)).  Raises ValueError for fewer than FEWEST samples.
     """
     n = len(time)
     if n < FEWEST:
-        raise ValueError(f"a slope needs {FEWEST} samples or more, not {n}")
-    x = time - np.mean(time)
-    rate = x @ values / (x @ x)
-    score = x * (values - np.mean(values) - rate * x)
-    lags = n // FEWEST
-    total = score @ score
-    for lag in range(1, lags + 1):
-        total += 2 * (1 - lag / (lags + 1)) * (score[lag:] @ score[:-lag])
-    return float(rate), float(math.sqrt(max(total, 0.0) * n / (n - 2)) / (x @ x))
+        raise ValueError(f"a trend needs {FEWEST} samples or more, not {n}")
+    rank, span = np.arange(1, n + 1), time[-1] - time[0]
+    walk, columns = np.minimum.outer(rank, rank), np.column_stack([np.ones(n), (time - np.mean(time)) / span])
+    slopes, variances, odds = np.array([_weighted_line(columns, values, walk, part) for part in WALKS]).T
+    weights = np.exp(odds - odds.max())
+    weights /= weights.sum()
+    slope = weights @ slopes
+    error = math.sqrt(weights @ (variances + (slopes - slope) ** 2))
+    return float(slope / span), float(error / span)
+
+
+def _weighted_line(columns, values, walk, part):
+    """Slope, its variance and the logarithm of the restricted likelihood for noise with this part of a random walk."""
+    n = len(values)
+    root = np.linalg.cholesky((1.0 - part) * np.eye(n) + part * walk)
+    white = np.linalg.solve(root, np.column_stack([columns, values]))
+    q, r = np.linalg.qr(white[:, :2])
+    fit = q.T @ white[:, 2]
+    left = white[:, 2] - q @ fit
+    scatter, inverse = max(left @ left, np.finfo(float).tiny), np.linalg.inv(r)
+    odds = -0.5 * (n - 2) * math.log(scatter) - np.log(np.diag(root)).sum() - np.log(abs(np.diag(r))).sum()
+    return (inverse @ fit)[1], scatter / (n - 2) * (inverse[1] @ inverse[1]), odds
 
 
 # --- how a difference grows -----------------------------------------------------------------------

@@ -82,12 +82,16 @@ def _drift_unit(deck):
     return f"kT/{'ns' if deck.time_unit else '1000 time units'}/dof"
 
 
+def _drift(deck, found):
+    return with_error(found.rate, found.error, _drift_unit(deck))
+
+
 def _drift_lines(deck, costs):
     """Warnings of steps whose energy drifts, or may do so, and how to measure that."""
-    lines, doubtful, unit = [], [], _drift_unit(deck)
+    lines, doubtful = [], []
     for (keywords, dt), found in costs.drifts.items():
         name = f"{'your fix' if keywords is None else f'gear/quat {keywords}'}, timestep {dt:g}"
-        measured = f"{with_error(found.rate, found.error)} {unit} over {_quantity(found.time, deck.time_unit)}"
+        measured = f"{_drift(deck, found)} over {_quantity(found.time, deck.time_unit)}"
         if found.drifts:
             lines += [
                 f"WARNING: {name}: the energy drifts by {measured}.",
@@ -114,7 +118,7 @@ def _how_to_measure(deck, doubtful):
     long_enough = _quantity(drift.LONGEST * drift.nanosecond(deck), deck.time_unit)
     return [
         f"To measure a drift, write these lines below its fix, and run {long_enough} or more:",
-        *(f"    {row}" for row in [*rows, f"thermo_style custom step time {energy} ke", "thermo_modify norm no"]),
+        *(f"    {row}" for row in [*rows, f"thermo_style custom step time {energy} ke", "thermo_modify norm no format float %.15g"]),
         "    thermo 100",
         f"The slope of {energy} against time, divided by twice the mean of ke, is the drift in kT per {time} and",
         f"degree of freedom, and {rounded(drift.nanosecond(deck), 6)} times that the one in {_drift_unit(deck)}.",
@@ -162,6 +166,8 @@ def _script_lines(deck, costs):
     for row in reached:
         lines.append(f"For an error of {row.error:.1e} at t = {costs.end:g}:")
         keeping = ["# keep your fix: no other is faster"] if row.keep else []
+        if (found := costs.drifts.get(row.recommended)) and found.drifts:
+            keeping.append(f"# for short runs: the energy drifts by {_drift(deck, found)}")
         line = None if row.keep else row.best.method
         words = [*keeping, *deck.fix_lines(line), f"timestep {usable_step(row.choice.dt):g}"]
         lines += [f"    {word}" for word in words]
