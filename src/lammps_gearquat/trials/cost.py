@@ -17,9 +17,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gearquat_analysis.superposition import angles
+from gearquat_analysis.tables import rounded
 
 from . import drift, evaluate
 from .budget import Budget
+from .explain import explained
 from .script import DeckError
 from .worker import NOT_FINISHED, TrialError
 
@@ -129,7 +131,7 @@ class Study:
 
     def attempt(self, keywords, end, steps, samples=1):
         """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
-        self.budget.say(f"{keywords or 'own fix'}, step {end / steps:.3g}")
+        self.budget.say(f"{keywords or 'own fix'}, step {rounded(end / steps)}")
         timeout = min(PATIENCE + 3 * self.expected(keywords, steps), self.budget.left())
         begin = clock.monotonic()
         try:
@@ -154,16 +156,16 @@ class Study:
     def enough(self):
         """The seconds that a budget should have, as far as trials tell, as text."""
         trial = self.expected(None, SAMPLES) if self.pace else self.budget.spent() - self.before
-        return f"{float(f'{2 * self.before + RUNS_IN_BUDGET * trial:.2g}'):g}"
+        return rounded(2 * self.before + RUNS_IN_BUDGET * trial, 2)
 
     def refusal(self, what, keywords):
         """The DeckError where a trial that is necessary did not come to its end."""
-        reason = self.failures[keywords]
+        reason = explained(self.failures[keywords], self.deck, self.deck.dt)
         if self.budget.left() > 0 or not reason.startswith(NOT_FINISHED):
             return DeckError(f"{what}: {reason}")
         return DeckError(
             f"the budget of {self.budget.seconds:g} s was used up before {'this' if self.pace else 'a first'}"
-            f" trial ended ({keywords or 'own fix'}); {self.before:.2g} s had passed before the trials:"
+            f" trial ended ({keywords or 'own fix'}); {rounded(self.before, 2)} s had passed before the trials:"
             f" try a budget of {self.enough()} s or more"
         )
 
@@ -173,6 +175,8 @@ class Study:
         steps = PROBE_STEPS
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
+            if trial is None and None in self.pace:  # the bodies leave the box later on
+                return
             if trial is None:
                 raise self.refusal("LAMMPS cannot run the deck as it is", None)
             if trial.seconds[0] > 0.2 or steps >= self.deck.start.steps:
@@ -365,7 +369,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     study.climb_all(costs, wanted, tries)
     if not costs.trials:
         raise DeckError(
-            f"a step takes {study.pace[None]:.2g} s, so {budget.seconds:g} s are too few to compare methods:"
+            f"a step takes {rounded(study.pace[None], 2)} s, so {budget.seconds:g} s are too few to compare methods:"
             f" try --budget {study.enough()}"
         )
     study.refine(costs, wanted)
@@ -419,11 +423,11 @@ def cut_to(time, doubt, errors):
                 return last, ""
             return int(good[-1]), (
                 f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, because later the two best"
-                f" ones differ by more than {error / MARGIN:.2g}, so an error of {error:g} cannot be judged"
+                f" ones differ by more than {rounded(error / MARGIN, 2)}, so an error of {error:g} cannot be judged"
             )
     index = max(int(SHORTEST * len(time)) - 1, 0)
     return index, (
-        f"the two best trials differ by {doubt[index]:.2g} already at a tenth of the time, so none of"
+        f"the two best trials differ by {rounded(doubt[index], 2)} already at a tenth of the time, so none of"
         " the errors can be judged in this scene"
     )
 

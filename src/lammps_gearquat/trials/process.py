@@ -8,7 +8,9 @@ the same requests, and each answers for its own atoms.
 import ctypes
 import os
 import re
+import select
 import sys
+import threading
 import time
 from multiprocessing.connection import Client
 from pathlib import Path
@@ -201,10 +203,19 @@ def _warnings(text):
     return tuple(dict.fromkeys(warnings))
 
 
+def _end_with_caller(file):
+    """End this process, whatever LAMMPS is doing, once the other end of its connection is closed."""
+    watch = select.poll()
+    watch.register(file, getattr(select, "POLLRDHUP", 0))  # POLLHUP is always reported
+    watch.poll()
+    os._exit(1)
+
+
 def serve(address):
     """Answer requests (function name, arguments) until the other side is gone."""
     os.environ["OMP_NUM_THREADS"] = "1"
     connection = Client(address, "AF_UNIX")
+    threading.Thread(target=_end_with_caller, args=(connection.fileno(),), daemon=True).start()
     connection.send(os.getpid())
     functions = {"follow": follow, "trial": trial}
     while True:

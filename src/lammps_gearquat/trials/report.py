@@ -42,15 +42,15 @@ def cost_text(deck, costs):
     lines += [
         f"The error is the {NORMS[costs.norm]} error of the bodies at t = {end}"
         + (f", in {unit}," if unit else ",")
-        + f" against\n    gear/quat {reference.label}, step {reference.dt:.3g};",
-        f"    gear/quat {confirmation.label}, step {confirmation.dt:.3g}, confirms that reference to"
+        + f" against\n    gear/quat {reference.label}, step {rounded(reference.dt)};",
+        f"    gear/quat {confirmation.label}, step {rounded(confirmation.dt)}, confirms that reference to"
         f" {_quantity(costs.doubt, unit, 2)}.",
     ]
     lines += [f"Note: {note}" for note in costs.notes]
     own = costs.points().get(None, []) if deck.own == deck.lines else []
     as_it_is = [point for point in own if abs(point.dt / deck.dt - 1) < 0.01]
     if as_it_is:
-        lines.append(f"As it is, the deck ends with an error of {as_it_is[0].error:.2g}.")
+        lines.append(f"As it is, the deck ends with an error of {rounded(as_it_is[0].error, 2)}.")
     seconds = f"seconds per {deck.time_unit or 'time unit'}"
     header = ["error", "fix line", "timestep", seconds, "speed-up", "start (s)", f"drift ({_drift_unit(deck)})"]
     lines += ["", aligned(header, [_cost_cells(costs, row) for row in costs.rows])]
@@ -176,7 +176,7 @@ def _script_lines(deck, costs):
             remedy = "try a longer --budget, a shorter --time or a larger --error."
             lines.append(f"No trial within the budget had an error of {row.error:.1e}: {remedy}")
             if row.own:
-                lines.append(f"    Your own fix would need timestep {row.own.dt:.2g}, as extrapolated.")
+                lines.append(f"    Your own fix would need timestep {rounded(row.own.dt, 2)}, as extrapolated.")
     return lines or ["None of the errors can be judged: try --budget, a shorter --time or a larger --error."]
 
 

@@ -15,6 +15,8 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
+from gearquat_analysis.tables import rounded
+
 from .script import DeckError
 
 #: seconds that the processes may take to come up
@@ -188,7 +190,7 @@ class Worker:
             if failed and not ready:
                 break
             if end is not None and time.monotonic() > end and not failed:
-                raise TrialError(f"{NOT_FINISHED} after {timeout:.3g} s")
+                raise TrialError(f"{NOT_FINISHED} after {rounded(timeout)} s")
         return answers
 
     def _last_words(self):
