@@ -371,7 +371,7 @@ class MadeUpDeck:
 
     accurate, size, dt, end, notes = "formulation second values 8", 1.0, 1.0, 1e6, ()
     time_unit = length_unit = ""
-    units = "lj"
+    units, partial, others = "lj", False, False
     start = types.SimpleNamespace(steps=10**6, checkpoints=False)
     scene = types.SimpleNamespace(bodies=Bodies([1, 1], [1.0, 1.0]))
 

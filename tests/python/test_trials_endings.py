@@ -118,7 +118,7 @@ def test_a_command_that_is_interrupted(started, tmp_path, name, sent):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_command_that_is_killed_leaves_no_lammps(started, tmp_path, ranks):
-    process = started("horizon", "--ranks", ranks)
+    process = started("horizon", "--ranks", ranks, "--every", "5e4")
     process.kill()
     wait_until(lambda: not workers(tmp_path), 20.0)
 

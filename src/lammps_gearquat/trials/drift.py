@@ -1,12 +1,13 @@
 """Drift of the energy at the steps that are recommended."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gearquat_analysis.units import UNITS
 
 from . import evaluate
-from .worker import TrialError
+from .explain import explained
+from .worker import NOT_FINISHED, TrialError
 
 #: kT per degree of freedom and ns above which a step is warned of
 BOUND = 0.1
@@ -25,13 +26,15 @@ class Drift:
     """Drift of the conserved energy over a run of length ``time``, in units of the deck.
 
     ``rate`` and its standard ``error`` are in kT per degree of freedom and ns (in units lj: 1000 time units), with
-    the kT of the mean kinetic energy.  Both are NaN if the run did not end, and then ``reason`` says why.
+    the kT of the mean kinetic energy.  Both are NaN if they are unknown, and then ``reason`` says why.
+    ``failure`` is the error that ended a longer run, if there was one.
     """
 
     rate: float = math.nan
     error: float = math.nan
     time: float = 0.0
     reason: str = ""
+    failure: str = ""
 
     @property
     def drifts(self):
@@ -73,15 +76,21 @@ def measure(study, costs):
 
 def _of_step(study, costs, keywords, dt, seconds):
     """Drift at a step, from a run that takes so many seconds at most; from a shorter one where that does not end."""
+    if study.deck.partial and study.deck.others:
+        return Drift(reason="LAMMPS does not print the whole kinetic energy of these bodies and of the other atoms")
     ns = nanosecond(study.deck)
     longest = max(LONGEST * ns, costs.end) / dt
     affordable = (seconds - study.overhead) / (1.2 * study.pace[keywords])
     whole, judged = (int(steps / SAMPLES) for steps in (min(longest, affordable), min(costs.end / dt, affordable)))
-    reason = "the budget left no time for a run of that length"
+    reason, failure = "no run was long enough", ""
     for stride in dict.fromkeys(filter(None, (whole, judged))):
         timeout = max(min(2.0 * seconds, study.budget.left()), 0.0)
         try:
-            return of_trial(study.deck.run(keywords, [stride] * SAMPLES, dt, timeout, energies=True), ns)
+            trial = study.deck.run(keywords, [stride] * SAMPLES, dt, timeout, energies=True)
+            return replace(of_trial(trial, ns), failure=failure)
         except TrialError as error:
-            reason = str(error)
-    return Drift(reason=reason)
+            if str(error).startswith(NOT_FINISHED):
+                reason = f"a run was {error}"
+            else:
+                failure = failure or explained(str(error), study.deck, dt)
+    return Drift(reason=reason, failure=failure)

@@ -168,6 +168,8 @@ class Deck:
         self.size = self.scene.size
         self.units = self._situation.units
         self.time_unit, self.length_unit, *_ = UNITS[self.units]
+        #: whether atoms move that are in no body
+        self.others = sum(len(part.sites.ids) for part in parts) > len(self.scene.ids)
         self._continued = [part.continued for part in parts]
 
     def _test_checkpoint(self):
@@ -189,6 +191,11 @@ class Deck:
                 "the runs before the measured one leave more behind than positions and velocities,"
                 " so every trial repeats them"
             )
+
+    @property
+    def partial(self):
+        """Whether the kinetic energy in thermodynamic output is only a part of that of the bodies."""
+        return self._situation.rotating or any("infile" in dict(line.keywords) for line in self.lines)
 
     @property
     def map_missing(self):
@@ -230,7 +237,7 @@ class Deck:
             ramp_steps=round(self.end / dt),
             dt=dt,
             segments=list(segments),
-            energies=energies,
+            energies={"partial": self.partial} if energies else None,
         )
         samples = zip(*(outcome.samples for outcome in outcomes))
         positions = np.array([self.scene.of_sites(parts) for parts in samples])

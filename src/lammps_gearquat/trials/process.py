@@ -27,8 +27,10 @@ _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
 _LOOP = re.compile(r"^Loop time of (\S+) on", re.MULTILINE)
 SITES = "gearquat_sites"
-#: the variable with the energy that is conserved
-ENERGY = "gearquat_energy"
+#: variables with the energy that is conserved, and with the kinetic one
+ENERGIES = ("gearquat_conserved", "gearquat_kinetic")
+#: what atoms have that rotate by themselves
+ROTATING = ("omega_flag", "angmom_flag")
 COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
 #: steps that are run beyond the point where a deck has been followed to, to test the checkpoint
 TEST_STEPS = 10
@@ -109,6 +111,7 @@ def follow(deck, variables, without, which, log, tell):
             sites,
             body_labels(lammps, start.movers),
             of_atoms(lammps, "mass"),
+            any(lammps.extract_setting(flag) for flag in ROTATING),
         )
         if start.checkpoints:
             steps = min(TEST_STEPS, start.steps)
@@ -144,22 +147,24 @@ def replay(lammps, folder, start, lines, need_map):
             lammps.command(lines[command.mover.id].text())
 
 
-def watch_energy(lammps, lines):
-    """Make ENERGY the energy that is conserved while these FixLines move the bodies."""
-    energy, commands = conserved(lines)
-    lammps.commands_list([*commands, f"variable {ENERGY} equal {energy}"])
-    lammps.commands_list([f"thermo_style custom step econserve ke v_{ENERGY}", "thermo_modify norm no"])
+def watch_energies(lammps, lines, partial):
+    """Make ENERGIES the energies of ``script.conserved`` for these FixLines."""
+    *formulas, commands = conserved(lines, partial)
+    commands += [f"variable {name} equal {formula}" for name, formula in zip(ENERGIES, formulas)]
+    names = " ".join(f"v_{name}" for name in ENERGIES)
+    # LAMMPS computes what the formulas name only if it is printed itself
+    lammps.commands_list([*commands, f"thermo_style custom step econserve {names}", "thermo_modify norm no"])
 
 
 def _energies(lammps):
-    return lammps.extract_variable(ENERGY), lammps.get_thermo("ke")
+    return [lammps.extract_variable(name) for name in ENERGIES]
 
 
 def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, energies, tell):
     """Outcome of a trial: ``segments`` are numbers of steps, after each of which sites are read.
 
-    With ``energies`` these are read, too, which takes an evaluation of the energy in that step.  What ramps
-    over the deck's run does so over ``ramp_steps`` here, however short the trial is.
+    With ``energies``, arguments of watch_energies, these are read, too, which takes an evaluation of the energy in
+    that step.  What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
     ``tell`` is called with the number of steps of each segment that is done.
     """
     lammps = open_lammps(deck, variables, log)
@@ -168,7 +173,7 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
         commands = [COMPUTE_SITES, f"timestep {dt:.17g}", "timer loop"]
         lammps.commands_list([*commands, "thermo 0", "thermo_style custom step"])
         if energies:
-            watch_energy(lammps, [lines.get(line.id, line) for line in start.movers])
+            watch_energies(lammps, [lines.get(line.id, line) for line in start.movers], **energies)
         if start.lost:
             lammps.command(f"thermo_modify {' '.join(start.lost)}")
         now = lammps.extract_global("ntimestep")

@@ -92,13 +92,18 @@ def _drift_lines(deck, costs):
     for (keywords, dt), found in costs.drifts.items():
         name = f"{'your fix' if keywords is None else f'gear/quat {keywords}'}, timestep {dt:g}"
         measured = f"{_drift(deck, found)} over {_quantity(found.time, deck.time_unit)}"
+        if found.failure:
+            lines += [
+                f"WARNING: {name}: a run that was longer than the trials ended with an error:",
+                f"    {found.failure}",
+            ]
         if found.drifts:
             lines += [
                 f"WARNING: {name}: the energy drifts by {measured}.",
                 f"    A drift above {drift.BOUND:g} spoils long runs: take this step for short ones only, or a shorter"
                 " one of the table.",
             ]
-        elif not found.holds:
+        elif not found.holds and not (found.failure and found.reason):
             doubtful.append(keywords)
             lines += [
                 f"WARNING: {name}: whether the energy drifts in long runs has not been measured:",
@@ -111,16 +116,19 @@ def _how_to_measure(deck, doubtful):
     """Lines for a script, from whose log the drift of the ``doubtful`` keywords can be computed."""
     if not doubtful:
         return []
-    energy, rows = conserved(deck.fix_lines_of(next(filter(None, doubtful), None)))
+    energy, kinetic, rows = conserved(deck.fix_lines_of(next(filter(None, doubtful), None)), deck.partial)
     if energy != "econserve":
         rows, energy = [*rows, f"variable conserved equal {energy}"], "v_conserved"
+    if kinetic != "ke":
+        rows, kinetic = [*rows, f"variable kinetic equal {kinetic}"], "v_kinetic"
+    columns = " ".join(dict.fromkeys(["econserve", energy, kinetic]))  # without the first LAMMPS lacks the others
+    rows += [f"thermo_style custom step time {columns}", "thermo_modify norm no format float %.15g", "thermo 100"]
     time = deck.time_unit or "time unit"
     long_enough = _quantity(drift.LONGEST * drift.nanosecond(deck), deck.time_unit)
     return [
         f"To measure a drift, write these lines below its fix, and run {long_enough} or more:",
-        *(f"    {row}" for row in [*rows, f"thermo_style custom step time {energy} ke", "thermo_modify norm no format float %.15g"]),
-        "    thermo 100",
-        f"The slope of {energy} against time, divided by twice the mean of ke, is the drift in kT per {time} and",
+        *(f"    {row}" for row in rows),
+        f"The slope of {energy} against time, divided by twice the mean of {kinetic}, is the drift in kT per {time} and",
         f"degree of freedom, and {rounded(drift.nanosecond(deck), 6)} times that the one in {_drift_unit(deck)}.",
     ]
 
@@ -166,8 +174,11 @@ def _script_lines(deck, costs):
     for row in reached:
         lines.append(f"For an error of {row.error:.1e} at t = {costs.end:g}:")
         keeping = ["# keep your fix: no other is faster"] if row.keep else []
-        if (found := costs.drifts.get(row.recommended)) and found.drifts:
+        found = costs.drifts.get(row.recommended, drift.Drift())
+        if found.drifts:
             keeping.append(f"# for short runs: the energy drifts by {_drift(deck, found)}")
+        if found.failure:
+            keeping.append("# for short runs: a longer one ended with an error, see the warning below")
         line = None if row.keep else row.best.method
         words = [*keeping, *deck.fix_lines(line), f"timestep {usable_step(row.choice.dt):g}"]
         lines += [f"    {word}" for word in words]
