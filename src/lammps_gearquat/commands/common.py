@@ -7,12 +7,13 @@ from contextlib import contextmanager
 from time import monotonic
 
 import cloup
-from tqdm import tqdm
 
 from gearquat_analysis.options import COUNT, FILE, progress_bar
 
 #: seconds between two lines of progress where there is no terminal
 EVERY = 60.0
+#: such a line
+LINE = "{desc}{percentage:.0f} % after {elapsed}"
 #: exit status after Ctrl-C, as in a shell
 INTERRUPTED = 130
 
@@ -70,7 +71,10 @@ def announce(path, progress):
 
 
 class _Log:
-    """A file for a progress bar: of what is written to it, ``stream`` gets a line every EVERY seconds."""
+    """A file for a progress bar: of what is written to it, ``stream`` gets a line every EVERY seconds.
+
+    It has no method isatty, so that the bar is not left out.
+    """
 
     def __init__(self, stream):
         self._stream, self._told = stream, monotonic()
@@ -89,7 +93,7 @@ def shown_progress(**options):
     """tqdm's progress bar; where there is no terminal, as in a batch job, a line of it now and then."""
     if sys.stderr.isatty():
         return progress_bar(**options)
-    return tqdm(file=_Log(sys.stderr), ascii=True, **options)
+    return progress_bar(file=_Log(sys.stderr), **{**options, "bar_format": LINE})
 
 
 @contextmanager
