@@ -4,6 +4,7 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import sysconfig
 import time
 from pathlib import Path
@@ -116,10 +117,26 @@ def test_a_command_that_is_interrupted(started, tmp_path, name, sent):
     assert not workers(tmp_path) and not list(tmp_path.glob("gearquat-*"))
 
 
+#: a trial of 10^9 steps, in one segment
+ENDLESS = """
+import sys
+from lammps_gearquat.trials.measure import Deck
+with Deck(sys.argv[1], ranks=int(sys.argv[2])) as deck:
+    print("begins", flush=True)
+    deck.run(None, [10**9], 1e-6)
+"""
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_a_command_that_is_killed_leaves_no_lammps(started, tmp_path, ranks):
-    process = started("horizon", "--ranks", ranks, "--every", "5e4")
-    process.kill()
+def test_a_caller_that_is_killed_leaves_no_lammps(make_deck, tmp_path, ranks):
+    words = [sys.executable, "-c", ENDLESS, make_deck(), ranks]
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    with subprocess.Popen(list(map(str, words)), env=environment, stdout=subprocess.PIPE, text=True) as caller:
+        assert caller.stdout.readline() == "begins\n"
+        time.sleep(1.0)
+        begun = workers(tmp_path)
+        caller.kill()
+    assert begun
     wait_until(lambda: not workers(tmp_path), 20.0)
 
 
