@@ -5,7 +5,9 @@ import re
 from gearquat_analysis.tables import rounded
 
 #: errors of LAMMPS and of the fix where atoms are not in the box, or not where their rank looks for them
-_GONE = re.compile(r"Lost atoms|of its (\d+ )?atoms left|Out of range atoms|atoms? .*missing|Non-numeric (pressure|atom coords)")
+_GONE = re.compile(
+    r"Lost atoms|of its (\d+ )?atoms left|Out of range atoms|atoms? .*missing|Non-numeric (pressure|atom coords)"
+)
 
 
 def explained(message, deck, dt, reached=None):
@@ -21,10 +23,10 @@ def explained(message, deck, dt, reached=None):
     if fixed:
         free = " ".join(word.replace("f", "m") for word in fixed.split())
         # an atom that is outside is noticed some time later
-        earlier = f", or end before it with --time {rounded(0.9 * reached, 2)}" if reached else ", or end earlier with --time"
+        end = f"before it with --time {rounded(0.9 * reached, 2)}" if reached else "earlier with --time"
         return (
             f"{when}molecules left the box, whose boundary is fixed: write '{free}' instead of '{fixed}', so that the"
-            f" box follows them{earlier} (LAMMPS: {said})"
+            f" box follows them, or end {end} (LAMMPS: {said})"
         )
     if dt > deck.dt:
         remedy = f"a step of {deck.dt:g}, that of the script, or shorter is required"

@@ -60,7 +60,7 @@ class Situation:
 
 @dataclass
 class Outcome:
-    """What one trial left on one rank: ``samples``, a list of Sites, and ``energies`` (S, 2) or (0,), see Trial; on rank 0
+    """What one trial left on one rank: ``samples``, a list of Sites, and ``energies``, as in Trial; on rank 0
 
     ``seconds``, wall time of the steps; ``start_seconds``, of the set-up and of the start of the
     fix; ``start_evaluations``, evaluations of the forces that the start of fix gear/quat took;
