@@ -6,6 +6,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from gearquat_analysis.pictures import named, picture
 from gearquat_analysis.style import COLOR
+from gearquat_analysis.tables import rounded
 
 from .trials import NORMS
 
@@ -21,7 +22,7 @@ def _ticks(axis):
     low, high = axis.get_view_interval()
     if np.log10(high / low) < FEW_DECADES:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: rounded(value)))
     axis.set_minor_formatter(NullFormatter())
 
 
@@ -107,7 +108,7 @@ def draw_horizon(path, deck, horizon):
             axis.semilogy(time, getattr(horizon, name), color=color, label=labels[name])
         if growth:
             fitted = time[(time >= growth.begin) & (time <= growth.end)]
-            label = f"Lyapunov time {growth.lyapunov_time:.3g} {deck.time_unit}"
+            label = f"Lyapunov time {rounded(growth.lyapunov_time)} {deck.time_unit}"
             axis.semilogy(fitted, growth.at(fitted), color="black", linestyle="--", label=label)
         line = {"color": FAINT, "linewidth": 0.6, "linestyle": ":"}
         note = {"fontsize": 7, "color": OWN, "va": "bottom", "transform": axis.get_yaxis_transform()}

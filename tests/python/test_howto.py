@@ -209,3 +209,45 @@ def blocks_of_columns():
 def test_the_look_at_a_lammps(pasted):
     said = pasted("cluster")
     assert all(word in said for word in ("Large-scale", "MPI v", "SMALLBIG", "PLUGIN"))
+
+
+# --- from a lattice or packmol to a liquid ------------------------------------------------------------
+#: molecules of the page, and of the test
+MOLECULES, FEWER = 216, 64
+
+
+def liquid_script(**changes):
+    """The script of the page in a smaller box, with changes old=new."""
+    (script,) = blocks("liquid", "LAMMPS")
+    changes = {"18.64": "12.43", f"random {MOLECULES}": f"random {FEWER}", "long 9.0": "long 6.0", **changes}
+    for old, new in {"run 1000": "run 500", **changes}.items():
+        assert old in script
+        script = script.replace(old, new)
+    return script
+
+
+def on_a_lattice():
+    """Changes of the script with the lines of the page for a lattice."""
+    (lattice,) = re.findall(r"^```\n(lattice .*?)```", (ROOT / "doc" / "howto" / "liquid.md").read_text(), re.M | re.S)
+    place, *_, create = lattice.splitlines()
+    (script,) = blocks("liquid", "LAMMPS")
+    region, old = (re.search(rf"^{word} .*$", script, re.M)[0] for word in ("region", "create_atoms"))
+    return {region.replace("18.64", "12.43"): f"{place}\nregion box block 0 4 0 4 0 4", old.replace("216", str(FEWER)): create}
+
+
+@pytest.mark.parametrize("seed", ["4711", "11", "lattice"])
+def test_overlaps_relax_to_a_liquid(lmp_wheel, seed):
+    """The energy is conserved while it falls by many kT, and both temperatures come to the target."""
+    page = (ROOT / "doc" / "howto" / "liquid.md").read_text()
+    (lmp_wheel.folder / "spce.mol").write_text(re.search(r"^```\n(# rigid SPC/E.*?)```", page, re.M | re.S)[1])
+    changes = on_a_lattice() if seed == "lattice" else {f"random {FEWER} 4711": f"random {FEWER} {seed}"}
+    result = passes(lmp_wheel, liquid_script(**changes))
+    assert result.output.count("WARNING") == result.output.count("WARNING: Neighbor exclusions")
+    relaxing, liquid = ({name: np.array(values) for name, values in part.items()} for part in result.thermo[-2:])
+    thermal = 6 * FEWER * 0.0019872067 * 300.0  # kT times the degrees of freedom
+    assert relaxing["Dt"][0] == 0.001 and relaxing["Dt"][-1] == 1.0
+    assert np.ptp(relaxing["PotEng"]) > 2 * thermal
+    assert np.ptp(relaxing["Econserve"]) < 0.01 * thermal and np.ptp(liquid["Econserve"]) < 0.002 * thermal
+    for table, columns in ((relaxing, (20, 21)), (liquid, (10, 11))):
+        last = np.mean([table[f"f_move[{column}]"][-5:] for column in columns], axis=1)
+        assert last == pytest.approx(300.0, rel=0.25)

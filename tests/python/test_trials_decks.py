@@ -356,7 +356,7 @@ def test_the_fastest_method_is_recommended_whatever_it_evaluates():
 
 
 def test_lines_for_a_script_say_what_to_do_about_other_errors():
-    deck = types.SimpleNamespace(map_missing=False, fix_lines=lambda keywords: [f"fix {keywords}"])
+    deck = types.SimpleNamespace(map_missing=False, fix_lines=lambda keywords: [f"fix {keywords}"], time_unit="ps")
     text = "\n".join(report._script_lines(deck, costs_of(1e-8, [1e-1, 1e-6], [OWN])))
     assert "# keep your fix: no other is faster\n    fix None\n    timestep 0.1" in text
     assert "No trial within the budget had an error of 1.0e-06: try a longer" in text
@@ -371,6 +371,7 @@ class MadeUpDeck:
 
     accurate, size, dt, end, notes = "formulation second values 8", 1.0, 1.0, 1e6, ()
     time_unit = length_unit = ""
+    units, partial, others = "lj", False, False
     start = types.SimpleNamespace(steps=10**6, checkpoints=False)
     scene = types.SimpleNamespace(bodies=Bodies([1, 1], [1.0, 1.0]))
 
@@ -401,6 +402,11 @@ class MadeUpDeck:
         seconds = [steps * self.pace], [self.overhead]
         return measure.Trial(keywords, end / steps, steps, time, positions, center, 1, *seconds)
 
+    def run(self, keywords, segments, dt, timeout=None, energies=False):
+        trial = self.run_to(keywords, sum(segments) * dt, sum(segments), len(segments), timeout)
+        trial.energies = np.column_stack([0.02 * self.error(keywords, dt) * trial.time, np.ones(len(segments))])
+        return trial
+
 
 @pytest.mark.parametrize(("pace", "overhead"), [(1e-4, 0.1), (0.01, 0.5), (0.3, 2.0)])
 def test_cost_keeps_its_budget(monkeypatch, pace, overhead):
@@ -420,6 +426,8 @@ def test_cost_keeps_its_budget(monkeypatch, pace, overhead):
         assert deck.error(keywords, dt) * costs.end < row.error
         assert deck.error(keywords, 1.3 * dt) * costs.end > row.error
         assert row.choice.kind == "measured"
+        found = costs.drifts[row.recommended]  # 1000 time units, and kT of one degree of freedom is twice the energy
+        assert found.rate == pytest.approx(10.0 * deck.error(*row.recommended)) or pace > 0.1
         assert row.choice.dt in {t.dt for t, _ in costs.trials if t.keywords == keywords}
 
 

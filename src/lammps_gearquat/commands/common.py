@@ -1,11 +1,21 @@
 """What the commands that run LAMMPS have in common: the options that say how a deck is read."""
 
 import functools
+import signal
 import sys
+from contextlib import contextmanager
+from time import monotonic
 
 import cloup
 
-from gearquat_analysis.options import COUNT, FILE
+from gearquat_analysis.options import COUNT, FILE, progress_bar
+
+#: seconds between two lines of progress where there is no terminal
+EVERY = 60.0
+#: such a line
+LINE = "{desc}{percentage:.0f} % after {elapsed}"
+#: exit status after Ctrl-C, as in a shell
+INTERRUPTED = 130
 
 
 def reading_options(*more):
@@ -58,3 +68,46 @@ def deck_options(function):
 def announce(path, progress):
     """Function that says what is done with a deck before its trials, above a progress bar."""
     return lambda text: progress.write(f"{path.name}: {text}", file=sys.stderr)
+
+
+class _Log:
+    """A file for a progress bar: of what is written to it, ``stream`` gets a line every EVERY seconds.
+
+    It has no method isatty, so that the bar is not left out.
+    """
+
+    def __init__(self, stream):
+        self._stream, self._told = stream, monotonic()
+
+    def write(self, text):
+        line = text.strip()
+        if line and monotonic() - self._told >= EVERY:
+            self._told = monotonic()
+            self._stream.write(f"{line}\n")
+
+    def flush(self):
+        self._stream.flush()
+
+
+def shown_progress(**options):
+    """tqdm's progress bar; where there is no terminal, as in a batch job, a line of it now and then."""
+    if sys.stderr.isatty():
+        return progress_bar(**options)
+    return progress_bar(file=_Log(sys.stderr), **{**options, "bar_format": LINE})
+
+
+@contextmanager
+def ending_cleanly(out):
+    """Make Ctrl-C and SIGTERM end the command with a message that the folder ``out`` is as it was."""
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        cloup.echo(f"\nInterrupted: trials are not kept, and nothing was written to {out.resolve()}", err=True)
+        raise SystemExit(INTERRUPTED) from interrupt
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -4,12 +4,12 @@ from time import monotonic
 
 import cloup
 
-from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly, out_option, progress_bar
+from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly, out_option
 
 from ..trials import NORMS
 from ..trials.script import DeckError, pairs
 from ..trials.worker import TrialError
-from .common import announce, deck_options
+from .common import announce, deck_options, ending_cleanly, shown_progress
 
 
 @command(
@@ -76,14 +76,15 @@ def cost(scene, errors, time, norm, budget, timings, tries, out):
 
     for text in tries:
         pairs(text)
-    with progress_bar(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}") as progress:
+    bar = shown_progress(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}")
+    with ending_cleanly(out), bar as progress:
         clock = trials.Budget(budget, progress, begin)
         clock.say("following the deck")
         say = announce(scene["path"], progress)
         with Deck(**scene, say=say, on_wait=clock.spent, timeout=trials.SHARE_BEFORE * budget) as deck:
             costs = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries)
-            out.mkdir(parents=True, exist_ok=True)
-            report.write_costs(out, deck, costs)
-            figures.draw_cost(out / "cost.png", deck, costs)
-            text = report.cost_text(deck, costs)
+    out.mkdir(parents=True, exist_ok=True)
+    report.write_costs(out, deck, costs)
+    figures.draw_cost(out / "cost.png", deck, costs)
+    text = report.cost_text(deck, costs)
     cloup.echo(f"{text}\n\nTables and picture are in {out.resolve()}")

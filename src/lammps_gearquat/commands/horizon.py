@@ -2,11 +2,11 @@
 
 import cloup
 
-from gearquat_analysis.options import POSITIVE, command, failing_clearly, out_option, progress_bar
+from gearquat_analysis.options import POSITIVE, command, failing_clearly, out_option
 
 from ..trials.script import DeckError
 from ..trials.worker import TrialError
-from .common import announce, deck_options
+from .common import announce, deck_options, ending_cleanly, shown_progress
 
 
 @command(
@@ -66,12 +66,13 @@ def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
     from ..trials.measure import Deck
 
     steps = (step_a, step_b)
-    with progress_bar(total=1, unit="step", unit_scale=True, desc="following the deck") as progress:
+    bar = shown_progress(total=1, unit="step", unit_scale=True, desc="following the deck")
+    with ending_cleanly(out), bar as progress:
         say = announce(scene["path"], progress)
         with Deck(**scene, say=say, on_wait=progress.refresh) as deck:
             runs = trials.measure(deck, first, second, steps, time, every, thresholds, progress)
-            out.mkdir(parents=True, exist_ok=True)
-            report.write_horizon(out, runs)
-            figures.draw_horizon(out / "horizon.png", deck, runs)
-            text = report.horizon_text(deck, runs)
+    out.mkdir(parents=True, exist_ok=True)
+    report.write_horizon(out, runs)
+    figures.draw_horizon(out / "horizon.png", deck, runs)
+    text = report.horizon_text(deck, runs)
     cloup.echo(f"{text}\n\nTables and picture are in {out.resolve()}")

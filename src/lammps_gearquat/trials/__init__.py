@@ -6,7 +6,9 @@ checkpoint      the state that a run has led to, saved and restored
 process         a process that follows a deck, then replays it with other fix lines and steps
 worker          that process, or several ranks of it, as the caller sees it
 measure         trials of one deck: where its bodies are, and what it cost to bring them there
-evaluate        prices and growth: arrays in, numbers out
+evaluate        prices, trends and growth: arrays in, numbers out
+drift           the drift of the energy at the steps that are recommended
+explain         causes of LAMMPS' errors, and what to write then
 cost, horizon   the two questions
 report          the answers as text and tables
 """

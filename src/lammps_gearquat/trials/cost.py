@@ -6,7 +6,8 @@
    error can be judged, if that leaves a tenth of it.
 2. Every method from coarse to fine steps, to the same time.
 3. Those that matter at the steps that interpolation promises: what is recommended has been tried.
-4. Those again and again, interleaved, for their wall time.
+4. Those again and again, interleaved, for their wall time: the smallest counts.
+5. What is recommended for as long as the budget allows, for the drift of its energy.
 """
 
 import math
@@ -16,9 +17,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gearquat_analysis.superposition import angles
+from gearquat_analysis.tables import rounded
 
-from . import evaluate
+from . import drift, evaluate
 from .budget import Budget
+from .explain import explained
 from .script import DeckError
 from .worker import NOT_FINISHED, TrialError
 
@@ -36,7 +39,7 @@ MARGIN = 3.0  # an error is judged if it is this much larger than the doubt abou
 SHORTEST = 0.1  # of the time to be measured
 #: full-length runs at the deck's own step that fit into the budget: the time is chosen so
 RUNS_IN_BUDGET = 100
-SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.25
+SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.15
 FEWEST_STEPS, PROBE_STEPS = 8, 20
 PATIENCE = 30.0  # seconds that any trial may take beyond what was expected
 #: the part of the budget that may pass before the trials
@@ -70,6 +73,11 @@ class Row:
         """The Price of what is recommended, or None."""
         return self.own if self.keep else self.best
 
+    @property
+    def recommended(self):
+        """(keywords, step) for a script where there is a choice; keywords None: the deck's own fix."""
+        return None if self.keep else self.choice.method, evaluate.usable_step(self.choice.dt)
+
 
 @dataclass
 class Costs:
@@ -77,7 +85,8 @@ class Costs:
 
     ``end``, the time of the trials; ``doubt``, how far the two best trials are apart there;
     ``trials``, list of (Trial, errors) with one error for each of NORMS; ``norm``, the index of the
-    one that was chosen; ``rows``, list of Row; ``before``, seconds that following the deck took.
+    one that was chosen; ``rows``, list of Row; ``before``, seconds that following the deck took;
+    ``drifts``, dictionary Row.recommended -> drift.Drift.
     """
 
     end: float
@@ -89,6 +98,7 @@ class Costs:
     rows: list = field(default_factory=list)
     notes: list = field(default_factory=list)
     before: float = 0.0
+    drifts: dict = field(default_factory=dict)
 
     @property
     def doubt_limit(self):
@@ -99,8 +109,8 @@ class Costs:
         """Dictionary keywords -> list of evaluate.Point, with the largest errors that ``doubt`` allows."""
         points = {}
         for trial, errors in self.trials:
-            cost = trial.steps, trial.median, errors[self.norm] + self.doubt
-            start = trial.start_evaluations, trial.median_start
+            cost = trial.steps, trial.fastest, errors[self.norm] + self.doubt
+            start = trial.start_evaluations, trial.fastest_start
             point = evaluate.Point(trial.label, trial.dt, *cost, *start)
             points.setdefault(trial.keywords, []).append(point)
         return points
@@ -121,7 +131,7 @@ class Study:
 
     def attempt(self, keywords, end, steps, samples=1):
         """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
-        self.budget.say(f"{keywords or 'own fix'}, step {end / steps:.3g}")
+        self.budget.say(f"{keywords or 'own fix'}, step {rounded(end / steps)}")
         timeout = min(PATIENCE + 3 * self.expected(keywords, steps), self.budget.left())
         begin = clock.monotonic()
         try:
@@ -146,16 +156,16 @@ class Study:
     def enough(self):
         """The seconds that a budget should have, as far as trials tell, as text."""
         trial = self.expected(None, SAMPLES) if self.pace else self.budget.spent() - self.before
-        return f"{float(f'{2 * self.before + RUNS_IN_BUDGET * trial:.2g}'):g}"
+        return rounded(2 * self.before + RUNS_IN_BUDGET * trial, 2)
 
     def refusal(self, what, keywords):
         """The DeckError where a trial that is necessary did not come to its end."""
-        reason = self.failures[keywords]
+        reason = explained(self.failures[keywords], self.deck, self.deck.dt)
         if self.budget.left() > 0 or not reason.startswith(NOT_FINISHED):
             return DeckError(f"{what}: {reason}")
         return DeckError(
             f"the budget of {self.budget.seconds:g} s was used up before {'this' if self.pace else 'a first'}"
-            f" trial ended ({keywords or 'own fix'}); {self.before:.2g} s had passed before the trials:"
+            f" trial ended ({keywords or 'own fix'}); {rounded(self.before, 2)} s had passed before the trials:"
             f" try a budget of {self.enough()} s or more"
         )
 
@@ -165,6 +175,8 @@ class Study:
         steps = PROBE_STEPS
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
+            if trial is None and None in self.pace:  # the bodies leave the box later on
+                return
             if trial is None:
                 raise self.refusal("LAMMPS cannot run the deck as it is", None)
             if trial.seconds[0] > 0.2 or steps >= self.deck.start.steps:
@@ -287,7 +299,7 @@ class Study:
         methods = [None, *dict.fromkeys([*filter(self.deck.takes, METHODS), *tries])]
         middle = math.log(errors[0] * errors[-1]) / 2
         own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
-        timing = SHARE_TIMING * self.budget.seconds
+        timing = (SHARE_TIMING + drift.SHARE) * self.budget.seconds
         for count, keywords in enumerate(methods):
             left = max(self.budget.left() - timing, 0.0)
             reserve = timing + left * (1.0 - 1.0 / (len(methods) - count))
@@ -304,7 +316,7 @@ class Study:
     # --- 3. the steps between -------------------------------------------------------------------------
     def refine(self, costs, errors):
         """Further trials into ``costs``, at the steps that interpolation promises, as scripts have them."""
-        reserve, methods = SHARE_TIMING / 2 * self.budget.seconds, list(costs.points())
+        reserve, methods = (SHARE_TIMING / 2 + drift.SHARE) * self.budget.seconds, list(costs.points())
         for error in ATTEMPTS * list(errors):
             for keywords, price in evaluate.candidates(costs.points(), error).items():
                 # not finer than what is recommended if this trial holds the error
@@ -320,7 +332,7 @@ class Study:
         trials = [trial for trial in trials if len(trial.seconds) < self.timings]
         for _ in range(self.timings - 1):
             for trial in trials:
-                if not self.affords(trial.keywords, trial.steps, runs=1.5):
+                if not self.affords(trial.keywords, trial.steps, drift.SHARE * self.budget.seconds, runs=1.5):
                     return
                 again = self.attempt(trial.keywords, float(trial.time[-1]), trial.steps)
                 if again:
@@ -357,13 +369,14 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     study.climb_all(costs, wanted, tries)
     if not costs.trials:
         raise DeckError(
-            f"a step takes {study.pace[None]:.2g} s, so {budget.seconds:g} s are too few to compare methods:"
+            f"a step takes {rounded(study.pace[None], 2)} s, so {budget.seconds:g} s are too few to compare methods:"
             f" try --budget {study.enough()}"
         )
     study.refine(costs, wanted)
     for _ in range(ATTEMPTS):  # other methods may matter when times are known better
         study.repeat(worth_timing(costs, wanted))
     fill_rows(costs, errors)
+    costs.drifts = drift.measure(study, costs)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
     return costs
@@ -410,11 +423,11 @@ def cut_to(time, doubt, errors):
                 return last, ""
             return int(good[-1]), (
                 f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, because later the two best"
-                f" ones differ by more than {error / MARGIN:.2g}, so an error of {error:g} cannot be judged"
+                f" ones differ by more than {rounded(error / MARGIN, 2)}, so an error of {error:g} cannot be judged"
             )
     index = max(int(SHORTEST * len(time)) - 1, 0)
     return index, (
-        f"the two best trials differ by {doubt[index]:.2g} already at a tenth of the time, so none of"
+        f"the two best trials differ by {rounded(doubt[index], 2)} already at a tenth of the time, so none of"
         " the errors can be judged in this scene"
     )
 
@@ -431,10 +444,17 @@ def worth_timing(costs, errors):
 
 
 def fill_rows(costs, errors):
-    """One row for each error: what it costs with the deck's own method, and at best."""
-    points = costs.points()
-    for error in errors:
+    """One row for each error: what it costs with the deck's own method, and at best.
+
+    A smaller error that was measured as cheaper serves a larger one as well: times are noisy.
+    """
+    points, rows = costs.points(), []
+    for error in sorted(errors):
         prices = evaluate.candidates(points, error) if error > costs.doubt_limit else {}
+        finer = rows[-1] if rows else Row(error)
         own = prices.pop(None, None)
-        best = min(prices.values(), key=lambda price: price.seconds, default=None)
-        costs.rows.append(Row(error, own, best))
+        if own and finer.own and finer.own.kind != "extrapolated":
+            own = min(own, finer.own, key=lambda price: price.seconds)
+        bests = [*prices.values(), finer.best] if finer.best else prices.values()
+        rows.append(Row(error, own, min(bests, key=lambda price: price.seconds, default=None)))
+    costs.rows += sorted(rows, key=lambda row: errors.index(row.error))

@@ -1,4 +1,4 @@
-"""Errors of bodies, what an error costs, and how a difference grows.  Arrays in, numbers out."""
+"""Errors of bodies, what an error costs, how the energy drifts, and how a difference grows.  Arrays in, numbers out."""
 
 import math
 from dataclasses import dataclass
@@ -114,6 +114,47 @@ def candidates(points, error):
         at_aim = {key: getattr(p, cost) * p.dt / p.aim for key, p in prices.items() if key is not None}
         kept.update(sorted(at_aim, key=at_aim.get)[:2])
     return {key: prices[key] for key in prices if key in kept}
+
+
+# --- how the energy drifts -------------------------------------------------------------------------
+#: fewest samples of a trend
+FEWEST = 20
+#: the part of a random walk in the noise about a trend, as variances per sample
+WALKS = np.concatenate([[0.0], np.logspace(-5, 0, 21)])
+
+
+def trend(time, values):
+    """Slope of ``values`` (n,) against equidistant ``time`` (n,), and its standard error.
+
+    The noise about the line is a sum of white noise and a random walk, which the errors of many collisions are, in any
+    proportion: A. C. Harvey, Forecasting, Structural Time Series Models and the Kalman Filter, Cambridge (1989), Section 2.3.
+    Slope and error are averages over proportions, weighted by their restricted likelihood (H. D. Patterson and R. Thompson,
+    Biometrika 58, 545 (1971)).  Raises ValueError for fewer than FEWEST samples.
+    """
+    n = len(time)
+    if n < FEWEST:
+        raise ValueError(f"a trend needs {FEWEST} samples or more, not {n}")
+    rank, span = np.arange(1, n + 1), time[-1] - time[0]
+    walk, columns = np.minimum.outer(rank, rank), np.column_stack([np.ones(n), (time - np.mean(time)) / span])
+    slopes, variances, odds = np.array([_weighted_line(columns, values, walk, part) for part in WALKS]).T
+    weights = np.exp(odds - odds.max())
+    weights /= weights.sum()
+    slope = weights @ slopes
+    error = math.sqrt(weights @ (variances + (slopes - slope) ** 2))
+    return float(slope / span), float(error / span)
+
+
+def _weighted_line(columns, values, walk, part):
+    """Slope, its variance and the logarithm of the restricted likelihood for noise with this part of a random walk."""
+    n = len(values)
+    root = np.linalg.cholesky((1.0 - part) * np.eye(n) + part * walk)
+    white = np.linalg.solve(root, np.column_stack([columns, values]))
+    q, r = np.linalg.qr(white[:, :2])
+    fit = q.T @ white[:, 2]
+    left = white[:, 2] - q @ fit
+    scatter, inverse = max(left @ left, np.finfo(float).tiny), np.linalg.inv(r)
+    odds = -0.5 * (n - 2) * math.log(scatter) - np.log(np.diag(root)).sum() - np.log(abs(np.diag(r))).sum()
+    return (inverse @ fit)[1], scatter / (n - 2) * (inverse[1] @ inverse[1]), odds
 
 
 # --- how a difference grows -----------------------------------------------------------------------

@@ -8,7 +8,9 @@ from gearquat_analysis.superposition import angles
 
 from . import evaluate
 from .cost import Budget, Study, warnings_of
+from .explain import explained
 from .script import DeckError
+from .worker import TrialError
 
 #: default thresholds, in powers of ten of the size of the bodies
 THRESHOLDS = (0.1, 1.0, 3.0)
@@ -74,14 +76,49 @@ def measure(deck, a=None, b=None, steps=(None, None), time=None, every=None, thr
         inner = int(np.ceil(interval / dt_b))
         dt_b = interval / inner
         notes.append(f"the second step is {dt_b:g}, so that a sample ends with a step")
+    strides = round(interval / dt_a), inner
     if progress is not None:
-        progress.reset(total=segments * (round(interval / dt_a) + inner))
-        deck.worker.on_news = progress.update
-    trials = (
-        deck.run(keywords[0], [round(interval / dt_a)] * segments, dt_a),
-        deck.run(keywords[1], [inner] * segments, dt_b),
-    )
-    return compare(deck, trials, thresholds, notes)
+        progress.reset(total=segments * sum(strides))
+    pair = _Pair(deck, keywords, (dt_a, dt_b), strides, progress)
+    return compare(deck, pair.run(segments), thresholds, notes)
+
+
+class _Pair:
+    """The two runs: keywords, steps and numbers of steps between samples are pairs."""
+
+    def __init__(self, deck, keywords, steps, strides, progress):
+        self.deck, self.progress, self.done = deck, progress, 0
+        self.words = list(zip(("first", "second"), keywords, steps, strides))
+
+    def run(self, segments):
+        """Trials over so many segments.  Raises TrialError with the cause, and the time that both reach."""
+        trials, reached, errors = [], [segments], []
+        for words in self.words:
+            try:
+                trials.append(self._trial(*words, reached[-1]))
+            except TrialError as error:
+                errors.append((words, error))
+                reached.append(self.done // words[-1])
+                if not self.done:
+                    break
+        if not errors:
+            return tuple(trials)
+        (_, keywords, dt, stride), error = errors[0]
+        name = f"gear/quat {keywords}" if keywords else "the deck as it is"
+        why = explained(str(error), self.deck, dt, reached[-1] * stride * dt)
+        raise TrialError(f"{name}, timestep {dt:g}: {why}") from error
+
+    def _trial(self, name, keywords, dt, stride, segments):
+        self.done = 0
+        if self.progress is not None:
+            self.progress.set_description(f"{name} run")
+        self.deck.worker.on_news = self._tell
+        return self.deck.run(keywords, [stride] * segments, dt)
+
+    def _tell(self, steps):
+        self.done += steps
+        if self.progress is not None:
+            self.progress.update(steps)
 
 
 def affordable(deck, dt_a, dt_b):

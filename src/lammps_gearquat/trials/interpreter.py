@@ -70,6 +70,11 @@ class Start:
     notes: list = field(default_factory=list)
     checkpoints: bool = False
 
+    @property
+    def movers(self):
+        """FixLines of the fixes that move bodies."""
+        return [command.mover for command in self.commands if command.mover]
+
 
 #: how the text of a deck speaks of a variable
 _NAMES = re.compile(r"\bvariable\s+(\w+)|\$\{(\w+)\}|\$(\w)|\bv_(\w+)")

@@ -31,7 +31,8 @@ class Trial:
     ``keywords`` of fix gear/quat, or None for the deck's own line; ``time`` (S,), samples after the
     start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies;
     ``start_evaluations``, evaluations of the forces before the first step; ``seconds`` and
-    ``start_seconds``, wall times of the steps and of what comes before them, one for each repetition.
+    ``start_seconds``, wall times of the steps and of what comes before them, one for each repetition;
+    ``energies`` (S, 2), the conserved and the kinetic energy of the system, or None if they were not asked for.
     """
 
     keywords: str
@@ -44,18 +45,20 @@ class Trial:
     seconds: list = field(default_factory=list)
     start_seconds: list = field(default_factory=list)
     warnings: tuple = ()
+    energies: np.ndarray = None
 
     @property
     def label(self):
         return DECK_ITSELF if self.keywords is None else self.keywords
 
     @property
-    def median(self):
-        return float(np.median(self.seconds))
+    def fastest(self):
+        """The smallest of ``seconds``: what else the machine does can only add to it."""
+        return min(self.seconds)
 
     @property
-    def median_start(self):
-        return float(np.median(self.start_seconds))
+    def fastest_start(self):
+        return min(self.start_seconds)
 
 
 class Scene:
@@ -144,7 +147,7 @@ class Deck:
         self.worker.on_news = None
         self._situation, self.start = parts[0], parts[0].start
         self.dt = self._situation.dt
-        self.lines = [command.mover for command in self.start.commands if command.mover]
+        self.lines = self.start.movers
         own = [script.for_trials(line) for line in self.lines]
         translated = [script.translate(line) for line in self.lines]
         self.own = [line for line, _ in own]
@@ -163,7 +166,10 @@ class Deck:
         self.notes = [*self.start.notes, *notes]
         self.scene = Scene(parts)
         self.size = self.scene.size
-        self.time_unit, self.length_unit, *_ = UNITS[self._situation.units]
+        self.units = self._situation.units
+        self.time_unit, self.length_unit, *_ = UNITS[self.units]
+        #: whether atoms move that are in no body
+        self.others = sum(len(part.sites.ids) for part in parts) > len(self.scene.ids)
         self._continued = [part.continued for part in parts]
 
     def _test_checkpoint(self):
@@ -187,6 +193,11 @@ class Deck:
             )
 
     @property
+    def partial(self):
+        """Whether the kinetic energy in thermodynamic output is only a part of that of the bodies."""
+        return self._situation.rotating or any("infile" in dict(line.keywords) for line in self.lines)
+
+    @property
     def map_missing(self):
         """Whether the deck lacks the atom map that fix gear/quat needs."""
         return self._situation.map_missing
@@ -204,19 +215,19 @@ class Deck:
         """Those of ACCURATE that the deck allows."""
         return next(filter(self.takes, ACCURATE))
 
-    def _with(self, keywords):
-        """The fix lines with these keywords of fix gear/quat; None: the deck's own."""
+    def fix_lines_of(self, keywords):
+        """The FixLines with these keywords of fix gear/quat; None: the deck's own."""
         if keywords is None:
             return self.own
         return [line.with_numerics(keywords) for line in self.base]
 
     def fix_lines(self, keywords):
         """The fix lines that move the bodies with these keywords of fix gear/quat, as text."""
-        return [line.text() for line in self._with(keywords)]
+        return [line.text() for line in self.fix_lines_of(keywords)]
 
-    def run(self, keywords, segments, dt, timeout=None):
-        """Trial over segments of these numbers of steps.  Raises TrialError if LAMMPS does."""
-        new = self._anew if keywords is None else {b.id: b for b in self._with(keywords)}
+    def run(self, keywords, segments, dt, timeout=None, energies=False):
+        """Trial over segments of these numbers of steps, perhaps with energies.  Raises TrialError if LAMMPS does."""
+        new = self._anew if keywords is None else {b.id: b for b in self.fix_lines_of(keywords)}
         outcomes = self._ask(
             "trial",
             timeout,
@@ -226,6 +237,7 @@ class Deck:
             ramp_steps=round(self.end / dt),
             dt=dt,
             segments=list(segments),
+            energies={"partial": self.partial} if energies else None,
         )
         samples = zip(*(outcome.samples for outcome in outcomes))
         positions = np.array([self.scene.of_sites(parts) for parts in samples])
@@ -243,6 +255,7 @@ class Deck:
             [first.seconds],
             [first.start_seconds],
             first.warnings,
+            np.array(first.energies) if energies else None,
         )
 
     def run_to(self, keywords, end, steps, samples=1, timeout=None):

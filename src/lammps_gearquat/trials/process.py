@@ -8,7 +8,9 @@ the same requests, and each answers for its own atoms.
 import ctypes
 import os
 import re
+import select
 import sys
+import threading
 import time
 from multiprocessing.connection import Client
 from pathlib import Path
@@ -17,7 +19,7 @@ import numpy as np
 
 from . import checkpoint
 from .interpreter import Interpreter
-from .script import DeckError
+from .script import DeckError, conserved
 from .worker import Outcome, Sites, Situation, TrialError
 
 _STARTED = re.compile(r"Fix gear/quat \S+: start of order (\d+) from (\d+) force evaluations")
@@ -25,6 +27,10 @@ _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
 _LOOP = re.compile(r"^Loop time of (\S+) on", re.MULTILINE)
 SITES = "gearquat_sites"
+#: variables with the energy that is conserved, and with the kinetic one
+ENERGIES = ("gearquat_conserved", "gearquat_kinetic")
+#: what atoms have that rotate by themselves
+ROTATING = ("omega_flag", "angmom_flag")
 COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
 #: steps that are run beyond the point where a deck has been followed to, to test the checkpoint
 TEST_STEPS = 10
@@ -95,7 +101,6 @@ def follow(deck, variables, without, which, log, tell):
         interpreter = Interpreter(lammps, folder, without, which, variables, tell)
         interpreter.save = lambda prefix: checkpoint.save(lammps, folder / prefix)
         start = interpreter.follow(deck.name)
-        movers = [command.mover for command in start.commands if command.mover]
         lammps.command(COMPUTE_SITES)
         sites = _sites(lammps)
         situation = Situation(
@@ -104,8 +109,9 @@ def follow(deck, variables, without, which, log, tell):
             lammps.extract_global("units"),
             lammps.extract_global("map_style") == 0,
             sites,
-            body_labels(lammps, movers),
+            body_labels(lammps, start.movers),
             of_atoms(lammps, "mass"),
+            any(lammps.extract_setting(flag) for flag in ROTATING),
         )
         if start.checkpoints:
             steps = min(TEST_STEPS, start.steps)
@@ -141,22 +147,38 @@ def replay(lammps, folder, start, lines, need_map):
             lammps.command(lines[command.mover.id].text())
 
 
-def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, tell):
+def watch_energies(lammps, lines, partial):
+    """Make ENERGIES the energies of ``script.conserved`` for these FixLines."""
+    *formulas, commands = conserved(lines, partial)
+    commands += [f"variable {name} equal {formula}" for name, formula in zip(ENERGIES, formulas)]
+    names = " ".join(f"v_{name}" for name in ENERGIES)
+    # LAMMPS computes what the formulas name only if it is printed itself
+    lammps.commands_list([*commands, f"thermo_style custom step econserve {names}", "thermo_modify norm no"])
+
+
+def _energies(lammps):
+    return [lammps.extract_variable(name) for name in ENERGIES]
+
+
+def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, energies, tell):
     """Outcome of a trial: ``segments`` are numbers of steps, after each of which sites are read.
 
-    What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
+    With ``energies``, arguments of watch_energies, these are read, too, which takes an evaluation of the energy in
+    that step.  What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
     ``tell`` is called with the number of steps of each segment that is done.
     """
     lammps = open_lammps(deck, variables, log)
     try:
         replay(lammps, Path(log).parent, start, lines, need_map)
         commands = [COMPUTE_SITES, f"timestep {dt:.17g}", "timer loop"]
-        commands += ["thermo 0", "thermo_style custom step"]
-        commands += [f"thermo_modify {' '.join(start.lost)}"] if start.lost else []
-        lammps.commands_list(commands)
+        lammps.commands_list([*commands, "thermo 0", "thermo_style custom step"])
+        if energies:
+            watch_energies(lammps, [lines.get(line.id, line) for line in start.movers], **energies)
+        if start.lost:
+            lammps.command(f"thermo_modify {' '.join(start.lost)}")
         now = lammps.extract_global("ntimestep")
         ramp = f"start {now} stop {now + max(ramp_steps, sum(segments))}"
-        samples, seconds = [], 0.0
+        samples, watched, seconds = [], [], 0.0
         for number, steps in enumerate(segments):
             # without a new set-up between segments they are one run, to the last bit
             pre = " pre no" if number else ""
@@ -165,16 +187,17 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
             lammps.command(f"run {steps} {ramp}{pre}{post}")
             seconds += time.perf_counter() - begin
             samples.append(_sites(lammps))
+            watched += [_energies(lammps)] if energies else []
             tell(steps)
         rank = lammps.extract_setting("world_rank")
     finally:
         lammps.close()
     if rank:
-        return Outcome(rank, samples)
+        return Outcome(rank, samples, energies=watched)
     text = Path(log).read_text(encoding="utf-8", errors="replace")
     loops = sum(float(loop) for loop in _LOOP.findall(text)[-len(segments) :])
     evaluations = sum(int(number) for _, number in _STARTED.findall(text))
-    return Outcome(0, samples, loops, max(seconds - loops, 0.0), evaluations, _warnings(text))
+    return Outcome(0, samples, loops, max(seconds - loops, 0.0), evaluations, _warnings(text), watched)
 
 
 def _warnings(text):
@@ -185,10 +208,19 @@ def _warnings(text):
     return tuple(dict.fromkeys(warnings))
 
 
+def _end_with_caller(file):
+    """End this process, whatever LAMMPS is doing, once the other end of its connection is closed."""
+    watch = select.poll()
+    watch.register(file, getattr(select, "POLLRDHUP", 0))  # POLLHUP is always reported
+    watch.poll()
+    os._exit(1)
+
+
 def serve(address):
     """Answer requests (function name, arguments) until the other side is gone."""
     os.environ["OMP_NUM_THREADS"] = "1"
     connection = Client(address, "AF_UNIX")
+    threading.Thread(target=_end_with_caller, args=(connection.fileno(),), daemon=True).start()
     connection.send(os.getpid())
     functions = {"follow": follow, "trial": trial}
     while True:

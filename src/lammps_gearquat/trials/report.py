@@ -2,14 +2,15 @@
 
 import math
 
-from gearquat_analysis.tables import aligned, write_rows
+from gearquat_analysis.tables import aligned, rounded, with_error, write_rows
 
-from . import NORMS
+from . import NORMS, drift
 from .evaluate import usable_step
+from .script import conserved
 
 
 def _quantity(value, unit, digits=3):
-    return f"{value:.{digits}g}" + (f" {unit}" if unit else "")
+    return rounded(value, digits) + (f" {unit}" if unit else "")
 
 
 def _count(number, word):
@@ -41,19 +42,19 @@ def cost_text(deck, costs):
     lines += [
         f"The error is the {NORMS[costs.norm]} error of the bodies at t = {end}"
         + (f", in {unit}," if unit else ",")
-        + f" against\n    gear/quat {reference.label}, step {reference.dt:.3g};",
-        f"    gear/quat {confirmation.label}, step {confirmation.dt:.3g}, confirms that reference to"
+        + f" against\n    gear/quat {reference.label}, step {rounded(reference.dt)};",
+        f"    gear/quat {confirmation.label}, step {rounded(confirmation.dt)}, confirms that reference to"
         f" {_quantity(costs.doubt, unit, 2)}.",
     ]
     lines += [f"Note: {note}" for note in costs.notes]
     own = costs.points().get(None, []) if deck.own == deck.lines else []
     as_it_is = [point for point in own if abs(point.dt / deck.dt - 1) < 0.01]
     if as_it_is:
-        lines.append(f"As it is, the deck ends with an error of {as_it_is[0].error:.2g}.")
+        lines.append(f"As it is, the deck ends with an error of {rounded(as_it_is[0].error, 2)}.")
     seconds = f"seconds per {deck.time_unit or 'time unit'}"
-    header = ["error", "fix line", "timestep", seconds, "speed-up", "start (s)"]
+    header = ["error", "fix line", "timestep", seconds, "speed-up", "start (s)", f"drift ({_drift_unit(deck)})"]
     lines += ["", aligned(header, [_cost_cells(costs, row) for row in costs.rows])]
-    lines += ["", *_explained(costs), "", *_script_lines(deck, costs)]
+    lines += ["", *_explained(costs), "", *_script_lines(deck, costs), *_drift_lines(deck, costs)]
     return "\n".join(lines)
 
 
@@ -61,17 +62,78 @@ def _cost_cells(costs, row):
     price, cells = row.choice, [f"{row.error:.1e}"]
     if price is None:
         known = "is not reached" if row.error > costs.doubt_limit else "cannot be judged"
-        return cells + [known, "-", "-", "-", "-"]
+        return cells + [known, *"-----"]
     speed_up = "-"
     if row.own and not row.keep:
-        speed_up = "~" * (row.own.kind != "measured") + f"{row.own.seconds / price.seconds:.3g}"
+        speed_up = "~" * (row.own.kind != "measured") + rounded(row.own.seconds / price.seconds)
+    found = costs.drifts.get(row.recommended, drift.Drift())
     return cells + [
         "keep your fix" if row.keep else "gear/quat " + price.method,
         f"{usable_step(price.dt):g}",
-        ("<= " if price.kind == "at most" else "") + f"{price.seconds / costs.end:.3g}",
+        ("<= " if price.kind == "at most" else "") + f"{rounded(price.seconds / costs.end)}",
         speed_up,
-        f"{price.start_seconds:.2g}",
+        rounded(price.start_seconds, 2),
+        "not measured" if math.isnan(found.rate) else with_error(found.rate, found.error),
     ]
+
+
+# --- the drift ------------------------------------------------------------------------------------
+def _drift_unit(deck):
+    return f"kT/{'ns' if deck.time_unit else '1000 time units'}/dof"
+
+
+def _drift(deck, found):
+    return with_error(found.rate, found.error, _drift_unit(deck))
+
+
+def _drift_lines(deck, costs):
+    """Warnings of steps whose energy drifts, or may do so, and how to measure that."""
+    lines, doubtful = [], []
+    for (keywords, dt), found in costs.drifts.items():
+        name = f"{'your fix' if keywords is None else f'gear/quat {keywords}'}, timestep {dt:g}"
+        measured = f"{_drift(deck, found)} over {_quantity(found.time, deck.time_unit)}"
+        if found.failure:
+            lines += [
+                f"WARNING: {name}: a run that was longer than the trials ended with an error:",
+                f"    {found.failure}",
+            ]
+        if found.drifts:
+            lines += [
+                f"WARNING: {name}: the energy drifts by {measured}.",
+                f"    A drift above {drift.BOUND:g} spoils long runs: take this step for short ones only, or a shorter"
+                " one of the table.",
+            ]
+        elif not found.holds and not (found.failure and found.reason):
+            doubtful.append(keywords)
+            lines += [
+                f"WARNING: {name}: whether the energy drifts in long runs has not been measured:",
+                f"    {found.reason or f'{measured} do not tell whether it is above {drift.BOUND:g}'}.",
+            ]
+    return ["", *lines, *_how_to_measure(deck, doubtful)] if lines else []
+
+
+def _how_to_measure(deck, doubtful):
+    """Lines for a script, from whose log the drift of the ``doubtful`` keywords can be computed."""
+    if not doubtful:
+        return []
+    energy, kinetic, rows = conserved(deck.fix_lines_of(next(filter(None, doubtful), None)), deck.partial)
+    if energy != "econserve":
+        rows, energy = [*rows, f"variable conserved equal {energy}"], "v_conserved"
+    if kinetic != "ke":
+        rows, kinetic = [*rows, f"variable kinetic equal {kinetic}"], "v_kinetic"
+    columns = " ".join(dict.fromkeys(["econserve", energy, kinetic]))  # without the first LAMMPS lacks the others
+    rows += [f"thermo_style custom step time {columns}", "thermo_modify norm no format float %.15g", "thermo 100"]
+    time = deck.time_unit or "time unit"
+    long_enough = _quantity(drift.LONGEST * drift.nanosecond(deck), deck.time_unit)
+    return [
+        f"To measure a drift, write these lines below its fix, and run {long_enough} or more:",
+        *(f"    {row}" for row in rows),
+        f"The slope of {energy} against time, divided by twice the mean of {kinetic}, is the drift in kT per {time} and",
+        f"degree of freedom, and {rounded(drift.nanosecond(deck), 6)} times that the one in {_drift_unit(deck)}.",
+    ]
+
+
+# --- what else is said of the cost ----------------------------------------------------------------
 
 
 def _explained(costs):
@@ -82,10 +144,13 @@ def _explained(costs):
         "Each timestep is measured: a trial at this step or a longer one held the error, with the doubt",
         "about the reference added.  <= marks a cost where no step a little longer was tried.  Speed-up is",
         "over the deck's own fix at the same error; ~ marks one where the own cost is not known closely.",
+        "Where a smaller error was measured as cheaper, its step serves the larger one as well.  Drift is the slope of",
+        "the conserved energy over a further run, in kT of the mean kinetic energy; forces that are no gradient of a",
+        "potential, such as friction, change that energy as well.",
     ]
     starts = {p.method: p for row in costs.rows for p in (row.own, row.best) if p}
     words = [
-        f"{p.start_seconds:.2g} s and {_count(p.start_evaluations, 'evaluation')} with {name}"
+        f"{rounded(p.start_seconds, 2)} s and {_count(p.start_evaluations, 'evaluation')} with {name}"
         for name, p in starts.items()
     ]
     lines += [f"A start takes {', '.join(words)}."] if words else []
@@ -94,7 +159,7 @@ def _explained(costs):
         return [*lines, "Each trial was timed once: a longer --budget leaves time for repetitions."]
     spread = sorted(max(seconds) / min(seconds) for seconds in timings)
     return lines + [
-        f"Times are medians of at least {min(map(len, timings))} interleaved timings; the slowest timing"
+        f"Times are the shortest of at least {min(map(len, timings))} interleaved timings; the slowest timing"
         f" of a trial is {spread[len(spread) // 2]:.2f} times the",
         f"fastest in the middle trial, and {spread[-1]:.2f} times at most.",
     ]
@@ -109,6 +174,11 @@ def _script_lines(deck, costs):
     for row in reached:
         lines.append(f"For an error of {row.error:.1e} at t = {costs.end:g}:")
         keeping = ["# keep your fix: no other is faster"] if row.keep else []
+        found = costs.drifts.get(row.recommended, drift.Drift())
+        if found.drifts:
+            keeping.append(f"# for short runs: the energy drifts by {_drift(deck, found)}")
+        if found.failure:
+            keeping.append("# for short runs: a longer one ended with an error, see the warning below")
         line = None if row.keep else row.best.method
         words = [*keeping, *deck.fix_lines(line), f"timestep {usable_step(row.choice.dt):g}"]
         lines += [f"    {word}" for word in words]
@@ -117,7 +187,7 @@ def _script_lines(deck, costs):
             remedy = "try a longer --budget, a shorter --time or a larger --error."
             lines.append(f"No trial within the budget had an error of {row.error:.1e}: {remedy}")
             if row.own:
-                lines.append(f"    Your own fix would need timestep {row.own.dt:.2g}, as extrapolated.")
+                lines.append(f"    Your own fix would need timestep {rounded(row.own.dt, 2)}, as extrapolated.")
     return lines or ["None of the errors can be judged: try --budget, a shorter --time or a larger --error."]
 
 
@@ -131,16 +201,18 @@ def write_costs(folder, deck, costs):
             names = ["dt", *fields[1:]]
             cells += [getattr(price, name) if price else "" for name in names]
         ratio = row.own.seconds / row.best.seconds if row.own and row.best else ""
-        rows.append([*cells, ratio, "yes" if row.keep else "no", costs.end])
+        found = costs.drifts.get(row.recommended) if row.choice else None
+        drifts = [found.rate, found.error, found.time] if found and found.time else [""] * 3
+        rows.append([*cells, ratio, "yes" if row.keep else "no", costs.end, *drifts])
     own = [f"own_{name}" for name in fields]
-    header = ["error", "keywords", *fields, *own, "speed_up", "keep", "time"]
+    header = ["error", "keywords", *fields, *own, "speed_up", "keep", "time", "drift", "drift_error", "drift_time"]
     write_rows(folder / "cost.csv", header, rows)
     header = ["keywords", "timestep", "steps", "start_evaluations"]
     header += [norm.replace(" ", "_") for norm in NORMS]
-    header += ["seconds_median", "seconds_least", "seconds_most", "timings", "start_seconds"]
+    header += ["seconds_least", "seconds_most", "timings", "start_seconds"]
     rows = [
-        [trial.label, trial.dt, trial.steps, trial.start_evaluations, *errors, trial.median]
-        + [min(trial.seconds), max(trial.seconds), len(trial.seconds), trial.median_start]
+        [trial.label, trial.dt, trial.steps, trial.start_evaluations, *errors]
+        + [trial.fastest, max(trial.seconds), len(trial.seconds), trial.fastest_start]
         for trial, errors in costs.trials
     ]
     write_rows(folder / "trials.csv", header, rows)
@@ -165,10 +237,11 @@ def horizon_text(deck, horizon):
         lines.append(f"No Lyapunov time can be given: {horizon.no_growth}.")
     else:
         spread = growth.lyapunov_time * growth.error / growth.rate
+        lyapunov = with_error(growth.lyapunov_time, spread, time)
         lines.append(
-            f"The Lyapunov time is {_quantity(growth.lyapunov_time, time)} ± {spread:.1g}: the difference"
+            f"The Lyapunov time is {lyapunov}: the difference"
             f" grows by a factor of e in it, fitted from t = {growth.begin:g} to {growth.end:g}, where the"
-            f" exponential grows {growth.factor:.1g} times."
+            f" exponential grows {rounded(growth.factor, 1)} times."
         )
     return "\n".join(lines)
 

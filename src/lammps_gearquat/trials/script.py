@@ -209,6 +209,24 @@ class FixLine:
         return " ".join(f"{key} {values[0]}" for key, values in (own | new).items())
 
 
+def conserved(lines, partial=False):
+    """Energies while these FixLines move the bodies, as formulas of LAMMPS: (conserved, kinetic, commands before them).
+
+    ``partial``: the kinetic energy of atoms is not that of the bodies, which are all that moves.
+    """
+    own = [line for line in lines if line.style == "gear/quat"]
+    heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which econserve does not have
+    commands = [f"fix_modify {line.id} energy yes" for line in own if not line.has_chains]
+    if not partial:
+        return "+".join(["econserve", *heats]), "ke", commands
+    parts = [f"f_{line.id}[{k}]" for line in own for k in (1, 2)]
+    for line in lines:
+        if line not in own:
+            commands += [f"compute {line.id}_{kind} all {kind}/rigid {line.id}" for kind in ("ke", "erotate")]
+            parts += [f"c_{line.id}_{kind}" for kind in ("ke", "erotate")]
+    return "+".join(["pe", "ecouple", *parts, *heats]), "+".join(parts), commands
+
+
 def pairs(text):
     """Keywords of fix gear/quat in ``text``: pairs (keyword, (value,))."""
     words, known = text.split(), keywords.names("integration")

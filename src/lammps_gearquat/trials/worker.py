@@ -11,9 +11,11 @@ import socket
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
+
+from gearquat_analysis.tables import rounded
 
 from .script import DeckError
 
@@ -41,7 +43,7 @@ class Situation:
 
     ``start``, a Start; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
     by ID; ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
-    ``masses`` (n,); ``continued``, the sites ``test_steps`` steps later.
+    ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``continued``, the sites ``test_steps`` steps later.
     """
 
     start: object
@@ -51,13 +53,14 @@ class Situation:
     sites: Sites
     labels: object
     masses: object
+    rotating: bool
     test_steps: int = 0
     continued: Sites = None
 
 
 @dataclass
 class Outcome:
-    """What one trial left on one rank: ``samples``, a list of Sites; and on rank 0
+    """What one trial left on one rank: ``samples``, a list of Sites, and ``energies``, as in Trial; on rank 0
 
     ``seconds``, wall time of the steps; ``start_seconds``, of the set-up and of the start of the
     fix; ``start_evaluations``, evaluations of the forces that the start of fix gear/quat took;
@@ -70,6 +73,7 @@ class Outcome:
     start_seconds: float = 0.0
     start_evaluations: int = 0
     warnings: tuple = ()
+    energies: list = field(default_factory=list)
 
 
 def launcher(ranks):
@@ -187,7 +191,7 @@ class Worker:
             if failed and not ready:
                 break
             if end is not None and time.monotonic() > end and not failed:
-                raise TrialError(f"{NOT_FINISHED} after {timeout:.3g} s")
+                raise TrialError(f"{NOT_FINISHED} after {rounded(timeout)} s")
         return answers
 
     def _last_words(self):

@@ -1,0 +1,164 @@
+"""How trials end before their time: bodies that leave the box, Ctrl-C, signals; and what a batch log has of them."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import sysconfig
+import time
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from clumps import FOR_GEAR
+
+from lammps_gearquat.commands import common
+from lammps_gearquat.commands.cost import cost as cost_command
+from lammps_gearquat.commands.horizon import horizon as horizon_command
+from lammps_gearquat.trials.explain import explained
+from lammps_gearquat.trials.measure import Deck
+
+SMALL = {"region box block -30 30 -30 30 -30 30": "region box block -2 5 -2 5 -2 5"}
+WALLS, FREE = "boundary f f f", "boundary m m m"
+
+
+def runs(command, *words):
+    return CliRunner().invoke(command, [str(word) for word in words])
+
+
+# --- bodies that leave ------------------------------------------------------------------------------
+@pytest.mark.parametrize("style", ["gear/quat", "rigid"])
+def test_bodies_that_leave_the_box(make_deck, tmp_path, style):
+    """The message has the cause and two remedies, and both work."""
+    words = ["--var", "style", style, "--time", 40, "--out", tmp_path / "out"]
+    found = runs(horizon_command, make_deck(**SMALL, **FOR_GEAR), *words)
+    assert found.exit_code == 1
+    said = re.search(r"write '(.*)' instead of '(.*)', so that .* end before it with --time (\S+) \(LAMMPS: ", found.output)
+    assert said and said.groups()[:2] == (FREE, WALLS), found.output
+    assert "molecules left the box, whose boundary is fixed" in found.output and "Last command" not in found.output
+    words[4] = said[3]
+    assert runs(horizon_command, make_deck(**SMALL, **FOR_GEAR), *words).exit_code == 0
+    words[4] = 40
+    assert runs(horizon_command, make_deck(**SMALL, **FOR_GEAR, **{WALLS: FREE}), *words).exit_code == 0
+
+
+def test_cost_of_bodies_that_leave_the_box_later(make_deck, tmp_path):
+    """What happens after --time does not matter."""
+    words = ["--budget", 12, "--time", 0.2, "--error", 1e-5, "--timings", 1, "--out", tmp_path / "out"]
+    found = runs(cost_command, make_deck(**SMALL, **FOR_GEAR), *words)
+    assert found.exit_code == 0, found.output
+    assert "drift (kT/1000 time units/dof)" in found.output
+
+
+def test_a_step_that_is_too_long_is_told(make_deck):
+    """And the remedy is a step that is shorter than this one."""
+    with Deck(make_deck(**FOR_GEAR, **{WALLS: "boundary p p p"})) as deck:
+        said = explained("ERROR: Lost atoms: original 9 current 8\nFor more (thermo.cpp:1)", deck, 0.1, 0.3)
+        own = explained("ERROR: Out of range atoms - cannot compute PPPM", deck, deck.dt)
+        assert explained("values: 99 is not from 4 to 12", deck, 0.1) == "values: 99 is not from 4 to 12"
+    assert said.startswith("after t = 0.3, atoms moved so far in a step of 0.1 that LAMMPS lost")
+    assert "a step of 0.004, that of the script, or shorter" in said and said.endswith("(LAMMPS: Lost atoms: original 9 current 8)")
+    assert "lmp -in in.clumps has to reach" in own
+
+
+# --- signals ------------------------------------------------------------------------------------------
+def workers(folder):
+    """Processes of LAMMPS whose socket is in ``folder``."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = path.read_bytes().decode(errors="replace")
+        except OSError:
+            continue
+        if "lammps_gearquat.trials.process" in words and str(folder) in words:
+            found.append(int(path.parent.name))
+    return found
+
+
+def wait_until(condition, seconds=60.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+@pytest.fixture
+def started(make_deck, tmp_path):
+    """A long run of a command with this name, at work in LAMMPS; its processes have sockets in the folder."""
+    begun = []
+
+    def start(name, *words):
+        program = Path(sysconfig.get_path("scripts")) / "gearquat"
+        free = {WALLS: FREE, "velocity all create 0.5": "velocity all create 0.01"}
+        command = [program, name, make_deck(**free, **FOR_GEAR), "--time", "1e5", "--out", tmp_path / "out", *words]
+        environment = {**os.environ, "TMPDIR": str(tmp_path)}
+        begun.append(subprocess.Popen(list(map(str, command)), env=environment, stderr=subprocess.PIPE, text=True))
+        wait_until(lambda: workers(tmp_path))
+        time.sleep(1.0)
+        return begun[0]
+
+    yield start
+    for process in begun:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize("name", ["cost", "horizon"])
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_a_command_that_is_interrupted(started, tmp_path, name, sent):
+    """It says what is kept, in one line, and leaves no process and no folder."""
+    process = started(name)
+    process.send_signal(sent)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert f"Interrupted: trials are not kept, and nothing was written to {tmp_path / 'out'}" in said
+    assert "Traceback" not in said and not (tmp_path / "out").exists()
+    assert not workers(tmp_path) and not list(tmp_path.glob("gearquat-*"))
+
+
+#: a trial of 10^9 steps, in one segment
+ENDLESS = """
+import sys
+from lammps_gearquat.trials.measure import Deck
+with Deck(sys.argv[1], ranks=int(sys.argv[2])) as deck:
+    print("begins", flush=True)
+    deck.run(None, [10**9], 1e-6)
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_caller_that_is_killed_leaves_no_lammps(make_deck, tmp_path, ranks):
+    words = [sys.executable, "-c", ENDLESS, make_deck(), ranks]
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    with subprocess.Popen(list(map(str, words)), env=environment, stdout=subprocess.PIPE, text=True) as caller:
+        assert caller.stdout.readline() == "begins\n"
+        time.sleep(1.0)
+        begun = workers(tmp_path)
+        caller.kill()
+    assert begun
+    wait_until(lambda: not workers(tmp_path), 20.0)
+
+
+# --- progress -----------------------------------------------------------------------------------------
+def test_a_batch_log_has_lines_of_progress(make_deck, tmp_path, monkeypatch):
+    monkeypatch.setattr(common, "EVERY", 0.0)
+    words = ["--time", 2.0, "--out", tmp_path / "out"]
+    found = runs(horizon_command, make_deck(), *words)
+    lines = found.stderr.splitlines()
+    assert any(re.match(r"first run: \d+ % after \d+:\d+$", line) for line in lines), found.stderr
+    assert any(line.startswith("second run:") for line in lines) and "\r" not in found.stderr
+    monkeypatch.setattr(common, "EVERY", 1e9)
+    assert "run:" not in runs(horizon_command, make_deck(), *words).stderr
+
+
+def test_lines_of_progress_are_apart(monkeypatch):
+    now, told = [0.0], []
+    monkeypatch.setattr(common, "monotonic", lambda: now[0])
+    stream = type("Stream", (), {"write": staticmethod(told.append), "flush": staticmethod(lambda: None)})
+    log = common._Log(stream)
+    for second in range(1, 601):
+        now[0] = float(second)
+        log.write(f"\r{second} of 600   ")
+        log.write("\n")
+    assert told == [f"{60 * k} of 600\n" for k in range(1, 11)]
