@@ -242,6 +242,19 @@ def _flat(records):
     return flat({name: records[name] for name in records.dtype.names})
 
 
+def _require_whole(atoms):
+    """Raises ValueError unless ``atoms`` are all atoms of their bodies."""
+    left_out = atoms.residues.atoms - atoms
+    left_out = left_out[left_out.resids != 0]
+    if len(left_out):
+        body = left_out[0].residue
+        raise ValueError(
+            f"{len(left_out)} atoms of {len(left_out.residues)} bodies are left out: of body {body.resid}, which has"
+            f" {len(body.atoms)}, {len(left_out[left_out.resids == body.resid])}; whole bodies are required, which 'same"
+            " residue as (...)' selects, with the selection between the parentheses"
+        )
+
+
 class Poses(_FrameTable):
     """Poses and motion of rigid bodies from the positions and velocities of their sites.
 
@@ -276,7 +289,7 @@ class Poses(_FrameTable):
     Where only wrapped positions are known, bodies are made whole by nearest images (right if smaller
     than half the box) and followed from frame to frame (right if they move less than half the box).
 
-    Raises ValueError for bodies without mass, atoms that are in the group twice, a reference of another shape and
+    Raises ValueError for parts of bodies, bodies without mass, atoms that are in the group twice, a reference of another shape and
     coordinates that are not finite.
     ``run`` warns of bodies that are not rigid: if a residual is above 5 % of the largest distance of a site from the
     center of mass and above 4e-5 of a coordinate, as six digits round it.  ``results`` of an analysis that has not run
@@ -294,6 +307,7 @@ class Poses(_FrameTable):
 
     def __init__(self, atoms, reference="first", units=None, potential=None, out=None, **kwargs):
         atoms = atoms.atoms
+        _require_whole(atoms)
         self.bodies = Bodies(atoms.resids, atoms.masses)
         self.mass = self.bodies.mass
         trajectory = atoms.universe.trajectory
