@@ -17,7 +17,13 @@ PLATEAU = 0.9999
 
 
 class Estimate(NamedTuple):
-    """A value with its standard error; both are NaN, and ``why`` says why, if an assumption of the error does not hold."""
+    """A value with its standard error, NaN if an assumption of the error does not hold; ``why`` says which one.
+
+    >>> import numpy as np
+    >>> from gearquat_analysis.blocks import of_series
+    >>> of_series(np.zeros(5)).why
+    '5 frames are too few for 8 independent blocks'
+    """
 
     value: float
     error: float

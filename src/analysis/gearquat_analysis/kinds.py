@@ -16,7 +16,13 @@ SAME_MASS, SAME_MOMENTS = 1e-4, 0.02
 
 
 class Kind(NamedTuple):
-    """Bodies with the same sites: their ``name``, "" if all are of one kind, and their places (b,)."""
+    """Bodies with the same sites: their ``name``, "" if all are of one kind, and their places (b,) among all bodies.
+
+    >>> from gearquat_analysis import Poses, open_dump
+    >>> from gearquat_analysis.kinds import kinds
+    >>> [(kind.name, len(kind.bodies)) for kind in kinds(Poses(open_dump("nitrogen.dump").atoms).run(stop=2))]
+    [('', 64)]
+    """
 
     name: str
     bodies: np.ndarray

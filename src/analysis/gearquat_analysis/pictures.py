@@ -129,7 +129,7 @@ def draw_averages(averages, path=None):
     None if there is none.
 
     >>> from gearquat_analysis import Poses, averages, open_dump, pictures
-    >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
+    >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run())
     >>> [panel.get_xlabel() for panel in pictures.draw_averages(found, "averages.png").axes]
     ['temperature (K)', 'diffusion coefficient (Å²/fs)', 'correlation time (fs)']
     """

@@ -25,6 +25,7 @@ from .tables import flat
 from .units import UNITS, style_of, unit_of
 from . import export, mapped
 from .bodies import Bodies
+from .report import counted
 from .superposition import rotate, superpose
 
 VECTOR, ONE = (float, (3,)), (float,)
@@ -248,10 +249,12 @@ def _require_whole(atoms):
     left_out = left_out[left_out.resids != 0]
     if len(left_out):
         body = left_out[0].residue
+        own = len(left_out[left_out.resids == body.resid])
+        number = counted(len(left_out.residues), "body", "bodies")
         raise ValueError(
-            f"{len(left_out)} atoms of {len(left_out.residues)} bodies are left out: of body {body.resid}, which has"
-            f" {len(body.atoms)}, {len(left_out[left_out.resids == body.resid])}; whole bodies are required, which 'same"
-            " residue as (...)' selects, with the selection between the parentheses"
+            f"parts of bodies are selected: {counted(len(left_out), 'atom')} of {number} left out, {own} of the"
+            f" {len(body.atoms)} of body {body.resid}; whole bodies are required, which 'same residue as (...)' selects, with"
+            " the selection between the parentheses"
         )
 
 
