@@ -27,8 +27,8 @@ FEWEST = 20
 AT_REST = 1e-3
 #: angular velocities of another axis, by those about z, that are rounding in a run of dimension 2
 IN_PLANE = 1e-6
-#: correlation at which its integral ends, and above which its tail is fitted
-TAIL, BEFORE_TAIL = 0.1, 0.3
+#: correlation at which its integral ends, lower ones for functions with another tail, and where the fit of a tail begins
+TAIL, LOWER, BEFORE_TAIL = 0.1, (0.05, 0.02), 3.0
 #: fewest frames until then
 RESOLVED = 3
 #: how far the tail is compared with the exponential, in times of its beginning and in blocks; differences that are
@@ -169,36 +169,36 @@ def _long_blocks(frames):
     return [slice(first + i * length, first + (i + 1) * length) for i in range(LONG_BLOCKS)] if length >= FEWEST else []
 
 
-def _end(correlation):
-    """Number of the first lag in the first half at which a correlation function (F,) is below 0.1; 0 if there is none."""
-    return int(np.argmax(correlation[: len(correlation) // 2] < TAIL))
+def _end(correlation, tail):
+    """Number of the first lag in the first half at which a correlation function (F,) is below ``tail``; 0 without one."""
+    return int(np.argmax(correlation[: len(correlation) // 2] < tail))
 
 
-def _decay(lag, correlation, end):
-    """Time in which a correlation function decays by a factor e before lag ``end``, since it was 0.3."""
-    before = min(int(np.argmax(correlation < BEFORE_TAIL)), end - 1)
+def _decay(lag, correlation, end, tail):
+    """Time in which a correlation function decays by a factor e before lag ``end``, since it was three times ``tail``."""
+    before = min(int(np.argmax(correlation < BEFORE_TAIL * tail)), end - 1)
     if not correlation[end] > 0.0:
         return 0.0
     return (lag[end] - lag[before]) / math.log(correlation[before] / correlation[end])
 
 
-def integral_time(lag, correlation):
+def integral_time(lag, correlation, tail=TAIL):
     """Integral of a correlation function (F,) that begins with 1, over all times.
 
-    It is summed until the function falls below 0.1; the rest is that of the exponential which it follows since it
-    was 0.3.  NaN if it does not fall so far within half of the lags.
+    It is summed until the function falls below ``tail``; the rest is that of the exponential which it follows since it
+    was three times that.  NaN if it does not fall so far within half of the lags.
     """
-    if not (end := _end(correlation)):
+    if not (end := _end(correlation, tail)):
         return math.nan
-    rest = correlation[end] * _decay(lag, correlation, end)
+    rest = correlation[end] * _decay(lag, correlation, end, tail)
     return float(np.trapezoid(correlation[: end + 1], lag[: end + 1]) + rest)
 
 
-def _beyond(lag, correlation, last):
+def _beyond(lag, correlation, tail, last):
     """Integral from where the tail begins to lag number ``last``, less that of the exponential; NaN without a tail."""
-    if not (end := _end(correlation)):
+    if not (end := _end(correlation, tail)):
         return math.nan
-    decay = _decay(lag, correlation, end)
+    decay = _decay(lag, correlation, end, tail)
     rest = correlation[end] * decay * -math.expm1(-(lag[last] - lag[end]) / decay) if decay else 0.0
     return float(np.trapezoid(correlation[end : last + 1], lag[end : last + 1]) - rest)
 
@@ -206,30 +206,40 @@ def _beyond(lag, correlation, last):
 def rotational_time(time, q, axis, order):
     """Estimate of the correlation time of a body's axis, the integral of ``orientation_correlation`` over all times.
 
-    ``integral_time`` finds it.  Its statistical error is the larger one of the scatter of blocks of the run and that
-    of groups of bodies (from 10 bodies on).  An error of the distance between frames is added to it in quadrature, and
-    one of the tail if the function is not the exponential there.  NaN if blocks are too short for the correlation to
-    decay, if it decays within few frames, and if the tail is far from exponential, as that of a function that
-    oscillates or has a slow part.  ``q`` (F, B, 4), ``time`` (F,), evenly spaced.
+    ``integral_time`` finds it, with a tail below 0.1, or below 0.05 or 0.02 if the function is not exponential before.
+    Its statistical error is the larger one of the scatter of blocks of the run and that of groups of bodies (from 10
+    bodies on).  An error of the distance between frames is added to it in quadrature, and one of the tail.  NaN if
+    blocks are too short for the correlation to decay, if it decays within few frames, and if its tail is never
+    exponential, as that of a function that oscillates or has a slow part.  ``q`` (F, B, 4), ``time`` (F,), evenly spaced.
     """
     blocks, lag = _long_blocks(len(time)), correlations.lags(time)
     if not blocks:
         return Estimate.missing(f"{len(time)} frames are too few: {LONG_BLOCKS * FEWEST} are required")
     parts = [correlations.orientation_correlation(q[own], axis, order) for own in blocks]
-    if not all(map(_end, parts)):
-        return Estimate.missing(f"the correlation does not fall below {TAIL} within a tenth of the run")
     whole, without = _without_groups(q, axis, order)
-    end = _end(whole)
+    found = Estimate.missing(f"the correlation does not fall below {TAIL} within a tenth of the run")
+    for tail in (TAIL, *LOWER):
+        if not all(_end(one, tail) for one in (*parts, whole)):
+            return found
+        found = _correlation_time(lag, whole, parts, without, tail)
+        if not np.isnan(found.value):
+            return found
+    return found
+
+
+def _correlation_time(lag, whole, parts, without, tail):
+    """Estimate of the integral of a function (F,) that is exponential below ``tail``."""
+    end = _end(whole, tail)
     if end < RESOLVED:
-        return Estimate.missing(f"the correlation falls below {TAIL} within {end + 1} frames; dump more often")
+        return Estimate.missing(f"the correlation falls below {tail} within {end + 1} frames; dump more often")
     last = min(LATER * end, int(OF_BLOCK * len(parts[0])))
-    value, statistical = _with_error(integral_time, lag, whole, parts, without)
-    beyond, uncertain = _with_error(_beyond, lag, whole, parts, without, last)
+    value, statistical = _with_error(integral_time, lag, whole, parts, without, tail)
+    beyond, uncertain = _with_error(_beyond, lag, whole, parts, without, tail, last)
     significant = abs(beyond) > SIGNIFICANT * uncertain
     if significant and abs(beyond) > TOO_LARGE * value:
-        return Estimate.missing(f"the correlation does not decay as an exponential below {TAIL}")
+        return Estimate.missing(f"the correlation does not decay as an exponential below {tail}")
     # the rule of trapezoids has three times the error of this at half of the distance
-    spacing = (integral_time(lag[::2], whole[::2]) - value) / 3.0
+    spacing = (integral_time(lag[::2], whole[::2], tail) - value) / 3.0
     return Estimate(value, math.hypot(statistical, spacing, beyond if significant else 0.0))
 
 

@@ -72,7 +72,7 @@ def diffusion(time, center, dimensions=3):
     >>> import numpy as np
     >>> from gearquat_analysis.diffusion import diffusion
     >>> walk = np.random.default_rng(1).normal(size=(2000, 50, 3)).cumsum(axis=0)
-    >>> abs(diffusion(np.arange(2000.0), walk).value - 0.5) < 0.02
+    >>> bool(abs(diffusion(np.arange(2000.0), walk).value - 0.5) < 0.02)
     True
     >>> diffusion(np.arange(2000.0), np.arange(2000.0)[:, None, None] * walk[0]).why
     'the mean-square displacement is not linear up to a quarter of the run'
