@@ -225,7 +225,7 @@ def test_diffusion_of_a_random_walk():
     found = averages.diffusion(dt * np.arange(FRAMES), center)
     expected = spread**2 / (2 * dt)
     assert found[0] == pytest.approx(expected, rel=0.03) and found[1] < 0.03 * expected
-    assert np.isnan(averages.diffusion(np.arange(50.0), center[:50])).all()
+    assert np.isnan(averages.diffusion(np.arange(50.0), center[:50])[:2]).all()
 
 
 def test_times_of_rotational_diffusion():
@@ -238,9 +238,29 @@ def test_times_of_rotational_diffusion():
         turn = turn * Rotation.from_rotvec(spread * rng.normal(size=(400, 3)))
     time = dt * np.arange(FRAMES)
     for order, expected in ((1, dt / spread**2), (2, dt / (3 * spread**2))):
-        value, error = averages.rotational_time(time, q, [0.0, 0.6, 0.8], order)
+        value, error, _ = averages.rotational_time(time, q, [0.0, 0.6, 0.8], order)
         assert value == pytest.approx(expected, rel=0.06) and error < 0.06 * expected
-    assert np.isnan(averages.rotational_time(time[:200], q[:200], [0, 0, 1], 1)).all()
+    assert np.isnan(averages.rotational_time(time[:200], q[:200], [0, 0, 1], 1)[:2]).all()
+
+
+def turning_about_z(angles):
+    """Quaternions (F, B, 4) of turns by angles (F, B)."""
+    return np.stack([np.cos(angles / 2.0), 0.0 * angles, 0.0 * angles, np.sin(angles / 2.0)], axis=-1)
+
+
+def test_correlation_times_without_an_exponential_tail():
+    """Free rotors, and turns of which a tenth of the bodies makes slow ones, have none; all alike they have one."""
+    rng = np.random.default_rng(5)
+    steps = 0.5 * rng.normal(size=(1000, 100))
+    for slow, expected in ((1.0, True), (0.2, False)):
+        scaled = steps * np.where(np.arange(100) < 15, slow, 1.0)
+        one = averages.rotational_time(np.arange(1000.0), turning_about_z(np.cumsum(scaled, axis=0)), [1.0, 0, 0], 1)
+        assert np.isfinite(one.value) == expected
+        if expected:
+            assert abs(one.value - 8.0) < 4.0 * one.error < 2.0  # 2 / variance of a step
+    free = np.arange(1000.0)[:, None] * 0.3 * rng.normal(size=100)
+    one = averages.rotational_time(np.arange(1000.0), turning_about_z(1.0 + 0.2 * np.arange(1000.0)[:, None] + 0.2 * free), [1, 0, 0], 1)
+    assert np.isnan(one.value) and "exponential" in one.why
 
 
 def test_the_integral_of_an_exponential():
@@ -253,9 +273,9 @@ def test_what_is_too_short_is_told(tmp_path):
     found = averages.averages(thermal())
     text = average_lines(found)
     assert "The temperature of translation is 1.3" in text and " ± " in text
-    assert "too short for" not in average_lines(found[:5])
-    short = [*found[:1], averages.Average("correlation time", float("nan"), float("nan"), "")]
-    assert "The run is too short for 1 further average with" in average_lines(short)
+    assert "No " not in average_lines(found[:5])
+    short = [*found[:1], averages.Average("correlation time", float("nan"), float("nan"), "", "it is short")]
+    assert "No correlation time: it is short." in average_lines(short)
     write_averages(tmp_path / "a.csv", short)
     rows = (tmp_path / "a.csv").read_text().splitlines()
-    assert rows[0] == "average,value,standard error,unit" and rows[2] == "correlation time,,,"
+    assert rows[0] == "average,value,standard error,unit,left out because" and rows[2] == "correlation time,,,,it is short"

@@ -148,9 +148,73 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     for name in ("totals.png", "correlations.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     # files that another analysis does not write are not those of the one before
-    result = analyze(water / "water.dump", tmp_path, "--units", "real", "--frames", ":2")
+    result = analyze(water / "water.dump", tmp_path, "--units", "real")
+    assert result.exit_code == 0 and "The earlier analysis in" in result.output
+    assert not (tmp_path / "poses.csv").exists() and (tmp_path / "averages.csv").exists()
+    few = tmp_path / "few"
+    result = analyze(water / "water.dump", few, "--units", "real", "--frames", ":2")
     assert result.exit_code == 0, result.output
-    assert {path.name for path in tmp_path.iterdir()} == {"poses.npy", "bodies.csv", "totals.csv", "totals.png"}
+    left = {"poses.npy", "bodies.csv", "totals.csv", "totals.png", "settings.json"}
+    assert {path.name for path in few.iterdir()} == left
+
+
+def files(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--timestep", "2"], "(--timestep)"),
+        (["--select", "resid 1", "--frames", ":5"], "(--select, --frames)"),
+        (["--units", "lj"], "(--units)"),
+    ],
+)
+def test_an_analysis_of_other_settings_is_kept(tmp_path, arguments, text):
+    """Nothing is written where another one is; the same one is repeated, also of a dump that has grown."""
+    path, motion = tmp_path / "made.dump", dumps.Motion([3, 3])
+    dumps.write(path, motion, np.arange(8.0))
+    out = tmp_path / "out"
+    assert analyze(path, out).exit_code == 0
+    before = files(tmp_path)
+    result = analyze(path, out, *arguments)
+    assert result.exit_code == 1 and f"out has the analysis of other settings {text}: another --out is" in result.output
+    assert files(tmp_path) == before
+    assert analyze(path, tmp_path / "other", *arguments).exit_code == 0  # the advice
+    path.write_text(path.read_text() + dumps.frame(8, motion.rows(8.0)))
+    result = analyze(path, out, "--csv")
+    assert result.exit_code == 0 and "The earlier analysis in" in result.output
+    assert len(columns(out / "totals.csv")) == 9
+
+
+def test_an_analysis_of_another_dump_is_kept(tmp_path):
+    """Of another file, of the same file with another run, and of a release without settings.json."""
+    path, other, out = tmp_path / "made.dump", tmp_path / "other.dump", tmp_path / "out"
+    dumps.write(path, dumps.Motion([3]), np.arange(8.0))
+    dumps.write(other, dumps.Motion([3], seed=2), np.arange(8.0))
+    assert analyze(path, out).exit_code == 0
+    before = files(out)
+    assert "other settings (the dump): another --out is required" in analyze(other, out).output
+    path.write_text(other.read_text())
+    assert "(the dump was written anew): another --out is required" in analyze(path, out).output
+    assert files(out) == before
+    (out / "settings.json").unlink()
+    assert "out has bodies.csv of another analysis: another --out" in analyze(path, out).output
+
+
+@pytest.mark.filterwarnings("ignore:::MDAnalysis")
+def test_files_of_others_are_not_written_over(tmp_path):
+    """Neither the trajectory nor the topology beside it; those of the same analysis are."""
+    path = dumps.write(tmp_path / "made.dump", dumps.Motion([3]), np.arange(8.0))
+    options = ["--units", "real", "--timestep", "1", "--convert", tmp_path / "made.dcd"]
+    for name in ("made.dcd", "made.pdb"):
+        (tmp_path / name).write_text("mine")
+        result = analyze(path, tmp_path / "out", *options)
+        assert result.exit_code == 1 and f"{name} exists: another name is required" in result.output
+        assert (tmp_path / name).read_text() == "mine" and not (tmp_path / "out").exists()
+        (tmp_path / name).unlink()
+    for _ in range(2):
+        assert analyze(path, tmp_path / "out", *options).exit_code == 0
 
 
 @pytest.mark.parametrize(
@@ -177,7 +241,7 @@ def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path
     assert "Warning: there are no averages but temperatures" in result.output
     assert "made.dump: body 1 is not rigid: at step 3" in result.output
     assert (tmp_path / "averages.csv").exists() and not (tmp_path / "correlations.csv").exists()
-    result = analyze(path, tmp_path, "--frames", ":1")
+    result = analyze(path, tmp_path / "one", "--frames", ":1")
     assert "1 frame of 1 body was read" in result.output
 
 
@@ -223,7 +287,10 @@ def test_command_tells_of_stays(tmp_path):
     (tmp_path / "places").write_text("0 0 0\n20 0 0\n")
     result = analyze(path, tmp_path, "--near", tmp_path / "places", "--radius", 1.75)
     assert result.exit_code == 0, result.output
-    assert "Bodies made 2 stays within 1.75 of 2 places, in 50.0% of the time." in result.output
+    for kind in ("(T1)3-1", "(T1)3-2"):  # their masses differ
+        assert f"{kind} made 1 stay within 1.75 of 2 places, in 50.0% of the time." in result.output
+    survival = columns(tmp_path / "survival.csv")
+    assert len(survival.dtype.names) == 3
     rows = columns(tmp_path / "stays.csv")
     assert rows["place"].tolist() == [1, 2] and rows["end"].tolist() == [3, 3]
 
@@ -231,9 +298,9 @@ def test_command_tells_of_stays(tmp_path):
 def test_command_says_when_frames_are_too_far_apart(tmp_path):
     for omega, said in ((2.0, True), (0.02, False)):
         path = dumps.write(tmp_path / "far.dump", dumps.Motion([4], omega=omega), np.arange(8.0))
-        result = analyze(path, tmp_path)
+        result = analyze(path, tmp_path / str(omega))
         assert result.exit_code == 0, result.output
-        assert ("dump more often" in result.output) == said
+        assert ("trust the mean-square" in result.output) == said
 
 
 @pytest.mark.parametrize(

@@ -115,11 +115,12 @@ def test_rotation_of_linear_bodies_is_that_of_their_axes(tmp_path):
     path = dumps.write(tmp_path / "linear.dump", motion, np.arange(30.0))
     poses = Poses(open_dump(path).atoms).run()
     every = correlations.all_correlations(poses)
-    found = every.functions
-    assert found["mean_square_rotation"] == pytest.approx((0.5 * np.arange(30)) ** 2, abs=1e-9)
+    assert every.kinds == ("(T1)2-1", "(T1)2-2", "(T1)3")
     assert every.largest_turn == pytest.approx(0.5, rel=1e-10)
-    assert found["axis3_order1"] == pytest.approx(np.cos(0.5 * np.arange(30)), abs=1e-12)
-    assert "axis1_order1" not in found
+    for found in map(every.of_kind, every.kinds):
+        assert found["mean_square_rotation"] == pytest.approx((0.5 * np.arange(30)) ** 2, abs=1e-9)
+        assert found["axis3_order1"] == pytest.approx(np.cos(0.5 * np.arange(30)), abs=1e-12)
+        assert "axis1_order1" not in found
 
 
 def test_what_cannot_be_correlated():

@@ -211,6 +211,64 @@ def test_atoms_in_no_body_are_left_out(write):
     assert poses.ids.tolist() == [2, 3]
 
 
+@pytest.mark.parametrize("stated", [True, False])
+def test_the_distance_of_frames(tmp_path, stated):
+    """dt and totaltime are those of the times of frames: 20 steps of 0.5 are 10; of uneven ones dt is the mean."""
+    for steps in ([100, 120, 140, 160], [100, 120, 150, 160]):
+        text = [dumps.frame(step, MOTION.rows(step)) for step in steps]
+        if stated:
+            text = [f"ITEM: TIME\n{0.5 * step}\n{frame}" for step, frame in zip(steps, text)]
+        path = tmp_path / "even.dump"
+        path.write_text("".join(text))
+        trajectory = open_dump(path, timestep=None if stated else 0.5).trajectory
+        assert trajectory.totaltime == 30.0 and trajectory.dt == trajectory.ts.dt == 10.0
+        assert [ts.time for ts in trajectory] == [0.5 * step for step in steps]
+        assert trajectory[2].dt == 10.0 and trajectory.totaltime == 30.0
+
+
+@pytest.mark.parametrize("suffix", ["", ".gz", ".bz2"])
+def test_compressed_dumps_are_read_forward(tmp_path, monkeypatch, suffix):
+    """Frames are those of the plain file in any order, and a compressed file is not unpacked anew for each of them."""
+    import bz2
+    import gzip
+
+    times = np.arange(60.0)
+    path = dumps.write(tmp_path / "made.dump", MOTION, times)
+    packed = tmp_path / f"made.dump{suffix}"
+    pack = {".gz": gzip.compress, ".bz2": bz2.compress, "": lambda data: data}[suffix]
+    packed.write_bytes(pack(path.read_bytes()))
+    backward, rewind = [], gzip._GzipReader._rewind
+
+    def counted(reader):
+        backward.append(reader)
+        rewind(reader)
+
+    monkeypatch.setattr(gzip._GzipReader, "_rewind", counted)
+    trajectory = open_dump(packed).trajectory
+    plain = Poses(open_dump(path)).run().results
+    for span in ({}, {"step": 7}, {"start": 3, "stop": 40}, {"frames": [5, 2, 30]}):
+        found = Poses(open_dump(packed)).run(**span).results
+        chosen = span.get("frames", range(60)[slice(span.get("start"), span.get("stop"), span.get("step"))])
+        assert np.array_equal(found.center, plain.center[list(chosen)])
+    assert [trajectory[k].data["step"] for k in (9, 4, 4, 50, -1)] == [9, 4, 4, 50, 59]
+    assert len(backward) < 20  # of 250 frames
+
+
+def test_parts_of_bodies_are_refused(write, tmp_path):
+    universe = open_dump(write(MOTION, TIMES))
+    with pytest.raises(ValueError, match="parts of bodies are selected: 1 atom of 1 body left out, 1 of the 3 of body 1; whole"):
+        Poses(universe.atoms[:2])
+    with pytest.raises(ValueError, match="5 atoms of 2 bodies left out, 2 of the 4 of body 2; .*same residue as"):
+        Poses(universe.atoms[[0, 1, 2, 3, 4, 7, 8]])
+    assert Poses(universe.select_atoms("same residue as (id 1 5)")).ids.tolist() == [1, 2]  # the advice
+    # and a dump of a part of the atoms that a data file has
+    few = write(MOTION, TIMES, lambda t, r: r[:10, [0, 4, 5, 6]], columns="id xu yu zu")
+    with pytest.raises(DumpError, match="the dump lacks 2 atoms of its bodies, such as atom 11 of body 3; .* whole bodies"):
+        open_dump(few, data=data_of(tmp_path))
+    whole = write(MOTION, TIMES, lambda t, r: r[:7, [0, 4, 5, 6]], columns="id xu yu zu")
+    assert len(open_dump(whole, data=data_of(tmp_path)).residues) == 2
+
+
 # --- what cannot be used -------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("name", "text"),

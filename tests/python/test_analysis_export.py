@@ -42,7 +42,7 @@ def test_without_times_only_what_is_found_from_frames_is_in_steps(dump):
     assert {name: poses.unit(name) for name in units} == units
     assert poses.to_dataframe().attrs["units"]["velocity_x"] == poses.to_xarray()["velocity"].attrs["units"] == "Å/fs"
     found = correlations.all_correlations(poses)
-    assert found.units["velocity_autocorrelation"] == "Å²/fs²" and found.units["lag"] == "step"
+    assert found.units["velocity_autocorrelation_(T1)3"] == "Å²/fs²" and found.units["lag"] == "step"
     timed = Poses(open_dump(dump, timestep=5.0).atoms, units="real").run()
     assert np.array_equal(timed.results.velocity, poses.results.velocity) and timed.unit("velocity") == "Å/fs"
     assert timed.unit("diffusion coefficient") == "Å²/fs"
@@ -84,15 +84,16 @@ def test_tables_of_functions(poses):
     found = correlations.all_correlations(poses)
     frame, data = found.to_dataframe(), found.to_xarray()
     assert frame["lag"][2] == float(data["lag"][2]) == 1.0
-    assert frame.attrs["units"]["mean_square_rotation"] == data["mean_square_rotation"].attrs["units"] == "rad²"
-    assert data["axis1_order2"].sel(lag=1.0) == found.functions["axis1_order2"][2]
+    name = "mean_square_rotation_(T1)3"
+    assert frame.attrs["units"][name] == data[name].attrs["units"] == "rad²"
+    assert data["axis1_order2_(T1)4"].sel(lag=1.0) == found.of_kind("(T1)4")["axis1_order2"][2]
 
 
 def test_table_of_averages(poses):
     frame = averages.averages(poses).to_dataframe()
-    assert list(frame) == ["name", "value", "error", "unit"]
-    row = frame.set_index("name").loc["diffusion coefficient"]
-    assert row["unit"] == "Å²/ps" and row["value"] > 0.0
+    assert list(frame) == ["name", "value", "error", "unit", "why"]
+    row = frame.set_index("name").loc["diffusion coefficient of (T1)3"]
+    assert row["unit"] == "Å²/ps" and np.isnan(row["value"]) and "not linear" in row["why"]  # free flight
 
 
 @pytest.mark.parametrize(("package", "export"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
@@ -123,7 +124,7 @@ def test_pictures_show_values_with_errors(poses):
     known = Averages(
         [
             Average("temperature of rotation", 77.5, 0.53, "K"),
-            Average("diffusion coefficient", 0.27, 0.02, "Å²/ps"),
+            Average("diffusion coefficient of (T1)3", 0.27, 0.02, "Å²/ps"),
             Average("correlation time of axis 1, order 2", np.nan, np.nan, "ps"),
         ]
     )

@@ -194,6 +194,24 @@ def test_memory_does_not_grow_with_frames(tmp_path):
     tracemalloc.stop()
 
 
+def test_averages_hold_a_few_frames(tmp_path):
+    """Four times the frames, with the table in a file: averages and correlations need no more than their series."""
+    import tracemalloc
+
+    peaks, motion = [], dumps.Motion([3] * 300)
+    motion.masses[:] = 1.0
+    for frames in (60, 240):
+        path = dumps.write(tmp_path / f"{frames}.dump", motion, np.arange(float(frames)))
+        poses = Poses(open_dump(path).atoms, out=tmp_path / "poses.npy").run()
+        tracemalloc.start()
+        averages.temperatures(poses)
+        averages.dimension(poses.results)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    # 0.75 of the numbers of the velocities would be another 180 frames of them
+    assert peaks[1] - peaks[0] < 0.02 * poses.results.velocity.nbytes
+
+
 def test_csv_has_every_digit(poses, tmp_path):
     poses.to_csv(tmp_path / "poses.csv")
     found = dumps.columns(tmp_path / "poses.csv")

@@ -1,8 +1,8 @@
 """Averages over a run with standard errors: temperatures, diffusion, rotational correlation times.
 
-A run is cut into equal blocks; each gives a value, and the scatter of these the standard error (H.
-Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91, 461 (1989)), which is right if a block is longer than what
-it averages remembers.  All functions take finished ``Poses``, which know masses and moments.
+Each error has assumptions, which are checked: samples in independent blocks for temperatures, a linear range of the
+mean-square displacement for diffusion, an exponential tail for correlation times.  Where one does not hold, there is
+no average, and its ``why`` says why.  All functions take finished ``Poses``, which know masses and moments.
 """
 
 import math
@@ -13,23 +13,31 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .units import UNITS
-from . import correlations, export
+from . import correlations, export, mapped
+from .blocks import Estimate, of_series, scatter, widening
 from .bodies import axes_named, axis_groups, equal_moments
+from .diffusion import diffusion
+from .kinds import kinds, of_kind, too_many
 
-#: of the averages of series, and of functions of time
-BLOCKS, LONG_BLOCKS = 10, 5
-#: fewest frames of a block in which a function of time can be fitted
+#: blocks of a run, and groups of its bodies, whose scatter is the error of a correlation time
+LONG_BLOCKS, GROUPS = 5, 10
+#: fewest frames of a block
 FEWEST = 20
 #: a total momentum whose energy is below this part of that of a degree of freedom is at rest
 AT_REST = 1e-3
 #: angular velocities of another axis, by those about z, that are rounding in a run of dimension 2
 IN_PLANE = 1e-6
-#: correlation at which its integral ends, and above which its tail is fitted
-TAIL, BEFORE_TAIL = 0.1, 0.3
+#: correlation at which its integral ends, lower ones for functions with another tail, and where the fit of a tail begins
+TAIL, LOWER, BEFORE_TAIL = 0.1, (0.05, 0.02), 3.0
+#: fewest frames until then
+RESOLVED = 3
+#: how far the tail is compared with the exponential, in times of its beginning and in blocks; differences that are
+#: significant, in standard errors, and that are too large, in correlation times
+LATER, OF_BLOCK, SIGNIFICANT, TOO_LARGE = 3, 0.8, 3.0, 0.05
 
 
 class Average(NamedTuple):
-    """A number of a run with its standard error, NaN if the run is too short for it.
+    """A number of a run with its standard error; NaN if an assumption of the error does not hold, and ``why``.
 
     >>> from gearquat_analysis.averages import Average
     >>> Average("diffusion coefficient", 0.3124, 0.0153, "Å²/ps").text()
@@ -40,6 +48,7 @@ class Average(NamedTuple):
     value: float
     error: float
     unit: str
+    why: str = ""
 
     @property
     def known(self):
@@ -67,31 +76,9 @@ class Averages(list):
     """
 
     def to_dataframe(self):
-        """pandas.DataFrame with the columns name, value, error and unit."""
+        """pandas.DataFrame with the columns name, value, error, unit and why."""
         columns = dict(zip(Average._fields, zip(*self)))
         return export.dataframe(columns, {})
-
-
-def of_blocks(values):
-    """Mean of the values (n,) of n blocks and its standard error; (NaN, NaN) if one is NaN."""
-    values = np.asarray(values, dtype=float)
-    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
-
-
-def of_series(series, count=BLOCKS, weights=None):
-    """Mean of a series (F,), and its standard error from ``count`` blocks that differ by one sample at most.
-
-    ``weights`` (F,) of the samples, equal unless given.  The error is NaN if there are fewer samples than blocks.
-    """
-    series = np.asarray(series, dtype=float)
-    weights = np.ones(len(series)) if weights is None else np.asarray(weights, dtype=float)
-    mean = float(np.average(series, weights=weights))
-    if len(series) < count:
-        return mean, float("nan")
-    parts = np.array_split(series * weights, count), np.array_split(weights, count)
-    # how much each block moves the mean; of equal weights this is the standard error of the blocks' mean
-    moves = [(part.sum() - mean * weight.sum()) / weights.sum() for part, weight in zip(*parts)]
-    return mean, math.sqrt(count / (count - 1) * np.sum(np.square(moves)))
 
 
 def weights_of(time):
@@ -110,13 +97,37 @@ def _boltzmann(poses):
 
 def dimension(results):
     """2 if no center ever moves along z and no body turns about another axis, as in a run of dimension 2; else 3."""
-    center = results.center
-    if len(center) < 2 or np.ptp(center[..., 2], axis=0).any() or not np.ptp(center[..., :2], axis=0).any():
+    moved = np.zeros(3)
+    for k in mapped.rows(results.center):
+        moved = np.maximum(moved, np.abs(results.center[k] - results.center[0]).max(axis=0))
+        if moved[2] > 0.0:
+            return 3
+    if not moved.any():
         return 3
     if "omega_space" not in results:
         return 2
-    largest = np.abs(results.omega_space).max(axis=(0, 1))
+    largest = np.zeros(3)
+    for k in mapped.rows(results.omega_space):
+        largest = np.maximum(largest, np.abs(results.omega_space[k]).max(axis=0))
     return 2 if largest[:2].max() <= IN_PLANE * largest[2] else 3
+
+
+def _sums(poses):
+    """Twice the kinetic energies of translation (F,), of rotation (F,) and of the total momentum (F,), those about the
+    principal axes (F, 3), of equal moments their mean, in units of energy."""
+    bodies, results = poses.bodies, poses.results
+    energy, frames = UNITS[poses.units or "lj"].energy, len(results.time)
+    equal = equal_moments(bodies.moments)
+    share = equal / equal.sum(axis=1, keepdims=True)
+    translation, rotation, total, about = np.empty(frames), np.empty(frames), np.empty(frames), np.empty((frames, 3))
+    for k in mapped.rows(results.velocity):
+        translation[k] = 2.0 * results.ke_translation[k].sum()
+        rotation[k] = 2.0 * results.ke_rotation[k].sum()
+        total[k] = energy * np.sum((bodies.mass @ results.velocity[k]) ** 2) / bodies.mass.sum()
+        omega_body = Rotation.from_quat(results.q[k], scalar_first=True).inv().apply(results.omega_space[k])
+        spin = np.einsum("bkj,bj->bk", bodies.axes, omega_body)
+        about[k] = energy * np.einsum("bkl,bl->k", share, bodies.moments * spin**2)
+    return translation, rotation, total, about
 
 
 def temperatures(poses):
@@ -128,43 +139,27 @@ def temperatures(poses):
     (``dimension``) a body has two, and one of rotation.  Empty without velocities or masses.  In LAMMPS' units;
     without ``units`` in those of mass x velocity^2.
     """
-    bodies, results = getattr(poses, "bodies", None), poses.results
+    bodies, results, k = getattr(poses, "bodies", None), poses.results, _boltzmann(poses)
     if bodies is None or "velocity" not in results:
         return {}
-    k, energy = _boltzmann(poses), UNITS[poses.units or "lj"].energy
-    momentum = np.einsum("b,fbi->fi", bodies.mass, results.velocity)
-    twice = 2.0 * results.ke_translation.sum(axis=1)
-    of_total = energy * (momentum**2).sum(axis=1) / bodies.mass.sum()
+    translation, rotation, total, about = _sums(poses)
     dimensions = dimension(results)
-    resting = of_total.mean() < AT_REST * twice.mean() / (dimensions * len(bodies))
+    resting = total.mean() < AT_REST * translation.mean() / (dimensions * len(bodies))
     freedoms = dimensions * (len(bodies) - (1 if resting and len(bodies) > 1 else 0))
-    found = {"translation": twice / (freedoms * k)}
+    found = {"translation": translation / (freedoms * k)}
     turning = bodies.moments > 0.0
     if not turning.any():
         return found
     if dimensions == 2:
-        found["rotation"] = 2.0 * results.ke_rotation.sum(axis=1) / (turning.any(axis=1).sum() * k)
+        found["rotation"] = rotation / (turning.any(axis=1).sum() * k)
         return found
-    found["rotation"] = 2.0 * results.ke_rotation.sum(axis=1) / (turning.sum() * k)
-    twice = energy * _about_axes(bodies, results)
+    found["rotation"] = rotation / (turning.sum() * k)
     groups = [axes for axes in axis_groups(bodies.moments[turning[:, 0]]) if turning[:, axes[0]].any()]
     if len(groups) > 1:  # one is that of rotation
         for axes in groups:
             own = turning[:, axes[0]].sum()
-            found[f"rotation about {axes_named(axes)}"] = twice[:, axes[0]] / (own * k)
+            found[f"rotation about {axes_named(axes)}"] = about[:, axes[0]] / (own * k)
     return found
-
-
-def _about_axes(bodies, results):
-    """Twice the kinetic energies (F, 3) about the principal axes, mass x velocity^2; of equal moments their mean."""
-    equal = equal_moments(bodies.moments)
-    share = equal / equal.sum(axis=1, keepdims=True)
-    sums = np.empty((len(results.time), 3))
-    for frame, (q, omega) in enumerate(zip(results.q, results.omega_space)):
-        omega_body = Rotation.from_quat(q, scalar_first=True).inv().apply(omega)
-        spin = np.einsum("bkj,bj->bk", bodies.axes, omega_body)
-        sums[frame] = np.einsum("bkl,bl->k", share, bodies.moments * spin**2)
-    return sums
 
 
 def _long_blocks(frames):
@@ -174,73 +169,139 @@ def _long_blocks(frames):
     return [slice(first + i * length, first + (i + 1) * length) for i in range(LONG_BLOCKS)] if length >= FEWEST else []
 
 
-def diffusion(time, center, dimensions=3):
-    """Diffusion coefficient of centers (F, B, 3) and its standard error, length squared / time.
-
-    The slope of the mean-square displacement at lags from a tenth to a half of a block, divided by twice the
-    number of ``dimensions``.  NaN if blocks have too few frames.
-    """
-    values = []
-    for own in _long_blocks(len(time)):
-        lag, square = correlations.lags(time[own]), correlations.mean_square_displacement(center[own])
-        part = slice(len(lag) // 10, len(lag) // 2)
-        values.append(np.polyfit(lag[part], square[part], 1)[0] / (2.0 * dimensions))
-    return of_blocks(values) if values else (float("nan"), float("nan"))
+def _end(correlation, tail):
+    """Number of the first lag in the first half at which a correlation function (F,) is below ``tail``; 0 without one."""
+    return int(np.argmax(correlation[: len(correlation) // 2] < tail))
 
 
-def integral_time(lag, correlation):
+def _decay(lag, correlation, end, tail):
+    """Time in which a correlation function decays by a factor e before lag ``end``, since it was three times ``tail``."""
+    before = min(int(np.argmax(correlation < BEFORE_TAIL * tail)), end - 1)
+    if not correlation[end] > 0.0:
+        return 0.0
+    return (lag[end] - lag[before]) / math.log(correlation[before] / correlation[end])
+
+
+def integral_time(lag, correlation, tail=TAIL):
     """Integral of a correlation function (F,) that begins with 1, over all times.
 
-    It is summed until the function falls below 0.1; the rest is that of the exponential which it follows since it
-    was 0.3.  NaN if it does not fall so far within half of the lags.
+    It is summed until the function falls below ``tail``; the rest is that of the exponential which it follows since it
+    was three times that.  NaN if it does not fall so far within half of the lags.
     """
-    half = correlation[: len(correlation) // 2]
-    if not (half < TAIL).any():
-        return float("nan")
-    end = int(np.argmax(half < TAIL))
-    before = min(int(np.argmax(half < BEFORE_TAIL)), end - 1)
-    rest = 0.0
-    if correlation[end] > 0.0:
-        rest = correlation[end] * (lag[end] - lag[before]) / np.log(correlation[before] / correlation[end])
+    if not (end := _end(correlation, tail)):
+        return math.nan
+    rest = correlation[end] * _decay(lag, correlation, end, tail)
     return float(np.trapezoid(correlation[: end + 1], lag[: end + 1]) + rest)
 
 
-def rotational_time(time, q, axis, order):
-    """Correlation time of a body's axis, as ``orientation_correlation`` has it, and its standard error.
+def _beyond(lag, correlation, tail, last):
+    """Integral from where the tail begins to lag number ``last``, less that of the exponential; NaN without a tail."""
+    if not (end := _end(correlation, tail)):
+        return math.nan
+    decay = _decay(lag, correlation, end, tail)
+    rest = correlation[end] * decay * -math.expm1(-(lag[last] - lag[end]) / decay) if decay else 0.0
+    return float(np.trapezoid(correlation[end : last + 1], lag[end : last + 1]) - rest)
 
-    NaN if blocks are too short for the correlation to decay.
+
+def rotational_time(time, q, axis, order):
+    """Estimate of the correlation time of a body's axis, the integral of ``orientation_correlation`` over all times.
+
+    ``integral_time`` finds it, with a tail below 0.1, or below 0.05 or 0.02 if the function is not exponential before.
+    Its statistical error is the larger one of the scatter of blocks of the run and that of groups of bodies (from 10
+    bodies on).  An error of the distance between frames is added to it in quadrature, and one of the tail.  NaN if
+    blocks are too short for the correlation to decay, if it decays within few frames, and if its tail is never
+    exponential, as that of a function that oscillates or has a slow part.  ``q`` (F, B, 4), ``time`` (F,), evenly spaced.
     """
-    values = []
-    for own in _long_blocks(len(time)):
-        correlation = correlations.orientation_correlation(q[own], axis, order)
-        values.append(integral_time(correlations.lags(time[own]), correlation))
-    return of_blocks(values) if values else (float("nan"), float("nan"))
+    blocks, lag = _long_blocks(len(time)), correlations.lags(time)
+    if not blocks:
+        return Estimate.missing(f"{len(time)} frames are too few: {LONG_BLOCKS * FEWEST} are required")
+    parts = [correlations.orientation_correlation(q[own], axis, order) for own in blocks]
+    whole, without = _without_groups(q, axis, order)
+    found = Estimate.missing(f"the correlation does not fall below {TAIL} within a tenth of the run")
+    for tail in (TAIL, *LOWER):
+        if not all(_end(one, tail) for one in (*parts, whole)):
+            return found
+        found = _correlation_time(lag, whole, parts, without, tail)
+        if not np.isnan(found.value):
+            return found
+    return found
+
+
+def _correlation_time(lag, whole, parts, without, tail):
+    """Estimate of the integral of a function (F,) that is exponential below ``tail``."""
+    end = _end(whole, tail)
+    if end < RESOLVED:
+        return Estimate.missing(f"the correlation falls below {tail} within {end + 1} frames; dump more often")
+    last = min(LATER * end, int(OF_BLOCK * len(parts[0])))
+    value, statistical = _with_error(integral_time, lag, whole, parts, without, tail)
+    beyond, uncertain = _with_error(_beyond, lag, whole, parts, without, tail, last)
+    significant = abs(beyond) > SIGNIFICANT * uncertain
+    if significant and abs(beyond) > TOO_LARGE * value:
+        return Estimate.missing(f"the correlation does not decay as an exponential below {tail}")
+    # the rule of trapezoids has three times the error of this at half of the distance
+    spacing = (integral_time(lag[::2], whole[::2], tail) - value) / 3.0
+    return Estimate(value, math.hypot(statistical, spacing, beyond if significant else 0.0))
+
+
+def _without_groups(q, axis, order):
+    """Correlation of all bodies (F,), and of all but one of the groups; of the latter none if there are few bodies."""
+    number = q.shape[1]
+    if number < GROUPS:
+        return correlations.orientation_correlation(q, axis, order), []
+    axis = np.asarray(axis, dtype=float)
+    axis = np.broadcast_to(axis, (*axis.shape[:-2], number, 3))
+    groups = np.array_split(np.arange(number), GROUPS)
+    sums = [
+        len(own) * correlations.orientation_correlation(mapped.Part(q, own), axis[..., own, :], order) for own in groups
+    ]
+    total = np.sum(sums, axis=0)
+    return total / number, [(total - part) / (number - len(own)) for part, own in zip(sums, groups)]
+
+
+def _with_error(find, lag, whole, blocks, without, *more):
+    """What ``find`` finds in a function (F,), with the error from those of blocks and of bodies without a group."""
+    errors = [float(scatter([find(lag[: len(one)], one, *more) for one in blocks]))]
+    if without:
+        values = np.array([find(lag, one, *more) for one in without])  # the jackknife
+        errors.append(math.sqrt((len(values) - 1) * values.var()) * widening(len(values)))
+    return find(lag, whole, *more), max(errors)
 
 
 def averages(poses):
     """The Averages that finished ``Poses`` or ``TablePoses`` have the data for.
 
     A frame counts for the time it stands for (``weights_of``).  Of frames that are not evenly spaced in time there are
-    only temperatures, with a warning.
+    only temperatures, with a warning.  Diffusion and correlation times of a mixture are those of each of its ``kinds``.
     """
     results = poses.results
     times = results.time
     weights = weights_of(times)
-    found = Averages(
-        Average(f"temperature of {name}", *of_series(series, weights=weights), poses.unit("temperature"))
-        for name, series in temperatures(poses).items()
-    )
+    found = Averages()
+    for name, series in temperatures(poses).items():
+        value, error, why = of_series(series, weights)
+        found.append(Average(f"temperature of {name}", value, error, poses.unit("temperature"), why))
     try:
         correlations.lags(times)
     except ValueError as error:
         warnings.warn(f"there are no averages but temperatures: {error}", stacklevel=2)
         return found
-    name = "diffusion coefficient"
-    found.append(Average(name, *diffusion(results.time, results.center, dimension(results)), poses.unit(name)))
+    if too_many(poses):
+        warnings.warn("bodies are of many kinds: diffusion and correlation times are those of all of them", stacklevel=2)
+    dimensions = dimension(results)
+    for kind in kinds(poses):
+        found += _of_motion(of_kind(poses, kind), f" of {kind.name}" if kind.name else "", dimensions)
+    return found
+
+
+def _of_motion(poses, of, dimensions):
+    """Averages of functions of time, of bodies of one kind, which ``of`` names."""
+    results, name = poses.results, "diffusion coefficient"
+    value, error, why = diffusion(results.time, results.center, dimensions)
+    found = [Average(f"{name}{of}", value, error, poses.unit(name), why)]
     q, _, axes = correlations.turning(poses)
     for group, axis in axes.items():
         for order in (1, 2):
-            time = rotational_time(results.time, q, axis, order)
-            unit = poses.unit("correlation time")
-            found.append(Average(f"correlation time of {axes_named(group)}, order {order}", *time, unit))
+            value, error, why = rotational_time(results.time, q, axis, order)
+            name = f"correlation time{of + ',' if of else ' of'} {axes_named(group)}, order {order}"
+            found.append(Average(name, value, error, poses.unit("correlation time"), why))
     return found

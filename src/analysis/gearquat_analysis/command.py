@@ -15,6 +15,8 @@ from .units import UNITS, style_of
 #: files of the command beside poses.npy
 LEAVES = ("bodies.csv", "totals.csv", "totals.png", "motion.png", "poses.csv", "correlations.csv", "correlations.png")
 LEAVES += ("averages.csv", "averages.png", "stays.csv", "survival.csv")
+#: options that decide results, with which a folder is known
+DECIDE = ("data", "atom_style", "body", "select", "reference", "potential", "units", "timestep")
 
 
 def _frames(_context, _option, text):
@@ -107,17 +109,23 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **
     correlation times with standard errors, which it also prints.  The last three have pictures.
     """
     from . import pictures, report
-    from .convert import require_format
+    from .convert import require_format, written_by
+    from .folder import Folder
 
     if converted:
         require_format(converted)
     if wrap and not converted:
         raise ValueError("--wrap needs --convert, whose trajectory it is about")
     places = near and _points("--near", near)
-    out.mkdir(parents=True, exist_ok=True)
+    asked = {name: options[name] for name in DECIDE} | {"near": near, "radius": radius}
+    asked |= {"frames": [frames.start, frames.stop, frames.step]}
+    folder = Folder(out, dump, asked, LEAVES)
+    if converted:
+        folder.require_free(written_by(converted))
     poses = _run(dump, out, frames, converted, options)
-    for name in LEAVES:  # of another dump that was analyzed before
-        (out / name).unlink(missing_ok=True)
+    if folder.replaced:
+        cloup.echo(f"The earlier analysis in {out} is replaced.")
+    folder.fill()
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
     pictures.draw_totals(poses, totals, out / "totals.png")
@@ -129,7 +137,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **
     if near:
         _stay(out, poses, places, radius)
     if converted:
-        _convert(poses, converted, wrap, frames)
+        folder.note(_convert(poses, converted, wrap, frames))
     cloup.echo(report.summary(poses, totals))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     memory += options["jobs"] * (resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
@@ -181,7 +189,6 @@ def _run(dump, out, frames, converted, options):
     from MDAnalysis.exceptions import SelectionError
 
     from . import Poses, TablePoses, open_any
-    from .backends import Processes
 
     names = ("data", "atom_style", "body", "potential")
     universe, local = open_any(dump, options["timestep"], **{name: options[name] for name in names})
@@ -192,24 +199,40 @@ def _run(dump, out, frames, converted, options):
         raise ValueError(f"--select '{options['select']}': {error}") from error
     if not len(atoms):
         raise ValueError(f"--select '{options['select']}' selects no atom")
-    common = {"units": options["units"], "out": out / "poses.npy"}
+    out.mkdir(parents=True, exist_ok=True)
+    draft = out / "poses.part.npy"
+    common = {"units": options["units"], "out": draft}
     if local:
         if options["reference"] != "principal":
             raise ValueError("--reference is about atoms; a table of the fix has quaternions")
+        cloup.echo("The table does not tell kinds of bodies: averages are over all that are selected.")
         poses = TablePoses(atoms, **common)
     else:
         reference = options["reference"]
         if reference not in ("principal", "first"):
             reference = _points("--reference", reference, "'principal', 'first' or ")
         poses = Poses(atoms, reference, potential=options["potential"], **common)
+    try:
+        _read(poses, frames, options["jobs"], universe.trajectory.packed)
+        draft.replace(out / "poses.npy")
+    finally:
+        draft.unlink(missing_ok=True)
+    return poses
+
+
+def _read(poses, frames, jobs, packed):
+    """Run the analysis of these frames; compressed dumps are unpacked from the beginning to each part."""
     span = {"start": frames.start, "stop": frames.stop, "step": frames.step}
-    if options["jobs"] == 1:
+    if jobs == 1:
         bar = {"desc": "reading", "unit": "frame", "disable": None}
-        return poses.run(**span, verbose=True, progressbar_kwargs=bar)
-    number = len(range(*frames.indices(len(universe.trajectory))))
-    parts = min(max(number, 1), 50 * options["jobs"])
-    backend = Processes(min(options["jobs"], parts), _bar("reading", "part"))
-    return poses.run(**span, backend=backend, n_parts=parts, unsupported_backend=True)
+        poses.run(**span, verbose=True, progressbar_kwargs=bar)
+        return
+    from .backends import Processes
+
+    number = len(range(*frames.indices(len(poses.atoms.universe.trajectory))))
+    parts = min(max(number, 1), jobs if packed else 50 * jobs)
+    backend = Processes(min(jobs, parts), _bar("reading", "part"))
+    poses.run(**span, backend=backend, n_parts=parts, unsupported_backend=True)
 
 
 def _correlate(out, poses):
@@ -240,24 +263,29 @@ def _correlate(out, poses):
 
 
 def _stay(out, poses, places, radius):
-    """Write stays.csv and survival.csv, and say how long bodies stay."""
+    """Write stays.csv and survival.csv, and say how long bodies stay, of each kind of bodies."""
     from . import report, residence
+    from .kinds import kinds
     from .tables import write_columns
 
     results = poses.results
     bar = _bar("finding stays", "frame")
     stays = residence.stays(results.center, places, radius, results.time, progress=bar)
     report.write_stays(out / "stays.csv", stays, results.ids)
-    try:
-        lag = stays.time - stays.time[0]
-        write_columns(out / "survival.csv", {"lag": lag, "survival": stays.survival()})
-    except ValueError:
-        cloup.echo("There is no survival.csv, which needs frames at equal distances of time.")
-    cloup.echo(
-        f"Bodies made {report.counted(len(stays.body), 'stay')} within {radius:g} of"
-        f" {report.counted(len(places), 'place')}, in"
-        f" {stays.fraction().sum():.1%} of the time."
-    )
+    columns = {"lag": stays.time - stays.time[0]}
+    for kind in kinds(poses):
+        some = stays.of(kind.bodies) if kind.name else stays
+        try:
+            columns[f"survival_{kind.name}" if kind.name else "survival"] = some.survival()
+        except ValueError:
+            columns = {}
+        cloup.echo(
+            f"{kind.name or 'Bodies'} made {report.counted(len(some.body), 'stay')} within {radius:g} of"
+            f" {report.counted(len(places), 'place')}, in {some.fraction().sum():.1%} of the time."
+        )
+    if not columns:
+        return cloup.echo("There is no survival.csv, which needs frames at equal distances of time.")
+    return write_columns(out / "survival.csv", columns)
 
 
 def _convert(poses, path, wrap, frames):
@@ -266,3 +294,4 @@ def _convert(poses, path, wrap, frames):
     bar = _bar("writing", "frame")
     written = convert(poses.atoms, path, poses.units, wrap, frames, poses.results.time, bar)
     cloup.echo(f"The trajectory is in {' and '.join(map(str, written))}.  {remark(poses.units)}.")
+    return written

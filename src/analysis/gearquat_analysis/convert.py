@@ -52,6 +52,11 @@ def require_format(path):
         raise ValueError(f"{path}: MDAnalysis writes no trajectories in this format; {known}") from error
 
 
+def written_by(path):
+    """Files that ``convert`` to ``path`` writes, if coordinates fit into a PDB file."""
+    return [path] if not has_times(path) else [path, path.with_suffix(".pdb")]
+
+
 def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=None):
     """Write ``atoms`` in all frames to ``path``; its suffix names the format (dcd, xtc, pdb, ...).
 

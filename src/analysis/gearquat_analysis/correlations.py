@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from . import export, mapped
 from .bodies import axis_groups, directions
+from .kinds import kinds, of_kind
 
 #: numbers held at once in one array
 HELD = 1_000_000
@@ -38,7 +39,7 @@ def lags(time):
     return time - time[0]
 
 
-def _portions(values):
+def portions(values):
     """Slices of the bodies of values (F, B, ...), of bounded size."""
     frames, bodies = values.shape[:2]
     width = max(1, HELD // (frames * max(1, int(np.prod(values.shape[2:])))))
@@ -64,7 +65,7 @@ def _origins(frames):
 def autocorrelation(values):
     """Mean of x(t) . x(t + lag), of values (F, B, k), such as velocities; units squared."""
     frames, bodies = values.shape[:2]
-    power = sum(_power(mapped.columns(values, own)) for own in _portions(values))
+    power = sum(_power(mapped.columns(values, own)) for own in portions(values))
     return _products(power, frames) / (_origins(frames) * bodies)
 
 
@@ -80,7 +81,7 @@ def _square_displacements(x):
 def mean_square_displacement(center):
     """Mean of ``|x(t + lag) - x(t)|^2``, (F,), of unwrapped centers (F, B, 3); length squared."""
     frames, bodies = center.shape[:2]
-    total = sum(_square_displacements(mapped.columns(center, own)) for own in _portions(center))
+    total = sum(_square_displacements(mapped.columns(center, own)) for own in portions(center))
     return np.maximum(total, 0.0) / (_origins(frames) * bodies)
 
 
@@ -115,7 +116,7 @@ def mean_square_rotation(q, bodies=None):
     if bodies is not None and bodies.linear.any():
         axis = np.where(bodies.linear[:, None], bodies.axes[:, 2], np.nan)
     total, largest = np.zeros(frames), 0.0
-    for own in _portions(q):
+    for own in portions(q):
         path = rotation_path(mapped.columns(q, own), None if axis is None else axis[own])
         total += _square_displacements(path)
         turns = np.linalg.norm(np.diff(path, axis=0), axis=-1)
@@ -138,7 +139,7 @@ def orientation_correlation(q, axis, order=1):
     if not (length > 0).all():
         raise ValueError("an axis needs a length")
     axis, frames, power = axis / length, len(q), 0.0
-    for own in _portions(q):
+    for own in portions(q):
         turn = Rotation.from_quat(mapped.columns(q, own).reshape(-1, 4), scalar_first=True)
         along = np.tile(axis[own], (frames, 1))
         u = turn.apply(along).reshape(frames, -1, 3)
@@ -156,7 +157,8 @@ class Correlations:
     """Functions of the lag.
 
     ``functions``: name -> (F,), ``lag`` first; ``units``: name -> unit, as text; ``largest_turn`` of a body
-    between two frames, radians: above pi / 2 do not trust ``mean_square_rotation``.
+    between two frames, radians: above pi / 2 do not trust ``mean_square_rotation``.  In a mixture there is each function
+    of each of its ``kinds``, such as ``mean_square_displacement_H2O``; ``kinds``: their names, "" if there is one.
 
     >>> from gearquat_analysis import Poses, correlations, open_dump
     >>> found = correlations.all_correlations(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
@@ -169,6 +171,12 @@ class Correlations:
     functions: dict
     units: dict
     largest_turn: float
+    kinds: tuple = ("",)
+
+    def of_kind(self, kind):
+        """Functions of one kind of bodies, by their names without it."""
+        ending = f"_{kind}" if kind else ""
+        return {name.removesuffix(ending): one for name, one in self.functions.items() if name.endswith(ending)}
 
     def to_dataframe(self):
         """pandas.DataFrame with a row for each lag."""
@@ -193,7 +201,7 @@ def turning(poses):
     some, moments = SimpleNamespace(linear=bodies.linear[own], axes=bodies.axes[own]), bodies.moments[own]
     groups = [(2,)] if some.linear.any() else axis_groups(moments)
     axes = {group: directions(moments, some.axes, group[0]) for group in groups}
-    return q if own.all() else q[:, own], some, axes
+    return q if own.all() else mapped.Part(q, np.flatnonzero(own)), some, axes
 
 
 def all_correlations(poses, progress=iter):
@@ -202,27 +210,41 @@ def all_correlations(poses, progress=iter):
     Axes 1 to 3 are the principal ones, the largest moment first; with linear bodies only the third, which is the body's
     own.  Axes whose moments are equal in all bodies, which are arbitrary, have one function, the mean over all
     directions in their plane or in space (``axes23_order1``).  Points are left out of all that is about rotation; in the
-    table of the fix they cannot be told from other bodies.  ``progress`` goes over the list of functions, as tqdm does.
+    table of the fix they cannot be told from other bodies.  Bodies of a mixture are told apart by ``kinds``.  ``progress`` goes over the list of functions, as tqdm does.
     Raises ValueError if frames are not evenly spaced in time.
     """
+    lag = lags(poses.results.time)
+    tasks, units, chosen = [], {"lag": poses.unit("lag")}, kinds(poses)
+    for kind in chosen:
+        for name, *task in _tasks(of_kind(poses, kind)):
+            ending = f"_{kind.name}" if kind.name else ""
+            tasks.append((name + ending, *task))
+            units[name + ending] = poses.unit(name)
+    functions, largest = {"lag": lag}, 0.0
+    for name, function, arguments in progress(tasks):
+        functions[name] = function(*arguments)
+        if function is mean_square_rotation:
+            functions[name], turn = functions[name]
+            largest = max(largest, turn)
+    return Correlations(functions, units, largest, tuple(kind.name for kind in chosen))
+
+
+def _tasks(poses):
+    """Name, function and its arguments, of every function of bodies of one kind."""
     results, bodies = poses.results, getattr(poses, "bodies", None)
-    lag = lags(results.time)
     tasks = [("mean_square_displacement", mean_square_displacement, (results.center,))]
     if "velocity" in results:
         tasks.append(("velocity_autocorrelation", autocorrelation, (results.velocity,)))
     q, some, axes = turning(poses)
     if axes:
         if "omega_space" in results:
-            omega = results.omega_space if bodies is None else results.omega_space[:, ~bodies.point]
+            omega = results.omega_space
+            if bodies is not None and bodies.point.any():
+                omega = mapped.Part(omega, np.flatnonzero(~bodies.point))
             tasks.append(("omega_space_autocorrelation", autocorrelation, (omega,)))
         tasks.append(("mean_square_rotation", mean_square_rotation, (q, some)))
     for group, axis in axes.items():
         name = ("axis" if len(group) == 1 else "axes") + "".join(str(k + 1) for k in group)
         for order in (1, 2):
             tasks.append((f"{name}_order{order}", orientation_correlation, (q, axis, order)))
-    functions = {name: function(*arguments) for name, function, arguments in progress(tasks)}
-    largest = 0.0
-    if "mean_square_rotation" in functions:
-        functions["mean_square_rotation"], largest = functions["mean_square_rotation"]
-    functions = {"lag": lag, **functions}
-    return Correlations(functions, {name: poses.unit(name) for name in functions}, largest)
+    return tasks

@@ -34,6 +34,8 @@ POSITIONS = {
 VELOCITIES = ("vx", "vy", "vz")
 IMAGES = ("ix", "iy", "iz")
 HEADER_LINES = 9
+#: how files of gzip and bzip2 begin
+PACKED = b"\x1f\x8b", b"BZh"
 #: column of the fix's table -> name here; each row is one body
 TABLE = dict(enumerate(["x", "y", "z", "vx", "vy", "vz"], 1))
 TABLE |= dict(enumerate(["ix", "iy", "iz", "q0", "q1", "q2", "q3"], 13))
@@ -71,9 +73,9 @@ class Header:
     time: float = None
 
 
-def read_header(file, name):
-    """Header of the frame that begins here.  Raises DumpError if none does."""
-    line, extra = file.readline(), {}
+def read_header(file, name, line=None):
+    """Header of the frame that begins here, or with a ``line`` that was read.  Raises DumpError if none does."""
+    line, extra = file.readline() if line is None else line, {}
     for item, read in (("units", str.strip), ("time", float)):
         if line == f"ITEM: {item.upper()}\n":
             extra[item] = read(file.readline())
@@ -138,6 +140,9 @@ class DumpFrames(DumpReader):
     * ``box`` (3, 3): edges as rows; ``origin`` (3,); ``periodic`` (3,)
     * each of ``additional_columns`` (n,)
 
+    ``dt`` is the time between two frames, their mean distance if they are not evenly spaced, and ``totaltime`` that
+    between the first and the last one, both in units of ``Timestep.time``.
+
     Rows are sorted by ID, and columns may be in another order in each frame.  Raises DumpError if IDs are missing,
     occur twice or change, if positions are missing, if the number of rows or the set of the columns that are read
     changes, or if the first frame is not whole.  ``unit_style``, ``timed``, ``counted`` and ``cut_off`` tell of
@@ -151,22 +156,29 @@ class DumpFrames(DumpReader):
 
     def __init__(self, filename, additional_columns=(), names=None, dt=None, **kwargs):
         self._names, self._ids, self._groups = names or {}, None, None
+        self._timestep = 1.0 if dt is None else dt
         self._scan(filename)
         self.counted = dt is None and not self.timed
-        dt = 1.0 if dt is None else dt
-        super().__init__(filename, additional_columns=list(additional_columns), dt=dt, **kwargs)
+        if len(self._offsets) > 1:
+            kwargs["dt"] = self.totaltime / (len(self._offsets) - 1)
+        super().__init__(filename, additional_columns=list(additional_columns), **kwargs)
 
     def _scan(self, filename):
         """Where whole frames begin, and what the first one says."""
+        with open(filename, "rb") as file:
+            self.packed = file.read(3).startswith(PACKED)
         self._offsets, first, self.cut_off = [], None, False
         with anyopen(filename) as file:
-            here = file.tell()
-            while file.readline():
-                file.seek(here)
+            while True:
+                here, line = file.tell(), file.readline()  # without a step back, see _read_frame
+                if not line:
+                    break
                 try:
-                    header = read_header(file, filename)
-                    end = [file.readline() for _ in range(header.rows)][-1:] or ["\n"]
-                    self.cut_off = not end[0].endswith("\n")
+                    header = read_header(file, filename, line)
+                    end = "\n"
+                    for _ in range(header.rows):
+                        end = file.readline()
+                    self.cut_off = not end.endswith("\n")
                 except (ValueError, IndexError):
                     # the end of a run that was killed, or no dump
                     if first is None or file.readline():
@@ -177,13 +189,32 @@ class DumpFrames(DumpReader):
                     break
                 if self.cut_off:
                     raise DumpError(f"{filename}: the dump ends within its first frame; a whole frame is required")
-                first = first or header
+                first, last = first or header, header
                 self._offsets.append(here)
-                here = file.tell()
         self._rows, self.unit_style, self.timed = first.rows, first.units, first.time is not None
+        self._total = self._time(last) - self._time(first)
+
+    def _time(self, header):
+        return header.step * self._timestep if header.time is None else header.time
+
+    def _reopen(self):
+        self._next = 0
+        super()._reopen()
+
+    def _read_frame(self, frame):
+        # a compressed file is unpacked anew from its beginning for each step back, and seek goes back
+        if frame < self._next or not self.packed:
+            self._file.seek(self._offsets[frame])
+        else:
+            for _ in range(self._next, frame):
+                for _ in range(read_header(self._file, self.filename).rows):
+                    self._file.readline()
+        self.ts.frame = frame - 1
+        return self._read_next_timestep()
 
     n_atoms = property(lambda self: self._rows)
     n_frames = property(lambda self: len(self._offsets))
+    totaltime = property(lambda self: self._total)
 
     def _columns(self, header):
         """Index of each column that is read; the kind of its positions."""
@@ -213,6 +244,7 @@ class DumpFrames(DumpReader):
         ts.frame += 1
         if ts.frame >= len(self):
             raise EOFError
+        self._next = len(self) + 1  # within a frame, until it is read
         header = read_header(self._file, self.filename)
         if header.rows != self.n_atoms:
             raise DumpError(
@@ -230,6 +262,7 @@ class DumpFrames(DumpReader):
             cause = f"a row with {short} columns; {number} are required" if short else error
             raise DumpError(f"{self.filename}, step {header.step}: {cause}") from error
         self._fill(dict(zip(columns, table.T)), kind, header)
+        self._next = ts.frame + 1
         return ts
 
     def _fill(self, table, kind, frame):
@@ -244,8 +277,7 @@ class DumpFrames(DumpReader):
         if not whole and all(name in table for name in IMAGES):
             x = x + np.column_stack([table[name] for name in IMAGES]) @ box
             whole = True
-        time = step * ts.dt if frame.time is None else frame.time
-        ts.data.update(step=step, time=time, x=x, whole=whole)
+        ts.data.update(step=step, time=self._time(frame), x=x, whole=whole)
         ts.data.update(box=box, origin=origin, periodic=periodic)
         ts.dimensions = triclinic_box(*box)
         ts.positions = x - origin
@@ -307,8 +339,11 @@ def _universe(reader, bodies, masses, types):
     return universe
 
 
-def _from_data_file(data, atom_style, ids):
-    """Masses, bodies (molecule IDs; None if it has none) and types of the atoms ``ids``, from a LAMMPS data file."""
+def _from_data_file(data, atom_style, ids, whole):
+    """Masses, bodies (molecule IDs; None if it has none) and types of the atoms ``ids``, from a LAMMPS data file.
+
+    ``whole``: raise DumpError if it has more atoms of these bodies.
+    """
     style = {"atom_style": atom_style} if atom_style else {}
     try:
         # without its velocities, which are not needed, and whose section goes on to the next one that MDAnalysis knows
@@ -325,8 +360,15 @@ def _from_data_file(data, atom_style, ids):
     place = places(known.ids, ids)
     if (place < 0).any():
         raise DumpError(f"{data}: no atom {ids[place < 0][0]}, which the dump has")
-    known = known[place]
     molecules = not atom_style or "resid" in atom_style.split()
+    other = np.setdiff1d(np.arange(len(known)), place)
+    other = other[np.isin(known.resids[other], np.setdiff1d(known.resids[place], [0]))]
+    if whole and molecules and len(other):
+        raise DumpError(
+            f"{data}: the dump lacks {len(other)} atoms of its bodies, such as atom {known.ids[other[0]]} of body"
+            f" {known.resids[other[0]]}; a dump of whole bodies is required"
+        )
+    known = known[place]
     return known.masses, known.resids if molecules else None, known.types
 
 
@@ -369,7 +411,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     reader = DumpFrames(str(path), additional_columns=extra + potentials, dt=timestep)
     known = reader.pop_columns(extra)
     if data is not None:
-        masses, bodies, types = _from_data_file(data, atom_style, reader.ids)
+        masses, bodies, types = _from_data_file(data, atom_style, reader.ids, body == "mol" and body not in known)
         if np.char.isdigit(types.astype(str)).all():  # and no labels
             _check_same(f"{data}: type", types.astype(int), known.get("type"), reader.ids)
         _check_same(f"{data}: mass", masses, known.get("mass"), reader.ids)

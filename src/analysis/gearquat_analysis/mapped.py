@@ -29,9 +29,30 @@ def rows(array, begin=0):
     release(array)
 
 
+class Part:
+    """Some columns of an array (F, B, ...), which are read when they are asked for by ``columns``.
+
+    ``own`` (b,): their numbers.  Rows are chosen by a slice: ``part[10:20]``.
+    """
+
+    def __init__(self, array, own):
+        nested = isinstance(array, Part)
+        self.array, self.own = (array.array, array.own[own]) if nested else (array, np.asarray(own))
+        self.shape = len(self.array), len(self.own), *self.array.shape[2:]
+
+    def __len__(self):
+        return self.shape[0]
+
+    def __getitem__(self, frames):
+        return Part(self.array[frames], self.own)
+
+
 def columns(array, own):
-    """Columns ``own`` (a slice) of all rows of an array (F, B, ...), in memory, as floats."""
-    held = np.empty((len(array), own.stop - own.start, *array.shape[2:]))
+    """Columns ``own`` (a slice) of all rows of an array (F, B, ...) or a Part of one, in memory, as floats."""
+    if isinstance(array, Part):
+        own, array = array.own[own], array.array
+    number = len(own) if isinstance(own, np.ndarray) else own.stop - own.start
+    held = np.empty((len(array), number, *array.shape[2:]))
     for begin in range(0, len(array), BLOCK):
         held[begin : begin + BLOCK] = array[begin : begin + BLOCK, own]
         release(array)

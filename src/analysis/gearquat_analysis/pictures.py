@@ -60,21 +60,24 @@ def draw_totals(poses, totals, path=None):
     return figure
 
 
-def _panels(correlations, averages):
-    """Title -> curves (values, how they look) of the panels of the correlations."""
-    known = {one.name: one for one in averages if one.known}
+def _panels(functions, units, kind, known):
+    """Title -> curves (values, how they look) of the panels of the functions of one kind of bodies; without empty ones.
+
+    ``known``: averages by their names.
+    """
+    of, ending = (f" of {kind}", f"_{kind}") if kind else ("", "")
+    panels = {"mean square": [], "normalized autocorrelation": [], "correlation of the principal axes": []}
+    squares, velocities, axes_in_space = panels.values()
 
     def label(text, symbol, name):
         return f"{text}\n{symbol} = {known[name].text()}" if name in known else text
 
-    panels = {"mean square": [], "normalized autocorrelation": [], "correlation of the principal axes": []}
-    squares, velocities, axes_in_space = panels.values()
-    for name, values in correlations.functions.items():
+    for name, values in functions.items():
         color = COLOR["rotation" if "rotation" in name or "omega" in name else "translation"]
         if name.startswith("mean_square"):
-            text = named(name.split("_")[-1], correlations.units[name])
+            text = named(name.split("_")[-1], units[name + ending])
             if name == "mean_square_displacement":
-                text = label(text, "D", "diffusion coefficient")
+                text = label(text, "D", f"diffusion coefficient{of}")
             squares.append((values, {"color": color, "label": text}))
         elif name.endswith("autocorrelation") and values[0] > 0:
             text = "angular velocity" if "omega" in name else "velocity"
@@ -82,32 +85,42 @@ def _panels(correlations, averages):
         elif name.startswith(("axis", "axes")):
             group, order = [int(digit) - 1 for digit in name[4:].split("_")[0]], name[-1]
             look = {"color": PRINCIPAL_AXES[group[0]], "linestyle": "-" if order == "1" else "--"}
-            time = f"correlation time of {axes_named(group)}, order {order}"
+            time = f"correlation time{of + ',' if of else ' of'} {axes_named(group)}, order {order}"
             axes_in_space.append((values, {"label": label(f"{axes_named(group)}, P{order}", f"τ{order}", time), **look}))
-    return {title: curves for title, curves in panels.items() if curves}
+    return {f"{title}{of}": curves for title, curves in panels.items() if curves}
 
 
 def draw_correlations(correlations, averages=(), path=None):
     """Mean squares, autocorrelations of velocities and of axes, against the lag on a logarithmic axis.
 
-    ``averages``: their diffusion coefficient and correlation times go beside the curves they are found from.
+    There is a row of panels for each kind of bodies.  ``averages``: their diffusion coefficient and correlation times go
+    beside the curves they are found from.
     """
     lag = correlations.functions["lag"]
     # at later lags there are too few origins
     shown = slice(1, max(2, 2 * len(lag) // 3))
-    panels = _panels(correlations, averages)
-    shape = {"ncols": len(panels), "figsize": (4.2 * len(panels), 4), "squeeze": False}
+    known = {one.name: one for one in averages if one.known}
+    rows = [_panels(correlations.of_kind(kind), correlations.units, kind, known) for kind in correlations.kinds]
+    columns = max(map(len, rows))
+    shape = {"nrows": len(rows), "ncols": columns, "figsize": (4.2 * columns, 4 * len(rows)), "squeeze": False}
     with picture(path, **shape) as (figure, axes):
-        for axis, (title, curves) in zip(axes[0], panels.items()):
-            for values, look in curves:
-                axis.plot(lag[shown], values[shown], **look)
-            axis.set_title(title, fontsize=10, loc="left")
-            axis.set_xscale("log")
-            axis.xaxis.set_minor_formatter(LogFormatter())  # short numbers; only within few decades
-            axis.set_yscale("log" if title == "mean square" else "linear")
-            axis.set_xlabel(named("lag", correlations.units["lag"]))
-            axis.legend(fontsize=7)
+        for row, panels in zip(axes, rows):
+            for axis, (title, curves) in zip(row, panels.items()):
+                _draw_functions(axis, title, lag[shown], [(values[shown], look) for values, look in curves])
+                axis.set_xlabel(named("lag", correlations.units["lag"]))
+            for axis in row[len(panels) :]:
+                axis.remove()
     return figure
+
+
+def _draw_functions(axis, title, lag, curves):
+    for values, look in curves:
+        axis.plot(lag, values, **look)
+    axis.set_title(title, fontsize=10, loc="left")
+    axis.set_xscale("log")
+    axis.xaxis.set_minor_formatter(LogFormatter())  # short numbers; only within few decades
+    axis.set_yscale("log" if title.startswith("mean square") else "linear")
+    axis.legend(fontsize=7)
 
 
 def draw_averages(averages, path=None):
@@ -116,7 +129,7 @@ def draw_averages(averages, path=None):
     None if there is none.
 
     >>> from gearquat_analysis import Poses, averages, open_dump, pictures
-    >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
+    >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run())
     >>> [panel.get_xlabel() for panel in pictures.draw_averages(found, "averages.png").axes]
     ['temperature (K)', 'diffusion coefficient (Å²/fs)', 'correlation time (fs)']
     """

@@ -25,6 +25,7 @@ from .tables import flat
 from .units import UNITS, style_of, unit_of
 from . import export, mapped
 from .bodies import Bodies
+from .report import counted
 from .superposition import rotate, superpose
 
 VECTOR, ONE = (float, (3,)), (float,)
@@ -242,6 +243,21 @@ def _flat(records):
     return flat({name: records[name] for name in records.dtype.names})
 
 
+def _require_whole(atoms):
+    """Raises ValueError unless ``atoms`` are all atoms of their bodies."""
+    left_out = atoms.residues.atoms - atoms
+    left_out = left_out[left_out.resids != 0]
+    if len(left_out):
+        body = left_out[0].residue
+        own = len(left_out[left_out.resids == body.resid])
+        number = counted(len(left_out.residues), "body", "bodies")
+        raise ValueError(
+            f"parts of bodies are selected: {counted(len(left_out), 'atom')} of {number} left out, {own} of the"
+            f" {len(body.atoms)} of body {body.resid}; whole bodies are required, which 'same residue as (...)' selects, with"
+            " the selection between the parentheses"
+        )
+
+
 class Poses(_FrameTable):
     """Poses and motion of rigid bodies from the positions and velocities of their sites.
 
@@ -276,7 +292,7 @@ class Poses(_FrameTable):
     Where only wrapped positions are known, bodies are made whole by nearest images (right if smaller
     than half the box) and followed from frame to frame (right if they move less than half the box).
 
-    Raises ValueError for bodies without mass, atoms that are in the group twice, a reference of another shape and
+    Raises ValueError for parts of bodies, bodies without mass, atoms that are in the group twice, a reference of another shape and
     coordinates that are not finite.
     ``run`` warns of bodies that are not rigid: if a residual is above 5 % of the largest distance of a site from the
     center of mass and above 4e-5 of a coordinate, as six digits round it.  ``results`` of an analysis that has not run
@@ -294,6 +310,7 @@ class Poses(_FrameTable):
 
     def __init__(self, atoms, reference="first", units=None, potential=None, out=None, **kwargs):
         atoms = atoms.atoms
+        _require_whole(atoms)
         self.bodies = Bodies(atoms.resids, atoms.masses)
         self.mass = self.bodies.mass
         trajectory = atoms.universe.trajectory

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .averages import weights_of
+from .kinds import kinds
 from .tables import write_columns, write_rows
 
 
@@ -14,16 +15,22 @@ def write_totals(path, poses):
 
 
 def write_bodies(path, poses):
-    """Write what each body is: ID, number of sites, kind, mass, principal moments.
+    """Write what each body is: ID, number of sites, whether linear or a point, mass, principal moments, kind in a mixture.
 
     Of a table of the fix only the IDs are known.
     """
     bodies = getattr(poses, "bodies", None)
     if bodies is None:
         return write_columns(path, {"body": poses.ids})
-    kinds = np.where(bodies.point, "point", np.where(bodies.linear, "linear", "general"))
+    shapes = np.where(bodies.point, "point", np.where(bodies.linear, "linear", "general"))
     header = ["body", "sites", "kind", "mass", "moment_1", "moment_2", "moment_3"]
-    rows = zip(bodies.ids, bodies.counts, kinds, bodies.mass, *bodies.moments.T)
+    columns = [bodies.ids, bodies.counts, shapes, bodies.mass, *bodies.moments.T]
+    if (found := kinds(poses))[0].name:
+        names = np.empty(len(bodies), dtype=object)
+        for kind in found:
+            names[kind.bodies] = kind.name
+        header, columns = [*header, "species"], [*columns, names]
+    rows = zip(*columns)
     return write_rows(path, header, rows)
 
 
@@ -35,18 +42,19 @@ def write_stays(path, stays, ids):
 
 
 def write_averages(path, averages):
-    """Write a row for each Average: name, value, standard error, unit; empty where the run is too short."""
-    blank = [[*row[:1], *("" if np.isnan(x) else x for x in row[1:3]), row[3]] for row in averages]
-    write_rows(path, ["average", "value", "standard error", "unit"], blank)
+    """Write a row for each Average: name, value, standard error, unit, and why it is left out if it is."""
+    blank = [[*row[:1], *("" if np.isnan(x) else x for x in row[1:3]), *row[3:]] for row in averages]
+    write_rows(path, ["average", "value", "standard error", "unit", "left out because"], blank)
 
 
 def average_lines(averages):
-    """A line for a terminal for each Average that is known, and one about the others."""
-    known = [one for one in averages if one.known]
-    lines = [f"The {one.name} is {one.text()}." for one in known]
-    if len(known) < len(averages):
-        missing = counted(len(averages) - len(known), "further average")
-        lines.append(f"The run is too short for {missing} with errors.")
+    """A line for a terminal for each Average that is known, and one for each reason why others are not."""
+    lines, missing = [f"The {one.name} is {one.text()}." for one in averages if one.known], {}
+    for one in averages:
+        if not one.known:
+            missing.setdefault(one.why, []).append(one.name)
+    for why, names in missing.items():
+        lines.append(f"No {' and no '.join(names)}: {why or 'the run is too short'}.")
     return "\n".join(lines)
 
 

@@ -32,6 +32,12 @@ class Stays:
     bodies: int
     places: int
 
+    def of(self, bodies):
+        """Stays of some of the bodies, whose numbers (b,) remain as they are."""
+        own = np.isin(self.body, bodies)
+        each = (values[own] for values in (self.body, self.place, self.begin, self.end))
+        return Stays(*each, self.time, len(bodies), self.places)
+
     @property
     def frames(self):
         return self.end - self.begin

@@ -1,0 +1,91 @@
+"""Standard errors from blocks of a run, and whether blocks are long enough for them.
+
+A series is cut into blocks, and the scatter of what they give is its error (H. Flyvbjerg and H. G. Petersen, J. Chem.
+Phys. 91, 461 (1989)).  This is right if blocks are independent, so if they are longer than the memory of the series.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.stats import chi2
+
+#: fewest blocks, ratio of their numbers from level to level, and least length in statistical inefficiencies
+FEWEST_BLOCKS, FINER, INEFFICIENCIES = 8, 1.3, 5.0
+#: probability with which an error from longer blocks is still taken for the same
+PLATEAU = 0.9999
+
+
+class Estimate(NamedTuple):
+    """A value with its standard error, NaN if an assumption of the error does not hold; ``why`` says which one.
+
+    >>> import numpy as np
+    >>> from gearquat_analysis.blocks import of_series
+    >>> of_series(np.zeros(5)).why
+    '5 frames are too few for 8 independent blocks'
+    """
+
+    value: float
+    error: float
+    why: str = ""
+
+    @classmethod
+    def missing(cls, why):
+        return cls(math.nan, math.nan, why)
+
+
+def widening(blocks):
+    """Factor for a standard error from the scatter of a few ``blocks``, more than three.
+
+    Deviations in units of such an error follow Student's distribution; with the factor their mean square is 1.
+    """
+    return math.sqrt((blocks - 1) / (blocks - 3))
+
+
+def scatter(values):
+    """Standard errors (...) of the means over the first axis of independent values (n, ...), n > 3."""
+    values = np.asarray(values, dtype=float)
+    return values.std(axis=0, ddof=1) / math.sqrt(len(values)) * widening(len(values))
+
+
+def of_series(series, weights=None):
+    """Estimate of the mean of a series (F,) with ``weights`` (F,), equal unless given.
+
+    Blocks are five times as long as the statistical inefficiency, the factor by which correlations between samples make
+    the variance of the mean larger.  The error is NaN if there are fewer than 8 such blocks, or if it still grows with
+    the length of blocks; the value is known all the same.
+    """
+    series = np.asarray(series, dtype=float)
+    weights = np.ones(len(series)) if weights is None else np.asarray(weights, dtype=float)
+    mean = float(np.average(series, weights=weights))
+    # how much each sample, and then each block, moves the mean
+    moves = (series - mean) * weights / weights.sum()
+    numbers = _numbers_of_blocks(len(series))
+    if not len(numbers):
+        return Estimate(mean, math.nan, f"{len(series)} frames are too few for {FEWEST_BLOCKS} independent blocks")
+    squares = np.array([_square_of_error(moves, number) for number in numbers])
+    if not squares[0] > 0.0:
+        return Estimate(mean, 0.0)
+    enough = len(series) / numbers >= INEFFICIENCIES * squares / squares[0]
+    if not enough.any():
+        return Estimate(mean, math.nan, f"the run is shorter than {FEWEST_BLOCKS} blocks that are independent")
+    chosen = int(np.argmax(enough))
+    most = squares[chosen] * chi2.ppf(PLATEAU, numbers - 1) / (numbers - 1)
+    if (squares[chosen:] > most[chosen:]).any():
+        return Estimate(mean, math.nan, "it drifts, or changes as slowly as the run is long")
+    return Estimate(mean, math.sqrt(squares[chosen]) * widening(numbers[chosen]))
+
+
+def _numbers_of_blocks(samples):
+    """Numbers of blocks to try, the largest first."""
+    numbers = []
+    number = samples
+    while number > FEWEST_BLOCKS:
+        numbers.append(number)
+        number = int(number / FINER)
+    return np.array(numbers + [FEWEST_BLOCKS] if samples >= FEWEST_BLOCKS else [])
+
+
+def _square_of_error(moves, number):
+    begins = np.linspace(0, len(moves), number + 1)[:-1].astype(int)
+    return number / (number - 1) * np.sum(np.add.reduceat(moves, begins) ** 2)

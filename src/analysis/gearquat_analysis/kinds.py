@@ -1,0 +1,114 @@
+"""Kinds of bodies in a mixture: which bodies are of which, and their names."""
+
+from collections import Counter
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import numpy as np
+
+from .mapped import Part
+
+#: more kinds than these are no mixture of species, but bodies that are all different
+MOST = 8
+#: relative differences of masses and of principal moments that make no other kind; six digits leave moments about 1e-3
+#: uncertain
+SAME_MASS, SAME_MOMENTS = 1e-4, 0.02
+
+
+class Kind(NamedTuple):
+    """Bodies with the same sites: their ``name``, "" if all are of one kind, and their places (b,) among all bodies.
+
+    >>> from gearquat_analysis import Poses, open_dump
+    >>> from gearquat_analysis.kinds import kinds
+    >>> [(kind.name, len(kind.bodies)) for kind in kinds(Poses(open_dump("nitrogen.dump").atoms).run(stop=2))]
+    [('', 64)]
+    """
+
+    name: str
+    bodies: np.ndarray
+
+
+class _Results(dict):
+    """Results by their names, as attributes as well."""
+
+    __getattr__ = dict.__getitem__
+
+
+def kinds(poses):
+    """Kinds of the bodies of ``Poses``, the first one first; a single one without a name if they cannot be told apart.
+
+    Bodies are of one kind if their sites have the same types and masses, and if their principal moments are within 2 %.
+    A name is the formula if all masses are those of elements (H2O), and else made of types of atoms: T1(T2)2 has one
+    site of type 1 and two of type 2.  Kinds with the same formula are numbered (C8H10-1).  The fix's table has no masses,
+    so all its bodies are of one kind.  So are those of more than 8 kinds; ``too_many`` tells.
+    """
+    groups = _groups(poses)
+    if len(groups) == 1 or len(groups) > MOST:
+        return [Kind("", np.arange(poses.results.center.shape[1]))]
+    names = [_name(poses, own[0]) for own in groups]
+    often, seen, found = Counter(names), Counter(), []
+    for name, own in zip(names, groups):
+        seen[name] += 1
+        found.append(Kind(f"{name}-{seen[name]}" if often[name] > 1 else name, own))
+    return found
+
+
+def too_many(poses):
+    """Whether bodies are of more kinds than are told apart."""
+    return len(_groups(poses)) > MOST
+
+
+def of_kind(poses, kind):
+    """What averages and correlations need of finished ``poses``, for the bodies of one Kind."""
+    if not kind.name:
+        return poses
+    results = _Results(time=poses.results.time)
+    for name in ("center", "q", "velocity", "omega_space"):
+        if name in poses.results:
+            results[name] = Part(poses.results[name], kind.bodies)
+    names = ("mass", "moments", "axes", "point", "linear")
+    bodies = SimpleNamespace(**{name: getattr(poses.bodies, name)[kind.bodies] for name in names})
+    return SimpleNamespace(results=results, bodies=bodies, unit=poses.unit)
+
+
+def _groups(poses):
+    """Places of the bodies of each kind; not all of them if there are more than MOST."""
+    bodies, atoms = getattr(poses, "bodies", None), getattr(poses, "atoms", None)
+    if bodies is None or atoms is None:
+        return [np.arange(1)]
+    left, groups = _composition(bodies, _types(atoms)[bodies.index]), []
+    while (left >= 0).any() and len(groups) <= MOST:
+        first = int(np.argmax(left >= 0))
+        moments = bodies.moments[first]
+        near = np.abs(bodies.moments - moments).max(axis=1) <= SAME_MOMENTS * moments[0]
+        groups.append(np.flatnonzero((left == left[first]) & near))
+        left[groups[-1]] = -1
+    return groups
+
+
+def _types(atoms):
+    return np.asarray(atoms.types) if hasattr(atoms, "types") else np.ones(len(atoms), int)
+
+
+def _composition(bodies, types):
+    """Numbers (B,), equal for bodies whose sites have the same types and masses."""
+    number = np.unique(types, return_inverse=True)[1]
+    light = np.round(np.log(np.where(bodies.masses > 0.0, bodies.masses, 1e-300)) / SAME_MASS)
+    rows = np.column_stack([bodies.of, number, light])
+    rows = rows[np.lexsort(rows.T[::-1])][:, 1:]
+    seen, ends = {}, np.cumsum(bodies.counts)
+    texts = (rows[end - count : end].tobytes() for end, count in zip(ends, bodies.counts))
+    return np.array([seen.setdefault(text, len(seen)) for text in texts])
+
+
+def _name(poses, body):
+    """Formula of the body at this place."""
+    bodies, atoms = poses.bodies, poses.atoms
+    own = bodies.index[bodies.of == body]
+    if not hasattr(atoms, "elements"):
+        count = Counter(f"T{kind}" for kind in _types(atoms)[own].tolist())
+        return "".join(f"({name}){n}" if n > 1 else name for name, n in sorted(count.items()))
+    count = Counter(atoms.elements[own].tolist())
+    # carbon, hydrogen, and the others by their letters (E. A. Hill, J. Am. Chem. Soc. 22, 478 (1900))
+    order = sorted(count, key=lambda name: ("CH".find(name) % 3 if "C" in count else 0, name))
+    return "".join(f"{name}{count[name] if count[name] > 1 else ''}" for name in order)
