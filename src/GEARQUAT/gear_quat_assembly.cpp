@@ -5,301 +5,429 @@
 
 #include "gear_quat_assembly.h"
 
+#include "gear_quat_extended.h"
 #include "gear_quat_images.h"
 #include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
-static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
 
-/// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
-void Assembly::warn_of_clumps() const
-{
-  const tagint any = over_ranks(MPI_MAX, in_clumps, world);
-  if (any && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
-                   "they belong together, the image flags of its atoms do not: unwrap them in the "
-                   "data file, or use set image before this fix",
-                   any);
-}
+static constexpr double NONE = std::numeric_limits<double>::infinity();
+
+// the largest number of terms of a sum whose scale bounds each term
+
+static constexpr double MANY = 524288.0;
+
+// rows and columns of the six components of a symmetric tensor
+
+static constexpr int ROW[6] = {0, 0, 0, 1, 1, 2}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 
 /* ----------------------------------------------------------------------
-   every site goes to the rank that its body's ID names, which makes the body and replies where the
-   site is in it; then the bodies go to the ranks of their owners
+   passes over the sites
 ------------------------------------------------------------------------- */
 
-std::vector<Assembly::PlacedSite> Assembly::place_sites(const std::vector<Site> &mine)
+static void merge_sums(ExactSum *sums, const ExactSum *others, int n)
 {
-  std::vector<int> ranks;
-  for (const auto &site : mine) ranks.push_back((int) (site.id % comm->nprocs));
-  std::vector<Site> sites = send_to_ranks(comm, mine, ranks);
-  std::sort(sites.begin(), sites.end(), [](const Site &a, const Site &b) {
-    return a.id != b.id ? a.id < b.id : a.tag < b.tag;
-  });
-  const int n = (int) sites.size();
-  std::vector<PlacedSite> replies(n);
-  ranks.resize(n);
-  for (int first = 0, last; first < n; first = last) {
-    for (last = first; last < n && sites[last].id == sites[first].id; ++last) {
-      undo_image_flag_overflow(domain, sites[first].x, sites[last].x);
-      ranks[last] = sites[last].rank;
-    }
-    place(&sites[first], last - first, &replies[first]);
-  }
-  const std::vector<PlacedSite> placed = send_to_ranks(comm, replies, ranks);
-  report_faults();
-  warn_of_clumps();
-  return placed;
+  for (int k = 0; k < n; ++k) sums[k].add(others[k]);
 }
 
-std::vector<Assembly::OwnedBody> Assembly::owned_bodies()
+void Assembly::Sizes::merge(const Sizes &other)
 {
-  return send_to_ranks(comm, made, owner_ranks);
+  natoms += other.natoms;
+  if (other.first < first) {
+    first = other.first;
+    std::copy_n(other.first_x, 3, first_x);
+  }
+  mass = std::max(mass, other.mass);
+  speed = std::max(speed, other.speed);
+  own_inertia = std::max(own_inertia, other.own_inertia);
+  own_momentum = std::max(own_momentum, other.own_momentum);
+  finite = finite && other.finite;
 }
 
-/// Make a body of its sites, and say where each of them is in it.
-void Assembly::place(const Site *sites, int n, PlacedSite *replies)
+void Assembly::Extremes::merge(const Extremes &other)
 {
-  double axes[9];
-  int owner;
-  const OwnedBody body = make_body(sites, n, axes, owner);
-  std::vector<const double *> positions;
-  for (int i = 0; i < n; ++i) {
-    double arm[3];
-    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - body.state.center[k];
-    to_body(axes, arm, replies[i].site_body);
-    std::copy_n(body.state.q, 4, replies[i].q_body);
-    replies[i].local = sites[i].local;
-    replies[i].owner = sites[owner].tag;
-    positions.push_back(sites[i].x);
-  }
-  if (lies_in_clumps(domain, positions)) in_clumps = sites[0].id;
-  made.push_back(body);
-  owner_ranks.push_back(sites[owner].rank);
-}
-
-/* ----------------------------------------------------------------------
-   one body from its sites, sorted by atom ID
-------------------------------------------------------------------------- */
-
-Assembly::OwnedBody Assembly::make_body(const Site *sites, int n, double axes[9], int &owner)
-{
-  // owner: the site nearest to the middle of the body's bounding box needs the fewest ghosts
-
-  double lo[3], hi[3];
-  for (int k = 0; k < 3; ++k) lo[k] = hi[k] = sites[0].x[k];
-  for (int i = 1; i < n; ++i)
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], sites[i].x[k]);
-      hi[k] = std::max(hi[k], sites[i].x[k]);
-    }
-  const double middle[3] = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
-  owner = 0;
-  for (int i = 1; i < n; ++i)
-    if (distance2(sites[i].x, middle) < distance2(sites[owner].x, middle)) owner = i;
-
-  OwnedBody owned = OwnedBody();
-  std::fill(axes, axes + 9, 0.0);
-  owned.local = sites[owner].local;
-  owned.body.id = sites[0].id;
-  owned.body.natoms = n;
-  for (int i = 0; i < n; ++i)
-    owned.body.extent =
-        std::max(owned.body.extent, std::sqrt(distance2(sites[i].x, sites[owner].x)));
-
-  const auto stated = given.find(owned.body.id);
-  if (stated != given.end()) {
-    found.push_back(owned.body.id);
-    owned.body.from_file = 1;
-    const Momenta momenta = take_given(stated->second, owned);
-    check_place(sites, n, owned);
-    find_frame(momenta, sites, n, axes, owned);
-  } else {
-    const Momenta momenta = average(sites, n, owned);
-    if (owned.body.rigid.mass > 0.0)
-      find_frame(momenta, sites, n, axes, owned);
-    else
-      faulty[MASSLESS] = owned.body.id;
-  }
-  return owned;
-}
-
-/// Mass, center, inertia and momenta as sums over the sites.
-Assembly::Momenta Assembly::average(const Site *sites, int n, OwnedBody &owned) const
-{
-  Momenta momenta = Momenta();
-  double mass = 0.0, center[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
-  for (int i = 0; i < n; ++i) {
-    mass += sites[i].mass;
-    for (int k = 0; k < 3; ++k) {
-      center[k] += sites[i].mass * sites[i].x[k];
-      velocity[k] += sites[i].mass * sites[i].v[k];
-    }
-  }
-  owned.body.rigid.mass = mass;
-  if (!(mass > 0.0)) return momenta;
-
-  for (int k = 0; k < 3; ++k) {    // a lone site is at its center, without rounding
-    owned.state.center[k] = n == 1 ? sites[0].x[k] : center[k] / mass;
-    owned.state.velocity[k] = n == 1 ? sites[0].v[k] : velocity[k] / mass;
-  }
-
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) momenta.angular_momentum_space[k] += sites[i].own_momentum_space[k];
-    for (int k = 0; k < 9; ++k) momenta.inertia_space[k] += sites[i].own_inertia_space[k];
-  }
-  if (n == 1) return momenta;    // a lone point has no rotation, rounding or not
-
-  for (int i = 0; i < n; ++i) {
-    double arm[3], spin[3];
-    for (int k = 0; k < 3; ++k) arm[k] = sites[i].x[k] - owned.state.center[k];
-    cross3(arm, sites[i].v, spin);
-    const double r2 = dot3(arm, arm);
-    for (int k = 0; k < 3; ++k) {
-      momenta.angular_momentum_space[k] += sites[i].mass * spin[k];
-      for (int l = 0; l < 3; ++l)
-        momenta.inertia_space[3 * k + l] += sites[i].mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
-    }
-  }
-  return momenta;
-}
-
-Assembly::Momenta Assembly::take_given(const GivenBody &given_body, OwnedBody &owned) const
-{
-  const double *i = given_body.inertia;
-  const double *l = given_body.angular_momentum_space;
-  owned.body.rigid.mass = given_body.mass;
   for (int k = 0; k < 3; ++k) {
-    owned.state.center[k] = given_body.center[k];
-    owned.state.velocity[k] = given_body.velocity[k];
+    lo[k] = std::min(lo[k], other.lo[k]);
+    hi[k] = std::max(hi[k], other.hi[k]);
+    lo_periods[k] = std::min(lo_periods[k], other.lo_periods[k]);
+    hi_periods[k] = std::max(hi_periods[k], other.hi_periods[k]);
+  }
+  mass.add(other.mass);
+}
+
+void Assembly::Moments::merge(const Moments &other)
+{
+  if (other.distance2 < distance2 || (other.distance2 == distance2 && other.owner < owner)) {
+    distance2 = other.distance2;
+    owner = other.owner;
+    rank = other.rank;
+    local = other.local;
+    std::copy_n(other.x, 3, x);
+  }
+  merge_sums(center, other.center, 3);
+  merge_sums(momentum, other.momentum, 3);
+}
+
+void Assembly::Momenta::merge(const Momenta &other)
+{
+  extent2 = std::max(extent2, other.extent2);
+  from_center2 = std::min(from_center2, other.from_center2);
+  merge_sums(inertia_space, other.inertia_space, 6);
+  merge_sums(angular_momentum_space, other.angular_momentum_space, 3);
+  merge_sums(own_inertia_space, other.own_inertia_space, 6);
+  merge_sums(own_momentum_space, other.own_momentum_space, 3);
+}
+
+void Assembly::Sides::merge(const Sides &other)
+{
+  for (int k = 0; k < 3; ++k) {
+    if (other.mass[k] < mass[k] || (other.mass[k] == mass[k] && other.tag[k] >= tag[k])) continue;
+    mass[k] = other.mass[k];
+    tag[k] = other.tag[k];
+    side[k] = other.side[k];
+  }
+}
+
+double Assembly::mass_of(int i) const
+{
+  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+void Assembly::unwrapped(int part, int i, double *x) const
+{
+  domain->unmap(atom->x[i], atom->image[i], x);
+  undo_image_flag_overflow(domain, sizes[part].first_x, x);
+}
+
+void Assembly::arm_from(const double *origin, int part, int i, double *arm) const
+{
+  unwrapped(part, i, arm);
+  for (int k = 0; k < 3; ++k) arm[k] -= origin[k];
+}
+
+/// No site is further away from the middle of the box around the sites.
+double Assembly::radius(int part) const
+{
+  return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
+}
+
+/// The scale of a sum over all sites of a body; bound: of a term.
+double Assembly::scale_of(int part, double bound) const
+{
+  return ExactSum::scale_of(bound * std::max(1.0, (double) sizes[part].natoms / MANY));
+}
+
+/// The same, of terms that are proportional to the mass.
+double Assembly::unit_of(int part, double bound) const
+{
+  return scale_of(part, sizes[part].mass * bound);
+}
+
+/* ----------------------------------------------------------------------
+   bodies from their sites, pass by pass
+------------------------------------------------------------------------- */
+
+Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
+                   const std::vector<tagint> &ids) :
+    Pointers(lmp),
+    given(given), extended(extended), parts(comm, ids), made(parts.number(), Made())
+{
+  find_sizes();
+  find_extremes();
+  report_faults();
+  find_moments();
+  const std::vector<Momenta> momenta = find_momenta();
+  for (int part = 0; part < parts.number(); ++part) {
+    made[part].body.extent = std::sqrt(momenta[part].extent2);
+    if (made[part].body.from_file) check_place(part, momenta[part]);
+    find_axes(part, momenta[part]);
+  }
+  orient_axes();
+  for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
+  report_faults();
+  report_missing();
+  warn_of_clumps();
+}
+
+void Assembly::find_sizes()
+{
+  const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1};
+  sizes = over_sites(none, [this](Sizes &all, int part) {
+    Body &body = made[part].body;
+    body.id = parts.key(part);
+    body.from_file = given.count(body.id) > 0;
+    for (const int i : parts.atoms(part)) {
+      const double mass = mass_of(i), *v = atom->v[i];
+      double x[3], inertia[9] = {}, momentum[3] = {};
+      domain->unmap(atom->x[i], atom->image[i], x);
+      if (extended) extended->own_momenta(i, mass, inertia, momentum);
+      ++all.natoms;
+      if (atom->tag[i] < all.first) {
+        all.first = atom->tag[i];
+        std::copy_n(x, 3, all.first_x);
+      }
+      all.mass = std::max(all.mass, std::fabs(mass));
+      for (int k = 0; k < 3; ++k) {
+        all.speed = std::max(all.speed, std::fabs(v[k]));
+        all.own_momentum = std::max(all.own_momentum, std::fabs(momentum[k]));
+      }
+      for (const double one : inertia) all.own_inertia = std::max(all.own_inertia, std::fabs(one));
+      double sum = mass + x[0] + x[1] + x[2];
+      if (!body.from_file)
+        for (int k = 0; k < 3; ++k) sum += v[k] + momentum[k] + inertia[4 * k];
+      if (!std::isfinite(sum)) all.finite = 0;
+    }
+  });
+  for (int part = 0; part < parts.number(); ++part)
+    if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
+}
+
+void Assembly::find_extremes()
+{
+  const Extremes none = {{NONE, NONE, NONE},
+                         {-NONE, -NONE, -NONE},
+                         {NONE, NONE, NONE},
+                         {-NONE, -NONE, -NONE},
+                         ExactSum()};
+  extremes = over_sites(none, [this](Extremes &all, int part) {
+    const double unit = unit_of(part, 1.0);
+    for (const int i : parts.atoms(part)) {
+      double x[3], periods[3];
+      unwrapped(part, i, x);
+      to_periods(domain, x, periods);
+      for (int k = 0; k < 3; ++k) {
+        all.lo[k] = std::min(all.lo[k], x[k]);
+        all.hi[k] = std::max(all.hi[k], x[k]);
+        all.lo_periods[k] = std::min(all.lo_periods[k], periods[k]);
+        all.hi_periods[k] = std::max(all.hi_periods[k], periods[k]);
+      }
+      all.mass.add(mass_of(i), unit);
+    }
+  });
+  for (int part = 0; part < parts.number(); ++part) {
+    Body &body = made[part].body;
+    body.natoms = (tagint) sizes[part].natoms;
+    body.rigid.mass = extremes[part].mass.value(unit_of(part, 1.0));
+    if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
+    for (int k = 0; k < 3; ++k)
+      made[part].state.center[k] = 0.5 * (extremes[part].lo[k] + extremes[part].hi[k]);
+  }
+}
+
+/// The owner is the site nearest to the middle of the body, for it needs the fewest ghosts.  Until
+/// the call the center of a body is this middle.
+void Assembly::find_moments()
+{
+  const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
+  const auto units = [this](int part) {
+    return std::array<double, 2>{unit_of(part, radius(part)), unit_of(part, sizes[part].speed)};
+  };
+  moments = over_sites(none, [&](Moments &all, int part) {
+    const auto unit = units(part);
+    for (const int i : parts.atoms(part)) {
+      const double mass = mass_of(i);
+      double arm[3];
+      arm_from(made[part].state.center, part, i, arm);
+      const double d2 = dot3(arm, arm);
+      if (d2 < all.distance2 || (d2 == all.distance2 && atom->tag[i] < all.owner)) {
+        all.distance2 = d2;
+        all.owner = atom->tag[i];
+        all.rank = comm->me;
+        all.local = i;
+        unwrapped(part, i, all.x);
+      }
+      for (int k = 0; k < 3; ++k) {
+        all.center[k].add(mass * arm[k], unit[0]);
+        all.momentum[k].add(mass * atom->v[i][k], unit[1]);
+      }
+    }
+  });
+  for (int part = 0; part < parts.number(); ++part) {
+    Made &one = made[part];
+    const auto unit = units(part);
+    const double mass = one.body.rigid.mass;
+    one.owner = moments[part].owner;
+    one.owner_rank = moments[part].rank;
+    one.local = moments[part].local;
+    for (int k = 0; k < 3; ++k) {
+      one.state.center[k] += moments[part].center[k].value(unit[0]) / mass;
+      one.state.velocity[k] = moments[part].momentum[k].value(unit[1]) / mass;
+    }
+    if (sizes[part].natoms == 1)    // without rounding
+      std::copy_n(atom->v[*parts.atoms(part).begin()], 3, one.state.velocity);
+    if (one.body.from_file) take_given(given.at(one.body.id), part);
+  }
+}
+
+/// Bounds of the terms: no arm is longer than twice the radius.
+Assembly::MomentaUnits Assembly::units_of_momenta(int part) const
+{
+  const double r = radius(part);
+  return {unit_of(part, 4.0 * r * r), unit_of(part, 8.0 * r * sizes[part].speed),
+          scale_of(part, sizes[part].own_inertia), scale_of(part, sizes[part].own_momentum)};
+}
+
+std::vector<Assembly::Momenta> Assembly::find_momenta()
+{
+  const Momenta none = {0.0, NONE, {}, {}, {}, {}};
+  return over_sites(none, [this](Momenta &all, int part) {
+    const MomentaUnits unit = units_of_momenta(part);
+    const BodyState &state = made[part].state;
+    for (const int i : parts.atoms(part)) {
+      const double mass = mass_of(i);
+      double arm[3], speed[3], spin[3], from_owner[3], inertia[9] = {}, momentum[3] = {};
+      arm_from(moments[part].x, part, i, from_owner);
+      arm_from(state.center, part, i, arm);
+      const double r2 = dot3(arm, arm);
+      all.extent2 = std::max(all.extent2, dot3(from_owner, from_owner));
+      all.from_center2 = std::min(all.from_center2, r2);
+      if (made[part].body.from_file) continue;
+      for (int k = 0; k < 3; ++k) speed[k] = atom->v[i][k] - state.velocity[k];
+      cross3(arm, speed, spin);
+      if (extended) extended->own_momenta(i, mass, inertia, momentum);
+      for (int k = 0; k < 3; ++k) {
+        all.angular_momentum_space[k].add(mass * spin[k], unit.momentum);
+        all.own_momentum_space[k].add(momentum[k], unit.own_momentum);
+      }
+      for (int m = 0; m < 6; ++m) {
+        const int k = ROW[m], l = COLUMN[m];
+        all.inertia_space[m].add(mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]), unit.inertia);
+        all.own_inertia_space[m].add(inertia[3 * k + l], unit.own_inertia);
+      }
+    }
+  });
+}
+
+/// The owner's rank counts a body of the file.
+void Assembly::take_given(const GivenBody &given_body, int part)
+{
+  Made &one = made[part];
+  if (one.owner_rank == comm->me) found.push_back(one.body.id);
+  one.body.rigid.mass = given_body.mass;
+  for (int k = 0; k < 3; ++k) {
+    one.state.center[k] = given_body.center[k];
+    one.state.velocity[k] = given_body.velocity[k];
   }
   const imageint image = ((imageint) (given_body.image[0] + IMGMAX) & IMGMASK) |
       (((imageint) (given_body.image[1] + IMGMAX) & IMGMASK) << IMGBITS) |
       (((imageint) (given_body.image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
-  domain->unmap(owned.state.center, image);
-  return {{i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]}, {l[0], l[1], l[2]}};
+  domain->unmap(one.state.center, image);
 }
 
-/// Principal frame, orientation and angular velocity.
-void Assembly::find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
-                          OwnedBody &owned)
+/// Principal moments and axes, the latter without directions.
+void Assembly::find_axes(int part, const Momenta &momenta)
 {
-  double *moments = owned.body.rigid.inertia;
-  principal_axes(momenta.inertia_space, moments, axes);
-  check_moments(owned);
-  drop_vanishing_moments(moments);
-  if (domain->dimension == 3) {    // in two dimensions the z axis stays where it is, exactly
-    sort_axes(moments, axes);
-    orient_axes(sites, n, owned.state.center, axes);
+  double tensor[9];
+  const MomentaUnits unit = units_of_momenta(part);
+  for (int m = 0; m < 6; ++m)
+    tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
+        momenta.inertia_space[m].value(unit.inertia) +
+        momenta.own_inertia_space[m].value(unit.own_inertia);
+  Made &one = made[part];
+  if (one.body.from_file) {
+    const double *i = given.at(one.body.id).inertia;
+    const double given_tensor[9] = {i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]};
+    std::copy_n(given_tensor, 9, tensor);
   }
-  quaternion_from_matrix(axes, owned.state.q);
-  double momentum_body[3];
-  to_body(axes, momenta.angular_momentum_space, momentum_body);
-  for (int k = 0; k < 3; ++k)
-    owned.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
-  for (int k = 0; k < 3; ++k)
-    if (!std::isfinite(owned.state.omega_body[k]) || !std::isfinite(owned.state.velocity[k]))
-      faulty[NOT_FINITE] = owned.body.id;
+  double *moments = one.body.rigid.inertia;
+  principal_axes(tensor, moments, one.axes);
+  check_moments(one);
+  drop_vanishing_moments(moments);
+  // in two dimensions the z axis stays where it is, exactly
+  if (domain->dimension == 3) sort_axes(moments, one.axes);
 }
+
+/// Orientation and angular velocity.
+void Assembly::find_rotation(int part, const Momenta &momenta)
+{
+  Made &one = made[part];
+  const double *moments = one.body.rigid.inertia;
+  const MomentaUnits unit = units_of_momenta(part);
+  double momentum_space[3], momentum_body[3];
+  for (int k = 0; k < 3; ++k)
+    momentum_space[k] = one.body.from_file
+        ? given.at(one.body.id).angular_momentum_space[k]
+        : momenta.angular_momentum_space[k].value(unit.momentum) +
+            momenta.own_momentum_space[k].value(unit.own_momentum);
+  quaternion_from_matrix(one.axes, one.state.q);
+  to_body(one.axes, momentum_space, momentum_body);
+  for (int k = 0; k < 3; ++k)
+    one.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
+  for (int k = 0; k < 3; ++k)
+    if (!std::isfinite(one.state.omega_body[k]) || !std::isfinite(one.state.velocity[k]))
+      faulty[NOT_FINITE] = one.body.id;
+}
+
+/* ----------------------------------------------------------------------
+   directions of the axes
+------------------------------------------------------------------------- */
 
 /// Directs the axes by the body itself, not by its orientation at the start: the first and the
 /// third axis point to the side of the heaviest site that is not in the plane across the axis; of
 /// equally heavy sites the first one counts.
-void Assembly::orient_axes(const Site *sites, int n, const double *center, double axes[9]) const
+void Assembly::orient_axes()
 {
-  std::vector<const Site *> order(n);
-  for (int i = 0; i < n; ++i) order[i] = sites + i;
-  std::stable_sort(order.begin(), order.end(), [](const Site *a, const Site *b) {
-    return a->mass > b->mass;
-  });
-
-  auto along = [center](const Site *site, const double *axis) {
-    const double arm[3] = {site->x[0] - center[0], site->x[1] - center[1], site->x[2] - center[2]};
-    return dot3(axis, arm);
+  if (domain->dimension != 3) return;
+  const auto along = [this](int part, int i, double *components) {
+    double arm[3];
+    arm_from(made[part].state.center, part, i, arm);
+    to_body(made[part].axes, arm, components);
   };
-  double largest = 0.0;
-  for (const auto *site : order)
-    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::fabs(along(site, axes + 3 * k)));
+  const std::vector<Reach> reach = over_sites(Reach{0.0}, [&](Reach &all, int part) {
+    for (const int i : parts.atoms(part)) {
+      double x[3];
+      along(part, i, x);
+      for (const double one : x) all.largest = std::max(all.largest, std::fabs(one));
+    }
+  });
+  const Sides none = {{-1.0, -1.0, -1.0}, {MAXTAGINT, MAXTAGINT, MAXTAGINT}, {}};
+  const std::vector<Sides> sides = over_sites(none, [&](Sides &all, int part) {
+    for (const int i : parts.atoms(part)) {
+      Sides site = none;
+      along(part, i, site.side);
+      for (int k = 0; k < 3; ++k) {
+        if (std::fabs(site.side[k]) < ON_AXIS * reach[part].largest) continue;
+        site.mass[k] = mass_of(i);
+        site.tag[k] = atom->tag[i];
+      }
+      all.merge(site);
+    }
+  });
+  for (int part = 0; part < parts.number(); ++part) direct(made[part].axes, sides[part]);
+}
 
+/// One axis follows from the two others.
+void Assembly::direct(double *axes, const Sides &sides)
+{
   // false if all sites are in the plane across the axis
 
-  auto orient = [&](int k) {
-    for (const auto *site : order) {
-      const double side = along(site, axes + 3 * k);
-      if (std::fabs(side) < ON_AXIS * largest) continue;
-      if (side < 0.0)
-        for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
-      return true;
-    }
-    return false;
+  const auto turn = [&](int k) {
+    if (sides.tag[k] == MAXTAGINT) return false;
+    if (sides.side[k] < 0.0)
+      for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
+    return true;
   };
-  const bool first = orient(0), third = orient(2);
+  const bool first = turn(0), third = turn(2);
   const int last = first == third ? 1 : first ? 2 : 0;
-  if (last != 1) orient(1);
+  if (last != 1) turn(1);
   cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
 }
 
-/* ----------------------------------------------------------------------
-   what no body can be
-------------------------------------------------------------------------- */
-
-/// In the order of Assembly's faults, of which the first one is reported.
-static const char *const FAULT_TEXTS[] = {
-    "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
-    "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
-    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment; no body "
-    "has",
-    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the two "
-    "others; no body has",
-    "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
-    "position and its image flags right?"};
-
-/// A given center may lie outside of the body, but not by half a box: image flags belong to it.
-void Assembly::check_place(const Site *sites, int n, const OwnedBody &owned)
+double Assembly::memory_usage() const
 {
-  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
-  const double far = owned.body.extent + 0.5 * longest;
-  for (int i = 0; i < n; ++i)
-    if (distance2(sites[i].x, owned.state.center) <= far * far) return;
-  faulty[APART] = owned.body.id;
-}
-
-/// Of sums over masses all this holds by itself, up to rounding.
-void Assembly::check_moments(const OwnedBody &owned)
-{
-  const double *moments = owned.body.rigid.inertia;
-  const double largest = std::max({moments[0], moments[1], moments[2]});
-  const double smallest = std::min({moments[0], moments[1], moments[2]});
-  const double sum = moments[0] + moments[1] + moments[2];
-  if (!std::isfinite(sum))
-    faulty[NOT_FINITE] = owned.body.id;
-  else if (smallest < -LINEAR_FRACTION * largest)
-    faulty[NEGATIVE] = owned.body.id;
-  else if (owned.body.from_file && domain->dimension == 3 &&
-           (1.0 - ROUNDED) * largest > sum - largest)
-    faulty[UNBALANCED] = owned.body.id;
-}
-
-void Assembly::report_faults()
-{
-  const auto any = over_ranks(MPI_MAX, faulty, world);
-  for (int fault = 0; fault < FAULTS; ++fault)
-    if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
-
-  if (over_ranks(MPI_SUM, (int) found.size(), world) == (int) given.size()) return;
-  for (const auto &stated : given) {
-    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
-    if (!over_ranks(MPI_MAX, here, world))
-      error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
-  }
+  return parts.memory_usage() + made.capacity() * sizeof(Made) + sizes.capacity() * sizeof(Sizes) +
+      extremes.capacity() * sizeof(Extremes) + moments.capacity() * sizeof(Moments) +
+      parts.number() * sizeof(Momenta);
 }

@@ -80,32 +80,15 @@ void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given, bool 
   const bool any_extended = extended.any(atoms);
   if (any_extended && !extended.has_records()) extended.reset(true, (int) owned.size());
 
-  std::vector<Assembly::Site> sites;
-  for (const int i : atoms) {
-    Assembly::Site site = Assembly::Site();
-    site.rank = comm->me;
-    site.local = i;
-    site.id = ids[i];
-    site.tag = atom->tag[i];
-    site.mass = atom_mass(i);
-    domain->unmap(atom->x[i], atom->image[i], site.x);
-    for (int k = 0; k < 3; ++k) site.v[k] = atom->v[i][k];
-    if (any_extended)
-      extended.own_momenta(i, site.mass, site.own_inertia_space, site.own_momentum_space);
-    sites.push_back(site);
-  }
-
-  Assembly assembly(lmp, given);
-  const auto placed = assembly.place_sites(sites);
-  const auto made = assembly.owned_bodies();
-
-  for (const auto &site : placed) {
-    body_id[site.local] = ids[site.local];
-    owner_tag[site.local] = site.owner;
-    for (int k = 0; k < 3; ++k) site_body[site.local][k] = site.site_body[k];
-    if (any_extended) extended.attach(site.local, atom_mass(site.local), site.q_body);
-  }
-  for (const auto &one : made) {
+  const Assembly assembly(lmp, given, any_extended ? &extended : nullptr, ids);
+  assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
+    body_id[i] = one.body.id;
+    owner_tag[i] = one.owner;
+    std::copy_n(arm_body, 3, site_body[i].begin());
+    if (any_extended) extended.attach(i, atom_mass(i), one.state.q);
+  });
+  for (const auto &one : assembly.bodies()) {
+    if (one.owner_rank != comm->me) continue;
     const int ibody = add_owned(one.local);
     body[ibody] = one.body;
     body[ibody].fresh = fresh;

@@ -21,8 +21,7 @@ static constexpr double PART = 0.25;
 
 static constexpr double SAME = 1.0e-9;
 
-/// In units of the periods.
-static void to_periods(const Domain *domain, const double *way, double *periods)
+void GearQuat::to_periods(const Domain *domain, const double *way, double *periods)
 {
   const double *to_box = domain->h_inv;
   periods[0] = to_box[0] * way[0] + to_box[5] * way[1] + to_box[4] * way[2];
@@ -99,23 +98,6 @@ bool GearQuat::moved_with_faces(const Domain *domain, const double *box_before,
       off = std::max(off, std::fabs(way[k] - change[k]));
     }
     if (longest > same && off < same) return true;
-  }
-  return false;
-}
-
-bool GearQuat::lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions)
-{
-  std::vector<double> along(positions.size());
-  for (int k = 0; k < 3; ++k) {
-    if (!is_periodic(domain, k)) continue;
-    for (size_t i = 0; i < positions.size(); ++i) {
-      double periods[3];
-      to_periods(domain, positions[i], periods);
-      along[i] = periods[k];
-    }
-    std::sort(along.begin(), along.end());
-    for (size_t i = 1; i < along.size(); ++i)
-      if (along[i] - along[i - 1] > 0.5) return true;
   }
   return false;
 }

@@ -9,8 +9,6 @@
 #ifndef LMP_GEAR_QUAT_IMAGES_H
 #define LMP_GEAR_QUAT_IMAGES_H
 
-#include <vector>
-
 namespace LAMMPS_NS {
 class Domain;
 }    // namespace LAMMPS_NS
@@ -29,8 +27,8 @@ bool whole_periods_away(const Domain *domain, const double *change, double furth
 /// box_before: as Domain::h.
 bool moved_with_faces(const Domain *domain, const double *box_before, const double *change);
 
-/// True if atoms at these unwrapped positions leave more than half of a period empty between them.
-bool lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions);
+/// A way (3) in units of the periods.
+void to_periods(const Domain *domain, const double *way, double *periods);
 
 }    // namespace LAMMPS_NS::GearQuat
 
