@@ -142,7 +142,8 @@ double Assembly::unit_of(int part, double bound) const
 Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
                    const std::vector<tagint> &ids) :
     Pointers(lmp),
-    given(given), extended(extended), parts(comm, ids), made(parts.number(), Made())
+    given(given), extended(extended), parts(comm, ids.data(), (int) ids.size()),
+    made(parts.number(), Made())
 {
   find_sizes();
   find_extremes();

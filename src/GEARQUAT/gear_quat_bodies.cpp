@@ -227,31 +227,41 @@ void Bodies::list_sites()
   unseen.clear();
   sites.clear();
   extended.sites.clear();
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_id[i] == 0) continue;
-    const int mine = body_of(i);
-    if (mine < 0) {
-      unseen.push_back(owner_tag[i]);
-      continue;
+  size_t mine = 0;
+  for (int i = 0; i < atom->nlocal; ++i) mine += body_id[i] != 0;
+  if (mine > sites.capacity()) sites = std::vector<Site>();    // not both
+  sites.reserve(mine);
+  const auto list = [this](bool centered) {
+    for (int i = 0; i < atom->nlocal; ++i) {
+      const double *arm_body = site_body[i].data();
+      if (body_id[i] != 0 && (dot3(arm_body, arm_body) == 0.0) == centered) list_site(i);
     }
-    Site site = {i, mine, {}, {}};
-    for (int k = 0; k < 3; ++k) site.arm_body[k] = site_body[i][k];
-    domain->unmap(site.wrap, atom->image[i]);
-    double arm[3], expected[3];    // of what the flags take off
-    to_space(frame[site.body].axes, site.arm_body, arm);
-    for (int k = 0; k < 3; ++k) expected[k] = state[site.body].center[k] + arm[k] - atom->x[i][k];
-    undo_image_flag_overflow(domain, expected, site.wrap);
-    sites.push_back(site);
-  }
-  const auto centered = [](const Site &site) {
-    return dot3(site.arm_body, site.arm_body) == 0.0;
   };
-  ncentered = std::stable_partition(sites.begin(), sites.end(), centered) - sites.begin();
+  list(true);
+  ncentered = sites.size();
+  list(false);
   wrapped = std::any_of(sites.begin(), sites.end(), [](const Site &site) {
     return dot3(site.wrap, site.wrap) > 0.0;
   });
   if (extended.has_records())
     for (const Site &site : sites) extended.list(site.atom, site.body);
+}
+
+void Bodies::list_site(int i)
+{
+  const int ibody = body_of(i);
+  if (ibody < 0) {
+    unseen.push_back(owner_tag[i]);
+    return;
+  }
+  Site site = {i, ibody, {}, {}};
+  for (int k = 0; k < 3; ++k) site.arm_body[k] = site_body[i][k];
+  domain->unmap(site.wrap, atom->image[i]);
+  double arm[3], expected[3];    // of what the flags take off
+  to_space(frame[ibody].axes, site.arm_body, arm);
+  for (int k = 0; k < 3; ++k) expected[k] = state[ibody].center[k] + arm[k] - atom->x[i][k];
+  undo_image_flag_overflow(domain, expected, site.wrap);
+  sites.push_back(site);
 }
 
 /// On a single rank ghosts are images of own atoms, on several their owners tell them.

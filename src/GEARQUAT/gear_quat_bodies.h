@@ -34,8 +34,8 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
+struct BodyCount;
 struct Census;
-struct SiteCount;
 
 class Bodies : protected Pointers {
  public:
@@ -284,6 +284,7 @@ class Bodies : protected Pointers {
   void update_frame(int ibody);
   void list_bodies();
   void list_sites();
+  void list_site(int atom);
   int body_of(int atom) const;
   bool take_stock();
   void pack_large();
@@ -297,9 +298,10 @@ class Bodies : protected Pointers {
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place();
 
   Census census(int groupbit) const;
-  std::vector<SiteCount> count_sites(int groupbit) const;
+  std::vector<BodyCount> count_atoms(const Parts &parts, int groupbit) const;
   Census compare_sites() const;
-  void describe(const Site &site, SiteCount &count) const;
+  void find_place(const Site &site, double *found, double *expected) const;
+  void describe(const Site &site, BodyCount &count) const;
   void refuse_tears(const Census &found) const;
 
   int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + row_size; }

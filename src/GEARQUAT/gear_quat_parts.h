@@ -22,14 +22,14 @@ namespace LAMMPS_NS::GearQuat {
 
 class Parts {
  public:
-  /// key: positive and the same for all atoms of a body, 0 for an atom in none; for each owned
-  /// atom.  Collective.
-  Parts(Comm *comm, const std::vector<tagint> &key) : comm(comm)
+  /// key: of n owned atoms, positive and the same for all atoms of a body, 0 for an atom in none.
+  /// Collective.
+  Parts(Comm *comm, const tagint *key, int n) : comm(comm)
   {
-    atom.reserve(key.size() - std::count(key.begin(), key.end(), 0));
-    for (size_t i = 0; i < key.size(); ++i)
-      if (key[i] != 0) atom.push_back((int) i);
-    const auto before = [&key](int i, int j) {
+    atom.reserve(n - std::count(key, key + n, 0));
+    for (int i = 0; i < n; ++i)
+      if (key[i] != 0) atom.push_back(i);
+    const auto before = [key](int i, int j) {
       return key[i] < key[j];
     };
     if (!std::is_sorted(atom.begin(), atom.end(), before))
@@ -45,6 +45,11 @@ class Parts {
 
   int number() const { return (int) keys.size(); }
   tagint key(int part) const { return keys[part]; }
+  /// The part with a key that one of the atoms has.
+  int find(tagint key) const
+  {
+    return (int) (std::lower_bound(keys.begin(), keys.end(), key) - keys.begin());
+  }
   struct Atoms {
     const int *first, *last;
     const int *begin() const { return first; }
