@@ -61,8 +61,6 @@ void Assembly::Extremes::merge(const Extremes &other)
   for (int k = 0; k < 3; ++k) {
     lo[k] = std::min(lo[k], other.lo[k]);
     hi[k] = std::max(hi[k], other.hi[k]);
-    lo_periods[k] = std::min(lo_periods[k], other.lo_periods[k]);
-    hi_periods[k] = std::max(hi_periods[k], other.hi_periods[k]);
   }
   mass.add(other.mass);
 }
@@ -197,22 +195,15 @@ void Assembly::find_sizes()
 
 void Assembly::find_extremes()
 {
-  const Extremes none = {{NONE, NONE, NONE},
-                         {-NONE, -NONE, -NONE},
-                         {NONE, NONE, NONE},
-                         {-NONE, -NONE, -NONE},
-                         ExactSum()};
+  const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, ExactSum()};
   extremes = over_sites(none, [this](Extremes &all, int part) {
     const double unit = unit_of(part, 1.0);
     for (const int i : parts.atoms(part)) {
-      double x[3], periods[3];
+      double x[3];
       unwrapped(part, i, x);
-      to_periods(domain, x, periods);
       for (int k = 0; k < 3; ++k) {
         all.lo[k] = std::min(all.lo[k], x[k]);
         all.hi[k] = std::max(all.hi[k], x[k]);
-        all.lo_periods[k] = std::min(all.lo_periods[k], periods[k]);
-        all.hi_periods[k] = std::max(all.hi_periods[k], periods[k]);
       }
       all.mass.add(mass_of(i), unit);
     }

@@ -108,8 +108,7 @@ class Assembly : protected Pointers {
     void merge(const Sizes &other);
   };
   struct Extremes {
-    double lo[3], hi[3];                    ///< box around the sites
-    double lo_periods[3], hi_periods[3];    ///< the same in units of the periods
+    double lo[3], hi[3];    ///< box around the sites
     ExactSum mass;
     void merge(const Extremes &other);
   };
@@ -138,7 +137,6 @@ class Assembly : protected Pointers {
     double side[3];    ///< distance from the plane
     void merge(const Sides &other);
   };
-  struct Clumps;
   std::vector<Sizes> sizes;
   std::vector<Extremes> extremes;
   std::vector<Moments> moments;
@@ -175,6 +173,7 @@ class Assembly : protected Pointers {
   void check_moments(const Made &one);
   void report_faults();
   void report_missing() const;
+  std::array<double, 2> bounds(int part, int direction) const;
   void warn_of_clumps() const;
 };
 

@@ -10,6 +10,7 @@
 #include "gear_quat_images.h"
 #include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -85,68 +86,106 @@ void Assembly::report_missing() const
    bodies of several clumps
 ------------------------------------------------------------------------- */
 
-/// The sites along one direction, in intervals that are half a period long unless the body extends
-/// over many periods: two sites in one interval have no gap of more than half a period between
-/// them.
-struct Assembly::Clumps {
-  static constexpr int INTERVALS = 16;
-  double lo[INTERVALS], hi[INTERVALS];
+namespace {
 
-  void merge(const Clumps &other)
+/// The sites of a body along each direction, in intervals that are half a period long unless the
+/// body extends over many periods: two sites in one interval have no gap of more than half a period
+/// between them.
+struct Clumps {
+  static constexpr int INTERVALS = 16;
+  double lo[3][INTERVALS], hi[3][INTERVALS];
+
+  Clumps()
   {
-    for (int n = 0; n < INTERVALS; ++n) {
-      lo[n] = std::min(lo[n], other.lo[n]);
-      hi[n] = std::max(hi[n], other.hi[n]);
+    for (int k = 0; k < 3; ++k) {
+      std::fill_n(lo[k], INTERVALS, NONE);
+      std::fill_n(hi[k], INTERVALS, -NONE);
     }
   }
-  bool has_gap() const
+  void merge(const Clumps &other)
   {
-    for (int n = 1, last = 0; n < INTERVALS; ++n) {
-      if (lo[n] > hi[n]) continue;    // no site
-      if (lo[n] - hi[last] > HALF) return true;
-      last = n;
+    for (int k = 0; k < 3; ++k)
+      for (int n = 0; n < INTERVALS; ++n) {
+        lo[k][n] = std::min(lo[k][n], other.lo[k][n]);
+        hi[k][n] = std::max(hi[k][n], other.hi[k][n]);
+      }
+  }
+  void add(int direction, double interval, double along)
+  {
+    const int n = std::min((int) (along / interval), INTERVALS - 1);
+    lo[direction][n] = std::min(lo[direction][n], along);
+    hi[direction][n] = std::max(hi[direction][n], along);
+  }
+  bool have_gap() const
+  {
+    for (int k = 0; k < 3; ++k) {
+      double last = NONE;
+      for (int n = 0; n < INTERVALS; ++n) {
+        if (lo[k][n] > hi[k][n]) continue;    // no site
+        if (lo[k][n] - last > HALF) return true;
+        last = hi[k][n];
+      }
     }
     return false;
   }
 };
 
+}    // namespace
+
+/// Bounds of the coordinates of a body, in units of the periods.
+std::array<double, 2> Assembly::bounds(int part, int direction) const
+{
+  std::array<double, 2> found = {NONE, -NONE};
+  for (int corner = 0; corner < 8; ++corner) {
+    double x[3], periods[3];
+    for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? extremes[part].hi : extremes[part].lo)[k];
+    to_periods(domain, x, periods);
+    found[0] = std::min(found[0], periods[direction]);
+    found[1] = std::max(found[1], periods[direction]);
+  }
+  return found;
+}
+
 /// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
 void Assembly::warn_of_clumps() const
 {
-  tagint in_clumps = 0;
-  for (int k = 0; k < 3; ++k) {
-    if (!domain->periodicity[k]) continue;
-    const auto span = [&](int part) {
-      return extremes[part].hi_periods[k] - extremes[part].lo_periods[k];
-    };
-    int wide = 0;
-    for (int part = 0; part < parts.number(); ++part) wide = wide || span(part) > HALF;
-    if (!over_ranks(MPI_MAX, wide, world)) continue;
+  std::vector<tagint> wide(atom->nlocal, 0);    // bodies that may have a gap
+  for (int part = 0; part < parts.number(); ++part)
+    for (int k = 0; k < 3; ++k) {
+      const auto bound = bounds(part, k);
+      if (!domain->periodicity[k] || !(bound[1] - bound[0] > HALF)) continue;
+      for (const int i : parts.atoms(part)) wide[i] = parts.key(part);
+    }
+  const int here = std::any_of(wide.begin(), wide.end(), [](tagint id) {
+    return id != 0;
+  });
+  if (!over_ranks(MPI_MAX, here, world)) return;
 
-    Clumps none;
-    std::fill_n(none.lo, Clumps::INTERVALS, NONE);
-    std::fill_n(none.hi, Clumps::INTERVALS, -NONE);
-    const std::vector<Clumps> clumps = over_sites(none, [&](Clumps &all, int part) {
-      if (!(span(part) > HALF)) return;
-      const double interval = std::max(HALF, span(part) / Clumps::INTERVALS);
+  const Parts suspects(comm, wide.data(), atom->nlocal);
+  std::vector<Clumps> clumps(suspects.number());
+  for (int suspect = 0; suspect < suspects.number(); ++suspect) {
+    const int part = parts.find(suspects.key(suspect));
+    for (int k = 0; k < 3; ++k) {
+      if (!domain->periodicity[k]) continue;
+      const auto bound = bounds(part, k);
+      const double interval = std::max(HALF, (bound[1] - bound[0]) / Clumps::INTERVALS);
       for (const int i : parts.atoms(part)) {
         double x[3], periods[3];
         unwrapped(part, i, x);
         to_periods(domain, x, periods);
-        const double along = periods[k] - extremes[part].lo_periods[k];
-        const int n = std::clamp((int) (along / interval), 0, Clumps::INTERVALS - 1);
-        all.lo[n] = std::min(all.lo[n], along);
-        all.hi[n] = std::max(all.hi[n], along);
+        clumps[suspect].add(k, interval, std::max(0.0, periods[k] - bound[0]));
       }
-    });
-    for (int part = 0; part < parts.number(); ++part)
-      if (span(part) > HALF && clumps[part].has_gap()) in_clumps = parts.key(part);
+    }
   }
-  const tagint any = over_ranks(MPI_MAX, in_clumps, world);
-  if (any && comm->me == 0)
+  suspects.merge(clumps);
+  tagint in_clumps = 0;
+  for (int suspect = 0; suspect < suspects.number(); ++suspect)
+    if (clumps[suspect].have_gap()) in_clumps = suspects.key(suspect);
+  in_clumps = over_ranks(MPI_MAX, in_clumps, world);
+  if (in_clumps && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
                    "they belong together, the image flags of its atoms do not: unwrap them in the "
                    "data file, or use set image before this fix",
-                   any);
+                   in_clumps);
 }

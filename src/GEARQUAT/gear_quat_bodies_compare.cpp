@@ -299,16 +299,17 @@ void Bodies::describe(const Site &site, BodyCount &count) const
     find_place(site, count.found, count.expected);
   }
   for (int k = 0; k < 3; ++k) count.first[k] += mass * arm[k];
-  double own_space[9] = {}, unused[3], own[9];
-  if (extended.has_records()) extended.own_momenta(site.atom, mass, own_space, unused);
-  for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l) {
-      double sum = 0.0;
-      for (int m = 0; m < 9; ++m) sum += axes[3 * k + m / 3] * own_space[m] * axes[3 * l + m % 3];
-      own[3 * k + l] = sum + mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
-    }
-  const int order[6] = {0, 4, 8, 1, 2, 5};
-  for (int k = 0; k < 6; ++k) count.second[k] += own[order[k]];
+  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+  for (int m = 0; m < 6; ++m) {
+    const int k = ROW[m], l = COLUMN[m];
+    count.second[m] += mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
+  }
+  if (!extended.has_records()) return;
+  double own_space[9], unused[3];
+  extended.own_momenta(site.atom, mass, own_space, unused);
+  for (int m = 0; m < 6; ++m)
+    for (int n = 0; n < 9; ++n)
+      count.second[m] += axes[3 * ROW[m] + n / 3] * own_space[n] * axes[3 * COLUMN[m] + n % 3];
 }
 
 void Bodies::refuse_tears(const Census &found) const

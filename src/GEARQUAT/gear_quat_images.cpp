@@ -54,11 +54,12 @@ void GearQuat::undo_image_flag_overflow(const Domain *domain, const double *expe
                           expected[2] - unwrapped[2]};
   double boxes[3];
   to_periods(domain, away, boxes);
-  double lost[3];
+  double lost[3] = {};
   bool any = false;
   for (int k = 0; k < 3; ++k) {
-    lost[k] = is_periodic(domain, k) ? range * std::round(boxes[k] / range) : 0.0;
-    any = any || lost[k] != 0.0;
+    if (!(std::fabs(boxes[k]) > 0.5 * range) || !is_periodic(domain, k)) continue;
+    lost[k] = range * std::round(boxes[k] / range);
+    any = true;
   }
   if (!any) return;
   double way[3];
