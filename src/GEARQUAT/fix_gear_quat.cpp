@@ -19,6 +19,7 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_neighbors.h"
 #include "gear_quat_outputs.h"
@@ -132,7 +133,10 @@ void FixGearQuat::init()
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
                "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
   neighbors->init();
-  if (!reported) stated = read_stated(lmp, args->mol);
+  if (!reported) {
+    stated = read_stated(lmp, args->mol);
+    warn_of_partial_molecules(lmp, this, *args, *bodies);
+  }
   motion->init();
   velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
   bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
