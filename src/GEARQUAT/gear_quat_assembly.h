@@ -91,6 +91,7 @@ class Assembly : protected Pointers {
   const Extended *extended;
   Parts parts;
   std::vector<Made> made;
+  double certain;    ///< sites closer to each other than this have image flags that count alike
 
   enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS };
   tagint faulty[FAULTS] = {};    ///< a body met on this rank with each fault, 0 for none

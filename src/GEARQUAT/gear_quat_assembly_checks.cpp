@@ -165,16 +165,19 @@ void Assembly::warn_of_clumps() const
   std::vector<Clumps> clumps(suspects.number());
   for (int suspect = 0; suspect < suspects.number(); ++suspect) {
     const int part = parts.find(suspects.key(suspect));
+    double lo[3], interval[3];
     for (int k = 0; k < 3; ++k) {
-      if (!domain->periodicity[k]) continue;
       const auto bound = bounds(part, k);
-      const double interval = std::max(HALF, (bound[1] - bound[0]) / Clumps::INTERVALS);
-      for (const int i : parts.atoms(part)) {
-        double x[3], periods[3];
-        unwrapped(part, i, x);
-        to_periods(domain, x, periods);
-        clumps[suspect].add(k, interval, std::max(0.0, periods[k] - bound[0]));
-      }
+      lo[k] = bound[0];
+      interval[k] = std::max(HALF, (bound[1] - bound[0]) / Clumps::INTERVALS);
+    }
+    for (const int i : parts.atoms(part)) {
+      double x[3], periods[3];
+      unwrapped(part, i, x);
+      to_periods(domain, x, periods);
+      for (int k = 0; k < 3; ++k)
+        if (domain->periodicity[k])
+          clumps[suspect].add(k, interval[k], std::max(0.0, periods[k] - lo[k]));
     }
   }
   suspects.merge(clumps);

@@ -81,6 +81,7 @@ void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given, bool 
   if (any_extended && !extended.has_records()) extended.reset(true, (int) owned.size());
 
   const Assembly assembly(lmp, given, any_extended ? &extended : nullptr, ids);
+  note_scratch(assembly.memory_usage() + ids.capacity() * sizeof(tagint));
   assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
     body_id[i] = one.body.id;
     owner_tag[i] = one.owner;
@@ -378,5 +379,5 @@ double Bodies::memory_usage() const
       large.capacity() * sizeof(Large) +
       (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
-      extended.memory_usage();
+      extended.memory_usage() + scratch;
 }

@@ -210,7 +210,10 @@ class Bodies : protected Pointers {
   void unpack_reverse(int n, const int *list, const double *buf);
   int max_exchange() const;
   int max_forward() const;
+  /// With the most that was needed for a while at the start of a run: see note_scratch().
   double memory_usage() const;
+  /// So many bytes are allocated now, and will be freed before the next step.
+  void note_scratch(double bytes) const { scratch = std::max(scratch, bytes); }
 
  private:
   std::vector<Body> body;
@@ -252,6 +255,7 @@ class Bodies : protected Pointers {
   bool any_ghosts =
       false;    ///< a site, on any rank, has its body on another one, which is not large
   bool any_forces = true;
+  mutable double scratch = 0.0;    ///< bytes; the same for all that look at bodies
 
   // per atom, ghosts too
 
