@@ -289,6 +289,10 @@ Blowup::Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
     const Cause cause = other_cause(h);
     if (!cause.what.empty()) return cause;
   }
+  const std::string apart = "Begin with atoms farther apart. ";
+  const Load &load = bodies.load_of(ibody);
+  if (!std::isfinite(length(load.force) + length(load.torque_space)))
+    return {"The forces became unstable first", apart + shorter_step(h)};
   const int others = inaccurate_bodies(ibody, h);
   if (others > 0 && others >= WIDESPREAD * (bodies.nmoved() - 1))
     return {fmt::format("The motion of the bodies became unstable first: {} others on this rank "
@@ -298,7 +302,7 @@ Blowup::Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
   if (is_pushed(ibody, h))
     return {"The forces became unstable first: they alone move this body by more than its size, or "
             "turn it by more than a radian, in one step",
-            "Begin with atoms farther apart. " + shorter_step(h)};
+            apart + shorter_step(h)};
   return {"The motion of this body became unstable first", shorter_step(h)};
 }
 
