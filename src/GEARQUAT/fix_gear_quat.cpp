@@ -172,16 +172,17 @@ void FixGearQuat::take_velocities(bigint step, bool end)
   if (neighbors->any_taken()) motion->take_velocities(neighbors->take_velocities(step, end));
 }
 
+/// Atoms are changed when nothing can refuse the run any more.
 void FixGearQuat::setup(int vflag)
 {
   *readers = readers_at_end(lmp, this);
   bodies->spread_states();
-  bodies->place_velocities();
-  bodies->forget_work();    // positions are the corrected ones
   v_init(vflag);
   if (!reported) neighbors->check_gravity();
   bodies->gather_loads(atom->f, atom->torque);
   motion->begin_run();
+  bodies->place_velocities();
+  bodies->forget_work();    // positions are the corrected ones
   if (evflag) tally_virial(atom->f);
   table->forget();
   show_bodies();

@@ -369,7 +369,7 @@ void Bodies::copy_arrays(int from, int to, int delflag)
   if (owned[to] >= 0) owner_atom[owned[to]] = to;
 }
 
-double Bodies::memory_usage() const
+double Bodies::present_memory() const
 {
   const double per_atom = 2 * sizeof(tagint) + 2 * sizeof(int) + 3 * sizeof(double);
   return owned.capacity() * per_atom + rows.capacity() * sizeof(double) +
@@ -379,5 +379,15 @@ double Bodies::memory_usage() const
       large.capacity() * sizeof(Large) +
       (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
-      extended.memory_usage() + scratch;
+      extended.memory_usage();
+}
+
+void Bodies::note_scratch(double bytes)
+{
+  peak = std::max(peak, present_memory() + bytes);
+}
+
+double Bodies::memory_usage() const
+{
+  return std::max(peak, present_memory());
 }

@@ -210,10 +210,10 @@ class Bodies : protected Pointers {
   void unpack_reverse(int n, const int *list, const double *buf);
   int max_exchange() const;
   int max_forward() const;
-  /// With the most that was needed for a while at the start of a run: see note_scratch().
+  /// The most that was needed at a time, see note_scratch().
   double memory_usage() const;
-  /// So many bytes are allocated now, and will be freed before the next step.
-  void note_scratch(double bytes) const { scratch = std::max(scratch, bytes); }
+  /// So many bytes more are allocated now, and will be freed before the next step.
+  void note_scratch(double bytes);
 
  private:
   std::vector<Body> body;
@@ -255,7 +255,7 @@ class Bodies : protected Pointers {
   bool any_ghosts =
       false;    ///< a site, on any rank, has its body on another one, which is not large
   bool any_forces = true;
-  mutable double scratch = 0.0;    ///< bytes; the same for all that look at bodies
+  double peak = 0.0;    ///< bytes
 
   // per atom, ghosts too
 
@@ -276,6 +276,7 @@ class Bodies : protected Pointers {
   Forward forward = Forward::STATES;    ///< what forward communication carries
   double *labels = nullptr;             ///< of all atoms, while these are sent
 
+  double present_memory() const;
   void clear(bool extended = false);
   void count();
   void set_number(bigint all);

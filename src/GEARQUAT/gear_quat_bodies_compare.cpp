@@ -412,7 +412,6 @@ Census Bodies::census(int groupbit) const
 std::vector<BodyCount> Bodies::count_atoms(const Parts &parts, int groupbit) const
 {
   std::vector<BodyCount> counts(parts.number());
-  note_scratch(parts.memory_usage() + counts.capacity() * sizeof(BodyCount));
   for (int part = 0; part < parts.number(); ++part) {
     BodyCount &count = counts[part];
     for (const int i : parts.atoms(part)) {

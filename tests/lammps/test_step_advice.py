@@ -161,6 +161,19 @@ def test_a_much_longer_step_between_runs(lmp_tree):
     assert "the time step is more than twice that of the last steps, histories start" in result.words
 
 
+def test_overlaps(lmp_tree):
+    """A run with the keywords that the message names takes the energy of the overlaps away."""
+    (lmp_tree.folder / "n2.mol").write_text(molecule("n2"))
+    text = LIQUID.format(name="n2", **(LIQUIDS["n2"] | dict(lattice=2.6)))
+    fix, run = "fix move all gear/quat molecule", "timestep 1.0\nthermo 50\nrun 300\n"
+    begin = text.partition("fix move")[0]
+    words = lmp_tree.refuse(f"{begin}{fix}\n{run}", "The forces became unstable first").words
+    assert "as after a run with keywords tolerance, temp and tchain 1" in words
+    keywords = "tolerance 1e-4 dtmax 1.0 temp 100 100 100 tchain 1"
+    table = lmp_tree.succeed(f"{begin}{fix} {keywords}\n{run}").thermo[-1]
+    assert table["E_pair"][-1] < 0.2 * table["E_pair"][0] and table["Temp"][-1] < 100
+
+
 def drift(table):
     energy = np.array(table["TotEng"])
     return np.abs(energy - energy[0]).max() / table["KinEng"][0]
