@@ -25,6 +25,10 @@ static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
 
 static constexpr double NONE = std::numeric_limits<double>::infinity();
 
+// a body with no more sites is small
+
+static constexpr bigint SMALL = 1000;
+
 // the largest number of terms of a sum whose scale bounds each term
 
 static constexpr double MANY = 524288.0;
@@ -37,9 +41,9 @@ static constexpr int ROW[6] = {0, 0, 0, 1, 1, 2}, COLUMN[6] = {0, 1, 2, 1, 2, 2}
    passes over the sites
 ------------------------------------------------------------------------- */
 
-static void merge_sums(ExactSum *sums, const ExactSum *others, int n)
+static void merge_sums(SiteSum *sums, const SiteSum *others, int n)
 {
-  for (int k = 0; k < n; ++k) sums[k].add(others[k]);
+  for (int k = 0; k < n; ++k) sums[k].merge(others[k]);
 }
 
 void Assembly::Sizes::merge(const Sizes &other)
@@ -62,7 +66,7 @@ void Assembly::Extremes::merge(const Extremes &other)
     lo[k] = std::min(lo[k], other.lo[k]);
     hi[k] = std::max(hi[k], other.hi[k]);
   }
-  mass.add(other.mass);
+  mass.merge(other.mass);
 }
 
 void Assembly::Moments::merge(const Moments &other)
@@ -84,8 +88,6 @@ void Assembly::Momenta::merge(const Momenta &other)
   from_center2 = std::min(from_center2, other.from_center2);
   merge_sums(inertia_space, other.inertia_space, 6);
   merge_sums(angular_momentum_space, other.angular_momentum_space, 3);
-  merge_sums(own_inertia_space, other.own_inertia_space, 6);
-  merge_sums(own_momentum_space, other.own_momentum_space, 3);
 }
 
 void Assembly::Sides::merge(const Sides &other)
@@ -112,10 +114,18 @@ void Assembly::unwrapped(int part, int i, double *x) const
   if (!(way < certain)) undo_image_flag_overflow(domain, first, x);
 }
 
-void Assembly::arm_from(const double *origin, int part, int i, double *arm) const
+Assembly::Site Assembly::site_of(int part, int i) const
 {
-  unwrapped(part, i, arm);
-  for (int k = 0; k < 3; ++k) arm[k] -= origin[k];
+  Site site = {comm->me, i, atom->tag[i], mass_of(i), {}, {}, {}, {}};
+  unwrapped(part, i, site.x);
+  std::copy_n(atom->v[i], 3, site.v);
+  if (extended) extended->own_momenta(i, site.mass, site.inertia_space, site.momentum_space);
+  return site;
+}
+
+bool Assembly::is_small(int part) const
+{
+  return sizes[part].natoms <= SMALL;
 }
 
 /// No site is further away from the middle of the box around the sites.
@@ -124,9 +134,10 @@ double Assembly::radius(int part) const
   return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
 }
 
-/// The scale of a sum over all sites of a body; bound: of a term.
+/// The unit of a sum over all sites of a body; bound: of a term.
 double Assembly::scale_of(int part, double bound) const
 {
+  if (is_small(part)) return 0.0;
   return ExactSum::scale_of(bound * std::max(1.0, (double) sizes[part].natoms / MANY));
 }
 
@@ -150,6 +161,7 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
   for (int k = 0; k < 6; ++k) steepest = std::max(steepest, std::fabs(domain->h_inv[k]));
   certain = 0.25 * (double) IMGMASK / steepest;
   find_sizes();
+  gather_small();
   find_extremes();
   report_faults();
   find_moments();
@@ -199,72 +211,132 @@ void Assembly::find_sizes()
     if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
 }
 
+/// Small bodies become known as a whole, in the order of atom IDs, to all ranks that have sites of
+/// them.
+void Assembly::gather_small()
+{
+  const auto by_tag = [this](int i, int j) {
+    return atom->tag[i] < atom->tag[j];
+  };
+  for (int part = 0; part < parts.number(); ++part)
+    if (is_small(part)) parts.sort_atoms(part, by_tag);
+  if (comm->nprocs == 1) return;
+
+  struct Message {
+    tagint key;
+    int rank, part;
+    Site site;
+  };
+  std::vector<Message> messages;
+  std::vector<int> ranks;
+  for (const int part : parts.on_several_ranks()) {
+    if (!is_small(part)) continue;
+    for (const int i : parts.atoms(part)) {
+      messages.push_back({parts.key(part), comm->me, part, site_of(part, i)});
+      ranks.push_back((int) (parts.key(part) % comm->nprocs));
+    }
+  }
+  messages = send_to_ranks(comm, std::move(messages), std::move(ranks));
+  std::sort(messages.begin(), messages.end(), [](const Message &a, const Message &b) {
+    return a.key != b.key  ? a.key < b.key
+        : a.rank != b.rank ? a.rank < b.rank
+                           : a.site.tag < b.site.tag;
+  });
+  std::vector<Message> replies;    // all sites to every rank
+  ranks.clear();
+  for (size_t first = 0, last; first < messages.size(); first = last) {
+    for (last = first; last < messages.size() && messages[last].key == messages[first].key;) ++last;
+    for (size_t to = first; to < last; ++to) {
+      if (to > first && messages[to].rank == messages[to - 1].rank) continue;
+      for (size_t i = first; i < last; ++i) {
+        replies.push_back(
+            {messages[to].key, messages[to].rank, messages[to].part, messages[i].site});
+        ranks.push_back(messages[to].rank);
+      }
+    }
+  }
+  for (const auto &reply : send_to_ranks(comm, std::move(replies), std::move(ranks)))
+    whole[reply.part].push_back(reply.site);
+  for (auto &one : whole)
+    std::sort(one.second.begin(), one.second.end(), [](const Site &a, const Site &b) {
+      return a.tag < b.tag;
+    });
+  parts.complete([this](int part) {
+    return is_small(part);
+  });
+}
+
 void Assembly::find_extremes()
 {
-  const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, ExactSum()};
+  const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, SiteSum()};
   extremes = over_sites(none, [this](Extremes &all, int part) {
     const double unit = unit_of(part, 1.0);
-    for (const int i : parts.atoms(part)) {
-      double x[3];
-      unwrapped(part, i, x);
+    visit(part, [&](const Site &site) {
       for (int k = 0; k < 3; ++k) {
-        all.lo[k] = std::min(all.lo[k], x[k]);
-        all.hi[k] = std::max(all.hi[k], x[k]);
+        all.lo[k] = std::min(all.lo[k], site.x[k]);
+        all.hi[k] = std::max(all.hi[k], site.x[k]);
       }
-      all.mass.add(mass_of(i), unit);
-    }
+      all.mass.add(site.mass, unit);
+    });
   });
   for (int part = 0; part < parts.number(); ++part) {
     Body &body = made[part].body;
     body.natoms = (tagint) sizes[part].natoms;
     body.rigid.mass = extremes[part].mass.value(unit_of(part, 1.0));
     if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
-    for (int k = 0; k < 3; ++k)
-      made[part].state.center[k] = 0.5 * (extremes[part].lo[k] + extremes[part].hi[k]);
   }
 }
 
-/// The owner is the site nearest to the middle of the body, for it needs the fewest ghosts.  Until
-/// the call the center of a body is this middle.
+/// The owner is the site nearest to the middle of the body, for it needs the fewest ghosts.
 void Assembly::find_moments()
 {
   const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
   const auto units = [this](int part) {
     return std::array<double, 2>{unit_of(part, radius(part)), unit_of(part, sizes[part].speed)};
   };
+  const auto middle = [this](int part) {
+    const double *lo = extremes[part].lo, *hi = extremes[part].hi;
+    return std::array<double, 3>{0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]),
+                                 0.5 * (lo[2] + hi[2])};
+  };
+  const auto origin = [&](int part) {    // of the sums
+    return is_small(part) ? std::array<double, 3>() : middle(part);
+  };
   moments = over_sites(none, [&](Moments &all, int part) {
     const auto unit = units(part);
-    for (const int i : parts.atoms(part)) {
-      const double mass = mass_of(i);
-      double arm[3];
-      arm_from(made[part].state.center, part, i, arm);
-      const double d2 = dot3(arm, arm);
-      if (d2 < all.distance2 || (d2 == all.distance2 && atom->tag[i] < all.owner)) {
+    const auto center = middle(part), from = origin(part);
+    visit(part, [&](const Site &site) {
+      const double d2 = distance2(site.x, center.data());
+      if (d2 < all.distance2 || (d2 == all.distance2 && site.tag < all.owner)) {
         all.distance2 = d2;
-        all.owner = atom->tag[i];
-        all.rank = comm->me;
-        all.local = i;
-        unwrapped(part, i, all.x);
+        all.owner = site.tag;
+        all.rank = site.rank;
+        all.local = site.local;
+        std::copy_n(site.x, 3, all.x);
       }
       for (int k = 0; k < 3; ++k) {
-        all.center[k].add(mass * arm[k], unit[0]);
-        all.momentum[k].add(mass * atom->v[i][k], unit[1]);
+        all.center[k].add(site.mass * (site.x[k] - from[k]), unit[0]);
+        all.momentum[k].add(site.mass * site.v[k], unit[1]);
       }
-    }
+    });
   });
   for (int part = 0; part < parts.number(); ++part) {
     Made &one = made[part];
     const auto unit = units(part);
+    const auto from = origin(part);
     const double mass = one.body.rigid.mass;
     one.owner = moments[part].owner;
     one.owner_rank = moments[part].rank;
     one.local = moments[part].local;
     for (int k = 0; k < 3; ++k) {
-      one.state.center[k] += moments[part].center[k].value(unit[0]) / mass;
+      one.state.center[k] = from[k] + moments[part].center[k].value(unit[0]) / mass;
       one.state.velocity[k] = moments[part].momentum[k].value(unit[1]) / mass;
     }
-    if (sizes[part].natoms == 1)    // without rounding
-      std::copy_n(atom->v[*parts.atoms(part).begin()], 3, one.state.velocity);
+    if (sizes[part].natoms == 1)    // a lone site is at its center, without rounding
+      visit(part, [&](const Site &site) {
+        std::copy_n(site.x, 3, one.state.center);
+        std::copy_n(site.v, 3, one.state.velocity);
+      });
     if (one.body.from_file) take_given(given.at(one.body.id), part);
   }
 }
@@ -272,39 +344,43 @@ void Assembly::find_moments()
 /// Bounds of the terms: no arm is longer than twice the radius.
 Assembly::MomentaUnits Assembly::units_of_momenta(int part) const
 {
-  const double r = radius(part);
-  return {unit_of(part, 4.0 * r * r), unit_of(part, 8.0 * r * sizes[part].speed),
-          scale_of(part, sizes[part].own_inertia), scale_of(part, sizes[part].own_momentum)};
+  const double r = radius(part), mass = sizes[part].mass;
+  return {scale_of(part, mass * 4.0 * r * r + sizes[part].own_inertia),
+          scale_of(part, mass * 8.0 * r * sizes[part].speed + sizes[part].own_momentum)};
 }
 
 std::vector<Assembly::Momenta> Assembly::find_momenta()
 {
-  const Momenta none = {0.0, NONE, {}, {}, {}, {}};
+  const Momenta none = {0.0, NONE, {}, {}};
   return over_sites(none, [this](Momenta &all, int part) {
     const MomentaUnits unit = units_of_momenta(part);
     const BodyState &state = made[part].state;
-    for (const int i : parts.atoms(part)) {
-      const double mass = mass_of(i);
-      double arm[3], speed[3], spin[3], from_owner[3], inertia[9] = {}, momentum[3] = {};
-      arm_from(moments[part].x, part, i, from_owner);
-      arm_from(state.center, part, i, arm);
-      const double r2 = dot3(arm, arm);
-      all.extent2 = std::max(all.extent2, dot3(from_owner, from_owner));
-      all.from_center2 = std::min(all.from_center2, r2);
-      if (made[part].body.from_file) continue;
-      for (int k = 0; k < 3; ++k) speed[k] = atom->v[i][k] - state.velocity[k];
-      cross3(arm, speed, spin);
-      if (extended) extended->own_momenta(i, mass, inertia, momentum);
+    const bool counts = !made[part].body.from_file;
+    if (counts && extended)
+      visit(part, [&](const Site &site) {
+        for (int k = 0; k < 3; ++k)
+          all.angular_momentum_space[k].add(site.momentum_space[k], unit.momentum);
+        for (int m = 0; m < 6; ++m)
+          all.inertia_space[m].add(site.inertia_space[3 * ROW[m] + COLUMN[m]], unit.inertia);
+      });
+    visit(part, [&](const Site &site) {
+      double arm[3], speed[3], spin[3];
       for (int k = 0; k < 3; ++k) {
-        all.angular_momentum_space[k].add(mass * spin[k], unit.momentum);
-        all.own_momentum_space[k].add(momentum[k], unit.own_momentum);
+        arm[k] = site.x[k] - state.center[k];
+        speed[k] = is_small(part) ? site.v[k] : site.v[k] - state.velocity[k];
       }
+      cross3(arm, speed, spin);
+      const double r2 = dot3(arm, arm);
+      all.extent2 = std::max(all.extent2, distance2(site.x, moments[part].x));
+      all.from_center2 = std::min(all.from_center2, r2);
+      if (!counts || sizes[part].natoms == 1) return;    // a lone point has no rotation
+      for (int k = 0; k < 3; ++k)
+        all.angular_momentum_space[k].add(site.mass * spin[k], unit.momentum);
       for (int m = 0; m < 6; ++m) {
         const int k = ROW[m], l = COLUMN[m];
-        all.inertia_space[m].add(mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]), unit.inertia);
-        all.own_inertia_space[m].add(inertia[3 * k + l], unit.own_inertia);
+        all.inertia_space[m].add(site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]), unit.inertia);
       }
-    }
+    });
   });
 }
 
@@ -331,8 +407,7 @@ void Assembly::find_axes(int part, const Momenta &momenta)
   const MomentaUnits unit = units_of_momenta(part);
   for (int m = 0; m < 6; ++m)
     tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
-        momenta.inertia_space[m].value(unit.inertia) +
-        momenta.own_inertia_space[m].value(unit.own_inertia);
+        momenta.inertia_space[m].value(unit.inertia);
   Made &one = made[part];
   if (one.body.from_file) {
     const double *i = given.at(one.body.id).inertia;
@@ -355,10 +430,8 @@ void Assembly::find_rotation(int part, const Momenta &momenta)
   const MomentaUnits unit = units_of_momenta(part);
   double momentum_space[3], momentum_body[3];
   for (int k = 0; k < 3; ++k)
-    momentum_space[k] = one.body.from_file
-        ? given.at(one.body.id).angular_momentum_space[k]
-        : momenta.angular_momentum_space[k].value(unit.momentum) +
-            momenta.own_momentum_space[k].value(unit.own_momentum);
+    momentum_space[k] = one.body.from_file ? given.at(one.body.id).angular_momentum_space[k]
+                                           : momenta.angular_momentum_space[k].value(unit.momentum);
   quaternion_from_matrix(one.axes, one.state.q);
   to_body(one.axes, momentum_space, momentum_body);
   for (int k = 0; k < 3; ++k)
@@ -378,30 +451,30 @@ void Assembly::find_rotation(int part, const Momenta &momenta)
 void Assembly::orient_axes()
 {
   if (domain->dimension != 3) return;
-  const auto along = [this](int part, int i, double *components) {
+  const auto along = [this](int part, const Site &site, double *components) {
     double arm[3];
-    arm_from(made[part].state.center, part, i, arm);
+    for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - made[part].state.center[k];
     to_body(made[part].axes, arm, components);
   };
   const std::vector<Reach> reach = over_sites(Reach{0.0}, [&](Reach &all, int part) {
-    for (const int i : parts.atoms(part)) {
+    visit(part, [&](const Site &site) {
       double x[3];
-      along(part, i, x);
+      along(part, site, x);
       for (const double one : x) all.largest = std::max(all.largest, std::fabs(one));
-    }
+    });
   });
   const Sides none = {{-1.0, -1.0, -1.0}, {MAXTAGINT, MAXTAGINT, MAXTAGINT}, {}};
   const std::vector<Sides> sides = over_sites(none, [&](Sides &all, int part) {
-    for (const int i : parts.atoms(part)) {
-      Sides site = none;
-      along(part, i, site.side);
+    visit(part, [&](const Site &site) {
+      Sides one = none;
+      along(part, site, one.side);
       for (int k = 0; k < 3; ++k) {
-        if (std::fabs(site.side[k]) < ON_AXIS * reach[part].largest) continue;
-        site.mass[k] = mass_of(i);
-        site.tag[k] = atom->tag[i];
+        if (std::fabs(one.side[k]) < ON_AXIS * reach[part].largest) continue;
+        one.mass[k] = site.mass;
+        one.tag[k] = site.tag;
       }
-      all.merge(site);
-    }
+      all.merge(one);
+    });
   });
   for (int part = 0; part < parts.number(); ++part) direct(made[part].axes, sides[part]);
 }

@@ -9,7 +9,8 @@
    its sites.  Every rank adds up the sites that it owns, and a few numbers per body and rank are
    sent (gear_quat_parts.h), so that memory and messages do not grow with the sites of a body.  The
    sums do not depend on the order of the sites (gear_quat_exact_sum.h), so bodies are the same, to
-   the last bit, on any number of ranks. */
+   the last bit, on any number of ranks.  The sums of a small body are plain ones in the order of the
+   atom IDs: every rank that has one of its sites receives the others. */
 
 #ifndef LMP_GEAR_QUAT_ASSEMBLY_H
 #define LMP_GEAR_QUAT_ASSEMBLY_H
@@ -23,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
@@ -53,6 +55,20 @@ struct Body {
 
 class Extended;
 
+/// A sum over the sites of a body; unit: the scale of an exact one, 0 for a plain one, which is not
+/// merged.
+struct SiteSum {
+  ExactSum exact;
+  double plain = 0.0;
+
+  void add(double term, double unit)
+  {
+    unit > 0.0 ? exact.add(term, unit) : (void) (plain += term);
+  }
+  void merge(const SiteSum &other) { exact.add(other.exact); }
+  double value(double unit) const { return unit > 0.0 ? exact.value(unit) : plain; }
+};
+
 class Assembly : protected Pointers {
  public:
   /// A body of which this rank has sites.
@@ -79,7 +95,8 @@ class Assembly : protected Pointers {
     for (int part = 0; part < parts.number(); ++part)
       for (const int i : parts.atoms(part)) {
         double arm[3], arm_body[3];
-        arm_from(made[part].state.center, part, i, arm);
+        unwrapped(part, i, arm);
+        for (int k = 0; k < 3; ++k) arm[k] -= made[part].state.center[k];
         to_body(made[part].axes, arm, arm_body);
         act(made[part], i, arm_body);
       }
@@ -97,6 +114,15 @@ class Assembly : protected Pointers {
   tagint faulty[FAULTS] = {};    ///< a body met on this rank with each fault, 0 for none
   std::vector<tagint> found;     ///< given bodies whose owner atoms are here
 
+  struct Site {
+    int rank, local;
+    tagint tag;
+    double mass;
+    double x[3], v[3];                             ///< unwrapped
+    double inertia_space[9], momentum_space[3];    ///< of the site about its own center
+  };
+  std::map<int, std::vector<Site>> whole;    ///< small bodies on several ranks: part -> all sites
+
   // What one pass over the sites finds, for each part; merged, for the whole body.  A pass needs
   // the results of those before.
 
@@ -110,7 +136,7 @@ class Assembly : protected Pointers {
   };
   struct Extremes {
     double lo[3], hi[3];    ///< box around the sites
-    ExactSum mass;
+    SiteSum mass;
     void merge(const Extremes &other);
   };
   struct Moments {    ///< about the middle of the box around the sites
@@ -118,14 +144,13 @@ class Assembly : protected Pointers {
     tagint owner;    ///< atom ID of the site nearest to the middle
     int rank, local;
     double x[3];    ///< of this site
-    ExactSum center[3], momentum[3];
+    SiteSum center[3], momentum[3];
     void merge(const Moments &other);
   };
-  struct Momenta {          ///< about the center of mass, at rest there
+  struct Momenta {          ///< about the center of mass
     double extent2;         ///< largest distance of a site from the owner atom, squared
     double from_center2;    ///< smallest one from the center of mass
-    ExactSum inertia_space[6], angular_momentum_space[3];    ///< xx, xy, xz, yy, yz, zz
-    ExactSum own_inertia_space[6], own_momentum_space[3];    ///< of the sites about their centers
+    SiteSum inertia_space[6], angular_momentum_space[3];    ///< xx, xy, xz, yy, yz, zz
     void merge(const Momenta &other);
   };
   struct Reach {
@@ -144,12 +169,22 @@ class Assembly : protected Pointers {
 
   double mass_of(int i) const;
   void unwrapped(int part, int i, double *x) const;
-  void arm_from(const double *origin, int part, int i, double *arm) const;
+  Site site_of(int part, int i) const;
+  /// act: of every site of a part, or of the whole body if that is small.
+  template <class Act> void visit(int part, Act act) const
+  {
+    const auto found = whole.find(part);
+    if (found != whole.end())
+      for (const Site &site : found->second) act(site);
+    else
+      for (const int i : parts.atoms(part)) act(site_of(part, i));
+  }
+  bool is_small(int part) const;
   double radius(int part) const;
   double scale_of(int part, double bound) const;
   double unit_of(int part, double bound) const;
   struct MomentaUnits {
-    double inertia, momentum, own_inertia, own_momentum;
+    double inertia, momentum;
   };
   MomentaUnits units_of_momenta(int part) const;
   /// add: takes the sites of a part into its item.  Returns the items of whole bodies.
@@ -162,6 +197,7 @@ class Assembly : protected Pointers {
   }
 
   void find_sizes();
+  void gather_small();
   void find_extremes();
   void find_moments();
   std::vector<Momenta> find_momenta();
