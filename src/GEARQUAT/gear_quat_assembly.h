@@ -167,6 +167,9 @@ class Assembly : protected Pointers {
   std::vector<Extremes> extremes;
   std::vector<Moments> moments;
 
+  /// Rows and columns of the six components of a symmetric tensor.
+  static constexpr int ROW[6] = {0, 0, 0, 1, 1, 2}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+
   double mass_of(int i) const;
   void unwrapped(int part, int i, double *x) const;
   Site site_of(int part, int i) const;
