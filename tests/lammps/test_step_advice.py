@@ -174,6 +174,16 @@ def test_overlaps(lmp_tree):
     assert table["E_pair"][-1] < 0.2 * table["E_pair"][0] and table["Temp"][-1] < 100
 
 
+def test_a_dtmin_that_is_too_long(lmp_tree):
+    def run(keywords):
+        first, _, last = deck(lmp_tree, "n2", 40.0, 100).rpartition("report no")
+        return f"{first}report no {keywords}{last}"
+
+    lmp_tree.refuse(run("tolerance 1e-4 dtmin 40"), "Leave out dtmin, or use one much shorter than 40")
+    for keywords in ("tolerance 1e-4", "tolerance 1e-4 dtmin 4"):
+        assert drift(lmp_tree.succeed(run(keywords)).thermo[-1]) < MOST_DRIFT
+
+
 def drift(table):
     energy = np.array(table["TotEng"])
     return np.abs(energy - energy[0]).max() / table["KinEng"][0]
