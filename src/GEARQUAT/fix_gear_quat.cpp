@@ -19,6 +19,7 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_neighbors.h"
 #include "gear_quat_outputs.h"
@@ -133,7 +134,10 @@ void FixGearQuat::init()
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
                "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
   neighbors->init();
-  if (!reported) stated = read_stated(lmp, args->mol);
+  if (!reported) {
+    stated = read_stated(lmp, args->mol);
+    warn_of_partial_molecules(lmp, this, *args, *bodies);
+  }
   motion->init();
   velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
   bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
@@ -176,16 +180,17 @@ void FixGearQuat::take_velocities(bigint step, bool end)
   if (neighbors->any_taken()) motion->take_velocities(neighbors->take_velocities(step, end));
 }
 
+/// Atoms are changed when nothing can refuse the run any more.
 void FixGearQuat::setup(int vflag)
 {
   *readers = readers_at_end(lmp, this);
   bodies->spread_states();
-  bodies->place_velocities();
-  bodies->forget_work();    // positions are the corrected ones
   v_init(vflag);
   if (!reported) neighbors->check_gravity();
   bodies->gather_loads(atom->f, atom->torque);
   motion->begin_run();
+  bodies->place_velocities();
+  bodies->forget_work();    // positions are the corrected ones
   if (evflag) tally_virial(atom->f);
   table->forget();
   show_bodies();

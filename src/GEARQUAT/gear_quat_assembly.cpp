@@ -5,310 +5,413 @@
 
 #include "gear_quat_assembly.h"
 
+#include "gear_quat_extended.h"
 #include "gear_quat_images.h"
 #include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr double ON_AXIS = 1.0e-6;      // of the body's size: neither side
-static constexpr double ROUNDED = 1.0e-3;      // of a moment that was written with few digits
-static constexpr double ROUNDING = 1.0e-14;    // of positions: an arm that is shorter is none
+static constexpr double NONE = std::numeric_limits<double>::infinity();
 
-/// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
-void Assembly::warn_of_clumps() const
-{
-  const tagint any = over_ranks(MPI_MAX, in_clumps, world);
-  if (any && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
-                   "they belong together, the image flags of its atoms do not: unwrap them in the "
-                   "data file, or use set image before this fix",
-                   any);
-}
+// an arm that is shorter than this part of positions is rounding
+
+static constexpr double ROUNDING = 1.0e-14;
+
+// a body with no more sites is small
+
+static constexpr bigint SMALL = 1000;
+
+// the largest number of terms of a sum whose scale bounds each term
+
+static constexpr double MANY = 524288.0;
 
 /* ----------------------------------------------------------------------
-   every site goes to the rank that its body's ID names, which makes the body and replies where the
-   site is in it; then the bodies go to the ranks of their owners
+   passes over the sites
 ------------------------------------------------------------------------- */
 
-std::vector<Assembly::PlacedSite> Assembly::place_sites(const std::vector<Site> &mine)
+static void merge_sums(SiteSum *sums, const SiteSum *others, int n)
 {
-  std::vector<int> ranks;
-  for (const auto &site : mine) ranks.push_back((int) (site.id % comm->nprocs));
-  std::vector<Site> sites = send_to_ranks(comm, mine, ranks);
-  std::sort(sites.begin(), sites.end(), [](const Site &a, const Site &b) {
-    return a.id != b.id ? a.id < b.id : a.tag < b.tag;
-  });
-  const int n = (int) sites.size();
-  std::vector<PlacedSite> replies(n);
-  ranks.resize(n);
-  for (int first = 0, last; first < n; first = last) {
-    for (last = first; last < n && sites[last].id == sites[first].id; ++last) {
-      undo_image_flag_overflow(domain, sites[first].x, sites[last].x);
-      ranks[last] = sites[last].rank;
-    }
-    place(&sites[first], last - first, &replies[first]);
-  }
-  const std::vector<PlacedSite> placed = send_to_ranks(comm, replies, ranks);
-  report_faults();
-  warn_of_clumps();
-  return placed;
+  for (int k = 0; k < n; ++k) sums[k].merge(others[k]);
 }
 
-std::vector<Assembly::OwnedBody> Assembly::owned_bodies()
+void Assembly::Sizes::merge(const Sizes &other)
 {
-  return send_to_ranks(comm, made, owner_ranks);
+  natoms += other.natoms;
+  if (other.first < first) {
+    first = other.first;
+    std::copy_n(other.first_x, 3, first_x);
+  }
+  mass = std::max(mass, other.mass);
+  speed = std::max(speed, other.speed);
+  own_inertia = std::max(own_inertia, other.own_inertia);
+  own_momentum = std::max(own_momentum, other.own_momentum);
+  finite = finite && other.finite;
 }
 
-/// Make a body of its sites, and say where each of them is in it.
-void Assembly::place(const Site *sites, int n, PlacedSite *replies)
+void Assembly::Extremes::merge(const Extremes &other)
 {
-  double axes[9];
-  int owner;
-  const OwnedBody body = make_body(sites, n, axes, owner);
-  std::vector<const double *> positions;
-  for (int i = 0; i < n; ++i) {
-    double arm[3];
-    find_arm(sites[i], body.state.center, arm);
-    to_body(axes, arm, replies[i].site_body);
-    std::copy_n(body.state.q, 4, replies[i].q_body);
-    replies[i].local = sites[i].local;
-    replies[i].owner = sites[owner].tag;
-    positions.push_back(sites[i].x);
+  for (int k = 0; k < 3; ++k) {
+    lo[k] = std::min(lo[k], other.lo[k]);
+    hi[k] = std::max(hi[k], other.hi[k]);
   }
-  if (lies_in_clumps(domain, positions)) in_clumps = sites[0].id;
-  made.push_back(body);
-  owner_ranks.push_back(sites[owner].rank);
+  mass.merge(other.mass);
 }
 
-/* ----------------------------------------------------------------------
-   one body from its sites, sorted by atom ID
-------------------------------------------------------------------------- */
-
-Assembly::OwnedBody Assembly::make_body(const Site *sites, int n, double axes[9], int &owner)
+void Assembly::Moments::merge(const Moments &other)
 {
-  // owner: the site nearest to the middle of the body's bounding box needs the fewest ghosts
-
-  double lo[3], hi[3];
-  for (int k = 0; k < 3; ++k) lo[k] = hi[k] = sites[0].x[k];
-  for (int i = 1; i < n; ++i)
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], sites[i].x[k]);
-      hi[k] = std::max(hi[k], sites[i].x[k]);
-    }
-  const double middle[3] = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
-  owner = 0;
-  for (int i = 1; i < n; ++i)
-    if (distance2(sites[i].x, middle) < distance2(sites[owner].x, middle)) owner = i;
-
-  OwnedBody owned = OwnedBody();
-  std::fill(axes, axes + 9, 0.0);
-  owned.local = sites[owner].local;
-  owned.body.id = sites[0].id;
-  owned.body.natoms = n;
-  for (int i = 0; i < n; ++i)
-    owned.body.extent =
-        std::max(owned.body.extent, std::sqrt(distance2(sites[i].x, sites[owner].x)));
-
-  const auto stated = given.find(owned.body.id);
-  if (stated != given.end()) {
-    found.push_back(owned.body.id);
-    owned.body.from_file = 1;
-    const Momenta momenta = take_given(stated->second, owned);
-    check_place(sites, n, owned);
-    find_frame(momenta, sites, n, axes, owned);
-  } else {
-    const Momenta momenta = average(sites, n, owned);
-    if (owned.body.rigid.mass > 0.0)
-      find_frame(momenta, sites, n, axes, owned);
-    else
-      faulty[MASSLESS] = owned.body.id;
+  if (other.distance2 < distance2 || (other.distance2 == distance2 && other.owner < owner)) {
+    distance2 = other.distance2;
+    owner = other.owner;
+    rank = other.rank;
+    local = other.local;
+    std::copy_n(other.x, 3, x);
   }
-  return owned;
+  merge_sums(center, other.center, 3);
+  merge_sums(momentum, other.momentum, 3);
+}
+
+void Assembly::Momenta::merge(const Momenta &other)
+{
+  extent2 = std::max(extent2, other.extent2);
+  from_center2 = std::min(from_center2, other.from_center2);
+  merge_sums(inertia_space, other.inertia_space, 6);
+  merge_sums(angular_momentum_space, other.angular_momentum_space, 3);
+}
+
+void Assembly::Sides::merge(const Sides &other)
+{
+  for (int k = 0; k < 3; ++k) {
+    if (other.mass[k] < mass[k] || (other.mass[k] == mass[k] && other.tag[k] >= tag[k])) continue;
+    mass[k] = other.mass[k];
+    tag[k] = other.tag[k];
+    side[k] = other.side[k];
+  }
+}
+
+double Assembly::mass_of(int i) const
+{
+  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+void Assembly::unwrapped(int part, int i, double *x) const
+{
+  const double *first = sizes[part].first_x;
+  domain->unmap(atom->x[i], atom->image[i], x);
+  const double way =
+      std::fabs(x[0] - first[0]) + std::fabs(x[1] - first[1]) + std::fabs(x[2] - first[2]);
+  if (!(way < certain)) undo_image_flag_overflow(domain, first, x);
 }
 
 /// From the center of mass to a site; zero if the site is there up to rounding.
-void Assembly::find_arm(const Site &site, const double *center, double arm[3]) const
+void Assembly::find_arm(const double *x, const double *center, double *arm) const
 {
-  for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - center[k];
-  const double size = domain->xprd + domain->yprd + domain->zprd + length(site.x);
+  for (int k = 0; k < 3; ++k) arm[k] = x[k] - center[k];
+  const double size = domain->xprd + domain->yprd + domain->zprd + length(x);
   if (length(arm) <= ROUNDING * size) std::fill_n(arm, 3, 0.0);
 }
 
-/// Mass, center, inertia and momenta as sums over the sites.
-Assembly::Momenta Assembly::average(const Site *sites, int n, OwnedBody &owned) const
+Assembly::Site Assembly::site_of(int part, int i) const
 {
-  Momenta momenta = Momenta();
-  double mass = 0.0, center[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
-  for (int i = 0; i < n; ++i) {
-    mass += sites[i].mass;
-    for (int k = 0; k < 3; ++k) {
-      center[k] += sites[i].mass * sites[i].x[k];
-      velocity[k] += sites[i].mass * sites[i].v[k];
-    }
-  }
-  owned.body.rigid.mass = mass;
-  if (!(mass > 0.0)) return momenta;
-
-  for (int k = 0; k < 3; ++k) {    // a lone site is at its center, without rounding
-    owned.state.center[k] = n == 1 ? sites[0].x[k] : center[k] / mass;
-    owned.state.velocity[k] = n == 1 ? sites[0].v[k] : velocity[k] / mass;
-  }
-
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) momenta.angular_momentum_space[k] += sites[i].own_momentum_space[k];
-    for (int k = 0; k < 9; ++k) momenta.inertia_space[k] += sites[i].own_inertia_space[k];
-  }
-  if (n == 1) return momenta;    // a lone point has no rotation, rounding or not
-
-  for (int i = 0; i < n; ++i) {
-    double arm[3], spin[3];
-    find_arm(sites[i], owned.state.center, arm);
-    cross3(arm, sites[i].v, spin);
-    const double r2 = dot3(arm, arm);
-    for (int k = 0; k < 3; ++k) {
-      momenta.angular_momentum_space[k] += sites[i].mass * spin[k];
-      for (int l = 0; l < 3; ++l)
-        momenta.inertia_space[3 * k + l] += sites[i].mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
-    }
-  }
-  return momenta;
+  Site site;    // without zeros that nobody reads
+  site.rank = comm->me;
+  site.local = i;
+  site.tag = atom->tag[i];
+  site.mass = mass_of(i);
+  unwrapped(part, i, site.x);
+  std::copy_n(atom->v[i], 3, site.v);
+  if (extended) extended->own_momenta(i, site.mass, site.inertia_space, site.momentum_space);
+  return site;
 }
 
-Assembly::Momenta Assembly::take_given(const GivenBody &given_body, OwnedBody &owned) const
+bool Assembly::is_small(int part) const
 {
-  const double *i = given_body.inertia;
-  const double *l = given_body.angular_momentum_space;
-  owned.body.rigid.mass = given_body.mass;
+  return sizes[part].natoms <= SMALL;
+}
+
+/// No site is further away from the middle of the box around the sites.
+double Assembly::radius(int part) const
+{
+  return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
+}
+
+/// The unit of a sum over all sites of a body; bound: of a term.
+double Assembly::scale_of(int part, double bound) const
+{
+  if (is_small(part)) return 0.0;
+  return ExactSum::scale_of(bound * std::max(1.0, (double) sizes[part].natoms / MANY));
+}
+
+/// The same, of terms that are proportional to the mass.
+double Assembly::unit_of(int part, double bound) const
+{
+  return scale_of(part, sizes[part].mass * bound);
+}
+
+/* ----------------------------------------------------------------------
+   bodies from their sites, pass by pass
+------------------------------------------------------------------------- */
+
+Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
+                   const std::vector<tagint> &ids) :
+    Pointers(lmp),
+    given(given), extended(extended), parts(comm, ids.data(), (int) ids.size()),
+    made(parts.number(), Made())
+{
+  double steepest = 0.0;
+  for (int k = 0; k < 6; ++k) steepest = std::max(steepest, std::fabs(domain->h_inv[k]));
+  certain = 0.25 * (double) IMGMASK / steepest;
+  find_sizes();
+  gather_small();
+  find_extremes();
+  report_faults();
+  find_moments();
+  const std::vector<Momenta> momenta = find_momenta();
+  for (int part = 0; part < parts.number(); ++part) {
+    made[part].body.extent = std::sqrt(momenta[part].extent2);
+    if (made[part].body.from_file) check_place(part, momenta[part]);
+    find_axes(part, momenta[part]);
+  }
+  orient_axes();
+  for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
+  report_faults();
+  report_missing();
+  warn_of_clumps();
+}
+
+void Assembly::find_sizes()
+{
+  const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1};
+  sizes = over_sites(none, [this](Sizes &all, int part) {
+    Body &body = made[part].body;
+    body.id = parts.key(part);
+    body.from_file = given.count(body.id) > 0;
+    for (const int i : parts.atoms(part)) {
+      const double mass = mass_of(i), *v = atom->v[i];
+      double x[3], inertia[9] = {}, momentum[3] = {};
+      domain->unmap(atom->x[i], atom->image[i], x);
+      if (extended) extended->own_momenta(i, mass, inertia, momentum);
+      ++all.natoms;
+      if (atom->tag[i] < all.first) {
+        all.first = atom->tag[i];
+        std::copy_n(x, 3, all.first_x);
+      }
+      all.mass = std::max(all.mass, std::fabs(mass));
+      for (int k = 0; k < 3; ++k) {
+        all.speed = std::max(all.speed, std::fabs(v[k]));
+        all.own_momentum = std::max(all.own_momentum, std::fabs(momentum[k]));
+      }
+      for (const double one : inertia) all.own_inertia = std::max(all.own_inertia, std::fabs(one));
+      double sum = mass + x[0] + x[1] + x[2];
+      if (!body.from_file)
+        for (int k = 0; k < 3; ++k) sum += v[k] + momentum[k] + inertia[4 * k];
+      if (!std::isfinite(sum)) all.finite = 0;
+    }
+  });
+  for (int part = 0; part < parts.number(); ++part)
+    if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
+}
+
+/// Small bodies become known as a whole, in the order of atom IDs, to all ranks that have sites of
+/// them.
+void Assembly::gather_small()
+{
+  const auto by_tag = [this](int i, int j) {
+    return atom->tag[i] < atom->tag[j];
+  };
+  for (int part = 0; part < parts.number(); ++part)
+    if (is_small(part)) parts.sort_atoms(part, by_tag);
+  if (comm->nprocs == 1) return;
+
+  struct Message {
+    tagint key;
+    int rank, part;
+    Site site;
+  };
+  std::vector<Message> messages;
+  std::vector<int> ranks;
+  for (const int part : parts.on_several_ranks()) {
+    if (!is_small(part)) continue;
+    for (const int i : parts.atoms(part)) {
+      messages.push_back({parts.key(part), comm->me, part, site_of(part, i)});
+      ranks.push_back((int) (parts.key(part) % comm->nprocs));
+    }
+  }
+  messages = send_to_ranks(comm, std::move(messages), std::move(ranks));
+  std::sort(messages.begin(), messages.end(), [](const Message &a, const Message &b) {
+    return a.key != b.key  ? a.key < b.key
+        : a.rank != b.rank ? a.rank < b.rank
+                           : a.site.tag < b.site.tag;
+  });
+  std::vector<Message> replies;    // all sites to every rank
+  ranks.clear();
+  for (size_t first = 0, last; first < messages.size(); first = last) {
+    for (last = first; last < messages.size() && messages[last].key == messages[first].key;) ++last;
+    for (size_t to = first; to < last; ++to) {
+      if (to > first && messages[to].rank == messages[to - 1].rank) continue;
+      for (size_t i = first; i < last; ++i) {
+        replies.push_back(
+            {messages[to].key, messages[to].rank, messages[to].part, messages[i].site});
+        ranks.push_back(messages[to].rank);
+      }
+    }
+  }
+  for (const auto &reply : send_to_ranks(comm, std::move(replies), std::move(ranks)))
+    whole[reply.part].push_back(reply.site);
+  for (auto &one : whole)
+    std::sort(one.second.begin(), one.second.end(), [](const Site &a, const Site &b) {
+      return a.tag < b.tag;
+    });
+  parts.complete([this](int part) {
+    return is_small(part);
+  });
+}
+
+void Assembly::find_extremes()
+{
+  const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, SiteSum()};
+  extremes = over_sites(none, [this](Extremes &all, int part) {
+    const double unit = unit_of(part, 1.0);
+    visit(part, [&](const Site &site) {
+      for (int k = 0; k < 3; ++k) {
+        all.lo[k] = std::min(all.lo[k], site.x[k]);
+        all.hi[k] = std::max(all.hi[k], site.x[k]);
+      }
+      all.mass.add(site.mass, unit);
+    });
+  });
+  for (int part = 0; part < parts.number(); ++part) {
+    Body &body = made[part].body;
+    body.natoms = (tagint) sizes[part].natoms;
+    body.rigid.mass = extremes[part].mass.value(unit_of(part, 1.0));
+    if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
+  }
+}
+
+/// The owner is the site nearest to the middle of the body, for it needs the fewest ghosts.
+void Assembly::find_moments()
+{
+  const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
+  const auto units = [this](int part) {
+    return std::array<double, 2>{unit_of(part, radius(part)), unit_of(part, sizes[part].speed)};
+  };
+  const auto middle = [this](int part) {
+    const double *lo = extremes[part].lo, *hi = extremes[part].hi;
+    return std::array<double, 3>{0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]),
+                                 0.5 * (lo[2] + hi[2])};
+  };
+  const auto origin = [&](int part) {    // of the sums
+    return is_small(part) ? std::array<double, 3>() : middle(part);
+  };
+  moments = over_sites(none, [&](Moments &all, int part) {
+    const auto unit = units(part);
+    const auto center = middle(part), from = origin(part);
+    visit(part, [&](const Site &site) {
+      const double d2 = distance2(site.x, center.data());
+      if (d2 < all.distance2 || (d2 == all.distance2 && site.tag < all.owner)) {
+        all.distance2 = d2;
+        all.owner = site.tag;
+        all.rank = site.rank;
+        all.local = site.local;
+        std::copy_n(site.x, 3, all.x);
+      }
+      for (int k = 0; k < 3; ++k) {
+        all.center[k].add(site.mass * (site.x[k] - from[k]), unit[0]);
+        all.momentum[k].add(site.mass * site.v[k], unit[1]);
+      }
+    });
+  });
+  for (int part = 0; part < parts.number(); ++part) {
+    Made &one = made[part];
+    const auto unit = units(part);
+    const auto from = origin(part);
+    const double mass = one.body.rigid.mass;
+    one.owner = moments[part].owner;
+    one.owner_rank = moments[part].rank;
+    one.local = moments[part].local;
+    for (int k = 0; k < 3; ++k) {
+      one.state.center[k] = from[k] + moments[part].center[k].value(unit[0]) / mass;
+      one.state.velocity[k] = moments[part].momentum[k].value(unit[1]) / mass;
+    }
+    if (sizes[part].natoms == 1)    // a lone site is at its center, without rounding
+      visit(part, [&](const Site &site) {
+        std::copy_n(site.x, 3, one.state.center);
+        std::copy_n(site.v, 3, one.state.velocity);
+      });
+    if (one.body.from_file) take_given(given.at(one.body.id), part);
+  }
+}
+
+/// Bounds of the terms: no arm is longer than twice the radius.
+Assembly::MomentaUnits Assembly::units_of_momenta(int part) const
+{
+  const double r = radius(part), mass = sizes[part].mass;
+  return {scale_of(part, mass * 4.0 * r * r + sizes[part].own_inertia),
+          scale_of(part, mass * 8.0 * r * sizes[part].speed + sizes[part].own_momentum)};
+}
+
+std::vector<Assembly::Momenta> Assembly::find_momenta()
+{
+  const Momenta none = {0.0, NONE, {}, {}};
+  return over_sites(none, [this](Momenta &all, int part) {
+    const MomentaUnits unit = units_of_momenta(part);
+    const BodyState &state = made[part].state;
+    const bool counts = !made[part].body.from_file;
+    if (counts && extended)
+      visit(part, [&](const Site &site) {
+        for (int k = 0; k < 3; ++k)
+          all.angular_momentum_space[k].add(site.momentum_space[k], unit.momentum);
+        for (int m = 0; m < 6; ++m)
+          all.inertia_space[m].add(site.inertia_space[3 * ROW[m] + COLUMN[m]], unit.inertia);
+      });
+    visit(part, [&](const Site &site) {
+      double arm[3], speed[3], spin[3];
+      find_arm(site.x, state.center, arm);
+      for (int k = 0; k < 3; ++k)
+        speed[k] = is_small(part) ? site.v[k] : site.v[k] - state.velocity[k];
+      cross3(arm, speed, spin);
+      const double r2 = dot3(arm, arm);
+      all.extent2 = std::max(all.extent2, distance2(site.x, moments[part].x));
+      all.from_center2 = std::min(all.from_center2, r2);
+      if (!counts || sizes[part].natoms == 1) return;    // a lone point has no rotation
+      for (int k = 0; k < 3; ++k)
+        all.angular_momentum_space[k].add(site.mass * spin[k], unit.momentum);
+      for (int m = 0; m < 6; ++m) {
+        const int k = ROW[m], l = COLUMN[m];
+        all.inertia_space[m].add(site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]), unit.inertia);
+      }
+    });
+  });
+}
+
+/// The owner's rank counts a body of the file.
+void Assembly::take_given(const GivenBody &given_body, int part)
+{
+  Made &one = made[part];
+  if (one.owner_rank == comm->me) found.push_back(one.body.id);
+  one.body.rigid.mass = given_body.mass;
   for (int k = 0; k < 3; ++k) {
-    owned.state.center[k] = given_body.center[k];
-    owned.state.velocity[k] = given_body.velocity[k];
+    one.state.center[k] = given_body.center[k];
+    one.state.velocity[k] = given_body.velocity[k];
   }
   const imageint image = ((imageint) (given_body.image[0] + IMGMAX) & IMGMASK) |
       (((imageint) (given_body.image[1] + IMGMAX) & IMGMASK) << IMGBITS) |
       (((imageint) (given_body.image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
-  domain->unmap(owned.state.center, image);
-  return {{i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]}, {l[0], l[1], l[2]}};
+  domain->unmap(one.state.center, image);
 }
 
-/// Principal frame, orientation and angular velocity.
-void Assembly::find_frame(const Momenta &momenta, const Site *sites, int n, double axes[9],
-                          OwnedBody &owned)
+double Assembly::memory_usage() const
 {
-  double *moments = owned.body.rigid.inertia;
-  principal_axes(momenta.inertia_space, moments, axes);
-  check_moments(owned);
-  drop_vanishing_moments(moments);
-  if (domain->dimension == 3) {    // in two dimensions the z axis stays where it is, exactly
-    sort_axes(moments, axes);
-    orient_axes(sites, n, owned.state.center, axes);
-  }
-  quaternion_from_matrix(axes, owned.state.q);
-  double momentum_body[3];
-  to_body(axes, momenta.angular_momentum_space, momentum_body);
-  for (int k = 0; k < 3; ++k)
-    owned.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
-  for (int k = 0; k < 3; ++k)
-    if (!std::isfinite(owned.state.omega_body[k]) || !std::isfinite(owned.state.velocity[k]))
-      faulty[NOT_FINITE] = owned.body.id;
-}
-
-/// Directs the axes by the body itself, not by its orientation at the start: the first and the
-/// third axis point to the side of the heaviest site that is not in the plane across the axis; of
-/// equally heavy sites the first one counts.
-void Assembly::orient_axes(const Site *sites, int n, const double *center, double axes[9]) const
-{
-  std::vector<const Site *> order(n);
-  for (int i = 0; i < n; ++i) order[i] = sites + i;
-  std::stable_sort(order.begin(), order.end(), [](const Site *a, const Site *b) {
-    return a->mass > b->mass;
-  });
-
-  auto along = [center](const Site *site, const double *axis) {
-    const double arm[3] = {site->x[0] - center[0], site->x[1] - center[1], site->x[2] - center[2]};
-    return dot3(axis, arm);
-  };
-  double largest = 0.0;
-  for (const auto *site : order)
-    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::fabs(along(site, axes + 3 * k)));
-
-  // false if all sites are in the plane across the axis
-
-  auto orient = [&](int k) {
-    for (const auto *site : order) {
-      const double side = along(site, axes + 3 * k);
-      if (std::fabs(side) < ON_AXIS * largest) continue;
-      if (side < 0.0)
-        for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
-      return true;
-    }
-    return false;
-  };
-  const bool first = orient(0), third = orient(2);
-  const int last = first == third ? 1 : first ? 2 : 0;
-  if (last != 1) orient(1);
-  cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
-}
-
-/* ----------------------------------------------------------------------
-   what no body can be
-------------------------------------------------------------------------- */
-
-/// In the order of Assembly's faults, of which the first one is reported.
-static const char *const FAULT_TEXTS[] = {
-    "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
-    "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
-    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment; no body "
-    "has",
-    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the two "
-    "others; no body has",
-    "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
-    "position and its image flags right?"};
-
-/// A given center may lie outside of the body, but not by half a box: image flags belong to it.
-void Assembly::check_place(const Site *sites, int n, const OwnedBody &owned)
-{
-  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
-  const double far = owned.body.extent + 0.5 * longest;
-  for (int i = 0; i < n; ++i)
-    if (distance2(sites[i].x, owned.state.center) <= far * far) return;
-  faulty[APART] = owned.body.id;
-}
-
-/// Of sums over masses all this holds by itself, up to rounding.
-void Assembly::check_moments(const OwnedBody &owned)
-{
-  const double *moments = owned.body.rigid.inertia;
-  const double largest = std::max({moments[0], moments[1], moments[2]});
-  const double smallest = std::min({moments[0], moments[1], moments[2]});
-  const double sum = moments[0] + moments[1] + moments[2];
-  if (!std::isfinite(sum))
-    faulty[NOT_FINITE] = owned.body.id;
-  else if (smallest < -LINEAR_FRACTION * largest)
-    faulty[NEGATIVE] = owned.body.id;
-  else if (owned.body.from_file && domain->dimension == 3 &&
-           (1.0 - ROUNDED) * largest > sum - largest)
-    faulty[UNBALANCED] = owned.body.id;
-}
-
-void Assembly::report_faults()
-{
-  const auto any = over_ranks(MPI_MAX, faulty, world);
-  for (int fault = 0; fault < FAULTS; ++fault)
-    if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
-
-  if (over_ranks(MPI_SUM, (int) found.size(), world) == (int) given.size()) return;
-  for (const auto &stated : given) {
-    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
-    if (!over_ranks(MPI_MAX, here, world))
-      error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
-  }
+  return parts.memory_usage() + made.capacity() * sizeof(Made) + sizes.capacity() * sizeof(Sizes) +
+      extremes.capacity() * sizeof(Extremes) + moments.capacity() * sizeof(Moments) +
+      parts.number() * sizeof(Momenta);
 }

@@ -29,7 +29,62 @@ static constexpr int SHRINKS = 2;
 
 static constexpr double NEARLY_LINEAR = 0.01;    // smallest moment by the largest
 static constexpr bigint MANY = 10;               // bodies that share their energy
+static constexpr double MARGIN = 0.6;    // of the longest step: later forces may vary faster
+static constexpr double TAIL = 4.0;      // thermal rotations are so much faster at most
+
+// a body that errs by more than this part of its motion in a step is not followed any more, and if
+// these are more than this part of all bodies, it is not a single collision
+
+static constexpr double INACCURATE = 0.03, WIDESPREAD = 0.1;
+
+// forces that would ask for a step so much shorter are those of an overlap
+
+static constexpr double OVERLAP = 0.01;
+
 static constexpr char MEND[] = "or make the body linear by an infile with a smallest moment of 0";
+
+/* ----------------------------------------------------------------------
+   how fast the motion is
+------------------------------------------------------------------------- */
+
+Pace GearQuat::pace_of(LAMMPS *lmp, const Bodies &bodies)
+{
+  Pace pace;
+  double here[6] = {};    // twice the kinetic energy, degrees of freedom, mass, force
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const BodyState &state = bodies.state_of(ibody);
+    here[0] += 2.0 *
+        (translational_energy(rigid, state.velocity) + rotational_energy(rigid, state.omega_body));
+    here[1] += 3.0 + rigid.rotational_freedoms();
+    here[2] += rigid.mass;
+    add3(bodies.load_of(ibody).force, here + 3);
+  }
+  const auto all = over_ranks(MPI_SUM, here, lmp->world);
+  if (bodies.number() < MANY || !(all[0] > 0.0)) return pace;
+  pace.kt = all[0] / all[1];
+
+  double fastest2 = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const Load &load = bodies.load_of(ibody);
+    double force[3], torque_body[3];
+    for (int k = 0; k < 3; ++k) force[k] = load.force[k] - rigid.mass * all[3 + k] / all[2];
+    to_body(bodies.axes(ibody), load.torque_space, torque_body);
+    fastest2 = std::max(fastest2, dot3(force, force) / rigid.mass);
+    for (int k = 0; k < 3; ++k)
+      if (rigid.inertia[k] > 0.0)
+        fastest2 = std::max(fastest2, torque_body[k] * torque_body[k] / rigid.inertia[k]);
+  }
+  pace.vibration = std::sqrt(over_ranks(MPI_MAX, fastest2, lmp->world) / pace.kt);
+  if (!std::isfinite(pace.vibration)) pace.vibration = 0.0;
+  return pace;
+}
+
+double Pace::longest_step(const Scheme &scheme) const
+{
+  return vibration > 0.0 ? MARGIN * fastest_oscillation(scheme) / vibration : NONE;
+}
 
 /* ----------------------------------------------------------------------
    rotations that are too fast, before the first step
@@ -55,76 +110,94 @@ struct Lost {
   double moment, largest_moment, omega, longest_step;
 };
 
-bool is_lost(const Scheme &scheme, const RigidBody &body, const BodyState &state, double h,
-             Lost &lost)
+/// The body that rotates fastest of all that are lost.
+struct Fastest {
+  double omega = 0.0;
+  tagint id = 0;
+  RigidBody rigid = RigidBody();
+  BodyState state = BodyState();
+
+  void compare(const Scheme &scheme, const Body &body, const BodyState &its_state, double h)
+  {
+    const double its_omega = length(its_state.omega_body);
+    if (its_omega <= omega || std::fabs(h) * its_omega < FLIGHT_SLOW ||
+        survives_flight(scheme, body.rigid, its_state, h))
+      return;
+    *this = {its_omega, body.id, body.rigid, its_state};
+  }
+};
+
+/// Of all ranks; returns its ID, 0 if there is none.  Collective.
+tagint find_lost(LAMMPS *lmp, const Scheme &scheme, const Fastest &fastest, double h, Lost &lost)
 {
-  const double omega = length(state.omega_body);
-  if (std::fabs(h) * omega < FLIGHT_SLOW || survives_flight(scheme, body, state, h)) return false;
-  int smallest, largest;
-  const bool is_thin = thin(body, smallest, largest);
-  lost = {is_thin ? body.inertia[smallest] : 0.0, body.inertia[largest], omega,
-          longest_step(scheme, body, state, h)};
-  return true;
+  const double omega = over_ranks(MPI_MAX, fastest.omega, lmp->world);
+  if (omega == 0.0) return 0;
+  const tagint id =
+      over_ranks(MPI_MAX, fastest.omega == omega ? fastest.id : (tagint) 0, lmp->world);
+  Lost mine = Lost();
+  if (fastest.id == id) {
+    const RigidBody &rigid = fastest.rigid;
+    int smallest, largest;
+    const bool is_thin = thin(rigid, smallest, largest);
+    mine = {is_thin ? rigid.inertia[smallest] : 0.0, rigid.inertia[largest], omega,
+            longest_step(scheme, rigid, fastest.state, h)};
+  }
+  MPI_Allreduce(&mine, &lost, 4, MPI_DOUBLE, MPI_SUM, lmp->world);
+  return id;
+}
+
+/// The fastest rotation about an axis that bodies of this temperature come to.
+double thermal_rotation(LAMMPS *lmp, const Bodies &bodies, double kt)
+{
+  double fastest2 = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    for (const double moment : bodies.rigid_of(ibody).inertia)
+      if (moment > 0.0) fastest2 = std::max(fastest2, kt / moment);
+  return TAIL * std::sqrt(over_ranks(MPI_MAX, fastest2, lmp->world));
 }
 
 }    // namespace
 
-void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, double h)
+void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme,
+                           const Pace &pace, double h)
 {
-  double energy[2] = {0.0, 0.0};    // twice the kinetic one, degrees of freedom
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const RigidBody &rigid = bodies.rigid_of(ibody);
-    const BodyState &state = bodies.state_of(ibody);
-    energy[0] += 2.0 *
-        (translational_energy(rigid, state.velocity) + rotational_energy(rigid, state.omega_body));
-    energy[1] += 3.0 + rigid.rotational_freedoms();
-  }
-  const auto all_energy = over_ranks(MPI_SUM, energy, lmp->world);
-  const double share = bodies.number() < MANY ? 0.0 : all_energy[0] / all_energy[1];
-
-  // the body with the smallest ID, of those lost as they are (0) and of those that will be (1)
-
-  tagint id[2] = {MAXTAGINT, MAXTAGINT};
-  Lost lost[2] = {}, all_lost[2];
+  Fastest now, warm;    // as they are, and with their share of the energy
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const Body &body = bodies.body_at(ibody);
+    BodyState state = bodies.state_of(ibody);
     int smallest, largest;
-    if (body.id < id[0] && is_lost(scheme, body.rigid, bodies.state_of(ibody), h, lost[0]))
-      id[0] = body.id;
-    if (body.id > id[1] || !thin(body.rigid, smallest, largest)) continue;
-    BodyState warm = bodies.state_of(ibody);
-    for (double &omega : warm.omega_body) omega = 0.0;
-    warm.omega_body[smallest] = std::sqrt(share / body.rigid.inertia[smallest]);
-    if (is_lost(scheme, body.rigid, warm, h, lost[1])) id[1] = body.id;
+    now.compare(scheme, body, state, h);
+    if (!thin(body.rigid, smallest, largest)) continue;
+    for (double &omega : state.omega_body) omega = 0.0;
+    state.omega_body[smallest] = std::sqrt(pace.kt / body.rigid.inertia[smallest]);
+    warm.compare(scheme, body, state, h);
   }
-  const auto all_id = over_ranks(MPI_MIN, id, lmp->world);
-  for (int which = 0; which < 2; ++which)
-    if (id[which] != all_id[which]) lost[which] = Lost();
-  MPI_Allreduce(lost, all_lost, 8, MPI_DOUBLE, MPI_SUM, lmp->world);
-
-  const auto told = [&](int which, const char *turns) {
-    const Lost &one = all_lost[which];
-    std::string text =
-        fmt::format("Fix gear/quat: body {} {} {:g}", all_id[which], turns, one.omega);
-    if (one.moment > 0.0)
+  Lost lost;
+  const auto told = [&](tagint id, const char *turns) {
+    std::string text = fmt::format("Fix gear/quat: body {} {} {:g}", id, turns, lost.omega);
+    if (lost.moment > 0.0)
       text +=
           fmt::format(" about the axis of its smallest moment of inertia, {:g}, the largest being "
                       "{:g}",
-                      one.moment, one.largest_moment);
-    text +=
-        fmt::format(": {:g} radians in a step are more than {} values can follow; use a time step "
-                    "of {:g} or shorter or fewer values",
-                    one.omega * std::fabs(h), scheme.values(), one.longest_step);
-    if (one.moment > 0.0) text += std::string(", ") + MEND;
+                      lost.moment, lost.largest_moment);
+    const double thermal = thermal_rotation(lmp, bodies, pace.kt);
+    double step = std::fabs(lost.longest_step) * std::min(1.0, lost.omega / thermal);
+    const double of_forces = pace.longest_step(scheme);
+    if (of_forces > OVERLAP * step) step = std::min(step, of_forces);
+    text += fmt::format(": {:g} radians in a step are more than {} values can follow; use a time "
+                        "step of {:g} or shorter",
+                        lost.omega * std::fabs(h), scheme.values(), rounded_down(step));
+    if (lost.moment > 0.0) text += std::string(", ") + MEND;
     return text;
   };
-  if (all_id[0] < MAXTAGINT)
-    lmp->error->all(FLERR, told(0, "turns with an angular velocity of"));
-  else if (all_id[1] < MAXTAGINT && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        told(1,
-                             "will turn, once it has its share of the kinetic energy, with "
-                             "an angular velocity of"));
+  if (const tagint id = find_lost(lmp, scheme, now, h, lost)) {
+    lmp->error->all(FLERR, told(id, "turns with an angular velocity of"));
+  } else if (const tagint id = find_lost(lmp, scheme, warm, h, lost)) {
+    const std::string text = told(id,
+                                  "will turn, once it has its share of the kinetic energy, with an "
+                                  "angular velocity of");
+    if (lmp->comm->me == 0) lmp->error->warning(FLERR, text);
+  }
 }
 
 /// What to do about a body that is lost while it turns so, if it is nearly linear and turns about
@@ -135,8 +208,8 @@ static std::string advice_on_spin(const RigidBody &body, const double *omega_bod
   if (!thin(body, smallest, largest)) return "";
   const double about = omega_body[smallest] * omega_body[smallest];
   if (!(2.0 * about > dot3(omega_body, omega_body))) return "";
-  return fmt::format(", for it turns about the axis of its smallest moment of inertia, {:g}, the "
-                     "largest being {:g}; {},",
+  return fmt::format("; the body turns about the axis of its smallest moment of inertia, {:g}, the "
+                     "largest being {:g}, {}",
                      body.inertia[smallest], body.inertia[largest], MEND);
 }
 
@@ -182,17 +255,11 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   }
   if (bodies.is_large(ibody)) bodies.tell_ids_to_ghosts();
   const Meeting met = nearest(ibody, bad);
-  const std::string change = std::fabs(h) <= shortest
-      ? fmt::format("a dtmin smaller than {:g},", shortest)
-      : scheme.trial
-      ? fmt::format("a smaller tolerance, or a dtmax shorter than {:g},", std::fabs(h))
-      : fmt::format("a smaller time step than {:g} or fewer values than {},", std::fabs(h),
-                    scheme.values());
+  const Cause cause = first_cause(ibody, s, h);
   const std::string text = fmt::format(
-      "Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. Use {}{} or "
-      "begin with atoms further apart",
-      update->ntimestep, time, id, molecule, what_happened(ibody, s, h), where(ibody, bad, met),
-      change, advice_on_spin(bodies.rigid_of(ibody), s.omega_body));
+      "Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. {}. {}{}", update->ntimestep,
+      time, id, molecule, what_happened(ibody, s, h), where(ibody, bad, met), cause.what,
+      cause.remedy, advice_on_spin(bodies.rigid_of(ibody), s.omega_body));
   if (bodies.is_large(ibody)) error->all(FLERR, agree(text, ibody, bad, met));
   error->one(FLERR, text);
 }
@@ -212,6 +279,71 @@ std::string Blowup::agree(const std::string &text, int ibody, int bad, const Mee
   if (bad >= 0) here.distance2 = -1.0;
   MPI_Allreduce(&here, &best, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
   return broadcast(text, world, best.rank);
+}
+
+/// The motion of this body is certain to be lost; the errors of the others in the last step tell
+/// whether the step is too long for all of them.
+Blowup::Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
+{
+  if (other_cause) {
+    const Cause cause = other_cause(h);
+    if (!cause.what.empty()) return cause;
+  }
+  const std::string apart =
+      "Begin with atoms farther apart, as after a run with keywords tolerance, "
+      "temp and tchain 1. ";
+  const Load &load = bodies.load_of(ibody);
+  if (!std::isfinite(length(load.force) + length(load.torque_space)))
+    return {"The forces became unstable first", apart + shorter_step(h)};
+  const int others = inaccurate_bodies(ibody, h);
+  if (others > 0 && others >= WIDESPREAD * (bodies.nmoved() - 1))
+    return {fmt::format("The motion of the bodies became unstable first: {} others on this rank "
+                        "also err by more than {:g} % of their motion in the last step",
+                        others, 100.0 * INACCURATE),
+            shorter_step(h)};
+  if (is_pushed(ibody, h))
+    return {"The forces became unstable first: they alone move this body by more than its size, or "
+            "turn it by more than a radian, in one step",
+            apart + shorter_step(h)};
+  return {"The motion of this body became unstable first", shorter_step(h)};
+}
+
+/// The others whose error is a large part of their motion in the last step.
+int Blowup::inaccurate_bodies(int ibody, double h) const
+{
+  int others = 0;
+  for (int other = 0; other < bodies.nmoved(); ++other) {
+    const Body &body = bodies.body_at(other);
+    const BodyState &s = bodies.state_of(other);
+    const double way = std::fabs(h) * (length(s.velocity) + body.reach() * length(s.omega_body));
+    others += other != ibody && !(body.length(bodies.last_of(other)) <= INACCURATE * way);
+  }
+  return others;
+}
+
+/// True if the load alone moves the body far in a step.
+bool Blowup::is_pushed(int ibody, double h) const
+{
+  const Body &body = bodies.body_at(ibody);
+  BodyState still = bodies.state_of(ibody);
+  for (int k = 0; k < 3; ++k) still.velocity[k] = still.omega_body[k] = 0.0;
+  const BodyState after = kicked(body.rigid, still, bodies.load_of(ibody), h);
+  const double way = std::fabs(h) * length(after.velocity);
+  const double turn = std::fabs(h) * length(after.omega_body);
+  return !(way <= body.reach() + std::fabs(h) * length(bodies.state_of(ibody).velocity)) ||
+      !(turn <= 1.0);
+}
+
+std::string Blowup::shorter_step(double h) const
+{
+  const double size = std::fabs(h);
+  if (size <= shortest) return fmt::format("Leave out dtmin, or use one much shorter than {:g}", shortest);
+  if (scheme.trial)
+    return fmt::format("Use a smaller tolerance, or a dtmax shorter than {:g}", size);
+  const double step = rounded_down(pace.longest_step(scheme));
+  if (step < size && step > OVERLAP * size)
+    return fmt::format("Use a time step of {:g} or shorter", step);
+  return fmt::format("Halve the time step, {:g}, until the total energy is conserved", size);
 }
 
 /// Says which limit is exceeded; the cause comes before its effects.

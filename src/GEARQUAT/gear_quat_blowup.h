@@ -7,7 +7,8 @@
    linear ones, whose smallest moment of inertia makes them spin about their axis), and at the step
    in which a body becomes unstable, before its atoms are placed, so before a dump or another fix
    sees them.  The comparison is in gear_quat_limits.h and is made by the fix for every body and
-   step; what is here is for the run that has to end. */
+   step; this file makes the error message.  The message says what became unstable first: what
+   `other_cause` tells (a thermostat), else the forces, else the motion of the bodies. */
 
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
 #define LMP_GEAR_QUAT_BLOWUP_H
@@ -15,11 +16,30 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_limits.h"
 
+#include <functional>
+#include <string>
+
 namespace LAMMPS_NS::GearQuat {
+
+/// How fast the motion is at the beginning of a run.
+struct Pace {
+  double kt = 0.0;    ///< twice the mean kinetic energy of a degree of freedom; 0 of a few bodies
+  double vibration = 0.0;    ///< an angular frequency, see pace_of(); 0 if nothing tells it
+
+  /// The longest step with which a scheme follows the vibrations, infinite if they are not known.
+  double longest_step(const Scheme &scheme) const;
+};
+
+/// The largest F^2/(m kT) of a body, and T^2/(I kT) about its axes: in equilibrium the mean of this
+/// is the mean curvature of the potential energy by mass, and in a collision it is about the
+/// curvature there.  Forces that accelerate all bodies alike make no vibration.  Collective; loads:
+/// present.
+Pace pace_of(LAMMPS *lmp, const Bodies &bodies);
 
 /// Ends the run on all ranks if a body turns faster than can be followed at a step h.  Rank 0 warns
 /// of a nearly linear one that will, once it has its share of the kinetic energy.  Collective.
-void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, double h);
+void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, const Pace &pace,
+                 double h);
 
 class Blowup : protected Pointers {
  public:
@@ -28,6 +48,16 @@ class Blowup : protected Pointers {
       Pointers(lmp), bodies(bodies), scheme(scheme), shortest(shortest)
   {
   }
+
+  /// At the beginning of a run, as pace_of() finds it.
+  Pace pace;
+  /// What became unstable first, and what to change: sentences without full stops.
+  struct Cause {
+    std::string what, remedy;
+  };
+  /// Tells whether something that couples all bodies is unstable in steps of h, because then it was
+  /// unstable before they were.  Returns empty sentences if it is stable.  May be null.
+  std::function<Cause(double h)> other_cause;
 
   /// The limits for a step h in the present box.  A box that follows the atoms sets none.
   MotionLimits limits(double h) const;
@@ -39,7 +69,7 @@ class Blowup : protected Pointers {
   void check_load(int ibody, double h, double **f) const;
   /// Ends the run on all ranks, from the one that owns the body (of a large one, from all of them
   /// together): says step, time, body, its site nearest to another atom (or one on which the force
-  /// is no number), and what to change.
+  /// is no number), what became unstable first, and what to change.
   /// Atoms are where the load was taken; s: what came of it, beyond the limits.
   [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
 
@@ -54,6 +84,10 @@ class Blowup : protected Pointers {
   };
   Meeting nearest(int ibody, int site) const;
   std::string what_happened(int ibody, const BodyState &s, double h) const;
+  Cause first_cause(int ibody, const BodyState &s, double h) const;
+  int inaccurate_bodies(int ibody, double h) const;
+  bool is_pushed(int ibody, double h) const;
+  std::string shorter_step(double h) const;
   std::string where(int ibody, int bad, const Meeting &met) const;
   std::string agree(const std::string &text, int ibody, int bad, const Meeting &met) const;
 };

@@ -80,32 +80,16 @@ void Bodies::add(const std::vector<tagint> &ids, const GivenBodies &given, bool 
   const bool any_extended = extended.any(atoms);
   if (any_extended && !extended.has_records()) extended.reset(true, (int) owned.size());
 
-  std::vector<Assembly::Site> sites;
-  for (const int i : atoms) {
-    Assembly::Site site = Assembly::Site();
-    site.rank = comm->me;
-    site.local = i;
-    site.id = ids[i];
-    site.tag = atom->tag[i];
-    site.mass = atom_mass(i);
-    domain->unmap(atom->x[i], atom->image[i], site.x);
-    for (int k = 0; k < 3; ++k) site.v[k] = atom->v[i][k];
-    if (any_extended)
-      extended.own_momenta(i, site.mass, site.own_inertia_space, site.own_momentum_space);
-    sites.push_back(site);
-  }
-
-  Assembly assembly(lmp, given);
-  const auto placed = assembly.place_sites(sites);
-  const auto made = assembly.owned_bodies();
-
-  for (const auto &site : placed) {
-    body_id[site.local] = ids[site.local];
-    owner_tag[site.local] = site.owner;
-    for (int k = 0; k < 3; ++k) site_body[site.local][k] = site.site_body[k];
-    if (any_extended) extended.attach(site.local, atom_mass(site.local), site.q_body);
-  }
-  for (const auto &one : made) {
+  const Assembly assembly(lmp, given, any_extended ? &extended : nullptr, ids);
+  note_scratch(assembly.memory_usage() + ids.capacity() * sizeof(tagint));
+  assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
+    body_id[i] = one.body.id;
+    owner_tag[i] = one.owner;
+    std::copy_n(arm_body, 3, site_body[i].begin());
+    if (any_extended) extended.attach(i, atom_mass(i), one.state.q);
+  });
+  for (const auto &one : assembly.bodies()) {
+    if (one.owner_rank != comm->me) continue;
     const int ibody = add_owned(one.local);
     body[ibody] = one.body;
     body[ibody].fresh = fresh;
@@ -244,31 +228,41 @@ void Bodies::list_sites()
   unseen.clear();
   sites.clear();
   extended.sites.clear();
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_id[i] == 0) continue;
-    const int mine = body_of(i);
-    if (mine < 0) {
-      unseen.push_back(owner_tag[i]);
-      continue;
+  size_t mine = 0;
+  for (int i = 0; i < atom->nlocal; ++i) mine += body_id[i] != 0;
+  if (mine > sites.capacity()) sites = std::vector<Site>();    // not both
+  sites.reserve(mine);
+  const auto list = [this](bool centered) {
+    for (int i = 0; i < atom->nlocal; ++i) {
+      const double *arm_body = site_body[i].data();
+      if (body_id[i] != 0 && (dot3(arm_body, arm_body) == 0.0) == centered) list_site(i);
     }
-    Site site = {i, mine, {}, {}};
-    for (int k = 0; k < 3; ++k) site.arm_body[k] = site_body[i][k];
-    domain->unmap(site.wrap, atom->image[i]);
-    double arm[3], expected[3];    // of what the flags take off
-    to_space(frame[site.body].axes, site.arm_body, arm);
-    for (int k = 0; k < 3; ++k) expected[k] = state[site.body].center[k] + arm[k] - atom->x[i][k];
-    undo_image_flag_overflow(domain, expected, site.wrap);
-    sites.push_back(site);
-  }
-  const auto centered = [](const Site &site) {
-    return dot3(site.arm_body, site.arm_body) == 0.0;
   };
-  ncentered = std::stable_partition(sites.begin(), sites.end(), centered) - sites.begin();
+  list(true);
+  ncentered = sites.size();
+  list(false);
   wrapped = std::any_of(sites.begin(), sites.end(), [](const Site &site) {
     return dot3(site.wrap, site.wrap) > 0.0;
   });
   if (extended.has_records())
     for (const Site &site : sites) extended.list(site.atom, site.body);
+}
+
+void Bodies::list_site(int i)
+{
+  const int ibody = body_of(i);
+  if (ibody < 0) {
+    unseen.push_back(owner_tag[i]);
+    return;
+  }
+  Site site = {i, ibody, {}, {}};
+  for (int k = 0; k < 3; ++k) site.arm_body[k] = site_body[i][k];
+  domain->unmap(site.wrap, atom->image[i]);
+  double arm[3], expected[3];    // of what the flags take off
+  to_space(frame[ibody].axes, site.arm_body, arm);
+  for (int k = 0; k < 3; ++k) expected[k] = state[ibody].center[k] + arm[k] - atom->x[i][k];
+  undo_image_flag_overflow(domain, expected, site.wrap);
+  sites.push_back(site);
 }
 
 /// On a single rank ghosts are images of own atoms, on several their owners tell them.
@@ -375,7 +369,7 @@ void Bodies::copy_arrays(int from, int to, int delflag)
   if (owned[to] >= 0) owner_atom[owned[to]] = to;
 }
 
-double Bodies::memory_usage() const
+double Bodies::present_memory() const
 {
   const double per_atom = 2 * sizeof(tagint) + 2 * sizeof(int) + 3 * sizeof(double);
   return owned.capacity() * per_atom + rows.capacity() * sizeof(double) +
@@ -386,4 +380,14 @@ double Bodies::memory_usage() const
       (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
       (owner_atom.capacity() + tops.capacity() + points.capacity()) * sizeof(int) +
       extended.memory_usage();
+}
+
+void Bodies::note_scratch(double bytes)
+{
+  peak = std::max(peak, present_memory() + bytes);
+}
+
+double Bodies::memory_usage() const
+{
+  return std::max(peak, present_memory());
 }

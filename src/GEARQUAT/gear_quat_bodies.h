@@ -34,8 +34,8 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
+struct BodyCount;
 struct Census;
-struct SiteCount;
 
 class Bodies : protected Pointers {
  public:
@@ -217,7 +217,10 @@ class Bodies : protected Pointers {
   void unpack_reverse(int n, const int *list, const double *buf);
   int max_exchange() const;
   int max_forward() const;
+  /// The most that was needed at a time, see note_scratch().
   double memory_usage() const;
+  /// So many bytes more are allocated now, and will be freed before the next step.
+  void note_scratch(double bytes);
 
  private:
   std::vector<Body> body;
@@ -259,6 +262,7 @@ class Bodies : protected Pointers {
   bool any_ghosts =
       false;    ///< a site, on any rank, has its body on another one, which is not large
   bool any_forces = true;
+  double peak = 0.0;    ///< bytes
 
   // per atom, ghosts too
 
@@ -279,6 +283,7 @@ class Bodies : protected Pointers {
   Forward forward = Forward::STATES;    ///< what forward communication carries
   double *labels = nullptr;             ///< of all atoms, while these are sent
 
+  double present_memory() const;
   void clear(bool extended = false);
   void count();
   void set_number(bigint all);
@@ -291,6 +296,7 @@ class Bodies : protected Pointers {
   void update_frame(int ibody);
   void list_bodies();
   void list_sites();
+  void list_site(int atom);
   int body_of(int atom) const;
   bool take_stock();
   void pack_large();
@@ -304,9 +310,10 @@ class Bodies : protected Pointers {
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place();
 
   Census census(int groupbit) const;
-  std::vector<SiteCount> count_sites(int groupbit) const;
+  std::vector<BodyCount> count_atoms(const Parts &parts, int groupbit) const;
   Census compare_sites() const;
-  void describe(const Site &site, SiteCount &count) const;
+  void find_place(const Site &site, double *found, double *expected) const;
+  void describe(const Site &site, BodyCount &count) const;
   void refuse_tears(const Census &found) const;
   bool tell_of_box(bigint remapped, tagint deformed) const;
 

@@ -37,123 +37,142 @@ static constexpr double ROUNDING = 1.0e-13;       // of positions
 
 namespace LAMMPS_NS::GearQuat {
 
-/// One atom of a body.
-struct SiteCount {
-  tagint owner, id;    ///< atom ID of the body's owner, the user's ID of the body
-  tagint natoms;       ///< of the body, 0 unless this atom is its owner
-  int freedoms;        ///< of the body, translation and rotation; 0 unless this atom is its owner
-  int own_freedoms;    ///< rotational ones of the atom itself
-  int in_group;        ///< 1 if the atom is in the group that is asked about
-  double mass;
-  double body_mass;    ///< 0 unless this atom is the owner and masses have to add up to it
+/// A sum that carries what rounding takes off, so that a body of many atoms keeps its mass.
+struct CarriedSum {
+  double sum = 0.0, carried = 0.0;
+
+  void add(double term)
+  {
+    const double next = sum + term;
+    carried += std::fabs(sum) >= std::fabs(term) ? (sum - next) + term : (term - next) + sum;
+    sum = next;
+  }
+  double value() const { return sum + carried; }
+};
+
+/// The atoms of a body on one rank, or on all; the owner's numbers are 0 where it is not among
+/// them.
+struct BodyCount {
+  bigint natoms = 0;
+  tagint smallest_id = MAXTAGINT, largest_id = 0;    ///< the user's, of the body
+  bigint in_group = 0;                               ///< atoms in the group that is asked about
+  bigint own_freedoms = 0;                           ///< rotational ones of the atoms themselves
+  CarriedSum mass;
+
+  // of the owner
+
+  int rank = -1;
+  bigint had = 0;            ///< atoms that the body had when it was made
+  int freedoms = 0;          ///< of the body, translation and rotation
+  double body_mass = 0.0;    ///< 0 unless masses have to add up to it
 
   // zero unless places and masses are compared with those that the body has
 
-  double body_moments[3];    ///< principal moments; of the owner
-  double first[3];           ///< mass times the arm, body frame
-  double second[6];          ///< what it adds to xx, yy, zz, xy, xz, yz of the inertia, body frame
-  double found[3], expected[3];    ///< unwrapped positions: of the atom, and where the body has it
+  double first[3] = {};                      ///< sum of mass times arm, body frame
+  double second[6] = {};                     ///< xx, yy, zz, xy, xz, yz of the inertia, body frame
+  double body_moments[3] = {};               ///< of the owner: principal moments
+  double found[3] = {}, expected[3] = {};    ///< of the owner: unwrapped position, and where the
+                                             ///< body has it
+
+  void merge(const BodyCount &other);
 };
 
-/// The sites of every body meet on one rank, which the atom ID of the owner names, and are counted.
-/// Needs no ghost atoms, so it can be taken at any time; once per run, not per step.  The same on
-/// all ranks; bodies are named by their IDs, 0 for none.
+/// The atoms of every body are counted.  Needs no ghost atoms, so it can be taken at any time; once
+/// per run, not per step.  The same on all ranks; bodies are named by their IDs, 0 for none.
 struct Census {
   bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
   tagint broken = 0;              ///< a body that has lost atoms, or that several IDs name
-  tagint left = 0, had = 0;       ///< its atoms now and before
+  bigint left = 0, had = 0;       ///< its atoms now and before
   tagint mass_changed = 0;        ///< one whose atoms have another mass, center or inertia
   tagint torn = 0;                ///< one whose atoms are whole periods further apart than before
   tagint cut = 0;                 ///< one that another box has torn at the faces of the box
 
-  /// Collective; mine: the sites of this rank's atoms.  box: shape of the box before, as Domain::h,
-  /// null if it is not known or not asked for.
-  Census(LAMMPS *lmp, const std::vector<SiteCount> &mine, const double *box = nullptr);
+  explicit Census(const LAMMPS *lmp) : domain(lmp->domain), comm(lmp->comm), world(lmp->world) {}
+
+  /// All atoms of a body.
+  void count(const BodyCount &body);
+  /// An atom has moved from `expected` to `found`, its owner is that of `body`.  box_before: shape
+  /// of the box then, as Domain::h, null if it is not known.
+  void look_for_tears(const BodyCount &body, const double *found, const double *expected,
+                      const double *box_before);
+  /// After the bodies of this rank.  Collective.
+  void share();
 
  private:
   const Domain *domain;
-  const double *box_before;
+  const Comm *comm;
+  MPI_Comm world;
 
-  void count_body(const SiteCount *sites, int n);
-  bool same_masses(const SiteCount *sites, int n, const SiteCount &owner) const;
-  void look_for_tears(const SiteCount *sites, int n, const SiteCount &owner);
+  bool same_masses(const BodyCount &body) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat
 
-Census::Census(LAMMPS *lmp, const std::vector<SiteCount> &mine, const double *box) :
-    domain(lmp->domain), box_before(box)
+void BodyCount::merge(const BodyCount &other)
 {
-  std::vector<int> ranks;
-  for (const auto &site : mine) ranks.push_back((int) (site.owner % lmp->comm->nprocs));
-  std::vector<SiteCount> sites = send_to_ranks(lmp->comm, mine, ranks);
-  std::sort(sites.begin(), sites.end(), [](const SiteCount &a, const SiteCount &b) {
-    return a.owner < b.owner;
-  });
-  const int n = (int) sites.size();
-  for (int first = 0, last; first < n; first = last) {
-    for (last = first; last < n && sites[last].owner == sites[first].owner;) ++last;
-    count_body(&sites[first], last - first);
-  }
-
-  removed_freedoms = over_ranks(MPI_SUM, removed_freedoms, lmp->world);
-  const tagint broken_here = broken;
-  broken = over_ranks(MPI_MAX, broken, lmp->world);
-  if (broken_here != broken) left = had = 0;
-  tagint here[] = {left, had, mass_changed, torn, cut};
-  const auto all = over_ranks(MPI_MAX, here, lmp->world);
-  left = all[0];
-  had = all[1];
-  mass_changed = all[2];
-  torn = all[3];
-  cut = all[4];
+  natoms += other.natoms;
+  smallest_id = std::min(smallest_id, other.smallest_id);
+  largest_id = std::max(largest_id, other.largest_id);
+  in_group += other.in_group;
+  own_freedoms += other.own_freedoms;
+  mass.add(other.mass.sum);
+  mass.add(other.mass.carried);
+  for (int k = 0; k < 3; ++k) first[k] += other.first[k];
+  for (int k = 0; k < 6; ++k) second[k] += other.second[k];
+  if (other.rank < 0) return;
+  rank = other.rank;
+  had += other.had;
+  freedoms = other.freedoms;
+  body_mass = other.body_mass;
+  std::copy_n(other.body_moments, 3, body_moments);
+  std::copy_n(other.found, 3, found);
+  std::copy_n(other.expected, 3, expected);
 }
 
-void Census::count_body(const SiteCount *sites, int n)
+void Census::count(const BodyCount &body)
 {
-  tagint natoms = 0;
-  int freedoms = 0, own_freedoms = 0, in_group = 0;
-  double mass = 0.0, body_mass = 0.0;
-  const SiteCount *owner = nullptr;
-  bool mixed = false;
-  for (int i = 0; i < n; ++i) {
-    if (sites[i].id != sites[0].id) mixed = true;
-    if (sites[i].natoms > 0) owner = sites + i;
-    natoms += sites[i].natoms;
-    freedoms += sites[i].freedoms;
-    own_freedoms += sites[i].own_freedoms;
-    in_group += sites[i].in_group;
-    mass += sites[i].mass;
-    body_mass += sites[i].body_mass;
+  const tagint id = body.smallest_id;
+  if (body.natoms != body.had || id != body.largest_id) {
+    broken = id;
+    left = body.natoms;
+    had = body.had;
   }
-  if (n != natoms || mixed) {
-    broken = sites[0].id;
-    left = n;
-    had = natoms;
-  }
-  if (body_mass > 0.0 && std::fabs(mass - body_mass) > SAME_MASS * body_mass)
-    mass_changed = sites[0].id;
-  if (owner && body_mass > 0.0 && !same_masses(sites, n, *owner)) mass_changed = owner->id;
-  if (owner) look_for_tears(sites, n, *owner);
-  if (in_group == n) removed_freedoms += (bigint) domain->dimension * n + own_freedoms - freedoms;
+  if (body.rank != comm->me) return;
+  const double mass = body.mass.value();
+  if (body.body_mass > 0.0 &&
+      (std::fabs(mass - body.body_mass) > SAME_MASS * body.body_mass || !same_masses(body)))
+    mass_changed = id;
+  if (body.in_group == body.natoms)
+    removed_freedoms += domain->dimension * body.natoms + body.own_freedoms - body.freedoms;
+}
+
+void Census::share()
+{
+  removed_freedoms = over_ranks(MPI_SUM, removed_freedoms, world);
+  const tagint broken_here = broken;
+  broken = over_ranks(MPI_MAX, broken, world);
+  if (broken_here != broken) left = had = 0;
+  bigint here[] = {left, had, mass_changed, torn, cut};
+  const auto all = over_ranks(MPI_MAX, here, world);
+  left = all[0];
+  had = all[1];
+  mass_changed = (tagint) all[2];
+  torn = (tagint) all[3];
+  cut = (tagint) all[4];
 }
 
 /// Center and principal moments change if masses move from one atom of a body to another.
-bool Census::same_masses(const SiteCount *sites, int n, const SiteCount &owner) const
+bool Census::same_masses(const BodyCount &body) const
 {
-  double first[3] = {}, second[6] = {};
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) first[k] += sites[i].first[k];
-    for (int k = 0; k < 6; ++k) second[k] += sites[i].second[k];
-  }
-  const double *moments = owner.body_moments, *x = owner.found;
+  const double *moments = body.body_moments, *second = body.second;
   const double trace = second[0] + second[1] + second[2];
-  const double size = std::sqrt(trace / owner.body_mass);
-  const double rounding = ROUNDING * (domain->xprd + domain->yprd + domain->zprd + length(x));
-  const double limit = owner.body_mass * (SAME_MOMENTS * size + rounding);
+  const double size = std::sqrt(trace / body.body_mass);
+  const double rounding =
+      ROUNDING * (domain->xprd + domain->yprd + domain->zprd + length(body.found));
+  const double limit = body.body_mass * (SAME_MOMENTS * size + rounding);
   for (int k = 0; k < 3; ++k) {
     const double vanishing = moments[k] > 0.0 ? 0.0 : 2.0 * LINEAR_FRACTION * trace;
-    if (std::fabs(first[k]) > limit) return false;
+    if (std::fabs(body.first[k]) > limit) return false;
     if (std::fabs(second[k] - moments[k]) > limit * size + vanishing) return false;
     if (std::fabs(second[3 + k]) > limit * size) return false;
   }
@@ -163,19 +182,18 @@ bool Census::same_masses(const SiteCount *sites, int n, const SiteCount &owner) 
 /// The user may have moved, rotated or deformed a body between two runs.  It is torn if its atoms
 /// are whole periods further apart than before, or if parts of it have moved with the faces of the
 /// box.
-void Census::look_for_tears(const SiteCount *sites, int n, const SiteCount &owner)
+void Census::look_for_tears(const BodyCount &body, const double *found, const double *expected,
+                            const double *box_before)
 {
-  for (int i = 0; i < n; ++i) {
-    double before[3], now[3], change[3];
-    for (int k = 0; k < 3; ++k) {
-      before[k] = sites[i].expected[k] - owner.expected[k];
-      now[k] = sites[i].found[k] - owner.found[k];
-      change[k] = now[k] - before[k];
-    }
-    const double further = length(now) - length(before);
-    if (whole_periods_away(domain, change, further)) torn = owner.id;
-    if (box_before && moved_with_faces(domain, box_before, change)) cut = owner.id;
+  double before[3], now[3], change[3];
+  for (int k = 0; k < 3; ++k) {
+    before[k] = expected[k] - body.expected[k];
+    now[k] = found[k] - body.found[k];
+    change[k] = now[k] - before[k];
   }
+  const double further = length(now) - length(before);
+  if (whole_periods_away(domain, change, further)) torn = body.smallest_id;
+  if (box_before && moved_with_faces(domain, box_before, change)) cut = body.smallest_id;
 }
 
 /* ----------------------------------------------------------------------
@@ -239,37 +257,58 @@ bool Bodies::atoms_match()
 /// A census with places and masses.
 Census Bodies::compare_sites() const
 {
-  std::vector<SiteCount> counts = count_sites(0);
-  std::vector<SiteCount *> of_atom(atom->nlocal, nullptr);
-  size_t n = 0;
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (body_id[i] != 0) of_atom[i] = &counts[n++];
-  for (const Site &site : sites) describe(site, *of_atom[site.atom]);
-  return Census(lmp, counts, box.empty() ? nullptr : box.data());
+  const Parts parts(comm, owner_tag.data(), atom->nlocal);
+  std::vector<BodyCount> counts = count_atoms(parts, 0);
+  std::vector<int> part_of(body.size(), -1);
+  for (const Site &site : sites) {
+    int &part = part_of[site.body];
+    if (part < 0) part = parts.find(owner_tag[site.atom]);
+    describe(site, counts[part]);
+  }
+  parts.merge(counts);
+  Census census(lmp);
+  for (const auto &count : counts) census.count(count);
+  for (const Site &site : sites) {
+    double found[3], expected[3];
+    find_place(site, found, expected);
+    census.look_for_tears(counts[part_of[site.body]], found, expected,
+                          box.empty() ? nullptr : box.data());
+  }
+  census.share();
+  return census;
 }
 
-void Bodies::describe(const Site &site, SiteCount &count) const
+/// Unwrapped positions: of the atom, and where its body has it.
+void Bodies::find_place(const Site &site, double *found, double *expected) const
+{
+  const Expected there = expected_position(site);
+  for (int k = 0; k < 3; ++k) {
+    expected[k] = there.value[k] + site.wrap[k];
+    found[k] = atom->x[site.atom][k] + site.wrap[k];
+  }
+}
+
+/// Adds masses and place of an atom to the count of its body.
+void Bodies::describe(const Site &site, BodyCount &count) const
 {
   const double *arm = site.arm_body, *axes = frame[site.body].axes;
   const double mass = atom_mass(site.atom), r2 = dot3(arm, arm);
-  if (owned[site.atom] >= 0)
+  if (owned[site.atom] >= 0) {
     std::copy_n(body[owned[site.atom]].rigid.inertia, 3, count.body_moments);
-  const Expected there = expected_position(site);
-  for (int k = 0; k < 3; ++k) {
-    count.first[k] = mass * arm[k];
-    count.expected[k] = there.value[k] + site.wrap[k];
-    count.found[k] = atom->x[site.atom][k] + site.wrap[k];
+    find_place(site, count.found, count.expected);
   }
-  double own_space[9] = {}, unused[3], own[9];
-  if (extended.has_records()) extended.own_momenta(site.atom, mass, own_space, unused);
-  for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l) {
-      double sum = 0.0;
-      for (int m = 0; m < 9; ++m) sum += axes[3 * k + m / 3] * own_space[m] * axes[3 * l + m % 3];
-      own[3 * k + l] = sum + mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
-    }
-  const int order[6] = {0, 4, 8, 1, 2, 5};
-  for (int k = 0; k < 6; ++k) count.second[k] = own[order[k]];
+  for (int k = 0; k < 3; ++k) count.first[k] += mass * arm[k];
+  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+  for (int m = 0; m < 6; ++m) {
+    const int k = ROW[m], l = COLUMN[m];
+    count.second[m] += mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]);
+  }
+  if (!extended.has_records()) return;
+  double own_space[9], unused[3];
+  extended.own_momenta(site.atom, mass, own_space, unused);
+  for (int m = 0; m < 6; ++m)
+    for (int n = 0; n < 9; ++n)
+      count.second[m] += axes[3 * ROW[m] + n / 3] * own_space[n] * axes[3 * COLUMN[m] + n % 3];
 }
 
 void Bodies::refuse_tears(const Census &found) const
@@ -359,28 +398,35 @@ bigint Bodies::removed_freedoms(int groupbit)
 
 Census Bodies::census(int groupbit) const
 {
-  return Census(lmp, count_sites(groupbit));
+  const Parts parts(comm, owner_tag.data(), atom->nlocal);
+  std::vector<BodyCount> counts = count_atoms(parts, groupbit);
+  parts.merge(counts);
+  Census census(lmp);
+  for (const auto &count : counts) census.count(count);
+  census.share();
+  return census;
 }
 
-/// In the order of the atoms.
-std::vector<SiteCount> Bodies::count_sites(int groupbit) const
+/// The atoms of this rank.
+std::vector<BodyCount> Bodies::count_atoms(const Parts &parts, int groupbit) const
 {
-  std::vector<SiteCount> sites;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_id[i] == 0) continue;
-    SiteCount site = SiteCount();
-    site.owner = owner_tag[i];
-    site.id = body_id[i];
-    site.in_group = (atom->mask[i] & groupbit) ? 1 : 0;
-    site.mass = atom_mass(i);
-    site.own_freedoms = extended.freedoms(i);
-    if (owned[i] >= 0) {
+  std::vector<BodyCount> counts(parts.number());
+  for (int part = 0; part < parts.number(); ++part) {
+    BodyCount &count = counts[part];
+    for (const int i : parts.atoms(part)) {
+      ++count.natoms;
+      count.smallest_id = std::min(count.smallest_id, body_id[i]);
+      count.largest_id = std::max(count.largest_id, body_id[i]);
+      count.in_group += (atom->mask[i] & groupbit) ? 1 : 0;
+      count.own_freedoms += extended.freedoms(i);
+      count.mass.add(atom_mass(i));
+      if (owned[i] < 0) continue;
       const Body &mine = body[owned[i]];
-      site.natoms = mine.natoms;
-      site.body_mass = mine.from_file ? 0.0 : mine.rigid.mass;
-      site.freedoms = mine.rigid.freedoms(domain->dimension);
+      count.rank = comm->me;
+      count.had += mine.natoms;
+      count.body_mass = mine.from_file ? 0.0 : mine.rigid.mass;
+      count.freedoms = mine.rigid.freedoms(domain->dimension);
     }
-    sites.push_back(site);
   }
-  return sites;
+  return counts;
 }

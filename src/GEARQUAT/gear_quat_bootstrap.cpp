@@ -255,6 +255,10 @@ StartFound Bootstrap::search(Forces &forces)
   forces.save();
   Search all(*this, forces);
   const StartFound start = find_start(most_start_values(parties), first_spacing(), all);
+  const double copies = 3.0 * sizeof(double) * (atom->torque_flag ? 4 : 3) *
+      (atom->nlocal + atom->nghost);    // positions, velocities, forces
+  for (auto &party : parties)
+    party.bodies->note_scratch(party.work.capacity() * sizeof(Collocation::Workspace) + copies);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
     if (lowers_order(start))

@@ -40,6 +40,12 @@ struct ExactSum {
     limbs[1] += (std::int64_t)(rest + std::copysign(0.5, rest));
   }
 
+  /// The terms of a sum of the same scale.
+  void add(const ExactSum &other)
+  {
+    for (int k = 0; k < 2; ++k) limbs[k] += other.limbs[k];
+  }
+
   double value(double scale) const
   {
     return (double(limbs[0]) + double(limbs[1]) / LOWER) / UPPER * scale;

@@ -21,8 +21,7 @@ static constexpr double PART = 0.25;
 
 static constexpr double SAME = 1.0e-9;
 
-/// In units of the periods.
-static void to_periods(const Domain *domain, const double *way, double *periods)
+void GearQuat::to_periods(const Domain *domain, const double *way, double *periods)
 {
   const double *to_box = domain->h_inv;
   periods[0] = to_box[0] * way[0] + to_box[5] * way[1] + to_box[4] * way[2];
@@ -55,11 +54,12 @@ void GearQuat::undo_image_flag_overflow(const Domain *domain, const double *expe
                           expected[2] - unwrapped[2]};
   double boxes[3];
   to_periods(domain, away, boxes);
-  double lost[3];
+  double lost[3] = {};
   bool any = false;
   for (int k = 0; k < 3; ++k) {
-    lost[k] = is_periodic(domain, k) ? range * std::round(boxes[k] / range) : 0.0;
-    any = any || lost[k] != 0.0;
+    if (!(std::fabs(boxes[k]) > 0.5 * range) || !is_periodic(domain, k)) continue;
+    lost[k] = range * std::round(boxes[k] / range);
+    any = true;
   }
   if (!any) return;
   double way[3];
@@ -116,21 +116,4 @@ void GearQuat::follow_box(const Domain *domain, const double *box_before, const 
   }
   through(domain->h, periods, moved);
   for (int k = 0; k < 3; ++k) moved[k] += domain->boxlo[k];
-}
-
-bool GearQuat::lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions)
-{
-  std::vector<double> along(positions.size());
-  for (int k = 0; k < 3; ++k) {
-    if (!is_periodic(domain, k)) continue;
-    for (size_t i = 0; i < positions.size(); ++i) {
-      double periods[3];
-      to_periods(domain, positions[i], periods);
-      along[i] = periods[k];
-    }
-    std::sort(along.begin(), along.end());
-    for (size_t i = 1; i < along.size(); ++i)
-      if (along[i] - along[i - 1] > 0.5) return true;
-  }
-  return false;
 }

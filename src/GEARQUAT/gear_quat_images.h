@@ -9,8 +9,6 @@
 #ifndef LMP_GEAR_QUAT_IMAGES_H
 #define LMP_GEAR_QUAT_IMAGES_H
 
-#include <vector>
-
 namespace LAMMPS_NS {
 class Domain;
 }    // namespace LAMMPS_NS
@@ -34,8 +32,8 @@ bool moved_with_faces(const Domain *domain, const double *box_before, const doub
 void follow_box(const Domain *domain, const double *box_before, const double *position,
                 double *moved);
 
-/// True if atoms at these unwrapped positions leave more than half of a period empty between them.
-bool lies_in_clumps(const Domain *domain, const std::vector<const double *> &positions);
+/// A way (3) in units of the periods.
+void to_periods(const Domain *domain, const double *way, double *periods);
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -100,6 +100,50 @@ inline double longest_step(const Scheme &scheme, const RigidBody &body, const Bo
   return h / parts;
 }
 
+/// True if a harmonic motion of so many radians in a step keeps its energy within a factor of two.
+inline bool survives_oscillation(const Scheme &scheme, double radians)
+{
+  const double h = 1.0;
+  const Integrator integrator(scheme, h);
+  const RigidBody body = {1.0, {0.0, 0.0, 0.0}};
+  BodyState state = {{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  Load load = Load();
+  const auto pull = [&] {
+    load.force[0] = -radians * radians * state.center[0];
+  };
+  std::vector<double> history(scheme.size());
+  double *rows = history.data();
+  pull();
+  seed(scheme, body, local_series(body, state, load, h), h, h, rows);
+  for (int step = 0; step < LONG_FLIGHT_STEPS; ++step) {
+    integrator.predict_center(rows);
+    integrator.center_state(body, rows, state);
+    pull();
+    integrator.correct_center(body, load, rows);
+    integrator.center_state(body, rows, state);
+    const double x = state.center[0], v = state.velocity[0] / radians;
+    if (!(x * x + v * v < 2.0)) return false;
+  }
+  return true;
+}
+
+/// The fastest harmonic motion that is stable, in radians per step.
+inline double fastest_oscillation(const Scheme &scheme)
+{
+  constexpr double GRAIN = 0.02;
+  int grains = 1;
+  while (grains < 200 && survives_oscillation(scheme, GRAIN * (grains + 1))) ++grains;
+  return GRAIN * grains;
+}
+
+/// Two significant digits, rounded down.
+inline double rounded_down(double number)
+{
+  if (!std::isfinite(number) || number <= 0.0) return number;
+  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
+  return std::floor(number / unit * (1.0 + 1.0e-12)) * unit;
+}
+
 }    // namespace LAMMPS_NS::GearQuat
 
 #endif

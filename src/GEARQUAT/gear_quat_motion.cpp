@@ -23,6 +23,8 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
+static constexpr double STRONGEST_FRICTION = 0.5;    // times the step
+
 /* ---------------------------------------------------------------------- */
 
 Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
@@ -37,6 +39,23 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
   if (args.thermostat.damp > 0.0)    // not with isokinetic
     thermostat.reset(new Thermostat(lmp, fix, bodies, args.thermostat, args.scheme));
   coupled = isokinetic || thermostat;
+  blowup.other_cause = [this](double h) {
+    return unstable_thermostat(h);
+  };
+}
+
+/// With a stronger friction a step does not slow a body down but reverses it.
+Blowup::Cause Motion::unstable_thermostat(double h) const
+{
+  if (!thermostat) return {};
+  double friction = 0.0;
+  for (const int part : {Thermostat::XI_TRANSLATION, Thermostat::XI_ROTATION})
+    friction = std::max(friction, std::fabs(thermostat->element(part)));
+  if (friction * std::fabs(h) < STRONGEST_FRICTION) return {};
+  return {fmt::format("The thermostat became unstable first: its friction, {:g}, times the time "
+                      "step, {:g}, is {:g}",
+                      friction, std::fabs(h), friction * std::fabs(h)),
+          "Begin nearer to the target temperature, or use tchain 1 or a longer damping time"};
 }
 
 void Motion::meet_bodies()
@@ -101,7 +120,9 @@ void Motion::impose_masks()
 
 void Motion::begin_run()
 {
-  if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, step());
+  if (update->nsteps > 0) blowup.pace = pace_of(lmp, bodies);
+  if (!started && !tolerance && update->nsteps > 0)
+    check_spins(lmp, bodies, args.scheme, blowup.pace, step());
   if (isokinetic) isokinetic->begin_run(!started);
   if (thermostat)
     thermostat->begin_run(!started,

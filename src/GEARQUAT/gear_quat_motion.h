@@ -159,6 +159,7 @@ class Motion : protected Pointers {
   void correct_together(double **f);
   void hold_step(double **f);
   void take_over_values();
+  Blowup::Cause unstable_thermostat(double h) const;
   void measure();
   void begin_fresh(double **f);
   void predict_bodies(double **f);

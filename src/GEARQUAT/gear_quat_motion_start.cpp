@@ -23,9 +23,10 @@ using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 // If the step becomes shorter than this part of the last one, histories start anew: the errors in
-// their higher rows are those of the long step.
+// their higher rows are those of the long step.  If it becomes longer than so many of the last one,
+// too: these errors grow with powers of the ratio, and may be as large as the motion.
 
-static constexpr double SHORTER = 0.49;
+static constexpr double SHORTER = 0.49, LONGER = 2.05;
 
 // Forces at a corrected pose differ from those at the predicted one by what the step has corrected,
 // so at a stable step they leave a smaller residual than the last one.  If a residual exceeds the
@@ -78,6 +79,8 @@ const char *Motion::reason_to_start_anew(double **f)
 {
   if (std::fabs(step()) < SHORTER * std::fabs(last_step) && can_start_anew())
     return "the time step is less than half of that of the last steps";
+  if (std::fabs(step()) > LONGER * std::fabs(last_step) && last_step != 0.0 && can_start_anew())
+    return "the time step is more than twice that of the last steps";
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
   if (thermostat && thermostat->target_jumps() && bootstraps() && forces_can_be_followed())

@@ -16,8 +16,7 @@ double sum(const vector<double> &terms, double scale, int parts = 1)
   vector<ExactSum> part(parts);
   for (size_t i = 0; i < terms.size(); ++i) part[i % parts].add(terms[i], scale);
   ExactSum all;
-  for (const auto &one : part)
-    for (int k = 0; k < 2; ++k) all.limbs[k] += one.limbs[k];
+  for (const auto &one : part) all.add(one);
   return all.value(scale);
 }
 

@@ -83,3 +83,27 @@ TEST(Limits, AKickIsWhatALoadMakesOfVelocities)
   EXPECT_LT(Check::largest_difference(after.velocity, velocity, 3), 1e-14);
   EXPECT_LT(Check::largest_difference(after.omega_body, omega_body, 3), 1e-14);
 }
+
+TEST(Limits, TheFastestOscillation)
+{
+  // velocities of a stable motion are bounded, and those of one that is 5 % faster are not; the
+  // limits are those of the manual, where spurious roots are outside of the unit circle
+  for (const auto &[values, limit] : {std::pair{4, 1.05}, {7, 0.71}, {9, 0.61}}) {
+    Scheme scheme;
+    scheme.rows = values;
+    scheme.tuned = true;
+    const double found = fastest_oscillation(scheme);
+    EXPECT_NEAR(found, limit, 0.03);
+    EXPECT_TRUE(survives_oscillation(scheme, 0.9 * limit));
+    EXPECT_FALSE(survives_oscillation(scheme, 1.1 * limit));
+  }
+}
+
+TEST(Limits, RoundedDown)
+{
+  EXPECT_DOUBLE_EQ(rounded_down(1.299), 1.2);
+  EXPECT_DOUBLE_EQ(rounded_down(0.0171), 0.017);
+  EXPECT_DOUBLE_EQ(rounded_down(20.0), 20.0);
+  EXPECT_DOUBLE_EQ(rounded_down(3.0e-17), 3.0e-17);
+  EXPECT_EQ(rounded_down(INFINITE), INFINITE);
+}

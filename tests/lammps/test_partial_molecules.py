@@ -1,0 +1,53 @@
+"""Molecules that are only partly in bodies: a warning says how many, and what to write."""
+
+import re
+
+import pytest
+from scenes import water, water_data
+
+WARNING = re.compile(
+    r"WARNING: Fix gear/quat: (\d+) molecules are only partly in bodies, and no fix moves the rest, such as "
+    r"molecule (\d+), of which (\d+) of (\d+) atoms are in bodies; if all of these atoms are to move as rigid "
+    r"molecules, (.*?) \("
+)
+GROUPS = "group oxygens type 1\ngroup hydrogens type 2\nvariable body atom mol\n"
+
+
+def deck(folder, style, before="", after=""):
+    text = water(water_data(folder / "data.water"), f"gear/quat {style}", steps=1, before=GROUPS + before)
+    text = text.replace("fix_modify move energy yes\n", after)
+    return text.replace("fix move all", "fix move oxygens")
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("style", ["molecule", "single", "group 1 oxygens", "custom v_body"])
+def test_only_the_oxygens(lmp_tree, style, ranks):
+    result = lmp_tree.succeed(deck(lmp_tree.folder, style), ranks=ranks)
+    found = WARNING.findall(result.words)
+    assert [one[:4] for one in found] == [("27", "1", "1", "3")], result.output
+    assert ("custom" in style) == ("the same value of v_body" in found[0][4])
+    assert ("custom" in style) != ("include molecule" in found[0][4])
+
+
+@pytest.mark.parametrize("style", ["molecule", "group 1 oxygens", "custom v_body"])
+def test_the_advice(lmp_tree, style):
+    """After the command that the warning names the molecules are whole."""
+    text = deck(lmp_tree.folder, style, before="group oxygens include molecule\n")
+    result = lmp_tree.succeed(text)
+    assert not WARNING.search(result.words)
+    assert "rigid bodies with 81 atoms" in result.words
+
+
+def test_one_molecule(lmp_tree):
+    """One of many, whose atoms are on several ranks."""
+    text = deck(lmp_tree.folder, "molecule", before="group oxygens include molecule\n")
+    text = text.replace("fix move oxygens", "group one id 41\ngroup most subtract all one\nfix move most")
+    found = WARNING.findall(lmp_tree.succeed(text, ranks=4).words)
+    assert found and found[0][:4] == ("1", "14", "2", "3") and "group most include" in found[0][4]
+
+
+@pytest.mark.parametrize("rest", ["nve", "gear/quat molecule"])
+def test_another_fix_moves_the_rest(lmp_tree, rest):
+    """Flexible chains on rigid cores, and rigid parts that other bonds connect, are wanted."""
+    result = lmp_tree.succeed(deck(lmp_tree.folder, "molecule", after=f"fix rest hydrogens {rest}\n"))
+    assert not WARNING.search(result.words)

@@ -1,0 +1,208 @@
+"""The time step that a message advises is one with which the run is stable and conserves its energy.
+
+Liquids and gases of water, CO2, N2 and Lennard-Jones trimers, and a single top. Each runs with steps that are
+far too long; a program reads the step from the message, as a user would, and runs with it.
+"""
+
+import re
+
+import numpy as np
+import pytest
+
+from running import EXAMPLES
+
+LIQUID = """
+units {units}
+atom_style full
+lattice sc {lattice}
+region box block 0 {cells} 0 {cells} 0 {cells}
+create_box 2 box
+molecule body {name}.mol
+mass 1 {masses[0]}
+mass 2 {masses[1]}
+pair_style {pair}
+{coefficients}
+{kspace}
+create_atoms 0 box mol body 4711
+neighbor {skin} bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+velocity all create {temperature} 4711 loop geom
+fix move all gear/quat molecule report no temp {temperature} {temperature} {damp} tchain 1
+thermo 100
+timestep {small}
+run 200
+timestep {middle}
+run 400
+unfix move
+"""
+WATER = """
+units real
+atom_style full
+read_data {examples}/water/data.water
+pair_style lj/charmm/coul/long 7 8
+pair_coeff 1 1 0.1553 3.166
+pair_coeff 2 2 0 1
+pair_coeff 1 2 0 1
+kspace_style pppm 1e-4
+neighbor 2.0 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+"""
+TOP = """
+units lj
+atom_style full
+boundary f f f
+region box block -5 5 -5 5 -5 5
+create_box 1 box
+mass 1 1
+create_atoms 1 single 1 0 0
+create_atoms 1 single -1 0 0
+create_atoms 1 single 0 1.5 0
+create_atoms 1 single 0 -1.5 0
+create_atoms 1 single 0 0 0.5
+create_atoms 1 single 0 0 -0.5
+set group all mol 1
+variable vx atom -3.0*y+0.3*z
+variable vy atom 3.0*x
+variable vz atom -0.3*x
+velocity all set v_vx v_vy v_vz
+pair_style zero 3.0
+pair_coeff * *
+neigh_modify exclude molecule/intra all
+fix pull all gravity 1.0 vector 0 0 -1
+fix hold all spring tether 50 0 0 0 0
+fix_modify pull energy yes
+fix_modify hold energy yes
+"""
+RUN = """
+reset_timestep 0
+fix move all gear/quat molecule report no
+timestep {dt}
+thermo_style custom step temp ke etotal
+thermo_modify norm no
+thermo 10
+run {steps}
+"""
+LONG = dict(pair="lj/charmm/coul/long 8 9", kspace="kspace_style pppm 1e-4", skin=2.0)
+SHORT = dict(kspace="", masses=(1.0, 1.0))
+SITES = {
+    "co2": ([(0, 0, 0), (1.16, 0, 0), (-1.16, 0, 0)], [1, 2, 2], [0.6512, -0.3256, -0.3256]),
+    "n2": ([(0.55, 0, 0), (-0.55, 0, 0)], [1, 1], [0, 0]),
+    "trimer": ([(0, 0, 0), (0.9, 0, 0), (0.2, 0.8, 0)], [1, 1, 1], [0, 0, 0]),
+}
+REAL = dict(units="real", cells=5, damp=100, small=0.02, middle=0.5)
+LIQUIDS = {
+    "co2": dict(
+        REAL | LONG,
+        lattice=4.4,
+        masses=(12.011, 15.999),
+        temperature=240,
+        coefficients="pair_coeff 1 1 0.0559 2.757\npair_coeff 2 2 0.16 3.033",
+    ),
+    "n2": dict(
+        REAL | SHORT,
+        lattice=4.1,
+        masses=(14.007, 1.0),
+        temperature=100,
+        pair="lj/charmm/coul/charmm 8 9",
+        skin=2.0,
+        coefficients="pair_coeff * * 0.0725 3.31",
+    ),
+    "trimer": dict(
+        SHORT,
+        units="lj",
+        cells=5,
+        lattice=1 / 1.9**3,
+        temperature=1.5,
+        damp=0.1,
+        small=2e-5,
+        middle=5e-4,
+        pair="lj/charmm/coul/charmm 2.0 2.5",
+        skin=0.3,
+        coefficients="pair_coeff * * 1 1",
+    ),
+}
+#: steps that are too long, from the one that is refused at once to the one that is lost in the run
+TOO_LONG = {
+    "water": (100, 7),
+    "co2": (300, 60),
+    "n2": (200, 40),
+    "trimer": (0.3, 0.03),
+    "top": (10, 1),
+}
+#: drift in a run, in units of the kinetic energy
+MOST_DRIFT = 0.02
+
+
+def molecule(name):
+    places, kinds, charges = SITES[name]
+
+    def section(title, rows):
+        return f"\n{title}\n\n" + "".join(f"{k} {row}\n" for k, row in enumerate(rows, 1))
+
+    text = f"{name}\n\n{len(kinds)} atoms\n"
+    text += section("Coords", [f"{x} {y} {z}" for x, y, z in places])
+    return text + section("Types", kinds) + section("Charges", charges)
+
+
+def deck(lmp, name, dt, steps):
+    run = RUN.format(dt=dt, steps=steps)
+    if name == "water":
+        return WATER.format(examples=EXAMPLES) + run
+    if name == "top":
+        return TOP + run
+    (lmp.folder / f"{name}.mol").write_text(molecule(name))
+    return LIQUID.format(name=name, **LIQUIDS[name]) + run
+
+
+def test_a_much_longer_step_between_runs(lmp_tree):
+    """Histories are not stretched 25 times, for this makes large errors of small ones."""
+    (lmp_tree.folder / "co2.mol").write_text(molecule("co2"))
+    result = lmp_tree.succeed(LIQUID.format(name="co2", **LIQUIDS["co2"]))
+    assert "the time step is more than twice that of the last steps, histories start" in result.words
+
+
+def test_overlaps(lmp_tree):
+    """A run with the keywords that the message names takes the energy of the overlaps away."""
+    (lmp_tree.folder / "n2.mol").write_text(molecule("n2"))
+    text = LIQUID.format(name="n2", **(LIQUIDS["n2"] | dict(lattice=2.6)))
+    fix, run = "fix move all gear/quat molecule", "timestep 1.0\nthermo 50\nrun 300\n"
+    begin = text.partition("fix move")[0]
+    words = lmp_tree.refuse(f"{begin}{fix}\n{run}", "The forces became unstable first").words
+    assert "as after a run with keywords tolerance, temp and tchain 1" in words
+    keywords = "tolerance 1e-4 dtmax 1.0 temp 100 100 100 tchain 1"
+    table = lmp_tree.succeed(f"{begin}{fix} {keywords}\n{run}").thermo[-1]
+    assert table["E_pair"][-1] < 0.2 * table["E_pair"][0] and table["Temp"][-1] < 100
+
+
+def test_a_dtmin_that_is_too_long(lmp_tree):
+    def run(keywords):
+        first, _, last = deck(lmp_tree, "n2", 40.0, 100).rpartition("report no")
+        return f"{first}report no {keywords}{last}"
+
+    lmp_tree.refuse(run("tolerance 1e-4 dtmin 40"), "Leave out dtmin, or use one much shorter than 40")
+    for keywords in ("tolerance 1e-4", "tolerance 1e-4 dtmin 4"):
+        assert drift(lmp_tree.succeed(run(keywords)).thermo[-1]) < MOST_DRIFT
+
+
+def drift(table):
+    energy = np.array(table["TotEng"])
+    return np.abs(energy - energy[0]).max() / table["KinEng"][0]
+
+
+@pytest.mark.parametrize("name", TOO_LONG)
+def test_the_advised_step(lmp_tree, name):
+    advised = {}
+    for dt in TOO_LONG[name]:
+        words = lmp_tree.refuse(deck(lmp_tree, name, dt, 200), "Fix gear/quat").words
+        told = re.search(r"[Uu]se a time step of (\S+) or shorter", words)
+        assert told, words[-1000:]
+        advised[dt] = float(told[1])
+        assert 0.01 * dt < advised[dt] < dt or dt == max(TOO_LONG[name])
+    longest = max(advised.values())
+    table = lmp_tree.succeed(deck(lmp_tree, name, longest, 200)).thermo[-1]
+    assert drift(table) < MOST_DRIFT
+
+
+def test_a_drift_is_seen():
+    energies = dict(KinEng=[50.0, 51.0], TotEng=[-100.0, -98.9])
+    assert drift(energies) > MOST_DRIFT
