@@ -23,8 +23,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr double STRONGEST_FRICTION = 0.5;    // times the step
-
 /* ---------------------------------------------------------------------- */
 
 Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
@@ -44,18 +42,13 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
   };
 }
 
-/// With a stronger friction a step does not slow a body down but reverses it.
 Blowup::Cause Motion::unstable_thermostat(double h) const
 {
-  if (!thermostat) return {};
-  double friction = 0.0;
-  for (const int part : {Thermostat::XI_TRANSLATION, Thermostat::XI_ROTATION})
-    friction = std::max(friction, std::fabs(thermostat->element(part)));
-  if (friction * std::fabs(h) < STRONGEST_FRICTION) return {};
-  return {fmt::format("The thermostat became unstable first: its friction, {:g}, times the time "
-                      "step, {:g}, is {:g}",
-                      friction, std::fabs(h), friction * std::fabs(h)),
-          "Begin nearer to the target temperature, or use tchain 1 or a longer damping time"};
+  if (!thermostat || thermostat->part_of_limit(h) < 1.0) return {};
+  return {fmt::format("The thermostat became unstable first: its friction in a step of {:g} is "
+                      "{:.2g} times as strong as the method can follow",
+                      h, thermostat->part_of_limit(h)),
+          "Begin nearer to the target temperature, or use a longer damping time"};
 }
 
 void Motion::meet_bodies()

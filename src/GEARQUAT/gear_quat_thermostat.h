@@ -69,6 +69,8 @@ class Thermostat : protected Pointers {
   Chain::LeftOut left_out(double h, int values) const;
   /// The target.
   double kt() const { return line.kt; }
+  /// The present friction in a step of h, as a part of the strongest that bodies can follow.
+  double part_of_limit(double h) const;
   /// A next step should not be longer.
   double longest_step() const;
   /// A step of h holds: warns once of bodies that a thermostat cannot warm.

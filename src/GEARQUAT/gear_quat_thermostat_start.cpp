@@ -72,10 +72,15 @@ double Thermostat::strongest_friction() const
   return strongest;
 }
 
+double Thermostat::part_of_limit(double h) const
+{
+  return std::fabs(h) * strongest_friction() / most_friction;
+}
+
 /// Warns once of a friction that is nearly too strong.
 void Thermostat::watch_friction(double h)
 {
-  const double part = std::fabs(h) * strongest_friction() / most_friction;
+  const double part = part_of_limit(h);
   if (warned_friction || part < SAFE) return;
   warned_friction = true;
   if (comm->me == 0)
