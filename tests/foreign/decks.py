@@ -29,9 +29,14 @@ TELLS = 0.05
 #: why a deck is refused: message of the fix, name, and where the manual says so
 REASONS = (
     (
-        r"keyword (langevin|temp|iso|aniso|x|y|z|couple|tparam|pchain|dilate) of the rigid fixes",
-        "thermostat or barostat",
-        r"There are no keywords \*langevin\*, \*temp\*, \*iso\*",
+        r"keyword (?:iso|aniso|x|y|z|couple|pchain|dilate) of the rigid fixes: there is no barostat",
+        "barostat",
+        r"There are no keywords [^.]*\*iso\*",
+    ),
+    (
+        r"keyword langevin of the rigid fixes",
+        "keyword langevin",
+        r"There are no keywords \*langevin\*",
     ),
     (r"keyword gravity of the rigid fixes", "keyword gravity", r"no keywords [^.]*\*gravity\*"),
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
