@@ -60,7 +60,11 @@ def try_neighbors(report, lammps, ranks, only, temp=()):
     if temp:
         scenes = neighbors.scenes_with_temp(scenes, temp)
     campaign = neighbors.Campaign(
-        scenes, ranks, lambda jobs, number: lammps.answers(jobs, folder, number), bool(temp)
+        scenes,
+        ranks,
+        lambda jobs, number: lammps.answers(jobs, folder, number),
+        temp=bool(temp),
+        conserves=not lammps.pairs,
     )
     outcomes = campaign.outcomes()
     for outcome in outcomes:

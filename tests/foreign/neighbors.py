@@ -44,6 +44,8 @@ SAME = 2e-9
 WITHIN = 4.0
 #: error of fix rigid at step DT in the plain scene, in units of that at DT/4 to DT/8
 BROAD = 1e-5
+#: what LAMMPS says where variants of styles cannot do what a neighbor needs
+NO_VARIANT = re.compile(r"INTEL package does not support")
 REFUSES = re.compile(r"[Ff]ix gear/quat")
 
 
@@ -198,10 +200,15 @@ def variants(n, a_try, ranks):
 
 
 class Campaign:
-    """All scenes; ``run`` is a function (jobs, ranks) -> answers; ``temp`` if the fix is a thermostat."""
+    """All scenes.
 
-    def __init__(self, scenes, ranks, run, temp=False):
-        self.scenes, self.ranks, self.run_jobs, self.temp = scenes, ranks, run, temp
+    ``run`` is a function (jobs, ranks) -> answers; ``temp`` if the fix is a thermostat, ``conserves`` if
+    forces are derivatives of an energy.
+    """
+
+    def __init__(self, scenes, ranks, run, temp=False, conserves=True):
+        self.scenes, self.ranks, self.run_jobs = scenes, ranks, run
+        self.temp, self.conserves = temp, conserves
         self.answers = {}
 
     def _script(self, run):
@@ -246,6 +253,9 @@ class Campaign:
         another = another and thermostat.THERMOSTATS.fullmatch(outcome.style)
         if another or kind in (INTEGRATES, BOX, MOVES, RIGID_ONLY):
             self._refused(outcome, answers)
+            return outcome
+        if all(NO_VARIANT.search(answer.error) for answer in answers.values()):
+            outcome.result = "LAMMPS refuses"
             return outcome
         self._without_refusals_of_lammps(outcome, answers)
         if not outcome.faults:
@@ -329,6 +339,7 @@ class Campaign:
         """The degrees of freedom of the thermostat, and the energy that it conserves."""
         a_try = outcome.a_try
         conserves = a_try.kind == PASSIVE or (a_try.kind == FORCE and "energy" in a_try.modify)
+        conserves = conserves and self.conserves
         for run, answer in answers.items():
             wrong = thermostat.faults(answer, conserves)
             if wrong:

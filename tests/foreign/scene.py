@@ -94,7 +94,8 @@ def write_files(folder):
     (folder / "target").write_text("".join(rows))  # for fix tmd
 
 
-FORCES = """pair_style lj/charmmfsw/coul/charmmfsh 2.0 3.0
+PAIR = "lj/charmmfsw/coul/charmmfsh"
+FORCES = f"""pair_style {PAIR} 2.0 3.0
 pair_coeff * * 0.3 0.9
 bond_style harmonic
 bond_coeff 1 50.0 0.5

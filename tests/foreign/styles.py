@@ -9,6 +9,8 @@ import re
 from dataclasses import dataclass
 from functools import partial
 
+from . import scene
+
 #: what a neighbor does to atoms
 PASSIVE = "passive"  # nothing
 FORCE = "force"  # adds forces that have no memory and no chance in them
@@ -323,7 +325,7 @@ COMPUTES = {
     "heat/flux/virial/tally": passive("free", group="bodies"),
     "improper/local": passive("chi"),
     "msd": (Try(PASSIVE), Try(PASSIVE, "com yes")),
-    "pair": passive("lj/charmmfsw/coul/charmmfsh"),
+    "pair": passive(scene.PAIR),
     "pair/local": passive("dist eng force"),
     "pe/mol/tally": passive("all"),
     "pressure": tuple(
