@@ -260,7 +260,7 @@ class Campaign:
         self._without_refusals_of_lammps(outcome, answers)
         if not outcome.faults:
             self._consistent(outcome, answers)
-            if kind in (PASSIVE, FORCE):
+            if kind == PASSIVE or (kind == FORCE and not self.temp):
                 self._beside_none(outcome, answers[Run(n)])
             self._like_rigid(outcome, self._answers(*self._references(n)))
             if self.temp:

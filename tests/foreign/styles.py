@@ -139,7 +139,7 @@ FIXES = {
     "spring/chunk": force("1.0 cc cm", before=(*CHUNKS, "compute cm all com/chunk cc")),
     "spring/rg": force("1.0 3.0"),
     "spring/self": force("2.0", modify="energy yes"),
-    "ti/spring": force("1.0 <100> <5>"),
+    "ti/spring": force("100.0 <100> <5>"),
     "viscous": force_or_none("0.3", "0"),
     "viscous/sphere": force("0.3", atoms=SPHERES),
     "wall/colloid": force("zlo -1.0 1.0 1.0 2.5", atoms=SPHERES, once=WALLS),
