@@ -83,6 +83,12 @@ CANNOT = (
     (r"", "LAMMPS ends it with an error"),
 )
 
+#: why a deck that runs cannot be compared: part of the message, and what the page says
+INCOMPARABLE = (
+    ("Resetting timestep size is not allowed", "another fix forbids a smaller step"),
+    ("rotational kinetic energy of the bodies is zero", "bodies do not rotate yet where it begins"),
+)
+
 
 def _children_seconds():
     """Processor time of all child processes that have ended."""
@@ -247,8 +253,9 @@ class Deck:
             error = _error(run(self.program, text, self.folder, PATIENCE_OURS))
             if error:
                 verdict.notes.append(f"{method}, step/{divide}: {error}")
-                if "Resetting timestep size is not allowed" in error:
-                    verdict.result, verdict.reason = "runs", "another fix forbids a smaller step"
+                why = next((reason for text, reason in INCOMPARABLE if text in error), "")
+                if why:
+                    verdict.result, verdict.reason = "runs", why
                 elif method == "gear":
                     self._refused(verdict, error)
                 elif "still running" in error:

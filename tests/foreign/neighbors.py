@@ -240,10 +240,11 @@ class Campaign:
         return [Run(n), rigid] if a_try.kind == COUNT else []
 
     def outcomes(self):
-        numbers = range(len(self.scenes))
+        tried = [n for n, (_, style, _) in enumerate(self.scenes) if style]
+        alone = [Run(n) for n, (_, style, _) in enumerate(self.scenes) if not style]
         for runs_of in (lambda n: variants(n, self.scenes[n][2], self.ranks), self._references):
-            self._answers(*(run for n in numbers for run in runs_of(n)))
-        return [self._judge(n) for n in numbers if self.scenes[n][1]]
+            self._answers(*alone, *(run for n in tried for run in runs_of(n)))
+        return [self._judge(n) for n in tried]
 
     def _judge(self, n):
         outcome = Outcome(*self.scenes[n])
