@@ -294,6 +294,7 @@ void FixGearQuat::end_of_step()
 /// However the run has ended.
 void FixGearQuat::post_run()
 {
+  meet_forces();
   motion->end_run();
 }
 
@@ -335,13 +336,26 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
    outputs
 ------------------------------------------------------------------------- */
 
+/// In output before the first step, when all fixes have been set up.
+void FixGearQuat::meet_forces()
+{
+  if (!motion->awaits_forces() || update->whichflag == 0) return;
+  const bool levels = !RespaForces::steps(lmp).empty();
+  if (levels) respa->sum_present();
+  bodies->gather_loads(levels ? respa->forces() : atom->f,
+                       levels ? respa->torques() : atom->torque);
+  motion->meet_forces();
+}
+
 double FixGearQuat::compute_scalar()
 {
+  meet_forces();
   return sums->energy_correction() + motion->energy_of_thermostat();
 }
 
 double FixGearQuat::compute_vector(int n)
 {
+  meet_forces();
   if (n >= Sums::ELEMENTS) return motion->element(n - Sums::ELEMENTS);
   return sums->element(n, motion->present_integrator());
 }

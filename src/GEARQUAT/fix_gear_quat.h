@@ -112,6 +112,7 @@ class FixGearQuat : public Fix {
   void take_velocities(bigint step, bool end);
   void create_bodies();
   void resume();
+  void meet_forces();
   void begin_steps(double **, double **);
   void begin_step(int, double **, double **);
   void place_prediction();

@@ -82,10 +82,11 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
 }
 
 /// The rates at which momenta of one body decay, 1/time: of its momentum along the axes of space,
-/// and of its angular momentum.
+/// and of its angular momentum.  common: what it has of a motion of all bodies that does not decay.
 struct Friction {
   double translation[3] = {0.0, 0.0, 0.0};
   double rotation = 0.0;
+  double common[3] = {0.0, 0.0, 0.0};
 
   Friction(const Multipliers &alpha) : rotation(alpha.rotation)
   {
@@ -94,11 +95,11 @@ struct Friction {
 
   // what acts on component i of a momentum p, or of an angular momentum l along the principal axes
 
-  double force(int i, double met, double p) const { return met - translation[i] * p; }
+  double force(int i, double met, double p) const { return met - translation[i] * (p - common[i]); }
   double torque(double met, double l) const { return met - rotation * l; }
 };
 
-/// The load with the forces of friction, -alpha p and -alpha L.
+/// The load with the forces of friction, -alpha (p - common) and -alpha L.
 inline Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
                         const Friction &alpha)
 {
@@ -108,7 +109,7 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
   to_space(a, momentum_body, momentum_space);
   Load damped = load;
   for (int i = 0; i < 3; ++i) {
-    damped.force[i] -= alpha.translation[i] * body.mass * state.velocity[i];
+    damped.force[i] = alpha.force(i, load.force[i], body.mass * state.velocity[i]);
     damped.torque_space[i] -= alpha.rotation * momentum_space[i];
   }
   return damped;

@@ -103,7 +103,7 @@ void Motion::begin_run()
 {
   if (!started && !tolerance && update->nsteps > 0) check_spins(lmp, bodies, args.scheme, step());
   if (isokinetic) isokinetic->begin_run(!started);
-  if (thermostat) thermostat->begin_run();
+  if (thermostat) thermostat->begin_run(!started);
   if (tolerance) tolerance->announce_output();
   set_up = true;
 }
@@ -235,7 +235,7 @@ void Motion::begin_fresh(double **f)
     Bootstrap::seed_body(bodies, ibody, acting(ibody), present_scheme(), step(), known);
   }
   bodies.take_in_fresh();
-  if (thermostat) thermostat->follow_bodies(step());
+  if (thermostat) thermostat->follow_changes(step());
 }
 
 bool Motion::repeats_step(double **f)

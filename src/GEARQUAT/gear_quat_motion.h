@@ -67,6 +67,11 @@ class Motion : protected Pointers {
   /// f: forces that the loads were gathered from.
   void correct(double **f);
 
+  /// True if degrees of freedom depend on forces that LAMMPS' setup may not have shown yet.
+  bool awaits_forces() const { return set_up && thermostat; }
+  /// The loads are those of all fixes.  Collective.
+  void meet_forces() { thermostat->meet_forces(); }
+
   bool changes_step() const { return tolerance != nullptr; }
   bool is_tuned() const { return args.scheme.tuned; }
   /// After correct(): true if the step has failed.  After the call histories and states are those
@@ -77,6 +82,7 @@ class Motion : protected Pointers {
   void choose_step();
   void end_run()
   {
+    if (awaits_forces()) thermostat->tell_freedoms();
     if (tolerance) tolerance->end_run();
   }
 

@@ -163,11 +163,14 @@ double Motion::last_error() const
 /// True if histories have to start; rank 0 says why they start anew.
 bool Motion::has_to_start(double **f)
 {
+  if (thermostat) thermostat->meet_forces();
   const char *reason = started ? reason_to_start_anew(f) : nullptr;
   if (reason && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
   const bool needs = !started || reason;
   movers = present_movers();
+  if (thermostat && needs) thermostat->judge_anew();
+  if (thermostat) thermostat->tell_freedoms();
   if (needs) blowup.check_loads(step(), f);
   return needs;
 }

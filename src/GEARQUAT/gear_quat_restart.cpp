@@ -22,7 +22,7 @@ using namespace GearQuat;
 // files of releases up to 0.2.0 begin with the formulation, 0 or 1
 
 static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
-static constexpr double FORMAT = 4;
+static constexpr double FORMAT = 5;
 
 Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
     Pointers(lmp), fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)
@@ -49,7 +49,7 @@ void Restart::read(const char *buf)
                "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
                "data of fix {} this one cannot read; continue with the release that wrote it, or "
                "let that one write a data file with write_data and start from this",
-               older ? "an older (0.2.0 or before)" : "a newer", fix->id);
+               older ? "an older (0.3.0 or before)" : "a newer", fix->id);
   std::memcpy(&block, buf, sizeof(block));
   waiting = true;
 }

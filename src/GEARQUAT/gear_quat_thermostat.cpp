@@ -7,16 +7,10 @@
 
 #include "gear_quat_ranks.h"
 
-#include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
-#include "fix.h"
 #include "force.h"
-#include "group.h"
-#include "modify.h"
 #include "update.h"
-#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,30 +18,20 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// a kinetic energy less than this part of the other one is rounding of velocities
+// a kinetic energy that is less than this part of what is subtracted from it is rounding
 
-static constexpr double NOTHING = 1.0e-24;
-
-// targets that differ by less are the same but for rounding
-
-static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
-
-// with a shorter damping time by the step the equations of the chain become unstable
-
-static constexpr double FEWEST_STEPS = 10.0;
+static constexpr double ROUNDING_OF_ENERGY = 1.0e-13;
 
 // a part of a kinetic energy that is below this fraction of its target for as many damping times is
 // not about to become warm: chains of its own make it grow by several powers of ten in that time
 
 static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
 
-static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
-
 /* ---------------------------------------------------------------------- */
 
 Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words) :
     Pointers(lmp), fix(fix), bodies(bodies), words(words),
-    chains(words.separate ? 2 : 1, Chain(words.length))
+    chains(words.separate ? 2 : 1, Chain(words.length)), total(lmp, bodies, words.damp)
 {
 }
 
@@ -86,130 +70,6 @@ double Thermostat::twice_of(int chain) const
   return words.separate ? twice[chain] : twice[TRANSLATION] + twice[ROTATION];
 }
 
-/// In two dimensions bodies have no momentum along z and turn about z alone, whatever keywords say.
-bool Thermostat::is_thermostatted(int ibody, Part part, int component) const
-{
-  const Mask off = bodies.body_at(ibody).off;
-  const bool flat = domain->dimension == 2;
-  if (part == TRANSLATION) return !(off & force_off(component)) && !(flat && component == 2);
-  return flat ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
-}
-
-void Thermostat::count_freedoms()
-{
-  double here[2] = {0.0, 0.0};
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    for (int k = 0; k < 3; ++k) here[TRANSLATION] += is_thermostatted(ibody, TRANSLATION, k);
-    if (!is_thermostatted(ibody, ROTATION)) continue;
-    const RigidBody &rigid = bodies.rigid_of(ibody);
-    here[ROTATION] += domain->dimension == 2 ? rigid.inertia[2] > 0.0 : rigid.rotational_freedoms();
-  }
-  const auto all = over_ranks(MPI_SUM, here, world);
-  conserved = conserves_momentum();
-  const int of_total = conserved ? domain->dimension : 0;
-  freedoms[TRANSLATION] = std::max(0.0, all[TRANSLATION] - of_total);
-  freedoms[ROTATION] = all[ROTATION];
-  counted = bodies.number();
-  changes = bodies.changes();
-}
-
-/// True if nothing outside of the bodies has a force on them.
-bool Thermostat::conserves_momentum() const
-{
-  if (bodies.number_of_sites() != atom->natoms) return false;
-  int held = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    for (int k = 0; k < domain->dimension; ++k) held |= !is_thermostatted(ibody, TRANSLATION, k);
-  if (over_ranks(MPI_MAX, held, world)) return false;
-  constexpr int EXERTS = FixConst::POST_FORCE | FixConst::POST_FORCE_RESPA;
-  for (auto *other : modify->get_fix_list()) {
-    // what it sets to zero along z belongs to no degree of freedom
-    if (other == fix || utils::strmatch(other->style, "^enforce2d")) continue;
-    if ((modify->get_fix_mask(other) & EXERTS) && group->count(other->igroup) > 0) return false;
-  }
-  return true;
-}
-
-/* ----------------------------------------------------------------------
-   before a run
-------------------------------------------------------------------------- */
-
-void Thermostat::begin_run()
-{
-  refuse_masks();
-  const Line before = line;
-  const double had[2] = {freedoms[TRANSLATION], freedoms[ROTATION]};
-  const bool first = counted == 0;
-  count_freedoms();
-  line = line_of_step(update->ntimestep);
-  const auto differs = [&](double a, double b) {
-    return std::fabs(a - b) > ROUNDING_OF_TARGET * line.kt;
-  };
-  const bool changed = had[TRANSLATION] != freedoms[TRANSLATION] ||
-      had[ROTATION] != freedoms[ROTATION];
-  jumps = differs(before.kt, line.kt) || differs(before.kt_step, line.kt_step) || changed ||
-      damp_before != words.damp;
-  damp_before = words.damp;
-  measure();
-  refuse_nothing();
-  if (words.damp < FEWEST_STEPS * std::fabs(update->dt) && comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "
-        "the motion may become unstable",
-        words.damp, FEWEST_STEPS);
-  if ((first || changed) && comm->me == 0)
-    utils::logmesg(lmp,
-                   "Fix gear/quat {}: thermostat of {:.0f} degrees of freedom of translation{} and "
-                   "{:.0f} of rotation\n",
-                   fix->id, freedoms[TRANSLATION],
-                   conserved ? ", without those of the total momentum," : "", freedoms[ROTATION]);
-}
-
-/// Space-frame components of a torque belong to no part of the rotational energy.
-void Thermostat::refuse_masks() const
-{
-  if (domain->dimension == 2) return;
-  tagint partly = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const Body &body = bodies.body_at(ibody);
-    const Mask off = body.off & NO_TORQUE;
-    if (off && off != NO_TORQUE && body.rigid.rotational_freedoms() > 0) partly = body.id;
-  }
-  partly = over_ranks(MPI_MAX, partly, world);
-  if (partly)
-    error->all(FLERR,
-               "Fix gear/quat temp: keyword torque turns off some components for body {} and not "
-               "all, so its rotation has no temperature; turn off all three, or define a second "
-               "fix without temp for such bodies",
-               partly);
-}
-
-/// Friction warms nothing that stands still.
-void Thermostat::refuse_nothing() const
-{
-  if (words.may_wait && counted == 0) return;
-  if (freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0)
-    error->all(FLERR,
-               "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
-               "torque leave on, so they have no temperature");
-  const char *missing = nullptr;
-  const auto rests = [this](Part part) {
-    return freedoms[part] > 0.0 && twice[part] <= NOTHING * (twice[TRANSLATION] + twice[ROTATION]);
-  };
-  if (twice[TRANSLATION] + twice[ROTATION] <= 0.0)
-    missing = "";
-  else if (words.separate && rests(TRANSLATION))
-    missing = "translational ";
-  else if (words.separate && rests(ROTATION))
-    missing = "rotational ";
-  if (missing)
-    error->all(FLERR,
-               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero, and a thermostat "
-               "only scales it; give them velocities first",
-               missing);
-}
-
 /* ----------------------------------------------------------------------
    a step
 ------------------------------------------------------------------------- */
@@ -218,6 +78,7 @@ Friction Thermostat::friction_of(int ibody) const
 {
   const double of_rotation = friction[words.separate ? ROTATION : TRANSLATION];
   Friction found = Multipliers{friction[TRANSLATION], of_rotation};
+  total.share(ibody, found.common);
   if (bodies.body_at(ibody).off == 0) return found;
   for (int k = 0; k < 3; ++k)
     if (!is_thermostatted(ibody, TRANSLATION, k)) found.translation[k] = 0.0;
@@ -245,16 +106,21 @@ void Thermostat::add_kinetic(int ibody, const double *velocity, const double *om
     here[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), unit);
 }
 
-void Thermostat::sum_kinetic(const Sums &here)
+void Thermostat::sum_kinetic(const Sums &here, bool of_states)
 {
-  bigint limbs[4];
+  bigint limbs[4 + TotalMomentum::LIMBS] = {};
   for (int part = 0; part < 2; ++part) std::copy_n(here[part].limbs, 2, limbs + 2 * part);
+  if (of_states) total.add_up(line.kt, limbs + 4);
   const auto all = over_ranks(MPI_SUM, limbs, world);
+  if (of_states) total.take(all.data() + 4);
   for (int part = 0; part < 2; ++part) {
     ExactSum sum;
     std::copy_n(all.begin() + 2 * part, 2, sum.limbs);
     twice[part] = sum.value(unit);
   }
+  const double common = total.twice_energy();
+  twice[TRANSLATION] -= common;
+  if (twice[TRANSLATION] < ROUNDING_OF_ENERGY * common) twice[TRANSLATION] = 0.0;
 }
 
 void Thermostat::sum_present()
@@ -265,7 +131,7 @@ void Thermostat::sum_present()
     const BodyState &s = bodies.state_of(ibody);
     add_kinetic(ibody, s.velocity, s.omega_body, here);
   }
-  sum_kinetic(here);
+  sum_kinetic(here, true);
 }
 
 void Thermostat::note_friction()
@@ -284,6 +150,7 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
   const int values = integrator.values();
   const double h = integrator.step();
   const bool same_bodies = changes == bodies.changes();
+  waiting = false;
   line = line_of_step(update->ntimestep);
   for (auto &chain : chains) chain.predict(values);
 
@@ -299,7 +166,7 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
   });
 
   for (int pass = 0; pass < scheme.passes; ++pass) {
-    sum_kinetic(here);
+    sum_kinetic(here, pass == 0);
     for (size_t c = 0; c < chains.size() && same_bodies; ++c)
       chains[c].correct(target_of(c, 0.0, h), twice_of(c), h, values,
                         integrator.scalar_coefficients().data());
@@ -363,17 +230,6 @@ void Thermostat::watch_cold(double h)
   }
 }
 
-void Thermostat::follow_bodies(double h)
-{
-  if (changes == bodies.changes()) return;
-  ChainTarget before[2];
-  for (size_t c = 0; c < chains.size(); ++c) before[c] = target_of(c, 0.0, h);
-  count_freedoms();
-  sum_present();
-  for (size_t c = 0; c < chains.size(); ++c)
-    chains[c].replace_target(before[c], target_of(c, 0.0, h), twice_of(c), h);
-}
-
 /* ----------------------------------------------------------------------
    another step
 ------------------------------------------------------------------------- */
@@ -424,13 +280,15 @@ double Thermostat::element(int n)
 
 Thermostat::Checkpoint Thermostat::checkpoint() const
 {
+  const Setting of_steps = setting();
   Checkpoint saved = {(double) mode(),
                       (double) words.length,
                       (double) counted,
-                      line.kt,
-                      line.kt_step,
-                      words.damp,
-                      {freedoms[TRANSLATION], freedoms[ROTATION]},
+                      of_steps.line.kt,
+                      of_steps.line.kt_step,
+                      of_steps.damp,
+                      {of_steps.freedoms[TRANSLATION], of_steps.freedoms[ROTATION]},
+                      of_steps.constant,
                       {}};
   for (size_t c = 0; c < chains.size(); ++c) saved.rows[c] = chains[c].record();
   return saved;
@@ -442,6 +300,7 @@ void Thermostat::restore(const Checkpoint &saved)
   line = {saved.kt, saved.kt_step};
   damp_before = saved.period;
   std::copy_n(saved.freedoms, 2, freedoms);
+  total.restore(saved.constant);
   for (size_t c = 0; c < chains.size(); ++c) chains[c].restore(saved.rows[c]);
   note_friction();
 }

@@ -4,16 +4,20 @@
 ------------------------------------------------------------------------- */
 
 /* Keyword temp: Nose-Hoover chains (gear_quat_chain.h) that hold the temperature of all bodies.
-   They need the kinetic energies of all bodies on all ranks: a reduction of two numbers in every
-   pass of the corrector, each an exact sum, so that a run does not depend on where bodies are.  A
-   component of a momentum that keywords force and torque turn off belongs to no chain.
+   They need the kinetic energies of all bodies on all ranks: a reduction in every pass of the
+   corrector, of exact sums, so that a run does not depend on where bodies are.  A component of a
+   momentum that keywords force and torque turn off belongs to no chain, nor does a total momentum
+   that is constant (gear_quat_momentum.h).
 
    The target of a step is that of LAMMPS' thermostats: it changes linearly with the number of the
-   step from the beginning to the end of the run.
+   step from the beginning to the end of the run.  A run without steps changes nothing.
 
-   Bodies that come or go in a step change degrees of freedom and kinetic energy at its end.  In
-   that step the chains are predicted and not corrected; then they receive the derivatives of the
-   new ones. */
+   Bodies that come or go in a step change degrees of freedom and kinetic energy at its end, as do
+   forces from outside that set in.  Then the chains receive the derivatives of the new ones.  In a
+   step in which bodies come or go they are predicted and not corrected.
+
+   Before the first step of a run begin_run() sees only the forces of fixes that are defined before
+   this one, and meet_forces() all of them. */
 
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H
@@ -21,6 +25,7 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_chain.h"
 #include "gear_quat_exact_sum.h"
+#include "gear_quat_momentum.h"
 #include "gear_quat_startup.h"
 
 namespace LAMMPS_NS::GearQuat {
@@ -42,8 +47,12 @@ class Thermostat : protected Pointers {
 
   // all collective
 
-  /// Before a run.  Ends it if there is nothing to be thermostatted, or another thermostat.
-  void begin_run();
+  /// Before a run.  Ends it if there is nothing to be thermostatted.  anew: there are no histories.
+  void begin_run(bool anew);
+  /// The loads are those of all fixes, before the first step of a run or of its output.
+  void meet_forces();
+  /// Histories are about to begin: the total momentum is judged by the present forces alone.
+  void judge_anew();
   /// Friction by the present states and chains, whose rates are known then.
   void measure();
   /// One step of h: correct the predicted histories and states.
@@ -54,11 +63,16 @@ class Thermostat : protected Pointers {
   double kt() const { return line.kt; }
   /// A step of h holds: warns once of bodies that a thermostat cannot warm.
   void watch_cold(double h);
-  /// Bodies that have come in this step have histories, and none is left of those that have gone.
-  void follow_bodies(double h);
+  /// Bodies that have come in this step have histories, and none is left of those that have gone;
+  /// the step holds, so that its forces tell whether the total momentum is constant.
+  void follow_changes(double h);
 
-  /// True if the target jumps where this run begins; after begin_run().
-  bool target_jumps() const { return jumps; }
+  /// True if the target, or a degree of freedom, is not as in the steps before this run; after
+  /// meet_forces().
+  bool target_jumps() const;
+  /// Rank 0 tells the degrees of freedom if they are not those that it has told last.  why: what
+  /// comes before.
+  void tell_freedoms(const std::string &why = "");
 
   // after measure()
 
@@ -93,7 +107,8 @@ class Thermostat : protected Pointers {
   /// What a restart file holds, the same on all ranks.
   struct Checkpoint {
     double mode, length, bodies;                ///< mode: number of chains, 0 without a thermostat
-    double kt, kt_step, period, freedoms[2];    ///< the target when the file was written
+    double kt, kt_step, period, freedoms[2];    ///< of the last step
+    double constant;                            ///< TotalMomentum::record() then
     Chain::Record rows[2];
   };
   Checkpoint checkpoint() const;
@@ -109,20 +124,27 @@ class Thermostat : protected Pointers {
   struct Line {    ///< kT of a step, and its change with every step
     double kt = 0.0, kt_step = 0.0;
   };
+  struct Setting {    ///< of a step
+    Line line;
+    double freedoms[2], damp, constant;
+  };
 
   std::vector<Chain> chains, kept;    ///< of both parts, or one for both
   double freedoms[2] = {};            ///< of both parts
   double twice[2] = {};               ///< twice the kinetic energies, as of the last sum
   bigint counted = 0;                 ///< bodies that the freedoms belong to
   int changes = 0;                    ///< Bodies::changes() then
+  double told[2] = {-1.0, -1.0};      ///< the freedoms that the log has
   Line line;                          ///< the target of the present step
   double damp_before = 0.0;           ///< of the steps so far
+  Setting made = {};                  ///< of the last step before this run
+  bool waiting = false;               ///< no step of this run has begun
+  bool anew = false;                  ///< where it began there were no histories
   double friction[2] = {};            ///< xi_1 of the chains
   double unit = 1.0;                  ///< of the sums, see scale()
   double cold[2] = {};                ///< for how long the parts have been cold
   bool warned[2] = {};                ///< of that
-  bool jumps = false;
-  bool conserved = false;    ///< the total momentum, which has no temperature
+  TotalMomentum total;
   std::vector<Integrator::Pending> pending;
 
   double spacing = 0.0, step_of_start = 0.0;
@@ -135,13 +157,15 @@ class Thermostat : protected Pointers {
   double freedoms_of(int chain) const;
   bool is_thermostatted(int ibody, Part part, int component = 0) const;
   Friction friction_of(int ibody) const;
+  Setting setting() const;
   void count_freedoms();
-  bool conserves_momentum() const;
+  void judge(double constant);
   void refuse_masks() const;
   void refuse_nothing() const;
   using Sums = ExactSum[2];
   void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &here) const;
-  void sum_kinetic(const Sums &here);
+  /// of_states: with the total momentum, and the forces, that states and loads have.
+  void sum_kinetic(const Sums &here, bool of_states);
   double scale() const;
   void sum_present();
   void note_friction();

@@ -14,7 +14,7 @@ from scenes import (
 )
 from scipy.integrate import solve_ivp
 from test_coming_and_going import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
-from test_thermostat import END, KINDS, cluster, continued, largest_change, whole_and_halves
+from test_thermostat import COMMON, END, KINDS, cluster, continued, largest_change, whole_and_halves
 from test_tolerance import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
@@ -214,12 +214,14 @@ region there block 4.0 4.1 1.5 1.6 1.5 1.6
 fix in all deposit 1 0 1 4711 region there near 0.5 mol tri rigid move vx -0.3 -0.3 vy 0.1 0.1 vz 0.1 0.1
 """
 BOLTZMANN = 0.0019872067  # kcal/mol/K
+MVV_TO_ENERGY = 48.88821291**2  # g/mol (A/fs)^2 to kcal/mol
 
 
 def joined(lmp, words, dt, columns="econserve", run=None, comes=COMES, **settings):
-    """A fifth molecule comes to the cluster in the first step."""
+    """A fifth molecule comes to the cluster in the first step, and brings a momentum."""
     (lmp.folder / "tri").write_text(TRIANGLE)
-    deck = cluster(f"{words} mol tri", dt, every=1, columns=columns, run=run, **settings)
+    columns += " v_common"
+    deck = cluster(f"{words} mol tri", dt, every=1, columns=columns, run=run, style=COMMON, **settings)
     return deck.replace("fix move", "molecule tri tri\nfix move").replace("timestep", f"{comes}timestep")
 
 
@@ -240,11 +242,13 @@ def test_what_is_conserved_when_a_body_comes(lmp_tree, formulation):
     for run, dt in zip(runs[3:], steps):
         taken = run["f_move[9]"]
         changes.append(np.ptp((kinetic_and_potential(run) + taken)[1:]))
-        power = 2 * run["f_move[13]"] * (run["f_move[1]"] + run["f_move[2]"])
+        relative = {1: 2 * run["f_move[1]"] - run["v_common"], 2: 2 * run["f_move[2]"]}
+        assert run["v_common"][-1] > 1e-2
+        power = run["f_move[13]"] * (relative[1] + relative[2])
         assert np.abs(np.diff(taken)[1:] - dt * (power[1:] + power[:-1])[1:] / 2).max() < 20 * dt**2
         assert abs(np.diff(taken)[0]) < 20 * dt**2  # xi grows from zero
-        for kinetic, temperature, freedoms in (("1", "10", (9, 12)), ("2", "11", (11, 14))):
-            found = 2 * run[f"f_move[{kinetic}]"] / run[f"f_move[{temperature}]"]
+        for kinetic, temperature, freedoms in ((1, "10", (9, 12)), (2, "11", (11, 14))):
+            found = relative[kinetic] / run[f"f_move[{temperature}]"]
             assert found == pytest.approx([freedoms[0]] + [freedoms[1]] * (len(found) - 1), rel=1e-10)
     for change, one in zip(changes, without):
         assert change < 3 * one
@@ -254,7 +258,7 @@ def test_what_is_conserved_when_a_body_comes(lmp_tree, formulation):
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_molecules_come_and_go(lmp_tree, ranks):
     """Their degrees of freedom follow, on any number of ranks."""
-    show = "thermo_style custom step f_move[1] f_move[2] f_move[10] f_move[11] f_move[13]\n"
+    show = f"{COMMON}thermo_style custom step f_move[1] f_move[2] f_move[10] f_move[11] f_move[13] v_common\n"
     commands = evaporating() + INSERT.format(count=3).replace("0 5 4711", "0 7 4711")
     commands += f"{show}thermo_modify lost error format float %.17g\nthermo 1\nrun 20"
     ends = []
@@ -265,7 +269,8 @@ def test_molecules_come_and_go(lmp_tree, ranks):
         steps = np.arange(21)
         present = N + (steps >= 1) + (steps >= 8) + (steps >= 15) - (steps >= 5) - (steps >= 10)
         for kinetic, temperature, extra in (("1", "10", 3), ("2", "11", 0)):
-            freedoms = 2 * table[f"f_move[{kinetic}]"] / (table[f"f_move[{temperature}]"] * BOLTZMANN)
+            twice = 2 * table[f"f_move[{kinetic}]"] - (kinetic == "1") * table["v_common"] * MVV_TO_ENERGY
+            freedoms = twice / (table[f"f_move[{temperature}]"] * BOLTZMANN)
             assert freedoms == pytest.approx(3.0 * present - extra, rel=1e-6)
         assert (np.diff(table["f_move[13]"]) != 0).all()
         ends.append(poses(lmp_tree))
@@ -283,10 +288,11 @@ def test_no_bodies_yet(lmp_tree):
     for column in ("f_move[9]", "f_move[11]", "f_move[13]"):
         assert (empty[column] == 0).all()
     assert table["f_move[10]"][5] == 0  # of a single body only the total momentum moves
-    freedoms = [2 * table[f"f_move[{k}]"][-1] / table[f"f_move[{k + 9}]"][-1] for k in (1, 2)]
+    twice = np.array([2 * table[f"f_move[{k}]"][-1] - (k == 1) * table["v_common"][-1] for k in (1, 2)])
+    freedoms = twice / [table["f_move[10]"][-1], table["f_move[11]"][-1]]
     assert freedoms == pytest.approx([3, 6], rel=1e-10)
     energy = kinetic_and_potential(table) + table["f_move[9]"]
-    assert np.ptp(energy[12:]) < 0.01 * np.ptp(kinetic_and_potential(table)[12:])
+    assert np.ptp(energy[30:]) < 0.01 * np.ptp(kinetic_and_potential(table)[30:])
 
 
 def test_a_restart_with_an_inserted_body(lmp_tree):

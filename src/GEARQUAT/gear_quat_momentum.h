@@ -1,0 +1,89 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The total momentum P of the bodies that a thermostat acts on, for each direction of space.
+
+   If the forces on all bodies add up to zero, P is constant and is not heat.  The thermostat then
+   acts on momenta relative to the common motion V = P/M, and n bodies have n - 1 degrees of freedom
+   of translation in this direction:
+
+     p' = F - xi (p - m V),   2 K = sum p^2/m - P^2/M                                       (T5)
+
+   so that a common motion neither changes nor affects anything else.  If the forces do not add up
+   to zero, the thermostat acts on whole momenta, and P counts.
+
+   A sum of forces counts as zero if it is explained by rounding or by the mesh of long-range
+   forces, or if it would not change P by its thermal value in thousands of damping times.  Every
+   step measures it in each direction where P was constant so far.  A direction in which P has
+   changed is measured again only if histories begin anew: between two contacts with a wall P is
+   constant, and still warm.
+
+   The host adds `LIMBS` integers of add_up() over all ranks and gives the sums to take().  Sums
+   are exact (gear_quat_exact_sum.h), so they do not depend on where bodies are. */
+
+#ifndef LMP_GEAR_QUAT_MOMENTUM_H
+#define LMP_GEAR_QUAT_MOMENTUM_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_exact_sum.h"
+
+#include <string>
+
+namespace LAMMPS_NS::GearQuat {
+
+class TotalMomentum : protected Pointers {
+ public:
+  static constexpr int LIMBS = 12;
+  static constexpr double IN_ALL = 7.0;    ///< record() if P is constant in all directions
+
+  /// period: the damping time of the thermostat.
+  TotalMomentum(LAMMPS *lmp, const Bodies &bodies, double period);
+
+  /// True if the thermostat acts on this momentum: keyword force has not turned it off, and it is
+  /// not along z in two dimensions.
+  bool belongs(int ibody, int direction) const;
+  /// Counts and masses of the bodies by direction.  Collective.
+  void weigh();
+
+  /// Momenta and forces of owned bodies by their present states and loads.  kt: of the thermostat.
+  void add_up(double kt, bigint *limbs);
+  void take(const bigint *limbs);
+
+  // after take()
+
+  /// True if the forces in a direction in which P was constant do not add up to zero: then P is no
+  /// longer constant there.  Collective.
+  bool judge();
+  /// P^2/M in the directions in which P is constant.
+  double twice_energy() const;
+  /// What this body has of the momentum in these directions.
+  void share(int ibody, double *momentum) const;
+
+  /// Degrees of freedom of translation, after weigh().
+  double freedoms() const;
+  /// ", without those of the total momentum along x and y," or empty.
+  std::string description() const;
+
+  /// For restart files: bit k is set if P is constant in direction k.
+  double record() const;
+  void restore(double record);
+
+ private:
+  const Bodies &bodies;
+  double period;
+
+  bool constant[3] = {true, true, true};
+  double count[3] = {}, mass[3] = {};
+  double momentum[3] = {}, force[3] = {};
+  double thermal = 0.0;    ///< momentum of all bodies together at the target
+  double unit_momentum = 1.0, unit_force = 1.0;
+
+  bool counts(int direction) const { return constant[direction] && count[direction] > 0.0; }
+  double explained() const;
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

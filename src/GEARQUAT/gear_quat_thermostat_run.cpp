@@ -1,0 +1,207 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keyword temp, before a run: degrees of freedom, and the target of its steps.  And in a step in
+   which degrees of freedom change. */
+
+#include "gear_quat_thermostat.h"
+
+#include "gear_quat_ranks.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "update.h"
+#include "utils.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// a kinetic energy less than this part of the other one is rounding of velocities
+
+static constexpr double NOTHING = 1.0e-24;
+
+// targets that differ by less are the same but for rounding
+
+static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
+
+// with a shorter damping time by the step the equations of the chain become unstable
+
+static constexpr double FEWEST_STEPS = 10.0;
+
+// a motion of all bodies together with less kinetic energy, in kT, is not worth a line
+
+static constexpr double TOLD_MOTION = 0.01;
+
+static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
+
+/* ----------------------------------------------------------------------
+   degrees of freedom
+------------------------------------------------------------------------- */
+
+/// In two dimensions bodies turn about z alone, whatever keywords say.
+bool Thermostat::is_thermostatted(int ibody, Part part, int component) const
+{
+  if (part == TRANSLATION) return total.belongs(ibody, component);
+  const Mask off = bodies.body_at(ibody).off;
+  return domain->dimension == 2 ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
+}
+
+void Thermostat::count_freedoms()
+{
+  double here = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    if (!is_thermostatted(ibody, ROTATION)) continue;
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    here += domain->dimension == 2 ? rigid.inertia[2] > 0.0 : rigid.rotational_freedoms();
+  }
+  total.weigh();
+  freedoms[TRANSLATION] = total.freedoms();
+  freedoms[ROTATION] = over_ranks(MPI_SUM, here, world);
+  counted = bodies.number();
+  changes = bodies.changes();
+}
+
+/// Degrees of freedom by the present forces.  constant: the directions, as in a record, in which
+/// the total momentum was constant so far.
+void Thermostat::judge(double constant)
+{
+  total.restore(constant);
+  count_freedoms();
+  sum_present();
+  if (!total.judge()) return;
+  count_freedoms();
+  sum_present();
+}
+
+void Thermostat::tell_freedoms(const std::string &why)
+{
+  if (told[TRANSLATION] == freedoms[TRANSLATION] && told[ROTATION] == freedoms[ROTATION]) return;
+  std::copy_n(freedoms, 2, told);
+  if (comm->me != 0) return;
+  utils::logmesg(lmp,
+                 "Fix gear/quat {}: {}thermostat of {:.0f} degrees of freedom of translation{} and "
+                 "{:.0f} of rotation\n",
+                 fix->id, why, freedoms[TRANSLATION], total.description(), freedoms[ROTATION]);
+  const double common = 0.5 * total.twice_energy() / line.kt;
+  if (common > TOLD_MOTION)
+    utils::logmesg(lmp,
+                   "Fix gear/quat {}: the bodies move together with a kinetic energy of {:.3g} kT, "
+                   "which is not part of their temperature; velocity zero linear removes it\n",
+                   fix->id, common);
+}
+
+void Thermostat::follow_changes(double h)
+{
+  const bool released = total.judge();
+  if (!released && changes == bodies.changes()) return;
+  ChainTarget before[2];
+  for (size_t c = 0; c < chains.size(); ++c) before[c] = target_of(c, 0.0, h);
+  count_freedoms();
+  sum_present();
+  for (size_t c = 0; c < chains.size(); ++c)
+    chains[c].replace_target(before[c], target_of(c, 0.0, h), twice_of(c), h);
+  if (released)
+    tell_freedoms(fmt::format("since step {} the forces on all bodies do not add up to zero, ",
+                              update->ntimestep));
+}
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+/// Of the last step that was made.
+Thermostat::Setting Thermostat::setting() const
+{
+  if (waiting) return made;
+  return {line, {freedoms[TRANSLATION], freedoms[ROTATION]}, damp_before, total.record()};
+}
+
+void Thermostat::begin_run(bool begins)
+{
+  refuse_masks();
+  made = setting();
+  waiting = true;
+  anew = begins;
+  damp_before = words.damp;
+  const bool moves = update->nsteps > 0 || made.line.kt == 0.0;
+  line = moves ? line_of_step(update->ntimestep) : made.line;
+  meet_forces();
+  note_friction();
+  refuse_nothing();
+  if (words.damp < FEWEST_STEPS * std::fabs(update->dt) && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "
+        "the motion may become unstable",
+        words.damp, FEWEST_STEPS);
+}
+
+void Thermostat::meet_forces()
+{
+  judge(anew ? TotalMomentum::IN_ALL : made.constant);
+}
+
+void Thermostat::judge_anew()
+{
+  judge(TotalMomentum::IN_ALL);
+}
+
+bool Thermostat::target_jumps() const
+{
+  const auto differs = [this](double a, double b) {
+    return std::fabs(a - b) > ROUNDING_OF_TARGET * line.kt;
+  };
+  return differs(made.line.kt, line.kt) || differs(made.line.kt_step, line.kt_step) ||
+      made.freedoms[TRANSLATION] != freedoms[TRANSLATION] ||
+      made.freedoms[ROTATION] != freedoms[ROTATION] || made.damp != words.damp;
+}
+
+/// Space-frame components of a torque belong to no part of the rotational energy.
+void Thermostat::refuse_masks() const
+{
+  if (domain->dimension == 2) return;
+  tagint partly = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    const Mask off = body.off & NO_TORQUE;
+    if (off && off != NO_TORQUE && body.rigid.rotational_freedoms() > 0) partly = body.id;
+  }
+  partly = over_ranks(MPI_MAX, partly, world);
+  if (partly)
+    error->all(FLERR,
+               "Fix gear/quat temp: keyword torque turns off some components for body {} and not "
+               "all, so its rotation has no temperature; turn off all three, or define a second "
+               "fix without temp for such bodies",
+               partly);
+}
+
+/// Friction warms nothing that stands still.
+void Thermostat::refuse_nothing() const
+{
+  if (words.may_wait && counted == 0) return;
+  if (freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0)
+    error->all(FLERR,
+               "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
+               "torque leave on, so they have no temperature");
+  const char *missing = nullptr;
+  const auto rests = [this](Part part) {
+    return freedoms[part] > 0.0 && twice[part] <= NOTHING * (twice[TRANSLATION] + twice[ROTATION]);
+  };
+  if (twice[TRANSLATION] + twice[ROTATION] <= 0.0)
+    missing = "";
+  else if (words.separate && rests(TRANSLATION))
+    missing = "translational ";
+  else if (words.separate && rests(ROTATION))
+    missing = "rotational ";
+  if (missing)
+    error->all(FLERR,
+               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero{}, and a thermostat "
+               "only scales it; give them velocities first",
+               missing, total.twice_energy() > 0.0 ? " but for a motion of all together" : "");
+}
