@@ -339,7 +339,7 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 /// In output before the first step, when all fixes have been set up.
 void FixGearQuat::meet_forces()
 {
-  if (!motion->awaits_forces() || update->whichflag == 0) return;
+  if (!motion->awaits_forces() || update->whichflag != 1) return;    // in a run
   const bool levels = !RespaForces::steps(lmp).empty();
   if (levels) respa->sum_present();
   bodies->gather_loads(levels ? respa->forces() : atom->f,

@@ -32,11 +32,12 @@ struct ExactSum {
   /// A term that is too large, or no number, makes the sum that large.
   void add(double term, double scale)
   {
-    double units = term / scale * UPPER;
+    double units = term * (UPPER / scale);
     if (!(std::fabs(units) < LARGEST)) units = LARGEST;
-    const double whole = std::trunc(units);
-    limbs[0] += (std::int64_t) whole;
-    limbs[1] += std::llrint((units - whole) * LOWER);
+    const auto whole = (std::int64_t) units;
+    const double rest = (units - (double) whole) * LOWER;
+    limbs[0] += whole;
+    limbs[1] += (std::int64_t)(rest + std::copysign(0.5, rest));
   }
 
   double value(double scale) const

@@ -83,11 +83,14 @@ void TotalMomentum::add_up(double kt, bigint *limbs)
   unit_force = LARGE_FORCES * ExactSum::scale_of(thermal / period);
   for (int k = 0; k < 3; ++k) {
     ExactSum sums[2];
+    double here = 0.0;    // only judged: its rounding may depend on where bodies are
     for (int ibody = 0; counts(k) && ibody < bodies.nowned(); ++ibody) {
-      if (!belongs(ibody, k)) continue;
-      sums[0].add(bodies.rigid_of(ibody).mass * bodies.state_of(ibody).velocity[k], unit_momentum);
-      sums[1].add(bodies.load_of(ibody).force[k], unit_force);
+      const Body &body = bodies.body_at(ibody);
+      if (body.off & force_off(k)) continue;
+      sums[0].add(body.rigid.mass * bodies.state_of(ibody).velocity[k], unit_momentum);
+      here += bodies.load_of(ibody).force[k];
     }
+    sums[1].add(here, unit_force);
     for (int n = 0; n < 2; ++n) std::copy_n(sums[n].limbs, 2, limbs + 4 * k + 2 * n);
   }
 }
@@ -99,21 +102,15 @@ void TotalMomentum::take(const bigint *limbs)
     for (int n = 0; n < 2; ++n) std::copy_n(limbs + 4 * k + 2 * n, 2, sums[n].limbs);
     momentum[k] = sums[0].value(unit_momentum);
     force[k] = sums[1].value(unit_force);
+    common[k] = counts(k) ? momentum[k] / mass[k] : 0.0;
   }
 }
 
 double TotalMomentum::twice_energy() const
 {
   double sum = 0.0;
-  for (int k = 0; k < 3; ++k)
-    if (counts(k)) sum += momentum[k] * momentum[k] / mass[k];
+  for (int k = 0; k < 3; ++k) sum += momentum[k] * common[k];
   return sum;
-}
-
-void TotalMomentum::share(int ibody, double *of_body) const
-{
-  for (int k = 0; k < 3; ++k)
-    of_body[k] = counts(k) ? momentum[k] * (bodies.rigid_of(ibody).mass / mass[k]) : 0.0;
 }
 
 /* ----------------------------------------------------------------------

@@ -20,8 +20,8 @@
    changed is measured again only if histories begin anew: between two contacts with a wall P is
    constant, and still warm.
 
-   The host adds `LIMBS` integers of add_up() over all ranks and gives the sums to take().  Sums
-   are exact (gear_quat_exact_sum.h), so they do not depend on where bodies are. */
+   The host adds `LIMBS` integers of add_up() over all ranks and gives the sums to take().  That of
+   the momentum is exact (gear_quat_exact_sum.h), so that it does not depend on where bodies are. */
 
 #ifndef LMP_GEAR_QUAT_MOMENTUM_H
 #define LMP_GEAR_QUAT_MOMENTUM_H
@@ -59,8 +59,14 @@ class TotalMomentum : protected Pointers {
   /// P^2/M in the directions in which P is constant.
   double twice_energy() const;
   /// What this body has of the momentum in these directions.
-  void share(int ibody, double *momentum) const;
+  void share(int ibody, double *of_body) const
+  {
+    const double weight = bodies.rigid_of(ibody).mass;
+    for (int k = 0; k < 3; ++k) of_body[k] = weight * common[k];
+  }
 
+  /// True if the thermostat acts on the momentum of any body, after weigh().
+  bool any() const { return count[0] + count[1] + count[2] > 0.0; }
   /// Degrees of freedom of translation, after weigh().
   double freedoms() const;
   /// ", without those of the total momentum along x and y," or empty.
@@ -77,7 +83,8 @@ class TotalMomentum : protected Pointers {
   bool constant[3] = {true, true, true};
   double count[3] = {}, mass[3] = {};
   double momentum[3] = {}, force[3] = {};
-  double thermal = 0.0;    ///< momentum of all bodies together at the target
+  double common[3] = {};    ///< velocity of the common motion, where it is constant
+  double thermal = 0.0;     ///< momentum of all bodies together at the target
   double unit_momentum = 1.0, unit_force = 1.0;
 
   bool counts(int direction) const { return constant[direction] && count[direction] > 0.0; }

@@ -169,8 +169,7 @@ bool Motion::has_to_start(double **f)
     utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
   const bool needs = !started || reason;
   movers = present_movers();
-  if (thermostat && needs) thermostat->judge_anew();
-  if (thermostat) thermostat->tell_freedoms();
+  if (thermostat) thermostat->begin_steps(needs);
   if (needs) blowup.check_loads(step(), f);
   return needs;
 }

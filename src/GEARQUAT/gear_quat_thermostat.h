@@ -51,8 +51,9 @@ class Thermostat : protected Pointers {
   void begin_run(bool anew);
   /// The loads are those of all fixes, before the first step of a run or of its output.
   void meet_forces();
-  /// Histories are about to begin: the total momentum is judged by the present forces alone.
-  void judge_anew();
+  /// After meet_forces().  begins: histories do, so that the total momentum is judged by the present
+  /// forces alone.  Ends the run if nothing that could be thermostatted moves.
+  void begin_steps(bool begins);
   /// Friction by the present states and chains, whose rates are known then.
   void measure();
   /// One step of h: correct the predicted histories and states.
@@ -161,7 +162,7 @@ class Thermostat : protected Pointers {
   void count_freedoms();
   void judge(double constant);
   void refuse_masks() const;
-  void refuse_nothing() const;
+  void refuse_nothing(bool meets_all) const;
   using Sums = ExactSum[2];
   void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &here) const;
   /// of_states: with the total momentum, and the forces, that states and loads have.

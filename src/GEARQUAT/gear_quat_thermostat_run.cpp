@@ -133,7 +133,7 @@ void Thermostat::begin_run(bool begins)
   line = moves ? line_of_step(update->ntimestep) : made.line;
   meet_forces();
   note_friction();
-  refuse_nothing();
+  refuse_nothing(false);
   if (words.damp < FEWEST_STEPS * std::fabs(update->dt) && comm->me == 0)
     error->warning(
         FLERR,
@@ -147,9 +147,11 @@ void Thermostat::meet_forces()
   judge(anew ? TotalMomentum::IN_ALL : made.constant);
 }
 
-void Thermostat::judge_anew()
+void Thermostat::begin_steps(bool begins)
 {
-  judge(TotalMomentum::IN_ALL);
+  if (begins) judge(TotalMomentum::IN_ALL);
+  tell_freedoms();
+  refuse_nothing(true);
 }
 
 bool Thermostat::target_jumps() const
@@ -182,18 +184,23 @@ void Thermostat::refuse_masks() const
 }
 
 /// Friction warms nothing that stands still.
-void Thermostat::refuse_nothing() const
+void Thermostat::refuse_nothing(bool meets_all) const
 {
   if (words.may_wait && counted == 0) return;
-  if (freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0)
+  if (!total.any() && freedoms[ROTATION] == 0.0)
     error->all(FLERR,
                "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
                "torque leave on, so they have no temperature");
-  const char *missing = nullptr;
-  const auto rests = [this](Part part) {
-    return freedoms[part] > 0.0 && twice[part] <= NOTHING * (twice[TRANSLATION] + twice[ROTATION]);
+  // what may still turn out to be heat
+  const double common = meets_all ? 0.0 : total.twice_energy();
+  const double energy[2] = {twice[TRANSLATION] + common, twice[ROTATION]};
+  const double all = energy[TRANSLATION] + energy[ROTATION];
+  const bool any = !meets_all || freedoms[TRANSLATION] + freedoms[ROTATION] > 0.0;
+  const auto rests = [&](Part part) {
+    return freedoms[part] > 0.0 && energy[part] <= NOTHING * all;
   };
-  if (twice[TRANSLATION] + twice[ROTATION] <= 0.0)
+  const char *missing = nullptr;
+  if (any && all <= 0.0)
     missing = "";
   else if (words.separate && rests(TRANSLATION))
     missing = "translational ";

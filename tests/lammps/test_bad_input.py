@@ -265,8 +265,9 @@ def test_thermostats(lmp_tree, name, ranks):
     lmp_tree.refuse(deck, message, ranks=ranks)
 
 
-def test_a_spin_alone_has_a_temperature(lmp_tree):
-    lmp_tree.succeed(two_molecules("molecule temp 1 1 0.1", before="velocity all set 0.3 0 0.1"))
+def test_one_part_alone_has_a_temperature(lmp_tree):
+    before = "velocity all set 0 0 0\ngroup one molecule 1\nvelocity one set 0.3 0 0.1"
+    lmp_tree.succeed(two_molecules("molecule temp 1 1 0.1", before=before))
 
 
 @pytest.mark.parametrize("words", ["force * on on on", "torque 1 off on on"])

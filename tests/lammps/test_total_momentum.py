@@ -344,11 +344,25 @@ def test_bodies_that_only_move_together_are_cold(lmp_tree):
     lmp_tree.refuse(deck, "kinetic energy of the bodies is zero but for a motion of all together")
 
 
-def test_many_bodies_far_apart_in_mass(lmp_tree):
-    """Exact sums of momenta do not depend on ranks: neither do trajectories of a moving scene."""
-    ends = []
+def test_a_single_body(lmp_tree):
+    """Alone it has no heat; a spring pulls at it in the second step, and warms it."""
+    alone = dict(bodies=[[(0.3, 0.1, 0.2)]], exclude="", time=0.2, columns="f_move[10] f_move[9]")
+    decks = [cluster(TEMP, **alone), cluster(TEMP, after="fix it all spring/self 1.0\n", **alone)]
+    decks = [deck.replace("velocity all create 0.6 4711 loop geom", "velocity all set 1 0.5 0.2") for deck in decks]
+    result = lmp_tree.succeed(one_after_the_other(decks))
+    assert said(result.log) == [(0, "xyz", 0), (0, "xyz", 0), (3, "", 0)]
+    free, held = tables(result)
+    assert set(free["f_move[10]"]) == set(free["f_move[9]"]) == {0.0}
+    assert held["f_move[10]"][1:] == pytest.approx(2 * held["f_move[1]"][1:] / 3, rel=1e-12)
+    assert abs(held["f_move[9]"][-1]) > 1e-2
+
+
+def test_ranks(lmp_tree):
+    """A heavy body among light ones moves; where bodies are does not matter."""
+    ends, deck = [], moving(TEMP, (0.3, 0.2, 0.1), run="run 50\n" + END.format("a"), masses="mass 1 1.0\nmass 2 1000.0")
+    heavy = deck.replace("set atom 4*6 mol 2", "set atom 4*6 mol 2 type 2")
+    assert heavy != deck
     for ranks in (1, 2, 4):
-        deck = moving(TEMP, (0.3, 0.2, 0.1), run="run 50\n" + END.format("a"), masses="mass 1 1.0\nmass 2 1000.0")
-        lmp_tree.succeed(deck.replace("set atom 4*6 mol 2", "set atom 4*6 mol 2 type 2"), ranks=ranks)
+        lmp_tree.succeed(heavy, ranks=ranks)
         ends.append(last_frame(lmp_tree.folder / "a.end"))
     assert max(np.abs(end - ends[0]).max() for end in ends) < 1e-11
