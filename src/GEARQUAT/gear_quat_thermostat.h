@@ -28,6 +28,9 @@
 #include "gear_quat_momentum.h"
 #include "gear_quat_startup.h"
 
+#include <array>
+#include <string>
+
 namespace LAMMPS_NS::GearQuat {
 
 /// What keywords temp, tchain and thermostat say.
@@ -135,7 +138,7 @@ class Thermostat : protected Pointers {
   double twice[2] = {};               ///< twice the kinetic energies, as of the last sum
   bigint counted = 0;                 ///< bodies that the freedoms belong to
   int changes = 0;                    ///< Bodies::changes() then
-  double told[2] = {-1.0, -1.0};      ///< the freedoms that the log has
+  std::array<double, 3> told = {};    ///< the freedoms that the log has, and their total momentum
   Line line;                          ///< the target of the present step
   double damp_before = 0.0;           ///< of the steps so far
   Setting made = {};                  ///< of the last step before this run

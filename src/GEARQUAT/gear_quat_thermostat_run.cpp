@@ -17,6 +17,7 @@
 #include "update.h"
 #include "utils.h"
 
+#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -81,8 +82,9 @@ void Thermostat::judge(double constant)
 
 void Thermostat::tell_freedoms(const std::string &why)
 {
-  if (told[TRANSLATION] == freedoms[TRANSLATION] && told[ROTATION] == freedoms[ROTATION]) return;
-  std::copy_n(freedoms, 2, told);
+  const std::array<double, 3> now = {freedoms[TRANSLATION], freedoms[ROTATION], total.record()};
+  if (told == now) return;
+  told = now;
   if (comm->me != 0) return;
   utils::logmesg(lmp,
                  "Fix gear/quat {}: {}thermostat of {:.0f} degrees of freedom of translation{} and "
