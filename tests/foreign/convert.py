@@ -53,11 +53,16 @@ def has_random_forces(text):
 def converted(line):
     """The command with gear/quat in place of the rigid style, all other words kept.
 
-    Translation and rotation have chains of their own in rigid/nvt, of ten variables by default.
+    Translation and rotation have chains of their own in rigid/nvt, of ten variables by default; of
+    `tparam` the first number is their length.
     """
     words = line.words[4:]
     if "nvt" in line.words[3]:
-        words += ["thermostat", "separate", *([] if "tparam" in words else ["tchain", "10"])]
+        at, length = len(words), "10"
+        if "tparam" in words:
+            at = words.index("tparam")
+            length = words[at + 1]
+        words = [*words[:at], *words[at + 4 :], "thermostat", "separate", "tchain", length]
     if line.words[3] == "poems" and words[0] == "group":
         words = ["group", str(len(words) - 1), *words[1:]]
     return " ".join(["fix", *line.words[1:3], "gear/quat", *words])

@@ -29,9 +29,14 @@ TELLS = 0.05
 #: why a deck is refused: message of the fix, name, and where the manual says so
 REASONS = (
     (
-        r"keyword (langevin|temp|iso|aniso|x|y|z|couple|tparam|pchain|dilate) of the rigid fixes",
-        "thermostat or barostat",
-        r"There are no keywords \*langevin\*, \*temp\*, \*iso\*",
+        r"keyword (?:iso|aniso|x|y|z|couple|pchain|dilate) of the rigid fixes: there is no barostat",
+        "barostat",
+        r"There are no keywords [^.]*\*iso\*",
+    ),
+    (
+        r"keyword langevin of the rigid fixes",
+        "keyword langevin",
+        r"There are no keywords \*langevin\*",
     ),
     (r"keyword gravity of the rigid fixes", "keyword gravity", r"no keywords [^.]*\*gravity\*"),
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
@@ -76,6 +81,12 @@ CANNOT = (
     (r"[Cc]annot open|No such file|not found", "a file of it is not in Debian's source"),
     (r"Unrecognized|Unknown", "a style of it is in no package that is built here"),
     (r"", "LAMMPS ends it with an error"),
+)
+
+#: why a deck that runs cannot be compared: part of the message, and what the page says
+INCOMPARABLE = (
+    ("Resetting timestep size is not allowed", "another fix forbids a smaller step"),
+    ("rotational kinetic energy of the bodies is zero", "bodies do not rotate yet where it begins"),
 )
 
 
@@ -242,8 +253,9 @@ class Deck:
             error = _error(run(self.program, text, self.folder, PATIENCE_OURS))
             if error:
                 verdict.notes.append(f"{method}, step/{divide}: {error}")
-                if "Resetting timestep size is not allowed" in error:
-                    verdict.result, verdict.reason = "runs", "another fix forbids a smaller step"
+                why = next((reason for text, reason in INCOMPARABLE if text in error), "")
+                if why:
+                    verdict.result, verdict.reason = "runs", why
                 elif method == "gear":
                     self._refused(verdict, error)
                 elif "still running" in error:

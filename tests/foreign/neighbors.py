@@ -9,6 +9,8 @@ the neighbor:
     alone      with and without a neighbor that does nothing to atoms
     rigid      with fix rigid/nve/small, at small steps or (kind COUNT) at the same step
 
+With keyword temp there is no such reference; there the judge of thermostat.py counts degrees of freedom.
+
 Where two runs that should agree do not, the same two are made with fix rigid/nve/small: what LAMMPS
 itself does not keep is no fault of fix gear/quat, and is counted apart.
 """
@@ -20,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import scene, styles
+from . import scene, styles, thermostat
 from .styles import BOX, CHANCE, COUNT, FORCE, INTEGRATES, MOVES, PASSIVE, RIGID_ONLY, TAKEN, Try
 
 STEPS, DT = 20, 0.005
@@ -29,13 +31,21 @@ OFTEN = (
     r"spring.*|store/.*|property/atom|ave/atom|msd.*|vacf.*|displace/atom|.*stress/atom|heat/flux|momentum"
     r"|temp/(rescale|berendsen)|wall/harmonic|wall/reflect|addforce|evaporate|balance|recenter|shake|nve|npt"
 )
-MOVERS = {"gear": "gear/quat molecule", "rigid": "rigid/nve/small molecule"}
+#: and of those with keyword temp, besides one that only reads: with a force, and with bodies that go
+OFTEN_WITH_TEMP = r"store/force|wall/harmonic|evaporate"
+MOVERS = {
+    "gear": "gear/quat molecule",
+    "rigid": "rigid/nve/small molecule",
+    "temp": thermostat.MOVER,
+}
 #: two runs of the same method: relative to the largest value of a kind
 SAME = 2e-9
 #: in units of the error of the reference, which is found by halving its step
 WITHIN = 4.0
 #: error of fix rigid at step DT in the plain scene, in units of that at DT/4 to DT/8
 BROAD = 1e-5
+#: what LAMMPS says where variants of styles cannot do what a neighbor needs
+NO_VARIANT = re.compile(r"INTEL package does not support")
 REFUSES = re.compile(r"[Ff]ix gear/quat")
 
 
@@ -62,23 +72,30 @@ def _fixes(kind, style, a_try, method, order, divide):
     lines = neighbor + movers if order == "before" else movers + neighbor
     if "sphere" in a_try.atoms:
         lines += ["compute ts all temp/sphere", "thermo_modify temp ts"]
+    lines += thermostat.OUTPUT if method == "temp" else ()
     if style and a_try.outputs:
         lines += [f"@probe {kind} n {STEPS * divide}"]
     return [*lines, f"thermo {STEPS * divide}", f"timestep {DT / divide}"]
 
 
-def script(kind, style, a_try, method="gear", order="after", divide=1, restart=False):
-    """Lines of a job: two runs, with a restart between them or not."""
+def script(
+    kind, style, a_try, method="gear", order="after", divide=1, restart=False, alone=False
+):
+    """Lines of a job: two runs, with a restart between them or not; ``alone`` without free atoms."""
     fixes = _fixes(kind, style, a_try, method, order, divide)
     run = [f"run {STEPS * divide}"]
     if a_try.pieces and method == "rigid":
         pieces = a_try.pieces * divide if a_try.pieces > 1 else 1
         run = [f"run {pieces}"] * (STEPS * divide // pieces)
-    lines = [*scene.begin(a_try.atoms), *a_try.once, *fixes, *run]
+    lines = [*scene.begin(a_try.atoms), *a_try.once, *(thermostat.BEGIN if alone else ())]
+    lines += ["@state begin", *fixes, *run] if method == "temp" else [*fixes, *run]
+    if method == "temp":
+        lines += ["@state middle", *thermostat.note("middle")]
     if restart:
         lines += ["write_restart middle", "clear", "read_restart middle"]
         lines += [*scene.after_restart(), *fixes]
-    return [*lines, *run, "@state atoms", "@values values"]
+    lines += [*run, "@state atoms", "@values values"]
+    return lines + (thermostat.note("atoms") if method == "temp" else [])
 
 
 # --- comparing ------------------------------------------------------------------------------------
@@ -183,17 +200,27 @@ def variants(n, a_try, ranks):
 
 
 class Campaign:
-    """All scenes; ``run`` is a function (jobs, ranks) -> answers."""
+    """All scenes.
 
-    def __init__(self, scenes, ranks, run):
+    ``run`` is a function (jobs, ranks) -> answers; ``temp`` if the fix is a thermostat, ``conserves`` if
+    forces are derivatives of an energy.
+    """
+
+    def __init__(self, scenes, ranks, run, temp=False, conserves=True):
         self.scenes, self.ranks, self.run_jobs = scenes, ranks, run
+        self.temp, self.conserves = temp, conserves
         self.answers = {}
+
+    def _script(self, run):
+        method = "temp" if self.temp and run.method == "gear" else run.method
+        words = *self.scenes[run.scene], method, run.order, run.divide, run.restart
+        return script(*words, alone=self.temp)
 
     def _answers(self, *runs):
         """Answers of these runs; those that have not been made are made first, all together."""
         for ranks in self.ranks:
             jobs = {
-                run: script(*self.scenes[run.scene], run.method, run.order, run.divide, run.restart)
+                run: self._script(run)
                 for run in runs
                 if run.ranks == ranks and run not in self.answers
             }
@@ -204,6 +231,8 @@ class Campaign:
     def _references(self, n):
         """Runs in which scene ``n`` is compared with fix rigid: ours, and then with fix rigid."""
         a_try = self.scenes[n][2]
+        if self.temp:
+            return []
         # a rigid fix takes its first forces from the fixes that are defined before
         rigid = Run(n, "after" if a_try.behind else "before").rigid()
         if a_try.kind in (PASSIVE, FORCE, TAKEN):
@@ -211,24 +240,32 @@ class Campaign:
         return [Run(n), rigid] if a_try.kind == COUNT else []
 
     def outcomes(self):
-        numbers = range(len(self.scenes))
+        tried = [n for n, (_, style, _) in enumerate(self.scenes) if style]
+        alone = [Run(n) for n, (_, style, _) in enumerate(self.scenes) if not style]
         for runs_of in (lambda n: variants(n, self.scenes[n][2], self.ranks), self._references):
-            self._answers(*(run for n in numbers for run in runs_of(n)))
-        return [self._judge(n) for n in numbers if self.scenes[n][1]]
+            self._answers(*alone, *(run for n in tried for run in runs_of(n)))
+        return [self._judge(n) for n in tried]
 
     def _judge(self, n):
         outcome = Outcome(*self.scenes[n])
         kind, runs = outcome.a_try.kind, variants(n, outcome.a_try, self.ranks)
         answers = dict(zip(runs, self._answers(*runs)))
-        if kind in (INTEGRATES, BOX, MOVES, RIGID_ONLY):
+        another = self.temp and outcome.kind == "fix" and outcome.a_try.group != "free"
+        another = another and thermostat.THERMOSTATS.fullmatch(outcome.style)
+        if another or kind in (INTEGRATES, BOX, MOVES, RIGID_ONLY):
             self._refused(outcome, answers)
+            return outcome
+        if all(NO_VARIANT.search(answer.error) for answer in answers.values()):
+            outcome.result = "LAMMPS refuses"
             return outcome
         self._without_refusals_of_lammps(outcome, answers)
         if not outcome.faults:
             self._consistent(outcome, answers)
-            if kind == PASSIVE:
-                self._as_without(outcome, answers[Run(n)])
+            if kind == PASSIVE or (kind == FORCE and not self.temp):
+                self._beside_none(outcome, answers[Run(n)])
             self._like_rigid(outcome, self._answers(*self._references(n)))
+            if self.temp:
+                self._counted(outcome, answers)
         outcome.result = "DIFFERS" if outcome.faults else "same" if kind == PASSIVE else "acts"
         return outcome
 
@@ -286,16 +323,28 @@ class Campaign:
                 rigid = worst(control, SAME) or "same"
                 outcome.faults.append(f"{run}: {wrong} (with fix rigid: {rigid})")
 
-    def _as_without(self, outcome, answer):
-        """Against the same atoms without a neighbor."""
+    def _beside_none(self, outcome, answer):
+        """Against the same atoms without a neighbor: the same if it is passive, others if it has a force."""
         (plain,) = (
             n
             for n, (_, style, a_try) in enumerate(self.scenes)
             if not style and a_try.atoms == outcome.a_try.atoms
         )
         wrong = worst(distances(*self._answers(Run(plain)), answer), SAME)
-        if wrong:
+        if outcome.a_try.kind == FORCE and not wrong:
+            outcome.faults.append("it has no effect in this scene")
+        if outcome.a_try.kind == PASSIVE and wrong:
             outcome.faults.append(f"alone: {wrong}")
+
+    def _counted(self, outcome, answers):
+        """The degrees of freedom of the thermostat, and the energy that it conserves."""
+        a_try = outcome.a_try
+        conserves = a_try.kind == PASSIVE or (a_try.kind == FORCE and "energy" in a_try.modify)
+        conserves = conserves and self.conserves
+        for run, answer in answers.items():
+            wrong = thermostat.faults(answer, conserves)
+            if wrong:
+                outcome.faults.append(f"{run}: {'; '.join(wrong)}")
 
     def _like_rigid(self, outcome, answers):
         """Against fix rigid at small steps, or at the same: its error at that step is below BROAD."""
@@ -330,3 +379,12 @@ def scenes_of(executable, only=None):
             else:
                 scenes += [(kind, style, a_try) for a_try in found]
     return scenes, reasons, unknown
+
+
+def scenes_with_temp(scenes, kinds):
+    """The scenes of these kinds ("fix", "compute") that say something where all atoms are in bodies."""
+    return [
+        (kind, style, a_try)
+        for kind, style, a_try in scenes
+        if kind in kinds and (a_try.group != "free" or style in thermostat.INSERTS)
+    ]

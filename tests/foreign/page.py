@@ -11,7 +11,7 @@ import jinja2
 from benchmarks.engine.page import markdown_table
 from benchmarks.engine.provenance import processor, system
 
-from . import decks, neighbors, scene
+from . import decks, neighbors, scene, thermostat
 
 COMMAND = "tests/run foreign --all --publish"
 VERDICTS = ("agrees", "refused", "runs", "not run", "NEITHER")
@@ -46,6 +46,34 @@ def not_kept(outcomes):
     """List of what fix rigid does not keep either."""
     excused = (o for o in outcomes if o.excused and o.result != "DIFFERS")
     return "\n".join(sorted({f"* `{o.name}` ({'; '.join(o.excused)})" for o in excused}))
+
+
+def with_temp(tried, temp):
+    """The outcomes of all LAMMPS with keyword temp, or of all without it."""
+    return [
+        outcome
+        for name, (_, (outcomes, *_)) in tried.items()
+        for outcome in outcomes
+        if ("temp" in name.split(", ")) == temp
+    ]
+
+
+def refused_by_temp(every, beside_temp):
+    """Styles that are refused beside keyword temp only."""
+    refused = [{o.style for o in found if o.result == "refused"} for found in (every, beside_temp)]
+    return sorted(refused[1] - refused[0])
+
+
+def suffixes_table(found):
+    """``found``: (LAMMPS' name, number of ranks) -> outcomes of suffixes.py."""
+    rows = {}
+    for (name, ranks), outcomes in found.items():
+        for outcome in outcomes:
+            scene = outcome.name.removesuffix(f", {ranks} rank{'s' * (ranks > 1)}")
+            rows.setdefault((name, scene, outcome.start), []).append(str(ranks))
+    header = ("LAMMPS, suffix", "scene", "ranks", "start")
+    table = [(name, scene, ", ".join(n), start) for (name, scene, start), n in rows.items()]
+    return markdown_table(header, table)
 
 
 def reasons_table(reasons):
@@ -88,16 +116,22 @@ def measured_at(commits):
     """The commit of all parts, or that of each."""
     if len(set(commits)) == 1:
         return f"Commit {commits[0]}"
-    parts = zip(("Neighbors", "decks", "unit tests"), commits)
+    parts = zip(("Neighbors", "variants", "decks", "unit tests"), commits)
     return ", ".join(f"{part} at commit {name}" for part, name in parts if name)
 
 
-def page(commits, tried, verdicts, units):
+def page(commits, tried, variants, verdicts, units):
     """Text of doc/foreign.md; arguments as in __main__, ``commits`` in the order of the others."""
-    parts = (("decks", verdicts), ("neighbors", tried), ("unit tests", units))
+    parts = (
+        ("decks", verdicts),
+        ("neighbors", tried),
+        ("variants of styles", variants),
+        ("unit tests", units),
+    )
     left_out = ", ".join(name for name, found in parts if not found)
-    tried, verdicts, units = tried or {}, verdicts or {}, units or ([], {})
-    every = [outcome for _, (outcomes, *_) in tried.values() for outcome in outcomes]
+    tried, variants = tried or {}, variants or {}
+    verdicts, units = verdicts or {}, units or ([], {})
+    every, beside_temp = (with_temp(tried, temp) for temp in (False, True))
     reasons = {}
     for _, (_, found, *_) in tried.values():
         reasons |= found
@@ -113,7 +147,10 @@ def page(commits, tried, verdicts, units):
         scene=scene,
         same=neighbors.SAME,
         neighbors="\n\n".join((neighbors_table(tried), by_result(every))),
-        excused=not_kept(every) or "nothing.",
+        thermostat=thermostat,
+        refused_by_temp=", ".join(refused_by_temp(every, beside_temp)) or "none",
+        excused=not_kept(every + beside_temp) or "nothing.",
+        variants=suffixes_table(variants),
         reasons=reasons_table(reasons),
         oldest=RELEASES["oldest"],
         units=", ".join(f"*{what}* ({number})" for what, number in counts) or "none was run",

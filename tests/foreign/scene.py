@@ -1,7 +1,7 @@
 """The scene that every style is tried in: 27 rigid molecules and 8 free atoms, in lj units.
 
 A molecule has four atoms, not in a plane, with bonds, angles, a dihedral and an improper, so that
-styles that look at topology have some to look at; the forces are smooth.
+styles that look at topology have some to look at; the forces are smooth, and the derivatives of an energy.
 """
 
 import numpy as np
@@ -16,6 +16,7 @@ SITES = (
     (3, (-0.1, -0.1, 0.55), 0.1),
 )
 MASSES = (4.0, 1.0, 2.0, 3.0)
+SITE_MASSES = tuple(MASSES[kind - 1] for kind, *_ in SITES)
 #: fields of a line in Atoms for an atom style
 FORMATS = {
     "full": "{id} {mol} {type} {q} {x}",
@@ -35,8 +36,7 @@ def _atoms():
     """(type, molecule, charge, place, velocity, angular velocity) of all atoms, molecules first."""
     rng = np.random.default_rng(7)
     sites = np.array([place for _, place, _ in SITES])
-    masses = np.array([MASSES[kind - 1] for kind, _, _ in SITES])
-    arm = sites - masses @ sites / masses.sum()
+    arm = sites - SITE_MASSES @ sites / sum(SITE_MASSES)
     atoms = []
     for number, node in enumerate(np.ndindex(3, 3, 3)):
         turned = Rotation.from_quat(np.roll(rng.normal(size=4), -1)).apply(arm)
@@ -94,7 +94,8 @@ def write_files(folder):
     (folder / "target").write_text("".join(rows))  # for fix tmd
 
 
-FORCES = """pair_style lj/charmm/coul/charmm 2.0 3.0
+PAIR = "lj/charmmfsw/coul/charmmfsh"
+FORCES = f"""pair_style {PAIR} 2.0 3.0
 pair_coeff * * 0.3 0.9
 bond_style harmonic
 bond_coeff 1 50.0 0.5

@@ -1,8 +1,9 @@
-"""The judge judged: a neighbor that is wrong by 1 % has to be seen."""
+"""The judge judged: errors of 1 %, and degrees of freedom that are too many, have to be seen."""
 
+import copy
 from dataclasses import replace
 
-from . import neighbors, scene, styles
+from . import neighbors, scene, styles, suffixes, thermostat
 
 #: style -> its arguments, wrong by 1 %
 WRONG = {
@@ -12,14 +13,23 @@ WRONG = {
     "rhok": "1 1 1 0.505 0.1",
     "aveforce": "NULL 0.101 NULL",
 }
+#: the epsilon of the molecules, and one that is wrong by 1 %
+EPSILON, WRONG_EPSILON = "* * 0.3 ", "* * 0.303 "
 
 
-def wrong_by_one_percent(engine, folder):
-    """Yields (style, whether it was noticed)."""
+def all_errors(engine, folder):
+    """Yields (text of an error, whether it was noticed)."""
     scene.write_files(folder)
+    yield from wrong_forces(engine, folder)
+    yield from wrong_thermostats(engine, folder)
+    yield from wrong_variant(engine, folder)
+
+
+def wrong_forces(engine, folder):
+    """Neighbors that are wrong by 1 %, against fix rigid."""
     jobs = {}
     for style, wrong in WRONG.items():
-        (right,) = styles.FIXES[style]
+        right = styles.FIXES[style][0]
         off = replace(right, args=wrong)
         jobs[style, "gear"] = neighbors.script("fix", style, off, "gear", divide=4)
         for divide in (4, 8):
@@ -27,6 +37,47 @@ def wrong_by_one_percent(engine, folder):
     answers = engine.answers(jobs, folder)
     for style in WRONG:
         coarse, fine = answers[style, 4], answers[style, 8]
-        yield style, bool(
-            neighbors.beyond(answers[style, "gear"], coarse, fine, styles.FIXES[style][0])
-        )
+        wrong = neighbors.beyond(answers[style, "gear"], coarse, fine, styles.FIXES[style][0])
+        yield f"{style} is wrong by 1 %", bool(wrong)
+
+
+def wrong_thermostats(engine, folder):
+    """Degrees of freedom, heat and target of keyword temp."""
+    job = neighbors.script("fix", "", styles.Try(styles.PASSIVE), "temp", alone=True)
+    target = f"temp {thermostat.TARGET}"
+    warmer = [line.replace(target, f"temp {1.01 * thermostat.TARGET}") for line in job]
+    answers = engine.answers({"right": job, "warmer": warmer}, folder)
+    right = answers["right"]
+    yield "the thermostat is judged wrong without an error", not thermostat.faults(right, True)
+    apart = neighbors.distances(right, answers["warmer"])
+    yield "the target is wrong by 1 %", bool(neighbors.worst(apart, neighbors.SAME))
+
+    def seen(change):
+        wrong = copy.deepcopy(right)
+        change(wrong.noted)
+        return bool(thermostat.faults(wrong, True))
+
+    def three_more(noted):
+        found = 3 * (scene.MOLECULES - 1)
+        for moment in thermostat.MOMENTS:
+            noted[f"vector-{moment}"][thermostat.OF_TRANSLATION] *= found / (found + 3)
+
+    def heat(noted):
+        taken = [noted[f"vector-{moment}"][thermostat.HEAT] for moment in thermostat.MOMENTS]
+        noted["energy-atoms"] += 0.01 * (taken[1] - taken[0])
+
+    def momentum(noted):
+        noted["atoms"][:, 4] *= 1.01 ** (noted["atoms"][:, 0] == 1)
+
+    yield "the thermostat has three degrees of freedom too many", seen(three_more)
+    yield "the heat is wrong by 1 %", seen(heat)
+    yield "a velocity is wrong by 1 %, so that the total momentum is not zero", seen(momentum)
+
+
+def wrong_variant(engine, folder):
+    """A variant of a pair style that is wrong by 1 %."""
+    right = suffixes.script("lj/cut", False)
+    wrong = [line.replace(EPSILON, WRONG_EPSILON) for line in right]
+    answers = engine.answers({"right": right, "wrong": wrong}, folder)
+    outcome = suffixes.judge(("lj/cut", False), "opt", 1, answers["wrong"], *2 * [answers["right"]])
+    yield "a variant of a pair style is wrong by 1 %", bool(outcome.faults)

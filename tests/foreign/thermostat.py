@@ -1,0 +1,107 @@
+"""Keyword temp beside other styles: which degrees of freedom it must have, measured from the motion.
+
+All atoms are in bodies, and their total momentum is zero at first.  A component of it that is constant
+but for rounding is no degree of freedom, whatever the neighbor is; any other is one.
+"""
+
+import itertools
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from . import scene
+
+TARGET = 1.2
+MOVER = f"gear/quat molecule temp {TARGET} {TARGET} 0.5"
+#: LAMMPS 4 Feb 2025 does not divide the heat by the number of atoms
+OUTPUT = ("thermo_modify norm no",)
+#: after the scene is made: no atoms outside of bodies, no total momentum
+BEGIN = ("delete_atoms group free compress no", "velocity all zero linear")
+#: neighbors that are thermostats themselves, which the fix refuses
+THERMOSTATS = re.compile(r"temp/.*|langevin")
+#: neighbors that put atoms into their group: the others act on nothing if it is empty
+INSERTS = ("deposit", "gcmc")
+#: when it is noted: at the end of the first run and of the second
+MOMENTS = ("middle", "atoms")
+#: elements of the fix's vector: kinetic energies, heat, temperatures of translation and rotation
+TRANSLATION, ROTATION, HEAT, OF_TRANSLATION, OF_ROTATION, ELEMENTS = 0, 1, 8, 9, 10, 12
+#: of the sum of all momenta without their signs: change of a total momentum that is constant
+ROUNDING = 1e-11
+#: of a number of degrees of freedom
+EXACT = 1e-6
+#: change of the conserved energy in units of the heat that the thermostat takes
+DRIFT = 2e-3
+SAID = re.compile(r"thermostat of (\d+) degrees of freedom of translation.* and (\d+) of rotation")
+
+
+class Bodies(NamedTuple):
+    """Equal bodies, whose atoms come first: masses of a body's atoms, number, Boltzmann constant."""
+
+    masses: tuple = scene.SITE_MASSES
+    number: int = scene.MOLECULES
+    boltzmann: float = 1.0
+
+
+def note(moment):
+    """Lines of a job that note what `faults` reads, besides the atoms."""
+    return [f"@vector vector-{moment} m {ELEMENTS}", f"@thermo energy-{moment} econserve"]
+
+
+def momenta(atoms, bodies):
+    """Array of the momenta of all atoms in bodies; ``atoms``: a row (ID, x, v) per atom."""
+    sites = len(bodies.masses)
+    of_bodies = atoms[atoms[:, 0] <= sites * bodies.number]
+    masses = np.take(bodies.masses, (of_bodies[:, 0].astype(int) - 1) % sites)
+    return masses[:, None] * of_bodies[:, 4:]
+
+
+def constant_directions(before, after, bodies):
+    """Directions in which the total momentum is constant: where bodies have gone, all that are possible."""
+    first, last = momenta(before, bodies), momenta(after, bodies)
+    if len(first) != len(last):
+        return [some for n in range(4) for some in itertools.combinations(range(3), n)]
+    change = np.abs(last.sum(axis=0) - first.sum(axis=0))
+    return [tuple(np.flatnonzero(change <= ROUNDING * np.abs(last).sum()))]
+
+
+def freedoms(atoms, vector, directions, bodies):
+    """Degrees of freedom of translation and rotation, as they must be and as the fix has them.
+
+    The fix has twice a kinetic energy by its temperature, without the energy of a common motion, which
+    is nonzero in units with mvv2e = 1 only.
+    """
+    present = momenta(atoms, bodies)
+    number = len(present) // len(bodies.masses)
+    total = present.sum(axis=0)[list(directions)]
+    common = 0.5 * total @ total / (number * sum(bodies.masses))
+    energies = vector[TRANSLATION] - common, vector[ROTATION]
+    temperatures = vector[OF_TRANSLATION], vector[OF_ROTATION]
+    own = [float(2.0 * e / (bodies.boltzmann * t)) for e, t in zip(energies, temperatures)]
+    return (3 * number - len(directions), 3 * number), own
+
+
+def faults(answer, conserves, bodies=Bodies()):
+    """Texts of what is wrong in an answer; ``conserves`` if the neighbor's energy is in the total."""
+    found = []
+    for before, moment in zip(("begin", *MOMENTS), MOMENTS):
+        atoms, vector = answer.noted[moment], answer.noted[f"vector-{moment}"]
+        possible = constant_directions(answer.noted[before], atoms, bodies)
+        numbers = [freedoms(atoms, vector, some, bodies) for some in possible]
+        right, own = min(numbers, key=lambda pair: np.abs(np.subtract(*pair)).max())
+        if not np.allclose(own, right, rtol=0.0, atol=EXACT):
+            found.append(
+                "degrees of freedom of translation and rotation are {:g} and {:g}, not {} and {}"
+                .format(*own, *right)
+            )
+    said = [line for line in map(SAID.search, answer.warnings) if line]
+    same = len(possible) == 1  # the log tells of bodies that have gone in the next run only
+    if not said or (same and [int(n) for n in said[-1].groups()] != [round(n) for n in own]):
+        found.append(f"the log has other degrees of freedom than the vector, {own}")
+    if conserves:
+        energies = [answer.noted[f"energy-{moment}"] for moment in MOMENTS]
+        heats = [answer.noted[f"vector-{moment}"][HEAT] for moment in MOMENTS]
+        change, heat = (abs(after - before) for before, after in (energies, heats))
+        if not change <= DRIFT * heat:
+            found.append(f"the conserved energy changes by {change:.1e}, and the heat by {heat:.1e}")
+    return found
