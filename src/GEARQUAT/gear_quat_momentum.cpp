@@ -24,7 +24,7 @@ using namespace GearQuat;
 // of its thermal value, or if it is less than this part of all forces: the pairs of forces that add
 // up to them may be larger, and of single precision.
 
-static constexpr double PART_OF_THERMAL = 1.0e-4, PART_OF_FORCES = 1.0e-8;
+static constexpr double PART_OF_THERMAL = 1.0e-10, PART_OF_FORCES = 1.0e-8;
 
 // or as many times as large as the sum of independent errors of all atoms: a mesh whose forces are
 // derivatives of interpolated energies leaves a third of that

@@ -15,8 +15,7 @@
    to zero, the thermostat acts on whole momenta, and P counts.
 
    A sum of forces counts as zero if it is explained by rounding or by the mesh of long-range
-   forces, or if it would not change P by its thermal value in thousands of damping times.  Every
-   step measures it in each direction where P was constant so far.  A direction in which P has
+   forces.  Every step measures it in each direction where P was constant so far.  A direction in which P has
    changed is measured again only if histories begin anew: between two contacts with a wall P is
    constant, and still warm.
 

@@ -50,6 +50,8 @@ REFUSED = {
 
 def run(folder, spoil="", mend="", fix="gear/quat molecule"):
     deck = water(folder / "data.water", fix, dt=0.5, run="", before=VELOCITIES, dump=folder / "poses.dump")
+    if "temp" in fix:
+        deck = deck.replace("fix_modify move energy yes", "")
     words = json.dumps([deck, spoil, mend, str(folder)])
     environment = python_environment(TREE_BUILD)
     done = subprocess.run(
@@ -65,6 +67,18 @@ def straight(tmp_path_factory):
     folder = tmp_path_factory.mktemp("straight")
     water_data(folder / "data.water")
     return run(folder)
+
+
+@pytest.mark.tree
+def test_a_refused_thermostat_has_not_changed(tmp_path):
+    """Its damping time is too short for a long step, far from the target."""
+    fix = "gear/quat molecule temp 30 30 20 tchain 1"
+    water_data(tmp_path / "data.water")
+    straight = run(tmp_path, fix=fix)
+    result = run(tmp_path, "timestep 4.0", "timestep 0.5", fix)
+    assert "use a damping time of" in result["error"]
+    assert result["after"] == result["before"] == straight["before"]
+    assert result["then"] == straight["then"]
 
 
 @pytest.mark.tree

@@ -158,6 +158,18 @@ def test_a_friction_that_becomes_strong_is_warned_of(lmp_tree, gas):
         assert result.words.count(warning) == count
 
 
+def test_an_unstable_thermostat_is_named_before_the_bodies(lmp_tree, gas):
+    """With a damping time of two steps and kinetic energy that comes from overlaps; the remedy helps."""
+    words = "values 7 temp 1.0 1.0 {} tchain 1"
+    for damp in (0.004, 0.2):
+        deck = overlapping(gas(words.format(damp), soft=300.0, dt=0.002, run="run 200"))
+        if damp > 0.1:
+            lmp_tree.succeed(deck)
+            continue
+        said = lmp_tree.refuse(deck, "The thermostat became unstable first").words
+        assert "Begin nearer to the target temperature, or use a longer damping time" in said
+
+
 # --- a covering sample --------------------------------------------------------------------------
 
 # Nitrogen of 100 K on a lattice, cut off smoothly
