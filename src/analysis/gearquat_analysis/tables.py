@@ -1,6 +1,7 @@
-"""Tables: as CSV files, and as aligned text for a terminal."""
+"""Tables as CSV files and as aligned text for a terminal, and numbers with their errors."""
 
 import csv
+import math
 
 import numpy as np
 
@@ -36,3 +37,50 @@ def aligned(header, rows):
     return "\n".join(
         "  " + "  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines
     )
+
+
+def rounded(value, digits=3):
+    """Text of a number with so many significant digits; powers of ten only where zeros would be many.
+
+    >>> rounded(123.4, 2), rounded(0.00123456), rounded(1234567)
+    ('120', '0.00123', '1.23e+06')
+    """
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
+def with_error(value, error, unit=""):
+    """Text of a number and its standard error, which has two digits, and the number as many decimals.
+
+    >>> with_error(86.2, 10.3), with_error(0.3124, 0.0153, "Å"), with_error(2.744e-4, 1.9e-5)
+    ('86 ± 10', '0.312 ± 0.015 Å', '(2.74 ± 0.19)e-4')
+    """
+    both, power = _decimals(value, error)
+    joined = " ± ".join(both)
+    return (f"({joined})e{power}" if power else joined) + f" {unit}" * bool(unit)
+
+
+def error_cells(value, error):
+    """Number and error, as ``with_error`` has them, as two cells of a table.
+
+    >>> error_cells(86.2, 10.3), error_cells(2.744e-4, 1.9e-5), error_cells(1.5, float("nan"))
+    (('86', '10'), ('2.74e-4', '0.19e-4'), ('1.5', ''))
+    """
+    both, power = _decimals(value, error)
+    if len(both) == 1:
+        return (*both, "0" if error == 0.0 else "")
+    return tuple(f"{text}e{power}" if power else text for text in both)
+
+
+def _decimals(value, error):
+    """((number, error), power of ten) as text; the number alone, with six digits, if the error is not positive."""
+    if not (math.isfinite(value) and math.isfinite(error) and error > 0.0):
+        return (rounded(value, 6),), 0
+    last = _power(error, 2) - 1
+    power = max(_power(value, 6), _power(error, 2)) if value else _power(error, 2)
+    power = power if not -4 < power < 6 else 0
+    return tuple(f"{round(x, -last) / 10.0**power + 0.0:.{max(power - last, 0)}f}" for x in (value, error)), power
+
+
+def _power(value, digits):
+    """The power of ten of the first of so many digits: 0.0996 has -2 with three, and -1 with two."""
+    return int(f"{value:.{digits - 1}e}".partition("e")[2])
