@@ -20,20 +20,28 @@ LEFT_OUT = 0.1
 def scatter(scene, asked, numbers, error, most, out, progress):
     """Simulate flights, and write the results into the folder ``out``; returns them as text.
 
-    ``scene``: arguments of ``open_pair``; ``asked``: seed, temperature (a rising tuple), energy, rotation, largest,
-    most_steps, processes and sigma; ``numbers``, a range of flights, or None: until all relative standard errors are at
-    most ``error``, or ``most`` flights; ``progress``, a Progress.  Raises DeckError and TrialError.
+    ``scene``: arguments of ``open_pair``; ``asked``: those of ``simulate`` with processes, most_steps and sigma;
+    the others are those of ``simulate``.  Raises DeckError and TrialError.
     """
     with Pool(scene, asked["processes"], asked["most_steps"]) as pool:
-        plan, farthest, wanted = _settle(pool, asked, error, out, progress)
-        if not numbers:
-            _reachable(farthest, error, asked["largest"])
-        store.begin(out, wanted)
-        rows = _until(pool, plan, farthest, numbers, error, most, out, progress, asked["sigma"])
+        wanted, rows = simulate(pool, asked, numbers, error, most, out, progress)
     text, others = conclude(out, wanted, rows, asked["sigma"]), numbers and len(rows) - len(numbers)
     if others:
         text += f"\n{others} of the {len(rows)} flights were in the folder before and are not among those asked for"
     return text
+
+
+def simulate(pool, asked, numbers, error, most, out, progress):
+    """Simulate flights in a Pool and keep them in the folder ``out``; (settings, rows of all flights there).
+
+    ``asked``: seed, temperature (a rising tuple), energy, rotation and largest; ``numbers``, a range of flights, or None:
+    until all relative standard errors are at most ``error``, or ``most`` flights; ``progress``, a Progress.
+    """
+    plan, farthest, wanted = _settle(pool, asked, error, out, progress)
+    if not numbers:
+        _reachable(farthest, error, asked["largest"])
+    store.begin(out, wanted)
+    return wanted, _until(pool, plan, farthest, numbers, error, most, out, progress)
 
 
 def _settle(pool, asked, error, out, progress):
@@ -44,7 +52,7 @@ def _settle(pool, asked, error, out, progress):
     boltzmann = UNITS[pool.facts.style].boltzmann
     plan = Plan((asked["seed"],), asked["temperature"], asked["energy"], asked["rotation"], 0.0)
     pool.check(plan.scales(boltzmann)[0])
-    allowed, steps = LEFT_OUT * error, asked["most_steps"]
+    allowed, steps = LEFT_OUT * error, pool.most_steps
     if (out / store.SETTINGS).exists():
         known = store.read_settings(out)
         _, then, farthest = store.facts_of(known)
@@ -83,7 +91,7 @@ def rounds(most):
     yield number
 
 
-def _until(pool, plan, farthest, numbers, error, most, out, progress, sigma):
+def _until(pool, plan, farthest, numbers, error, most, out, progress):
     """Rows of all flights of the folder, in their order, after those that were asked for."""
     lines = store.read_lines(out)
     known = {store.number_of(line): row for line, row in zip(lines, store.parse(lines))}
@@ -98,7 +106,8 @@ def _until(pool, plan, farthest, numbers, error, most, out, progress, sigma):
             ordered, last = ordered and (not missing or missing[0] > last), max(known)
             if numbers:
                 break
-            found = results(flights.columns([known[number] for number in wanted]), plan, pool.facts, sigma, farthest.left)
+            columns = flights.columns([known[number] for number in wanted])
+            found = results(columns, plan, pool.facts, left=farthest.left)
             progress.tell(report.so_far(found, error))
             if found.relative <= error:
                 break

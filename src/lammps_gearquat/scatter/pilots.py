@@ -228,7 +228,7 @@ def fit(places, lost, largest, scales):
     part = np.zeros_like(at_level)
     for share, scale in zip(shares_of(len(scales)), scales):
         level = (area * size * places.flux(scale)[:count, ..., None]).mean(axis=2).sum(axis=0)
-        part += share * level / np.maximum(level.sum(axis=0), NOTHING)
+        part += share * level / np.maximum(level.sum(axis=0), 1e-300)
     regard = (part + REGARD) / np.maximum(at_level, 1e-300)
     weight = (area * size * regard[:, None]).sum(axis=-1).ravel()
     square = (places.b[:count] ** 2).ravel()
