@@ -34,7 +34,8 @@ class LennardJones:
 
     def energy(self, r):
         """Potential energy at distances r."""
-        y = r**-6.0
+        y = 1.0 / (r * r)
+        y = y * y * y
         return 4.0 * y * (y - 1.0)
 
     def slope(self, r):
@@ -77,7 +78,8 @@ class TwelveFour:
 
     def energy(self, r):
         """Potential energy at distances r."""
-        y = r**-4.0
+        y = 1.0 / (r * r)
+        y = y * y
         return self.DEPTH * y * (y * y - 1.0)
 
     def slope(self, r):

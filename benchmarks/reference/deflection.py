@@ -54,13 +54,17 @@ class Deflection:
         outer = np.interp(energy, *self._outer, right=self.orbit)
         inner = np.interp(energy, *self._inner, right=self.orbit)
         turning = self._turning(energy, b, outer, inner)
+        split = np.minimum(turning / outer, 1.0)
+        total = self._part(energy, b, turning, 0.0, split[:, None])
+        inside = split < 1.0
+        own = (values[inside] for values in (energy, b, turning))
+        total[inside] += self._part(*own, split[inside, None], 1.0)
+        return np.pi - 2.0 * b / turning * total
+
+    def _part(self, energy, b, turning, low, high):
+        """Integral (n,) over x from ``low`` to ``high`` (n, 1); see central.py."""
         t, rest, weight = double_exponential(NODES)
-        split = np.minimum(turning / outer, 1.0)[:, None]
-        b_over, energy, turning = (b / turning)[:, None], energy[:, None], turning[:, None]
-        total = 0.0
-        for low, high in ((0.0, split), (split, 1.0)):
-            width = high - low
-            x = np.maximum(np.where(t < 0.5, low + width * t, high - width * rest), 1e-300)
-            under = 1.0 - (b_over * x) ** 2 - self.potential.energy(turning / x) / energy
-            total = total + (width * weight / np.sqrt(np.maximum(under, 1e-30)) * (under > 0.0)).sum(axis=1)
-        return np.pi - 2.0 * b_over[:, 0] * total
+        width, turning, energy = high - low, turning[:, None], energy[:, None]
+        x = np.maximum(np.where(t < 0.5, low + width * t, high - width * rest), 1e-300)
+        under = 1.0 - (b[:, None] / turning * x) ** 2 - self.potential.energy(turning / x) / energy
+        return (width * weight / np.sqrt(np.maximum(under, 1e-30)) * (under > 0.0)).sum(axis=1)

@@ -132,12 +132,12 @@ def settle(plan, facts, places, columns, boltzmann, allowed, given=None):
     Beyond the largest impact parameter there is at most the part ``allowed`` of every loss, unless it is ``given``.
     Raises DeckError.
     """
-    _parted(columns)
+    gone = _parted(columns)
     scales = plan.scales(boltzmann)
     lost = losses(columns, scales[0], plan.balanced(facts.freedoms), any(facts.freedoms))
     lost = lost.reshape(*places.b.shape, len(LOSSES))
     left = np.array([beyond(places, lost, scale, facts.cutoff) for scale in scales])
-    value = given or rounded(_nearest(left.max(axis=0), places.edges, allowed, facts.cutoff))
+    value = given or rounded(_nearest(left.max(axis=0), places.edges, allowed, facts.cutoff, gone))
     known = [_left_at(value, places.edges, one) for one in left]
     s0, s1, power = fit(places, lost, value, scales)
     return replace(plan, largest=value, s0=s0, s1=s1, power=power), Largest(value, known, places.number)
@@ -150,17 +150,17 @@ def _left_at(value, edges, left):
 
 
 def _parted(columns):
-    """Raise DeckError if most of the pilots have not parted."""
-    fate = columns["fate"]
-    gone = fate != "parted"
-    if gone.mean() <= 0.5:
-        return
-    told = next((words for words in columns["message"][fate == "lost"]), "")
-    raise DeckError(
-        f"of {len(fate)} pilot flights {np.count_nonzero(fate == 'unparted')} have not parted within --steps, and"
-        f" {np.count_nonzero(fate == 'lost')} were ended by LAMMPS{f' ({told})' if told else ''}: more --steps are required,"
-        " or forces that let the bodies part"
-    )
+    """Words about pilots that have not parted, "" if all have.  Raises DeckError if most have not."""
+    fate, parts = columns["fate"], []
+    unparted, lost = np.count_nonzero(fate == "unparted"), np.count_nonzero(fate == "lost")
+    if unparted:
+        parts.append(f"{unparted} of {len(fate)} pilot flights have not parted within --steps, and more are required")
+    if lost:
+        parts.append(f"LAMMPS ended {lost} of {len(fate)} pilot flights ({columns['message'][fate == 'lost'][0]})")
+    words = "; ".join(parts)
+    if unparted + lost > 0.5 * len(fate):
+        raise DeckError(words)
+    return words
 
 
 def losses(columns, scale, balanced, turning):
@@ -198,8 +198,13 @@ def taken_away(b, h, cutoff):
     return result
 
 
-def _nearest(left, edges, allowed, cutoff):
-    """The nearest edge beyond which at most ``allowed`` is left (D + 1, 3) of every loss.  Raises DeckError."""
+def _nearest(left, edges, allowed, cutoff, gone):
+    """The nearest edge beyond which at most ``allowed`` is left (D + 1, 3) of every loss.
+
+    ``gone``: words about pilots that have not parted.  Raises DeckError.
+    """
+    if (left[-1] > allowed).any() and gone:
+        raise DeckError(f"{gone}: the largest impact parameter cannot be found")
     if (left[-1] > allowed).any():
         loss, part = LOSSES[int(np.argmax(left[-1]))], left[-1].max()
         if not np.isfinite(part):

@@ -63,13 +63,11 @@ class Results:
 def results(columns, plan, facts, sigma=None, left=None):
     """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by; ``left``, that
     of ``pilots.Largest``.  Raises DeckError if no flight has parted."""
-    lost = columns["fate"] == "lost"
-    message = str(columns["message"][lost][0]) if lost.any() else ""
-    if not (columns["fate"] == "parted").any():
-        raise DeckError(
-            f"none of the {len(lost)} flights has parted, so there is nothing to average: {lost.sum()} were ended by LAMMPS"
-            f"{f' ({message})' if message else ''}; the others were given up, and more --steps are required"
-        )
+    fate = columns["fate"]
+    message = next(iter(columns["message"][fate == "lost"].tolist()), "")
+    if not (fate == "parted").any():
+        why = f"LAMMPS ended them ({message})" if message else "more --steps are required, with another --out"
+        raise DeckError(f"none of the {len(fate)} flights has parted, so there is nothing to average: {why}")
     answers = [
         _answer(columns, plan, facts, temperature, sigma, own)
         for temperature, own in zip(plan.conditions, left or [{}] * len(plan.conditions))
