@@ -9,6 +9,7 @@ import shutil
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import chi2
 
 from benchmarks.reference.central import LennardJones, TwelveFour
 
@@ -109,6 +110,27 @@ def _simulated(pool, temperature, seed, error, out, kept):
     found = results(flights.columns(rows), plan, facts, left=farthest.left)
     kept.add(seed, len(rows), found.answers[0], AIMS)
     shutil.rmtree(out)
+
+
+def reference(name, rows):
+    """Both integrals of a pair: by quadrature, or the mean over all seeds of molecules."""
+    if name in CENTRAL:
+        atoms, temperature = CENTRAL[name]
+        return [atoms.exact(k, k, temperature) for k in (1, 2)]
+    return [float(rows[:, column].mean()) for column in (2, 4)]
+
+
+def squares(value, error, exact, mean):
+    """Squares (n,) of deviations by the stated errors; ``mean``: ``exact`` is the mean of the values, so that they are
+    smaller by (n - 1) / n than those from the truth."""
+    number = len(value)
+    return ((value - exact) / error) ** 2 * (number / (number - 1.0) if mean else 1.0)
+
+
+def interval(number, part=0.999):
+    """Where the root mean square of so many normal numbers is with this probability."""
+    tails = 0.5 * (1.0 - part), 0.5 * (1.0 + part)
+    return tuple(float(np.sqrt(chi2.ppf(tail, number) / number)) for tail in tails)
 
 
 class _Silent:

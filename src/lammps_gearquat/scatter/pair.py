@@ -62,7 +62,8 @@ class End(Start):
     """The bodies after a flight, and what it was like.
 
     ``time`` since the start; ``steps`` and ``repeats``, numbers of them; ``turnings``, how often the
-    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py; ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
+    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py;
+    ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
     flight with ``message``.
     """
 

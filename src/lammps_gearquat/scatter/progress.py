@@ -1,4 +1,4 @@
-"""What a run tells while it lasts: a bar in a terminal, and lines in the log of a batch job."""
+"""What a run prints while it lasts: a bar in a terminal, and lines in the log of a batch job."""
 
 import sys
 import time
