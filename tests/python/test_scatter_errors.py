@@ -46,7 +46,8 @@ def test_numbers_become_energies_and_impact_parameters(density):
     u = np.concatenate([[2.0**-31, 1.0 - 2.0**-31], np.random.default_rng(1).random(2000)])
     energy = density.energies(u)
     assert np.abs(density.cumulative(energy) - u).max() < 1e-12
-    assert (density.energies(u[7:9]) == energy[7:9]).all()
+    # to the last digit, whatever other flights are drawn beside one
+    assert [density.energies(u[k : k + 1])[0] for k in range(200)] == energy[:200].tolist()
     for x in (0.01, 1.0, 8.0):
         same = np.full(len(u), x * density.scales[0])
         b = density.impact(u, same)

@@ -154,7 +154,7 @@ def test_detailed_balance(tmp_path):
 
 
 def test_any_number_of_processes_and_parts(tmp_path):
-    """The same files on two processes, continued after having been cut off anywhere, and merged from eight parts."""
+    """The same files on two processes, continued after having been cut off anywhere, and merged from three parts."""
     deck = colliding.write(tmp_path)
     run(deck, tmp_path / "whole", *WHOLE, "--count", "120")
     expected = contents(tmp_path / "whole")
@@ -168,16 +168,16 @@ def test_any_number_of_processes_and_parts(tmp_path):
     assert contents(tmp_path / "two") == expected
 
     parts = []
-    for first in range(105, -1, -15):
+    for first in (80, 40, 0):
         out = tmp_path / f"part{first}"
-        run(deck, out, *WHOLE, "--first", str(first), "--count", "15")
+        run(deck, out, *WHOLE, "--first", str(first), "--count", "40")
         parts += ["--merge", str(out)]
     result = CliRunner().invoke(main, ["scatter", *parts, "--out", str(tmp_path / "merged")])
     assert result.exit_code == 0, result.output
     assert contents(tmp_path / "merged") == expected
 
     # and a gap that is filled later
-    run(deck, out, *WHOLE, "--first", "30", "--count", "90")
+    run(deck, out, *WHOLE, "--first", "60", "--count", "60")
     run(deck, out, *WHOLE, "--count", "120")
     assert contents(out) == expected
 
@@ -222,7 +222,7 @@ def test_it_flies_until_errors_are_small(tmp_path):
     for name in ("Omega(1,1)", "Omega(2,2)"):
         assert found["quantities"][name]["error"] <= 0.03 * found["quantities"][name]["value"]
     # what is beyond the largest impact parameter is a tenth of that
-    assert max(found["settings"]["largest"]["left"].values()) < 3e-3
+    assert max(found["settings"]["largest"]["left"][0].values()) < 3e-3
     assert 1.5 < found["settings"]["plan"]["largest"] < 3.0
     assert "orbiting" in output and {path.name for path in Path(tmp_path / "out").glob("*.png")} == {
         "deflection.png",
@@ -233,10 +233,10 @@ def test_it_flies_until_errors_are_small(tmp_path):
 def test_flights_that_never_part_are_named(tmp_path):
     """They are few here, and no number of flights makes up for many."""
     deck, out = colliding.write(tmp_path), tmp_path / "out"
-    output = run(deck, out, *WHOLE, "--count", "64", "--steps", "210")
+    output = run(deck, out, *WHOLE, "--count", "64", "--steps", "450")
     counts = json.loads((out / "results.json").read_text())["flights"]
     assert 0 < counts["unparted"] < 32 and "Unparted: " in output and "errors include all that they count" in output
-    result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), *WHOLE, "--steps", "210", "--error", "1e-3"])
+    result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), *WHOLE, "--steps", "450", "--error", "1e-3"])
     assert result.exit_code == 1 and "more --steps are required, with another --out" in " ".join(result.output.split())
 
 
@@ -278,7 +278,7 @@ def reduced(tmp_path_factory):
     return json.loads((folder / "out" / "results.json").read_text())
 
 
-@pytest.mark.parametrize("style", ["real", "metal", "si", "cgs", "electron", "micro", "nano"])
+@pytest.mark.parametrize("style", ["real", "si", "cgs", "electron", "micro"])
 def test_all_styles_of_units(tmp_path, style, reduced):
     """The same collisions in other units: the same plan, the same integrals by those of spheres."""
     sigma = colliding.SIGMA / (UNITS[style].angstrom * 1e-10)

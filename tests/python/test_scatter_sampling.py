@@ -43,6 +43,18 @@ def test_a_flight_depends_on_its_number_only():
     assert 0.0 < every.min() and every.max() < 1.0
 
 
+@pytest.mark.parametrize("temperatures", [(2.0,), (1.0, 2.0, 3.0)])
+def test_a_start_does_not_depend_on_those_beside_it(temperatures):
+    """To the last digit."""
+    pair, plan = made_up_pair(), Plan((3,), temperatures, None, None, 4.0, 2.0, 3.0, 0.5)
+    every = plan.starts(pair, range(40))
+    for number in range(40):
+        (b, energy, start), (own_b, own_energy, own) = every[number], plan.starts(pair, [number])[0]
+        assert (b, energy) == (own_b, own_energy)
+        for part in ("center", "velocity", "quaternion", "momentum"):
+            assert (getattr(start, part) == getattr(own, part)).all(), part
+
+
 def test_every_sequence_is_even():
     """Each of 16 intervals has one of 16 points, in every dimension of every sequence."""
     points = uniform((5,), np.arange(16 * REPLICAS), 6).reshape(16, REPLICAS, 6)

@@ -87,9 +87,11 @@ class Density:
 
     def _sum(self, function, energy):
         """Sum (m, n) over the Gamma densities of each temperature of weight times function(shape, x)."""
-        scales = np.array(self.scales)[:, None, None]
-        weight, shape = self._gammas[..., 0, None], self._gammas[..., 1, None]
-        return (weight * function(shape, energy / scales)).sum(axis=1)
+        total, x = 0.0, energy / np.array(self.scales)[:, None]
+        # one after the other, whatever n is: the last digits of a flight must not depend on others
+        for weight, shape in np.moveaxis(self._gammas, 0, -1):
+            total = total + weight[:, None] * function(shape[:, None], x)
+        return total
 
     def densities(self, energy):
         """Densities (m, n) of the energy of each temperature, at energies (n,) above 0."""
@@ -101,11 +103,15 @@ class Density:
 
     def density(self, energy):
         """Density (n,) of the mixture."""
-        return self.shares @ self.densities(energy)
+        return self._mixed(self.densities(energy))
 
     def cumulative(self, energy):
         """Part (n,) of the energies that is below ``energy`` (n,)."""
-        return self.shares @ self._sum(gammainc, energy)
+        return self._mixed(self._sum(gammainc, energy))
+
+    def _mixed(self, values):
+        """Mean (n,) over the mixture of values (m, n) of the temperatures."""
+        return sum(share * own for share, own in zip(self.shares, values))
 
     @cached_property
     def _table(self):

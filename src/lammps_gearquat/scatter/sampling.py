@@ -136,7 +136,9 @@ def _momenta(pair, quaternion, thermal, columns):
         for axis in np.flatnonzero(bodies.moments[k] > 0.0):
             width = np.sqrt(bodies.moments[k, axis] * thermal / pair.units.energy)
             along[:, axis] = width * ndtri(next(columns))
-        found[:, k] = Rotation.from_quat(quaternion[:, k], scalar_first=True).apply(along @ bodies.axes[k])
+        turn = Rotation.from_quat(quaternion[:, k], scalar_first=True).as_matrix() @ bodies.axes[k].T
+        # products of matrices sum in another order for another n: the last digits of a flight must not depend on others
+        found[:, k] = sum(turn[:, :, axis] * along[:, axis, None] for axis in range(3))
     return found
 
 
