@@ -68,7 +68,6 @@ OPTIONS = {
         "--temperature 2 and 6.5: flights at one of them say little about the other",
     ),
     "no way to part": (("--temperature", "1", "--steps", "30"), "of 768 pilot flights have not parted within --steps"),
-    "too few steps": (("--temperature", "1", "--steps", "420"), "pilot flights have not parted within --steps, and more are required"),
     "a dump and new flights": (("--replay", "3", "--count", "8"), "--replay takes all settings from the folder --out"),
 }
 

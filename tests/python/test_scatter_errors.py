@@ -8,8 +8,10 @@ from scipy.integrate import quad
 
 from benchmarks.studies.scatter.atoms import Atoms
 from benchmarks.studies.scatter.errors import ARGON, BOLTZMANN, IONS, until
+from lammps_gearquat.scatter import Plan, pilots
 from lammps_gearquat.scatter.density import Density
 from lammps_gearquat.scatter.integrals import weights
+from lammps_gearquat.trials.script import DeckError
 
 SEEDS = 200
 ION, WARM = IONS[300.0], BOLTZMANN * 300.0 / 0.2
@@ -205,3 +207,16 @@ def test_a_short_cutoff_is_noticed():
     short = Atoms(ARGON.potential, 2.5)
     with pytest.raises(Exception, match="cutoff"):
         short.plan(1, (1.0,), 0.001)
+
+
+def test_pilots_that_have_not_parted():
+    """Some far away make the largest impact parameter unknown, and most of them are an error anywhere."""
+    plan = Plan((1,), (1.0,), None, None, 0.0)
+    places = pilots.cells(plan, ARGON.cutoff, 1.0, 6)
+    columns, far = ARGON.columns(places.b.ravel(), places.energy.ravel()), places.b.ravel()
+    columns["fate"] = np.where(far > 0.35 * ARGON.cutoff, "unparted", "parted")
+    with pytest.raises(DeckError, match="have not parted within --steps.*the largest impact parameter cannot be found"):
+        pilots.settle(plan, ARGON.facts, places, columns, 1.0, 1e-3)
+    columns["fate"], columns["message"] = np.full(len(far), "lost"), np.full(len(far), "Lost atoms")
+    with pytest.raises(DeckError, match=r"LAMMPS ended 768 of 768 pilot flights \(Lost atoms\)"):
+        pilots.settle(plan, ARGON.facts, places, columns, 1.0, 1e-3)
