@@ -34,7 +34,8 @@ class LennardJones:
 
     def energy(self, r):
         """Potential energy at distances r."""
-        y = r**-6.0
+        y = 1.0 / (r * r)
+        y = y * y * y
         return 4.0 * y * (y - 1.0)
 
     def slope(self, r):
@@ -68,6 +69,23 @@ class Gromacs(LennardJones):
         inside = np.clip(r - self.inner, 0.0, None)
         cut = sum(a * inside**2 + b * inside**3 for a, b in self._terms)
         return np.where(r < self.outer, super().slope(r) - cut, 0.0)
+
+
+class TwelveFour:
+    """3^1.5 / 2 (r^-12 - r^-4), of an ion and an atom that it polarizes: the well is at 3^(1/8) and has the depth 1."""
+
+    DEPTH = 1.5 * np.sqrt(3.0)
+
+    def energy(self, r):
+        """Potential energy at distances r."""
+        y = 1.0 / (r * r)
+        y = y * y
+        return self.DEPTH * y * (y * y - 1.0)
+
+    def slope(self, r):
+        """Its derivative."""
+        y = r**-4.0
+        return self.DEPTH * 4.0 * y * (1.0 - 3.0 * y * y) / r
 
 
 @lru_cache
@@ -173,11 +191,14 @@ def energies(lowest, highest, limit=0.8):
 
 
 class CollisionIntegrals:
-    """Omega(l, s) of a potential for any temperatures from 0.3 to 100, in units of those of rigid spheres."""
+    """Omega(l, s) of a potential for any temperatures from 0.2 to 100, in units of those of rigid spheres.
 
-    def __init__(self, potential=None):
+    ``limit``: the largest energy at which bodies orbit, 0.8 of Lennard-Jones atoms.
+    """
+
+    def __init__(self, potential=None, limit=0.8):
         potential = potential or LennardJones()
-        self.E, self.weight = energies(1e-3, 2e3)
+        self.E, self.weight = energies(1e-3, 2e3, limit)
         self.Q = np.array([Scattering(potential, float(E)).cross_sections() for E in self.E]).T
 
     def __call__(self, order, power, temperature):

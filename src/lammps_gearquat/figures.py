@@ -150,15 +150,20 @@ def draw_deflection(path, name, columns, plan, units):
         axis.legend(loc="upper right")
 
 
-def draw_convergence(path, name, numbers, series):
-    """Values with standard errors, by their last ones, and the errors, against numbers of flights."""
-    colors = (COLOR["second"], COLOR["first"])
+def draw_convergence(path, name, shown):
+    """Values with standard errors, by their last ones, and the errors, against numbers of flights.
+
+    ``shown``: words for a condition -> what ``results.convergence`` returns, of one or two conditions.
+    """
+    colors, lines = (COLOR["second"], COLOR["first"]), ("-", ":")
     with picture(path, f"Convergence: {name}", ncols=2, figsize=(10, 4)) as (_, (left, right)):
-        for (label, (values, errors)), color in zip(series.items(), colors):
-            look = {"color": color, "marker": "o", "markersize": 3, "label": label}
-            last = values[-1]
-            left.errorbar(numbers, values / last - 1.0, errors / abs(last), **look)
-            right.loglog(numbers, errors / abs(last), **look)
+        for (words, (numbers, series)), line in zip(shown.items(), lines):
+            for (label, (values, errors)), color in zip(series.items(), colors):
+                label = f"{label}, {words}" if len(shown) > 1 else label
+                look = {"color": color, "linestyle": line, "marker": "o", "markersize": 3, "label": label}
+                last = values[-1]
+                left.errorbar(numbers, values / last - 1.0, errors / abs(last), **look)
+                right.loglog(numbers, errors / abs(last), **look)
         left.set_xscale("log")
         left.set_ylabel("relative difference from the last value")
         right.set_ylabel("relative standard error")

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from gearquat_analysis.units import UNITS
+
 #: two atoms or two dumbbells of Lennard-Jones sites, in reduced units
 DECK = """
 units lj
@@ -45,6 +47,41 @@ def write(folder, atoms=ATOMS, extra="", inner=6.0, cutoff=7.0, **changes):
         text = text.replace(old, new)
     (folder / "in.pair").write_text(text)
     return folder / "in.pair"
+
+
+#: diameter, m, and well depth, K, of argon
+SIGMA, WELL = 3.405e-10, 119.8
+
+
+def write_argon(folder, style):
+    """Path of the deck of two atoms of argon in units ``style``, with the numbers that it has in units lj."""
+    units, number = UNITS[style], "{:.17g}".format
+    length, energy = SIGMA / (units.angstrom * 1e-10), WELL * units.boltzmann
+    # 39.948 u in the mass of the style, from those of its energy, length and time
+    joule, speed = 1.380649e-23 / units.boltzmann, units.angstrom * 1e-10 / (units.ps * 1e-12)
+    mass = 39.948 * 1.66053907e-27 * speed**2 / (joule * units.energy)
+    if style == "lj":
+        length = energy = mass = 1.0
+    time = length * np.sqrt(mass * units.energy / energy)
+    text = DECK.format(
+        atoms=ATOMS.replace("0.5 0 9", f"{number(0.5 * length)} 0 {number(9 * length)}"),
+        extra="",
+        inner=number(6.0 * length),
+        cutoff=number(7.0 * length),
+    )
+    for old, new in {
+        "units lj": f"units {style}",
+        "-20 20 -20 20 -20 20": " ".join(number(x * length) for x in (-20, 20) * 3),
+        "mass 1 1.0": f"mass 1 {number(mass)}",
+        "pair_coeff 1 1 1.0 1.0": f"pair_coeff 1 1 {number(energy)} {number(length)}",
+        "0 0 -1\n": f"0 0 {number(-length / time)} units box\n",
+        "timestep 0.01": f"timestep {number(0.01 * time)}",
+        "tolerance 1e-10": f"tolerance {number(1e-10 * energy)}",
+    }.items():
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "in.argon").write_text(text)
+    return folder / "in.argon"
 
 
 def smoothed(r, inner=6.0, cutoff=7.0):

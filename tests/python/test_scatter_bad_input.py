@@ -1,5 +1,8 @@
 """gearquat scatter refuses what has no two bodies that meet and part, and says what is required."""
 
+import json
+import shutil
+
 import colliding
 import pytest
 from click.testing import CliRunner
@@ -59,6 +62,13 @@ OPTIONS = {
     "spheres and one energy": (("--energy", "1", "--sigma", "1"), "--sigma is for collision integrals"),
     "first alone": (("--temperature", "1", "--first", "3"), "--first needs --count"),
     "too far": (("--temperature", "1", "--largest", "7.5"), "a longer cutoff is required"),
+    "too near": (("--temperature", "1", "--largest", "1.5"), "a larger --largest is required, or --count"),
+    "far apart": (
+        [word for value in ("1", "2", "6.5") for word in ("--temperature", value)],
+        "--temperature 2 and 6.5: flights at one of them say little about the other",
+    ),
+    "no way to part": (("--temperature", "1", "--steps", "30"), "of 768 pilot flights have not parted within --steps"),
+    "a dump and new flights": (("--replay", "3", "--count", "8"), "--replay takes all settings from the folder --out"),
 }
 
 
@@ -95,14 +105,32 @@ def test_other_settings_in_the_folder(tmp_path):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     options = ("--largest", "3", "--count", "8", "--processes", "1", "--out", str(out))
     assert CliRunner().invoke(main, ["scatter", str(deck), "--temperature", "1", *options]).exit_code == 0
-    assert "flights of other settings (--temperature, the temperature of rotation)" in refused(
-        deck, "--temperature", "2", *options
-    )
+    assert "flights of other settings (--temperature)" in refused(deck, "--temperature", "2", *options)
     assert "flights of other settings (--seed)" in refused(deck, "--temperature", "1", "--seed", "2", *options)
     other = tmp_path / "other"
     second = [*options[:-1], str(other)]
     assert CliRunner().invoke(main, ["scatter", str(deck), "--temperature", "2", *second]).exit_code == 0
     words = refused("--merge", out, "--merge", other, "--out", tmp_path / "merged")
-    assert "(--temperature, the temperature of rotation): parts have to be made with the same deck and options" in words
+    assert "(--temperature): parts have to be made with the same deck and options" in words
     assert "temperature has to be left out" in refused("--merge", out, "--temperature", "1")
     assert "a folder with results" in refused("--merge", tmp_path)
+
+
+def test_flights_of_releases_that_drew_them_from_another_density(tmp_path):
+    """They are neither continued nor joined nor replayed, and nothing is changed."""
+    deck, new, old = colliding.write(tmp_path), tmp_path / "new", tmp_path / "old"
+    options = ("--temperature", "1", "--largest", "3", "--count", "8", "--processes", "1")
+    assert CliRunner().invoke(main, ["scatter", str(deck), *options, "--out", str(new)]).exit_code == 0
+    shutil.copytree(new, old)
+    settings = json.loads((old / "settings.json").read_text())
+    del settings["sampling"], settings["plan"]["s0"], settings["plan"]["s1"], settings["plan"]["power"]
+    settings["plan"] |= {"core": 1.5, "temperature": 1.0, "rotation": 1.0}
+    (old / "settings.json").write_text(json.dumps(settings))
+    before = {path.name: path.read_bytes() for path in old.iterdir()}
+    words = "old has flights of another release of gearquat scatter"
+    assert words in refused(deck, *options, "--out", old)
+    assert words in refused(deck, "--replay", "3", "--out", old)
+    for parts in ((old, new), (new, old)):
+        assert words in refused(*(word for part in parts for word in ("--merge", part)), "--out", tmp_path / "both")
+    assert {path.name: path.read_bytes() for path in old.iterdir()} == before
+    assert not (tmp_path / "both").exists()

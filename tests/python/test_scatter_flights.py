@@ -16,7 +16,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from lammps_gearquat.cli import main
-from lammps_gearquat.scatter import Plan, flights, open_pair
+from lammps_gearquat.scatter import Plan, flights, open_pair, store
+from lammps_gearquat.scatter.progress import Progress
+from lammps_gearquat.scatter.sampling import rotational, starts_of
+from gearquat_analysis import Poses, open_dump
+from gearquat_analysis.units import UNITS
 from running import EXAMPLES
 
 WHOLE = ("--temperature", "1", "--largest", "3", "--seed", "4")
@@ -40,15 +44,21 @@ def contents(out):
     return {name: (out / name).read_bytes() for name in ("flights.csv", "results.json")}
 
 
+def radial(b, energy):
+    """Function of the distance of two atoms of the deck: the part of their energy that is left for it to change."""
+    return lambda r: 1.0 - (b / r) ** 2 - colliding.smoothed(r) / energy
+
+
+def nearest(b, energy):
+    """Smallest distance of two atoms of the deck."""
+    inner, grid = radial(b, energy), np.linspace(7.0, 0.7, 4000)
+    first = np.argmax(inner(grid) < 0.0)
+    return brentq(inner, grid[first], grid[first - 1], xtol=1e-15)
+
+
 def deflection(b, energy):
     """Of two atoms of the deck, by quadrature, with r = r0 / sin(t)."""
-
-    def inner(r):
-        return 1.0 - (b / r) ** 2 - colliding.smoothed(r) / energy
-
-    grid = np.linspace(7.0, 0.7, 4000)
-    first = np.argmax(inner(grid) < 0.0)
-    closest = brentq(inner, grid[first], grid[first - 1], xtol=1e-15)
+    inner, closest = radial(b, energy), nearest(b, energy)
 
     def integrand(t):
         return b / closest * np.cos(t) / np.sqrt(inner(closest / np.sin(t)))
@@ -63,15 +73,16 @@ def deflection(b, energy):
 
 def test_deflection_of_atoms(tmp_path):
     with open_pair(colliding.write(tmp_path)) as pair:
-        for flight in flights.fly(pair, Plan((1,), 2.0, None, 0.0, 3.0), range(12), 10_000):
+        for flight in flights.fly(pair, Plan((1,), (2.0,), None, None, 3.0), range(12), 10_000):
             assert flight.fate == "parted" and flight.turnings == 1
             assert flight.angle == pytest.approx(deflection(flight.b, flight.energy), abs=2e-6)
             assert flight.error_energy < 1e-8 and flight.error_angular < 1e-8 and flight.error_momentum < 1e-13
+            assert flight.closest == pytest.approx(nearest(flight.b, flight.energy), abs=2e-4)
 
 
 def test_time_reversal(dumbbells):
     """Turned round, a flight ends with the velocities and angular momenta it began with."""
-    plan = Plan((2,), 2.0, None, 2.0, 2.0)
+    plan = Plan((2,), (2.0,), None, None, 2.0)
     for number in range(10):
         start = plan.start(dumbbells, number)
         end = dumbbells.fly(start)
@@ -84,14 +95,16 @@ def test_time_reversal(dumbbells):
 
 
 def test_a_flight_does_not_depend_on_those_before(dumbbells):
-    plan = Plan((2,), 2.0, None, 2.0, 2.0)
+    plan = Plan((2,), (2.0,), None, None, 2.0)
     every = flights.fly(dumbbells, plan, range(6), 10_000)
     assert flights.fly(dumbbells, plan, [5, 2], 10_000) == [every[5], every[2]]
 
 
 def test_poses(dumbbells):
     """A flight that meets nothing turns both bodies by what their rotation says."""
-    start = Plan((3,), 1.0, None, 1.0, 4.5).starts(dumbbells, [0], 4.45)[0][2]
+    number = np.arange(1)
+    random = np.full((1, rotational(dumbbells)), 0.3)
+    start = starts_of(dumbbells, 4.45 + number, 2.0 + number, 1.0 + number, random)[0][2]
     end = dumbbells.fly(start)
     assert end.velocity == pytest.approx(start.velocity, abs=1e-12)
     before, after = (dumbbells.turned(state.quaternion, dumbbells.bodies.shape) for state in (start, end))
@@ -141,7 +154,7 @@ def test_detailed_balance(tmp_path):
 
 
 def test_any_number_of_processes_and_parts(tmp_path):
-    """The same files on two processes, continued after having been cut off anywhere, and merged from eight parts."""
+    """The same files on two processes, continued after having been cut off anywhere, and merged from three parts."""
     deck = colliding.write(tmp_path)
     run(deck, tmp_path / "whole", *WHOLE, "--count", "120")
     expected = contents(tmp_path / "whole")
@@ -155,16 +168,16 @@ def test_any_number_of_processes_and_parts(tmp_path):
     assert contents(tmp_path / "two") == expected
 
     parts = []
-    for first in range(105, -1, -15):
+    for first in (80, 40, 0):
         out = tmp_path / f"part{first}"
-        run(deck, out, *WHOLE, "--first", str(first), "--count", "15")
+        run(deck, out, *WHOLE, "--first", str(first), "--count", "40")
         parts += ["--merge", str(out)]
     result = CliRunner().invoke(main, ["scatter", *parts, "--out", str(tmp_path / "merged")])
     assert result.exit_code == 0, result.output
     assert contents(tmp_path / "merged") == expected
 
     # and a gap that is filled later
-    run(deck, out, *WHOLE, "--first", "30", "--count", "90")
+    run(deck, out, *WHOLE, "--first", "60", "--count", "60")
     run(deck, out, *WHOLE, "--count", "120")
     assert contents(out) == expected
 
@@ -209,7 +222,7 @@ def test_it_flies_until_errors_are_small(tmp_path):
     for name in ("Omega(1,1)", "Omega(2,2)"):
         assert found["quantities"][name]["error"] <= 0.03 * found["quantities"][name]["value"]
     # what is beyond the largest impact parameter is a tenth of that
-    assert max(found["settings"]["largest"]["left"].values()) < 3e-3
+    assert max(found["settings"]["largest"]["left"][0].values()) < 3e-3
     assert 1.5 < found["settings"]["plan"]["largest"] < 3.0
     assert "orbiting" in output and {path.name for path in Path(tmp_path / "out").glob("*.png")} == {
         "deflection.png",
@@ -218,15 +231,19 @@ def test_it_flies_until_errors_are_small(tmp_path):
 
 
 def test_flights_that_never_part_are_named(tmp_path):
-    output = run(colliding.write(tmp_path), tmp_path / "out", *WHOLE, "--count", "32", "--steps", "180")
-    counts = json.loads((tmp_path / "out" / "results.json").read_text())["flights"]
-    assert 0 < counts["unparted"] < 32 and "Unparted: " in output
+    """They are few here, and no number of flights makes up for many."""
+    deck, out = colliding.write(tmp_path), tmp_path / "out"
+    output = run(deck, out, *WHOLE, "--count", "64", "--steps", "435")
+    counts = json.loads((out / "results.json").read_text())["flights"]
+    assert 0 < counts["unparted"] < 32 and "Unparted: " in output and "errors include all that they count" in output
+    result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), *WHOLE, "--steps", "435", "--error", "1e-3"])
+    assert result.exit_code == 1 and "more --steps are required, with another --out" in " ".join(result.output.split())
 
 
 def test_flights_that_lammps_ends_are_lost(tmp_path):
     """Here because the fix is refused."""
     with open_pair(colliding.write(tmp_path)) as pair:
-        plan = Plan((1,), 2.0, None, 0.0, 3.0)
+        plan = Plan((1,), (2.0,), None, None, 3.0)
         pair._command_of_fix = "fix move all gear/quat molecule tolerance -1 energy"
         (lost,) = flights.fly(pair, plan, [0], 1000)
         assert lost.fate == "lost" and "tolerance" in lost.message and np.isnan(lost.angle)
@@ -239,7 +256,7 @@ def test_lists_of_hybrid_styles():
     """In a flight every style has the neighbors that it would have in a new run at that place."""
     close = 0
     with open_pair(EXAMPLES / "collisions" / "in.nitrogen") as pair:
-        plan, lammps = Plan((1,), 300.0, None, 300.0, 5.0), pair.lammps
+        plan, lammps = Plan((1,), (300.0,), None, None, 5.0), pair.lammps
         for number in range(3):
             for steps in (300, 600, 900, 1200, 1500):
                 end = pair.fly(plan.start(pair, number), steps)
@@ -250,3 +267,139 @@ def test_lists_of_hybrid_styles():
                 assert error < 1e-6 * (1.0 + np.abs(before).max())
                 close += end.closest < 4.0
     assert close
+
+
+# --- units ----------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def reduced(tmp_path_factory):
+    """results.json of argon in units lj."""
+    folder = tmp_path_factory.mktemp("lj")
+    run(colliding.write_argon(folder, "lj"), folder / "out", "--temperature", "2", "--count", "32", "--sigma", "1")
+    return json.loads((folder / "out" / "results.json").read_text())
+
+
+@pytest.mark.parametrize("style", ["real", "si", "cgs", "electron", "micro"])
+def test_all_styles_of_units(tmp_path, style, reduced):
+    """The same collisions in other units: the same plan, the same integrals by those of spheres."""
+    sigma = colliding.SIGMA / (UNITS[style].angstrom * 1e-10)
+    deck, out = colliding.write_argon(tmp_path, style), tmp_path / "out"
+    run(deck, out, "--temperature", str(2.0 * colliding.WELL), "--count", "32", "--sigma", f"{sigma:.17g}")
+    found = json.loads((out / "results.json").read_text())
+    plan, other = found["settings"]["plan"], reduced["settings"]["plan"]
+    assert found["settings"]["pair"]["cutoff"] == pytest.approx(7.0 * sigma, rel=1e-6)
+    assert plan["largest"] == pytest.approx(sigma * other["largest"], rel=0.01)
+    for name in ("s0", "s1"):
+        assert plan[name] == pytest.approx(sigma**2 * other[name], rel=0.02)
+    for name in ("Omega(1,1)*", "Omega(2,2)*"):
+        value, exact = found["quantities"][name], reduced["quantities"][name]
+        assert value["value"] == pytest.approx(exact["value"], rel=0.02)
+        assert value["error"] == pytest.approx(exact["error"], rel=0.1)
+    # 0.78 uPa s of the units, m^(1/2) epsilon^(1/2) / sigma^2, in units of the SI
+    mass, thermal = 39.948 * 1.66053907e-27, 1.380649e-23 * colliding.WELL
+    unit = np.sqrt(mass * thermal) / colliding.SIGMA**2 * 1e6
+    assert found["quantities"]["viscosity"]["value"] == pytest.approx(
+        unit * reduced["quantities"]["viscosity"]["value"], rel=0.02
+    )
+
+
+# --- several temperatures -------------------------------------------------------------------------
+def test_several_temperatures_of_molecules(tmp_path):
+    """Averages agree with those of flights at each temperature alone, and rotation gains nothing."""
+    deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5)
+    options = ("--temperature", "2", "--temperature", "1", "--largest", "3", "--count", "768")
+    output = run(deck, tmp_path / "both", *options)
+    assert "temperatures 1, 2: 768 flights" in output and "temperature 1:" in output
+    both = json.loads((tmp_path / "both" / "results.json").read_text())["temperatures"]
+    assert [answer["temperature"] for answer in both] == [1.0, 2.0]
+    for answer in both:
+        out = tmp_path / f"alone{answer['temperature']:g}"
+        run(deck, out, "--temperature", f"{answer['temperature']:g}", "--largest", "3", "--count", "768", "--seed", "2")
+        alone = json.loads((out / "results.json").read_text())["quantities"]
+        for name in ("Omega(1,1)", "Omega(2,2)", "transfer"):
+            one, two = answer["quantities"][name], alone[name]
+            error = np.hypot(one["error"], two["error"])
+            assert abs(one["value"] - two["value"]) < 3.5 * error < 0.6 * two["value"], name
+        gain = answer["quantities"]["gain"]
+        assert abs(gain["value"]) < 3.5 * gain["error"]
+
+
+# --- one flight -----------------------------------------------------------------------------------
+def test_a_flight_as_a_dump(tmp_path):
+    """It is the flight of the table, and analysis reads it."""
+    deck, out = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5), tmp_path / "out"
+    run(deck, out, *WHOLE, "--count", "8")
+    columns = flights.columns(store.parse(store.read_lines(out)))
+    result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), "--replay", "5"])
+    assert result.exit_code == 0 and f"{columns['angle'][5]:.12g}, and" in result.output
+    universe = open_dump(out / "flight_5.dump")
+    times = [ts.time for ts in universe.trajectory]
+    assert len(times) == columns["steps"][5] + 1 and times[-1] == pytest.approx(columns["time"][5], rel=1e-12)
+    masses, relative, distances = universe.atoms.masses[:2], [], []
+    for _ in universe.trajectory:
+        centers, velocities = (
+            [masses @ array[2 * k : 2 * k + 2] / masses.sum() for k in (0, 1)]
+            for array in (universe.atoms.positions, universe.atoms.velocities)
+        )
+        relative.append(velocities[1] - velocities[0])
+        distances.append(np.linalg.norm(centers[1] - centers[0]))
+    before, after = relative[0], relative[-1]
+    angle = np.arctan2(np.linalg.norm(np.cross(before, after)), before @ after)
+    assert angle == pytest.approx(columns["angle"][5], abs=2e-6)  # MDAnalysis has seven digits
+    assert columns["closest"][5] == pytest.approx(min(distances), abs=2e-3)
+    assert len(Poses(universe.atoms).run().results.time) == len(times)
+
+
+def test_flights_that_cannot_be_replayed(tmp_path):
+    deck, out = colliding.write(tmp_path), tmp_path / "out"
+    run(deck, out, *WHOLE, "--first", "4", "--count", "8")
+
+    def refused(*options):
+        result = CliRunner().invoke(main, ["scatter", *map(str, options), "--out", str(out)])
+        assert result.exit_code == 1
+        return " ".join(result.output.split())
+
+    assert "has no flight 3: it has 8 flights, with numbers from 4 to 11" in refused(deck, "--replay", 3)
+    assert "temperature has to be left out" in refused(deck, "--replay", 5, "--temperature", 1)
+    assert "DECK is required" in refused("--replay", 5)
+    other = tmp_path / "in.other"
+    other.write_text(deck.read_text().replace("1.0 1.0", "1.1 1.0"))
+    assert "flights of other settings" in refused(other, "--replay", 5)
+    out = tmp_path / "nowhere"
+    assert "a folder with results" in refused(deck, "--replay", 5)
+
+
+# --- what is told ---------------------------------------------------------------------------------
+def test_lines_in_the_log_of_a_batch_job(capsys):
+    """One a minute, and whatever else there is to tell."""
+    now = [0.0]
+    with Progress(lambda: now[0]) as progress:
+        progress.begin("flights", 900, 100)
+        for _ in range(10):
+            now[0] += 20.0
+            progress.advance(90)
+        progress.tell("done")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == ["flights: 370 of 1000", "flights: 640 of 1000", "flights: 910 of 1000", "done"]
+
+
+def test_interrupted(tmp_path):
+    """Ctrl-C says that flights are kept, and the same command continues."""
+    deck, out = colliding.write(tmp_path), tmp_path / "out"
+    options = [*WHOLE, "--count", "4000", "--processes", "1", "--out", str(out)]
+    code = "from lammps_gearquat.cli import main; main()"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, "scatter", str(deck), *options],
+        start_new_session=True,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    table = out / "flights.csv"
+    while not (table.exists() and table.stat().st_size > 5000):
+        assert process.poll() is None
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == 130 and "Traceback" not in told
+    kept = len(table.read_bytes().splitlines()) - 1
+    assert f"Interrupted: {kept} flights are kept in {out}; the same command continues after them" in told
+    assert "of the" in run(deck, out, *WHOLE, "--count", "8")

@@ -9,9 +9,9 @@ from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, 
 from benchmarks.reference.central import CollisionIntegrals, Gromacs
 from benchmarks.studies.collisions import evaluations as work_at
 
-from . import flown, rivals
+from . import errors, flown, rivals
 
-PARTS = ("integrals", "molecules", "conservation", "reference", "methods")
+PARTS = ("integrals", "molecules", "conservation", "reference", "methods", "errors")
 #: reduced temperatures; in.argon has this diameter, well depth and these ends of the cut-off
 REDUCED = (0.5, 1.0, 2.0, 5.0, 10.0)
 SIGMA, WELL, CUT = 3.405, 119.8, (12.0, 30.0)
@@ -19,6 +19,8 @@ SIGMA, WELL, CUT = 3.405, 119.8, (12.0, 30.0)
 ERRORS = {"argon": (0.0018, 0.03), "nitrogen": (0.01, 0.04), "helium": (0.01, 0.04), "ion": (0.03, 0.1)}
 #: flights of the test of conservation, beside DOP853 (of each deck), and of each method
 FLIGHTS = {"conservation": (100_000, 1000), "reference": (100, 3), "methods": (10, 2)}
+#: seeds of the part on errors, of atoms and of molecules, and the errors that are asked for
+SEEDS = {"atoms": (errors.ATOMS, 3), "molecules": (errors.MOLECULES, 3), "asked": (errors.ASKED, errors.ASKED[:1])}
 EPS, STEPS = 10.0 ** -np.arange(5.0, 13.0), (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
 SOLVERS = dict.fromkeys(("DOP853", "LSODA"), 10.0 ** -np.arange(4.0, 14.0))
 QUICK_STEPS = STEPS[:3]
@@ -45,7 +47,7 @@ class Results:
 
     ``integrals``: reduced temperature -> Run; ``molecules``: name -> Run; ``conservation``: a Run;
     ``reference``: deck -> array (n, 4), see ``flown.beside_reference``; ``methods``: label -> array
-    (settings, 3), see ``rivals.points``.
+    (settings, 3), see ``rivals.points``; ``errors``: pair and error that was asked for -> rows of errors.py.
     """
 
     integrals: dict = None
@@ -53,6 +55,7 @@ class Results:
     conservation: flown.Run = None
     reference: dict = None
     methods: dict = None
+    errors: dict = None
 
 
 # --- measuring ----------------------------------------------------------------------------------
@@ -96,6 +99,15 @@ def _methods(lab, sized):
     steps = sized((STEPS, QUICK_STEPS))
     runs = len(EPS) + len(steps) + sum(map(len, SOLVERS.values()))
     return rivals.points(sized(FLIGHTS["methods"]), EPS, steps, SOLVERS, partial(lab.advance, 1 / runs))
+
+
+def _errors(lab, sized):
+    asked = sized(SEEDS["asked"])
+    parts = len(errors.CENTRAL) * len(asked) + len(errors.PAIRS) * len(asked)
+    tick = partial(lab.advance, 1 / parts)
+    folder = lab.out / ("errors_quick" if lab.quick else "errors")
+    found = errors.of_atoms(folder, sized(SEEDS["atoms"]), asked, tick)
+    return found | errors.of_molecules(folder, sized(SEEDS["molecules"]), asked, lab.jobs, tick)
 
 
 def measure(lab):
@@ -220,6 +232,31 @@ def _of_methods(points):
                 least = 10.0 if level == COMPARED[-1] else None
                 rows.append(Measurement(words, seconds[label][at] / ours, spec=".1f", least=least))
     return rows, tables
+
+
+def _of_errors(found):
+    """Measurements, table: deviations by the errors that were stated, over all seeds."""
+    cells, squares, outside = [], [], 0
+    for (name, asked), values in found.items():
+        exact = errors.reference(name, values)
+        for k, label in enumerate(("Ω(1,1)", "Ω(2,2)")):
+            value, error = values[:, 2 + 2 * k], values[:, 3 + 2 * k]
+            square = errors.squares(value, error, exact[k], name in errors.PAIRS)
+            within = errors.interval(len(square))
+            rms = np.sqrt(square.mean())
+            outside += not within[0] < rms < within[1]
+            squares.append(square)
+            numbers = (f"{values[:, 1].mean():.0f}", f"{value.std(ddof=1) / value.mean():.4f}")
+            stated = f"{np.sqrt((error**2).mean()) / value.mean():.4f}"
+            bounds = f"{within[0]:.2f} to {within[1]:.2f}"
+            cells.append((name, label, f"{asked:g}", str(len(square)), *numbers, stated, f"{rms:.2f}", bounds))
+    pooled = np.sqrt(np.concatenate(squares).mean())
+    header = ("pair", "integral", "--error", "seeds", "flights", "scatter", "stated", "rms z", "99.9 % of rms z")
+    rows = [
+        Measurement("rms deviation by the error that is stated, over all seeds", pooled, spec=".3f", least=0.9, most=1.1),
+        Measurement("pairs and errors whose rms deviation is outside of its interval", outside, spec=".0f", most=0),
+    ]
+    return rows, {"errors": Table(header, cells)}
 
 
 def find(results):

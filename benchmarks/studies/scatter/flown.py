@@ -81,7 +81,7 @@ def beside_reference(deck, temperature, largest, count, tick):
     rows = []
     with open_pair(DECKS / deck) as pair:
         encounter = encounter_of(deck, pair)
-        plan = Plan((2,), temperature, None, temperature, largest)
+        plan = Plan((2,), (temperature,), None, None, largest)
         for _, _, start in plan.starts(pair, range(count)):
             end = pair.fly(start)
             back = pair.fly(end.reversed())

@@ -96,7 +96,7 @@ def points(count, tolerances, steps, solvers, tick):
 
     found = {}
     with open_pair(DECKS / DECK) as pair:
-        driver, plan = Driver(pair), Plan((3,), TEMPERATURE, None, TEMPERATURE, LARGEST)
+        driver, plan = Driver(pair), Plan((3,), (TEMPERATURE,), None, None, LARGEST)
         starts = [start for _, _, start in plan.starts(pair, range(count))]
         name, ends = pair.line.id, []
         for start in starts:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import cloup
 
-from gearquat_analysis.options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
+from gearquat_analysis.options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option
 
 from ..trials.script import DeckError
 from ..trials.worker import TrialError
@@ -13,11 +13,19 @@ from .common import reading_options
 
 FROM_ZERO = cloup.IntRange(min=0)
 #: what flights need, and parts that are merged have
-OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count")
+OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count", "replay")
+#: what determines the flights of a folder, one of which is replayed
+OF_FOLDERS = ("temperature", "energy", "rotation", "largest", "sigma", "first", "count")
+#: the largest ratio of two temperatures that follow each other, of several
+GAP = 3.0
+#: exit status after Ctrl-C, as of a shell
+INTERRUPTED = 130
 
 
 @command(
     "gearquat scatter examples/collisions/in.argon --temperature 300 --error 0.1",
+    "gearquat scatter examples/collisions/in.argon --temperature 150 --temperature 300 --error 0.1 --out two",
+    "gearquat scatter examples/collisions/in.argon --replay 7 --out two",
     "gearquat scatter examples/collisions/in.argon --temperature 300 --largest 8 --count 200 --out part1",
     "gearquat scatter examples/collisions/in.argon --temperature 300 --largest 8 --first 200 --count 200 --out part2",
     "gearquat scatter --merge part1 --merge part2 --out whole",
@@ -25,7 +33,12 @@ OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count")
 @cloup.argument("deck", type=FILE, required=False, help="LAMMPS input script with two rigid bodies.")
 @cloup.option_group(
     "The collisions",
-    cloup.option("--temperature", type=POSITIVE, help="Temperature of the gas, in units of the deck."),
+    cloup.option(
+        "--temperature",
+        type=POSITIVE,
+        multiple=True,
+        help="Temperature of the gas, in units of the deck; repeatable: several from the same flights.",
+    ),
     cloup.option("--energy", type=POSITIVE, help="Instead of it, one energy of the relative translation."),
     cloup.option(
         "--rotation",
@@ -46,7 +59,7 @@ OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count")
         "--error",
         type=POSITIVE,
         default=0.01,
-        help="Fly until the relative standard errors of the first two quantities are this small.",
+        help="Simulate flights until the relative standard errors of the first two quantities are this small.",
     ),
     cloup.option("--most", type=COUNT, default=1_000_000, help="Flights after which --error is given up."),
     cloup.option("--first", type=FROM_ZERO, help="Number of the first flight, with --count.  Default: 0."),
@@ -54,7 +67,9 @@ OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count")
     cloup.option(
         "--steps", type=COUNT, default=200_000, help="Steps after which a flight is given up, as unparted."
     ),
-    cloup.option("--processes", type=COUNT, help="Processes that fly.  Default: one for each core."),
+    cloup.option(
+        "--processes", type=COUNT, help="Processes that simulate flights.  Default: one for each core."
+    ),
 )
 @reading_options()
 @cloup.option_group(
@@ -66,55 +81,90 @@ OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count")
         type=cloup.Path(exists=True, file_okay=False, path_type=Path),
         multiple=True,
         metavar="FOLDER",
-        help="Instead of flying, join the flights of this folder with those of others; repeatable.",
+        help="Instead of new flights, join those of this folder with those of others; repeatable.",
+    ),
+    cloup.option(
+        "--replay",
+        type=FROM_ZERO,
+        metavar="N",
+        help="Instead of new flights, write flight N of the folder --out as a LAMMPS dump into it.",
     ),
     out_option("gearquat-scatter", "flights.csv, results.json, deflection.png and convergence.png"),
 )
 @failing_clearly(DeckError, TrialError)
-def scatter(deck, variables, without, which, first, count, error, most, steps, parts, out, sigma, **asked):
+def scatter(deck, variables, without, which, parts, out, **asked):
     """Cross sections and collision integrals of the two rigid bodies of DECK.
 
     DECK is a LAMMPS input script with any pair style that has a cutoff, and with a fix gear/quat with
     tolerance that moves two bodies in a box that is not periodic.  The command follows it
-    up to its run, and makes thousands of flights instead of that run.  Impact parameters, velocities, orientations and angular momenta
-    are drawn evenly, and every average comes with its standard error.  A run that was ended goes on where it
-    was if it is started again.
+    up to its run, and simulates thousands of flights instead of that run.  Impact parameters and energies are drawn
+    where they count most, orientations and angular momenta evenly, and every average comes with its standard error.
+    A run that was ended continues if it is started again.
     """
     from ..scatter import conduct
+    from ..scatter.replay import replay
 
+    scene = {"path": deck, "variables": variables, "without": without, "which": which}
+    if deck is None and not parts:
+        raise DeckError("DECK is required, or --merge with the folders to join")
     if parts:
-        _refuse({"deck": deck, "first": first, "count": count, **asked})
-        text = conduct.merge(parts, out, sigma)
+        _refuse(asked | {"deck": deck}, OF_FLIGHTS, "--merge joins flights that exist")
+        text = conduct.merge(parts, out, asked["sigma"])
+    elif asked["replay"] is not None:
+        _refuse(asked, OF_FOLDERS, "--replay takes all settings from the folder --out")
+        cloup.echo(replay(scene, out, asked["replay"]))
+        return
     else:
-        asked = _settled(deck, first, count, sigma, asked)
-        scene = {"path": deck, "variables": variables, "without": without, "which": which}
-        numbers = count and range(first or 0, (first or 0) + count)
-        with progress_bar(total=0, unit=" flights", desc="reading the deck") as progress:
-            task = {**asked, "most_steps": steps, "sigma": sigma}
-            text = conduct.scatter(scene, task, numbers, error, most, out, progress)
+        text = _flights(scene, _settled(asked), out, conduct)
     cloup.echo(f"{text}\n\nTables and pictures are in {out.resolve()}")
 
 
-def _refuse(given):
-    """Options that are about flights do not go with --merge."""
-    for name in OF_FLIGHTS:
-        if given[name] is not None:
-            raise DeckError(f"--merge joins flights that were flown: {name} has to be left out")
+def _flights(scene, asked, out, conduct):
+    """Simulate flights of the ``scene``; results as text."""
+    from ..scatter.progress import Progress
+    from ..scatter.store import read_lines
+
+    count, first = asked["count"], asked["first"] or 0
+    numbers = count and range(first, first + count)
+    task = asked | {"most_steps": asked["steps"]}
+    try:
+        with Progress() as progress:
+            return conduct.scatter(scene, task, numbers, asked["error"], asked["most"], out, progress)
+    except KeyboardInterrupt as interrupt:
+        number = len(read_lines(out))
+        kept = "no flight has ended" if not number else f"{number} flights are kept in {out.resolve()}"
+        cloup.echo(f"\nInterrupted: {kept}; the same command continues after them", err=True)
+        raise SystemExit(INTERRUPTED) from interrupt
 
 
-def _settled(deck, first, count, sigma, asked):
+def _refuse(given, names, why):
+    """Options that ``why`` leaves without meaning."""
+    for name in names:
+        if given[name] not in (None, ()):
+            raise DeckError(f"{why}: {name} has to be left out")
+
+
+def _settled(asked):
     """``asked`` with its defaults.  Raises DeckError for what does not go together."""
-    if deck is None:
-        raise DeckError("DECK is required, or --merge with the folders to join")
-    if asked["temperature"] is None and asked["energy"] is None:
+    asked = asked | {"temperature": tuple(sorted(set(asked["temperature"])))}
+    temperatures, energy, rotation = asked["temperature"], asked["energy"], asked["rotation"]
+    if not temperatures and energy is None:
         raise DeckError("either --temperature or --energy is required")
-    if asked["temperature"] is not None and asked["energy"] is not None:
+    if temperatures and energy is not None:
         raise DeckError("not both --temperature and --energy: translation has either of them")
-    if sigma is not None and asked["energy"] is not None:
+    if asked["sigma"] is not None and energy is not None:
         raise DeckError("--sigma is for collision integrals at a temperature: it has to be left out with --energy")
-    if first is not None and count is None:
+    if asked["first"] is not None and asked["count"] is None:
         raise DeckError("--first needs --count, the number of flights")
-    if asked["rotation"] is None:
-        asked["rotation"] = asked["temperature"] or 0.0
+    for low, high in zip(temperatures, temperatures[1:]):
+        if high > GAP * low * (1.0 + 1e-12):
+            raise DeckError(
+                f"--temperature {low:g} and {high:g}: flights at one of them say little about the other, because they are"
+                f" more than a factor of {GAP:g} apart; a temperature between them is required, or a run for each"
+            )
+    if energy is not None:
+        asked |= {"temperature": None, "rotation": rotation or 0.0}
+    elif temperatures == (rotation,):
+        asked["rotation"] = None  # that of translation
     asked["processes"] = asked["processes"] or len(os.sched_getaffinity(0))
     return asked

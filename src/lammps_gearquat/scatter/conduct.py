@@ -6,7 +6,7 @@ from gearquat_analysis.units import UNITS
 
 from .. import figures
 from ..trials.script import DeckError
-from . import flights, largest, report, store
+from . import flights, pilots, report, store
 from .pool import Pool
 from .results import convergence, results
 from .sampling import REPLICAS, Plan
@@ -18,83 +18,126 @@ LEFT_OUT = 0.1
 
 
 def scatter(scene, asked, numbers, error, most, out, progress):
-    """Fly, and write the results into the folder ``out``; returns them as text.
+    """Simulate flights, and write the results into the folder ``out``; returns them as text.
 
-    ``scene``: arguments of ``open_pair``; ``asked``: seed, temperature, energy, rotation, largest, most_steps,
-    processes and sigma; ``numbers``, a range of flights, or None: until all relative standard errors are at most
-    ``error``, or ``most`` flights; ``progress`` is a bar.  Raises DeckError and TrialError.
+    ``scene``: arguments of ``open_pair``; ``asked``: those of ``simulate`` with processes, most_steps and sigma;
+    the others are those of ``simulate``.  Raises DeckError and TrialError.
     """
     with Pool(scene, asked["processes"], asked["most_steps"]) as pool:
-        progress.set_description("largest impact parameter")
-        plan, wanted = _settle(pool, asked, error, out)
-        store.begin(out, wanted)
-        progress.set_description("flights")
-        rows = _until(pool, plan, numbers, error, most, out, progress, asked["sigma"])
+        wanted, rows = simulate(pool, asked, numbers, error, most, out, progress)
     text, others = conclude(out, wanted, rows, asked["sigma"]), numbers and len(rows) - len(numbers)
     if others:
         text += f"\n{others} of the {len(rows)} flights were in the folder before and are not among those asked for"
     return text
 
 
-def _settle(pool, asked, error, out):
-    """The Plan with its largest impact parameter, and the settings.
+def simulate(pool, asked, numbers, error, most, out, progress):
+    """Simulate flights in a Pool and keep them in the folder ``out``; (settings, rows of all flights there).
+
+    ``asked``: seed, temperature (a rising tuple), energy, rotation and largest; ``numbers``, a range of flights, or None:
+    until all relative standard errors are at most ``error``, or ``most`` flights; ``progress``, a Progress.
+    """
+    plan, farthest, wanted = _settle(pool, asked, error, out, progress)
+    if not numbers:
+        _reachable(farthest, error, asked["largest"])
+    store.begin(out, wanted)
+    return wanted, _until(pool, plan, farthest, numbers, error, most, out, progress)
+
+
+def _settle(pool, asked, error, out, progress):
+    """(Plan, Largest, settings), from pilot flights.
 
     If the folder has flights of the same settings, with an impact parameter that is large enough, it stays.
     """
-    scale = asked["energy"]
-    if scale is None:
-        scale = UNITS[pool.facts.style].boltzmann * asked["temperature"]
-    pool.check(scale)
+    boltzmann = UNITS[pool.facts.style].boltzmann
     plan = Plan((asked["seed"],), asked["temperature"], asked["energy"], asked["rotation"], 0.0)
-    allowed, steps = LEFT_OUT * error, asked["most_steps"]
+    pool.check(plan.scales(boltzmann)[0])
+    allowed, steps = LEFT_OUT * error, pool.most_steps
     if (out / store.SETTINGS).exists():
         known = store.read_settings(out)
-        _, _, farthest = store.facts_of(known)
-        plan_then = replace(plan, largest=farthest.value, core=farthest.core)
-        enough = farthest.left and max(farthest.left.values()) <= allowed
-        if enough and not asked["largest"] and store.settings(pool.facts, plan_then, farthest, steps) == known:
-            return plan_then, known
+        _, then, farthest = store.facts_of(known)
+        same = {name: getattr(then, name) for name in ("largest", "s0", "s1", "power")}
+        if asked["largest"]:
+            enough = then.largest == asked["largest"]
+        else:
+            enough = farthest.highest() is not None and farthest.highest() <= allowed
+        if enough and store.settings(pool.facts, replace(plan, **same), farthest, steps) == known:
+            return then, farthest, known
     if asked["largest"]:
-        farthest = largest.given(pool.facts, asked["largest"])
-    else:
-        farthest = largest.find(pool, plan, scale, allowed)
-    plan = replace(plan, largest=farthest.value, core=farthest.core)
-    return plan, store.settings(pool.facts, plan, farthest, steps)
+        pilots.within_cutoff(pool.facts, asked["largest"])
+    progress.begin("pilot flights", pilots.number_of(plan, boltzmann))
+    places, columns = pool.pilots(plan, progress.advance)
+    plan, farthest = pilots.settle(plan, pool.facts, places, columns, boltzmann, allowed, asked["largest"])
+    return plan, farthest, store.settings(pool.facts, plan, farthest, steps)
 
 
-def _until(pool, plan, numbers, error, most, out, progress, sigma):
+def _reachable(farthest, error, given):
+    """Raise DeckError if the error that is asked for cannot be reached because of what --largest leaves out."""
+    left = max((one["momentum"] or 0.0) for one in farthest.left)
+    left = max(left, *((one["viscosity"] or 0.0) for one in farthest.left))
+    if given and left >= error:
+        raise DeckError(
+            f"--largest {given:g}: {left:.1e} of the whole is beyond it, so that no number of flights makes errors as small"
+            f" as {error:g}; a larger --largest is required, or --count, the number of flights"
+        )
+
+
+def rounds(most):
+    """Numbers of flights after which errors are looked at."""
+    number = min(FIRST_ROUND, most)
+    while number < most:
+        yield number
+        number = min(2 * number, most)
+    yield number
+
+
+def _until(pool, plan, farthest, numbers, error, most, out, progress):
     """Rows of all flights of the folder, in their order, after those that were asked for."""
     lines = store.read_lines(out)
     known = {store.number_of(line): row for line, row in zip(lines, store.parse(lines))}
     last, ordered = max(known, default=-1), list(known) == sorted(known)
     with store.Writer(out) as writer:
-        wanted = numbers or range(min(FIRST_ROUND, most))
-        while True:
+        for wanted in [numbers] if numbers else map(range, rounds(most)):
             missing = [number for number in wanted if number not in known]
-            progress.total = progress.n + len(missing)
+            progress.begin("flights", len(missing), len(wanted) - len(missing))
             for some in pool.fly(plan, missing):
                 known |= {flight.flight: row for flight, row in zip(some, writer.append(some))}
-                progress.update(len(some))
+                progress.advance(len(some))
             ordered, last = ordered and (not missing or missing[0] > last), max(known)
-            if numbers or len(wanted) >= most:
+            if numbers:
                 break
-            rows = [known[number] for number in wanted]
-            if results(flights.columns(rows), plan, pool.facts, sigma).relative <= error:
+            columns = flights.columns([known[number] for number in wanted])
+            found = results(columns, plan, pool.facts, left=farthest.left)
+            progress.tell(report.so_far(found, error))
+            if found.relative <= error:
                 break
-            wanted = range(min(2 * len(wanted), most))
+            _finished(found, error)
     if not ordered:
         store.rewrite(out, known)
     return [known[number] for number in sorted(known)]
+
+
+def _finished(found, error):
+    """Raise DeckError if flights that have not parted do not let errors become as small as asked for."""
+    if found.guessed > error:
+        raise DeckError(
+            f"{report.unfinished(found)}; they are {found.guessed:.1e} of the averages, more than --error {error:g}, and no"
+            " number of flights changes that: more --steps are required, with another --out"
+        )
 
 
 def conclude(out, settings, rows, sigma):
     """Write results.json and the pictures; the results as text."""
     facts, plan, farthest = store.facts_of(settings)
     columns = flights.columns(rows)
-    found = results(columns, plan, facts, sigma)
+    found = results(columns, plan, facts, sigma, farthest.left)
     store.write_json(out / store.RESULTS, report.as_json(settings, found))
     figures.draw_deflection(out / "deflection.png", facts.name, columns, plan, UNITS[facts.style])
-    figures.draw_convergence(out / "convergence.png", facts.name, *convergence(columns, plan, facts))
+    shown = {
+        report.condition(temperature, facts.style): convergence(columns, plan, facts, temperature)
+        for temperature in dict.fromkeys((plan.conditions[0], plan.conditions[-1]))
+    }
+    figures.draw_convergence(out / "convergence.png", facts.name, shown)
     return report.text(facts, plan, farthest, found)
 
 

@@ -5,6 +5,7 @@ from dataclasses import astuple, dataclass, fields
 import numpy as np
 
 from .pair import cross
+from .sampling import starts_of
 
 WORDS = ("fate", "message")
 WHOLE = ("flight", "turnings", "steps", "repeats")
@@ -58,10 +59,16 @@ def columns(rows):
     return {name: np.array(values, dtype=kinds.get(name, float)) for name, values in table.items()}
 
 
-def fly(pair, plan, numbers, most_steps, b=None):
-    """List of the Flights with these numbers; ``b``: all with this impact parameter."""
-    planned = plan.starts(pair, numbers, b)
+def fly(pair, plan, numbers, most_steps):
+    """List of the Flights with these numbers."""
+    planned = plan.starts(pair, numbers)
     return [judge(pair, number, one, pair.fly(one[2], most_steps)) for number, one in zip(numbers, planned)]
+
+
+def fly_pilots(pair, b, energy, thermal, random, most_steps):
+    """List of Flights with impact parameters, energies and kT of rotation (n,); ``random`` (n, m), what else is drawn."""
+    planned = starts_of(pair, b, energy, thermal, random)
+    return [judge(pair, 0, one, pair.fly(one[2], most_steps)) for one in planned]
 
 
 def judge(pair, number, planned, end):

@@ -71,11 +71,11 @@ def reduced(facts, temperature, sigma):
     }
 
 
-def derived(facts, plan, sigma=None):
-    """Name -> (function of the means, unit, what it is) of all that applies to this pair."""
-    if plan.energy is not None:
+def derived(facts, temperature, sigma=None):
+    """Name -> (function of the means, unit, what it is) of all that applies to this pair; nothing without temperature."""
+    if temperature is None:
         return {}
-    found, temperature = ratios(), plan.temperature
+    found = ratios()
     if sigma:
         found = reduced(facts, temperature, sigma) | found
     si = facts.style != "lj"
@@ -96,11 +96,11 @@ def derived(facts, plan, sigma=None):
     return found
 
 
-def derived_estimates(averages, facts, plan, sigma=None):
+def derived_estimates(averages, facts, temperature, sigma=None):
     """Name -> Estimate of all that is derived from the means."""
     return {
         name: Estimate(*averages.of(function), unit, about)
-        for name, (function, unit, about) in derived(facts, plan, sigma).items()
+        for name, (function, unit, about) in derived(facts, temperature, sigma).items()
     }
 
 

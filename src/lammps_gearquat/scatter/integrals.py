@@ -23,7 +23,8 @@ first order in d cancels:
 The mean of this F_22 is that of x^2 sin^2 chi + d^2 / 3 - d^2 sin^2 chi / 2, the form of L. Monchick, K. S.
 Yun and E. A. Mason, J. Chem. Phys. 39, 654 (1963).
 
-Flights that have not parted count as if they had left in all directions alike, without transfer of energy.
+Flights that have not parted count as if they had left in all directions alike, without transfer of energy.  Errors
+include all that these flights contribute, and what lies beyond the largest impact parameter.
 """
 
 from dataclasses import dataclass
@@ -32,8 +33,16 @@ import numpy as np
 
 from gearquat_analysis.units import UNITS
 
-from .sampling import REPLICAS, weight
+from .sampling import REPLICAS
 
+#: replicas without which there is no standard error
+LEAST = 4
+#: the loss that a mean is proportional to; see pilots.py
+LOSS = {
+    **dict.fromkeys(("Q(1)", "cross section", "Omega(1,1)", "Omega(1,2)"), "momentum"),
+    **dict.fromkeys(("Q(2)", "Omega(2,2)"), "viscosity"),
+    **dict.fromkeys(("transfer", "gain"), "rotation"),
+}
 #: mean of sin^2 and of cos over all directions
 ISOTROPIC = (2.0 / 3.0, 0.0)
 
@@ -98,18 +107,27 @@ def thermal_speed(facts, temperature):
     return np.sqrt(units.boltzmann * temperature / (2.0 * np.pi * facts.reduced_mass * units.energy))
 
 
-def integrands(columns, plan, facts):
-    """Name -> (integrand (n,), unit, what it is): their means over flights are the quantities."""
-    if plan.energy is not None:
-        return _at_energy(columns, plan, facts)
-    return _at_temperature(columns, plan, facts)
+def integrands(columns, plan, facts, temperature):
+    """Name -> (integrand (n,), unit, what it is): their means over flights are the quantities.
 
-
-def _at_energy(columns, plan, facts):
-    pairs, area = Collisions.of(columns, plan.energy), plan.area(columns["b"])
+    ``temperature``, one of those of the plan; None for one energy.
+    """
+    area = weights(columns, plan, facts, temperature)
+    if temperature is None:
+        pairs = Collisions.of(columns, plan.energy)
+        found = {
+            "Q(1)": (area * pairs.change(0), "length^2", "momentum-transfer cross section"),
+            "Q(2)": (area * pairs.f22, "length^2", "viscosity cross section"),
+        }
+        return found | _of_rotation(area, pairs, facts)
+    pairs = Collisions.of(columns, UNITS[facts.style].boltzmann * temperature, plan.balanced(facts.freedoms))
+    speed = thermal_speed(facts, temperature)
+    part, unit = 0.5 * area, "length^3/time"
     found = {
-        "Q(1)": (area * pairs.change(0), "length^2", "momentum-transfer cross section"),
-        "Q(2)": (area * pairs.f22, "length^2", "viscosity cross section"),
+        "cross section": (part * pairs.change(0), "length^2", "averaged over energies and orientations"),
+        "Omega(1,1)": (speed * part * pairs.change(0), unit, "collision integral of diffusion"),
+        "Omega(2,2)": (speed * part * pairs.f22, unit, "collision integral of viscosity"),
+        "Omega(1,2)": (speed * part * pairs.change(1), unit, "collision integral of thermal diffusion"),
     }
     return found | _of_rotation(area, pairs, facts)
 
@@ -124,30 +142,34 @@ def _of_rotation(area, pairs, facts):
     }
 
 
-def _at_temperature(columns, plan, facts):
-    units, area = UNITS[facts.style], plan.area(columns["b"])
-    balanced = plan.rotation == plan.temperature or not any(facts.freedoms)
-    pairs = Collisions.of(columns, units.boltzmann * plan.temperature, balanced)
-    speed = thermal_speed(facts, plan.temperature)
-    area = area * weight(pairs.x, facts.moments)
-    part, unit = 0.5 * area, "length^3/time"
-    found = {
-        "cross section": (part * pairs.change(0), "length^2", "averaged over energies and orientations"),
-        "Omega(1,1)": (speed * part * pairs.change(0), unit, "collision integral of diffusion"),
-        "Omega(2,2)": (speed * part * pairs.f22, unit, "collision integral of viscosity"),
-        "Omega(1,2)": (speed * part * pairs.change(1), unit, "collision integral of thermal diffusion"),
-    }
-    return found | _of_rotation(area, pairs, facts)
+def weights(columns, plan, facts, temperature):
+    """The area (n,) that each flight represents, times the flux x exp(-x) by the density of its start; see density.py."""
+    boltzmann = UNITS[facts.style].boltzmann
+    density, energy = plan.density(boltzmann), columns["energy"]
+    area = density.area(columns["b"], energy)
+    if temperature is None:
+        return area
+    scale = boltzmann * temperature
+    flux, drawn = energy / scale**2 * np.exp(-energy / scale), density.densities(energy)
+    if plan.mixes_rotation(facts.freedoms):
+        rotation, scales = columns["rotation_1"] + columns["rotation_2"], np.array(density.scales)[:, None]
+        # densities of all angular momenta, by that of the highest temperature
+        own = (scales / scales[-1]) ** (-0.5 * sum(facts.freedoms))
+        own = own * np.exp(-rotation * (1.0 / scales - 1.0 / scales[-1]))
+        flux, drawn = flux * own[plan.temperature.index(temperature)], drawn * own
+    return area * flux / (density.shares @ drawn)
 
 
 class Averages:
     """Means of integrands over flights, of all and with one replica left out.
 
-    ``means`` (1 + R, m): the first row is that of all; ``names`` (m,), in that order.
+    ``means`` (1 + R, m): the first row is that of all; ``names`` (m,), in that order.  ``shifts``: factors (m,),
+    one array for each systematic error; what they change adds to the standard errors.
     """
 
-    def __init__(self, numbers, found):
-        """``numbers`` (n,) of the flights; ``found``: name -> (integrand (n,), ...)."""
+    def __init__(self, numbers, found, finished=None, left=None):
+        """``numbers`` (n,) of the flights; ``found``: name -> (integrand (n,), ...); ``finished`` (n,), whether
+        flights have parted; ``left``: loss -> part beyond the largest impact parameter, None where it is not known."""
         self.names = list(found)
         values = np.column_stack([entry[0] for entry in found.values()])
         replica = np.asarray(numbers) % REPLICAS
@@ -160,14 +182,32 @@ class Averages:
         total, number = sums.sum(axis=0), counts.sum()
         with np.errstate(invalid="ignore", divide="ignore"):
             self.means = np.vstack([total / number, (total - sums) / (number - counts)])
+            gone = 0.0 if finished is None else values[~np.asarray(finished)].sum(axis=0) / total
+        #: name -> part of the mean that comes from flights that have not parted
+        self.unfinished = dict(zip(self.names, np.nan_to_num(np.broadcast_to(gone, total.shape)).tolist()))
+        unknown = [*(left or {}).items(), *self._guessed().items()]
+        self.shifts = [
+            np.array([1.0 + part if LOSS.get(name) == loss else 1.0 for name in self.names])
+            for loss, part in unknown
+            if part
+        ]
+
+    def _guessed(self):
+        """Loss -> part that comes from flights that have not parted; of rotation, whose gain is then 0, the largest."""
+        parts = {}
+        for name, part in self.unfinished.items():
+            loss = LOSS.get(name)
+            parts[loss] = max(parts.get(loss, 0.0), abs(part))
+        return parts | {"rotation": max(parts.values())}
 
     def of(self, function):
         """(value, standard error) of a function of the dictionary name -> mean, by the jackknife."""
         values = np.array([function(dict(zip(self.names, row))) for row in self.means])
-        return float(values[0]), _spread(values[1:])
+        shifted = [function(dict(zip(self.names, self.means[0] * row))) - values[0] for row in self.shifts]
+        return float(values[0]), float(np.linalg.norm([_spread(values[1:]), *shifted]))
 
     def correlations(self, names):
-        """Matrix (k, k) of the correlations between the errors of ``names`` (k,)."""
+        """Matrix (k, k) of the correlations between the statistical errors of ``names`` (k,)."""
         if self.replicas < 2:
             return np.full((len(names), len(names)), np.nan)
         kept = self.means[1:, [self.names.index(name) for name in names]]
@@ -176,11 +216,16 @@ class Averages:
 
 
 def _spread(values):
-    """Standard error from values that leave out one replica each."""
+    """Standard error from values that leave out one replica each, nan for fewer than LEAST of them.
+
+    The factor (R - 1) / (R - 3) makes it that of Student's distribution with R - 1 degrees of freedom, which the value
+    by the jackknife's error has.
+    """
     number = len(values)
-    if number < 2:
+    if number < LEAST:
         return np.nan
-    return float(np.sqrt((number - 1) / number * ((values - values.mean()) ** 2).sum()))
+    square = (number - 1) / number * ((values - values.mean()) ** 2).sum()
+    return float(np.sqrt(square * (number - 1) / (number - 3)))
 
 
 def estimates(averages, found):

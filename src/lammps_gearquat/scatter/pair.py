@@ -21,14 +21,13 @@ from gearquat_analysis.units import UNITS
 from ..trials import process
 from ..trials.interpreter import Interpreter
 from ..trials.script import DeckError
+from .track import STEPS, Track
 
 #: a flight begins and ends so much farther apart than the bodies can feel each other: several first steps, for
 #: the derivatives of the start know nothing of a force that begins within its step
 MARGIN = 1.05
 #: what the first step may be: part of the way to the place of the encounter, and angle in radians
 FIRST_STEP, FIRST_TURN = 0.01, 0.05
-#: steps between two looks at the distance
-STEPS = 20
 #: parts of the sum of all forces that count as rounding, where the force on a body should be zero
 ROUNDING = 1e-12
 #: keywords of the fix that say where bodies are or what acts on them, which is the command's to say
@@ -38,6 +37,8 @@ IDLE = re.compile(r"property/atom|store/.*|dt/reset")
 #: properties of atoms that turn with a body and that a flight would have to place
 EXTENDED = ("radius", "mu", "ellipsoid", "line", "tri", "body")
 UNTURNED = (1.0, 0.0, 0.0, 0.0)
+#: ID of the dump of a flight
+DUMP = "gearquat_flight"
 _CUTOFF = re.compile(r"master list distance cutoff = (\S+)")
 
 
@@ -61,8 +62,8 @@ class End(Start):
     """The bodies after a flight, and what it was like.
 
     ``time`` since the start; ``steps`` and ``repeats``, numbers of them; ``turnings``, how often the
-    radial velocity had changed its sign, and ``closest``, the smallest distance, both as seen every STEPS
-    steps; ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
+    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py;
+    ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
     flight with ``message``.
     """
 
@@ -215,6 +216,9 @@ class Pair:
         self._kinds = np.column_stack([types if charges is None else charges, types])[bodies.index]
         self.weights = np.zeros((2, len(bodies.index)))
         self.weights[bodies.of, bodies.index] = bodies.masses / bodies.mass[bodies.of]
+        # forces on sites to accelerations of centers
+        self._pulls = np.zeros_like(self.weights)
+        self._pulls[bodies.of, bodies.index] = 1.0 / (bodies.mass[bodies.of] * self.units.energy)
 
     @property
     def identical(self):
@@ -237,14 +241,14 @@ class Pair:
                 "pair_modify neigh/trim no",
                 "atom_modify sort 0 0.0",
                 "change_box all boundary s s s",
-                "neighbor 1.0 nsq",
+                "neighbor 0.0 nsq",  # a skin may be many times the cutoff, as in units si
                 "neigh_modify delay 0 every 1 check yes",
             ]
         )
         self._command("run 0 post no")
         lammps.command("log none")
         *_, listed = _CUTOFF.findall(log.read_text(encoding="utf-8", errors="replace"))
-        self.cutoff = float(listed) - 1.0
+        self.cutoff = float(listed)
         self.reach = MARGIN * (self.cutoff + self.extent.sum())
         # no list is ever renewed: it has all pairs of sites
         lammps.command(f"neighbor {6.0 * self.reach:.17g} nsq")
@@ -313,42 +317,56 @@ class Pair:
         turning = np.linalg.norm(omega, axis=1).max()
         return 1.0 / (speed / (FIRST_STEP * self.reach) + turning / FIRST_TURN)
 
-    def fly(self, start, most_steps=1_000_000):
-        """End of the flight from ``start``, which has parted when the bodies go apart beyond ``reach``."""
+    def fly(self, start, most_steps=1_000_000, dump=None):
+        """End of the flight from ``start``, which has parted when the bodies go apart beyond ``reach``.
+
+        ``dump``: path of a file that gets all steps.
+        """
         if not self.lammps:
             self._open()
         try:
-            return self._fly(start, most_steps)
+            return self._fly(start, most_steps, dump)
         except DeckError as error:
             self.close()
             return End(
                 start.center, start.velocity, start.quaternion, start.momentum, *([0] * 5), "lost", str(error)
             )
 
-    def _fly(self, start, most_steps):
+    def _fly(self, start, most_steps, dump):
         command = self.lammps.command
         command(f"unfix {self.line.id}")
         command("reset_timestep 0 time 0.0")
         omega = self._place(start)
         command(f"timestep {self._first_step(start, omega):.17g}")
         self._command(self._command_of_fix)
-        self._command(f"run {STEPS} post no")
-        positions, velocities = (self.lammps.numpy.extract_atom(name)[: len(self._tags)] for name in "xv")
-        steps, turnings, before, closest, beyond = STEPS, 0, -1.0, np.inf, self.reach**2
+        if dump:
+            self._dump(dump)
+        run = f"run {STEPS} post no"
+        positions, velocities, forces = (self.lammps.numpy.extract_atom(name)[: len(self._tags)] for name in "xvf")
+        track = Track(start.center[1] - start.center[0], start.velocity[1] - start.velocity[0])
+        steps, beyond = 0, self.reach**2
         while True:
-            (one, two), (v_one, v_two) = self.weights @ positions, self.weights @ velocities
-            away = two - one
-            square, radial = away @ away, away @ (v_two - v_one)
-            closest = min(closest, square)
-            if radial * before < 0.0:
-                turnings, before = turnings + 1, radial
-            if (square >= beyond and radial > 0.0) or steps >= most_steps:
-                break
-            self._command(f"run {STEPS} pre no post no")
+            self._command(run)
             steps += STEPS
-        return self._end(positions, velocities, steps, turnings, float(np.sqrt(closest)), bool(square >= beyond))
+            (one, two), (v_one, v_two) = self.weights @ positions, self.weights @ velocities
+            pull_one, pull_two = self._pulls @ forces
+            away, velocity = two - one, v_two - v_one
+            track.look(self.lammps.get_thermo("time"), away, velocity, pull_two - pull_one)
+            gone = away @ away >= beyond and away @ velocity > 0.0
+            if gone or steps >= most_steps:
+                break
+            run = f"run {STEPS} pre no post no"
+        if dump:
+            command(f"undump {DUMP}")
+        return self._end(positions, velocities, steps, track, bool(away @ away >= beyond))
 
-    def _end(self, positions, velocities, steps, turnings, closest, parted):
+    def _dump(self, path):
+        """Write all steps from now on into a LAMMPS dump, with all digits."""
+        columns = "id mol type mass x y z vx vy vz"
+        self._command(f'dump {DUMP} all custom 1 "{path}" {columns}')
+        self.lammps.command(f"dump_modify {DUMP} sort id time yes units yes format float %.17g")
+
+    def _end(self, positions, velocities, steps, track, parted):
         """End of the flight at hand."""
         bodies = self.bodies
         x, v = positions[bodies.index], velocities[bodies.index]
@@ -367,8 +385,8 @@ class Pair:
             self.lammps.get_thermo("time"),
             steps,
             int(self.lammps.extract_fix(self.line.id, 0, 1, 15)),
-            turnings,
-            closest,
+            track.turnings,
+            track.closest,
             "parted" if parted else "unparted",
         )
 

@@ -4,15 +4,20 @@ A flight depends on its number only, so the number of processes changes nothing 
 """
 
 import os
+import signal
 import threading
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from multiprocessing import get_context, parent_process
+from multiprocessing import active_children, get_context, parent_process
+
+from gearquat_analysis.units import UNITS
 
 from ..trials.worker import TrialError
 from . import cutoff, flights
 from .pair import open_pair
+from .pilots import cells, nearest_thermal
+from .sampling import rotational
 
 #: flights that a process makes before it hands them over
 BLOCK = 32
@@ -40,22 +45,27 @@ class Facts:
     text: list
 
 
-def _facts():
-    bodies, charge = _pair.bodies, _pair.charge
+def facts_of(pair):
+    """Facts of a Pair."""
+    bodies, charge = pair.bodies, pair.charge
     return Facts(
-        _pair.path.name,
+        pair.path.name,
         bodies.mass.tolist(),
         bodies.moments.tolist(),
-        _pair.freedoms.tolist(),
+        pair.freedoms.tolist(),
         None if charge is None else charge.tolist(),
-        _pair.reduced_mass,
-        _pair.identical,
-        _pair.cutoff,
-        _pair.reach,
-        _pair.extent.tolist(),
-        _pair.style,
-        _pair.text,
+        pair.reduced_mass,
+        pair.identical,
+        pair.cutoff,
+        pair.reach,
+        pair.extent.tolist(),
+        pair.style,
+        pair.text,
     )
+
+
+def _facts():
+    return facts_of(_pair)
 
 
 def _end_with_parent():
@@ -65,6 +75,7 @@ def _end_with_parent():
 
 def _begin():
     os.environ["OMP_NUM_THREADS"] = "1"
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the command to tell
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
@@ -82,6 +93,14 @@ def _check(scale):
 
 def _fly(*arguments):
     return flights.fly(_pair, *arguments)
+
+
+def _fly_pilots(*arguments):
+    return flights.fly_pilots(_pair, *arguments)
+
+
+def _random_numbers():
+    return rotational(_pair)
 
 
 class Pool:
@@ -103,7 +122,10 @@ class Pool:
             raise
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, kind=None, *_):
+        if kind is KeyboardInterrupt:
+            for process in active_children():  # a block of flights can take long
+                process.kill()
         self._executor.shutdown(cancel_futures=True)
 
     def _submit(self, function, *arguments):
@@ -131,7 +153,20 @@ class Pool:
             for future in futures:
                 future.cancel()
 
-    def fly_at(self, plan, numbers, distances):
-        """For each impact parameter the list of Flights with these numbers."""
-        futures = [self._submit(_fly, plan, numbers, self.most_steps, b) for b in distances]
-        return self._results(futures)
+    def pilots(self, plan, advance):
+        """(Cells, columns) of the pilots of a Plan; ``advance(n)`` is told when n more of them have ended."""
+        boltzmann = UNITS[self.facts.style].boltzmann
+        places = cells(plan, self.facts.cutoff, boltzmann, self._results([self._submit(_random_numbers)])[0])
+        b, energy = places.b.ravel(), places.energy.ravel()
+        thermal = nearest_thermal(plan, boltzmann, energy)
+        blocks = [slice(k, k + BLOCK) for k in range(0, places.number, BLOCK)]
+        futures = [
+            self._submit(_fly_pilots, b[own], energy[own], thermal[own], places.random[own], self.most_steps)
+            for own in blocks
+        ]
+        rows = []
+        for future in futures:
+            some = self._results([future])[0]
+            rows += [flights.row(flight) for flight in some]
+            advance(len(some))
+        return places, flights.columns(rows)

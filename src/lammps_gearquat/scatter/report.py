@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gearquat_analysis.tables import aligned
+from gearquat_analysis.tables import aligned, error_cells, rounded
 from gearquat_analysis.units import UNITS
 
 from .results import NAMED
@@ -20,21 +20,18 @@ def _with_units(unit, style):
 
 
 def quantity(name, estimate, style):
-    """Cells of a row: digits go as far as the error does."""
-    if not np.isfinite(estimate.error):
-        return [name, f"{estimate.value:.6g}", "", _with_units(estimate.unit, style), estimate.about]
-    digits = 6 if not estimate.error else int(np.clip(np.ceil(-np.log10(estimate.relative)) + 1, 1, 12))
-    value = f"{estimate.value:.{digits}g}"
-    return [name, value, f"{estimate.error:.1g}", _with_units(estimate.unit, style), estimate.about]
+    """Cells of a row."""
+    return [name, *error_cells(estimate.value, estimate.error), _with_units(estimate.unit, style), estimate.about]
 
 
 def text(facts, plan, farthest, found):
     """What the command prints."""
-    units = UNITS[facts.style]
-    rows = [quantity(name, estimate, facts.style) for name, estimate in found.estimates.items()]
-    table = aligned(["quantity", "value", "error", "unit", ""], rows)
-    counts = found.counts
-    lines = [f"{facts.name}, {_conditions(plan, facts.style)}: {counts['flights']} flights", "", table, ""]
+    units, counts = UNITS[facts.style], found.counts
+    lines = [f"{facts.name}, {_conditions(plan, facts.style)}: {counts['flights']} flights", ""]
+    for answer in found.answers:
+        rows = [quantity(name, estimate, facts.style) for name, estimate in answer.estimates.items()]
+        table = aligned(["quantity", "value", "error", "unit", ""], rows)
+        lines += [f"{condition(answer.temperature, facts.style)}:"] * (len(found.answers) > 1) + [table, ""]
     lines.append(_distance(farthest, units.length))
     lines.append(
         f"{counts['steps'] / max(counts['flights'], 1):.0f} steps a flight; steps repeated in {counts['repeated']}"
@@ -48,9 +45,27 @@ def text(facts, plan, farthest, found):
             more = "" if len(numbers) <= NAMED else f" and {len(numbers) - NAMED} more"
             lines.append(
                 f"{fate.capitalize()}: {', '.join(map(str, numbers[:NAMED]))}{more}; averages count them as if they"
-                " had left in all directions alike, without transfer of energy"
+                " had left in all directions alike, without transfer of energy, and errors include all that they count"
             )
     return "\n".join(lines)
+
+
+def so_far(found, error):
+    """A line about Results when errors are looked at, ``error`` being asked for."""
+    worst = max(found.answers, key=lambda answer: answer.relative)
+    errors = ", ".join(f"{name} {rounded(worst.estimates[name].relative, 2)}" for name in worst.aims)
+    at = "" if len(found.answers) == 1 else f" at temperature {worst.temperature:g}"
+    return f"{found.counts['flights']} flights: relative errors {errors}{at}; {error:g} is asked for"
+
+
+def unfinished(found):
+    """Words about flights that have not parted."""
+    counts, words = found.counts, []
+    if counts["unparted"]:
+        words.append(f"{counts['unparted']} of {counts['flights']} flights have not parted within --steps")
+    if counts["lost"]:
+        words.append(f"{counts['lost']} were ended by LAMMPS ({found.message})")
+    return " and ".join(words)
 
 
 def _conditions(plan, style):
@@ -58,21 +73,46 @@ def _conditions(plan, style):
         rotation = f", rotation at temperature {plan.rotation:g}" if plan.rotation else ", no rotation"
         return f"energy {plan.energy:g}{rotation}"
     unit = "" if style == "lj" else " K"
-    own = "" if plan.rotation == plan.temperature else f", rotation at {plan.rotation:g}{unit}"
-    return f"temperature {plan.temperature:g}{unit}{own}"
+    own = "" if plan.rotation is None else f", rotation at {plan.rotation:g}{unit}"
+    several = "s" * (len(plan.temperature) > 1)
+    return f"temperature{several} {', '.join(f'{one:g}' for one in plan.temperature)}{unit}{own}"
+
+
+def condition(temperature, style):
+    """Words for one temperature, "" for None."""
+    if temperature is None:
+        return ""
+    return f"temperature {temperature:g}{'' if style == 'lj' else ' K'}"
 
 
 def _distance(farthest, unit):
-    words = f"Largest impact parameter: {f'{farthest.value:g} {unit}'.strip()}"
-    if not farthest.left:
-        return f"{words}, as stated; what is beyond it is not in the averages, and has not been estimated"
-    left = max(farthest.left.values())
-    return f"{words}; what is beyond it is {left:.1e} of the whole, by {farthest.pilots} pilot flights"
+    words, left = f"Largest impact parameter: {f'{farthest.value:g} {unit}'.strip()}", farthest.highest()
+    if left is None:
+        return (
+            f"{words}; what is beyond it is not in the averages, and not in all errors: losses do not decay towards the"
+            " cutoff, so it is not known"
+        )
+    return (
+        f"{words}; what is beyond it is {left:.1e} of the whole, by {farthest.pilots} pilot flights, and errors include it"
+    )
 
 
 def as_json(settings, found):
     """Everything that is known, ready for JSON; not a number is None."""
     style = settings["pair"]["style"]
+    answers = [_answer_as_json(answer, style) for answer in found.answers]
+    errors = {words: {"largest": values[0], "median": values[1]} for words, values in found.errors.items()}
+    return {
+        "settings": settings,
+        "units": {"style": style, "length": UNITS[style].length, "time": UNITS[style].time},
+        **(answers[0] if len(answers) == 1 else {"temperatures": answers}),
+        "flights": found.counts,
+        "unfinished": found.unfinished,
+        "errors": errors,
+    }
+
+
+def _answer_as_json(answer, style):
     quantities = {
         name: {
             "value": estimate.value,
@@ -80,17 +120,9 @@ def as_json(settings, found):
             "unit": _with_units(estimate.unit, style),
             "about": estimate.about,
         }
-        for name, estimate in found.estimates.items()
+        for name, estimate in answer.estimates.items()
     }
-    rows = np.atleast_2d(found.correlations).tolist()
+    rows = np.atleast_2d(answer.correlations).tolist()
     matrix = [[value if np.isfinite(value) else None for value in row] for row in rows]
-    errors = {words: {"largest": values[0], "median": values[1]} for words, values in found.errors.items()}
-    return {
-        "settings": settings,
-        "units": {"style": style, "length": UNITS[style].length, "time": UNITS[style].time},
-        "quantities": quantities,
-        "correlations": {"of": list(found.correlated), "matrix": matrix},
-        "flights": found.counts,
-        "unfinished": found.unfinished,
-        "errors": errors,
-    }
+    correlations = {"of": list(answer.correlated), "matrix": matrix}
+    return {"temperature": answer.temperature, "quantities": quantities, "correlations": correlations}

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..trials.script import DeckError
 from . import gas
 from .integrals import Averages, estimates, integrands
 
@@ -17,18 +18,19 @@ ERRORS = {"error_energy": "energy", "error_momentum": "momentum", "error_angular
 
 
 @dataclass(frozen=True)
-class Results:
-    """``estimates``: name -> Estimate; ``aims``, names of those that --error is about; ``correlations`` (k, k) of
-    their errors and of those of ``correlated`` (k,); ``counts`` and ``errors``: name -> number; ``unfinished``:
-    fate -> numbers of flights that have not parted."""
+class Answer:
+    """What flights say at one ``temperature``, None for one energy.
 
+    ``estimates``: name -> Estimate; ``aims``, names of those that --error is about; ``correlations`` (k, k) of
+    the errors of ``correlated`` (k,); ``unfinished``, the largest part of an aim that comes from flights that have not
+    parted."""
+
+    temperature: float
     estimates: dict
     aims: tuple
     correlated: tuple
     correlations: np.ndarray
-    counts: dict
-    errors: dict
-    unfinished: dict
+    unfinished: float
 
     @property
     def relative(self):
@@ -36,15 +38,50 @@ class Results:
         return max(self.estimates[name].relative for name in self.aims)
 
 
-def results(columns, plan, facts, sigma=None):
-    """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by."""
-    found = integrands(columns, plan, facts)
-    averages = Averages(columns["flight"], found)
-    aims = AIMS[plan.kind]
+@dataclass(frozen=True)
+class Results:
+    """``answers``, an Answer for each temperature; ``counts`` and ``errors``: name -> number; ``unfinished``:
+    fate -> numbers of flights that have not parted; ``message`` of LAMMPS at the first flight that it ended."""
+
+    answers: tuple
+    counts: dict
+    errors: dict
+    unfinished: dict
+    message: str = ""
+
+    @property
+    def relative(self):
+        """The largest relative standard error of all aims."""
+        return max(answer.relative for answer in self.answers)
+
+    @property
+    def guessed(self):
+        """The largest part of any aim that comes from flights that have not parted."""
+        return max(answer.unfinished for answer in self.answers)
+
+
+def results(columns, plan, facts, sigma=None, left=None):
+    """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by; ``left``, that
+    of ``pilots.Largest``.  Raises DeckError if no flight has parted."""
+    fate = columns["fate"]
+    message = next(iter(columns["message"][fate == "lost"].tolist()), "")
+    if not (fate == "parted").any():
+        why = f"LAMMPS ended them ({message})" if message else "more --steps are required, with another --out"
+        raise DeckError(f"none of the {len(fate)} flights has parted, so there is nothing to average: {why}")
+    answers = [
+        _answer(columns, plan, facts, temperature, sigma, own)
+        for temperature, own in zip(plan.conditions, left or [{}] * len(plan.conditions))
+    ]
+    return Results(tuple(answers), counts(columns), errors(columns), unfinished(columns), message)
+
+
+def _answer(columns, plan, facts, temperature, sigma, left):
+    found, aims = integrands(columns, plan, facts, temperature), AIMS[plan.kind]
+    averages = Averages(columns["flight"], found, columns["fate"] == "parted", left)
     correlated = tuple(name for name in averages.names if name != "cross section")
-    every = estimates(averages, found) | gas.derived_estimates(averages, facts, plan, sigma)
-    correlations = averages.correlations(correlated)
-    return Results(every, aims, correlated, correlations, counts(columns), errors(columns), unfinished(columns))
+    every = estimates(averages, found) | gas.derived_estimates(averages, facts, temperature, sigma)
+    guessed = max(averages.unfinished[name] for name in aims)
+    return Answer(temperature, every, aims, correlated, averages.correlations(correlated), guessed)
 
 
 def counts(columns):
@@ -64,8 +101,6 @@ def counts(columns):
 def errors(columns):
     """Name -> (largest, median) of the errors of flights that have parted."""
     parted = columns["fate"] == "parted"
-    if not parted.any():
-        return {words: (np.nan, np.nan) for words in ERRORS.values()}
     kept = {words: columns[name][parted] for name, words in ERRORS.items()}
     return {words: (float(values.max()), float(np.median(values))) for words, values in kept.items()}
 
@@ -75,15 +110,16 @@ def unfinished(columns):
     return {fate: columns["flight"][columns["fate"] == fate].tolist() for fate in ("unparted", "lost")}
 
 
-def convergence(columns, plan, facts):
-    """Numbers of flights (k,), and name of an aim -> (values (k,), errors (k,)) from the first so many."""
+def convergence(columns, plan, facts, temperature):
+    """Numbers of flights (k,), and name of an aim -> (values (k,), statistical errors (k,)) from the first so many."""
     number = len(columns["flight"])
     shown = [n for n in FIRST_SHOWN * 2 ** np.arange(40) if n < number] + [number]
+    found = integrands(columns, plan, facts, temperature)
+    found = {name: found[name] for name in AIMS[plan.kind]}
     rows = []
     for n in shown:
-        part = {name: values[:n] for name, values in columns.items()}
-        found = {name: entry for name, entry in integrands(part, plan, facts).items() if name in AIMS[plan.kind]}
-        rows.append(estimates(Averages(part["flight"], found), found))
+        part = {name: (values[:n], *words) for name, (values, *words) in found.items()}
+        rows.append(estimates(Averages(columns["flight"][:n], part), part))
     return np.array(shown), {
         name: (np.array([row[name].value for row in rows]), np.array([row[name].error for row in rows]))
         for name in AIMS[plan.kind]

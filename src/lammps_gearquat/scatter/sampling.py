@@ -11,109 +11,135 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from scipy.special import gamma, gammaincinv, ndtri
+from scipy.special import ndtri
 from scipy.stats import qmc
 
+from .density import density_of
 from .pair import Start
 
 #: independent sequences
 REPLICAS = 16
-#: part of the flights within the core, if there is one
-WITHIN = 0.75
 #: points of a sequence are multiples of 2^-BITS; flights have those between
 BITS = 30
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is sampled: ``seed``, a tuple of numbers; ``temperature`` of translation, or one ``energy`` of it;
-    ``rotation``, its temperature, 0 for none; ``largest``, the largest impact parameter; ``core``, that within which
-    a part WITHIN of the flights is, 0 if they are uniform over the whole area.  Units are those of the deck.
+    """The distribution of the flights, in units of the deck.
+
+    ``seed``, a tuple of numbers; ``temperature``, a rising tuple of temperatures of translation, or None and one
+    ``energy`` of it; ``rotation``, its temperature, 0 for none, or None for the temperature of translation;
+    ``largest``, the largest impact parameter; ``s0``, ``s1`` and ``power``, which density.py explains.  If both s0
+    and s1 are 0, impact parameters are uniform over the whole area.
     """
 
     seed: tuple
-    temperature: float
+    temperature: tuple
     energy: float
     rotation: float
     largest: float
-    core: float = 0.0
+    s0: float = 0.0
+    s1: float = 0.0
+    power: float = 1.0
 
     @property
     def kind(self):
         """ "temperature" or "energy", whichever is given."""
         return "temperature" if self.energy is None else "energy"
 
-    def starts(self, pair, numbers, b=None):
-        """Flights with these numbers, as (impact parameter, energy of translation, Start); or all with this b."""
-        points = uniform(self.seed, np.asarray(numbers), dimensions(pair))
-        columns = iter(points.T)
-        drawn = next(columns)
-        b = self._impact(drawn) if b is None else np.full(len(drawn), b)
-        energy = self._energies(pair, next(columns))
-        speed = np.sqrt(2.0 * energy / (pair.reduced_mass * pair.units.energy))
-        turned = [_orientations(next(columns), next(columns), next(columns)) for _ in range(2)]
-        quaternion = np.stack(turned, axis=1)
-        momentum = self._momenta(pair, quaternion, columns)
-        return [
-            (float(b[i]), float(energy[i]), start_of(pair, b[i], speed[i], quaternion[i], momentum[i]))
-            for i in range(len(b))
-        ]
+    @property
+    def conditions(self):
+        """The temperatures, or (None,) for one energy."""
+        return self.temperature if self.energy is None else (None,)
 
-    def _impact(self, u):
-        """Impact parameters (n,), with uniform squares within the core and outside of it."""
-        core, outside = self.core**2, self.largest**2 - self.core**2
-        if not core:
-            return self.largest * np.sqrt(u)
-        return np.sqrt(np.where(u < WITHIN, core * u / WITHIN, core + outside * (u - WITHIN) / (1.0 - WITHIN)))
+    def scales(self, boltzmann):
+        """kT of all temperatures, or the energy, a tuple."""
+        if self.energy is not None:
+            return (self.energy,)
+        return tuple(boltzmann * temperature for temperature in self.temperature)
 
-    def area(self, b):
-        """What flights with impact parameters b (n,) stand for: the area by the number of them, (n,)."""
-        core, outside = self.core**2, self.largest**2 - self.core**2
-        if not core:
-            return np.full(len(b), np.pi * self.largest**2)
-        return np.pi * np.where(b < self.core, core / WITHIN, outside / (1.0 - WITHIN))
+    def density(self, boltzmann):
+        """The Density of energies and impact parameters."""
+        s0 = self.s0 if self.s0 or self.s1 else self.largest**2
+        single = self.energy is not None
+        return density_of(self.scales(boltzmann), single, s0, self.s1, self.power, self.largest)
+
+    def mixes_rotation(self, freedoms):
+        """Whether rotation has that temperature of several with which a flight is drawn."""
+        return self.energy is None and self.rotation is None and len(self.temperature) > 1 and any(freedoms)
+
+    def balanced(self, freedoms):
+        """Whether rotation, if there is any, has the temperature of translation, so that detailed balance holds."""
+        return self.energy is None and (self.rotation is None or not any(freedoms))
+
+    def drawn(self, points, boltzmann):
+        """(impact parameters (n,), energies (n,)) of points (n, 2 or more)."""
+        density = self.density(boltzmann)
+        energy = density.energies(points[:, 1])
+        return density.impact(points[:, 0], energy), energy
+
+    def starts(self, pair, numbers):
+        """Flights with these numbers, as (impact parameter, energy of translation, Start)."""
+        points = uniform(self.seed, np.asarray(numbers), self.dimensions(pair))
+        b, energy = self.drawn(points, pair.units.boltzmann)
+        return starts_of(pair, b, energy, self._thermal(pair, energy, points[:, -1]), points[:, 2:])
 
     def start(self, pair, number):
         """The Start of one flight."""
         return self.starts(pair, [number])[0][2]
 
-    def _energies(self, pair, u):
-        if self.energy is not None:
-            return np.full(len(u), self.energy)
-        return gammaincinv(shape(pair.bodies.moments), u) * pair.units.boltzmann * self.temperature
+    def dimensions(self, pair):
+        """Random numbers of a flight: impact parameter, energy, orientations, angular momenta and, if it is drawn,
+        the temperature of rotation, which is last."""
+        return 2 + rotational(pair) + self.mixes_rotation(pair.freedoms)
 
-    def _momenta(self, pair, quaternion, columns):
-        """Angular momenta (n, 2, 3) of a Boltzmann distribution."""
-        bodies, thermal = pair.bodies, pair.units.boltzmann * self.rotation / pair.units.energy
-        found = np.zeros((len(quaternion), 2, 3))
-        for k in range(2):
-            # along the principal axes of the body, then of the pose in the deck, then of space
-            along = np.zeros((len(quaternion), 3))
-            for axis in np.flatnonzero(bodies.moments[k] > 0.0):
-                along[:, axis] = np.sqrt(bodies.moments[k, axis] * thermal) * ndtri(next(columns))
-            found[:, k] = Rotation.from_quat(quaternion[:, k], scalar_first=True).apply(along @ bodies.axes[k])
-        return found
+    def _thermal(self, pair, energy, u):
+        """kT (n,) of the rotation of flights with energies and uniform numbers (n,)."""
+        boltzmann = pair.units.boltzmann
+        if self.rotation is not None or self.energy is not None:
+            return np.full(len(energy), boltzmann * (self.rotation or 0.0))
+        scales = np.array(self.scales(boltzmann))
+        if not self.mixes_rotation(pair.freedoms):
+            return np.full(len(energy), scales[0])
+        density = self.density(boltzmann)
+        parts = np.cumsum(density.shares[:, None] * density.densities(energy), axis=0)
+        return scales[np.minimum((u >= parts / parts[-1]).sum(axis=0), len(scales) - 1)]
 
 
-def shape(moments):
-    """That of the Gamma distribution of energies of translation in units of kT, from principal moments (2, 3).
+def rotational(pair):
+    """Random numbers of the orientations and angular momenta of a flight."""
+    return 6 + int(np.count_nonzero(pair.bodies.moments > 0.0))
 
-    Integrands are the flux of collisions, x exp(-x), times what a flight changes: about x for Omega(1,1), and x^2
-    for Omega(2,2).  3 suits atoms.  To slow molecules rotation can give energy, so weights must not grow like 1 / x:
-    2.5 leaves all integrals of rotating molecules a small variance.
+
+def starts_of(pair, b, energy, thermal, points):
+    """List of (impact parameter, energy, Start), of b, energies and kT of rotation (n,).
+
+    ``points`` (n, rotational(pair) or more), uniform numbers.
     """
-    return 2.5 if np.any(np.asarray(moments) > 0.0) else 3
+    columns = iter(points.T)
+    speed = np.sqrt(2.0 * energy / (pair.reduced_mass * pair.units.energy))
+    turned = [_orientations(next(columns), next(columns), next(columns)) for _ in range(2)]
+    quaternion = np.stack(turned, axis=1)
+    momentum = _momenta(pair, quaternion, thermal, columns)
+    return [
+        (float(b[i]), float(energy[i]), start_of(pair, b[i], speed[i], quaternion[i], momentum[i]))
+        for i in range(len(b))
+    ]
 
 
-def weight(x, moments):
-    """The flux x exp(-x) by the density from which energies x (n,) are drawn."""
-    number = shape(moments)
-    return gamma(number) * x ** (2.0 - number)
-
-
-def dimensions(pair):
-    """Random numbers of a flight: impact parameter, energy, orientations and angular momenta."""
-    return 2 + 6 + int(np.count_nonzero(pair.bodies.moments > 0.0))
+def _momenta(pair, quaternion, thermal, columns):
+    """Angular momenta (n, 2, 3) of a Boltzmann distribution with kT (n,)."""
+    bodies, found = pair.bodies, np.zeros((len(quaternion), 2, 3))
+    for k in range(2):
+        # along the principal axes of the body, then of the pose in the deck, then of space
+        along = np.zeros((len(quaternion), 3))
+        for axis in np.flatnonzero(bodies.moments[k] > 0.0):
+            width = np.sqrt(bodies.moments[k, axis] * thermal / pair.units.energy)
+            along[:, axis] = width * ndtri(next(columns))
+        turn = Rotation.from_quat(quaternion[:, k], scalar_first=True).as_matrix() @ bodies.axes[k].T
+        # products of matrices sum in another order for another n: the last digits of a flight must not depend on others
+        found[:, k] = sum(turn[:, :, axis] * along[:, axis, None] for axis in range(3))
+    return found
 
 
 def uniform(seed, numbers, dimension):

@@ -12,36 +12,51 @@ from pathlib import Path
 
 from ..trials.script import DeckError
 from . import flights
-from .largest import Largest
+from .pilots import Largest
 from .pool import Facts
 from .sampling import Plan
 
+#: of the way in which flights are drawn: those of releases before 0.4 have none
+SAMPLING = 2
 #: gaps between flights that are named at most
 NAMED = 10
 SETTINGS, FLIGHTS, RESULTS = "settings.json", "flights.csv", "results.json"
 
 
 def settings(facts, plan, largest, most_steps):
-    """What determines every flight, ready for JSON; the commands of the deck as a digest."""
+    """What determines every flight, ready for JSON."""
+    found = {"sampling": SAMPLING, "pair": pair_of(facts), "plan": asdict(plan), "largest": asdict(largest)}
+    return json.loads(json.dumps(found | {"most_steps": most_steps}))
+
+
+def pair_of(facts):
+    """Facts, ready for JSON; the commands of the deck as a digest."""
     known = asdict(facts)
     known["text"] = hashlib.sha256("\n".join(facts.text).encode()).hexdigest()
-    found = {"pair": known, "plan": asdict(plan), "largest": asdict(largest), "most_steps": most_steps}
-    return json.loads(json.dumps(found))
+    return json.loads(json.dumps(known))
 
 
 def facts_of(settings):
     """(Facts, Plan, Largest) of settings."""
-    plan = Plan(**{**settings["plan"], "seed": tuple(settings["plan"]["seed"])})
-    return Facts(**settings["pair"]), plan, Largest(**settings["largest"])
+    plan = {key: tuple(value) if isinstance(value, list) else value for key, value in settings["plan"].items()}
+    return Facts(**settings["pair"]), Plan(**plan), Largest(**settings["largest"])
 
 
 def read_settings(folder):
-    """Settings of a folder of results.  Raises DeckError if it has none."""
+    """Settings of a folder of results.  Raises DeckError if it has none, or those of a release that drew flights
+    from another density."""
     path = Path(folder) / SETTINGS
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise DeckError(f"{folder}: a folder with results of gearquat scatter is required: {error}") from error
+    if not isinstance(found, dict) or found.get("sampling") != SAMPLING:
+        raise DeckError(
+            f"{folder} has flights of another release of gearquat scatter, which drew impact parameters and energies from"
+            " another density, so they cannot be continued, joined or written as a dump; new flights in another --out are"
+            " required"
+        )
+    return found
 
 
 def write_json(path, value):
@@ -68,9 +83,10 @@ WORDS = {
     "plan energy": "--energy",
     "plan rotation": "the temperature of rotation",
     "plan largest": "the largest impact parameter",
-    "plan core": "the core that pilot flights found",
     "most_steps": "--steps",
 }
+#: what pilot flights find, which differs if anything else does
+FOUND = ("plan s0", "plan s1", "plan power")
 
 
 def _differing(known, wanted):
@@ -81,16 +97,23 @@ def _differing(known, wanted):
         for name in (wanted[part] if isinstance(wanted[part], dict) else (part,))
         if _get(known, part, name) != _get(wanted, part, name) and part != "largest"
     ]
+    if names and set(names) <= set(FOUND):
+        return "the density of impact parameters and energies that pilot flights found"
     # other facts of the bodies differ because the decks do
     told = [WORDS[name] for name in names if name in WORDS] or names
     return ", ".join(told)
 
 
-def _same(folder, known, wanted):
+def _same(folder, known, wanted, required="another --out is required"):
     """Raise DeckError if settings differ, naming what does."""
     differing = _differing(known, wanted)
     if differing:
-        raise DeckError(f"{folder} has flights of other settings ({differing}): another --out is required")
+        raise DeckError(f"{folder} has flights of other settings ({differing}): {required}")
+
+
+def same_pair(folder, known, facts):
+    """Raise DeckError if the flights of ``folder``, with the settings ``known``, are not those of the Facts."""
+    _same(folder, known, {**known, "pair": pair_of(facts)}, "the same deck is required")
 
 
 def _get(settings, part, name):

@@ -1,0 +1,70 @@
+"""Flights of two atoms by quadrature instead of LAMMPS, drawn and averaged by the code of ``gearquat scatter``."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from benchmarks.reference.central import CollisionIntegrals
+from benchmarks.reference.deflection import Deflection
+
+#: random numbers of a flight of two atoms
+DIMENSIONS = 8
+
+
+@dataclass(frozen=True)
+class Atoms:
+    """Two atoms of mass 1 in reduced units, with a ``potential`` of benchmarks.reference.central up to a ``cutoff``."""
+
+    potential: object
+    cutoff: float
+
+    @cached_property
+    def facts(self):
+        """What ``gearquat scatter`` knows of such a pair."""
+        from lammps_gearquat.scatter.pool import Facts
+
+        none, zeros = [0, 0], [[0.0] * 3] * 2
+        return Facts("atoms", [1.0] * 2, zeros, none, None, 0.5, True, self.cutoff, 1.05 * self.cutoff, none, "lj", [])
+
+    @cached_property
+    def deflection(self):
+        return Deflection(self.potential)
+
+    @cached_property
+    def exact(self):
+        """Function (l, s, temperature) of the reduced collision integrals, without a largest impact parameter."""
+        return CollisionIntegrals(self.potential, self.deflection.limit)
+
+    def columns(self, b, energy):
+        """Columns of flights, numbered from 0, with impact parameters and energies (n,)."""
+        angle = np.concatenate(
+            [self.deflection.angles(*part) for part in zip(*(np.array_split(a, len(b) // 4096 + 1) for a in (energy, b)))]
+        )
+        nothing, words = np.zeros(len(b)), np.full(len(b), "")
+        known = {"flight": np.arange(len(b)), "b": b, "energy": energy, "energy_after": energy, "angle": angle}
+        names = ("rotation_1", "rotation_2", "error_energy", "error_momentum", "error_angular")
+        counts = dict.fromkeys(("turnings", "steps", "repeats"), nothing.astype(int))
+        return known | dict.fromkeys(names, nothing) | counts | {"fate": np.full(len(b), "parted"), "message": words}
+
+    def plan(self, seed, temperatures, error, energy=None):
+        """(Plan, Largest) that the pilots of this seed find."""
+        from lammps_gearquat.scatter import conduct, pilots
+        from lammps_gearquat.scatter.sampling import Plan
+
+        plan = Plan((seed,), temperatures, energy, None, 0.0)
+        places = pilots.cells(plan, self.cutoff, 1.0, DIMENSIONS - 2)
+        columns = self.columns(places.b.ravel(), places.energy.ravel())
+        return pilots.settle(plan, self.facts, places, columns, 1.0, conduct.LEFT_OUT * error)
+
+    def flights(self, plan, number):
+        """Columns of the first so many flights of a Plan."""
+        from lammps_gearquat.scatter.sampling import uniform
+
+        return self.columns(*plan.drawn(uniform(plan.seed, np.arange(number), DIMENSIONS), 1.0))
+
+    def results(self, plan, farthest, columns, number):
+        """Results of the first so many of the flights."""
+        from lammps_gearquat.scatter.results import results
+
+        return results({name: own[:number] for name, own in columns.items()}, plan, self.facts, 1.0, farthest.left)
