@@ -86,9 +86,9 @@ void Thermostat::watch_friction(double h)
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat temp: in step {} the thermostat has a friction of {:.2g}/step, "
-                   "{:.0f} % of what the method can follow at this time step; the temperatures of "
-                   "translation and rotation are {:.4g} and {:.4g}, the target is {:.4g}; use a "
-                   "longer damping time than {:g}",
+                   "{:.0f} % of the limit of the method; the temperatures of translation and "
+                   "rotation are {:.4g} and {:.4g}, the target is {:.4g}; use a longer damping "
+                   "time than {:g}",
                    update->ntimestep, std::fabs(h) * strongest_friction(), 100.0 * part,
                    element(T_TRANSLATION), element(T_ROTATION), element(TARGET), words.damp);
 }

@@ -151,7 +151,7 @@ def test_a_friction_that_is_too_strong_is_refused_and_the_advice_holds(lmp_tree,
 
 def test_a_friction_that_becomes_strong_is_warned_of(lmp_tree, gas):
     """Nothing is known of it before the run: the heat comes from overlaps."""
-    words, warning = "values 7 temp 1.0 1.0 {} tchain 1", "of what the method can follow"
+    words, warning = "values 7 temp 1.0 1.0 {} tchain 1", "of the limit of the method"
     for damp, count in ((0.03, 1), (0.3, 0)):
         deck = overlapping(gas(words.format(damp), soft=300.0, dt=0.002, run="run 200"))
         result = lmp_tree.succeed(deck)
