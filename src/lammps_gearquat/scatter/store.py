@@ -43,8 +43,8 @@ def facts_of(settings):
 
 
 def read_settings(folder):
-    """Settings of a folder of results.  Raises DeckError if it has none, or those of a release that drew flights
-    from another density."""
+    """Settings of a folder of results.  Raises DeckError if it has none, or those of a release whose flights
+    have another density."""
     path = Path(folder) / SETTINGS
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
