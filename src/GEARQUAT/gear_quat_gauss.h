@@ -81,16 +81,17 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
   return {both, both};
 }
 
-/// The rates at which momenta of one body decay, 1/time: of its momentum along the axes of space,
-/// and of its angular momentum.  common: what it has of a motion of all bodies that does not decay,
-/// and common_force of the difference between the force on all and the one that their rows are
-/// predicted with.
+/// The rates at which momenta of a body decay, 1/time: of its momentum along the axes of space, and
+/// of its angular momentum.
 struct Friction {
   double translation[3] = {0.0, 0.0, 0.0};
   double rotation = 0.0;
-  double common[3] = {0.0, 0.0, 0.0};
-  double common_force[3] = {0.0, 0.0, 0.0};
+  /// Velocity of a motion of all bodies that does not decay, and its acceleration by the present
+  /// forces less the one that the rows of the bodies are predicted with.
+  double common[3] = {0.0, 0.0, 0.0}, unforeseen[3] = {0.0, 0.0, 0.0};
+  bool implicit = false;    ///< residuals are solved for the friction that they change
 
+  Friction() = default;
   Friction(const Multipliers &alpha) : rotation(alpha.rotation)
   {
     for (double &one : translation) one = alpha.translation;
@@ -98,23 +99,26 @@ struct Friction {
 
   // what acts on component i of a momentum p, or of an angular momentum l along the principal axes
 
-  double force(int i, double met, double p) const { return met - translation[i] * (p - common[i]); }
+  double force(int i, double met, double p, double mass) const
+  {
+    return met - translation[i] * (p - mass * common[i]);
+  }
   double torque(double met, double l) const { return met - rotation * l; }
 
-  // A residual r changes a velocity by `share` * r, and thereby the friction: what solves for both
-  // instead of an explicit residual, and the part of one that does so for rotation.  share: with the
-  // units of a time.  per_force: the residual that a force makes.  The common motion has no friction,
-  // so its residual is the explicit one.
+  // A residual r changes a velocity by `share` * r, and thereby the friction: the residual that
+  // solves for both, of component i, and the part of an explicit one that does so for rotation.
+  // share: with the units of a time.  unit: the residual that an acceleration makes.  The common
+  // motion has no friction, so its residual is the explicit one.
 
-  double implicit_force(int i, double share, double residual, double per_force) const
+  double implicit_force(int i, double share, double residual, double unit) const
   {
     const double damped = share * translation[i];
-    return (residual + damped * per_force * common_force[i]) / (1.0 + damped);
+    return (residual + damped * unit * unforeseen[i]) / (1.0 + damped);
   }
   double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
 };
 
-/// The load with the forces of friction, -alpha (p - common) and -alpha L.
+/// The load with the forces of friction, -alpha (p - m common) and -alpha L.
 inline Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
                         const Friction &alpha)
 {
@@ -124,7 +128,7 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
   to_space(a, momentum_body, momentum_space);
   Load damped = load;
   for (int i = 0; i < 3; ++i) {
-    damped.force[i] = alpha.force(i, load.force[i], body.mass * state.velocity[i]);
+    damped.force[i] = alpha.force(i, load.force[i], body.mass * state.velocity[i], body.mass);
     damped.torque_space[i] -= alpha.rotation * momentum_space[i];
   }
   return damped;
@@ -132,7 +136,9 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
 
 /// In place of Friction where there is none.
 struct Undamped {
-  double force(int, double met, double) const { return met; }
+  static constexpr bool implicit = false;
+
+  double force(int, double met, double, double) const { return met; }
   double torque(double met, double) const { return met; }
   double implicit_force(int, double, double residual, double) const { return residual; }
   double implicit_torque(double) const { return 1.0; }

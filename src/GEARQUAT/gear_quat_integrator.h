@@ -226,9 +226,11 @@ class Integrator : public Kinematics {
     double before[3], target[3];
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i)
-      target[i] = damper.implicit_force(
-          i, h * c.driven[0],
-          h * damper.force(i, load.force[i], before[i]) - rates[Scheme::MOMENTUM + i], h);
+      target[i] =
+          h * damper.force(i, load.force[i], before[i], body.mass) - rates[Scheme::MOMENTUM + i];
+    if (damper.implicit)
+      for (int i = 0; i < 3; ++i)
+        target[i] = damper.implicit_force(i, h * c.driven[0], target[i], h * body.mass);
     feed_back<3>(history, c.driven, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
@@ -247,9 +249,10 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i)
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * before[i]);
     angular_acceleration(body, torque, before, target);
-    const double part = damper.implicit_torque(h * c.driven[0]);
-    for (int i = 0; i < 3; ++i)
-      target[i] = (h * target[i] - rates[Scheme::OMEGA + i]) * (body.inertia[i] > 0.0 ? part : 1.0);
+    for (int i = 0; i < 3; ++i) target[i] = h * target[i] - rates[Scheme::OMEGA + i];
+    if (damper.implicit)
+      for (int i = 0; i < 3; ++i)
+        if (body.inertia[i] > 0.0) target[i] *= damper.implicit_torque(h * c.driven[0]);
     feed_back<3>(history, c.driven, rows, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
@@ -375,26 +378,30 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
   }
 
-  /// Finds residuals alone: rows stay predicted until finish_passes().  Friction is taken of the
-  /// velocities that these residuals make, so that a strong one is stable in longer steps.
+  /// Finds residuals alone: rows stay predicted until finish_passes().
   template <int CARRIES>
   void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Friction &friction,
             double *rows, Pending &pending) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
-    const double mass_per_h = body.mass * per_h, share = 0.5 * h * c.driven[1];
-    double per_inertia[3], before[4];
+    const double share = 0.5 * h * c.driven[1];
+    double velocity[3], per_inertia[3], before[4];
     Load damped = load;
+    if (friction.implicit)
+      for (int i = 0; i < 3; ++i) velocity[i] = per_h * rates[i];
+    else
+      velocity_of_pass(rows, pending.total.x, velocity);
     for (int i = 0; i < 3; ++i)
-      damped.force[i] = friction.force(i, load.force[i], mass_per_h * rates[i]);
+      damped.force[i] = friction.force(i, load.force[i], body.mass * velocity[i], body.mass);
     position_residual(body, damped, rows, pending.total.x);
-    const double half_h2_per_mass = 0.5 * h * h / body.mass;
-    for (int i = 0; i < 3; ++i)
-      pending.total.x[i] =
-          friction.implicit_force(i, share, pending.total.x[i], half_h2_per_mass);
-
-    copy(pending.total.q, 4, before);
     inverse_moments(body, per_inertia);
+    if (!friction.implicit) {
+      rotation_residual(body, per_inertia, pending.torque_body, friction, rows, pending.total.q);
+      return;
+    }
+    for (int i = 0; i < 3; ++i)
+      pending.total.x[i] = friction.implicit_force(i, share, pending.total.x[i], 0.5 * h * h);
+    copy(pending.total.q, 4, before);
     rotation_residual(body, per_inertia, pending.torque_body, friction, rows, pending.total.q);
     withhold(body, rows, before, 1.0 - friction.implicit_torque(share), pending.total.q);
   }

@@ -28,6 +28,7 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_exact_sum.h"
 
+#include <algorithm>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
@@ -61,17 +62,12 @@ class TotalMomentum : protected Pointers {
   bool judge();
   /// P^2/M in the directions in which P is constant.
   double twice_energy() const;
-  /// What this body has of the momentum in these directions.
-  void share(int ibody, double *of_body) const
+  /// Velocity of the common motion in these directions, and its acceleration less the one that rows
+  /// are predicted with, if these were added.
+  void move_along(Friction &friction) const
   {
-    const double weight = bodies.rigid_of(ibody).mass;
-    for (int k = 0; k < 3; ++k) of_body[k] = weight * common[k];
-  }
-  /// And of the difference between present and predicted forces, in a step.
-  void share_force(int ibody, double *of_body) const
-  {
-    const double weight = bodies.rigid_of(ibody).mass;
-    for (int k = 0; k < 3; ++k) of_body[k] = weight * unforeseen[k];
+    std::copy_n(common, 3, friction.common);
+    std::copy_n(unforeseen, 3, friction.unforeseen);
   }
 
   /// True if the thermostat acts on the momentum of any body, after weigh().
@@ -95,7 +91,7 @@ class TotalMomentum : protected Pointers {
   double common[3] = {};        ///< velocity of the common motion, where it is constant
   double unforeseen[3] = {};    ///< its acceleration less the one that rows are predicted with
   ExactSum differences[3];      ///< of forces on this rank, for unforeseen
-  double thermal = 0.0;     ///< momentum of all bodies together at the target
+  double thermal = 0.0;         ///< momentum of all bodies together at the target
   double unit_momentum = 1.0, unit_force = 1.0;
 
   bool counts(int direction) const { return constant[direction] && count[direction] > 0.0; }

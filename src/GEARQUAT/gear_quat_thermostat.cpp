@@ -28,13 +28,17 @@ static constexpr double ROUNDING_OF_ENERGY = 1.0e-13;
 
 static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
 
+// a friction that is taken implicitly, times the step: a weaker one is as accurate without
+
+static constexpr double STRONG = 1.0e-3;
+
 /* ---------------------------------------------------------------------- */
 
 Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
                        const Scheme &scheme) :
-    Pointers(lmp), fix(fix), bodies(bodies), words(words),
-    chains(words.separate ? 2 : 1, Chain(words.length)), most_friction(FrictionLimit::of(scheme)),
-    total(lmp, bodies, words.damp)
+    Pointers(lmp),
+    fix(fix), bodies(bodies), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
+    most_friction(FrictionLimit::of(scheme)), total(lmp, bodies, words.damp)
 {
 }
 
@@ -79,11 +83,7 @@ double Thermostat::twice_of(int chain) const
 
 Friction Thermostat::friction_of(int ibody) const
 {
-  const double of_rotation = friction[words.separate ? ROTATION : TRANSLATION];
-  Friction found = Multipliers{friction[TRANSLATION], of_rotation};
-  total.share(ibody, found.common);
-  total.share_force(ibody, found.common_force);
-  if (bodies.body_at(ibody).off == 0) return found;
+  Friction found = of_all;
   for (int k = 0; k < 3; ++k)
     if (!is_thermostatted(ibody, TRANSLATION, k)) found.translation[k] = 0.0;
   if (!is_thermostatted(ibody, ROTATION)) found.rotation = 0.0;
@@ -142,6 +142,14 @@ void Thermostat::sum_present()
 void Thermostat::note_friction()
 {
   for (size_t c = 0; c < chains.size(); ++c) friction[c] = chains[c].friction();
+  share_friction();
+}
+
+void Thermostat::share_friction()
+{
+  of_all = Multipliers{friction[TRANSLATION], friction[words.separate ? ROTATION : TRANSLATION]};
+  of_all.implicit = strong;
+  total.move_along(of_all);
 }
 
 void Thermostat::measure()
@@ -162,6 +170,7 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
   double velocity[3], omega_body[3], force_of_rows[3];
   unit = scale();
   total.begin_sums(line.kt);
+  strong = std::fabs(h) * strongest_friction() > STRONG;
   pending.resize(bodies.nmoved());
   for_moved([&](int ibody) {
     const BodyState &s = bodies.state_of(ibody);
@@ -169,6 +178,7 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
         integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
     if (ibody >= bodies.nowned()) return;
     add_kinetic(ibody, s.velocity, s.omega_body, here);
+    if (!strong) return;
     integrator.force_of_rows(bodies.rigid_of(ibody), bodies.history(ibody), force_of_rows);
     total.add_predicted(ibody, force_of_rows);
   });
@@ -182,8 +192,11 @@ void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
     for_moved([&](int ibody) {
       const RigidBody &rigid = bodies.rigid_of(ibody);
       double *rows = bodies.history(ibody);
-      integrator.correct_pass(rigid, bodies.acting(ibody), friction_of(ibody), rows,
-                              pending[ibody]);
+      if (bodies.body_at(ibody).off == 0)
+        integrator.correct_pass(rigid, bodies.load_of(ibody), of_all, rows, pending[ibody]);
+      else
+        integrator.correct_pass(rigid, bodies.acting(ibody), friction_of(ibody), rows,
+                                pending[ibody]);
       if (ibody >= bodies.nowned() || pass + 1 == scheme.passes) return;
       integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
       add_kinetic(ibody, velocity, omega_body, here);

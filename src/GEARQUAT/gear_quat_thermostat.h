@@ -157,6 +157,7 @@ class Thermostat : protected Pointers {
   bool anew = false;                  ///< where it began there were no histories
   double friction[2] = {};            ///< xi_1 of the chains
   const double most_friction;         ///< times the step, that bodies can follow
+  bool strong = false;                ///< the friction of this step is taken implicitly
   double unit = 1.0;                  ///< of the sums, see scale()
   double cold[2] = {};                ///< for how long the parts have been cold
   bool warned[2] = {};                ///< of that
@@ -174,6 +175,8 @@ class Thermostat : protected Pointers {
   double twice_of(int chain) const;
   double freedoms_of(int chain) const;
   bool is_thermostatted(int ibody, Part part, int component = 0) const;
+  /// Of a body without masks, in the present pass.
+  Friction of_all;
   Friction friction_of(int ibody) const;
   Setting setting() const;
   void count_freedoms();
@@ -190,6 +193,7 @@ class Thermostat : protected Pointers {
   double scale() const;
   void sum_present();
   void note_friction();
+  void share_friction();
   /// act: of the index of every body on this rank that has a history, owned or large.
   template <class Act> void for_moved(Act act) const
   {

@@ -141,6 +141,7 @@ void Thermostat::measure_node(const Collocation &collocation, int node)
                         .y[0];
     collocation.set_rate(node, twice_of(c), nodes[c]);
   }
+  share_friction();
 }
 
 void Thermostat::settle(const Collocation &collocation, int pair)

@@ -18,13 +18,15 @@ double remains(const Scheme &scheme, double friction)
   const Integrator integrator(scheme, 1.0);
   vector<double> rows(scheme.size());
   seed(scheme, body, local_series(body, start, Load{}, 1.0), 1.0, 1.0, rows.data());
+  Friction implicit = Multipliers{friction, friction};
+  implicit.implicit = true;
   BodyState state = start;
   for (int step = 0; step < 5000; ++step) {
     integrator.predict(rows.data());
     auto pending =
         integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
     for (int pass = 0; pass < 2; ++pass)
-      integrator.correct_pass(body, Load{}, Multipliers{friction, friction}, rows.data(), pending);
+      integrator.correct_pass(body, Load{}, implicit, rows.data(), pending);
     integrator.finish(Load{}, rows.data(), pending);
     state = integrator.body_state(body, rows.data());
     const double most = std::max(std::fabs(state.velocity[0]), std::fabs(state.omega_body[1]));

@@ -145,8 +145,10 @@ struct Host {
         ASSERT_TRUE(chain.advance(target_of(time() - h), twice_kinetic(), h, n));
       }
       const double xi = length ? chain.friction() : 0.0;
+      Friction friction = Multipliers{xi, xi};
+      friction.implicit = std::fabs(h * xi) > 1.0e-3;
       for (size_t b = 0; b < bodies.size(); ++b) {
-        integrator.correct_pass(bodies[b], loads[b], Multipliers{xi, xi}, rows[b].data(),
+        integrator.correct_pass(bodies[b], loads[b], friction, rows[b].data(),
                                 pending[b]);
         integrator.velocities_of_pass(bodies[b], rows[b].data(), pending[b], states[b].velocity,
                                       states[b].omega_body);
