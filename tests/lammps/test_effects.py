@@ -13,7 +13,7 @@ from running import make_lmp_tree
 def results(tmp_path_factory):
     """Counts of all scenes, no times."""
     folder = tmp_path_factory.mktemp("effects")
-    sizes = runs.Sizes(counted=(2, 3), counted_steps=12)
+    sizes = runs.Sizes(counted=(2, 3), counted_steps=72)
     lmp = str(make_lmp_tree(folder).executable)
     profiles = count.count(folder, plan.scenes(), sizes.counted, sizes.counted_steps, lmp)
     return runs.Results(sizes, profiles, {}, None)

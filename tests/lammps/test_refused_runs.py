@@ -76,7 +76,7 @@ def test_a_refused_thermostat_has_not_changed(tmp_path):
     water_data(tmp_path / "data.water")
     straight = run(tmp_path, fix=fix)
     result = run(tmp_path, "timestep 4.0", "timestep 0.5", fix)
-    assert "use a damping time of" in result["error"]
+    assert "Fix gear/quat temp: the temperature is" in result["error"]
     assert result["after"] == result["before"] == straight["before"]
     assert result["then"] == straight["then"]
 

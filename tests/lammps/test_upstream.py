@@ -92,17 +92,20 @@ def test_lammps_format(path, tmp_path):
 
 
 # --- what is in the package ----------------------------------------------------------------------
+WITH_MPI = {"gear_quat_ranks.h", "gear_quat_parts.h"}
+
+
 def test_readme_names_every_file():
     """Headers of the kernel are named as a whole."""
     text = (PACKAGE / "README").read_text()
     named = set(re.findall(r"^  (gear_quat_[\w.]+|fix_\w+)  ", text.partition("What is where\n")[2], re.M))
-    assert named == {path.stem for path in PACKAGE.glob("*.cpp")} | {"gear_quat_ranks.h"}
+    assert named == {path.stem for path in PACKAGE.glob("*.cpp")} | WITH_MPI
 
 
 def test_the_kernel_needs_the_standard_library_only():
-    """Headers without a .cpp, but for that of MPI, include each other and the standard library."""
+    """Headers without a .cpp, but for the two of MPI, include each other and the standard library."""
     kernel = {path.name for path in SOURCES if not path.with_suffix(".cpp").exists()}
-    kernel.remove("gear_quat_ranks.h")
+    kernel -= WITH_MPI
     assert "gear_quat_integrator.h" in kernel
     for name in kernel:
         text = (PACKAGE / name).read_text()

@@ -23,6 +23,8 @@ TOLERANCE = f"{FIXED} tolerance 1.0 dtmin 0.0005 dtmax 0.0005"
 FIRST = "formulation first"
 ISOKINETIC = f"{FIRST} isokinetic total"
 TEMP = "temp 300.0 300.0 0.1"
+#: functions that solve a chain once a step: their instructions depend on the motion, not on the number of bodies
+ONCE_A_STEP = r"GearQuat::Chain(Drive)?::"
 SET = "set group all"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
@@ -115,7 +117,7 @@ EFFECTS = (
         moved(words=FIRST),
         own=r"GearQuat::IsokineticConstraint::|GearQuat::Motion::correct_together",
     ),
-    Effect("temp", moved(words=TEMP), MOVED, own=r"GearQuat::(Thermostat|Chain)::"),
+    Effect("temp", moved(words=TEMP), MOVED, own=r"GearQuat::(Thermostat|TotalMomentum)::"),
     Effect("compensated sums", moved(words="compensate yes"), MOVED),
 )
 

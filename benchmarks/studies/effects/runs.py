@@ -14,7 +14,7 @@ class Sizes:
     """How much is run: bodies along an edge and steps, for counts, for times, and of the cage."""
 
     counted: tuple = (3, 4)
-    counted_steps: int = 10
+    counted_steps: int = 60
     timed: int = 8
     timed_steps: int = 300
     rounds: int = 5
@@ -61,7 +61,7 @@ class Results:
 
     def fix(self, scene, base=None):
         """Instructions per body and step in the fix, or by how many they are more than in ``base``."""
-        more = self.per_body(scene, lambda profile: profile.fix)
+        more = self.per_body(scene, lambda profile: profile.fix - profile.of(plan.ONCE_A_STEP))
         return more - (self.fix(base) if base else 0)
 
     def forces(self, scene):
