@@ -368,6 +368,11 @@ double FixGearQuat::compute_scalar()
 
 double FixGearQuat::compute_vector(int n)
 {
+  if (n >= size_vector)
+    error->all(FLERR,
+               "Fix gear/quat {}: output reads element {} of a vector of {}; the fix has other "
+               "keywords than when the output was defined: define it anew",
+               id, n + 1, size_vector);
   meet_forces();
   if (n >= Sums::ELEMENTS) return motion->element(n - Sums::ELEMENTS);
   return sums->element(n, motion->present_integrator());

@@ -24,8 +24,11 @@ namespace LAMMPS_NS::GearQuat {
 
 class FrictionLimit {
  public:
+  /// h xi that is followed: stable, and not a large part of a momentum in a step.
+  static double of(const Scheme &scheme) { return std::min(stable(scheme), ACCURATE); }
+
   /// The smallest unstable h xi, positive; MOST if there is none below.
-  static double of(const Scheme &scheme)
+  static double stable(const Scheme &scheme)
   {
     const FrictionLimit map(scheme);
     double stable = LEAST;
@@ -39,7 +42,7 @@ class FrictionLimit {
     return stable;
   }
 
-  static constexpr double MOST = 4.0;
+  static constexpr double MOST = 4.0, ACCURATE = 0.5;
 
  private:
   static constexpr double LEAST = 0.02, RATIO = 1.05;

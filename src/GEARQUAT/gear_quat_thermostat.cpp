@@ -38,7 +38,8 @@ Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Thermo
                        const Scheme &scheme) :
     Pointers(lmp),
     fix(fix), bodies(bodies), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
-    most_friction(FrictionLimit::of(scheme)), total(lmp, bodies, words.damp)
+    most_friction(FrictionLimit::of(scheme)), single_pass(scheme.passes == 1),
+    total(lmp, bodies, words.damp)
 {
 }
 

@@ -157,6 +157,7 @@ class Thermostat : protected Pointers {
   bool anew = false;                  ///< where it began there were no histories
   double friction[2] = {};            ///< xi_1 of the chains
   const double most_friction;         ///< times the step, that bodies can follow
+  const bool single_pass;             ///< of the corrector
   bool strong = false;                ///< the friction of this step is taken implicitly
   double unit = 1.0;                  ///< of the sums, see scale()
   double cold[2] = {};                ///< for how long the parts have been cold

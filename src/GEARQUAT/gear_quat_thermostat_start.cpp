@@ -34,17 +34,14 @@ void Thermostat::refuse_friction(double h) const
 {
   const double limit = most_friction / std::fabs(h);
   for (int c = 0; c < (int) chains.size(); ++c) {
-    ChainTarget target = target_of(c, 0.0, h);
+    const ChainTarget target = target_of(c, 0.0, h);
     if (!(twice_of(c) > 0.0) || !(target.freedoms > 0.0)) continue;
     if (friction_bound(chains[c], target, twice_of(c)) < limit) continue;
-    const auto strongest = [&] {
-      return friction_on_trial(chains[c], target, twice_of(c), h);
-    };
-    const double found = strongest();
+    const double found = friction_on_trial(chains[c], target, twice_of(c), h);
     if (found < limit) continue;
-    const double damp = target.period;
-    while (target.period < 1.0e6 * std::fabs(h) && strongest() > SAFE * limit)
-      target.period *= 1.25;
+    const double advised =
+        std::max(FEWEST_STEPS * std::fabs(h),
+                 target.period * friction_bound(chains[c], target, twice_of(c)) / (SAFE * limit));
     error->all(FLERR,
                "Fix gear/quat temp: the {}temperature is {:.3g}, {:.3g} times its target, and with "
                "a damping time of {:.3g} the thermostat would have a friction of {:.2g}/step, "
@@ -53,8 +50,8 @@ void Thermostat::refuse_friction(double h) const
                    : c == ROTATION ? "rotational "
                                    : "translational ",
                twice_of(c) / target.freedoms * force->mvv2e / force->boltz,
-               twice_of(c) / (target.freedoms * target.kt), damp, found * std::fabs(h), h,
-               limit * std::fabs(h), 1.05 * target.period);
+               twice_of(c) / (target.freedoms * target.kt), words.damp, found * std::fabs(h), h,
+               limit * std::fabs(h), 1.05 * advised);
   }
 }
 

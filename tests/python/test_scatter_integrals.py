@@ -27,7 +27,7 @@ def flown(temperature=1.0, diameter=1.0, largest=1.5, boltzmann=1.0, n=N, **dens
     angle = 2.0 * np.arccos(np.minimum(b / diameter, 1.0))
     columns = {"flight": np.arange(n), "b": b, "energy": energy, "angle": angle, "energy_after": energy.copy()}
     columns |= {"fate": np.full(n, "parted"), "repeats": 0 * columns["flight"], "steps": columns["flight"]}
-    columns |= {"turnings": 1 + columns["repeats"], "error_energy": b, "error_momentum": b, "error_angular": b}
+    columns |= {"turnings": 1 + columns["repeats"], "error_energy": 1e-6 * b, "error_momentum": b, "error_angular": b}
     return columns | {"message": np.full(n, "")}, plan
 
 
@@ -184,3 +184,11 @@ def test_what_is_beyond_the_largest_impact_parameter():
     assert left[-1] == pytest.approx(exact * 1e-4 / whole, rel=5e-3)
     assert taken_away(b, h[:, None], 10.0)[0] == pytest.approx(exact * 1e-4, rel=1e-6)
     assert rounded(3.0411) == 3.05 and rounded(0.0123) == 0.0123 and rounded(417.2) == 418.0
+
+
+@pytest.mark.parametrize("wrong", [0.06, np.nan])
+def test_flights_that_lose_energy_are_refused(wrong):
+    columns = {"fate": np.array(["parted"] * 3), "flight": np.arange(3), "message": np.array([""] * 3)}
+    columns |= {name: np.array([1e-9, wrong, 1e-8]) for name in ("error_energy", "error_momentum", "error_angular")}
+    with pytest.raises(DeckError, match="use a smaller tolerance, or a shorter time step"):
+        results(columns, None, None)

@@ -14,6 +14,8 @@ AIMS = {"temperature": ("Omega(1,1)", "Omega(2,2)"), "energy": ("Q(1)", "Q(2)")}
 NAMED = 10
 #: numbers of flights at which convergence is shown begin with this one
 FIRST_SHOWN = 128
+#: energy that a flight may lose or gain, as a part of the initial one
+WORST = 0.05
 ERRORS = {"error_energy": "energy", "error_momentum": "momentum", "error_angular": "angular momentum"}
 
 
@@ -62,12 +64,19 @@ class Results:
 
 def results(columns, plan, facts, sigma=None, left=None):
     """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by; ``left``, that
-    of ``pilots.Largest``.  Raises DeckError if no flight has parted."""
+    of ``pilots.Largest``.  Raises DeckError if no flight has parted, or if one has not kept its
+    energy."""
     fate = columns["fate"]
     message = next(iter(columns["message"][fate == "lost"].tolist()), "")
     if not (fate == "parted").any():
         why = f"LAMMPS ended them ({message})" if message else "more --steps are required, with another --out"
         raise DeckError(f"none of the {len(fate)} flights has parted, so there is nothing to average: {why}")
+    worst = errors(columns)["energy"][0]
+    if not worst < WORST:
+        raise DeckError(
+            f"a flight has changed its energy by {worst:.2g} of the initial one, so the averages would be wrong: "
+            "use a smaller tolerance, or a shorter time step, with another --out"
+        )
     answers = [
         _answer(columns, plan, facts, temperature, sigma, own)
         for temperature, own in zip(plan.conditions, left or [{}] * len(plan.conditions))
