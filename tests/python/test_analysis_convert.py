@@ -132,7 +132,7 @@ def test_lj_is_labeled(flights, tmp_path, suffix):
         for name in files if suffix != "trr" else files[1:]:
             assert (LABEL.encode() in name.read_bytes()) == (units == "lj")
             assert f"LAMMPS units {units}: ".encode() in name.read_bytes()
-    said = dumps.analyze(flights / "lj.timed", tmp_path, "--convert", path)
+    said = dumps.analyze(flights / "lj.timed", tmp_path, "--convert", tmp_path / f"other.{suffix}")
     assert said.exit_code == 0 and LABEL in said.output
 
 

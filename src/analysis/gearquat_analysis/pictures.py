@@ -130,8 +130,8 @@ def draw_averages(averages, path=None):
 
     >>> from gearquat_analysis import Poses, averages, open_dump, pictures
     >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run())
-    >>> [panel.get_xlabel() for panel in pictures.draw_averages(found, "averages.png").axes]
-    ['temperature (K)', 'diffusion coefficient (Å²/fs)', 'correlation time (fs)']
+    >>> pictures.draw_averages(found, "averages.png").axes[0].get_xlabel()
+    'temperature (K)'
     """
     groups = {}
     for one in averages:
