@@ -382,14 +382,20 @@ def test_lines_in_the_log_of_a_batch_job(capsys):
     assert lines == ["flights: 370 of 1000", "flights: 640 of 1000", "flights: 910 of 1000", "done"]
 
 
+def heeds_interrupts():
+    """In the background a shell has interrupts ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_interrupted(tmp_path):
     """Ctrl-C says that flights are kept, and the same command continues."""
     deck, out = colliding.write(tmp_path), tmp_path / "out"
-    options = [*WHOLE, "--count", "4000", "--processes", "1", "--out", str(out)]
+    options = [*WHOLE, "--count", "40000", "--processes", "1", "--out", str(out)]
     code = "from lammps_gearquat.cli import main; main()"
     process = subprocess.Popen(
         [sys.executable, "-c", code, "scatter", str(deck), *options],
         start_new_session=True,
+        preexec_fn=heeds_interrupts,
         stderr=subprocess.PIPE,
         text=True,
     )

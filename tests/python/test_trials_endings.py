@@ -93,7 +93,12 @@ def started(make_deck, tmp_path):
         free = {WALLS: FREE, "velocity all create 0.5": "velocity all create 0.01"}
         command = [program, name, make_deck(**free, **FOR_GEAR), "--time", "1e5", "--out", tmp_path / "out", *words]
         environment = {**os.environ, "TMPDIR": str(tmp_path)}
-        begun.append(subprocess.Popen(list(map(str, command)), env=environment, stderr=subprocess.PIPE, text=True))
+        words = list(map(str, command))
+        pipes = dict(env=environment, stderr=subprocess.PIPE, text=True)
+        # in the background a shell has interrupts ignored
+        begun.append(
+            subprocess.Popen(words, **pipes, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        )
         wait_until(lambda: workers(tmp_path))
         time.sleep(1.0)
         return begun[0]
