@@ -9,16 +9,13 @@
    See the README file in the package's directory.
 ------------------------------------------------------------------------- */
 
-/* One step:
-     initial_integrate   predict every body, place its sites
-     LAMMPS              forces at the predicted sites, once
-     final_integrate     gather force and torque, correct, project, place its sites;
-                         with tolerance: again with a shorter step, if the error was too large */
+/* Between the hooks of LAMMPS and what they are for: a step is made in gear_quat_step.cpp. */
 
 #include "fix_gear_quat.h"
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_fleet.h"
 #include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_neighbors.h"
@@ -26,6 +23,7 @@
 #include "gear_quat_report.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_scene.h"
+#include "gear_quat_step.h"
 #include "gear_quat_template.h"
 
 #include "atom.h"
@@ -64,9 +62,14 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   args.reset(new Arguments(lmp, narg, arg));
   add_citations(lmp, *args);
   ecouple_flag = args->thermostat.damp > 0.0;
+  fleet.reset(new Fleet);
   bodies.reset(new Bodies(lmp, this, args->scheme));
-  motion.reset(new Motion(lmp, this, *args, *bodies));
   neighbors.reset(new Neighbors(lmp, this, *bodies, *args));
+  const auto tally = [this](int vflag, double **f) {
+    tally_virial(vflag, f);
+  };
+  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *neighbors, tally));
+  motion.reset(new Motion(lmp, this, *args, *fleet, *bodies, *neighbors, *step));
   restarts.reset(new Restart(lmp, this, *bodies, *motion));
   respa.reset(new RespaForces(lmp));
   table.reset(new BodyTable(lmp, *bodies));
@@ -113,22 +116,27 @@ int FixGearQuat::setmask()
   resume();
   show_bodies();    // they may be asked for before the first run
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR |
-      INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (motion->changes_step() ? END_OF_STEP : 0);
-}
-
-const Motion *GearQuat::motion_of(Fix *fix)
-{
-  const auto *same = dynamic_cast<FixGearQuat *>(fix);
-  return same ? same->motion.get() : nullptr;
+      INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step->tolerance ? END_OF_STEP : 0);
 }
 
 /* ----------------------------------------------------------------------
    before a run
 ------------------------------------------------------------------------- */
 
+/// All fixes gear/quat of this run.
+void FixGearQuat::meet_fleet()
+{
+  fleet->members.clear();
+  for (auto *other : modify->get_fix_list())
+    if (auto *same = dynamic_cast<FixGearQuat *>(other))
+      fleet->members.push_back({same, same->motion.get(), same->bodies.get(),
+                                same->step->tolerance != nullptr, same->args->scheme.tuned});
+}
+
 void FixGearQuat::init()
 {
-  refuse_scene(lmp, this, *bodies);
+  meet_fleet();
+  refuse_scene(lmp, this, *fleet, *bodies);
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
@@ -136,16 +144,16 @@ void FixGearQuat::init()
   neighbors->init();
   if (!reported) {
     stated = read_stated(lmp, args->mol);
-    warn_of_partial_molecules(lmp, this, *args, *bodies);
+    warn_of_partial_molecules(lmp, this, *args, *fleet, *bodies);
   }
   motion->init();
-  velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
+  step->expect_readers(!reader_of_predicted_velocities(lmp, this).empty());
   bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
 }
 
 void FixGearQuat::reset_dt()
 {
-  motion->follow_time_step();
+  step->follow_length();
 }
 
 void FixGearQuat::setup_pre_exchange()
@@ -160,7 +168,7 @@ void FixGearQuat::setup_pre_neighbor()
   bodies->check_whole();
   bodies->choose_large();
   bodies->update_ghosts();
-  if (met_atoms) take_velocities(update->ntimestep, false);
+  if (met_atoms) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
   if (from_atoms && (args->reinit || !met_atoms) && !bodies->atoms_match()) {
     bodies->recreate();
@@ -170,14 +178,9 @@ void FixGearQuat::setup_pre_neighbor()
   }
   bodies->note_box();
   motion->impose_masks();
-  met_atoms = compared = true;
+  met_atoms = true;
+  step->note_comparison();
   count_rows();
-}
-
-/// Other fixes may have scaled or shifted the velocities of atoms at the end of a step.
-void FixGearQuat::take_velocities(bigint step, bool end)
-{
-  if (neighbors->any_taken()) motion->take_velocities(neighbors->take_velocities(step, end));
 }
 
 /// Atoms are changed when nothing can refuse the run any more.
@@ -185,16 +188,15 @@ void FixGearQuat::setup(int vflag)
 {
   *readers = readers_at_end(lmp, this);
   bodies->spread_states();
-  v_init(vflag);
   if (!reported) neighbors->check_gravity();
   bodies->gather_loads(atom->f, atom->torque);
   motion->begin_run();
   bodies->place_velocities();
   bodies->forget_work();    // positions are the corrected ones
-  if (evflag) tally_virial(atom->f);
+  tally_virial(vflag, atom->f);
   table->forget();
   show_bodies();
-  if (!reported) report_scene(lmp, this, *args, *bodies);
+  if (!reported) report_scene(lmp, this, *args, *fleet, *bodies);
   reported = true;
 }
 
@@ -228,70 +230,24 @@ void FixGearQuat::initial_integrate(int vflag)
   begin_step(vflag, atom->f, atom->torque);
 }
 
-/// The first fix gear/quat in the list starts the bodies of all of them, for they act on each
-/// other.
-void FixGearQuat::begin_steps(double **f, double **torque)
-{
-  std::vector<Motion *> all;
-  for (auto *other : modify->get_fix_list()) {
-    if (auto *same = dynamic_cast<FixGearQuat *>(other)) {
-      same->take_velocities(update->ntimestep - 1, true);
-      same->bodies->spread_states();
-      same->bodies->gather_loads(f, torque);
-      all.push_back(same->motion.get());
-    }
-  }
-  Motion::begin_steps(all, f);
-}
-
 void FixGearQuat::final_integrate()
 {
-  finish_step(atom->f, atom->torque);
+  end_step(atom->f, atom->torque);
 }
 
-/// f, torque: what all pair styles and fixes have made in the step before.
+/// f, torque: what all pair styles and fixes have made in the step before.  The first fix gear/quat
+/// in the list starts the bodies of all of them.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
-  vflag_of_step = vflag;
-  take_velocities(update->ntimestep - 1, true);
-  if (motion->begins_steps()) begin_steps(f, torque);
-  if (update->ntimestep == update->firststep + 1 && !compared)    // run ... pre no
-    neighbors->check_all();
-  else
-    neighbors->check_velocities();
-  compared = false;
-  motion->predict(atom->f);
-  place_prediction();
-}
-
-void FixGearQuat::place_prediction()
-{
-  bodies->spread_moved();
-  bodies->place_sites(velocities_read);
-  neighbors->note_place();
+  motion->take_velocities(update->ntimestep - 1, true);
+  if (motion->begins_steps()) Motion::begin_steps(*fleet, f, torque);
+  step->begin(vflag, f);
   table->forget();
 }
 
-void FixGearQuat::correct_step(double **f, double **torque)
+void FixGearQuat::end_step(double **f, double **torque)
 {
-  bodies->gather_loads(f, torque);
-  v_init(vflag_of_step);    // here: the atoms are those that forces belong to
-  if (evflag) tally_virial(f);
-  motion->correct(f);
-}
-
-void FixGearQuat::finish_step(double **f, double **torque)
-{
-  neighbors->check_places();
-  correct_step(f, torque);
-  while (motion->repeats_step(f)) {
-    place_prediction();
-    motion->evaluate(vflag_of_step);
-    correct_step(f, torque);
-  }
-  bodies->spread_moved();
-  bodies->place_sites(true);
-  neighbors->note_velocity();
+  step->end(f, torque);
   table->forget();
   if (is_due(lmp, readers->of_atoms))
     comm->forward_comm();    // ghost atoms are where the forces were taken
@@ -301,7 +257,7 @@ void FixGearQuat::finish_step(double **f, double **torque)
 /// LAMMPS calls this with keyword tolerance only, when all fixes have finished the step.
 void FixGearQuat::end_of_step()
 {
-  motion->choose_step();
+  step->choose_next();
 }
 
 /// However the run has ended.
@@ -314,8 +270,10 @@ void FixGearQuat::post_run()
 /// Virial of the constraint forces m a - f, at the pose where the forces were taken.  Those of a
 /// body add up to zero, so any origin serves; for the centroid form it is the mean place of its
 /// sites.
-void FixGearQuat::tally_virial(double **f)
+void FixGearQuat::tally_virial(int vflag, double **f)
 {
+  v_init(vflag);
+  if (!evflag) return;
   bodies->spread_loads();
   const auto centroids = cvflag_atom ? bodies->centroids() : std::vector<Load>();
   for (size_t n = cvflag_atom ? 0 : bodies->first_arm(); n < bodies->sites.size(); ++n) {
@@ -342,7 +300,7 @@ void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 {
   respa->add(ilevel);
-  if (respa->outermost(ilevel)) finish_step(respa->forces(), respa->torques());
+  if (respa->outermost(ilevel)) end_step(respa->forces(), respa->torques());
 }
 
 /* ----------------------------------------------------------------------
@@ -363,7 +321,7 @@ void FixGearQuat::meet_forces()
 double FixGearQuat::compute_scalar()
 {
   meet_forces();
-  return sums->energy_correction() + motion->energy_of_thermostat();
+  return sums->energy_correction() + motion->energy();
 }
 
 double FixGearQuat::compute_vector(int n)
@@ -375,7 +333,7 @@ double FixGearQuat::compute_vector(int n)
                id, n + 1, size_vector);
   meet_forces();
   if (n >= Sums::ELEMENTS) return motion->element(n - Sums::ELEMENTS);
-  return sums->element(n, motion->present_integrator());
+  return sums->element(n, step->started ? step->present_integrator() : nullptr);
 }
 
 double FixGearQuat::compute_array(int i, int j)

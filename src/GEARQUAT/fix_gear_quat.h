@@ -33,11 +33,12 @@ namespace GearQuat {
   class Neighbors;
   class RespaForces;
   class Restart;
+  class Step;
   class Sums;
   struct Arguments;
+  struct Fleet;
   struct Readers;
   struct StatedMolecule;
-  const Motion *motion_of(Fix *);
 }    // namespace GearQuat
 
 class FixGearQuat : public Fix {
@@ -88,13 +89,13 @@ class FixGearQuat : public Fix {
   void *extract(const char *, int &) override;
 
  private:
-  friend const GearQuat::Motion *GearQuat::motion_of(Fix *);
-
   // in the order in which they depend on each other; a constructor that ends in an error frees them
   std::unique_ptr<GearQuat::Arguments> args;
+  std::unique_ptr<GearQuat::Fleet> fleet;
   std::unique_ptr<GearQuat::Bodies> bodies;
-  std::unique_ptr<GearQuat::Motion> motion;
   std::unique_ptr<GearQuat::Neighbors> neighbors;
+  std::unique_ptr<GearQuat::Step> step;
+  std::unique_ptr<GearQuat::Motion> motion;
   std::unique_ptr<GearQuat::Restart> restarts;
   std::unique_ptr<GearQuat::RespaForces> respa;
   std::unique_ptr<GearQuat::BodyTable> table;
@@ -105,21 +106,15 @@ class FixGearQuat : public Fix {
 
   bool met_atoms = false;         // bodies were compared with the atoms in a run before
   bool reported = false;          // the scene, once
-  bool compared = false;          // bodies with the atoms, before this run
-  bool velocities_read = true;    // between prediction and correction, by others
-  int vflag_of_step = 0;          // what LAMMPS asked of the virial when the step began
   std::unique_ptr<GearQuat::Readers> readers;    // other fixes at the end of a step
 
-  void take_velocities(bigint step, bool end);
   void create_bodies();
   void resume();
+  void meet_fleet();
   void meet_forces();
-  void begin_steps(double **, double **);
   void begin_step(int, double **, double **);
-  void place_prediction();
-  void correct_step(double **, double **);
-  void finish_step(double **, double **);
-  void tally_virial(double **);
+  void end_step(double **, double **);
+  void tally_virial(int, double **);
   void count_rows();
   void show_bodies();
 };

@@ -10,7 +10,6 @@
 
 #include "gear_quat_keywords.h"
 #include "gear_quat_step_control.h"
-#include "gear_quat_thermostat.h"
 #include "pointers.h"
 
 #include <map>

@@ -283,10 +283,10 @@ std::string Blowup::agree(const std::string &text, int ibody, int bad, const Mee
 
 /// The motion of this body is certain to be lost; the errors of the others in the last step tell
 /// whether the step is too long for all of them.
-Blowup::Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
+Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
 {
-  if (other_cause) {
-    const Cause cause = other_cause(h);
+  if (coupling) {
+    const Cause cause = coupling->instability(h);
     if (!cause.what.empty()) return cause;
   }
   const std::string apart =

@@ -7,16 +7,15 @@
    linear ones, whose smallest moment of inertia makes them spin about their axis), and at the step
    in which a body becomes unstable, before its atoms are placed, so before a dump or another fix
    sees them.  The comparison is in gear_quat_limits.h and is made by the fix for every body and
-   step; this file makes the error message.  The message says what became unstable first: what
-   `other_cause` tells (a thermostat), else the forces, else the motion of the bodies. */
+   step; this file makes the error message.  The message says what became unstable first: the
+   coupling of all bodies, else the forces, else the motion of the bodies. */
 
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
 #define LMP_GEAR_QUAT_BLOWUP_H
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_coupling.h"
 #include "gear_quat_limits.h"
 
-#include <functional>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
@@ -51,13 +50,8 @@ class Blowup : protected Pointers {
 
   /// At the beginning of a run, as pace_of() finds it.
   Pace pace;
-  /// What became unstable first, and what to change: sentences without full stops.
-  struct Cause {
-    std::string what, remedy;
-  };
-  /// Tells whether something that couples all bodies is unstable in steps of h, because then it was
-  /// unstable before they were.  Returns empty sentences if it is stable.  May be null.
-  std::function<Cause(double h)> other_cause;
+  /// Where it is unstable, it was so before the bodies were; may be null.
+  const Coupling *coupling = nullptr;
 
   /// The limits for a step h in the present box.  A box that follows the atoms sets none.
   MotionLimits limits(double h) const;

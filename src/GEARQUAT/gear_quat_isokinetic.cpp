@@ -10,46 +10,38 @@
 #include "error.h"
 #include "force.h"
 
-#include <algorithm>
-
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// a kinetic energy less than this part of the other one is rounding of velocities
-
-static constexpr double NOTHING = 1.0e-24;
-
-/* ---------------------------------------------------------------------- */
-
 IsokineticConstraint::IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme,
                                            Isokinetic mode, bool rescale) :
-    Pointers(lmp),
-    bodies(bodies), scheme(scheme), mode(mode), rescale(rescale), counted(0), heat{}
+    Coupling(lmp, bodies), scheme(scheme), mode(mode), scales(rescale), heat_at_nodes()
 {
 }
 
-KineticSums IsokineticConstraint::over_all(KineticSums here) const
+/// What owned bodies have added is summed over all ranks, and sums begin anew.
+void IsokineticConstraint::sum()
 {
   static constexpr int N = sizeof(KineticSums) / sizeof(double);
-  KineticSums all;
-  MPI_Allreduce(&here, &all, N, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  MPI_Allreduce(&here, &sums, N, MPI_DOUBLE, MPI_SUM, world);
+  here = KineticSums();
+  alpha = multipliers(mode, sums);
+  of_all = alpha;
 }
 
 void IsokineticConstraint::measure()
 {
-  KineticSums here;
+  here = KineticSums();
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     here.add(bodies.rigid_of(ibody), bodies.load_of(ibody), bodies.state_of(ibody));
-  sums = over_all(here);
-  alpha = multipliers(mode, sums);
+  sum();
 }
 
-void IsokineticConstraint::begin_run(bool afresh)
+void IsokineticConstraint::begin_run(bool anew, double /*h*/)
 {
   measure();
   refuse_rest();
-  if (!afresh && counted == bodies.number()) return;
+  if (!anew && counted == bodies.number()) return;
   target = sums;
   counted = bodies.number();
 }
@@ -62,95 +54,72 @@ void IsokineticConstraint::refuse_rest() const
     if (bodies.rigid_of(ibody).rotational_freedoms() > 0) turn = 1;
   turn = over_ranks(MPI_MAX, turn, world);
 
-  const char *missing = nullptr;
-  if (sums.translation + sums.rotation <= 0.0)
-    missing = "";
-  else if (mode == Isokinetic::SEPARATE && sums.translation <= NOTHING * sums.rotation)
-    missing = "translational ";
-  else if (mode == Isokinetic::SEPARATE && turn && sums.rotation <= NOTHING * sums.translation)
-    missing = "rotational ";
+  const bool separate = mode == Isokinetic::SEPARATE;
+  const char *missing =
+      part_at_rest({sums.translation, sums.rotation}, {true, turn != 0}, separate);
   if (missing)
     error->all(FLERR,
                "Fix gear/quat isokinetic {}: the {}kinetic energy of the bodies is zero and would "
                "stay so; give them velocities first",
-               mode == Isokinetic::SEPARATE ? "separate" : "total", missing);
+               separate ? "separate" : "total", missing);
 }
 
 /* ----------------------------------------------------------------------
    a step
 ------------------------------------------------------------------------- */
 
-/// Sums with the torques at the predicted pose and the present velocities.
-KineticSums IsokineticConstraint::of_pending() const
+/// The torques are those at the predicted pose in all passes.
+void IsokineticConstraint::add_prediction(const Integrator &, int ibody,
+                                          const Integrator::Pending &pending)
 {
-  KineticSums here;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const BodyState &s = bodies.state_of(ibody);
-    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody).force, pending[ibody].torque_body,
-             s.velocity, s.omega_body);
-  }
-  return over_all(here);
+  const BodyState &s = bodies.state_of(ibody);
+  add(ibody, s.velocity, s.omega_body, pending);
 }
 
-void IsokineticConstraint::correct(const Integrator &integrator)
+void IsokineticConstraint::end_passes(const Integrator &integrator)
 {
-  const int n = bodies.nmoved();
-  pending.resize(n);
-  for (int ibody = 0; ibody < n; ++ibody)
-    pending[ibody] =
-        integrator.begin(bodies.load_of(ibody), bodies.axes(ibody), bodies.history(ibody));
-
-  for (int pass = 0; pass < scheme.passes; ++pass) {
-    alpha = multipliers(mode, of_pending());
-    for (int ibody = 0; ibody < n; ++ibody) {
-      const RigidBody &rigid = bodies.rigid_of(ibody);
-      double *rows = bodies.history(ibody);
-      integrator.correct_pass(rigid, bodies.load_of(ibody), alpha, rows, pending[ibody]);
-      bodies.change_state(ibody) = integrator.body_state(rigid, rows);
-    }
-  }
-
-  sums = of_pending();
-  alpha = multipliers(mode, sums);
-  integrator.advance(heat, sums.power());
+  sum();
+  heat.advance(integrator, sums.power());
   if (counted != bodies.number()) {    // some were removed, with what they had
     target = sums;
     counted = bodies.number();
   }
-  const Multipliers factor = scale_factors(mode, target, sums);
-  if (rescale)
-    heat[0] += 0.5 * (sums.translation + sums.rotation - target.translation - target.rotation);
-
-  for (int ibody = 0; ibody < n; ++ibody) {
-    double *rows = bodies.history(ibody);
-    bodies.change_last(ibody) = integrator.finish(bodies.load_of(ibody), rows, pending[ibody]);
-    if (rescale) integrator.scale_momenta(bodies.rigid_of(ibody), factor, rows);
-    integrator.body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
-                          bodies.change_frame(ibody));
-  }
+  factor = scale_factors(mode, target, sums);
+  if (scales)
+    heat.add(0.5 * (sums.translation + sums.rotation - target.translation - target.rotation));
 }
 
 /* ----------------------------------------------------------------------
-   heat
+   the start: the power of all forces at the nodes
 ------------------------------------------------------------------------- */
 
-void IsokineticConstraint::seed_heat(const double *series, int terms, double series_step, double h)
+void IsokineticConstraint::begin_start(const StartNodes &nodes)
 {
-  double power = 1.0;
-  for (int j = 1; j < scheme.values(); ++j) {
-    power *= h / series_step;
-    heat[j] = j < terms ? power * series[j] : 0.0;
-  }
+  nodes.collocation.begin(0.0, sums.power(), heat_at_nodes);
 }
 
-void IsokineticConstraint::rescale_step(double ratio)
+void IsokineticConstraint::visit_node(const StartNodes &nodes, int node)
 {
-  Nordsieck<1>::rescale(heat, scheme.values(), ratio);
+  measure();
+  nodes.collocation.set_rate(node, sums.power(), heat_at_nodes);
 }
 
-double IsokineticConstraint::element(int n) const
+void IsokineticConstraint::seed(const StartNodes &nodes, int pairs, int /*values*/)
 {
-  if (n == HEAT) return heat[0] * force->mvv2e;
+  double series[Collocation::MAX_NODES + 1];
+  const int terms = nodes.collocation.series(heat_at_nodes, pairs, nodes.spacing, series);
+  heat.seed(series, terms, nodes.spacing, nodes.h, scheme.values());
+}
+
+void IsokineticConstraint::seed_local(double h, int /*terms*/)
+{
+  const double series[2] = {0.0, h * sums.power()};
+  heat.seed(series, 2, h, h, scheme.values());
+}
+
+double IsokineticConstraint::element(int n)
+{
+  if (n == HEAT) return heat.value() * force->mvv2e;
   return n == ALPHA_TRANSLATION ? alpha.translation : alpha.rotation;
 }
 
@@ -160,14 +129,12 @@ double IsokineticConstraint::element(int n) const
 
 IsokineticConstraint::Checkpoint IsokineticConstraint::checkpoint() const
 {
-  Checkpoint saved = {(double) mode, (double) counted, target, {}};
-  std::copy_n(heat, MAX_VALUES, saved.heat);
-  return saved;
+  return {(double) mode, (double) counted, target, heat.record()};
 }
 
 void IsokineticConstraint::restore(const Checkpoint &saved)
 {
   counted = (bigint) saved.bodies;
   target = saved.target;
-  std::copy_n(saved.heat, MAX_VALUES, heat);
+  heat.restore(saved.heat);
 }

@@ -13,11 +13,12 @@
 #ifndef LMP_GEAR_QUAT_ISOKINETIC_H
 #define LMP_GEAR_QUAT_ISOKINETIC_H
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_coupling.h"
+#include "gear_quat_scalar.h"
 
 namespace LAMMPS_NS::GearQuat {
 
-class IsokineticConstraint : protected Pointers {
+class IsokineticConstraint : public Coupling {
  public:
   /// Elements of the fix's vector behind those of Sums.
   enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS };
@@ -26,58 +27,81 @@ class IsokineticConstraint : protected Pointers {
   IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, Isokinetic mode,
                        bool rescale);
 
-  // all collective
+  /// Without histories the kinetic energy to be kept is that of now.
+  void begin_run(bool anew, double h) override;
+  bool may_start_anew() const override { return false; }
 
-  /// Before a run: states and loads are those of its first step.  afresh: the kinetic energy to be
-  /// kept is that of now.  Ends the run if there is none.
-  void begin_run(bool afresh);
-  /// Multipliers of the present states and loads.
-  void measure();
-  /// One step: correct the predicted histories and states.
-  void correct(const Integrator &integrator);
-
-  // after measure()
-
-  /// The load on an owned body together with the forces of the constraint.
-  Load acting(int ibody) const
+  void measure() override;
+  Load acting(int ibody) const override
   {
     return damped_load(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.load_of(ibody),
-                       alpha);
+                       of_all);
   }
-  /// The power of all forces and torques.
-  double power() const { return sums.power(); }
-  double element(int n) const;
+  void correct(const Integrator &integrator, int passes) override
+  {
+    correct_by_passes(*this, integrator, passes);
+  }
+  void rescale(double ratio) override { heat.rescale(ratio, scheme.values()); }
 
-  /// Higher derivatives of the heat from `terms` terms of a series in units of series_step.
-  void seed_heat(const double *series, int terms, double series_step, double h);
-  /// Histories are rescaled to another time step.
-  void rescale_step(double ratio);
+  void begin_start(const StartNodes &nodes) override;
+  void foretell(const StartNodes &nodes) override { nodes.collocation.foretell(heat_at_nodes); }
+  void visit_node(const StartNodes &nodes, int node) override;
+  void settle(const StartNodes &nodes, int pair) override
+  {
+    nodes.collocation.settle(pair, heat_at_nodes);
+  }
+  void seed(const StartNodes &nodes, int pairs, int values) override;
+  void seed_local(double h, int terms) override;
+
+  int elements() const override { return ELEMENTS; }
+  double element(int n) override;
+  bool extensive(int n) const override { return n == HEAT; }
 
   /// What a restart file holds, the same on all ranks.
   struct Checkpoint {
     double mode, bodies;
     KineticSums target;
-    double heat[MAX_VALUES];
+    ScalarHistory::Rows heat;
   };
   Checkpoint checkpoint() const;
   /// Of the same kind of constraint.
   void restore(const Checkpoint &saved);
 
  private:
-  Bodies &bodies;
+  friend class Coupling;    // calls what correct_by_passes() asks for
+
   Scheme scheme;
   Isokinetic mode;
-  bool rescale;
+  bool scales;    ///< momenta after a step
 
+  KineticSums here;    ///< of owned bodies, in a pass
   KineticSums sums, target;
   Multipliers alpha;
-  bigint counted;             ///< bodies that the target belongs to
-  double heat[MAX_VALUES];    ///< Nordsieck history
-  std::vector<Integrator::Pending> pending;
+  Friction of_all;    ///< alpha
+  Multipliers factor;
+  bigint counted = 0;    ///< bodies that the target belongs to
+  ScalarHistory heat;
+  Collocation::Scalar heat_at_nodes;
 
+  void sum();
   void refuse_rest() const;
-  KineticSums over_all(KineticSums here) const;
-  KineticSums of_pending() const;
+
+  static constexpr bool SUMS_OF_LAST_PASS = true;
+  void begin_passes(const Integrator &) { here = KineticSums(); }
+  void add_prediction(const Integrator &, int ibody, const Integrator::Pending &pending);
+  void find_friction(const Integrator &, int /*pass*/) { sum(); }
+  Friction friction_of(int /*ibody*/) const { return of_all; }
+  void add(int ibody, const double *velocity, const double *omega_body,
+           const Integrator::Pending &pending)
+  {
+    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody).force, pending.torque_body, velocity,
+             omega_body);
+  }
+  void end_passes(const Integrator &integrator);
+  void finish(const Integrator &integrator, const RigidBody &rigid, double *rows) const
+  {
+    if (scales) integrator.scale_momenta(rigid, factor, rows);
+  }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

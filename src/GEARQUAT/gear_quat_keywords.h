@@ -30,6 +30,14 @@ struct MaskWords {
   bool on[3];
 };
 
+/// What keywords temp, tchain and thermostat say.
+struct ThermostatWords {
+  double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
+  int length = 0;
+  bool separate = false;
+  bool may_wait = false;    ///< bodies may come later, so that there may be none
+};
+
 /// The words behind a keyword, after they were read.
 struct KeywordValue {
   std::string text;                    ///< the first word as it stands

@@ -7,10 +7,9 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
-#include "gear_quat_motion.h"
+#include "gear_quat_fleet.h"
 #include "gear_quat_parts.h"
 #include "gear_quat_ranks.h"
-#include "gear_quat_scene.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -43,13 +42,11 @@ struct Membership {
 
 }    // namespace
 
-static bool is_moved(LAMMPS *lmp, const Fix *fix, int i)
+static bool is_moved(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, int i)
 {
   const auto &fixes = lmp->modify->get_fix_list();
   return std::any_of(fixes.begin(), fixes.end(), [&](Fix *other) {
-    if (other == fix || !other->time_integrate) return false;
-    const Motion *same = motion_of(other);
-    return same ? same->moves(i) : (lmp->atom->mask[i] & other->groupbit) != 0;
+    return other != fix && other->time_integrate && fleet.moves(other, lmp->atom, i);
   });
 }
 
@@ -71,7 +68,7 @@ static std::string remedy(const LAMMPS *lmp, const Fix *fix, const Arguments &ar
 }
 
 void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                         const Bodies &bodies)
+                                         const Fleet &fleet, const Bodies &bodies)
 {
   const Atom *atom = lmp->atom;
   if (!atom->molecule_flag) return;
@@ -85,7 +82,7 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Argu
       ++one.all;
       if (bodies.in_body(i))
         ++one.in_bodies;
-      else if (!is_moved(lmp, fix, i))
+      else if (!is_moved(lmp, fix, fleet, i))
         ++one.unmoved;
     }
   parts.merge(memberships);

@@ -6,7 +6,6 @@
 #include "gear_quat_motion.h"
 
 #include "gear_quat_ranks.h"
-#include "gear_quat_scene.h"
 
 #include "comm.h"
 #include "error.h"
@@ -17,38 +16,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
+// If the step becomes shorter than this part of the last one, histories start anew: the errors in
+// their higher rows are those of the long step.  If it becomes longer than so many of the last one,
+// too: these errors grow with powers of the ratio, and may be as large as the motion.
+
+static constexpr double SHORTER = 0.49, LONGER = 2.05;
+
+// Forces at a corrected pose differ from those at the predicted one by what the step has corrected,
+// so at a stable step they leave a smaller residual than the last one.  If a residual exceeds the
+// last one OTHER_FORCES times, or OTHER_NOISE times where forces are random, the forces are not
+// those of the last step any more.  Residuals that rounding explains are excepted: rounding of
+// forces, relative to the largest force on an atom, and rounding of the way that a body moves in a
+// step.
+
+static constexpr double OTHER_FORCES = 1.0, OTHER_NOISE = 10.0;
+static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-13;
+
 /* ---------------------------------------------------------------------- */
 
-Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
-    Pointers(lmp), fix(fix), args(args), bodies(bodies),
-    blowup(lmp, bodies, args.scheme, args.control.shortest)
+Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
+               Neighbors &others, Step &step) :
+    Pointers(lmp),
+    fix(fix), args(args), fleet(fleet), bodies(bodies), others(others), step(step)
 {
-  if (args.control.eps > 0.0)
-    tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, args.every_time, bodies));
-  if (args.isokinetic != Isokinetic::NONE)    // not with tolerance
-    isokinetic.reset(
-        new IsokineticConstraint(lmp, bodies, args.scheme, args.isokinetic, args.rescale));
-  if (args.thermostat.damp > 0.0)    // not with isokinetic
-    thermostat.reset(new Thermostat(lmp, fix, bodies, args.thermostat, args.scheme));
-  coupled = isokinetic || thermostat;
-  blowup.other_cause = [this](double h) {
-    return unstable_thermostat(h);
-  };
-}
-
-Blowup::Cause Motion::unstable_thermostat(double h) const
-{
-  if (!thermostat || thermostat->part_of_limit(h) < 1.0) return {};
-  return {fmt::format("The thermostat became unstable first: its friction in a step of {:g} is "
-                      "{:.2g} times as strong as the method can follow",
-                      h, thermostat->part_of_limit(h)),
-          "Begin nearer to the target temperature, or use a longer damping time"};
 }
 
 void Motion::meet_bodies()
@@ -62,48 +56,22 @@ void Motion::meet_bodies()
 
 void Motion::init()
 {
-  if (tolerance) tolerance->refuse_scene();
-  if (tolerance && started) tolerance->keep_step(step());
-  follow_time_step();
-}
-
-const Scheme &Motion::present_scheme() const
-{
-  return tolerance ? tolerance->scheme() : args.scheme;
-}
-
-void Motion::make_integrator(double step)
-{
-  integrator.reset(new Integrator(present_scheme(), step));
-}
-
-void Motion::follow_time_step()
-{
-  const double next = update->dt;
-  if (next == 0.0 || !std::isfinite(next) || next == step()) return;
-  if (tolerance && started && !tolerance->is_changing_step()) return;    // it will be put back
-  const double ratio = next / step();
-  if (integrator)
-    integrator->set_step(next);
-  else
-    make_integrator(next);
-  if (!started) return;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    integrator->rescale(bodies.history(ibody), ratio);
-  if (isokinetic) isokinetic->rescale_step(ratio);
+  if (step.tolerance) step.tolerance->refuse_scene();
+  if (step.tolerance && step.started) step.tolerance->keep_step();
+  step.follow_length();
 }
 
 void Motion::forget(const std::string &why)
 {
-  if (started && comm->me == 0) utils::logmesg(lmp, why + "\n");
-  started = false;
+  if (step.started && comm->me == 0) utils::logmesg(lmp, why + "\n");
+  step.started = false;
 }
 
 void Motion::impose_masks()
 {
-  if (!bodies.change_masks(masks) || !started)
+  if (!bodies.change_masks(masks) || !step.started)
     return;    // only those of a restart file can be others
-  started = false;
+  step.started = false;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: keywords force and torque turn off other components than in "
@@ -113,221 +81,224 @@ void Motion::impose_masks()
 
 void Motion::begin_run()
 {
-  if (update->nsteps > 0) blowup.pace = pace_of(lmp, bodies);
-  if (!started && !tolerance && update->nsteps > 0)
-    check_spins(lmp, bodies, args.scheme, blowup.pace, step());
-  if (isokinetic) isokinetic->begin_run(!started);
-  if (thermostat)
-    thermostat->begin_run(!started,
-                          tolerance ? std::min(step(), thermostat->longest_step()) : step());
-  if (tolerance) tolerance->announce_output();
+  const double h = step.length();
+  if (update->nsteps > 0) step.blowup.pace = pace_of(lmp, bodies);
+  if (!step.started && !step.tolerance && update->nsteps > 0)
+    check_spins(lmp, bodies, args.scheme, step.blowup.pace, h);
+  if (step.coupling)
+    step.coupling->begin_run(!step.started, step.tolerance ? std::min(h, longest_step()) : h);
+  if (step.tolerance) step.tolerance->announce_output();
   set_up = true;
-}
-
-/* ----------------------------------------------------------------------
-   a step
-------------------------------------------------------------------------- */
-
-void Motion::take_velocities(const std::vector<int> &changed)
-{
-  if (!started) return;
-  measure();
-  if (thermostat && over_ranks(MPI_MAX, (int) !changed.empty(), world))
-    thermostat->follow_velocities(step());
-  for (const int ibody : changed)
-    integrator->set_velocities(bodies.rigid_of(ibody), bodies.state_of(ibody), acting(ibody),
-                               bodies.history(ibody));
-}
-
-/// Forces of constraint and thermostat are those of the present states and loads.
-void Motion::measure()
-{
-  if (isokinetic) isokinetic->measure();
-  if (thermostat) thermostat->measure();
-}
-
-void Motion::predict(double **f)
-{
-  const double h = step();
-  if (tolerance && update->dt != h) tolerance->put_back_begun_step(h);
-  if (tolerance) tolerance->begin_step();
-  if (thermostat && tolerance) thermostat->keep_chains();
-  predict_bodies(f);
-}
-
-void Motion::predict_bodies(double **f)
-{
-  const double h = step();
-  last_step = h;
-  limits = blowup.limits(h);
-  const auto check = [&](int ibody) {
-    const BodyState &state = bodies.state_of(ibody);
-    if (!tolerance && !limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
-  };
-  for (const int ibody : bodies.points) {
-    double *rows = bodies.history(ibody);
-    integrator->predict_center(rows);
-    integrator->center_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody));
-    check(ibody);
-  }
-  for (const int ibody : bodies.tops) {
-    double *rows = bodies.history(ibody);
-    integrator->predict(rows);
-    integrator->body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
-                           bodies.change_frame(ibody));
-    check(ibody);
-  }
-}
-
-void Motion::correct(double **f)
-{
-  if (coupled)
-    correct_together(f);
-  else
-    masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
-}
-
-/// MASKED: some components of the loads do not act.
-template <bool MASKED> void Motion::correct_bodies(double **f)
-{
-  const auto correct_all = [&](auto changing) {
-    for (const int ibody : bodies.points) correct_body<MASKED, true, changing>(ibody, f);
-    for (const int ibody : bodies.tops) correct_body<MASKED, false, changing>(ibody, f);
-  };
-  tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
-  if (!tolerance) begin_fresh(f);    // otherwise when the step holds
-}
-
-/// POINT: without moments of inertia.  CHANGING: the time step follows the error.
-template <bool MASKED, bool POINT, bool CHANGING> void Motion::correct_body(int ibody, double **f)
-{
-  double *rows = bodies.history(ibody);
-  const RigidBody &rigid = bodies.rigid_of(ibody);
-  const Load masked = MASKED ? bodies.acting(ibody) : Load();
-  const Load &load = MASKED ? masked : bodies.load_of(ibody);
-  BodyState &state = bodies.change_state(ibody);
-  const BodyState before = MASKED ? state : BodyState();
-  Correction &last = bodies.change_last(ibody);
-  if (CHANGING)
-    last = tolerance->correct(*integrator, ibody, load);
-  else
-    last = POINT ? integrator->correct_center(rigid, load, rows)
-                 : integrator->correct(rigid, load, bodies.axes(ibody), rows);
-  if (POINT)
-    integrator->center_state(rigid, rows, state);
-  else
-    integrator->body_state(rigid, rows, state, bodies.change_frame(ibody));
-  if (MASKED) last.work = work_between(bodies.load_of(ibody), before, state);
-  if (!CHANGING) check_limits(ibody, f);
-}
-
-/// Constraint and thermostat couple all bodies, so they are corrected pass by pass.
-void Motion::correct_together(double **f)
-{
-  if (tolerance) tolerance->note_prediction();
-  if (isokinetic)
-    isokinetic->correct(*integrator);
-  else
-    thermostat->correct(*integrator, present_scheme());
-  if (tolerance) tolerance->note_correction(*integrator);
-  if (tolerance && thermostat)
-    tolerance->note_chains(thermostat->left_out(step(), integrator->values()), thermostat->kt());
-  if (!tolerance) hold_step(f);
-}
-
-/// The step is not made again.
-void Motion::hold_step(double **f)
-{
-  for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list) check_limits(ibody, f);
-  if (thermostat) {
-    thermostat->watch_cold(step());
-    thermostat->watch_friction(step());
-  }
-  begin_fresh(f);
-}
-
-/// The histories of bodies that came in this step begin with the derivatives that are known.
-void Motion::begin_fresh(double **f)
-{
-  const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
-  for (const int ibody : bodies.fresh) {
-    blowup.check_load(ibody, step(), f);
-    Bootstrap::seed_body(bodies, ibody, acting(ibody), present_scheme(), step(), known);
-  }
-  bodies.take_in_fresh();
-  if (thermostat) thermostat->follow_changes(step());
-}
-
-bool Motion::repeats_step(double **f)
-{
-  if (!tolerance) return false;
-  if (!tolerance->judge()) {
-    hold_step(f);
-    return false;
-  }
-  bodies.put_back_histories();
-  if (thermostat) thermostat->put_back_chains();
-  const int values = present_scheme().values();
-  tolerance->shorten_values();
-  if (present_scheme().values() != values) take_over_values();
-  tolerance->shorten_step();
-  bodies.keep_histories();
-  if (thermostat) thermostat->keep_chains();
-  predict_bodies(f);
-  return true;
 }
 
 /// Positive; infinite where nothing but errors and dtmax limits it.
 double Motion::longest_step() const
 {
-  return thermostat ? thermostat->longest_step() : std::numeric_limits<double>::infinity();
+  return step.coupling ? step.coupling->longest_step() : HUGE_VAL;
 }
 
-void Motion::choose_step()
+void Motion::end_run()
 {
-  const int values = tolerance->scheme().values();
-  const double next = tolerance->choose(longest_step());
-  if (tolerance->scheme().values() != values) take_over_values();
-  tolerance->change_step(next);
-  tolerance->order_output();
+  if (awaits_forces()) step.coupling->end_run();
+  if (step.tolerance) step.tolerance->end_run();
 }
 
-/// The histories of bodies have the number of values that the tolerance has chosen.
-void Motion::take_over_values()
+void Motion::take_velocities(bigint of_step, bool end)
 {
-  make_integrator(step());
+  if (!others.any_taken()) return;
+  const std::vector<int> changed = others.take_velocities(of_step, end);
+  if (!step.started) return;
+  if (step.coupling) {
+    step.coupling->measure();
+    if (over_ranks(MPI_MAX, (int) !changed.empty(), world))
+      step.coupling->follow_velocities(step.length());
+  }
+  for (const int ibody : changed)
+    step.present_integrator()->set_velocities(bodies.rigid_of(ibody), bodies.state_of(ibody),
+                                              step.acting(ibody), bodies.history(ibody));
+}
+
+/* ----------------------------------------------------------------------
+   which histories go on
+------------------------------------------------------------------------- */
+
+void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
+{
+  std::vector<Motion *> full;
+  std::vector<bool> needed;
+  for (const auto &one : fleet.members) {
+    Motion &motion = *one.motion;
+    motion.take_velocities(motion.update->ntimestep - 1, true);
+    motion.bodies.spread_states();
+    motion.bodies.gather_loads(f, torque);
+  }
+  for (const auto &one : fleet.members) {
+    Step &step = one.motion->step;
+    if (step.tolerance && !step.started)
+      step.tolerance->bound_first_step(one.motion->longest_step());
+  }
+  for (const auto &one : fleet.members) {
+    Motion *motion = one.motion;
+    motion->set_up = false;
+    const bool needs = motion->has_to_start(f);
+    if (motion->bootstraps()) {
+      full.push_back(motion);
+      needed.push_back(needs);
+    } else if (needs) {
+      motion->starter(true).seed_local(2, motion->step.length());
+      motion->begin(false);
+      if (motion->step.tolerance) motion->step.tolerance->shorten_first_step(false);
+    }
+  }
+  if (!std::count(needed.begin(), needed.end(), true)) return;
+
+  // Histories that could continue start anew too if this gives the others a start of full order.
+
+  const bool some_go_on = std::count(needed.begin(), needed.end(), false) > 0;
+  const bool together = !some_go_on || full[0]->forces_can_be_followed();
+  std::vector<Starter> starters;
+  for (size_t n = 0; n < full.size(); ++n)
+    if (needed[n] || together) starters.push_back(full[n]->starter(needed[n]));
+  const bool found = Start(full[0]->lmp, starters, full[0]->step.length()).run();
+  for (size_t n = 0; n < full.size(); ++n)
+    if (needed[n] || (together && found)) full[n]->begin(found);
+  for (size_t n = 0; n < full.size(); ++n)    // which changes the step of all of them
+    if ((found || needed[n]) && full[n]->step.tolerance)
+      full[n]->step.tolerance->shorten_first_step(found);
+}
+
+/// Returns null if the histories can continue.  Collective.
+const char *Motion::reason_to_start_anew(double **f)
+{
+  const double now = std::fabs(step.length()), last = std::fabs(step.time_step.made());
+  if (now < SHORTER * last && can_start_anew())
+    return "the time step is less than half of that of the last steps";
+  if (now > LONGER * last && last != 0.0 && can_start_anew())
+    return "the time step is more than twice that of the last steps";
+  if (!movers.empty() && movers != present_movers() && can_start_anew())
+    return "other fixes move atoms than in the last steps";
+  const char *changed = step.coupling ? step.coupling->reason_to_start_anew() : nullptr;
+  if (changed && bootstraps() && forces_can_be_followed()) return changed;
+  return forces_changed(f) ? "forces are not those of the last step" : nullptr;
+}
+
+/// The other fixes that move atoms: the derivatives of forces depend on that motion.
+std::string Motion::present_movers() const
+{
+  std::string ids = "of this run:";
+  for (const auto *other : modify->get_fix_list())
+    if (other != fix && other->time_integrate) ids += std::string(" ") + other->id;
+  return ids;
+}
+
+/// True if a new start would be of full order, and nothing but the histories would be new.
+bool Motion::can_start_anew() const
+{
+  return !step.tolerance && !(step.coupling && !step.coupling->may_start_anew()) && bootstraps() &&
+      forces_can_be_followed();
+}
+
+/// By a start of full order, of all fixes together.
+bool Motion::forces_can_be_followed() const
+{
+  std::vector<const Fix *> owners;
+  for (const auto &one : fleet.members)
+    if (one.motion->bootstraps() || one.motion == this) owners.push_back(one.fix);
+  return Forces(lmp, owners).reason().empty();
+}
+
+/// True if the present loads leave a residual that the histories cannot have left.
+bool Motion::forces_changed(double **f)
+{
+  if (step.coupling) step.coupling->measure();
+  const Integrator &integrator = *step.present_integrator();
+  double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
+  for (const auto &one : fleet.members) here[0] = std::max(here[0], one.motion->last_error());
+  for (const auto &site : bodies.sites)
+    here[1] = std::max(here[1], force->ftm2v * length(f[site.atom]));
+  const auto largest = over_ranks(MPI_MAX, here, world);
+
+  double ratio = 0.0;
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) {
+      double rows[MAX_SIZE];
+      std::copy_n(bodies.history(ibody), args.scheme.size(), rows);
+      const Body &body = bodies.body_at(ibody);
+      const Correction found = list == &bodies.points
+          ? integrator.correct_center(body.rigid, step.acting(ibody), rows)
+          : integrator.correct(body.rigid, step.acting(ibody), rows);
+      const double one = body.length(found) / (largest[0] + rounding(ibody, largest[1]));
+      ratio = std::isfinite(one) ? std::max(ratio, one) : 2.0 * OTHER_NOISE;
+    }
+  ratio = over_ranks(MPI_MAX, ratio, world);
+  return ratio > OTHER_NOISE || (ratio > OTHER_FORCES && forces_can_be_followed());
+}
+
+/// The part of a residual that rounding explains, as a length.  force: the largest one on an atom.
+double Motion::rounding(int ibody, double force) const
+{
+  const Body &body = bodies.body_at(ibody);
+  const BodyState &s = bodies.state_of(ibody);
+  const double size = std::fabs(step.length());
+  double response = 1.0 / body.rigid.mass;
+  for (const double moment : body.rigid.inertia)
+    if (moment > 0.0) response = std::max(response, body.reach() * body.reach() / moment);
+  const double noise = ROUNDING_OF_FORCES * std::sqrt((double) body.natoms) * force;
+  const double way = size * length(s.velocity) + body.reach() * (1.0 + size * length(s.omega_body));
+  return size * size * response * noise + ROUNDING_OF_MOTION * way;
+}
+
+double Motion::last_error() const
+{
+  double largest = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    largest = std::max(largest, bodies.body_at(ibody).length(bodies.last_of(ibody)));
+  return largest;
+}
+
+/// True if histories have to start; rank 0 says why they start anew.
+bool Motion::has_to_start(double **f)
+{
+  if (step.coupling) step.coupling->meet_forces();
+  const char *reason = step.started ? reason_to_start_anew(f) : nullptr;
+  if (reason && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
+  const bool needs = !step.started || reason;
+  movers = present_movers();
+  if (step.coupling) step.coupling->begin_steps(needs);
+  if (needs) step.blowup.check_loads(step.length(), f);
+  return needs;
+}
+
+Starter Motion::starter(bool needed)
+{
+  return {fix, &bodies, step.coupling.get(),
+          step.tolerance ? step.tolerance->scheme_of_start() : args.scheme, needed};
+}
+
+/// Histories have started.  full: all their rows are known.
+void Motion::begin(bool full)
+{
+  step.started = true;
+  if (!step.tolerance) return;
+  step.tolerance->begin(full);
+  step.make_integrator();
 }
 
 /* ----------------------------------------------------------------------
    outputs
 ------------------------------------------------------------------------- */
 
-int Motion::elements() const
-{
-  return elements_of_tolerance() +
-      (isokinetic       ? IsokineticConstraint::ELEMENTS
-           : thermostat ? Thermostat::ELEMENTS
-                        : 0);
-}
-
 double Motion::element(int n) const
 {
-  const int behind = n - elements_of_tolerance();
-  if (behind < 0) return tolerance->element(n);
-  return isokinetic ? isokinetic->element(behind) : thermostat->element(behind);
+  const int behind = n - of_tolerance();
+  return behind < 0 ? step.tolerance->element(n) : step.coupling->element(behind);
 }
 
 int Motion::extensive(int n) const
 {
-  const int behind = n - elements_of_tolerance();
-  return (isokinetic && behind == IsokineticConstraint::HEAT) ||
-      (thermostat && behind == Thermostat::ENERGY);
-}
-
-const Integrator *Motion::present_integrator() const
-{
-  return started ? integrator.get() : nullptr;
+  const int behind = n - of_tolerance();
+  return step.coupling && step.coupling->extensive(behind);
 }
 
 /* ----------------------------------------------------------------------
@@ -337,14 +308,16 @@ const Integrator *Motion::present_integrator() const
 Motion::Checkpoint Motion::checkpoint() const
 {
   const Scheme &scheme = args.scheme;
+  const auto *isokinetic = dynamic_cast<IsokineticConstraint *>(step.coupling.get());
+  const auto *thermostat = dynamic_cast<Thermostat *>(step.coupling.get());
   return {(double) scheme.first(),
           (double) scheme.values(),
           (double) scheme.compensate,
-          (double) started,
-          step(),
+          (double) step.started,
+          step.length(),
           (double) scheme.trial,
           (double) scheme.tuned,
-          tolerance ? tolerance->checkpoint() : Tolerance::Checkpoint(),
+          step.tolerance ? step.tolerance->checkpoint() : Tolerance::Checkpoint(),
           isokinetic ? isokinetic->checkpoint() : IsokineticConstraint::Checkpoint(),
           thermostat ? thermostat->checkpoint() : Thermostat::Checkpoint()};
 }
@@ -352,6 +325,8 @@ Motion::Checkpoint Motion::checkpoint() const
 void Motion::restore(const Checkpoint &saved)
 {
   const Checkpoint mine = checkpoint();
+  auto *isokinetic = dynamic_cast<IsokineticConstraint *>(step.coupling.get());
+  auto *thermostat = dynamic_cast<Thermostat *>(step.coupling.get());
   std::vector<std::string> others;    // keywords that had another value
   const auto compare = [&others](const char *keyword, double before, double now) {
     if (before != now) others.emplace_back(keyword);
@@ -367,11 +342,11 @@ void Motion::restore(const Checkpoint &saved)
   const bool same = others.empty();
   if (isokinetic && same) isokinetic->restore(saved.isokinetic);
   if (thermostat && same) thermostat->restore(saved.thermostat);
-  started = saved.started != 0.0 && same;
-  if (tolerance && started) tolerance->restore(saved.tolerance);
-  last_step = saved.h;
-  if (saved.h != 0.0) make_integrator(saved.h);
-  if (started && saved.tuned != mine.tuned && comm->me == 0)
+  step.started = saved.started != 0.0 && same;
+  if (step.tolerance && step.started) step.tolerance->restore(saved.tolerance);
+  step.time_step.restore(saved.h);
+  if (saved.h != 0.0) step.make_integrator();
+  if (step.started && saved.tuned != mine.tuned && comm->me == 0)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with corrector {}; its histories go "

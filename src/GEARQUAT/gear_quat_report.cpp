@@ -292,9 +292,10 @@ static std::string settings(const Arguments &args)
 
 /* ---------------------------------------------------------------------- */
 
-void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies)
+void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
+                            Bodies &bodies)
 {
-  const auto advice = advice_on_surroundings(lmp, fix, args, bodies);
+  const auto advice = advice_on_surroundings(lmp, fix, args, fleet, bodies);
   if (args.report == Arguments::Report::NO) return;
   const Scene scene = look_at(lmp, bodies);
   const auto rows = effects(lmp, fix, args, scene);

@@ -5,7 +5,8 @@
 
 #include "gear_quat_scene.h"
 
-#include "gear_quat_motion.h"
+#include "gear_quat_fleet.h"
+#include "gear_quat_forces.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -60,11 +61,11 @@ static void refuse_box_changes(LAMMPS *lmp)
                       other->id, other->style);
 }
 
-static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Bodies &bodies)
+static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
+                                     const Bodies &bodies)
 {
   for (auto *other : lmp->modify->get_fix_list()) {
     if (other == fix || !other->time_integrate) continue;
-    const Motion *same = motion_of(other);
     int dim;
     const int *its_body =
         utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
@@ -73,8 +74,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Bodies &
     const Atom *atom = lmp->atom;
     tagint shared = 0;
     for (int i = 0; i < atom->nlocal; ++i) {
-      if (!bodies.in_body(i) || !(atom->mask[i] & other->groupbit)) continue;
-      if (same && !same->moves(i)) continue;
+      if (!bodies.in_body(i) || !fleet.moves(other, atom, i)) continue;
       if (its_body && its_body[i] < 0) continue;
       shared = atom->tag[i];
     }
@@ -104,7 +104,7 @@ static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
                           other->id, other->style, first->id, fix->id);
 }
 
-void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Bodies &bodies)
+void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Bodies &bodies)
 {
   if (lmp->update->whichflag == 2)
     lmp->error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
@@ -114,7 +114,7 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Bodies &bodies)
   refuse_box_changes(lmp);
   bodies.refuse_atoms();
   refuse_respa_with_steps(lmp);
-  refuse_other_integrators(lmp, fix, bodies);
+  refuse_other_integrators(lmp, fix, fleet, bodies);
   warn_of_walls(lmp, fix);
 }
 

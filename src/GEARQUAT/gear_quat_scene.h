@@ -22,19 +22,15 @@ class LAMMPS;
 namespace LAMMPS_NS::GearQuat {
 
 class Bodies;
-class Motion;
+struct Fleet;
 
 /// As messages name a fix: with ID and style.
 std::string name_of(const Fix *fix);
 
-/// The motion of a fix gear/quat, null for a fix of another style: what one fix gear/quat may ask
-/// another one in the same run.
-const Motion *motion_of(Fix *fix);
-
 /// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, a box
 /// that changes, r-RESPA with different steps, atoms of a kind that cannot be followed, atoms
 /// that another fix moves too.  Warns of granular walls that do not know the masses of the bodies.
-void refuse_scene(LAMMPS *lmp, const Fix *fix, const Bodies &bodies);
+void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Bodies &bodies);
 
 /// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that
 /// asks.

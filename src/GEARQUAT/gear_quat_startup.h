@@ -95,19 +95,24 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
   }
 }
 
-/// Collocation of one body; the object's tables are the same for all bodies.
+/// Collocation of a body or of a scalar; the object's tables are the same for all.
 class Collocation {
  public:
   static constexpr int MAX_HALF = StartPlan::MAX_PAIRS;
   static constexpr int MAX_NODES = 2 * MAX_HALF + 1;
 
-  /// Second derivatives at the nodes, in units of the node spacing, and the exact start.
-  struct Workspace {
-    int pairs;    ///< of nodes that the polynomial goes through
-    double start[2][7];
-    double second[MAX_NODES][7];    ///< node k in row pairs() + k
-    double met[2][7];               ///< at the two nodes that are being evaluated
+  /// A function with WIDTH components that obeys an equation of this ORDER: its exact start, and
+  /// the derivatives of that order at the nodes.  Rows of the start and rates are in the units of
+  /// the host: for a body in units of the node spacing.
+  template <int WIDTH, int ORDER> struct Nodes {
+    int pairs;                        ///< of nodes that the polynomial goes through
+    double start[ORDER][WIDTH];       ///< the function, and its first derivative if ORDER is 2
+    double rate[MAX_NODES][WIDTH];    ///< node k in row pairs() + k
+    double met[2][WIDTH];             ///< at the two nodes that are being evaluated
   };
+  /// x and q of a body.
+  using Workspace = Nodes<7, 2>;
+  using Scalar = Nodes<1, 1>;
 
   /// As many nodes as the order of a history of `values` rows needs.
   explicit Collocation(int values) : half(StartPlan::pairs_for(values)), polynomial(half + 1)
@@ -126,21 +131,29 @@ class Collocation {
     for (int i = 0; i < 7; ++i) {
       w.start[0][i] = series.c[0][i];
       w.start[1][i] = series.c[1][i];
-      w.second[half][i] = 2.0 * series.c[2][i];
+      w.rate[half][i] = 2.0 * series.c[2][i];
     }
   }
 
-  /// One pair more, with the second derivatives that the present polynomial has there.
-  void foretell(Workspace &w) const
+  /// No pair is known yet: a constant rate.
+  void begin(double start, double rate, Scalar &s) const
+  {
+    s.pairs = 0;
+    s.start[0][0] = start;
+    s.rate[half][0] = rate;
+  }
+
+  /// One pair more, with the rates that the present polynomial has there.
+  template <int WIDTH, int ORDER> void foretell(Nodes<WIDTH, ORDER> &w) const
   {
     const Polynomial &inside = polynomial[w.pairs];
     const int next = w.pairs + 1;
     for (int side = 0; side < 2; ++side)
-      for (int i = 0; i < 7; ++i) {
+      for (int i = 0; i < WIDTH; ++i) {
         double sum = 0.0;
         for (int l = -w.pairs; l <= w.pairs; ++l)
-          sum += inside.beyond[side][column_of(l)] * w.second[half + l][i];
-        w.second[half + (side ? next : -next)][i] = sum;
+          sum += inside.beyond[side][column_of(l)] * w.rate[half + l][i];
+        w.rate[half + (side ? next : -next)][i] = sum;
       }
     w.pairs = next;
   }
@@ -154,8 +167,8 @@ class Collocation {
       value[i] = w.start[0][i] + node * w.start[1][i];
       rate[i] = w.start[1][i];
       for (int l = -w.pairs; l <= w.pairs; ++l) {
-        value[i] += present.value[column_of(node)][column_of(l)] * w.second[half + l][i];
-        rate[i] += present.rate[column_of(node)][column_of(l)] * w.second[half + l][i];
+        value[i] += present.value[column_of(node)][column_of(l)] * w.rate[half + l][i];
+        rate[i] += present.rate[column_of(node)][column_of(l)] * w.rate[half + l][i];
       }
     }
     BodyState state;
@@ -182,18 +195,21 @@ class Collocation {
     for (int i = 0; i < 7; ++i) {
       met[i] = 2.0 * series.c[2][i];
       if (!std::isfinite(met[i])) return std::numeric_limits<double>::infinity();
-      change[i] = met[i] - w.second[half + node][i];
+      change[i] = met[i] - w.rate[half + node][i];
     }
     return relative(change, met, length, w);
   }
 
+  /// The same of a scalar.
+  void set_rate(int node, double rate, Scalar &s) const { s.met[node > 0][0] = rate; }
+
   /// The polynomial goes through what was met at both nodes of a pair: neither side is first, so
   /// the start is symmetric under time reversal.
-  void settle(int pair, Workspace &w) const
+  template <int WIDTH, int ORDER> void settle(int pair, Nodes<WIDTH, ORDER> &w) const
   {
-    for (int i = 0; i < 7; ++i) {
-      w.second[half - pair][i] = w.met[0][i];
-      w.second[half + pair][i] = w.met[1][i];
+    for (int i = 0; i < WIDTH; ++i) {
+      w.rate[half - pair][i] = w.met[0][i];
+      w.rate[half + pair][i] = w.met[1][i];
     }
   }
 
@@ -207,78 +223,20 @@ class Collocation {
     for (int i = 0; i < 7; ++i) {
       series.c[0][i] = w.start[0][i];
       series.c[1][i] = w.start[1][i];
-      for (int j = 0; j < nodes; ++j) {
-        long double sum = 0.0;
-        for (int l = -pairs; l <= pairs; ++l)
-          sum += polynomial[pairs].monomial[j][column_of(l)] * w.second[half + l][i];
-        series.c[j + 2][i] = double(sum / ((j + 1) * (j + 2)));
-      }
+      for (int j = 0; j < nodes; ++j)
+        series.c[j + 2][i] = double(coefficient(j, i, w, pairs) / ((j + 1) * (j + 2)));
     }
     return series;
   }
   TaylorSeries series(const Workspace &w) const { return series(w, w.pairs); }
 
-  int number_of_nodes() const { return 2 * half + 1; }
-
-  /// A scalar with a first-order equation at the same nodes: its rates there, in the units of the
-  /// host.
-  struct Scalar {
-    int pairs;
-    double start;
-    double rate[MAX_NODES];    ///< node k in row pairs() + k
-    double met[2];             ///< at the two nodes that are being evaluated
-  };
-
-  // as for a body: begin(), foretell(), value_at() and set_rate() at both nodes of a pair, settle()
-
-  void begin(double start, double rate, Scalar &s) const
+  /// The same of a scalar whose rates are per unit of time, with `spacing` between nodes: its terms
+  /// are returned, at most MAX_NODES + 1.
+  int series(const Scalar &s, int pairs, double spacing, double *c) const
   {
-    s.pairs = 0;
-    s.start = start;
-    s.rate[half] = rate;
-  }
-
-  void foretell(Scalar &s) const
-  {
-    const int next = s.pairs + 1;
-    for (int side = 0; side < 2; ++side) {
-      double sum = 0.0;
-      for (int l = -s.pairs; l <= s.pairs; ++l)
-        sum += polynomial[s.pairs].beyond[side][column_of(l)] * s.rate[half + l];
-      s.rate[half + (side ? next : -next)] = sum;
-    }
-    s.pairs = next;
-  }
-
-  /// spacing: time between nodes.
-  double value_at(int node, const Scalar &s, double spacing) const
-  {
-    double sum = 0.0;
-    for (int l = -s.pairs; l <= s.pairs; ++l)
-      sum += polynomial[s.pairs].rate[column_of(node)][column_of(l)] * s.rate[half + l];
-    return s.start + spacing * sum;
-  }
-
-  void set_rate(int node, double rate, Scalar &s) const { s.met[node > 0] = rate; }
-
-  void settle(int pair, Scalar &s) const
-  {
-    s.rate[half - pair] = s.met[0];
-    s.rate[half + pair] = s.met[1];
-  }
-
-  /// The rate of a scalar at all nodes, from -half on, of which the innermost `pairs` count, as
-  /// series of the scalar that is zero at the start, in units of the node spacing.  Returns its
-  /// terms, at most number_of_nodes() + 1.
-  int integrate(const double *rate, int pairs, double spacing, double *c) const
-  {
-    c[0] = 0.0;
-    for (int j = 0; j <= 2 * pairs; ++j) {
-      long double sum = 0.0;
-      for (int l = -pairs; l <= pairs; ++l)
-        sum += polynomial[pairs].monomial[j][column_of(l)] * rate[half + l];
-      c[j + 1] = double(spacing * sum / (j + 1));
-    }
+    c[0] = s.start[0][0];
+    for (int j = 0; j <= 2 * pairs; ++j)
+      c[j + 1] = double(spacing * coefficient(j, 0, s, pairs) / (j + 1));
     return 2 * pairs + 2;
   }
 
@@ -341,6 +299,16 @@ class Collocation {
 
   int half;
   std::vector<Polynomial> polynomial;    ///< through 0..half pairs
+
+  /// Of s^j in the polynomial through the innermost `pairs`, component i.
+  template <int WIDTH, int ORDER>
+  long double coefficient(int j, int i, const Nodes<WIDTH, ORDER> &w, int pairs) const
+  {
+    long double sum = 0.0;
+    for (int l = -pairs; l <= pairs; ++l)
+      sum += polynomial[pairs].monomial[j][column_of(l)] * w.rate[half + l][i];
+    return sum;
+  }
 
   static double relative(const double *change, const double *second, double length,
                          const Workspace &w)

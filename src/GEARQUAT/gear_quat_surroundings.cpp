@@ -5,7 +5,8 @@
 
 #include "gear_quat_report.h"
 
-#include "gear_quat_motion.h"
+#include "gear_quat_arguments.h"
+#include "gear_quat_fleet.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 
@@ -45,8 +46,9 @@ namespace {
 
 class Surroundings : protected Pointers {
  public:
-  Surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies) :
-      Pointers(lmp), fix(fix), args(args), bodies(bodies), label(labels())
+  Surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
+               Bodies &bodies) :
+      Pointers(lmp), fix(fix), args(args), fleet(fleet), bodies(bodies), label(labels())
   {
   }
   std::vector<std::string> advice() const;
@@ -55,6 +57,7 @@ class Surroundings : protected Pointers {
  private:
   const Fix *fix;
   const Arguments &args;
+  const Fleet &fleet;
   Bodies &bodies;
   const std::vector<double> label;    ///< of atoms, ghosts too: what moves them
 
@@ -73,9 +76,8 @@ std::vector<double> Surroundings::labels() const
   std::vector<double> made(atom->nlocal + atom->nghost, STILL);
   for (auto *other : modify->get_fix_list()) {
     if (!other->time_integrate || other == fix) continue;
-    const Motion *same = motion_of(other);
     for (int i = 0; i < atom->nlocal; ++i)
-      if ((atom->mask[i] & other->groupbit) && (!same || same->moves(i))) made[i] = MOVED_BY_OTHERS;
+      if (fleet.moves(other, atom, i)) made[i] = MOVED_BY_OTHERS;
   }
   for (int i = 0; i < atom->nlocal; ++i)
     if (bodies.in_body(i)) made[i] = (double) bodies.id_of(i);
@@ -258,9 +260,10 @@ std::string Surroundings::exclude_own() const
 }    // namespace
 
 std::vector<std::string> GearQuat::advice_on_surroundings(LAMMPS *lmp, const Fix *fix,
-                                                          const Arguments &args, Bodies &bodies)
+                                                          const Arguments &args, const Fleet &fleet,
+                                                          Bodies &bodies)
 {
-  const Surroundings surroundings(lmp, fix, args, bodies);
+  const Surroundings surroundings(lmp, fix, args, fleet, bodies);
   surroundings.warn_of_own_pairs();
   return surroundings.advice();
 }

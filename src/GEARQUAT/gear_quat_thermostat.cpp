@@ -36,8 +36,7 @@ static constexpr double STRONG = 1.0e-3;
 
 Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
                        const Scheme &scheme) :
-    Pointers(lmp),
-    fix(fix), bodies(bodies), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
+    Coupling(lmp, bodies), fix(fix), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
     most_friction(FrictionLimit::of(scheme)), single_pass(scheme.passes == 1),
     total(lmp, bodies, words.damp)
 {
@@ -99,22 +98,22 @@ double Thermostat::scale() const
 
 /// Adds what the chains have of the kinetic energy of a body.
 void Thermostat::add_kinetic(int ibody, const double *velocity, const double *omega_body,
-                             Sums &here) const
+                             Sums &sums) const
 {
   const RigidBody &rigid = bodies.rigid_of(ibody);
   double along[3] = {velocity[0], velocity[1], velocity[2]};
   const bool masked = bodies.body_at(ibody).off != 0;
   for (int k = 0; masked && k < 3; ++k)
     if (!is_thermostatted(ibody, TRANSLATION, k)) along[k] = 0.0;
-  here[TRANSLATION].add(2.0 * translational_energy(rigid, along), unit);
+  sums[TRANSLATION].add(2.0 * translational_energy(rigid, along), unit);
   if (!masked || is_thermostatted(ibody, ROTATION))
-    here[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), unit);
+    sums[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), unit);
 }
 
-void Thermostat::sum_kinetic(const Sums &here, bool of_states)
+void Thermostat::sum_kinetic(const Sums &sums, bool of_states)
 {
   bigint limbs[4 + TotalMomentum::LIMBS] = {};
-  for (int part = 0; part < 2; ++part) std::copy_n(here[part].limbs, 2, limbs + 2 * part);
+  for (int part = 0; part < 2; ++part) std::copy_n(sums[part].limbs, 2, limbs + 2 * part);
   if (of_states) total.add_up(limbs + 4);
   const auto all = over_ranks(MPI_SUM, limbs, world);
   if (of_states) total.take(all.data() + 4);
@@ -130,14 +129,14 @@ void Thermostat::sum_kinetic(const Sums &here, bool of_states)
 
 void Thermostat::sum_present()
 {
-  Sums here;
+  Sums sums;
   unit = scale();
   total.begin_sums(line.kt);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
-    add_kinetic(ibody, s.velocity, s.omega_body, here);
+    add_kinetic(ibody, s.velocity, s.omega_body, sums);
   }
-  sum_kinetic(here, true);
+  sum_kinetic(sums, true);
 }
 
 void Thermostat::note_friction()
@@ -159,54 +158,47 @@ void Thermostat::measure()
   note_friction();
 }
 
-void Thermostat::correct(const Integrator &integrator, const Scheme &scheme)
+void Thermostat::correct(const Integrator &integrator, int passes)
+{
+  correct_by_passes(*this, integrator, passes);
+}
+
+void Thermostat::begin_passes(const Integrator &integrator)
+{
+  waiting = false;
+  same_bodies = changes == bodies.changes();
+  line = line_of_step(update->ntimestep);
+  unit = scale();
+  total.begin_sums(line.kt);
+  strong = std::fabs(integrator.step()) * strongest_friction() > STRONG;
+  here[TRANSLATION] = here[ROTATION] = ExactSum();
+}
+
+void Thermostat::add_prediction(const Integrator &integrator, int ibody,
+                                const Integrator::Pending &)
+{
+  const BodyState &s = bodies.state_of(ibody);
+  add_kinetic(ibody, s.velocity, s.omega_body, here);
+  if (!strong) return;
+  double force_of_rows[3];
+  integrator.force_of_rows(bodies.rigid_of(ibody), bodies.history(ibody), force_of_rows);
+  total.add_predicted(ibody, force_of_rows);
+}
+
+void Thermostat::find_friction(const Integrator &integrator, int pass)
 {
   const int values = integrator.values();
   const double h = integrator.step();
-  const bool same_bodies = changes == bodies.changes();
-  waiting = false;
-  line = line_of_step(update->ntimestep);
+  sum_kinetic(here, pass == 0);
+  for (size_t c = 0; c < chains.size(); ++c)
+    advance(c, same_bodies ? twice_of(c) : chains[c].foretold(h, values), h, values);
+  note_friction();
+  here[TRANSLATION] = here[ROTATION] = ExactSum();
+}
 
-  Sums here;
-  double velocity[3], omega_body[3], force_of_rows[3];
-  unit = scale();
-  total.begin_sums(line.kt);
-  strong = std::fabs(h) * strongest_friction() > STRONG;
-  pending.resize(bodies.nmoved());
-  for_moved([&](int ibody) {
-    const BodyState &s = bodies.state_of(ibody);
-    pending[ibody] =
-        integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
-    if (ibody >= bodies.nowned()) return;
-    add_kinetic(ibody, s.velocity, s.omega_body, here);
-    if (!strong) return;
-    integrator.force_of_rows(bodies.rigid_of(ibody), bodies.history(ibody), force_of_rows);
-    total.add_predicted(ibody, force_of_rows);
-  });
-
-  for (int pass = 0; pass < scheme.passes; ++pass) {
-    sum_kinetic(here, pass == 0);
-    for (size_t c = 0; c < chains.size(); ++c)
-      advance(c, same_bodies ? twice_of(c) : chains[c].foretold(h, values), h, values);
-    note_friction();
-    here[TRANSLATION] = here[ROTATION] = ExactSum();
-    for_moved([&](int ibody) {
-      const RigidBody &rigid = bodies.rigid_of(ibody);
-      double *rows = bodies.history(ibody);
-      if (bodies.body_at(ibody).off == 0)
-        integrator.correct_pass(rigid, bodies.load_of(ibody), of_all, rows, pending[ibody]);
-      else
-        integrator.correct_pass(rigid, bodies.acting(ibody), friction_of(ibody), rows,
-                                pending[ibody]);
-      if (ibody >= bodies.nowned() || pass + 1 == scheme.passes) return;
-      integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
-      add_kinetic(ibody, velocity, omega_body, here);
-    });
-  }
+void Thermostat::end_passes(const Integrator &)
+{
   for (auto &chain : chains) chain.conclude();
-  for_moved([&](int ibody) {
-    finish_body(integrator, ibody);
-  });
 }
 
 /// A kinetic energy that is no number belongs to a body that is lost, which ends the run.
@@ -224,18 +216,6 @@ void Thermostat::advance(int chain, double twice_kinetic, double h, int values)
              twice_kinetic / (target.freedoms * target.kt), words.damp);
 }
 
-void Thermostat::finish_body(const Integrator &integrator, int ibody)
-{
-  double *rows = bodies.history(ibody);
-  BodyState &state = bodies.change_state(ibody);
-  Correction &last = bodies.change_last(ibody);
-  const bool masked = bodies.body_at(ibody).off != 0;
-  const BodyState before = masked ? state : BodyState();
-  last = integrator.finish(bodies.acting(ibody), rows, pending[ibody]);
-  integrator.body_state(bodies.rigid_of(ibody), rows, state, bodies.change_frame(ibody));
-  if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
-}
-
 Chain::LeftOut Thermostat::left_out(double h, int values) const
 {
   Chain::LeftOut all;
@@ -245,6 +225,21 @@ Chain::LeftOut Thermostat::left_out(double h, int values) const
            std::max(all.more, one.more)};
   }
   return all;
+}
+
+/// Every body moves with the temperature of the target, as far as the chains' errors matter.
+void Thermostat::errors(const VariableOrder &order, double h, int values,
+                        const Include &include) const
+{
+  const Chain::LeftOut most = left_out(h, values);
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    include(order.errors_of_chain(most, line.kt, bodies.rigid_of(ibody).mass, h));
+}
+
+void Thermostat::note_step(double h)
+{
+  watch_cold(h);
+  watch_friction(h);
 }
 
 void Thermostat::watch_cold(double h)

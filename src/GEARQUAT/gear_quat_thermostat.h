@@ -22,102 +22,73 @@
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H
 
-#include "gear_quat_bodies.h"
 #include "gear_quat_chain.h"
+#include "gear_quat_coupling.h"
 #include "gear_quat_exact_sum.h"
+#include "gear_quat_keywords.h"
 #include "gear_quat_momentum.h"
-#include "gear_quat_startup.h"
 
 #include <array>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What keywords temp, tchain and thermostat say.
-struct ThermostatWords {
-  double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
-  int length = 0;
-  bool separate = false;
-  bool may_wait = false;    ///< bodies may come later, so that there may be none
-};
-
-class Thermostat : protected Pointers {
+class Thermostat : public Coupling {
  public:
-  /// Elements of the fix's vector behind those of Sums, and of Tolerance.
   static constexpr double FEWEST_STEPS = 10.0;    ///< of a damping time, otherwise a warning
+  /// Elements of the fix's vector behind those of Sums, and of Tolerance.
   enum { ENERGY, T_TRANSLATION, T_ROTATION, TARGET, XI_TRANSLATION, XI_ROTATION, ELEMENTS };
 
   /// scheme: the one with most values.
   Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
              const Scheme &scheme);
 
-  // all collective
+  /// Ends the run if there is nothing to be thermostatted, or if the friction would be too strong.
+  void begin_run(bool anew, double h) override;
+  bool awaits_forces() const override { return true; }
+  void meet_forces() override;
+  /// Where histories begin, the total momentum is judged by the present forces alone.  Ends the run
+  /// if nothing that could be thermostatted moves.
+  void begin_steps(bool begins) override;
+  void end_run() override { tell_freedoms(); }
+  /// If the target, or a degree of freedom, is not as in the steps before this run.
+  const char *reason_to_start_anew() const override;
 
-  /// Before a run of steps of h.  Ends it if there is nothing to be thermostatted, or if the
-  /// friction would be too strong.  anew: there are no histories.
-  void begin_run(bool anew, double h);
-  /// The loads are those of all fixes, before the first step of a run or of its output.
-  void meet_forces();
-  /// After meet_forces().  begins: histories do, so that the total momentum is judged by the present
-  /// forces alone.  Ends the run if nothing that could be thermostatted moves.
-  void begin_steps(bool begins);
-  /// Friction by the present states and chains, whose rates are known then.
-  void measure();
-  /// One step of h: correct the predicted histories and states.
-  void correct(const Integrator &integrator, const Scheme &scheme);
-  /// The most of all chains in this step.
-  Chain::LeftOut left_out(double h, int values) const;
-  /// The target.
-  double kt() const { return line.kt; }
-  /// The present friction in a step of h, as a part of the strongest that bodies can follow.
-  double part_of_limit(double h) const;
-  /// A next step should not be longer.
-  double longest_step() const;
-  /// A step of h holds: warns once of bodies that a thermostat cannot warm.
-  void watch_cold(double h);
-  /// And of a friction that is nearly too strong.
-  void watch_friction(double h);
-  /// Bodies that have come in this step have histories, and none is left of those that have gone;
-  /// the step holds, so that its forces tell whether the total momentum is constant.
-  void follow_changes(double h);
-  /// Bodies have received other velocities.
-  void follow_velocities(double h);
-
-  /// True if the target, or a degree of freedom, is not as in the steps before this run; after
-  /// meet_forces().
-  bool target_jumps() const;
-  /// Rank 0 tells the degrees of freedom if they are not those that it has told last.  why: what
-  /// comes before.
-  void tell_freedoms(const std::string &why = "");
-
-  // after measure()
-
-  /// The load that moves a body: what is not turned off, with the friction.
-  Load acting(int ibody) const
+  /// The rates of the chains are known then, too.
+  void measure() override;
+  Load acting(int ibody) const override
   {
     return damped_load(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.acting(ibody),
                        friction_of(ibody));
   }
-  double element(int n);
+  void correct(const Integrator &integrator, int passes) override;
+  /// Warns once of bodies that a thermostat cannot warm, and of a friction that is nearly too
+  /// strong.
+  void note_step(double h) override;
+  /// The step holds, so that its forces tell whether the total momentum is constant.
+  void follow_changes(double h) override;
+  void follow_velocities(double h) override;
+  void keep() override { kept = chains; }
+  void put_back() override { chains = kept; }
+  double longest_step() const override;
+  void errors(const VariableOrder &order, double h, int values,
+              const Include &include) const override;
+  Cause instability(double h) const override;
+
+  // in gear_quat_thermostat_start.cpp
+
+  void begin_start(const StartNodes &nodes) override;
+  void foretell(const StartNodes &nodes) override;
+  void visit_node(const StartNodes &nodes, int node) override;
+  void settle(const StartNodes &nodes, int pair) override;
+  void seed(const StartNodes &nodes, int pairs, int values) override;
+  void seed_local(double h, int terms) override;
+
+  int elements() const override { return ELEMENTS; }
+  double element(int n) override;
+  bool extensive(int n) const override { return n == ENERGY; }
   /// What the chains have taken from the bodies.
-  double energy() const;
-
-  // the start, of all bodies at the same nodes (gear_quat_startup.h), in
-  // gear_quat_thermostat_start.cpp
-
-  void begin_start(const Collocation &collocation, double spacing, double h);
-  void foretell(const Collocation &collocation);
-  /// As measure(), at another node.
-  void measure_node(const Collocation &collocation, int node);
-  void settle(const Collocation &collocation, int pair);
-  /// values: of the method.
-  void seed(const Collocation &collocation, int pairs, int values);
-  /// From the present alone.
-  void seed_local(double h);
-
-  // As Bodies::keep_histories(), for a step that may be undone.
-  void keep_chains() { kept = chains; }
-  void put_back_chains() { chains = kept; }
+  double energy() const override;
 
   /// What a restart file holds, the same on all ranks.
   struct Checkpoint {
@@ -131,8 +102,9 @@ class Thermostat : protected Pointers {
   void restore(const Checkpoint &saved);
 
  private:
+  friend class Coupling;    // calls what correct_by_passes() asks for
+
   const Fix *fix;
-  Bodies &bodies;
   ThermostatWords words;
 
   enum Part { TRANSLATION, ROTATION };
@@ -164,11 +136,9 @@ class Thermostat : protected Pointers {
   bool warned[2] = {};                ///< of that
   bool warned_friction = false;
   TotalMomentum total;
-  std::vector<Integrator::Pending> pending;
 
-  double spacing = 0.0, step_of_start = 0.0;
-  std::vector<Collocation::Scalar> nodes;    ///< 2K of the chains
-  std::vector<bool> held;                    ///< chains that do not move while bodies start
+  std::vector<Collocation::Scalar> twice_at_nodes;    ///< 2K of the chains
+  std::vector<bool> held;                             ///< chains that do not move in the start
 
   int mode() const { return words.separate ? 2 : 1; }
   Line line_of_step(bigint step) const;
@@ -188,21 +158,37 @@ class Thermostat : protected Pointers {
   void settle_fresh(double h);
   void refuse_nothing(bool meets_all) const;
   using Sums = ExactSum[2];
-  void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &here) const;
+  void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &sums) const;
   /// of_states: with the total momentum, and the forces, that states and loads have.
-  void sum_kinetic(const Sums &here, bool of_states);
+  void sum_kinetic(const Sums &sums, bool of_states);
   double scale() const;
   void sum_present();
   void note_friction();
   void share_friction();
-  /// act: of the index of every body on this rank that has a history, owned or large.
-  template <class Act> void for_moved(Act act) const
+  void watch_cold(double h);
+  void watch_friction(double h);
+  double part_of_limit(double h) const;
+  Chain::LeftOut left_out(double h, int values) const;
+  /// Rank 0 tells the degrees of freedom if they are not those that it has told last.  why: what
+  /// comes before.
+  void tell_freedoms(const std::string &why = "");
+
+  // the passes of a step
+
+  Sums here;           ///< twice the kinetic energies of owned bodies, in a pass
+  bool same_bodies;    ///< none has come or gone in this step
+  static constexpr bool SUMS_OF_LAST_PASS = false;
+  void begin_passes(const Integrator &integrator);
+  void add_prediction(const Integrator &integrator, int ibody, const Integrator::Pending &);
+  void find_friction(const Integrator &integrator, int pass);
+  void add(int ibody, const double *velocity, const double *omega_body,
+           const Integrator::Pending &)
   {
-    for (const auto *list : {&bodies.points, &bodies.tops})
-      for (const int ibody : *list) act(ibody);
+    add_kinetic(ibody, velocity, omega_body, here);
   }
+  void end_passes(const Integrator &);
+  void finish(const Integrator &, const RigidBody &, double *) const {}
   void advance(int chain, double twice_kinetic, double h, int values);
-  void finish_body(const Integrator &integrator, int ibody);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -23,10 +23,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// a kinetic energy less than this part of the other one is rounding of velocities
-
-static constexpr double NOTHING = 1.0e-24;
-
 // targets that differ by less are the same but for rounding
 
 static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
@@ -155,14 +151,17 @@ void Thermostat::begin_steps(bool begins)
   refuse_nothing(true);
 }
 
-bool Thermostat::target_jumps() const
+const char *Thermostat::reason_to_start_anew() const
 {
   const auto differs = [this](double a, double b) {
     return std::fabs(a - b) > ROUNDING_OF_TARGET * line.kt;
   };
-  return differs(made.line.kt, line.kt) || differs(made.line.kt_step, line.kt_step) ||
+  const bool jumps = differs(made.line.kt, line.kt) || differs(made.line.kt_step, line.kt_step) ||
       made.freedoms[TRANSLATION] != freedoms[TRANSLATION] ||
       made.freedoms[ROTATION] != freedoms[ROTATION] || made.damp != words.damp;
+  return jumps ? "the thermostat has another target, or other degrees of freedom, than in the "
+                 "last steps"
+               : nullptr;
 }
 
 /// Space-frame components of a torque belong to no part of the rotational energy.
@@ -194,19 +193,10 @@ void Thermostat::refuse_nothing(bool meets_all) const
                "torque leave on, so they have no temperature");
   // what may still turn out to be heat
   const double common = meets_all ? 0.0 : total.twice_energy();
-  const double energy[2] = {twice[TRANSLATION] + common, twice[ROTATION]};
-  const double all = energy[TRANSLATION] + energy[ROTATION];
-  const bool any = !meets_all || freedoms[TRANSLATION] + freedoms[ROTATION] > 0.0;
-  const auto rests = [&](Part part) {
-    return freedoms[part] > 0.0 && energy[part] <= NOTHING * all;
-  };
-  const char *missing = nullptr;
-  if (any && all <= 0.0)
-    missing = "";
-  else if (words.separate && rests(TRANSLATION))
-    missing = "translational ";
-  else if (words.separate && rests(ROTATION))
-    missing = "rotational ";
+  if (meets_all && freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0) return;
+  const char *missing =
+      part_at_rest({twice[TRANSLATION] + common, twice[ROTATION]},
+                   {freedoms[TRANSLATION] > 0.0, freedoms[ROTATION] > 0.0}, words.separate);
   if (missing)
     error->all(FLERR,
                "Fix gear/quat temp: the {}kinetic energy of the bodies is zero{}, and a thermostat "

@@ -74,6 +74,16 @@ double Thermostat::part_of_limit(double h) const
   return std::fabs(h) * strongest_friction() / most_friction;
 }
 
+Cause Thermostat::instability(double h) const
+{
+  const double part = part_of_limit(h);
+  if (part < 1.0) return {};
+  return {fmt::format("The thermostat became unstable first: its friction in a step of {:g} is "
+                      "{:.2g} times as strong as the method can follow",
+                      h, part),
+          "Begin nearer to the target temperature, or use a longer damping time"};
+}
+
 /// Warns once of a friction that is nearly too strong.
 void Thermostat::watch_friction(double h)
 {
@@ -100,59 +110,63 @@ void Thermostat::settle_fresh(double h)
   note_friction();
 }
 
-void Thermostat::begin_start(const Collocation &collocation, double of, double h)
+void Thermostat::begin_start(const StartNodes &nodes)
 {
-  spacing = of;
-  step_of_start = h;
-  settle_fresh(h);
-  nodes.resize(chains.size());
+  settle_fresh(nodes.h);
+  twice_at_nodes.resize(chains.size());
   held.resize(chains.size());
   for (size_t c = 0; c < chains.size(); ++c) {
-    held[c] = chains[c].is_stiff(target_of(c, 0.0, h), twice_of(c), h, collocation.pairs());
-    collocation.begin(0.0, twice_of(c), nodes[c]);
+    held[c] = chains[c].is_stiff(target_of(c, 0.0, nodes.h), twice_of(c), nodes.h,
+                                 nodes.collocation.pairs());
+    nodes.collocation.begin(0.0, twice_of(c), twice_at_nodes[c]);
   }
 }
 
-void Thermostat::foretell(const Collocation &collocation)
+void Thermostat::foretell(const StartNodes &nodes)
 {
-  for (auto &node : nodes) collocation.foretell(node);
+  for (auto &twice : twice_at_nodes) nodes.collocation.foretell(twice);
+}
+
+/// 2K at a node; behind and before it in memory are those at the other nodes.
+static const double *at_start(const Collocation &collocation, const Collocation::Scalar &twice)
+{
+  return twice.rate[collocation.pairs()];
 }
 
 /// 2K about the start, in units of the node spacing.
-static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &node)
+static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice)
 {
   double at[ChainDrive::MOST];
-  const int points = 2 * node.pairs + 1;
-  for (int i = 0; i < points; ++i) at[i] = i - node.pairs;
-  return ChainDrive::through(points, at, node.rate + collocation.pairs() - node.pairs);
+  const int points = 2 * twice.pairs + 1;
+  for (int i = 0; i < points; ++i) at[i] = i - twice.pairs;
+  return ChainDrive::through(points, at, at_start(collocation, twice) - twice.pairs);
 }
 
-void Thermostat::measure_node(const Collocation &collocation, int node)
+void Thermostat::visit_node(const StartNodes &nodes, int node)
 {
   sum_present();
   for (size_t c = 0; c < chains.size(); ++c) {
-    if (!held[c])
-      friction[c] = chains[c]
-                        .flow(target_of(c, 0.0, step_of_start), drive_of(collocation, nodes[c]),
-                              spacing, node)
-                        .y[0];
-    collocation.set_rate(node, twice_of(c), nodes[c]);
+    const ChainTarget target = target_of(c, 0.0, nodes.h);
+    const ChainDrive drive = drive_of(nodes.collocation, twice_at_nodes[c]);
+    if (!held[c]) friction[c] = chains[c].flow(target, drive, nodes.spacing, node).y[0];
+    nodes.collocation.set_rate(node, twice_of(c), twice_at_nodes[c]);
   }
   share_friction();
 }
 
-void Thermostat::settle(const Collocation &collocation, int pair)
+void Thermostat::settle(const StartNodes &nodes, int pair)
 {
-  for (auto &node : nodes) collocation.settle(pair, node);
+  for (auto &twice : twice_at_nodes) nodes.collocation.settle(pair, twice);
 }
 
-void Thermostat::seed(const Collocation &collocation, int pairs, int values)
+void Thermostat::seed(const StartNodes &nodes, int pairs, int values)
 {
   for (size_t c = 0; c < chains.size(); ++c)
-    chains[c].seed(nodes[c].rate + collocation.pairs(), pairs, spacing, values + 1);
+    chains[c].seed(at_start(nodes.collocation, twice_at_nodes[c]), pairs, nodes.spacing,
+                   values + 1);
 }
 
-void Thermostat::seed_local(double h)
+void Thermostat::seed_local(double h, int /*terms*/)
 {
   settle_fresh(h);
   for (size_t c = 0; c < chains.size(); ++c) {

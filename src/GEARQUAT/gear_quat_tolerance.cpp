@@ -5,7 +5,6 @@
 
 #include "gear_quat_tolerance.h"
 
-#include "gear_quat_motion.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 
@@ -14,8 +13,6 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
-#include "output.h"
-#include "pair.h"
 #include "update.h"
 #include "utils.h"
 
@@ -33,9 +30,9 @@ static Scheme with_trial_row(Scheme scheme)
 }
 
 Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-                     double every_time, Bodies &bodies) :
+                     double every_time, const Fleet &fleet, Bodies &bodies, TimeStep &time_step) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), present(with_trial_row(scheme)), control(control),
+    fix(fix), fleet(fleet), bodies(bodies), time_step(time_step), present(with_trial_row(scheme)), control(control),
     every_time(every_time), order(present), repeat(lmp, fix), failed()
 {
   record.values = present.values();
@@ -50,14 +47,14 @@ void Tolerance::refuse_scene() const
                "steps of their own");
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
-    const Motion *same = motion_of(other);
-    if (utils::strmatch(other->style, "^dt/reset") || (same && same->changes_step()))
+    const Fleet::Member *same = fleet.find(other);
+    if (utils::strmatch(other->style, "^dt/reset") || (same && same->changes_step))
       error->all(
           FLERR,
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
           "do so",
           other->id, other->style);
-    if (same && same->is_tuned())
+    if (same && same->tuned)
       error->all(FLERR,
                  "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and tuned "
                  "coefficients forget a change too slowly; give it corrector gear, or let this fix "
@@ -142,7 +139,7 @@ void Tolerance::bound_first_step(double permitted)
   if (control.longest > 0.0) size = std::min(size, control.longest);
   size = std::max(size, control.shortest);
   if (size != given && !integrated_before(first_mover()))
-    set_begun_step(std::copysign(size, update->dt));
+    time_step.change_begun(std::copysign(size, update->dt));
 }
 
 void Tolerance::shorten_first_step(bool full)
@@ -154,7 +151,7 @@ void Tolerance::shorten_first_step(bool full)
       std::min(1.0, StepControl::SAFETY * control.allowed(largest, present.values()));
   if (!full) size = std::min(size, first_step_of_low_order());
   size = std::max(control.shortest, std::min(size, farthest_step(all[1])));
-  size = std::fabs(even(std::copysign(size, update->dt), begun_at()));
+  size = std::fabs(even(std::copysign(size, update->dt), time_step.beginning()));
   if (size >= std::fabs(update->dt)) return;
   if (const Fix *other = integrated_before(first_mover())) {
     if (comm->me == 0)
@@ -165,7 +162,7 @@ void Tolerance::shorten_first_step(bool full)
     return;
   }
   const double instead = update->dt;
-  set_begun_step(std::copysign(size, instead));
+  time_step.change_begun(std::copysign(size, instead));
   tell_of_first_step(instead);
 }
 
@@ -180,9 +177,7 @@ void Tolerance::tell_of_first_step(double instead) const
 /// The first fix gear/quat, which starts histories for all before it begins the step.
 const Fix *Tolerance::first_mover() const
 {
-  for (auto *other : modify->get_fix_list())
-    if (motion_of(other)) return other;
-  return fix;
+  return fleet.members.front().fix;
 }
 
 /// A fix that has begun this step when `begins` begins it, null for none.
@@ -195,27 +190,9 @@ const Fix *Tolerance::integrated_before(const Fix *begins) const
   return nullptr;
 }
 
-/// Time so far was made of the steps before the one that has begun.
-void Tolerance::set_begun_step(double step)
-{
-  const bigint before = update->ntimestep - 1;
-  update->atime += (before - update->atimestep) * update->dt;
-  update->atimestep = before;
-  --update->ntimestep;    // a dump in intervals of time may not be due any more when this step ends
-  set_step(step);
-  ++update->ntimestep;
-}
-
 /* ----------------------------------------------------------------------
    length and values
 ------------------------------------------------------------------------- */
-
-/// The step that ends now was made with the present one.
-void Tolerance::change_step(double step)
-{
-  update->update_time();    // in every step: the sum has the same rounding in two runs as in one
-  if (step != update->dt) set_step(step);
-}
 
 void Tolerance::set_values(int values)
 {
@@ -235,14 +212,14 @@ void Tolerance::change_values(int values)
   }
 }
 
-void Tolerance::keep_step(double step)
+void Tolerance::keep_step()
 {
-  if (update->dt == step) return;
-  tell_of_step(step);
-  change_step(step);
+  if (update->dt == time_step.length()) return;
+  tell_of_step();
+  time_step.change(time_step.length());
 }
 
-void Tolerance::put_back_begun_step(double step)
+void Tolerance::put_back_begun_step()
 {
   if (const Fix *other = integrated_before(fix))
     error->all(
@@ -250,27 +227,15 @@ void Tolerance::put_back_begun_step(double step)
         "Fix gear/quat tolerance: the time step was changed before a run with pre no, and fix "
         "{} ({}) has begun the first step with it; leave out pre no",
         other->id, other->style);
-  tell_of_step(step);
-  set_begun_step(step);
+  tell_of_step();
+  time_step.change_begun(time_step.length());
 }
 
-void Tolerance::tell_of_step(double step) const
+void Tolerance::tell_of_step() const
 {
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n",
-                   step, update->dt);
-}
-
-/// As fix dt/reset changes it; this fix learns of it with all others.
-void Tolerance::set_step(double step)
-{
-  changing_step = true;
-  update->dt = step;
-  update->dt_default = 0;
-  if (force->pair) force->pair->reset_dt();
-  for (auto *other : modify->get_fix_list()) other->reset_dt();
-  output->reset_dt();
-  changing_step = false;
+                   time_step.length(), update->dt);
 }
 
 /* ----------------------------------------------------------------------

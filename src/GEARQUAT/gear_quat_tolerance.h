@@ -4,23 +4,23 @@
 ------------------------------------------------------------------------- */
 
 /* Keyword tolerance inside LAMMPS: the largest errors of all bodies on all ranks, the law of
-   gear_quat_step_control.h, and LAMMPS' time step.
+   gear_quat_step_control.h, and the outputs that depend on times.
 
-   The fix calls when histories begin scheme_of_start(), begin() and shorten_first_step(); in every
-   step begin_step(); correct() for every body, or note_prediction() and note_correction() around
-   another correction, and judge(); if that says so, it puts back the
-   histories, calls shorten_values() and shorten_step(), and makes the step again; and at the end of
-   the step, when all fixes have finished it, choose(), change_step() and order_output().  Where the
-   number of values may have changed, after begin(), shorten_values() and choose(), the fix makes
-   its integrator anew.  Beside that, announce_output() before the first step of a run, and
-   end_run(). */
+   When histories begin: bound_first_step(), scheme_of_start(), begin() and shorten_first_step().
+   In every step: begin_step(); correct() for every body, or note_prediction() and
+   note_correction() around the correction by a coupling; and accepts().  If a step is not accepted,
+   its maker puts back the histories, calls shorten_values() and shorten_step(), and makes it again.
+   At the end of the step: choose(), TimeStep::change(), and order_output().  Where the number of
+   values may have changed, after begin(), shorten_values() and choose(), a new integrator is
+   needed.  Beside that, announce_output() before the first step of a run, and end_run(). */
 
 #ifndef LMP_GEAR_QUAT_TOLERANCE_H
 #define LMP_GEAR_QUAT_TOLERANCE_H
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_coupling.h"
+#include "gear_quat_fleet.h"
 #include "gear_quat_repeat.h"
-#include "gear_quat_step_control.h"
+#include "gear_quat_time_step.h"
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -51,7 +51,7 @@ class Tolerance : protected Pointers {
   /// scheme: of the fix; its number of values is the largest.  every_time: steps end at the
   /// multiples of this time, 0: at any.
   Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-            double every_time, Bodies &bodies);
+            double every_time, const Fleet &fleet, Bodies &bodies, TimeStep &time_step);
 
   /// Ends the run if something else in it changes the time step, or cannot follow it.
   void refuse_scene() const;
@@ -69,18 +69,17 @@ class Tolerance : protected Pointers {
   /// Collective.
   void shorten_first_step(bool full);
 
-  /// A step begins; the histories are those of the last one.  Collective.
+  /// A step begins; the histories are those of the last one.  After a run with `pre no` the length
+  /// of the histories is put back; ends the run if other atoms have moved already.  Collective.
   void begin_step();
   /// Correct one body.
   Correction correct(const Integrator &integrator, int ibody, const Load &load);
   // The same around a correction of all bodies together: of the predicted, then of the corrected
   // ones.
   void note_prediction();
-  void note_correction(const Integrator &integrator);
-  /// The chains of a thermostat are corrected, too; kt: of its target.
-  void note_chains(const Chain::LeftOut &left_out, double kt);
-  /// All bodies are corrected: true if the step has failed and is to be made again.  Collective.
-  bool judge();
+  void note_correction(const Integrator &integrator, const Coupling &coupling);
+  /// All bodies are corrected: false if the step has failed and is to be made again.  Collective.
+  bool accepts();
   /// Histories as they were when the step began get the values, then the length of the next try.
   void shorten_values();
   void shorten_step();
@@ -89,23 +88,16 @@ class Tolerance : protected Pointers {
   /// Choose values and length of the next step, and return the length.  After the call histories
   /// have the new number of values.  permitted: it is not longer.  Collective.
   double choose(double permitted);
-  /// update->dt and all that depends on it, this fix too, become those of the next step.
-  void change_step(double step);
   /// Energies of the next step may be printed, although LAMMPS does not expect that: its thermo
   /// output knows step numbers only.
   void announce_output();
   /// With thermo 0 there is thermo output at the multiples of every_time: now, if the step that
-  /// ends is at one of them.  To be called after change_step().
+  /// ends is at one of them.  To be called after TimeStep::change().
   void order_output();
   /// Rank 0 says if a constant step would have done.
   void end_run();
-  /// Restores `step`, that of the histories: the timestep command sets the first step only.
-  void keep_step(double step);
-  /// The same in a run with pre no, whose first step has begun with another length already.  Ends
-  /// the run if other atoms have moved.
-  void put_back_begun_step(double step);
-  /// True while fixes are told of a step that this control has chosen.
-  bool is_changing_step() const { return changing_step; }
+  /// Before a run: the timestep command sets the first step only, so histories keep theirs.
+  void keep_step();
 
   double element(int n) const;
   Checkpoint checkpoint() const;
@@ -113,7 +105,9 @@ class Tolerance : protected Pointers {
 
  private:
   const Fix *fix;
+  const Fleet &fleet;
   Bodies &bodies;
+  TimeStep &time_step;
   Scheme present;
   StepControl control;
   double every_time;
@@ -126,7 +120,6 @@ class Tolerance : protected Pointers {
   int tries = 0;               ///< of the present step that have failed
   StepControl::Next failed;    ///< the next try
   Steady steady;
-  bool changing_step = false;
   bool fresh = false;          ///< bodies have come in this step, once judged
   bool warned_held = false;    ///< of a step held at its lower limit
   bigint announced = -1;       ///< the last step of announce_output()
@@ -137,16 +130,14 @@ class Tolerance : protected Pointers {
 
   void set_values(int values);
   void change_values(int values);
-  void set_step(double step);
-  void set_begun_step(double step);
-  void tell_of_step(double step) const;
+  void put_back_begun_step();
+  void tell_of_step() const;
   const Fix *first_mover() const;
   const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
   double farthest_step(double speed) const;
   double steps_unseen() const;
   double limit_of_motion() const;
-  double time() const;
   double next_output(double step, double now) const;
   double even(double step, double now) const;
   double step_error() const { return control.measured(errors).same; }
@@ -158,7 +149,6 @@ class Tolerance : protected Pointers {
   /// An error as the user counts it.
   double shown(double error) const;
   void refuse_lost() const;
-  double begun_at() const;
   void refuse_frozen() const;
   void note_step(double size, int values);
 };

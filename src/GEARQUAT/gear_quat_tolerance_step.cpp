@@ -53,6 +53,7 @@ static constexpr double ROUNDING_OF_TIME = 1.0e-6;
 
 void Tolerance::begin_step()
 {
+  if (update->dt != time_step.length()) put_back_begun_step();
   if (update->ntimestep == update->firststep + 1) begin_run();
   tries = 0;
   begun_with = update->dt;
@@ -100,7 +101,7 @@ void Tolerance::note_prediction()
     predicted[ibody] = order.last_row(bodies.history(ibody));
 }
 
-void Tolerance::note_correction(const Integrator &integrator)
+void Tolerance::note_correction(const Integrator &integrator, const Coupling &coupling)
 {
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) {
@@ -108,12 +109,9 @@ void Tolerance::note_correction(const Integrator &integrator)
       include(order.errors(integrator, body.rigid, body.reach(), bodies.acting(ibody),
                            bodies.axes(ibody), predicted[ibody], bodies.history(ibody)));
     }
-}
-
-void Tolerance::note_chains(const Chain::LeftOut &left_out, double kt)
-{
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    include(order.errors_of_chain(left_out, kt, bodies.rigid_of(ibody).mass, update->dt));
+  coupling.errors(order, update->dt, integrator.values(), [this](const StepMeasures &one) {
+    include(one);
+  });
 }
 
 /// No site on this rank is faster.
@@ -150,7 +148,7 @@ double Tolerance::farthest_step(double speed) const
   return speed == 0.0 ? std::fabs(update->dt) : limit_of_motion() / speed;
 }
 
-bool Tolerance::judge()
+bool Tolerance::accepts()
 {
   double here[] = {errors.length.fewer,
                    errors.length.same,
@@ -170,11 +168,11 @@ bool Tolerance::judge()
     failed = control.repeat(step_error(), update->dt, present.values(), steady);
     steady.repeat = 0;
     errors = StepMeasures();
-    return true;
+    return false;
   }
   if (!std::isfinite(step_error()) || tries == MOST_TRIES) refuse_lost();
   if (record.steps == 0.0 && tries > 0) tell_of_first_step(begun_with);
-  return false;
+  return true;
 }
 
 void Tolerance::refuse_lost() const
@@ -192,16 +190,10 @@ void Tolerance::refuse_lost() const
              update->ntimestep);
 }
 
-/// When the present step began.
-double Tolerance::begun_at() const
-{
-  return update->atime + (update->ntimestep - 1 - update->atimestep) * update->dt;
-}
-
 /// No time would pass in a step below its last digit.
 void Tolerance::refuse_frozen() const
 {
-  const double begun = begun_at();
+  const double begun = time_step.beginning();
   const auto refuse = [&](const char *keyword, double interval, const char *remedy) {
     if (interval > 0.0 && begun + interval == begun)
       error->all(
@@ -223,7 +215,7 @@ void Tolerance::shorten_values()
 void Tolerance::shorten_step()
 {
   steady.step = 0;
-  set_begun_step(failed.step);
+  time_step.change_begun(failed.step);
   refuse_frozen();
 }
 
@@ -256,14 +248,9 @@ double Tolerance::choose(double permitted)
   errors = StepMeasures();
   fresh = false;
   if (next.values != values) change_values(next.values);
-  next.step = even(next.step, time());
+  next.step = even(next.step, time_step.end());
   if (std::fabs(next.step - step) > ROUNDING_OF_TIME * std::fabs(step)) steady.step = 0;
   return next.step;
-}
-
-double Tolerance::time() const
-{
-  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
 }
 
 /// The next time at which a step has to end, infinite if there is none: that of a dump in intervals

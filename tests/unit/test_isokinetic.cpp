@@ -3,6 +3,7 @@
 
 #include "checks.h"
 #include "drive.h"
+#include "gear_quat_scalar.h"
 #include "tied_bodies.h"
 
 using namespace Drive;
@@ -25,7 +26,7 @@ struct Host {
 
   Integrator integrator{scheme, h};
   vector<vector<double>> rows{};
-  double heat[MAX_VALUES] = {};
+  ScalarHistory heat;
   KineticSums target{};
 
   KineticSums sums(const vector<Load> &loads) const
@@ -59,23 +60,25 @@ struct Host {
     const Collocation &collocation;
     vector<BodyState> at_start;
     vector<Collocation::Workspace> work;
-    vector<double> power;
+    Collocation::Scalar heat;
 
     Search(Host &our, const Collocation &collocation) :
-        our(our), collocation(collocation), at_start(our.states), work(our.bodies.size()),
-        power(collocation.number_of_nodes())
+        our(our), collocation(collocation), at_start(our.states), work(our.bodies.size()), heat()
     {
     }
     void begin(double)
     {
       our.states = at_start;
-      const vector<Load> loads = our.acting(power[collocation.pairs()]);
+      double power = 0.0;
+      const vector<Load> loads = our.acting(power);
+      collocation.begin(0.0, power, heat);
       for (size_t b = 0; b < work.size(); ++b)
         collocation.begin(local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
     }
     void foretell()
     {
       for (auto &w : work) collocation.foretell(w);
+      collocation.foretell(heat);
     }
     bool visit(int pair, double &change)
     {
@@ -83,13 +86,16 @@ struct Host {
       for (const int node : {-pair, pair}) {
         for (size_t b = 0; b < work.size(); ++b)
           our.states[b] = collocation.state_at(node, work[b], our.h);
-        const vector<Load> loads = our.acting(power[collocation.pairs() + node]);
+        double power = 0.0;
+        const vector<Load> loads = our.acting(power);
+        collocation.set_rate(node, power, heat);
         for (size_t b = 0; b < work.size(); ++b)
           change = std::max(change,
                             collocation.set_load(node, our.bodies[b], our.states[b], loads[b],
                                                  our.h, 1.0, work[b]));
       }
       for (auto &w : work) collocation.settle(pair, w);
+      collocation.settle(pair, heat);
       return true;
     }
   };
@@ -107,9 +113,9 @@ struct Host {
     for (size_t b = 0; b < bodies.size(); ++b)
       seed(scheme, bodies[b], collocation.series(search.work[b], found.pairs), h, h,
            rows[b].data());
-    vector<double> series(collocation.number_of_nodes() + 1);
-    const int terms = collocation.integrate(search.power.data(), found.pairs, h, series.data());
-    for (int j = 0; j < scheme.values(); ++j) heat[j] = j < terms ? series[j] : 0.0;
+    double series[Collocation::MAX_NODES + 1];
+    const int terms = collocation.series(search.heat, found.pairs, h, series);
+    heat.seed(series, terms, h, h, scheme.values());
   }
 
   void read_states()
@@ -143,7 +149,7 @@ struct Host {
         integrator.correct_pass(bodies[b], loads[b], alpha, rows[b].data(), pending[b]);
     }
     const KineticSums found = pending_sums(loads, pending);
-    integrator.advance(heat, found.power());
+    heat.advance(integrator, found.power());
     const Multipliers factor = scale_factors(mode, target, found);
     for (size_t b = 0; b < bodies.size(); ++b) {
       integrator.finish(loads[b], rows[b].data(), pending[b]);
@@ -231,7 +237,7 @@ Host tied(Isokinetic mode, const Scheme &scheme, double h)
 
 double total(const Host &host)
 {
-  return TiedBodies::springs(host.states).energy + host.kinetic() + host.heat[0];
+  return TiedBodies::springs(host.states).energy + host.kinetic() + host.heat.value();
 }
 
 /// What a run loses at most of the kinetic energy, and of potential + kinetic + heat.

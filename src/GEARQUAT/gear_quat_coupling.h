@@ -1,0 +1,201 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* What acts on all bodies together: a friction that depends on sums over all of them.  A fix has
+   one coupling or none.
+
+   Every step correct() corrects the predicted histories and states of all bodies.  All couplings do
+   that by the same loop, correct_by_passes(): in every pass of the corrector the sums determine the
+   friction, and the friction the next velocities and sums.
+
+   The start finds histories by collocation (gear_quat_startup.h).  It calls seed_local() alone, or
+   begin_start(); for every pair of nodes foretell(), at both nodes visit_node(), settle(); and
+   seed() at the end.
+
+   Functions are collective unless they say otherwise. */
+
+#ifndef LMP_GEAR_QUAT_COUPLING_H
+#define LMP_GEAR_QUAT_COUPLING_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_startup.h"
+#include "gear_quat_step_control.h"
+
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace LAMMPS_NS::GearQuat {
+
+/// Why a motion became unstable, and what to change: sentences without full stops, empty for none.
+struct Cause {
+  std::string what, remedy;
+};
+
+/// The nodes of a start, all of them about the present time.
+struct StartNodes {
+  const Collocation &collocation;
+  double spacing;    ///< time between nodes
+  double h;          ///< the step of the histories
+};
+
+class Coupling : protected Pointers {
+ public:
+  Coupling(LAMMPS *lmp, Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
+
+  // before a run
+
+  /// States and loads are those of the first step, of length h; LAMMPS' setup may not have shown
+  /// the forces of all fixes yet.  anew: there are no histories.  Ends the run if the coupling
+  /// cannot act.
+  virtual void begin_run(bool anew, double h) = 0;
+  /// True if degrees of freedom depend on the forces of all fixes.  Local.
+  virtual bool awaits_forces() const { return false; }
+  /// The loads are those of all fixes.
+  virtual void meet_forces() {}
+  /// The first step begins, after meet_forces().  begins: histories do, too.
+  virtual void begin_steps(bool /*begins*/) {}
+  virtual void end_run() {}
+  /// Why histories should start anew, null for no reason; after meet_forces().
+  virtual const char *reason_to_start_anew() const { return nullptr; }
+  /// False if a start would lose what the coupling has kept.  Local.
+  virtual bool may_start_anew() const { return true; }
+
+  // a step
+
+  /// Friction and rates by the present states and loads.
+  virtual void measure() = 0;
+  /// After measure(): the load that moves a body, with the friction.  Local.
+  virtual Load acting(int ibody) const = 0;
+  /// Histories and states from predicted to corrected ones.
+  virtual void correct(const Integrator &integrator, int passes) = 0;
+  /// The step of h holds.
+  virtual void note_step(double /*h*/) {}
+  /// In a step that holds, when bodies that came have histories and none is left of those that have
+  /// gone.
+  virtual void follow_changes(double /*h*/) {}
+  /// Other fixes have changed velocities of bodies, after measure().
+  virtual void follow_velocities(double /*h*/) {}
+  /// Variables are kept for a step that may be undone, and put back.  Local.
+  virtual void keep() {}
+  virtual void put_back() {}
+  /// The step of the histories changes.  Local.
+  virtual void rescale(double /*ratio*/) {}
+  /// The next step should not be longer; infinite for any length.  Local.
+  virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
+  /// Calls `include` of the errors that the coupling has made in this step of h.  Local.
+  using Include = std::function<void(const StepMeasures &)>;
+  virtual void errors(const VariableOrder & /*order*/, double /*h*/, int /*values*/,
+                      const Include & /*include*/) const
+  {
+  }
+  /// Whether the coupling is unstable in steps of h.  Local.
+  virtual Cause instability(double /*h*/) const { return {}; }
+
+  // the start
+
+  virtual void begin_start(const StartNodes &nodes) = 0;
+  virtual void foretell(const StartNodes &nodes) = 0;    ///< local
+  /// As measure(), with the states and loads of a node.
+  virtual void visit_node(const StartNodes &nodes, int node) = 0;
+  virtual void settle(const StartNodes &nodes, int pair) = 0;    ///< local
+  /// From the innermost `pairs`.  values: of the method.  Local.
+  virtual void seed(const StartNodes &nodes, int pairs, int values) = 0;
+  /// From the present alone, after measure(); the histories of bodies have `terms` terms.
+  virtual void seed_local(double h, int terms) = 0;
+
+  // elements of the fix's vector
+
+  virtual int elements() const = 0;
+  virtual double element(int n) = 0;
+  /// True if the element grows with the number of bodies.
+  virtual bool extensive(int n) const = 0;
+  /// The energy that thermo keyword econserve adds.  Local.
+  virtual double energy() const { return 0.0; }
+
+ protected:
+  Bodies &bodies;
+
+  /// Calls act with the index of every body on this rank that has a history, owned or large.
+  template <class Act> void for_moved(Act act) const
+  {
+    for (const auto *list : {&bodies.points, &bodies.tops})
+      for (const int ibody : *list) act(ibody);
+  }
+
+  /// The loop of all couplings.  Law has
+  ///   void begin_passes(const Integrator &)
+  ///   void add_prediction(const Integrator &, int ibody, const Pending &)    of an owned body
+  ///   void find_friction(const Integrator &, int pass)    from the sums, which begin anew
+  ///   Friction friction_of(int ibody) const, and Friction of_all, that of a body without masks
+  ///   void add(int ibody, const double *velocity, const double *omega_body, const Pending &)
+  ///   static constexpr bool SUMS_OF_LAST_PASS             whether add() is called after it
+  ///   void end_passes(const Integrator &)
+  ///   void finish(const Integrator &, const RigidBody &, double *rows)    of a corrected history
+  template <class Law> void correct_by_passes(Law &law, const Integrator &integrator, int passes);
+
+  /// The part of the kinetic energy that is zero, as an adjective with a blank behind it or empty
+  /// for both parts; null if none is.  separate: each part has a friction of its own, which scales
+  /// it; moves: the parts that have degrees of freedom.
+  static const char *part_at_rest(const double (&energies)[2], const bool (&moves)[2],
+                                  bool separate);
+
+ private:
+  std::vector<Integrator::Pending> pending;
+};
+
+/// The load that moves a body: after measure(), if there is a coupling.
+inline Load acting_on(const Bodies &bodies, const Coupling *coupling, int ibody)
+{
+  return coupling ? coupling->acting(ibody) : bodies.acting(ibody);
+}
+
+template <class Law>
+void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int passes)
+{
+  pending.resize(bodies.nmoved());
+  law.begin_passes(integrator);
+  for_moved([&](int ibody) {
+    pending[ibody] =
+        integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
+    if (ibody < bodies.nowned()) law.add_prediction(integrator, ibody, pending[ibody]);
+  });
+
+  for (int pass = 0; pass < passes; ++pass) {
+    const bool sums = Law::SUMS_OF_LAST_PASS || pass + 1 < passes;
+    law.find_friction(integrator, pass);
+    for_moved([&](int ibody) {
+      const RigidBody &rigid = bodies.rigid_of(ibody);
+      double *rows = bodies.history(ibody);
+      if (bodies.body_at(ibody).off == 0)
+        integrator.correct_pass(rigid, bodies.load_of(ibody), law.of_all, rows, pending[ibody]);
+      else
+        integrator.correct_pass(rigid, bodies.acting(ibody), law.friction_of(ibody), rows,
+                                pending[ibody]);
+      if (ibody >= bodies.nowned() || !sums) return;
+      double velocity[3], omega_body[3];
+      integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
+      law.add(ibody, velocity, omega_body, pending[ibody]);
+    });
+  }
+  law.end_passes(integrator);
+
+  for_moved([&](int ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    double *rows = bodies.history(ibody);
+    BodyState &state = bodies.change_state(ibody);
+    Correction &last = bodies.change_last(ibody);
+    const bool masked = bodies.body_at(ibody).off != 0;
+    const BodyState before = masked ? state : BodyState();
+    last = integrator.finish(bodies.acting(ibody), rows, pending[ibody]);
+    law.finish(integrator, rigid, rows);
+    integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
+    if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
+  });
+}
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

@@ -1,0 +1,55 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* A scalar y with the equation y' = rate that is integrated with the bodies: a Nordsieck history
+   with the values and coefficients of their momenta.  A coupling keeps in it what belongs to all
+   bodies together, such as the heat that a thermostat has taken. */
+
+#ifndef GEAR_QUAT_SCALAR_H
+#define GEAR_QUAT_SCALAR_H
+
+#include "gear_quat_integrator.h"
+
+#include <array>
+
+namespace LAMMPS_NS::GearQuat {
+
+class ScalarHistory {
+ public:
+  using Rows = std::array<double, MAX_VALUES>;
+
+  double value() const { return rows[0]; }
+  void add(double change) { rows[0] += change; }
+
+  /// The derivatives from `terms` terms of a series in units of series_step; the value stays.
+  void seed(const double *series, int terms, double series_step, double h, int values)
+  {
+    double power = 1.0;
+    for (int j = 1; j < values; ++j) {
+      power *= h / series_step;
+      rows[j] = j < terms ? power * series[j] : 0.0;
+    }
+  }
+
+  /// Another step, ratio = new step / old step.
+  void rescale(double ratio, int values) { Nordsieck<1>::rescale(rows.data(), values, ratio); }
+
+  /// To the end of the step, where y' = rate.
+  void advance(const Integrator &integrator, double rate)
+  {
+    integrator.advance(rows.data(), rate);
+  }
+
+  /// For restart files.
+  const Rows &record() const { return rows; }
+  void restore(const Rows &saved) { rows = saved; }
+
+ private:
+  Rows rows = {};
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

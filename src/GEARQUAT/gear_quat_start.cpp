@@ -1,0 +1,280 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_start.h"
+
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "fix.h"
+#include "neighbor.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ---------------------------------------------------------------------- */
+
+void Starter::seed_local(int terms, double h)
+{
+  if (coupling) {
+    coupling->measure();
+    coupling->seed_local(h, terms);
+  }
+  for (int ibody = 0; ibody < bodies->nmoved(); ++ibody)
+    seed_body(*bodies, ibody, acting(ibody), scheme, h, terms);
+}
+
+void GearQuat::seed_body(Bodies &bodies, int ibody, const Load &acting, const Scheme &scheme,
+                         double h, int terms)
+{
+  const RigidBody &rigid = bodies.rigid_of(ibody);
+  auto series = local_series(rigid, bodies.state_of(ibody), acting, h);
+  series.terms = terms;
+  seed(scheme, rigid, series, h, h, bodies.history(ibody));
+}
+
+/* ---------------------------------------------------------------------- */
+
+static int most_start_values(const std::vector<Starter> &starters)
+{
+  int most = 0;
+  for (const auto &one : starters) most = std::max(most, one.scheme.start_values());
+  return most;
+}
+
+Start::Start(LAMMPS *lmp, const std::vector<Starter> &starters, double h) :
+    Pointers(lmp), starters(starters), h(h), collocation(most_start_values(starters))
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool Start::run()
+{
+  std::vector<const Fix *> owners;
+  for (const auto &one : starters) owners.push_back(one.fix);
+  Forces forces(lmp, owners);
+  std::string why = forces.reason();
+  if (why.empty()) {
+    const StartFound start = search(forces);
+    if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
+      const bool any = std::any_of(starters.begin(), starters.end(), [](const auto &one) {
+        return one.bodies->number() > 0;
+      });
+      if (comm->me == 0 && any)
+        utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
+                       names(), orders(start), evaluations, reason);
+      return true;
+    }
+    why = reason;
+  }
+  for (auto &one : starters) {
+    if (!one.needed) continue;
+    one.seed_local(3, h);
+    const Noise noise = forces.noise([&one](int i) {
+      return one.bodies->in_body(i);
+    });
+    if (comm->me != 0) continue;
+    utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
+                   one.fix->id, why);
+    const std::string remedy = remedy_for_noise(one.scheme, noise);
+    if (!remedy.empty())
+      utils::logmesg(
+          lmp,
+          "Fix gear/quat {}: random forces heat bodies with many values; use {} instead of {}\n",
+          one.fix->id, remedy, one.scheme.values());
+  }
+  return false;
+}
+
+std::string Start::names() const
+{
+  std::vector<std::string> ids;
+  for (const auto &one : starters) ids.emplace_back(one.fix->id);
+  return utils::join_words(ids, " and ");
+}
+
+/// True if forces jump so early that a history begins with a lower order than it can keep.
+bool Start::lowers_order(const StartFound &start) const
+{
+  return start.verdict == StartPlan::Verdict::JUMPS &&
+      std::any_of(starters.begin(), starters.end(), [&start](const auto &one) {
+           return start.order() < one.scheme.order();
+         });
+}
+
+/// Those that the histories begin with.
+std::string Start::orders(const StartFound &start) const
+{
+  std::string orders;
+  for (const auto &one : starters) {
+    const int full = one.scheme.order();
+    const std::string order =
+        std::to_string(lowers_order(start) ? std::min(full, start.order()) : full);
+    if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
+  }
+  return orders;
+}
+
+/* ---------------------------------------------------------------------- */
+
+/// What find_start() asks of LAMMPS.
+struct Start::Search {
+  Start &our;
+  Forces &forces;
+  const double skin;
+  std::vector<Bodies::Snapshot> snapshots = {};
+  double spacing = 0.0;
+
+  Search(Start &our, Forces &forces) : our(our), forces(forces), skin(our.neighbor->skin)
+  {
+    for (const auto &one : our.starters) snapshots.push_back(one.bodies->snapshot());
+  }
+
+  StartNodes nodes() const { return {our.collocation, spacing, our.h}; }
+
+  void put_back()
+  {
+    for (size_t p = 0; p < our.starters.size(); ++p) {
+      our.starters[p].bodies->put_back_states(snapshots[p]);
+      our.starters[p].bodies->put_back_loads(snapshots[p]);
+    }
+  }
+
+  /// The length that the motion of a body is compared with.
+  double length(const Body &body) const { return body.extent > 0.0 ? body.extent : skin; }
+
+  void begin(double of)
+  {
+    spacing = of;
+    our.reason = "forces vary too much within a few steps";
+    put_back();
+    for (auto &one : our.starters) {
+      const Bodies &bodies = *one.bodies;
+      if (one.coupling) {
+        one.coupling->measure();
+        one.coupling->begin_start(nodes());
+      }
+      one.work.resize(bodies.nmoved());
+      for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+        our.collocation.begin(local_series(bodies.rigid_of(ibody), bodies.state_of(ibody),
+                                           one.acting(ibody), spacing),
+                              one.work[ibody]);
+    }
+  }
+
+  void foretell()
+  {
+    for (auto &one : our.starters) {
+      for (auto &work : one.work) our.collocation.foretell(work);
+      if (one.coupling) one.coupling->foretell(nodes());
+    }
+  }
+
+  bool visit(int pair, double &change)
+  {
+    double here = 0.0;
+    for (const int node : {-pair, pair})
+      if (!visit_node(node, here)) {
+        our.reason = fmt::format("sites would leave the neighbor skin, {}", skin);
+        return false;
+      }
+    for (auto &one : our.starters) {
+      for (auto &work : one.work) our.collocation.settle(pair, work);
+      if (one.coupling) one.coupling->settle(nodes(), pair);
+    }
+    change = over_ranks(MPI_MAX, here, our.world);
+    return true;
+  }
+
+  /// Forces at one node; change: grows to what they change.  False, with nothing evaluated, if a
+  /// site would leave the skin.
+  bool visit_node(int node, double &change)
+  {
+    for (auto &one : our.starters) {
+      Bodies &bodies = *one.bodies;
+      for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+        bodies.change_state(ibody) = our.collocation.state_at(node, one.work[ibody], spacing);
+      bodies.spread_states();
+      bodies.place_sites(true);
+    }
+    if (forces.largest_displacement() > 0.5 * skin) return false;
+    forces.evaluate();
+    ++our.evaluations;
+    for (auto &one : our.starters) one.bodies->gather_loads(our.atom->f, our.atom->torque);
+    for (auto &one : our.starters)
+      if (one.coupling) one.coupling->visit_node(nodes(), node);
+    for (auto &one : our.starters)
+      for (int ibody = 0; ibody < one.bodies->nmoved(); ++ibody) {
+        const Body &body = one.bodies->body_at(ibody);
+        const BodyState &state = one.bodies->state_of(ibody);
+        change = std::max(change,
+                          our.collocation.set_load(node, body.rigid, state, one.acting(ibody),
+                                                   spacing, length(body), one.work[ibody]));
+      }
+    return true;
+  }
+};
+
+/// After the call atoms, states and loads are as before.
+StartFound Start::search(Forces &forces)
+{
+  forces.save();
+  Search all(*this, forces);
+  const StartFound start = find_start(most_start_values(starters), first_spacing(), all);
+  const double copies = 3.0 * sizeof(double) * (atom->torque_flag ? 4 : 3) *
+      (atom->nlocal + atom->nghost);    // positions, velocities, forces
+  for (auto &one : starters)
+    one.bodies->note_scratch(one.work.capacity() * sizeof(Collocation::Workspace) + copies);
+  if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
+    reason.clear();
+    if (lowers_order(start))
+      reason = fmt::format(", because forces vary in jumps, by {:.1g} of the motion in a step",
+                           start.change);
+    seed_all(start);
+  }
+  forces.restore();
+  all.put_back();
+  for (auto &one : starters) {
+    one.bodies->spread_states();
+    one.bodies->place_extended();
+  }
+  return start;
+}
+
+/// Node spacing: the step, or as much of it as keeps every site within half the skin.
+double Start::first_spacing() const
+{
+  const double span = collocation.pairs() * std::fabs(h);
+  double fastest = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (std::none_of(starters.begin(), starters.end(), [i](const Starter &one) {
+          return one.bodies->in_body(i);
+        }))
+      continue;
+    fastest = std::max(fastest, dot3(atom->v[i], atom->v[i]));
+  }
+  const double way = span * std::sqrt(over_ranks(MPI_MAX, fastest, world));
+  const double reach = 0.25 * neighbor->skin;
+  return way > reach ? h * reach / way : h;
+}
+
+/// Histories of all bodies from the polynomials that were found.
+void Start::seed_all(const StartFound &start)
+{
+  for (auto &one : starters) {
+    Bodies &bodies = *one.bodies;
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+      seed(one.scheme, bodies.rigid_of(ibody), collocation.series(one.work[ibody], start.pairs),
+           start.spacing, h, bodies.history(ibody));
+    if (one.coupling)
+      one.coupling->seed({collocation, start.spacing, h}, start.pairs, one.scheme.values());
+  }
+}

@@ -1,0 +1,246 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_step.h"
+
+#include "gear_quat_isokinetic.h"
+#include "gear_quat_start.h"
+#include "gear_quat_thermostat.h"
+
+#include "update.h"
+
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ---------------------------------------------------------------------- */
+
+/// Keywords exclude two couplings, and one with a changing step where it cannot follow.
+static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
+                                               Bodies &bodies)
+{
+  if (args.isokinetic != Isokinetic::NONE)
+    return std::make_unique<IsokineticConstraint>(lmp, bodies, args.scheme, args.isokinetic,
+                                                  args.rescale);
+  if (args.thermostat.damp > 0.0)
+    return std::make_unique<Thermostat>(lmp, fix, bodies, args.thermostat, args.scheme);
+  return nullptr;
+}
+
+Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
+           Neighbors &others, Tally tally) :
+    Pointers(lmp), time_step(lmp), blowup(lmp, bodies, args.scheme, args.control.shortest),
+    coupling(make_coupling(lmp, fix, args, bodies)), args(args), bodies(bodies), others(others),
+    tally(std::move(tally))
+{
+  blowup.coupling = coupling.get();
+  if (args.control.eps > 0.0)
+    tolerance = std::make_unique<Tolerance>(lmp, fix, args.scheme, args.control, args.every_time,
+                                            fleet, bodies, time_step);
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+void Step::begin(int vflag, double **f)
+{
+  vflag_of_step = vflag;
+  check_other_fixes();
+  if (tolerance) tolerance->begin_step();
+  if (tolerance && coupling) coupling->keep();
+  predict(f);
+  place_prediction();
+}
+
+void Step::end(double **f, double **torque)
+{
+  others.check_places();
+  for (;;) {
+    bodies.gather_loads(f, torque);
+    tally(vflag_of_step, f);    // here: the atoms are those that forces belong to
+    correct(f);
+    if (is_accepted()) break;
+    shorten();
+    predict(f);
+    place_prediction();
+    tolerance->evaluate(vflag_of_step);
+  }
+  hold(f);
+  bodies.spread_moved();
+  bodies.place_sites(true);
+  others.note_velocity();
+}
+
+void Step::choose_next()
+{
+  const int values = scheme().values();
+  const double next = tolerance->choose(coupling ? coupling->longest_step() : HUGE_VAL);
+  if (scheme().values() != values) make_integrator();
+  time_step.change(next);
+  tolerance->order_output();
+}
+
+/* ----------------------------------------------------------------------
+   its parts
+------------------------------------------------------------------------- */
+
+/// In the first step of a run with `pre no` nothing has compared bodies with their atoms.
+void Step::check_other_fixes()
+{
+  if (update->ntimestep == update->firststep + 1 && !compared)
+    others.check_all();
+  else
+    others.check_velocities();
+  compared = false;
+}
+
+void Step::predict(double **f)
+{
+  const double h = length();
+  time_step.begin();
+  limits = blowup.limits(h);
+  const auto check = [&](int ibody) {
+    const BodyState &state = bodies.state_of(ibody);
+    if (!tolerance && !limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
+  };
+  for (const int ibody : bodies.points) {
+    double *rows = bodies.history(ibody);
+    integrator->predict_center(rows);
+    integrator->center_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody));
+    check(ibody);
+  }
+  for (const int ibody : bodies.tops) {
+    double *rows = bodies.history(ibody);
+    integrator->predict(rows);
+    integrator->body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
+                           bodies.change_frame(ibody));
+    check(ibody);
+  }
+}
+
+void Step::place_prediction()
+{
+  bodies.spread_moved();
+  bodies.place_sites(velocities_read);
+  others.note_place();
+}
+
+void Step::correct(double **f)
+{
+  if (coupling)
+    correct_together();
+  else
+    args.masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
+}
+
+/// MASKED: some components of the loads do not act.
+template <bool MASKED> void Step::correct_bodies(double **f)
+{
+  const auto correct_all = [&](auto changing) {
+    for (const int ibody : bodies.points) correct_body<MASKED, true, changing>(ibody, f);
+    for (const int ibody : bodies.tops) correct_body<MASKED, false, changing>(ibody, f);
+  };
+  tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
+}
+
+/// POINT: without moments of inertia.  CHANGING: the time step follows the error.
+template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ibody, double **f)
+{
+  double *rows = bodies.history(ibody);
+  const RigidBody &rigid = bodies.rigid_of(ibody);
+  const Load masked = MASKED ? bodies.acting(ibody) : Load();
+  const Load &load = MASKED ? masked : bodies.load_of(ibody);
+  BodyState &state = bodies.change_state(ibody);
+  const BodyState before = MASKED ? state : BodyState();
+  Correction &last = bodies.change_last(ibody);
+  if (CHANGING)
+    last = tolerance->correct(*integrator, ibody, load);
+  else
+    last = POINT ? integrator->correct_center(rigid, load, rows)
+                 : integrator->correct(rigid, load, bodies.axes(ibody), rows);
+  if (POINT)
+    integrator->center_state(rigid, rows, state);
+  else
+    integrator->body_state(rigid, rows, state, bodies.change_frame(ibody));
+  if (MASKED) last.work = work_between(bodies.load_of(ibody), before, state);
+  if (!CHANGING) check_limits(ibody, f);
+}
+
+void Step::correct_together()
+{
+  if (tolerance) tolerance->note_prediction();
+  coupling->correct(*integrator, scheme().passes);
+  if (tolerance) tolerance->note_correction(*integrator, *coupling);
+}
+
+/// Without a control every step is accepted.
+bool Step::is_accepted()
+{
+  return !tolerance || tolerance->accepts();
+}
+
+/// Histories are those of the beginning of the step again, for another try.
+void Step::shorten()
+{
+  bodies.put_back_histories();
+  if (coupling) coupling->put_back();
+  const int values = scheme().values();
+  tolerance->shorten_values();
+  if (scheme().values() != values) make_integrator();
+  tolerance->shorten_step();
+  bodies.keep_histories();
+  if (coupling) coupling->keep();
+}
+
+/// The step is not made again.
+void Step::hold(double **f)
+{
+  if (tolerance || coupling) {    // otherwise correct_body() has done this
+    for (const auto *list : {&bodies.points, &bodies.tops})
+      for (const int ibody : *list) check_limits(ibody, f);
+  }
+  if (coupling) coupling->note_step(length());
+  begin_fresh(f);
+}
+
+/// The histories of bodies that came in this step begin with the derivatives that are known.
+void Step::begin_fresh(double **f)
+{
+  const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
+  for (const int ibody : bodies.fresh) {
+    blowup.check_load(ibody, length(), f);
+    seed_body(bodies, ibody, acting(ibody), scheme(), length(), known);
+  }
+  bodies.take_in_fresh();
+  if (coupling) coupling->follow_changes(length());
+}
+
+/* ----------------------------------------------------------------------
+   the length of the step
+------------------------------------------------------------------------- */
+
+void Step::make_integrator()
+{
+  integrator = std::make_unique<Integrator>(scheme(), length());
+}
+
+void Step::follow_length()
+{
+  if (tolerance && started && !time_step.is_changing()) return;    // it will be put back
+  const double ratio = time_step.follow();
+  if (ratio == 0.0) return;
+  if (integrator)
+    integrator->set_step(length());
+  else
+    make_integrator();
+  if (!started) return;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    integrator->rescale(bodies.history(ibody), ratio);
+  if (coupling) coupling->rescale(ratio);
+}

@@ -1,0 +1,105 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* One step of all bodies of a fix:
+
+     begin()            predict, place sites
+     LAMMPS             forces at the predicted sites
+     end()              gather loads, correct, judge the error;
+                        if it is too large: undo, shorten, predict, place, evaluate, and again
+                        place sites
+     choose_next()      with a changing step, when all fixes have finished this one
+
+   A Step owns what steps are made with: the length, the integrator, the coupling of all bodies, the
+   control of the error, and the limits beyond which a run ends. */
+
+#ifndef LMP_GEAR_QUAT_STEP_H
+#define LMP_GEAR_QUAT_STEP_H
+
+#include "gear_quat_arguments.h"
+#include "gear_quat_blowup.h"
+#include "gear_quat_coupling.h"
+#include "gear_quat_neighbors.h"
+#include "gear_quat_time_step.h"
+#include "gear_quat_tolerance.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace LAMMPS_NS::GearQuat {
+
+class Step : protected Pointers {
+ public:
+  /// tally(vflag, f): adds the virial of the constraint forces, by the forces f on atoms.
+  using Tally = std::function<void(int, double **)>;
+  Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
+       Neighbors &others, Tally tally);
+
+  /// f: forces on atoms.
+  void begin(int vflag, double **f);
+  /// f, torque: of the predicted sites.  Collective.
+  void end(double **f, double **torque);
+  /// With keyword tolerance only.  Collective.
+  void choose_next();
+
+  // before a run
+
+  /// Whether anything reads velocities between begin() and end().
+  void expect_readers(bool of_predicted_velocities) { velocities_read = of_predicted_velocities; }
+  /// Bodies have been compared with their atoms, so that the next step need not do so.
+  void note_comparison() { compared = true; }
+  /// Histories and integrator take over LAMMPS' time step.
+  void follow_length();
+  /// Histories have the number of values of scheme().
+  void make_integrator();
+
+  /// True once bodies have histories of the present length.
+  bool started = false;
+
+  const Scheme &scheme() const { return tolerance ? tolerance->scheme() : args.scheme; }
+  double length() const { return time_step.length(); }
+  /// Null before the first run.
+  const Integrator *present_integrator() const { return integrator.get(); }
+  /// The load that moves a body; with a coupling after its measure().
+  Load acting(int ibody) const { return acting_on(bodies, coupling.get(), ibody); }
+
+  TimeStep time_step;
+  Blowup blowup;
+  std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
+  std::unique_ptr<Coupling> coupling;      ///< null: bodies move by their own loads
+
+ private:
+  const Arguments &args;
+  Bodies &bodies;
+  Neighbors &others;
+  Tally tally;
+  std::unique_ptr<Integrator> integrator;
+  MotionLimits limits;            ///< of the present step
+  int vflag_of_step = 0;          ///< what LAMMPS asked of the virial when the step began
+  bool velocities_read = true;    ///< between prediction and correction, by others
+  bool compared = false;
+
+  void check_other_fixes();
+  void predict(double **f);
+  void place_prediction();
+  void correct(double **f);
+  template <bool MASKED> void correct_bodies(double **f);
+  template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody, double **f);
+  void correct_together();
+  bool is_accepted();
+  void shorten();
+  void hold(double **f);
+  void begin_fresh(double **f);
+  void check_limits(int ibody, double **f) const
+  {
+    const BodyState &state = bodies.state_of(ibody);
+    if (!limits.keep(state)) blowup.stop(ibody, state, time_step.made(), f);
+  }
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif
