@@ -19,9 +19,9 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
+#include "gear_quat_fixes.h"
 #include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
-#include "gear_quat_neighbors.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_report.h"
 #include "gear_quat_restart.h"
@@ -66,7 +66,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   ecouple_flag = args->thermostat.damp > 0.0;
   bodies.reset(new Bodies(lmp, this, args->scheme));
   motion.reset(new Motion(lmp, this, *args, *bodies));
-  neighbors.reset(new Neighbors(lmp, this, *bodies, *args));
+  other_fixes.reset(new OtherFixes(lmp, this, *bodies, *args));
   restarts.reset(new Restart(lmp, this, *bodies, *motion));
   respa.reset(new RespaForces(lmp));
   table.reset(new BodyTable(lmp, *bodies));
@@ -133,14 +133,14 @@ void FixGearQuat::init()
     error->all(FLERR,
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
                "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
-  neighbors->init();
+  other_fixes->init();
   if (!reported) {
     stated = read_stated(lmp, args->mol);
     warn_of_partial_molecules(lmp, this, *args, *bodies);
   }
   motion->init();
   velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
-  bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
+  bodies->expect_forces(makes_forces(lmp, this) || other_fixes->any_taken());
 }
 
 void FixGearQuat::reset_dt()
@@ -177,7 +177,7 @@ void FixGearQuat::setup_pre_neighbor()
 /// Other fixes may have scaled or shifted the velocities of atoms at the end of a step.
 void FixGearQuat::take_velocities(bigint step, bool end)
 {
-  if (neighbors->any_taken()) motion->take_velocities(neighbors->take_velocities(step, end));
+  if (other_fixes->any_taken()) motion->take_velocities(other_fixes->take_velocities(step, end));
 }
 
 /// Atoms are changed when nothing can refuse the run any more.
@@ -186,7 +186,7 @@ void FixGearQuat::setup(int vflag)
   *readers = readers_at_end(lmp, this);
   bodies->spread_states();
   v_init(vflag);
-  if (!reported) neighbors->check_gravity();
+  if (!reported) other_fixes->check_gravity();
   bodies->gather_loads(atom->f, atom->torque);
   motion->begin_run();
   bodies->place_velocities();
@@ -256,9 +256,9 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
   take_velocities(update->ntimestep - 1, true);
   if (motion->begins_steps()) begin_steps(f, torque);
   if (update->ntimestep == update->firststep + 1 && !compared)    // run ... pre no
-    neighbors->check_all();
+    other_fixes->check_all();
   else
-    neighbors->check_velocities();
+    other_fixes->check_velocities();
   compared = false;
   motion->predict(atom->f);
   place_prediction();
@@ -268,7 +268,7 @@ void FixGearQuat::place_prediction()
 {
   bodies->spread_moved();
   bodies->place_sites(velocities_read);
-  neighbors->note_place();
+  other_fixes->note_place();
   table->forget();
 }
 
@@ -282,7 +282,7 @@ void FixGearQuat::correct_step(double **f, double **torque)
 
 void FixGearQuat::finish_step(double **f, double **torque)
 {
-  neighbors->check_places();
+  other_fixes->check_places();
   correct_step(f, torque);
   while (motion->repeats_step(f)) {
     place_prediction();
@@ -291,7 +291,7 @@ void FixGearQuat::finish_step(double **f, double **torque)
   }
   bodies->spread_moved();
   bodies->place_sites(true);
-  neighbors->note_velocity();
+  other_fixes->note_velocity();
   table->forget();
   if (is_due(lmp, readers->of_atoms))
     comm->forward_comm();    // ghost atoms are where the forces were taken

@@ -24,9 +24,6 @@ namespace LAMMPS_NS::GearQuat {
 class Bodies;
 class Motion;
 
-/// As messages name a fix: with ID and style.
-std::string name_of(const Fix *fix);
-
 /// The motion of a fix gear/quat, null for a fix of another style: what one fix gear/quat may ask
 /// another one in the same run.
 const Motion *motion_of(Fix *fix);
