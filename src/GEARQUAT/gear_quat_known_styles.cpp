@@ -7,7 +7,6 @@
 
 #include "compute.h"
 #include "fix.h"
-#include "fmt/format.h"
 #include "force.h"
 #include "utils.h"
 
