@@ -16,9 +16,9 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
 #include "gear_quat_fleet.h"
+#include "gear_quat_fixes.h"
 #include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
-#include "gear_quat_neighbors.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_report.h"
 #include "gear_quat_restart.h"
@@ -64,12 +64,12 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   ecouple_flag = args->thermostat.damp > 0.0;
   fleet.reset(new Fleet);
   bodies.reset(new Bodies(lmp, this, args->scheme));
-  neighbors.reset(new Neighbors(lmp, this, *bodies, *args));
+  other_fixes.reset(new OtherFixes(lmp, this, *bodies, *args));
   const auto tally = [this](int vflag, double **f) {
     tally_virial(vflag, f);
   };
-  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *neighbors, tally));
-  motion.reset(new Motion(lmp, this, *args, *fleet, *bodies, *neighbors, *step));
+  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *other_fixes, tally));
+  motion.reset(new Motion(lmp, this, *args, *fleet, *bodies, *other_fixes, *step));
   restarts.reset(new Restart(lmp, this, *bodies, *motion));
   respa.reset(new RespaForces(lmp));
   table.reset(new BodyTable(lmp, *bodies));
@@ -141,14 +141,14 @@ void FixGearQuat::init()
     error->all(FLERR,
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
                "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
-  neighbors->init();
+  other_fixes->init();
   if (!reported) {
     stated = read_stated(lmp, args->mol);
     warn_of_partial_molecules(lmp, this, *args, *fleet, *bodies);
   }
   motion->init();
   step->expect_readers(!reader_of_predicted_velocities(lmp, this).empty());
-  bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
+  bodies->expect_forces(makes_forces(lmp, this) || other_fixes->any_taken());
 }
 
 void FixGearQuat::reset_dt()
@@ -188,7 +188,7 @@ void FixGearQuat::setup(int vflag)
 {
   *readers = readers_at_end(lmp, this);
   bodies->spread_states();
-  if (!reported) neighbors->check_gravity();
+  if (!reported) other_fixes->check_gravity();
   bodies->gather_loads(atom->f, atom->torque);
   motion->begin_run();
   bodies->place_velocities();

@@ -30,7 +30,7 @@ namespace GearQuat {
   class BodyTable;
   class Extract;
   class Motion;
-  class Neighbors;
+  class OtherFixes;
   class RespaForces;
   class Restart;
   class Step;
@@ -93,7 +93,7 @@ class FixGearQuat : public Fix {
   std::unique_ptr<GearQuat::Arguments> args;
   std::unique_ptr<GearQuat::Fleet> fleet;
   std::unique_ptr<GearQuat::Bodies> bodies;
-  std::unique_ptr<GearQuat::Neighbors> neighbors;
+  std::unique_ptr<GearQuat::OtherFixes> other_fixes;
   std::unique_ptr<GearQuat::Step> step;
   std::unique_ptr<GearQuat::Motion> motion;
   std::unique_ptr<GearQuat::Restart> restarts;

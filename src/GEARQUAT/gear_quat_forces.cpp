@@ -5,9 +5,9 @@
 
 #include "gear_quat_forces.h"
 
+#include "gear_quat_known_styles.h"
 #include "gear_quat_quaternion.h"
 #include "gear_quat_ranks.h"
-#include "gear_quat_scene.h"
 
 #include "angle.h"
 #include "atom.h"
@@ -33,43 +33,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// pair styles that draw random numbers, or keep contacts, bonds or charges from one step to the
-// next
-
-static const char *const UNFOLLOWED_PAIRS[] = {"dpd",      "gran",  "brownian", "^dsmc",
-                                               "^reax",    "^bpm",  "^amoeba",  "^hippo",
-                                               "^tracker", "^peri", "^rheo",    "^smd"};
-
-// random forces, and the most values that leave bodies at their temperature; collisions last one
-// step
-
-static const char *const RANDOM_PAIRS[] = {"dpd", "brownian", "^dsmc"};
-static const char *const RANDOM_FIXES[] = {"langevin", "brownian", "^gle", "^gld", "^ttm"};
-static const char *const COLLISIONS[] = {"^srd"};
-
-// bond styles that break or have a memory
-
-static const char *const UNFOLLOWED_BONDS[] = {"quartic",    "quartic/omp",        "bpm/rotational",
-                                               "bpm/spring", "bpm/spring/plastic", "rheo/shell"};
-
-// fixes whose post_force() is a function of positions, velocities and perhaps time
-
-static const char *const FOLLOWED_FIXES[] = {
-    "^addforce",     "^efield",       "^enforce2d",     "^freeze$",  "^gravity",
-    "^indent$",      "^lineforce",    "^planeforce",    "^setforce", "^spring$",
-    "^spring/self",  "^viscous$",     "^wall/harmonic", "^wall/lj",  "^wall/morse",
-    "^wall/colloid", "^wall/region$", "^wall/table"};
-
-// those of them that read no variables, and the pair style that may read some
-
-static const char *const WITHOUT_VARIABLES[] = {"^enforce2d",  "^freeze$", "^lineforce",
-                                                "^planeforce", "^spring$", "^viscous$"};
-static constexpr char PAIRS_WITH_VARIABLES[] = "^hybrid/scaled";
-
-// functions and styles of variables that give another value whenever they are evaluated
-
-static const char *const UNREPEATABLE[] = {"random(", "normal(", "next(", "py_", "style = python"};
-
 // step numbers for a look at forces that depend on time: multiples of everything and of nothing
 
 static constexpr bigint EVERY_TIMES = 0, AT_NO_TIMES = 1000003;
@@ -77,13 +40,6 @@ static constexpr bigint EVERY_TIMES = 0, AT_NO_TIMES = 1000003;
 // forces are the same that differ by this part of the largest one: sums may run in another order
 
 static constexpr double SAME = 1.0e-13;
-
-template <int N> static bool among(const char *const (&styles)[N], const Fix *fix)
-{
-  return std::any_of(styles, styles + N, [fix](const char *style) {
-    return utils::strmatch(fix->style, style);
-  });
-}
 
 /* ---------------------------------------------------------------------- */
 
@@ -98,11 +54,10 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
 Noise Forces::noise(const std::function<bool(int)> &in_body) const
 {
   Noise found = Noise::NONE;
-  for (const auto *style : RANDOM_PAIRS)
-    if (force->pair && force->pair_match(style, 0, 1)) found = Noise::RANDOM;
+  if (known(PairFact::RANDOM, force)) found = Noise::RANDOM;
   for (const auto *fix : modify->get_fix_list()) {
-    if (among(COLLISIONS, fix)) return Noise::COLLISIONS;
-    if (!among(RANDOM_FIXES, fix)) continue;
+    if (known(FixFact::COLLISIONS, fix)) return Noise::COLLISIONS;
+    if (!known(FixFact::RANDOM, fix)) continue;
     int here = 0;
     for (int i = 0; i < atom->nlocal; ++i)
       if ((atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
@@ -114,12 +69,10 @@ Noise Forces::noise(const std::function<bool(int)> &in_body) const
 void Forces::look_at_styles()
 {
   if (lmp->kokkos) why = "the KOKKOS package is on";
-  for (const auto *style : UNFOLLOWED_BONDS)
-    if (force->bond_match(style))
-      why = fmt::format("bonds of style {} may break or change for good", style);
-  for (const auto *style : UNFOLLOWED_PAIRS)
-    if (force->pair && force->pair_match(style, 0, 1))
-      why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
+  if (const char *style = unrepeatable_bond(force))
+    why = fmt::format("bonds of style {} may break or change for good", style);
+  if (known(PairFact::UNREPEATABLE, force))
+    why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
 }
 
 void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
@@ -134,9 +87,9 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
       why = name_of(fix) + " moves atoms";
     else if (mask & within_step)
       why = name_of(fix) + " acts within the step";
-    else if (utils::strmatch(fix->style, "^OMP"))
+    else if (known(FixFact::THREADS, fix))
       pre_force.push_back(fix);
-    else if (among(FOLLOWED_FIXES, fix))
+    else if (known(FixFact::REPEATABLE, fix))
       post_force.push_back(fix);
     else if (mask & during_force)
       why = name_of(fix) + " acts on forces in a way that cannot be followed";
@@ -147,10 +100,10 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
 /// Whose force may be that of a variable, empty for none.
 std::string Forces::reader_of_variables() const
 {
-  if (force->pair && force->pair_match(PAIRS_WITH_VARIABLES, 0, 1))
+  if (known(PairFact::READS_VARIABLES, force))
     return fmt::format("pair style {}", force->pair_style);
   for (const auto *fix : post_force)
-    if (!among(WITHOUT_VARIABLES, fix)) return name_of(fix);
+    if (!known(FixFact::WITHOUT_VARIABLES, fix)) return name_of(fix);
   return "";
 }
 
@@ -163,11 +116,9 @@ void Forces::look_at_variables()
   int number = 0;
   const auto names = info.get_variable_names(number);
   for (int i = 0; i < number; ++i) {
-    const std::string text = info.get_variable_info(i);
-    for (const auto *word : UNREPEATABLE)
-      if (text.find(word) != std::string::npos)
-        why = fmt::format("{} may read variable {}, which is another one whenever it is evaluated",
-                          reader, names[i]);
+    if (is_unrepeatable(info.get_variable_info(i)))
+      why = fmt::format("{} may read variable {}, which is another one whenever it is evaluated",
+                        reader, names[i]);
   }
 }
 

@@ -39,7 +39,7 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 /* ---------------------------------------------------------------------- */
 
 Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-               Neighbors &others, Step &step) :
+               OtherFixes &others, Step &step) :
     Pointers(lmp),
     fix(fix), args(args), fleet(fleet), bodies(bodies), others(others), step(step)
 {

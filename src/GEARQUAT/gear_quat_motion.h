@@ -24,7 +24,7 @@ class Motion : protected Pointers {
  public:
   /// bodies: empty, with histories of args.scheme.
   Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-         Neighbors &others, Step &step);
+         OtherFixes &others, Step &step);
 
   /// The store has made its bodies, and they receive their masks.  Collective.
   void meet_bodies();
@@ -83,7 +83,7 @@ class Motion : protected Pointers {
   const Arguments &args;
   const Fleet &fleet;
   Bodies &bodies;
-  Neighbors &others;
+  OtherFixes &others;
   Step &step;
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
   bool set_up = false;    ///< LAMMPS has evaluated forces for a run, no step of it has begun

@@ -5,6 +5,8 @@
 
 #include "gear_quat_repeat.h"
 
+#include "gear_quat_known_styles.h"
+
 #include "comm.h"
 #include "compute.h"
 #include "force.h"
@@ -34,7 +36,7 @@ std::string Repeat::reason() const
 {
   if (!forces->reason().empty()) return forces->reason();
   for (const auto *one : modify->get_compute_list())
-    if (utils::strmatch(one->style, "/tally"))
+    if (known(ComputeFact::ADDS_UP, one))
       return fmt::format("compute {} ({}) adds up every evaluation of forces", one->id, one->style);
   return "";
 }

@@ -7,6 +7,7 @@
 
 #include "gear_quat_fleet.h"
 #include "gear_quat_forces.h"
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -22,17 +23,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <iterator>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace GearQuat;
-
-std::string GearQuat::name_of(const Fix *fix)
-{
-  return fmt::format("fix {} ({})", fix->id, fix->style);
-}
 
 /* ----------------------------------------------------------------------
    what the fix refuses
@@ -67,8 +61,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &f
   for (auto *other : lmp->modify->get_fix_list()) {
     if (other == fix || !other->time_integrate) continue;
     int dim;
-    const int *its_body =
-        utils::strmatch(other->style, "^rigid") && !utils::strmatch(other->style, "/small")
+    const int *its_body = known(FixFact::BODY_OF_ATOMS, other)
         ? static_cast<const int *>(other->extract("body", dim))
         : nullptr;
     const Atom *atom = lmp->atom;
@@ -96,7 +89,7 @@ static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
     if (!first && other->rigid_flag) first = other;
   if (first == fix || lmp->comm->me != 0) return;
   for (const auto *other : lmp->modify->get_fix_list())
-    if (utils::strmatch(other->style, "^wall/gran"))
+    if (known(FixFact::FIRST_RIGID, other))
       lmp->error->warning(FLERR,
                           "Fix gear/quat: fix {} ({}) knows the bodies of fix {} only and damps "
                           "contacts of those of fix {} with the masses of atoms; use one fix for "
@@ -142,24 +135,16 @@ bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
   constexpr int AROUND_FORCES = PRE_FORCE | PRE_REVERSE | POST_FORCE | FINAL_INTEGRATE |
       PRE_FORCE_RESPA | POST_FORCE_RESPA | FINAL_INTEGRATE_RESPA;
   const Force *force = lmp->force;
-  const auto acts = [](const void *style, const char *name) {
-    return style && std::strcmp(name, "zero") != 0;
-  };
-  if (acts(force->pair, force->pair_style) || acts(force->bond, force->bond_style) ||
-      acts(force->angle, force->angle_style) || acts(force->dihedral, force->dihedral_style) ||
-      acts(force->improper, force->improper_style) || force->kspace)
+  if (exerts_forces(force->pair, force->pair_style) ||
+      exerts_forces(force->bond, force->bond_style) ||
+      exerts_forces(force->angle, force->angle_style) ||
+      exerts_forces(force->dihedral, force->dihedral_style) ||
+      exerts_forces(force->improper, force->improper_style) || force->kspace)
     return true;
   for (auto *other : lmp->modify->get_fix_list())
     if (other != owner && (lmp->modify->get_fix_mask(other) & AROUND_FORCES)) return true;
   return false;
 }
-
-// LAMMPS' own fixes that read local data of other fixes through computes only, and the computes
-
-static const char *const NO_LOCAL_DATA[] = {
-    "^ave/atom",  "^ave/chunk", "^ave/correlate", "^ave/grid", "^ave/time", "^balance", "^ehex",
-    "^enforce2d", "^halt",      "^heat",          "^momentum", "^print",    "^temp/",   "^vector"};
-static constexpr char LOCAL_COMPUTES[] = "^reduce";
 
 Readers GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
 {
@@ -168,7 +153,7 @@ Readers GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
   };
   const auto &computes = lmp->modify->get_compute_list();
   const bool reduced = std::any_of(computes.begin(), computes.end(), [](const Compute *compute) {
-    return utils::strmatch(compute->style, LOCAL_COMPUTES);
+    return known(ComputeFact::READS_LOCAL_DATA, compute) != nullptr;
   });
   Readers readers;
   for (auto *other : lmp->modify->get_fix_list()) {
@@ -176,11 +161,7 @@ Readers GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
         !(lmp->modify->get_fix_mask(other) & FixConst::END_OF_STEP))
       continue;
     add(readers.of_atoms, other->nevery);
-    const bool known =
-        std::any_of(std::begin(NO_LOCAL_DATA), std::end(NO_LOCAL_DATA), [other](const char *style) {
-          return utils::strmatch(other->style, style);
-        });
-    if (reduced || !known) add(readers.of_local_data, other->nevery);
+    if (reduced || !known(FixFact::NO_LOCAL_DATA, other)) add(readers.of_local_data, other->nevery);
   }
   return readers;
 }

@@ -24,8 +24,6 @@ namespace LAMMPS_NS::GearQuat {
 class Bodies;
 struct Fleet;
 
-/// As messages name a fix: with ID and style.
-std::string name_of(const Fix *fix);
 
 /// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, a box
 /// that changes, r-RESPA with different steps, atoms of a kind that cannot be followed, atoms

@@ -33,7 +33,7 @@ static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, cons
 }
 
 Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-           Neighbors &others, Tally tally) :
+           OtherFixes &others, Tally tally) :
     Pointers(lmp), time_step(lmp), blowup(lmp, bodies, args.scheme, args.control.shortest),
     coupling(make_coupling(lmp, fix, args, bodies)), args(args), bodies(bodies), others(others),
     tally(std::move(tally))

@@ -21,7 +21,7 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_blowup.h"
 #include "gear_quat_coupling.h"
-#include "gear_quat_neighbors.h"
+#include "gear_quat_fixes.h"
 #include "gear_quat_time_step.h"
 #include "gear_quat_tolerance.h"
 
@@ -36,7 +36,7 @@ class Step : protected Pointers {
   /// tally(vflag, f): adds the virial of the constraint forces, by the forces f on atoms.
   using Tally = std::function<void(int, double **)>;
   Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-       Neighbors &others, Tally tally);
+       OtherFixes &others, Tally tally);
 
   /// f: forces on atoms.
   void begin(int vflag, double **f);
@@ -74,7 +74,7 @@ class Step : protected Pointers {
  private:
   const Arguments &args;
   Bodies &bodies;
-  Neighbors &others;
+  OtherFixes &others;
   Tally tally;
   std::unique_ptr<Integrator> integrator;
   MotionLimits limits;            ///< of the present step

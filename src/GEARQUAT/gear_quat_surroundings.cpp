@@ -7,6 +7,7 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_fleet.h"
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 
@@ -24,7 +25,6 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 
 using namespace LAMMPS_NS;
@@ -175,7 +175,7 @@ std::vector<std::string> Surroundings::advice() const
 /// Atoms of a body that overlap may have an energy beside which all others are rounding.
 void Surroundings::warn_of_own_pairs() const
 {
-  if (!force->pair || std::strcmp(force->pair_style, "zero") == 0 || meets_itself()) return;
+  if (!exerts_forces(force->pair, force->pair_style) || meets_itself()) return;
   using Example = std::array<tagint, 3>;    // body, two of its atoms
   std::vector<Example> found;               // the first one on this rank
   visit_pairs([&](int i, int j, int bonded) {

@@ -5,6 +5,7 @@
 
 #include "gear_quat_tolerance.h"
 
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 
@@ -48,7 +49,7 @@ void Tolerance::refuse_scene() const
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
     const Fleet::Member *same = fleet.find(other);
-    if (utils::strmatch(other->style, "^dt/reset") || (same && same->changes_step))
+    if (known(FixFact::TIME_STEP, other) || (same && same->changes_step))
       error->all(
           FLERR,
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "

@@ -7,7 +7,7 @@ import pytest
 from running import ROOT
 from scenes import last_frame, one_after_the_other, placed, two_molecules, water, water_data
 
-SOURCE = ROOT / "src/GEARQUAT/gear_quat_neighbors.cpp"
+SOURCE = ROOT / "src/GEARQUAT/gear_quat_known_styles.cpp"
 MANUAL = ROOT / "doc/src/fix_gear_quat.rst"
 
 # 27 molecules whose sites attract each other, smoothly cut off: the energy is kept
@@ -23,8 +23,8 @@ def molecules(lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=2
 
 # --- the table -----------------------------------------------------------------------------------
 def rows_of_the_code():
-    """Pattern -> what happens."""
-    row = r'\{"(\^[^"]+)", NeighborRule::(\w+),'
+    """Pattern -> what such a fix does."""
+    row = r'\{"(\^[^"]+)", ActOnAtoms::(\w+),'
     return dict(re.findall(row, SOURCE.read_text()))
 
 
@@ -39,13 +39,14 @@ def rows_of_the_manual():
 
 
 def test_manual_and_code_have_the_same_table():
-    words = {"TAKEN": "taken over", "WATCHED": "warned of", "REFUSED": "refused"}
+    words = {"MOMENTUM": "taken over", "TEMPERATURE": "taken over", "REFLECTION": "warned of"}
+    words |= {"SINGLE": "refused", "IMPULSE": "refused"}
     code, manual = rows_of_the_code(), rows_of_the_manual()
     assert len(code) > 25
     for style, text in manual.items():
-        rules = [rule for pattern, rule in code.items() if re.search(pattern, style)]
-        assert rules, f"{style} is in the manual only"
-        assert text.startswith(words[rules[0]]), style
+        acts = [act for pattern, act in code.items() if re.search(pattern, style)]
+        assert acts, f"{style} is in the manual only"
+        assert text.startswith(words[acts[0]]), style
     for pattern in code:
         assert any(re.search(pattern, style) for style in manual), f"{pattern} is not in the manual"
 

@@ -18,7 +18,7 @@ from running import ROOT, tree_source
 
 SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
-FORCES = (SOURCES / "gear_quat_forces.cpp").read_text()
+STYLES = (SOURCES / "gear_quat_known_styles.cpp").read_text()
 MANUAL = (ROOT / "doc" / "src" / "fix_gear_quat.rst").read_text()
 
 
@@ -29,11 +29,6 @@ def section(title, text=MANUAL):
     found = re.search(pattern, text, re.M | re.S)
     assert found, title
     return found[1]
-
-
-def strings(name, text):
-    """Words of the first brace of strings after ``name``."""
-    return re.findall(r'"([^"]+)"', re.search(rf"{name}\s*=\s*{{(.*?)}}", text, re.S)[1])
 
 
 # --- words of the command ------------------------------------------------------------------------
@@ -102,11 +97,11 @@ def test_every_bodystyle_is_documented():
     assert len(styles) == 4
 
 
-@pytest.mark.parametrize("name", ["UNFOLLOWED_PAIRS", "FOLLOWED_FIXES"])
-def test_what_the_start_follows_is_documented(name):
+@pytest.mark.parametrize("fact", ["PairFact::UNREPEATABLE", "FixFact::REPEATABLE"])
+def test_what_the_start_follows_is_documented(fact):
     table = section("Description").partition("in *start bootstrap*")[2]
     table = table.partition("Where something")[0]
-    styles = strings(rf"{name}\[\]", FORCES)
+    styles = re.findall(rf'{{{fact},\s+"([^"]+)"', STYLES)
     assert len(styles) >= 5  # the list was found
     for style in styles:
         assert re.search(rf"\*{style.strip('^$')}\b", table), style

@@ -3,12 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_neighbors.h"
+#include "gear_quat_fixes.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_known_styles.h"
 #include "gear_quat_noise.h"
 #include "gear_quat_ranks.h"
-#include "gear_quat_scene.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -21,79 +21,16 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-namespace LAMMPS_NS::GearQuat {
-
-/// A row of the table.
-struct NeighborRule {
-  const char *style;    ///< pattern
-  enum { TAKEN, WATCHED, REFUSED } what;
-  enum { SHARED, ALWAYS, CONSTRAINED, GJF, IMPULSES } where;    ///< the case that is meant
-  const char *instead;
-};
-
-}    // namespace LAMMPS_NS::GearQuat
-
-static constexpr char GROUP[] = "give it a group without atoms of bodies";
-static constexpr char THERMOSTAT[] =
-    "use fix temp/csvr or temp/berendsen, whose change bodies take over, or fix langevin";
-static constexpr char CONSTRAINTS[] =
-    "take the bonds and angles of bodies out of it: bodies are rigid already";
-static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall/harmonic";
-
-static const char *const THERMOSTATS[] = {"^temp/", "^langevin", "^gle$", "^gld$",
-                                          "^lambda_thermostat"};
-
-/// The first row that matches counts.  doc/src/fix_gear_quat.rst has the same table.
-static const NeighborRule NEIGHBORS[] = {
-    {"^momentum", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
-    {"^temp/rescale$", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
-    {"^temp/berendsen", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
-    {"^temp/csvr", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
-    {"^heat$", NeighborRule::TAKEN, NeighborRule::SHARED, ""},
-    {"^wall/reflect", NeighborRule::WATCHED, NeighborRule::SHARED, WALL},
-    {"^wall/piston$", NeighborRule::WATCHED, NeighborRule::SHARED, WALL},
-    {"^temp/csld", NeighborRule::REFUSED, NeighborRule::SHARED, THERMOSTAT},
-    {"^temp/rescale/eff", NeighborRule::REFUSED, NeighborRule::SHARED, THERMOSTAT},
-    {"^lambda_thermostat", NeighborRule::REFUSED, NeighborRule::SHARED, THERMOSTAT},
-    {"^langevin", NeighborRule::REFUSED, NeighborRule::GJF, "leave out its keyword gjf"},
-    {"^ehex", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix heat without a region"},
-    {"^thermal/conductivity", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^viscosity", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^oneway", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^shardlow", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^lb/momentum", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix momentum"},
-    {"^lb/viscous", NeighborRule::REFUSED, NeighborRule::IMPULSES, "use fix rigid for them"},
-    {"^wall/flow", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^smd/setvel", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^tmd$", NeighborRule::REFUSED, NeighborRule::SHARED, "use fix spring or fix spring/self"},
-    {"^recenter", NeighborRule::REFUSED, NeighborRule::ALWAYS,
-     "use fix momentum, and subtract the center of mass in the analysis"},
-    {"^shake", NeighborRule::REFUSED, NeighborRule::CONSTRAINED, CONSTRAINTS},
-    {"^rattle", NeighborRule::REFUSED, NeighborRule::CONSTRAINED, CONSTRAINTS},
-    {"^ilves", NeighborRule::REFUSED, NeighborRule::CONSTRAINED, CONSTRAINTS},
-    {"^atom/swap", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^mol/swap", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^neighbor/swap", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^sgcmc", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^gcmc", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^charge/regulation", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^gemc", NeighborRule::REFUSED, NeighborRule::ALWAYS, "unfix one of the two"},
-    {"^hmc", NeighborRule::REFUSED, NeighborRule::ALWAYS, "use fix rigid/small with fix hmc"},
-    {"^pimd", NeighborRule::REFUSED, NeighborRule::SHARED, GROUP},
-    {"^ipi", NeighborRule::REFUSED, NeighborRule::ALWAYS, "unfix one of the two"},
-};
-
 static constexpr double RIGID = 1.0e-6;    // of the velocity of a site, for a motion to be rigid
 
 /* ---------------------------------------------------------------------- */
 
-Neighbors::Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args) :
+OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args) :
     Pointers(lmp), fix(fix), bodies(bodies), args(args)
 {
   std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // equal to nothing
@@ -103,7 +40,7 @@ Neighbors::Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Argument
    before a run
 ------------------------------------------------------------------------- */
 
-void Neighbors::init()
+void OtherFixes::init()
 {
   taken.clear();
   watched.clear();
@@ -113,14 +50,12 @@ void Neighbors::init()
     if (other == fix) continue;
     refuse_thermostat(other);
     tell_noise(other);
-    const NeighborRule *row = nullptr;
-    for (const auto &one : NEIGHBORS)
-      if (!row && utils::strmatch(other->style, one.style)) row = &one;
+    const ActOnAtoms *row = act_on_atoms(other);
     if (!row) continue;
     const tagint atom = shared_atom(other);
-    if (row->what == NeighborRule::REFUSED) {
+    if (row->act == ActOnAtoms::SINGLE || row->act == ActOnAtoms::IMPULSE) {
       refuse(other, *row, atom);
-    } else if (row->what == NeighborRule::WATCHED) {
+    } else if (row->act == ActOnAtoms::REFLECTION) {
       watched.push_back(other);
       if (atom && comm->me == 0)
         error->warning(FLERR,
@@ -129,8 +64,7 @@ void Neighbors::init()
                        other->id, other->style, row->instead);
     } else {
       taken.push_back(other);
-      if (atom && args.isokinetic != Isokinetic::NONE &&
-          !utils::strmatch(other->style, "^momentum"))
+      if (atom && args.isokinetic != Isokinetic::NONE && row->act == ActOnAtoms::TEMPERATURE)
         error->all(FLERR,
                    "Fix gear/quat isokinetic keeps the kinetic energy, which fix {} ({}) changes; "
                    "leave out one of the two",
@@ -140,14 +74,10 @@ void Neighbors::init()
 }
 
 /// Two thermostats on the same bodies would fight each other.
-void Neighbors::refuse_thermostat(const Fix *other) const
+void OtherFixes::refuse_thermostat(const Fix *other) const
 {
   if (args.thermostat.damp == 0.0) return;
-  const bool another =
-      std::any_of(std::begin(THERMOSTATS), std::end(THERMOSTATS), [other](const char *style) {
-        return utils::strmatch(other->style, style);
-      });
-  if (another && shared_atom(other))
+  if (known(FixFact::THERMOSTAT, other) && shared_atom(other))
     error->all(FLERR,
                "Fix gear/quat temp is a thermostat of the bodies, and fix {} ({}) is another one; "
                "leave out one of the two, or give the other one a group without atoms of bodies",
@@ -155,10 +85,10 @@ void Neighbors::refuse_thermostat(const Fix *other) const
 }
 
 /// Random forces have no derivatives, and forces of collisions last a single step only.
-void Neighbors::tell_noise(const Fix *other)
+void OtherFixes::tell_noise(const Fix *other)
 {
-  const bool collides = utils::strmatch(other->style, "^srd");
-  if (warned_noise || (!collides && !utils::strmatch(other->style, "^langevin"))) return;
+  const bool collides = known(FixFact::COLLISIONS, other);
+  if (warned_noise || (!collides && !known(FixFact::RANDOM, other))) return;
   const std::string remedy =
       remedy_for_noise(args.scheme, collides ? Noise::COLLISIONS : Noise::RANDOM);
   if (remedy.empty() || (!collides && !shared_atom(other))) return;
@@ -171,17 +101,14 @@ void Neighbors::tell_noise(const Fix *other)
 }
 
 /// Forces see predicted velocities, which limits the friction that a step can take.
-void Neighbors::tell_friction()
+void OtherFixes::tell_friction()
 {
   constexpr double ENOUGH = 0.1;    // of a momentum in a step
   if (warned_friction) return;
   std::string source;
-  if (force->pair && force->pair_match("^gran", 0, 1))
-    source = fmt::format("pair style {}", force->pair_style);
+  if (known(PairFact::FRICTION, force)) source = fmt::format("pair style {}", force->pair_style);
   for (const auto *other : modify->get_fix_list())
-    if ((utils::strmatch(other->style, "^viscous") ||
-         utils::strmatch(other->style, "^wall/gran")) &&
-        shared_atom(other))
+    if (known(FixFact::FRICTION, other) && shared_atom(other))
       source = fmt::format("fix {} ({})", other->id, other->style);
   if (source.empty()) return;
   warned_friction = true;
@@ -195,40 +122,38 @@ void Neighbors::tell_friction()
                                                              : "formulation first or values 4");
 }
 
-/// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
-tagint Neighbors::shared_atom(const Fix *other) const
+tagint GearQuat::shared_atom(LAMMPS *lmp, const Bodies &bodies, const Fix *other)
 {
+  const Atom *atom = lmp->atom;
   tagint shared = 0;
   for (int i = 0; i < atom->nlocal; ++i)
     if (bodies.in_body(i) && (atom->mask[i] & other->groupbit))
       shared = std::max(shared, atom->tag[i]);
-  return over_ranks(MPI_MAX, shared, world);
+  return over_ranks(MPI_MAX, shared, lmp->world);
 }
 
-void Neighbors::refuse(const Fix *other, const NeighborRule &row, tagint shared) const
+void OtherFixes::refuse(const Fix *other, const ActOnAtoms &row, tagint shared) const
 {
-  switch (row.where) {
-    case NeighborRule::SHARED:
+  if (shared && row.act == ActOnAtoms::IMPULSE)
+    error->all(FLERR,
+               "Fix gear/quat: fix {} ({}) exchanges an impulse with bodies in each step, among "
+               "them that of atom {}, which no number of values can follow; {}",
+               other->id, other->style, shared, row.instead);
+  switch (row.on) {
+    case ActOnAtoms::GROUP:
       if (shared) break;
       return;
-    case NeighborRule::ALWAYS:
+    case ActOnAtoms::ANY:
       error->all(FLERR,
                  "Fix gear/quat cannot be used with fix {} ({}): bodies do not follow it; {}",
                  other->id, other->style, row.instead);
       return;
-    case NeighborRule::CONSTRAINED:
+    case ActOnAtoms::CONSTRAINED:
       if (shared && const_cast<Fix *>(other)->dof(fix->igroup) > 0) break;
       return;
-    case NeighborRule::GJF:
+    case ActOnAtoms::AT_INTEGRATION:
       if (shared && (modify->get_fix_mask(const_cast<Fix *>(other)) & FixConst::INITIAL_INTEGRATE))
         break;
-      return;
-    case NeighborRule::IMPULSES:
-      if (!shared) return;
-      error->all(FLERR,
-                 "Fix gear/quat: fix {} ({}) exchanges an impulse with bodies in each step, among "
-                 "them that of atom {}, which no number of values can follow; {}",
-                 other->id, other->style, shared, row.instead);
       return;
   }
   error->all(FLERR,
@@ -238,7 +163,7 @@ void Neighbors::refuse(const Fix *other, const NeighborRule &row, tagint shared)
 }
 
 /// The rigid fixes require keyword disable, and apply gravity to bodies themselves.
-void Neighbors::check_gravity()
+void OtherFixes::check_gravity()
 {
   if (!utils::strmatch(update->integrate_style, "^verlet")) return;
   const size_t n = 3 * (size_t) atom->nlocal;
@@ -281,7 +206,7 @@ void Neighbors::check_gravity()
    velocities that bodies take over
 ------------------------------------------------------------------------- */
 
-std::vector<int> Neighbors::take_velocities(bigint step, bool end)
+std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
 {
   std::vector<int> changed;
   std::vector<const Fix *> acted;
@@ -331,7 +256,7 @@ std::vector<int> Neighbors::take_velocities(bigint step, bool end)
 
 /// Differences of momentum and angular momentum between atoms and their bodies, as loads.  False if
 /// there are none on any rank.  Collective.
-bool Neighbors::gather_impulses()
+bool OtherFixes::gather_impulses()
 {
   int differs = 0;
   for (const auto &site : bodies.sites)
@@ -358,36 +283,36 @@ bool Neighbors::gather_impulses()
    changes that bodies do not follow
 ------------------------------------------------------------------------- */
 
-void Neighbors::note(double **values)
+void OtherFixes::note(double **values)
 {
   if (sample < bodies.sites.size()) std::copy_n(values[bodies.sites[sample].atom], 3, noted);
 }
 
-bool Neighbors::is_noted(const Bodies::Site &site, double **values) const
+bool OtherFixes::is_noted(const Bodies::Site &site, double **values) const
 {
   return std::equal(noted, noted + 3, values[site.atom]);
 }
 
 /// The next sample begins.
-void Neighbors::note_velocity()
+void OtherFixes::note_velocity()
 {
   if (++sample >= bodies.sites.size()) sample = 0;
   note(atom->v);
 }
 
-void Neighbors::note_place()
+void OtherFixes::note_place()
 {
   note(atom->x);
 }
 
-void Neighbors::check_velocities()
+void OtherFixes::check_velocities()
 {
   if (warned_change || sample >= bodies.sites.size()) return;
   const auto &site = bodies.sites[sample];
   if (!is_noted(site, atom->v) && !bodies.is_as_fast(site)) tell(site, "velocity");
 }
 
-void Neighbors::check_places()
+void OtherFixes::check_places()
 {
   if (!watched.empty()) {
     for (const auto &site : bodies.sites)
@@ -395,7 +320,7 @@ void Neighbors::check_places()
         error->one(FLERR,
                    "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
                    "follow; " +
-                       std::string(WALL),
+                       std::string(act_on_atoms(watched.front())->instead),
                    names(watched), atom->tag[site.atom], bodies.body_at(site.body).id,
                    update->ntimestep);
     return;
@@ -405,7 +330,7 @@ void Neighbors::check_places()
   if (!is_noted(site, atom->x) && !bodies.is_there(site)) tell(site, "place");
 }
 
-void Neighbors::check_all()
+void OtherFixes::check_all()
 {
   for (const auto &site : bodies.sites) {
     if (warned_change) return;
@@ -416,7 +341,7 @@ void Neighbors::check_all()
   }
 }
 
-void Neighbors::tell(const Bodies::Site &site, const char *what)
+void OtherFixes::tell(const Bodies::Site &site, const char *what)
 {
   warned_change = true;
   std::vector<const Fix *> others;
@@ -429,7 +354,7 @@ void Neighbors::tell(const Bodies::Site &site, const char *what)
                  others.empty() ? "none" : names(others));
 }
 
-std::string Neighbors::names(const std::vector<const Fix *> &fixes) const
+std::string OtherFixes::names(const std::vector<const Fix *> &fixes) const
 {
   std::vector<std::string> words;
   for (const auto *one : fixes) words.push_back(name_of(one));

@@ -3,16 +3,16 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Other fixes that change velocities, places or masses of the atoms of bodies.  One table says, by
-   style, what happens: bodies take the change over, the run ends once the change happens, or it
-   does not begin.  The manual has the same table.  What no table knows is found by samples.
+/* Other fixes that change velocities, places or masses of the atoms of bodies.  By what they do
+   (gear_quat_known_styles.h) bodies take the change over, the run ends once the change happens, or
+   it does not begin.  What no table knows is found by samples.
 
    The fix calls init() before every run; take_velocities() before a step, with the velocities that
    the step before has left; check_places() after the forces, with the predicted places;
    note_place() and note_velocity() when it has placed its sites. */
 
-#ifndef LMP_GEAR_QUAT_NEIGHBORS_H
-#define LMP_GEAR_QUAT_NEIGHBORS_H
+#ifndef LMP_GEAR_QUAT_FIXES_H
+#define LMP_GEAR_QUAT_FIXES_H
 
 #include "gear_quat_bodies.h"
 
@@ -26,11 +26,14 @@ class Fix;
 namespace LAMMPS_NS::GearQuat {
 
 struct Arguments;
-struct NeighborRule;
+struct ActOnAtoms;
 
-class Neighbors : protected Pointers {
+/// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
+tagint shared_atom(LAMMPS *lmp, const Bodies &bodies, const Fix *other);
+
+class OtherFixes : protected Pointers {
  public:
-  Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args);
+  OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args);
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
@@ -71,9 +74,9 @@ class Neighbors : protected Pointers {
 
   void tell_noise(const Fix *other);
   void tell_friction();
-  tagint shared_atom(const Fix *other) const;
+  tagint shared_atom(const Fix *other) const { return GearQuat::shared_atom(lmp, bodies, other); }
   void refuse_thermostat(const Fix *other) const;
-  void refuse(const Fix *other, const NeighborRule &row, tagint atom) const;
+  void refuse(const Fix *other, const ActOnAtoms &row, tagint atom) const;
   bool gather_impulses();
   void note(double **values);
   bool is_noted(const Bodies::Site &site, double **values) const;

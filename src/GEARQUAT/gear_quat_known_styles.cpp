@@ -1,0 +1,289 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_known_styles.h"
+
+#include "compute.h"
+#include "fix.h"
+#include "force.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+namespace {
+
+template <typename What> struct StyleFact {
+  What what;
+  const char *pattern, *reason;
+};
+
+struct Word {
+  const char *text, *reason;
+};
+
+}    // namespace
+
+/* ----------------------------------------------------------------------
+   tables
+------------------------------------------------------------------------- */
+
+static constexpr StyleFact<PairFact> PAIRS[] = {
+    {PairFact::UNREPEATABLE, "dpd", "random forces, but not in mdpd/rhosum"},
+    {PairFact::UNREPEATABLE, "gran", "histories of contacts grow, but not in gran/hooke"},
+    {PairFact::UNREPEATABLE, "brownian", "random forces, scaled by the time step"},
+    {PairFact::UNREPEATABLE, "^dsmc", "random collisions change velocities"},
+    {PairFact::UNREPEATABLE, "^reax",
+     "its charges are those of fix qeq, which begins with charges of earlier steps"},
+    {PairFact::UNREPEATABLE, "^bpm",
+     "no memory of its own, but it stands beside bonds bpm, which break"},
+    {PairFact::UNREPEATABLE, "^amoeba",
+     "induced dipoles are predicted from those of earlier evaluations"},
+    {PairFact::UNREPEATABLE, "^hippo", "as amoeba"},
+    {PairFact::UNREPEATABLE, "^tracker", "keeps and counts contacts"},
+    {PairFact::UNREPEATABLE, "^peri", "bonds break, and peri/ves has a viscoelastic history"},
+    {PairFact::UNREPEATABLE, "^rheo",
+     "reads kernels and interfaces that fix rheo computes once in a step"},
+    {PairFact::UNREPEATABLE, "^smd",
+     "deformations, stresses and damage are integrated by every evaluation"},
+    {PairFact::RANDOM, "dpd", "a random force on every pair"},
+    {PairFact::RANDOM, "brownian", "a random force on every atom"},
+    {PairFact::RANDOM, "^dsmc", "random collisions"},
+    {PairFact::FRICTION, "^gran",
+     "contacts are damped by the relative velocity, as far as gamma is not 0"},
+    {PairFact::READS_VARIABLES, "^hybrid/scaled", "factors of its styles are numbers or variables"},
+};
+
+// whole names, which Force::bond_match() compares
+
+static constexpr Word UNREPEATABLE_BONDS[] = {
+    {"quartic", "sets the type of a broken bond to 0"},
+    {"quartic/omp", "as quartic"},
+    {"bpm/rotational", "breaks bonds, and keeps their reference state"},
+    {"bpm/spring", "breaks bonds, and keeps their reference length"},
+    {"bpm/spring/plastic", "as bpm/spring, and reference lengths yield"},
+    {"rheo/shell", "makes bonds after a time of contact, and breaks them"},
+};
+
+static constexpr Word UNREPEATABLE_VARIABLES[] = {
+    {"random(", "draws a number"},
+    {"normal(", "draws a number"},
+    {"next(", "takes the next value of an atomfile or file variable"},
+    {"py_", "a function of Python, which may do anything"},
+    {"style = python", "a function of Python, which may do anything"},
+};
+
+static constexpr StyleFact<FixFact> FIXES[] = {
+    {FixFact::REPEATABLE, "^addforce", "constants, or variables of positions and the time"},
+    {FixFact::REPEATABLE, "^efield",
+     "charges and dipoles in a field of constants, variables or positions"},
+    {FixFact::REPEATABLE, "^enforce2d", "sets components along z to 0"},
+    {FixFact::REPEATABLE, "^freeze$", "sets forces and torques to 0"},
+    {FixFact::REPEATABLE, "^gravity", "mass times a constant or variable"},
+    {FixFact::REPEATABLE, "^indent$", "a function of positions and variables"},
+    {FixFact::REPEATABLE, "^lineforce", "removes components"},
+    {FixFact::REPEATABLE, "^planeforce", "removes a component"},
+    {FixFact::REPEATABLE, "^setforce", "constants, or variables of positions and the time"},
+    {FixFact::REPEATABLE, "^spring$", "a function of centers of mass"},
+    {FixFact::REPEATABLE, "^spring/self", "a function of positions and of those at the beginning"},
+    {FixFact::REPEATABLE, "^viscous$", "a function of velocities"},
+    {FixFact::REPEATABLE, "^wall/harmonic",
+     "a function of positions and of the place of the wall, as all that follow"},
+    {FixFact::REPEATABLE, "^wall/lj", "wall/lj93, wall/lj126 and wall/lj1043"},
+    {FixFact::REPEATABLE, "^wall/morse", ""},
+    {FixFact::REPEATABLE, "^wall/colloid", ""},
+    {FixFact::REPEATABLE, "^wall/region$", "of the regions as well, which may be variables"},
+    {FixFact::REPEATABLE, "^wall/table", ""},
+    {FixFact::WITHOUT_VARIABLES, "^enforce2d", "no arguments"},
+    {FixFact::WITHOUT_VARIABLES, "^freeze$", "no arguments"},
+    {FixFact::WITHOUT_VARIABLES, "^lineforce", "three numbers"},
+    {FixFact::WITHOUT_VARIABLES, "^planeforce", "three numbers"},
+    {FixFact::WITHOUT_VARIABLES, "^spring$", "numbers"},
+    {FixFact::WITHOUT_VARIABLES, "^viscous$", "numbers"},
+    {FixFact::RANDOM, "langevin", "random forces in every step, with friction"},
+    {FixFact::RANDOM, "brownian", "random displacements, and it integrates itself"},
+    {FixFact::RANDOM, "^gle", "random changes of velocities with memory, and it integrates itself"},
+    {FixFact::RANDOM, "^gld", "random forces with memory, and it integrates itself"},
+    {FixFact::RANDOM, "^ttm", "random forces by the temperature of electrons"},
+    {FixFact::COLLISIONS, "^srd", "collisions with its particles, each a force of one step"},
+    {FixFact::FRICTION, "^viscous", "minus a constant times the velocity"},
+    {FixFact::FRICTION, "^wall/gran", "contacts are damped by the relative velocity"},
+    {FixFact::THERMOSTAT, "^temp/", "scales velocities, or mixes them with random ones"},
+    {FixFact::THERMOSTAT, "^langevin", "friction and random forces"},
+    {FixFact::THERMOSTAT, "^gle$", "friction with memory and random forces"},
+    {FixFact::THERMOSTAT, "^gld$", "friction with memory and random forces"},
+    {FixFact::THERMOSTAT, "^lambda_thermostat", "scales velocities"},
+    {FixFact::TIME_STEP, "^dt/reset", "sets update->dt by velocities and forces"},
+    {FixFact::BODY_OF_ATOMS, "^rigid", "FixRigid::extract() gives its array body"},
+    {FixFact::FIRST_RIGID, "^wall/gran",
+     "FixWallGran::init() stops its search at the first fix with rigid_flag"},
+    {FixFact::NO_LOCAL_DATA, "^ave/atom", "per-atom data"},
+    {FixFact::NO_LOCAL_DATA, "^ave/chunk", "per-atom data"},
+    {FixFact::NO_LOCAL_DATA, "^ave/correlate", "global data"},
+    {FixFact::NO_LOCAL_DATA, "^ave/grid", "per-atom and per-grid data"},
+    {FixFact::NO_LOCAL_DATA, "^ave/time", "global data"},
+    {FixFact::NO_LOCAL_DATA, "^balance", "weights of atoms"},
+    {FixFact::NO_LOCAL_DATA, "^ehex", "velocities"},
+    {FixFact::NO_LOCAL_DATA, "^enforce2d", "velocities"},
+    {FixFact::NO_LOCAL_DATA, "^halt", "a variable, which has global data"},
+    {FixFact::NO_LOCAL_DATA, "^heat", "velocities"},
+    {FixFact::NO_LOCAL_DATA, "^momentum", "velocities"},
+    {FixFact::NO_LOCAL_DATA, "^print", "variables, which have global data"},
+    {FixFact::NO_LOCAL_DATA, "^temp/", "velocities"},
+    {FixFact::NO_LOCAL_DATA, "^vector", "global data"},
+    {FixFact::THREADS, "^OMP", "FixOMP::pre_force() calls ThrData::init_force()"},
+};
+
+static constexpr StyleFact<ComputeFact> COMPUTES[] = {
+    {ComputeFact::READS_LOCAL_DATA, "^reduce", "its inputs may be local data of a fix"},
+    {ComputeFact::ADDS_UP, "/tally",
+     "Pair::ev_tally() calls it for every pair of every evaluation"},
+};
+
+static constexpr char GROUP[] = "give it a group without atoms of bodies";
+static constexpr char THERMOSTAT[] =
+    "use fix temp/csvr or temp/berendsen, whose change bodies take over, or fix langevin";
+static constexpr char CONSTRAINTS[] =
+    "take the bonds and angles of bodies out of it: bodies are rigid already";
+static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall/harmonic";
+static constexpr char ONE[] = "unfix one of the two";
+
+// doc/src/fix_gear_quat.rst has the same table
+
+static constexpr ActOnAtoms ACTS_ON_ATOMS[] = {
+    {"^momentum", ActOnAtoms::MOMENTUM, ActOnAtoms::GROUP,
+     "subtracts velocities of a rigid motion, of the group or of chunks", ""},
+    {"^temp/rescale$", ActOnAtoms::TEMPERATURE, ActOnAtoms::GROUP, "one factor for all", ""},
+    {"^temp/berendsen", ActOnAtoms::TEMPERATURE, ActOnAtoms::GROUP, "one factor for all", ""},
+    {"^temp/csvr", ActOnAtoms::TEMPERATURE, ActOnAtoms::GROUP, "one factor for all", ""},
+    {"^heat$", ActOnAtoms::TEMPERATURE, ActOnAtoms::GROUP,
+     "one factor, and one velocity subtracted", ""},
+    {"^wall/reflect", ActOnAtoms::REFLECTION, ActOnAtoms::GROUP,
+     "mirrors positions and velocities of atoms beyond the wall", WALL},
+    {"^wall/piston$", ActOnAtoms::REFLECTION, ActOnAtoms::GROUP,
+     "mirrors positions and velocities of atoms beyond the wall", WALL},
+    {"^temp/csld", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "mixes each velocity with a random one",
+     THERMOSTAT},
+    {"^temp/rescale/eff", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "scales radial velocities of electrons too, by a temperature of both", THERMOSTAT},
+    {"^lambda_thermostat", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "changes velocities of some atoms at a time (later than 4 Feb 2025)", THERMOSTAT},
+    {"^langevin", ActOnAtoms::SINGLE, ActOnAtoms::AT_INTEGRATION,
+     "with gjf it exchanges velocities and scales forces before the step",
+     "leave out its keyword gjf"},
+    {"^ehex", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "displaces atoms besides scaling velocities",
+     "use fix heat without a region"},
+    {"^thermal/conductivity", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "exchanges the energies of two atoms", GROUP},
+    {"^viscosity", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "exchanges momenta of two atoms", GROUP},
+    {"^oneway", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "reverses velocities of atoms in a region",
+     GROUP},
+    {"^shardlow", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "random changes of velocities, pair by pair", GROUP},
+    {"^lb/momentum", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "subtracts the velocity of atoms and fluid together", "use fix momentum"},
+    {"^lb/viscous", ActOnAtoms::IMPULSE, ActOnAtoms::GROUP,
+     "fluid and atoms exchange momentum in each step, whatever its length",
+     "use fix rigid for them"},
+    {"^wall/flow", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "gives a new random velocity to atoms that pass a plane", GROUP},
+    {"^smd/setvel", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "sets velocities", GROUP},
+    {"^tmd$", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "moves atoms towards a target",
+     "use fix spring or fix spring/self"},
+    {"^recenter", ActOnAtoms::SINGLE, ActOnAtoms::ANY,
+     "shifts positions, with keyword shift those of another group",
+     "use fix momentum, and subtract the center of mass in the analysis"},
+    {"^shake", ActOnAtoms::SINGLE, ActOnAtoms::CONSTRAINED,
+     "subtracts the degrees of freedom as well", CONSTRAINTS},
+    {"^rattle", ActOnAtoms::SINGLE, ActOnAtoms::CONSTRAINED, "as shake, and corrects velocities",
+     CONSTRAINTS},
+    {"^ilves", ActOnAtoms::SINGLE, ActOnAtoms::CONSTRAINED, "as shake (later than 4 Feb 2025)",
+     CONSTRAINTS},
+    {"^atom/swap", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "exchanges types of two atoms", GROUP},
+    {"^mol/swap", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "exchanges types of atoms of a molecule",
+     GROUP},
+    {"^neighbor/swap", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "exchanges types of two atoms (later than 4 Feb 2025)", GROUP},
+    {"^sgcmc", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "changes types of atoms", GROUP},
+    {"^gcmc", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "inserts, removes and moves atoms", GROUP},
+    {"^charge/regulation", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "inserts and removes ions",
+     GROUP},
+    {"^gemc", ActOnAtoms::SINGLE, ActOnAtoms::ANY,
+     "exchanges atoms between two boxes and changes these (later than 4 Feb 2025)", ONE},
+    {"^hmc", ActOnAtoms::SINGLE, ActOnAtoms::ANY,
+     "puts back atoms and knows bodies of rigid/small alone (later than 4 Feb 2025)",
+     "use fix rigid/small with fix hmc"},
+    {"^pimd", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "integrates beads of a ring polymer", GROUP},
+    {"^ipi", ActOnAtoms::SINGLE, ActOnAtoms::ANY, "takes positions and the box from a server", ONE},
+};
+
+/* ----------------------------------------------------------------------
+   matching
+------------------------------------------------------------------------- */
+
+template <typename What, int N, typename Matches>
+static const char *reason_in(const StyleFact<What> (&table)[N], What what, Matches matches)
+{
+  for (const auto &row : table)
+    if (row.what == what && matches(row.pattern)) return row.reason;
+  return nullptr;
+}
+
+std::string GearQuat::name_of(const Fix *fix)
+{
+  return fmt::format("fix {} ({})", fix->id, fix->style);
+}
+
+const char *GearQuat::known(PairFact what, const Force *force)
+{
+  return reason_in(PAIRS, what, [force](const char *pattern) {
+    return force->pair && const_cast<Force *>(force)->pair_match(pattern, 0, 1);
+  });
+}
+
+const char *GearQuat::known(FixFact what, const Fix *fix)
+{
+  return reason_in(FIXES, what, [fix](const char *pattern) {
+    return utils::strmatch(fix->style, pattern);
+  });
+}
+
+const char *GearQuat::known(ComputeFact what, const Compute *compute)
+{
+  return reason_in(COMPUTES, what, [compute](const char *pattern) {
+    return utils::strmatch(compute->style, pattern);
+  });
+}
+
+const char *GearQuat::unrepeatable_bond(const Force *force)
+{
+  for (const auto &bond : UNREPEATABLE_BONDS)
+    if (const_cast<Force *>(force)->bond_match(bond.text)) return bond.text;
+  return nullptr;
+}
+
+bool GearQuat::is_unrepeatable(const std::string &variable)
+{
+  return std::any_of(std::begin(UNREPEATABLE_VARIABLES), std::end(UNREPEATABLE_VARIABLES),
+                     [&variable](const Word &word) {
+                       return variable.find(word.text) != std::string::npos;
+                     });
+}
+
+bool GearQuat::exerts_forces(const void *style, const char *name)
+{
+  return style && std::strcmp(name, "zero") != 0;
+}
+
+const ActOnAtoms *GearQuat::act_on_atoms(const Fix *fix)
+{
+  for (const auto &row : ACTS_ON_ATOMS)
+    if (utils::strmatch(fix->style, row.pattern)) return &row;
+  return nullptr;
+}
