@@ -158,16 +158,21 @@ double IsokineticConstraint::element(int n) const
    restart
 ------------------------------------------------------------------------- */
 
-IsokineticConstraint::Checkpoint IsokineticConstraint::checkpoint() const
+void IsokineticConstraint::write(Sections &file) const
 {
-  Checkpoint saved = {(double) mode, (double) counted, target, {}};
-  std::copy_n(heat, MAX_VALUES, saved.heat);
-  return saved;
+  file.put("isokinetic",
+           {(double) mode, (double) counted, target.force_power, target.torque_power,
+            target.translation, target.rotation});
+  file.put("heat", {heat, heat + MAX_VALUES});
 }
 
-void IsokineticConstraint::restore(const Checkpoint &saved)
+std::string IsokineticConstraint::read(const Sections &file)
 {
-  counted = (bigint) saved.bodies;
-  target = saved.target;
-  std::copy_n(saved.heat, MAX_VALUES, heat);
+  const auto &saved = file.get("isokinetic"), &rows = file.get("heat");
+  if (saved.size() < 6 || rows.empty()) return "the kinetic energy that isokinetic keeps";
+  counted = (bigint) saved[1];
+  target = {saved[2], saved[3], saved[4], saved[5]};
+  std::fill_n(heat, MAX_VALUES, 0.0);
+  std::copy_n(rows.begin(), std::min(rows.size(), (size_t) MAX_VALUES), heat);
+  return "";
 }

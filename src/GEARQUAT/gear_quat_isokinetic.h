@@ -14,6 +14,7 @@
 #define LMP_GEAR_QUAT_ISOKINETIC_H
 
 #include "gear_quat_bodies.h"
+#include "gear_quat_sections.h"
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -53,15 +54,10 @@ class IsokineticConstraint : protected Pointers {
   /// Histories are rescaled to another time step.
   void rescale_step(double ratio);
 
-  /// What a restart file holds, the same on all ranks.
-  struct Checkpoint {
-    double mode, bodies;
-    KineticSums target;
-    double heat[MAX_VALUES];
-  };
-  Checkpoint checkpoint() const;
-  /// Of the same kind of constraint.
-  void restore(const Checkpoint &saved);
+  /// Sections of a restart file, the same on all ranks.
+  void write(Sections &file) const;
+  /// Of the same kind of constraint.  Returns what the file does not have, empty if it has all.
+  std::string read(const Sections &file);
 
  private:
   Bodies &bodies;

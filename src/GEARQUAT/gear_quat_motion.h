@@ -97,17 +97,12 @@ class Motion : protected Pointers {
   /// Null before the start.
   const Integrator *present_integrator() const;
 
-  /// The part of a restart file that is not a history.
-  struct Checkpoint {
-    double formulation, values, compensate, started, h, variable, tuned;
-    Tolerance::Checkpoint tolerance;
-    IsokineticConstraint::Checkpoint isokinetic;
-    Thermostat::Checkpoint thermostat;
-  };
-  Checkpoint checkpoint() const;
-  /// The histories of the file are about to arrive.  If they do not fit this command they start
-  /// anew, and rank 0 says so, as it does if they go on with another corrector.
-  void restore(const Checkpoint &saved);
+  /// What is not a history, as sections of a restart file.
+  void write(Sections &file) const;
+  /// The histories of the file have arrived.  If they do not fit this command they start anew, and
+  /// rank 0 says so, as it does if they go on with another corrector.  Returns what the file does
+  /// not have of the rest, empty if it has all.
+  std::string read(const Sections &file);
 
  private:
   Fix *fix;

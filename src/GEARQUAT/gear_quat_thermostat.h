@@ -26,6 +26,7 @@
 #include "gear_quat_chain.h"
 #include "gear_quat_exact_sum.h"
 #include "gear_quat_momentum.h"
+#include "gear_quat_sections.h"
 #include "gear_quat_startup.h"
 
 #include <array>
@@ -119,16 +120,11 @@ class Thermostat : protected Pointers {
   void keep_chains() { kept = chains; }
   void put_back_chains() { chains = kept; }
 
-  /// What a restart file holds, the same on all ranks.
-  struct Checkpoint {
-    double mode, length, bodies;                ///< mode: number of chains, 0 without a thermostat
-    double kt, kt_step, period, freedoms[2];    ///< of the last step
-    double constant;                            ///< TotalMomentum::record() then
-    Chain::Record chains[2];
-  };
-  Checkpoint checkpoint() const;
-  /// saved: of as many chains of as many variables.
-  void restore(const Checkpoint &saved);
+  /// Sections of a restart file, the same on all ranks.
+  void write(Sections &file) const;
+  /// Of as many chains of as many variables.  Returns what the file does not have, empty if it has
+  /// all.
+  std::string read(const Sections &file);
 
  private:
   const Fix *fix;
