@@ -5,8 +5,9 @@
     .venv/bin/python tests/lammps/make_restarts.py 1.2.3 --lmp FILE     # with that of another one
 
 When a release is made, the first line keeps its files for the tests of all later ones
-(doc/release.md).  Files of releases before it are not made anew.  WRITE and CONTINUE are what they
-were made with: later releases may add cases, but have to leave these as they are.
+(doc/release.md); remove the folder first if it was made before.  Files of earlier releases are not
+made anew.  WRITE and CONTINUE are what they were made with: later releases may add cases, but have
+to leave these as they are.
 
 For each case there is a restart file, and `continued.json` has the thermo output of a run that goes
 on from it, and the last frame, all with every digit.

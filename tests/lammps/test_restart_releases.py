@@ -13,8 +13,6 @@ import numpy as np
 import pytest
 from make_restarts import CASES, FOLDER, go_on
 
-pytestmark = pytest.mark.tree  # another LAMMPS need not read the files of this one
-
 RELEASES = sorted(path.name for path in FOLDER.iterdir())
 ROUNDING = 1e-12
 ANEW = "histories start anew"
