@@ -436,7 +436,7 @@ void FixGearQuat::write_restart_file(const char *file)
 {
   if (!met_atoms) return;    // the atoms may still be changed by the user
   show_bodies();
-  write_given_bodies(lmp, fmt::format("{}.{}.gear_quat", file, id), id, *bodies, array_local);
+  restarts->write_bodies(fmt::format("{}.{}.gear_quat", file, id), array_local);
 }
 
 void FixGearQuat::restart(char *buf)

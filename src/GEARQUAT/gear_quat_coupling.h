@@ -20,6 +20,7 @@
 #define LMP_GEAR_QUAT_COUPLING_H
 
 #include "gear_quat_bodies.h"
+#include "gear_quat_sections.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_step_control.h"
 
@@ -114,6 +115,14 @@ class Coupling : protected Pointers {
   virtual bool extensive(int n) const = 0;
   /// The energy that thermo keyword econserve adds.  Local.
   virtual double energy() const { return 0.0; }
+
+  // restart files
+
+  /// Its sections, the same on all ranks.  Local.
+  virtual void write(Sections &file) const = 0;
+  /// Of the same kind of coupling.  Returns what the file does not have, empty if it has all.
+  /// Local.
+  virtual std::string read(const Sections &file) = 0;
 
  protected:
   Bodies &bodies;

@@ -5,20 +5,15 @@
 
 #include "gear_quat_infile.h"
 
-#include "gear_quat_bodies.h"
-#include "gear_quat_outputs.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"
 #include "error.h"
 #include "lammps.h"
-#include "update.h"
 #include "utils.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -39,8 +34,9 @@ struct Line {
   GivenBody body;
 };
 
-/// The numbers between ID and image flags, as the file and a GivenBody have them.
-enum { MASS, INERTIA = 4, NUMBERS = 16 };
+/// Among the numbers of a GivenBody.
+enum { MASS, INERTIA = 4 };
+static constexpr int NUMBERS = GivenBody::NUMBERS;
 static_assert(offsetof(GivenBody, image) == NUMBERS * sizeof(double), "as many words in a line");
 
 /// A fault of the file, kept until all ranks can report it together.
@@ -165,70 +161,4 @@ GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename
   GivenBodies bodies;
   for (const auto &line : gather(lines, lmp->world)) bodies[line.id] = line.body;
   return bodies;
-}
-
-/* ----------------------------------------------------------------------
-   writing
-------------------------------------------------------------------------- */
-
-namespace {
-
-Line line_of(const Body &body, const BodyState &state, const double *row)
-{
-  Line line = {body.id, GivenBody()};
-  GivenBody &written = line.body;
-  written.mass = body.rigid.mass;
-  std::copy_n(row + BodyTable::CENTER, 3, written.center);
-  std::copy_n(row + BodyTable::VELOCITY, 3, written.velocity);
-  std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, written.angular_momentum_space);
-  std::copy_n(row + BodyTable::IMAGE, 3, written.image);
-
-  // A^T I A, the rows of A being the principal axes; xx yy zz xy xz yz
-
-  static constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
-  double a[9];
-  rotation_matrix(state.q, dot4(state.q, state.q), a);
-  for (int m = 0; m < 6; ++m)
-    for (int k = 0; k < 3; ++k)
-      written.inertia[m] += body.rigid.inertia[k] * a[3 * k + FIRST[m]] * a[3 * k + SECOND[m]];
-  return line;
-}
-
-void print(FILE *file, const Line &line)
-{
-  double numbers[NUMBERS];
-  std::memcpy(numbers, &line.body, sizeof(numbers));
-  fprintf(file, TAGINT_FORMAT, line.id);
-  for (const double number : numbers) fprintf(file, " %.16e", number);
-  fprintf(file, " %d %d %d\n", line.body.image[0], line.body.image[1], line.body.image[2]);
-}
-
-}    // namespace
-
-void GearQuat::write_given_bodies(LAMMPS *lmp, const std::string &filename,
-                                  const std::string &fix_id, const Bodies &bodies, double **rows)
-{
-  std::vector<Line> mine;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    mine.push_back(line_of(bodies.body_at(ibody), bodies.state_of(ibody), rows[ibody]));
-  const auto before = [](const Line &a, const Line &b) {
-    return a.id < b.id;
-  };
-  const std::vector<Line> all = gather_sorted(mine, lmp->world, before, 0);
-  if (lmp->comm->me != 0) return;
-
-  const auto refuse = [&] {
-    lmp->error->one(FLERR, "Fix gear/quat: cannot write file {}: {}", filename,
-                    utils::getsyserror());
-  };
-  const std::string unfinished = filename + ".tmp";
-  FILE *file = fopen(unfinished.c_str(), "w");
-  if (!file) refuse();
-  fprintf(file,
-          "# fix %s gear/quat: mass, center of mass, inertia tensor and momenta of %zu bodies on "
-          "timestep " BIGINT_FORMAT "\n\n%zu\n",
-          fix_id.c_str(), all.size(), lmp->update->ntimestep, all.size());
-  for (const Line &line : all) print(file, line);
-  const bool failed = ferror(file) != 0;
-  if (fclose(file) != 0 || failed || rename(unfinished.c_str(), filename.c_str()) != 0) refuse();
 }

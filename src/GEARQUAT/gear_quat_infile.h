@@ -23,8 +23,6 @@ class LAMMPS;
 
 namespace LAMMPS_NS::GearQuat {
 
-class Bodies;
-
 /// A body as a line of the file has it.
 struct GivenBody {
   double mass;
@@ -33,6 +31,8 @@ struct GivenBody {
   double velocity[3];
   double angular_momentum_space[3];
   int image[3];
+
+  static constexpr int NUMBERS = 16;    ///< before the image flags, in the order of the file
 };
 
 using GivenBodies = std::map<tagint, GivenBody>;
@@ -40,13 +40,6 @@ using GivenBodies = std::map<tagint, GivenBody>;
 /// Read on rank 0, return on all ranks; none for an empty filename.  Any fault of the file ends the
 /// run on all ranks with a message that names file and line.
 GivenBodies read_given_bodies(LAMMPS *lmp, const std::string &filename);
-
-/// Write all bodies, sorted by ID, with all digits; a file that cannot be written ends the run.
-/// A file of this name is whole at any time: it is written under another name and then renamed.
-/// rows: those of BodyTable for this rank's owned bodies.  fix_id: for the comment on line 1.
-/// Collective.
-void write_given_bodies(LAMMPS *lmp, const std::string &filename, const std::string &fix_id,
-                        const Bodies &bodies, double **rows);
 
 }    // namespace LAMMPS_NS::GearQuat
 

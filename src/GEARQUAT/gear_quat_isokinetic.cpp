@@ -10,6 +10,8 @@
 #include "error.h"
 #include "force.h"
 
+#include <algorithm>
+
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
@@ -127,14 +129,22 @@ double IsokineticConstraint::element(int n)
    restart
 ------------------------------------------------------------------------- */
 
-IsokineticConstraint::Checkpoint IsokineticConstraint::checkpoint() const
+void IsokineticConstraint::write(Sections &file) const
 {
-  return {(double) mode, (double) counted, target, heat.record()};
+  file.put("isokinetic",
+           {(double) mode, (double) counted, target.force_power, target.torque_power,
+            target.translation, target.rotation});
+  file.put("heat", {heat.record().begin(), heat.record().end()});
 }
 
-void IsokineticConstraint::restore(const Checkpoint &saved)
+std::string IsokineticConstraint::read(const Sections &file)
 {
-  counted = (bigint) saved.bodies;
-  target = saved.target;
-  heat.restore(saved.heat);
+  const auto &saved = file.get("isokinetic"), &rows = file.get("heat");
+  if (saved.size() < 6 || rows.empty()) return "the kinetic energy that isokinetic keeps";
+  counted = (bigint) saved[1];
+  target = {saved[2], saved[3], saved[4], saved[5]};
+  ScalarHistory::Rows of_heat = {};
+  std::copy_n(rows.begin(), std::min(rows.size(), of_heat.size()), of_heat.begin());
+  heat.restore(of_heat);
+  return "";
 }

@@ -57,15 +57,8 @@ class IsokineticConstraint : public Coupling {
   double element(int n) override;
   bool extensive(int n) const override { return n == HEAT; }
 
-  /// What a restart file holds, the same on all ranks.
-  struct Checkpoint {
-    double mode, bodies;
-    KineticSums target;
-    ScalarHistory::Rows heat;
-  };
-  Checkpoint checkpoint() const;
-  /// Of the same kind of constraint.
-  void restore(const Checkpoint &saved);
+  void write(Sections &file) const override;
+  std::string read(const Sections &file) override;
 
  private:
   friend class Coupling;    // calls what correct_by_passes() asks for

@@ -305,57 +305,58 @@ int Motion::extensive(int n) const
    restart
 ------------------------------------------------------------------------- */
 
-Motion::Checkpoint Motion::checkpoint() const
+void Motion::write(Sections &file) const
 {
   const Scheme &scheme = args.scheme;
-  const auto *isokinetic = dynamic_cast<IsokineticConstraint *>(step.coupling.get());
-  const auto *thermostat = dynamic_cast<Thermostat *>(step.coupling.get());
-  return {(double) scheme.first(),
-          (double) scheme.values(),
-          (double) scheme.compensate,
-          (double) step.started,
-          step.length(),
-          (double) scheme.trial,
-          (double) scheme.tuned,
-          step.tolerance ? step.tolerance->checkpoint() : Tolerance::Checkpoint(),
-          isokinetic ? isokinetic->checkpoint() : IsokineticConstraint::Checkpoint(),
-          thermostat ? thermostat->checkpoint() : Thermostat::Checkpoint()};
+  file.put("scheme",
+           {(double) scheme.first(), (double) scheme.values(), (double) scheme.compensate,
+            (double) scheme.trial, (double) scheme.tuned});
+  file.put("motion", {(double) step.started, step.length()});
+  if (step.tolerance) step.tolerance->write(file);
+  if (step.coupling) step.coupling->write(file);
 }
 
-void Motion::restore(const Checkpoint &saved)
+std::string Motion::read(const Sections &file)
 {
-  const Checkpoint mine = checkpoint();
-  auto *isokinetic = dynamic_cast<IsokineticConstraint *>(step.coupling.get());
-  auto *thermostat = dynamic_cast<Thermostat *>(step.coupling.get());
+  Sections mine;
+  write(mine);
   std::vector<std::string> others;    // keywords that had another value
-  const auto compare = [&others](const char *keyword, double before, double now) {
-    if (before != now) others.emplace_back(keyword);
+  const auto compare = [&](const char *keyword, const char *section, int n) {
+    if (file.number(section, n) != mine.number(section, n)) others.emplace_back(keyword);
   };
-  compare("formulation", saved.formulation, mine.formulation);
-  compare("values", saved.values, mine.values);
-  compare("compensate", saved.compensate, mine.compensate);
-  compare("tolerance", saved.variable, mine.variable);
-  compare("isokinetic", saved.isokinetic.mode, mine.isokinetic.mode);
-  const bool one_without = saved.thermostat.mode == 0.0 || mine.thermostat.mode == 0.0;
-  compare(one_without ? "temp" : "thermostat", saved.thermostat.mode, mine.thermostat.mode);
-  if (!one_without) compare("tchain", saved.thermostat.length, mine.thermostat.length);
-  const bool same = others.empty();
-  if (isokinetic && same) isokinetic->restore(saved.isokinetic);
-  if (thermostat && same) thermostat->restore(saved.thermostat);
-  step.started = saved.started != 0.0 && same;
-  if (step.tolerance && step.started) step.tolerance->restore(saved.tolerance);
-  step.time_step.restore(saved.h);
-  if (saved.h != 0.0) step.make_integrator();
-  if (step.started && saved.tuned != mine.tuned && comm->me == 0)
+  compare("formulation", "scheme", 0);
+  compare("values", "scheme", 1);
+  compare("compensate", "scheme", 2);
+  compare("tolerance", "scheme", 3);
+  compare("isokinetic", "isokinetic", 0);
+  const bool both = file.has("thermostat", 1) && mine.has("thermostat", 1);
+  compare(both ? "thermostat" : "temp", "thermostat", 0);
+  if (both) compare("tchain", "thermostat", 1);
+  const bool same = others.empty(), had_started = file.number("motion", 0) != 0.0;
+  step.started = had_started && same;
+
+  std::vector<std::string> missing;
+  const auto take = [&](auto &part) {
+    const std::string lacks = part->read(file);
+    if (!lacks.empty()) missing.push_back(lacks);
+  };
+  if (step.coupling && same) take(step.coupling);
+  if (step.tolerance && step.started) take(step.tolerance);
+  step.time_step.restore(file.number("motion", 1));
+  if (step.length() != 0.0) step.make_integrator();
+
+  const double tuned = file.number("scheme", 4);
+  if (step.started && tuned != mine.number("scheme", 4) && comm->me == 0)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with corrector {}; its histories go "
         "on with corrector {}",
-        saved.tuned != 0.0 ? "tuned" : "gear", args.scheme.tuned ? "tuned" : "gear");
-  if (saved.started != 0.0 && !same && comm->me == 0)
+        tuned != 0.0 ? "tuned" : "gear", args.scheme.tuned ? "tuned" : "gear");
+  if (had_started && !same && comm->me == 0)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with other settings of {}; poses and "
         "velocities are kept, the higher derivatives start anew",
         utils::join_words(others, ", "));
+  return utils::join_words(missing, " and ");
 }

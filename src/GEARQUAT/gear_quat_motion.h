@@ -10,10 +10,8 @@
 #ifndef LMP_GEAR_QUAT_MOTION_H
 #define LMP_GEAR_QUAT_MOTION_H
 
-#include "gear_quat_isokinetic.h"
 #include "gear_quat_start.h"
 #include "gear_quat_step.h"
-#include "gear_quat_thermostat.h"
 
 #include <map>
 #include <string>
@@ -66,17 +64,12 @@ class Motion : protected Pointers {
   /// What a thermostat has taken from the bodies; collective.
   double energy() const { return step.coupling ? step.coupling->energy() : 0.0; }
 
-  /// The part of a restart file that is not a history.
-  struct Checkpoint {
-    double formulation, values, compensate, started, h, variable, tuned;
-    Tolerance::Checkpoint tolerance;
-    IsokineticConstraint::Checkpoint isokinetic;
-    Thermostat::Checkpoint thermostat;
-  };
-  Checkpoint checkpoint() const;
-  /// The histories of the file are about to arrive.  If they do not fit this command they start
-  /// anew, and rank 0 says so, as it does if they go on with another corrector.
-  void restore(const Checkpoint &saved);
+  /// What is not a history, as sections of a restart file.
+  void write(Sections &file) const;
+  /// The histories of the file have arrived.  If they do not fit this command they start anew, and
+  /// rank 0 says so, as it does if they go on with another corrector.  Returns what the file does
+  /// not have of the rest, empty if it has all.
+  std::string read(const Sections &file);
 
  private:
   Fix *fix;

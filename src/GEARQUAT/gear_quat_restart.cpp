@@ -5,52 +5,69 @@
 
 #include "gear_quat_restart.h"
 
+#include "gear_quat_infile.h"
+#include "gear_quat_outputs.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_restart_old.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
+#include "update.h"
 #include "utils.h"
 
+#include <algorithm>
 #include <cstring>
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// files of releases up to 0.2.0 begin with the formulation, 0 or 1
-
-static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
-static constexpr double FORMAT = 5;
-
 Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
-    Pointers(lmp), fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)
+    Pointers(lmp), fix(fix), bodies(bodies), motion(motion), waiting(false), place(0)
 {
 }
 
 void Restart::write(FILE *fp) const
 {
-  const Block data = {MAGIC, FORMAT, (double) bodies.has_extended(), (double) atom->natoms,
-                      motion.checkpoint()};
-  const int size = sizeof(data);
+  Sections file;
+  file.put("bodies", {(double) bodies.has_extended(), (double) atom->natoms});
+  file.put("parts of atoms", Bodies::packed_parts().numbers());
+  motion.write(file);
+  const Sections::Numbers data = file.packed();
+  const int size = (int) (data.size() * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&data, size, 1, fp);
+  fwrite(data.data(), size, 1, fp);
 }
 
 /// LAMMPS does not tell the size of the block: only what every release wrote is read at first.
+/// Files of releases up to 0.2.0 begin with the formulation, 0 or 1.
 void Restart::read(const char *buf)
 {
-  double head[2];
+  double head[Sections::HEAD];
   std::memcpy(head, buf, sizeof(head));
-  const bool older = head[0] != MAGIC || head[1] < FORMAT;
-  if (older || head[1] != FORMAT)
+  const double format = head[0] == Sections::MAGIC ? head[1] : 0.0;
+  if (format == Release030::FORMAT) {
+    Release030 old;
+    std::memcpy(&old, buf, sizeof(old));
+    sections = old.sections();
+    release = "0.3.0";
+  } else if (format == Sections::FORMAT) {
+    Sections::Numbers data(head[2] > Sections::HEAD ? (size_t) head[2] : Sections::HEAD);
+    std::memcpy(data.data(), buf, data.size() * sizeof(double));
+    sections.unpack(data);
+  } else
     error->all(FLERR,
                "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
                "data of fix {} this one cannot read; continue with the release that wrote it, or "
                "let that one write a data file with write_data and start from this",
-               older ? "an older (0.3.0 or before)" : "a newer", fix->id);
-  std::memcpy(&block, buf, sizeof(block));
+               format < Release030::FORMAT     ? "an older (0.2.0 or before)"
+                   : format > Sections::FORMAT ? "a newer"
+                                               : "an unpublished",
+               fix->id);
+  if (!sections.has("bodies", 2) || !sections.has("parts of atoms", AtomParts::NUMBERS))
+    error->all(FLERR, "Fix gear/quat: the data of fix {} in the restart file are damaged", fix->id);
   waiting = true;
 }
 
@@ -81,18 +98,37 @@ std::vector<const double *> Restart::packed_atoms() const
 
   for (int i = 0; i < atom->nlocal; ++i) look(i);
   const bigint all = over_ranks(MPI_SUM, (bigint) without.size(), world);
-  const bigint deleted = (bigint) block.natoms - atom->natoms;
+  const bigint deleted = (bigint) sections.number("bodies", 1) - atom->natoms;
   if (all > deleted) return packed;    // not only deleted: there may be no such rows
   for (int i = atom->nlocal; !without.empty() && i < atom->nlocal + deleted && i < atom->nmax; ++i)
     look(i);
   return packed;
 }
 
+/// The data of atoms in the lengths of this release.
+Bodies::Resumed Restart::resume_bodies(int group) const
+{
+  std::vector<const double *> packed = packed_atoms();
+  const AtomParts parts = AtomParts::of(sections.get("parts of atoms"));
+  const AtomParts mine = Bodies::packed_parts();
+  const bool extended = sections.number("bodies", 0) != 0.0;
+  std::vector<Sections::Numbers> converted;
+  if (!(parts == mine)) {
+    converted.reserve(packed.size());
+    for (auto &data : packed) {
+      if (!data) continue;
+      converted.push_back(parts.converted(data, mine, extended));
+      data = converted.back().data();
+    }
+  }
+  return bodies.resume(packed, extended, group);
+}
+
 bool Restart::resume(int group)
 {
   waiting = false;
   using Resumed = Bodies::Resumed;
-  const Resumed found = bodies.resume(packed_atoms(), block.extended != 0.0, group);
+  const Resumed found = resume_bodies(group);
   if (found == Resumed::NONE) {
     if (comm->me == 0)
       error->warning(FLERR,
@@ -100,10 +136,85 @@ bool Restart::resume(int group)
                      "of the restart file; they begin anew from their atoms");
     return false;
   }
-  motion.restore(block.motion);
+  const std::string missing = motion.read(sections);
+  if (!missing.empty())
+    motion.forget(fmt::format("Fix gear/quat {}: the restart file{} does not have {}; histories "
+                              "start anew",
+                              fix->id, release.empty() ? "" : ", of release " + release + ",",
+                              missing));
   if (found == Resumed::FEWER)    // forces have derivatives that the motion of the others made
     motion.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "
                               "this command, histories start anew",
                               fix->id));
   return true;
+}
+
+/* ----------------------------------------------------------------------
+   the text beside a restart file
+------------------------------------------------------------------------- */
+
+namespace {
+
+/// A line of the file.
+struct Line {
+  tagint id;
+  GivenBody body;
+};
+
+Line line_of(const Body &body, const BodyState &state, const double *row)
+{
+  Line line = {body.id, GivenBody()};
+  GivenBody &written = line.body;
+  written.mass = body.rigid.mass;
+  std::copy_n(row + BodyTable::CENTER, 3, written.center);
+  std::copy_n(row + BodyTable::VELOCITY, 3, written.velocity);
+  std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, written.angular_momentum_space);
+  std::copy_n(row + BodyTable::IMAGE, 3, written.image);
+
+  // A^T I A, the rows of A being the principal axes; xx yy zz xy xz yz
+
+  static constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
+  double a[9];
+  rotation_matrix(state.q, dot4(state.q, state.q), a);
+  for (int m = 0; m < 6; ++m)
+    for (int k = 0; k < 3; ++k)
+      written.inertia[m] += body.rigid.inertia[k] * a[3 * k + FIRST[m]] * a[3 * k + SECOND[m]];
+  return line;
+}
+
+void print(FILE *file, const Line &line)
+{
+  double numbers[GivenBody::NUMBERS];
+  std::memcpy(numbers, &line.body, sizeof(numbers));
+  fprintf(file, TAGINT_FORMAT, line.id);
+  for (const double number : numbers) fprintf(file, " %.16e", number);
+  fprintf(file, " %d %d %d\n", line.body.image[0], line.body.image[1], line.body.image[2]);
+}
+
+}    // namespace
+
+void Restart::write_bodies(const std::string &filename, double **rows) const
+{
+  std::vector<Line> mine;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    mine.push_back(line_of(bodies.body_at(ibody), bodies.state_of(ibody), rows[ibody]));
+  const auto before = [](const Line &a, const Line &b) {
+    return a.id < b.id;
+  };
+  const std::vector<Line> all = gather_sorted(mine, world, before, 0);
+  if (comm->me != 0) return;
+
+  const auto refuse = [&] {
+    error->one(FLERR, "Fix gear/quat: cannot write file {}: {}", filename, utils::getsyserror());
+  };
+  const std::string unfinished = filename + ".tmp";
+  FILE *file = fopen(unfinished.c_str(), "w");
+  if (!file) refuse();
+  fprintf(file,
+          "# fix %s gear/quat: mass, center of mass, inertia tensor and momenta of %zu bodies on "
+          "timestep " BIGINT_FORMAT "\n\n%zu\n",
+          fix->id, all.size(), update->ntimestep, all.size());
+  for (const Line &line : all) print(file, line);
+  const bool failed = ferror(file) != 0;
+  if (fclose(file) != 0 || failed || rename(unfinished.c_str(), filename.c_str()) != 0) refuse();
 }

@@ -3,7 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Binary restart files.  The global block says what the histories are, the data of atoms hold them.
+/* Binary restart files.  The global block says in sections what the histories are, and the data of
+   atoms hold them.  Files of 0.3.0 and of all later releases are read.
 
    LAMMPS hands both to the fix that has just been made from the atoms: read(), note_place() for
    each atom, and then, when all is there, resume(). */
@@ -12,6 +13,7 @@
 #define LMP_GEAR_QUAT_RESTART_H
 
 #include "gear_quat_motion.h"
+#include "gear_quat_sections.h"
 
 #include <cstdio>
 
@@ -22,7 +24,7 @@ class Restart : protected Pointers {
   Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion);
 
   void write(FILE *fp) const;
-  /// Ends the run if another release wrote this with other contents.
+  /// Ends the run if this is of 0.2.0 or before, or of a release that does not write sections.
   void read(const char *buf);
   bool was_read() const { return waiting; }
 
@@ -36,24 +38,26 @@ class Restart : protected Pointers {
   /// group: atoms outside of it are in what bodies the file says, 0 for none.  Collective.
   bool resume(int group);
 
+  /// The text beside a restart file: all bodies in the format of infile, sorted by ID, with all
+  /// digits.  A file that cannot be written ends the run.  A file of this name is whole at any time:
+  /// it is written under another name and then renamed.  rows: those of BodyTable for this rank's
+  /// owned bodies.  Collective.
+  void write_bodies(const std::string &filename, double **rows) const;
+
  private:
   const Fix *fix;
   Bodies &bodies;
   Motion &motion;
 
-  struct Block {
-    double magic, format;
-    double extended;    ///< bodies have sites that are more than points
-    double natoms;      ///< in the file
-    Motion::Checkpoint motion;
-  };
-  Block block;
-  bool waiting;    ///< for resume()
+  Sections sections;      ///< of the file
+  std::string release;    ///< that wrote it, if it is known
+  bool waiting;           ///< for resume()
   int place;
 
   static constexpr int HEAD = 2;    ///< of an atom: how many numbers there are, and its ID
 
   std::vector<const double *> packed_atoms() const;
+  Bodies::Resumed resume_bodies(int group) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -304,29 +304,49 @@ double Thermostat::element(int n)
   }
 }
 
-Thermostat::Checkpoint Thermostat::checkpoint() const
+void Thermostat::write(Sections &file) const
 {
-  const Setting of_steps = setting();
-  Checkpoint saved = {(double) mode(),
-                      (double) words.length,
-                      (double) counted,
-                      of_steps.line.kt,
-                      of_steps.line.kt_step,
-                      of_steps.damp,
-                      {of_steps.freedoms[TRANSLATION], of_steps.freedoms[ROTATION]},
-                      of_steps.constant,
-                      {}};
-  for (size_t c = 0; c < chains.size(); ++c) saved.chains[c] = chains[c].record();
-  return saved;
+  const Setting s = setting();
+  file.put("thermostat",
+           {(double) mode(), (double) words.length, (double) counted, s.line.kt, s.line.kt_step,
+            s.damp, s.freedoms[TRANSLATION], s.freedoms[ROTATION], s.constant});
+  Sections::Numbers variables, sums;
+  for (const auto &chain : chains) {
+    const Chain::Record record = chain.record();
+    variables.insert(variables.end(), record.y.begin(), record.y.begin() + chain.size());
+    sums.push_back(record.known);
+    for (int i = 0; i < (int) record.known; ++i)
+      sums.insert(sums.end(), {record.sums[i], record.ages[i]});
+  }
+  file.put("chains", variables);
+  file.put("sums of chains", sums);
 }
 
-void Thermostat::restore(const Checkpoint &saved)
+std::string Thermostat::read(const Sections &file)
 {
-  counted = (bigint) saved.bodies;
-  line = {saved.kt, saved.kt_step};
-  damp_before = saved.period;
-  std::copy_n(saved.freedoms, 2, freedoms);
-  total.restore(saved.constant);
-  for (size_t c = 0; c < chains.size(); ++c) chains[c].restore(saved.chains[c]);
+  const auto &saved = file.get("thermostat"), &variables = file.get("chains"),
+             &sums = file.get("sums of chains");
+  if (saved.size() < 8 || variables.size() < chains.size() * chains[0].size())
+    return "the friction of temp";
+  counted = (bigint) saved[2];
+  line = {saved[3], saved[4]};
+  damp_before = saved[5];
+  std::copy_n(&saved[6], 2, freedoms);
+  total.restore(file.number("thermostat", 8, TotalMomentum::IN_ALL));
+
+  auto from = variables.begin();
+  size_t at = 0;
+  for (auto &chain : chains) {
+    Chain::Record record = {};
+    std::copy_n(from, chain.size(), record.y.begin());
+    from += chain.size();
+    const int count = at < sums.size() ? (int) sums[at++] : 0;
+    record.known = std::min(count, Chain::MOST_SUMS);
+    for (int i = 0; i < count && at + 1 < sums.size(); ++i, at += 2)
+      if (i < Chain::MOST_SUMS) record.sums[i] = sums[at], record.ages[i] = sums[at + 1];
+    chain.restore(record);
+  }
   note_friction();
+  if (!sums.empty()) return "";
+  return "the kinetic energies of past steps that temp needs (its friction and energy are kept)";
 }

@@ -90,16 +90,9 @@ class Thermostat : public Coupling {
   /// What the chains have taken from the bodies.
   double energy() const override;
 
-  /// What a restart file holds, the same on all ranks.
-  struct Checkpoint {
-    double mode, length, bodies;                ///< mode: number of chains, 0 without a thermostat
-    double kt, kt_step, period, freedoms[2];    ///< of the last step
-    double constant;                            ///< TotalMomentum::record() then
-    Chain::Record chains[2];
-  };
-  Checkpoint checkpoint() const;
-  /// saved: of as many chains of as many variables.
-  void restore(const Checkpoint &saved);
+  void write(Sections &file) const override;
+  /// Of as many chains of as many variables.
+  std::string read(const Sections &file) override;
 
  private:
   friend class Coupling;    // calls what correct_by_passes() asks for

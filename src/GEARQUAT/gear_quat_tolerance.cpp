@@ -83,7 +83,7 @@ Scheme Tolerance::scheme_of_start() const
 
 void Tolerance::begin(bool full)
 {
-  record = Checkpoint();
+  record = Record();
   steady = Steady();
   steady.repeat = Steady::FOR_LONG;
   set_values(full ? control.most : control.fewest);
@@ -269,18 +269,21 @@ double Tolerance::element(int n) const
   }
 }
 
-Tolerance::Checkpoint Tolerance::checkpoint() const
+void Tolerance::write(Sections &file) const
 {
-  Checkpoint now = record;
-  now.steady[0] = steady.values;
-  now.steady[1] = steady.step;
-  now.steady[2] = steady.repeat;
-  return now;
+  file.put("tolerance",
+           {record.values, (double) steady.values, (double) steady.step, (double) steady.repeat,
+            record.steps, record.time, record.smallest, record.values_sum, record.largest,
+            record.held, record.repeated, record.last_length, record.last_energy});
 }
 
-void Tolerance::restore(const Checkpoint &saved)
+std::string Tolerance::read(const Sections &file)
 {
-  set_values((int) saved.values);
-  record = saved;
-  steady = {(int) saved.steady[0], (int) saved.steady[1], (int) saved.steady[2]};
+  const auto &saved = file.get("tolerance");
+  if (saved.size() < 13) return "the number of values of tolerance";
+  set_values((int) saved[0]);
+  steady = {(int) saved[1], (int) saved[2], (int) saved[3]};
+  record = {saved[0], saved[4], saved[5],  saved[6],  saved[7],
+            saved[8], saved[9], saved[10], saved[11], saved[12]};
+  return "";
 }

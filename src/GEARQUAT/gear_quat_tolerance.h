@@ -41,11 +41,10 @@ class Tolerance : protected Pointers {
     ELEMENTS
   };
 
-  /// What a restart file keeps: the next step's values, steps made with them, and the sums behind
-  /// the outputs.
-  struct Checkpoint {
-    double values, steady[3];
-    double steps, time, smallest, values_sum, largest, held, repeated, last_length, last_energy;
+  /// The next step's values, and the sums behind the outputs.
+  struct Record {
+    double values, steps, time, smallest, values_sum, largest, held, repeated;
+    double last_length, last_energy;
   };
 
   /// scheme: of the fix; its number of values is the largest.  every_time: steps end at the
@@ -100,8 +99,10 @@ class Tolerance : protected Pointers {
   void keep_step();
 
   double element(int n) const;
-  Checkpoint checkpoint() const;
-  void restore(const Checkpoint &saved);
+  /// Sections of a restart file.
+  void write(Sections &file) const;
+  /// Returns what the file does not have, empty if it has all.
+  std::string read(const Sections &file);
 
  private:
   const Fix *fix;
@@ -123,7 +124,7 @@ class Tolerance : protected Pointers {
   bool fresh = false;          ///< bodies have come in this step, once judged
   bool warned_held = false;    ///< of a step held at its lower limit
   bigint announced = -1;       ///< the last step of announce_output()
-  Checkpoint record = {};
+  Record record = {};
   struct Settled {
     double steps = 0.0, time = 0.0, squares = 0.0;
   } settled;    ///< of this run, without its start: number, sum and sum of squares

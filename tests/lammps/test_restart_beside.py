@@ -51,7 +51,8 @@ MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
 
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize(
-    "number, other, whose", [(0, 1.0, "an older (0.3.0 or before)"), (1, 99.0, "a newer")]
+    "number, other, whose",
+    [(0, 1.0, "an older (0.2.0 or before)"), (1, 99.0, "a newer"), (1, 5.0, "an unpublished")],
 )
 def test_files_of_other_releases_are_refused(lmp_tree, data, ranks, number, other, whose):
     """Files of 0.2.0 begin with the formulation, 0 or 1, those of today with a magic number."""

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Restart files of a release, and what this release makes of them: tests/lammps/restarts/RELEASE.
+
+    .venv/bin/python tests/lammps/make_restarts.py 1.2.3                # with the build of this tree
+    .venv/bin/python tests/lammps/make_restarts.py 1.2.3 --lmp FILE     # with that of another one
+
+When a release is made, the first line keeps its files for the tests of all later ones
+(doc/release.md); remove the folder first if it was made before.  Files of earlier releases are not
+made anew.  WRITE and CONTINUE are what they were made with: later releases may add cases, but have
+to leave these as they are.
+
+For each case there is a restart file, and `continued.json` has the thermo output of a run that goes
+on from it, and the last frame, all with every digit.
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import running
+from scenes import last_frame, water_data
+
+FOLDER = Path(__file__).parent / "restarts"
+STEPS = 20
+
+#: words of the fix, and outputs that only such a fix has
+CASES = {
+    "first": ("formulation first", ""),
+    "second": ("formulation second", ""),
+    "tolerance": ("formulation second tolerance 1e-7", "f_move[9] f_move[11] f_move[12] f_move[16]"),
+    "isokinetic": ("formulation first isokinetic separate", "f_move[9] f_move[10] f_move[11]"),
+    "temp": (
+        "formulation second temp 300 300 60 tchain 3 thermostat separate",
+        "econserve f_move[9] f_move[10] f_move[11] f_move[13] f_move[14]",
+    ),
+}
+
+WRITE = f"""
+units real
+atom_style full
+read_data data.water
+pair_style lj/charmm/coul/charmm 2.7 3.9
+pair_coeff 1 1 0.1553 3.166
+pair_coeff 2 2 0.0 1.0
+pair_coeff 1 2 0.0 1.0
+neighbor 0.9 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+atom_modify sort 0 0.0
+timestep 0.2
+velocity all zero linear
+fix move all gear/quat molecule {{words}}
+run {STEPS}
+write_restart {{name}}.restart
+"""
+
+CONTINUE = f"""
+read_restart {{file}}
+neighbor 0.9 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+atom_modify sort 0 0.0
+timestep 0.2
+fix move all gear/quat molecule {{words}}
+thermo_style custom step time pe ke f_move[1] f_move[2] {{columns}}
+thermo_modify norm no format float %.17g
+thermo 5
+run {STEPS}
+write_dump all custom {{name}}.end id xu yu zu vx vy vz modify sort id format float %.17g
+"""
+
+
+def go_on(lmp, name, file, change=lambda words: words, ranks=1):
+    """Output of a run that continues from a file, as the stored one is, and what was said.
+
+    change: of the words of the fix.
+    """
+    words, columns = CASES[name]
+    deck = CONTINUE.format(name=name, file=file, words=change(words), columns=columns)
+    result = lmp.succeed(deck, ranks=ranks)
+    frame = last_frame(lmp.folder / f"{name}.end")
+    return {"thermo": result.thermo[-1], "frame": frame.tolist()}, result
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("release")
+    parser.add_argument("--lmp", type=Path, default=running.TREE_BUILD / "lmp")
+    arguments = parser.parse_args()
+    folder = FOLDER / arguments.release
+    folder.mkdir(parents=True)  # what a release has written stays
+    continued = {}
+    with tempfile.TemporaryDirectory() as work:
+        environment = running.OPEN_MPI_ENVIRONMENT
+        lmp = running.Lammps(
+            "release", arguments.lmp, running.OPEN_MPI_LAUNCHER, Path(work), environment
+        )
+        water_data(lmp.folder / "data.water", n=2)
+        for name, (words, _) in CASES.items():
+            lmp.succeed(WRITE.format(name=name, words=words))
+            file = folder / f"{name}.restart"
+            file.write_bytes((lmp.folder / file.name).read_bytes())
+            continued[name], _ = go_on(lmp, name, file)
+    lines = (f'"{name}": {json.dumps(output)}' for name, output in continued.items())
+    (folder / "continued.json").write_text("{" + ",\n".join(lines) + "}\n")
+
+
+if __name__ == "__main__":
+    main()
