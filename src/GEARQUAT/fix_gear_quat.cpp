@@ -18,11 +18,12 @@
 #include "fix_gear_quat.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_bodies.h"
+#include "gear_quat_compare.h"
 #include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_neighbors.h"
 #include "gear_quat_outputs.h"
+#include "gear_quat_remap.h"
 #include "gear_quat_report.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_scene.h"
@@ -64,18 +65,20 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   args.reset(new Arguments(lmp, narg, arg));
   add_citations(lmp, *args);
   ecouple_flag = args->thermostat.damp > 0.0;
-  bodies.reset(new Bodies(lmp, this, args->scheme));
-  motion.reset(new Motion(lmp, this, *args, *bodies));
-  neighbors.reset(new Neighbors(lmp, this, *bodies, *args));
-  restarts.reset(new Restart(lmp, this, *bodies, *motion));
+  bodies.reset(new Bodies(args->scheme));
+  ownership.reset(new Ownership(lmp, this, *bodies, args->scheme));
+  sites.reset(new Sites(lmp, *bodies, *ownership));
+  motion.reset(new Motion(lmp, this, *args, *bodies, *ownership, *sites));
+  neighbors.reset(new Neighbors(lmp, this, *bodies, *ownership, *sites, *args));
+  restarts.reset(new Restart(lmp, this, *ownership, *motion));
   respa.reset(new RespaForces(lmp));
-  table.reset(new BodyTable(lmp, *bodies));
+  table.reset(new BodyTable(lmp, *bodies, *sites));
   sums.reset(new Sums(lmp, *bodies));
   size_vector = Sums::ELEMENTS + motion->elements();
-  extracts.reset(new Extract(lmp, *bodies, *sums, args->mol));
+  extracts.reset(new Extract(lmp, *bodies, *ownership, *sums, args->mol));
   readers.reset(new Readers);
-  maxexchange = bodies->max_exchange();
-  comm_forward = bodies->max_forward();
+  maxexchange = ownership->max_exchange();
+  comm_forward = ownership->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
 
   create_bodies();
@@ -92,12 +95,12 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
     utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", bodies->number(),
-                   bodies->number_of_sites());
+                   ownership->number_of_atoms());
 }
 
 void FixGearQuat::create_bodies()
 {
-  bodies->create(args->body_ids(groupbit), read_given_bodies(lmp, args->infile));
+  ownership->create(args->body_ids(groupbit), read_given_bodies(lmp, args->infile));
 }
 
 FixGearQuat::~FixGearQuat()
@@ -128,7 +131,7 @@ const Motion *GearQuat::motion_of(Fix *fix)
 
 void FixGearQuat::init()
 {
-  refuse_scene(lmp, this, *bodies);
+  refuse_scene(lmp, this, *ownership);
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
@@ -136,11 +139,11 @@ void FixGearQuat::init()
   neighbors->init();
   if (!reported) {
     stated = read_stated(lmp, args->mol);
-    warn_of_partial_molecules(lmp, this, *args, *bodies);
+    warn_of_partial_molecules(lmp, this, *args, *ownership);
   }
   motion->init();
   velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
-  bodies->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
+  sites->expect_forces(makes_forces(lmp, this) || neighbors->any_taken());
 }
 
 void FixGearQuat::reset_dt()
@@ -150,25 +153,26 @@ void FixGearQuat::reset_dt()
 
 void FixGearQuat::setup_pre_exchange()
 {
-  if (bodies->follow_box())
+  if (remap_bodies(lmp, *bodies, *ownership))
     motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
 }
 
 /// Bodies keep their state between runs, and take over what the user has changed in the atoms.
 void FixGearQuat::setup_pre_neighbor()
 {
-  bodies->check_whole();
-  bodies->choose_large();
-  bodies->update_ghosts();
+  ownership->check_whole();
+  ownership->choose_large();
+  update_bodies();
   if (met_atoms) take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
-  if (from_atoms && (args->reinit || !met_atoms) && !bodies->atoms_match()) {
-    bodies->recreate();
-    bodies->update_ghosts();
+  if (from_atoms && (args->reinit || !met_atoms) &&
+      !atoms_match(lmp, *bodies, *ownership, *sites)) {
+    ownership->recreate();
+    update_bodies();
     motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
                    "them");
   }
-  bodies->note_box();
+  ownership->note_box();
   motion->impose_masks();
   met_atoms = compared = true;
   count_rows();
@@ -184,17 +188,16 @@ void FixGearQuat::take_velocities(bigint step, bool end)
 void FixGearQuat::setup(int vflag)
 {
   *readers = readers_at_end(lmp, this);
-  bodies->spread_states();
+  ownership->spread_states();
   v_init(vflag);
   if (!reported) neighbors->check_gravity();
-  bodies->gather_loads(atom->f, atom->torque);
+  sites->gather_loads(atom->f, atom->torque);
   motion->begin_run();
-  bodies->place_velocities();
+  sites->place_velocities();
   bodies->forget_work();    // positions are the corrected ones
   if (evflag) tally_virial(atom->f);
-  table->forget();
   show_bodies();
-  if (!reported) report_scene(lmp, this, *args, *bodies);
+  if (!reported) report_scene(lmp, this, *args, *bodies, *ownership, *sites);
   reported = true;
 }
 
@@ -214,9 +217,14 @@ void FixGearQuat::show_bodies()
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
-  bodies->update_ghosts();
-  table->forget();
+  update_bodies();
   count_rows();
+}
+
+void FixGearQuat::update_bodies()
+{
+  ownership->update();
+  sites->list();
 }
 
 /* ----------------------------------------------------------------------
@@ -236,8 +244,8 @@ void FixGearQuat::begin_steps(double **f, double **torque)
   for (auto *other : modify->get_fix_list()) {
     if (auto *same = dynamic_cast<FixGearQuat *>(other)) {
       same->take_velocities(update->ntimestep - 1, true);
-      same->bodies->spread_states();
-      same->bodies->gather_loads(f, torque);
+      same->ownership->spread_states();
+      same->sites->gather_loads(f, torque);
       all.push_back(same->motion.get());
     }
   }
@@ -266,15 +274,14 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 
 void FixGearQuat::place_prediction()
 {
-  bodies->spread_moved();
-  bodies->place_sites(velocities_read);
+  ownership->spread_moved();
+  sites->place(velocities_read);
   neighbors->note_place();
-  table->forget();
 }
 
 void FixGearQuat::correct_step(double **f, double **torque)
 {
-  bodies->gather_loads(f, torque);
+  sites->gather_loads(f, torque);
   v_init(vflag_of_step);    // here: the atoms are those that forces belong to
   if (evflag) tally_virial(f);
   motion->correct(f);
@@ -289,10 +296,9 @@ void FixGearQuat::finish_step(double **f, double **torque)
     motion->evaluate(vflag_of_step);
     correct_step(f, torque);
   }
-  bodies->spread_moved();
-  bodies->place_sites(true);
+  ownership->spread_moved();
+  sites->place(true);
   neighbors->note_velocity();
-  table->forget();
   if (is_due(lmp, readers->of_atoms))
     comm->forward_comm();    // ghost atoms are where the forces were taken
   if (is_due(lmp, readers->of_local_data)) show_bodies();
@@ -311,21 +317,14 @@ void FixGearQuat::post_run()
   motion->end_run();
 }
 
-/// Virial of the constraint forces m a - f, at the pose where the forces were taken.  Those of a
-/// body add up to zero, so any origin serves; for the centroid form it is the mean place of its
-/// sites.
+/// Virial of the constraint forces, at the pose where the forces were taken.
 void FixGearQuat::tally_virial(double **f)
 {
-  bodies->spread_loads();
-  const auto centroids = cvflag_atom ? bodies->centroids() : std::vector<Load>();
-  for (size_t n = cvflag_atom ? 0 : bodies->first_arm(); n < bodies->sites.size(); ++n) {
-    const auto &site = bodies->sites[n];
-    auto constraint = bodies->constraint_force(site, f);
-    double centroid[3] = {0.0, 0.0, 0.0};
-    if (cvflag_atom) std::copy_n(centroids[site.body].force, 3, centroid);
-    int i = site.atom;
-    v_tally(1, &i, 1.0, constraint.virial, constraint.arm, constraint.force, centroid);
-  }
+  sites->visit_constraint_forces(f, cvflag_atom != 0,
+                                 [this](int i, Sites::ConstraintForce &constraint) {
+                                   v_tally(1, &i, 1.0, constraint.virial, constraint.arm,
+                                           constraint.force, constraint.centroid);
+                                 });
 }
 
 /* ----------------------------------------------------------------------
@@ -355,8 +354,7 @@ void FixGearQuat::meet_forces()
   if (!motion->awaits_forces() || update->whichflag != 1) return;    // in a run
   const bool levels = !RespaForces::steps(lmp).empty();
   if (levels) respa->sum_present();
-  bodies->gather_loads(levels ? respa->forces() : atom->f,
-                       levels ? respa->torques() : atom->torque);
+  sites->gather_loads(levels ? respa->forces() : atom->f, levels ? respa->torques() : atom->torque);
   motion->meet_forces();
 }
 
@@ -385,7 +383,7 @@ double FixGearQuat::compute_array(int i, int j)
 
 bigint FixGearQuat::dof(int tgroup)
 {
-  return bodies->removed_freedoms(group->bitmask[tgroup]);
+  return count_atoms(lmp, *bodies, *ownership, group->bitmask[tgroup]).removed_freedoms;
 }
 
 int FixGearQuat::modify_param(int narg, char **arg)
@@ -395,28 +393,29 @@ int FixGearQuat::modify_param(int narg, char **arg)
 
 double FixGearQuat::memory_usage()
 {
-  return bodies->memory_usage() + table->memory_usage() + respa->memory_usage();
+  return ownership->memory_usage() + sites->memory_usage() + table->memory_usage() +
+      respa->memory_usage();
 }
 
 /* ----------------------------------------------------------------------
-   per-atom data, forwarded to the body store
+   per-atom data, forwarded to the ownership of bodies
 ------------------------------------------------------------------------- */
 
 void FixGearQuat::grow_arrays(int nmax)
 {
-  bodies->grow_arrays(nmax);
+  ownership->grow_arrays(nmax);
 }
 
 void FixGearQuat::copy_arrays(int i, int j, int delflag)
 {
-  bodies->copy_arrays(i, j, delflag);
+  ownership->copy_arrays(i, j, delflag);
 }
 
 /// A new atom is in no body unless set_molecule() follows.
 void FixGearQuat::set_arrays(int i)
 {
-  bodies->set_arrays(i);
-  if (atom->mask[i] & groupbit) bodies->note_stranger(1);
+  ownership->set_arrays(i);
+  if (atom->mask[i] & groupbit) ownership->note_outside_atom(1);
 }
 
 /// Another fix has inserted a molecule of the template, on all ranks together.
@@ -424,9 +423,9 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *
                                double *velocity, double *quat)
 {
   for (int i = first; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) bodies->note_stranger(-1);
+    if (atom->mask[i] & groupbit) ownership->note_outside_atom(-1);
   const bool known = which >= 0 && which < (int) stated.size();
-  add_molecule(lmp, *bodies, first, known ? &stated[which] : nullptr, {center, velocity, quat});
+  add_molecule(lmp, *ownership, first, known ? &stated[which] : nullptr, {center, velocity, quat});
 }
 
 void *FixGearQuat::extract(const char *name, int &dim)
@@ -436,32 +435,32 @@ void *FixGearQuat::extract(const char *name, int &dim)
 
 int FixGearQuat::pack_exchange(int i, double *buf)
 {
-  return bodies->pack_exchange(i, buf);
+  return ownership->pack_exchange(i, buf);
 }
 
 int FixGearQuat::unpack_exchange(int nlocal, double *buf)
 {
-  return bodies->unpack_exchange(nlocal, buf);
+  return ownership->unpack_exchange(nlocal, buf);
 }
 
 int FixGearQuat::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
 {
-  return bodies->pack_forward(n, list, buf);
+  return ownership->pack_forward(n, list, buf);
 }
 
 void FixGearQuat::unpack_forward_comm(int n, int first, double *buf)
 {
-  bodies->unpack_forward(n, first, buf);
+  ownership->unpack_forward(n, first, buf);
 }
 
 int FixGearQuat::pack_reverse_comm(int n, int first, double *buf)
 {
-  return bodies->pack_reverse(n, first, buf);
+  return ownership->pack_reverse(n, first, buf);
 }
 
 void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  bodies->unpack_reverse(n, list, buf);
+  ownership->unpack_reverse(n, list, buf);
 }
 
 /* ----------------------------------------------------------------------

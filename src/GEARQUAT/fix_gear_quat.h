@@ -31,8 +31,10 @@ namespace GearQuat {
   class Extract;
   class Motion;
   class Neighbors;
+  class Ownership;
   class RespaForces;
   class Restart;
+  class Sites;
   class Sums;
   struct Arguments;
   struct Readers;
@@ -93,6 +95,8 @@ class FixGearQuat : public Fix {
   // in the order in which they depend on each other; a constructor that ends in an error frees them
   std::unique_ptr<GearQuat::Arguments> args;
   std::unique_ptr<GearQuat::Bodies> bodies;
+  std::unique_ptr<GearQuat::Ownership> ownership;
+  std::unique_ptr<GearQuat::Sites> sites;
   std::unique_ptr<GearQuat::Motion> motion;
   std::unique_ptr<GearQuat::Neighbors> neighbors;
   std::unique_ptr<GearQuat::Restart> restarts;
@@ -112,6 +116,7 @@ class FixGearQuat : public Fix {
 
   void take_velocities(bigint step, bool end);
   void create_bodies();
+  void update_bodies();
   void resume();
   void meet_forces();
   void begin_steps(double **, double **);

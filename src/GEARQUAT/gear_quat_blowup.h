@@ -13,8 +13,8 @@
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
 #define LMP_GEAR_QUAT_BLOWUP_H
 
-#include "gear_quat_bodies.h"
 #include "gear_quat_limits.h"
+#include "gear_quat_sites.h"
 
 #include <functional>
 #include <string>
@@ -44,8 +44,10 @@ void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, const 
 class Blowup : protected Pointers {
  public:
   /// shortest: what keyword dtmin says, or 0.
-  Blowup(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, double shortest) :
-      Pointers(lmp), bodies(bodies), scheme(scheme), shortest(shortest)
+  Blowup(LAMMPS *lmp, const Bodies &bodies, Ownership &ownership, const Sites &sites,
+         const Scheme &scheme, double shortest) :
+      Pointers(lmp),
+      bodies(bodies), ownership(ownership), sites(sites), scheme(scheme), shortest(shortest)
   {
   }
 
@@ -74,7 +76,9 @@ class Blowup : protected Pointers {
   [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
 
  private:
-  Bodies &bodies;
+  const Bodies &bodies;
+  Ownership &ownership;
+  const Sites &sites;
   const Scheme &scheme;
   double shortest;
 

@@ -110,7 +110,7 @@ bool Bootstrap::run()
     if (!party.needed) continue;
     party.seed_local(3, h);
     const Noise noise = forces.noise([&party](int i) {
-      return party.bodies->in_body(i);
+      return party.ownership->in_body(i);
     });
     if (comm->me != 0) continue;
     utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
@@ -229,13 +229,13 @@ struct Bootstrap::Search {
       Bodies &bodies = *party.bodies;
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         bodies.change_state(ibody) = our.collocation.state_at(node, party.work[ibody], spacing);
-      bodies.spread_states();
-      bodies.place_sites(true);
+      party.ownership->spread_states();
+      party.sites->place(true);
     }
     if (forces.largest_displacement() > 0.5 * skin) return false;
     forces.evaluate();
     ++our.evaluations;
-    for (auto &party : our.parties) party.bodies->gather_loads(our.atom->f, our.atom->torque);
+    for (auto &party : our.parties) party.sites->gather_loads(our.atom->f, our.atom->torque);
     our.measure(node);
     for (auto &party : our.parties)
       for (int ibody = 0; ibody < party.bodies->nmoved(); ++ibody) {
@@ -258,7 +258,7 @@ StartFound Bootstrap::search(Forces &forces)
   const double copies = 3.0 * sizeof(double) * (atom->torque_flag ? 4 : 3) *
       (atom->nlocal + atom->nghost);    // positions, velocities, forces
   for (auto &party : parties)
-    party.bodies->note_scratch(party.work.capacity() * sizeof(Collocation::Workspace) + copies);
+    party.ownership->note_scratch(party.work.capacity() * sizeof(Collocation::Workspace) + copies);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
     if (lowers_order(start))
@@ -269,8 +269,8 @@ StartFound Bootstrap::search(Forces &forces)
   forces.restore();
   all.put_back();
   for (auto &party : parties) {
-    party.bodies->spread_states();
-    party.bodies->place_extended();
+    party.ownership->spread_states();
+    party.sites->place_extended();
   }
   return start;
 }
@@ -282,7 +282,7 @@ double Bootstrap::first_spacing() const
   double fastest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (std::none_of(parties.begin(), parties.end(), [i](const Party &party) {
-          return party.bodies->in_body(i);
+          return party.ownership->in_body(i);
         }))
       continue;
     fastest = std::max(fastest, dot3(atom->v[i], atom->v[i]));

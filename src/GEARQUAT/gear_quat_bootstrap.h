@@ -10,9 +10,9 @@
 #ifndef LMP_GEAR_QUAT_BOOTSTRAP_H
 #define LMP_GEAR_QUAT_BOOTSTRAP_H
 
-#include "gear_quat_bodies.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_isokinetic.h"
+#include "gear_quat_sites.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_thermostat.h"
 
@@ -24,7 +24,9 @@ namespace LAMMPS_NS::GearQuat {
 /// The bodies of one fix.
 struct Party {
   const Fix *fix;
-  Bodies *bodies;                      ///< states and loads are those of the start
+  Bodies *bodies;    ///< states and loads are those of the start
+  Ownership *ownership;
+  Sites *sites;
   IsokineticConstraint *isokinetic;    ///< null without such a constraint
   Thermostat *thermostat;              ///< null without
   Scheme scheme;

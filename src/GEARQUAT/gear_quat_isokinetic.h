@@ -14,6 +14,7 @@
 #define LMP_GEAR_QUAT_ISOKINETIC_H
 
 #include "gear_quat_bodies.h"
+#include "pointers.h"
 
 namespace LAMMPS_NS::GearQuat {
 

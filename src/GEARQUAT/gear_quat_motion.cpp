@@ -25,9 +25,11 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies) :
-    Pointers(lmp), fix(fix), args(args), bodies(bodies),
-    blowup(lmp, bodies, args.scheme, args.control.shortest)
+Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies, Ownership &ownership,
+               Sites &sites) :
+    Pointers(lmp),
+    fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites),
+    blowup(lmp, bodies, ownership, sites, args.scheme, args.control.shortest)
 {
   if (args.control.eps > 0.0)
     tolerance.reset(new Tolerance(lmp, fix, args.scheme, args.control, args.every_time, bodies));
@@ -53,7 +55,7 @@ Blowup::Cause Motion::unstable_thermostat(double h) const
 
 void Motion::meet_bodies()
 {
-  if (!args.masks.empty()) masks = args.masks_of(bodies.all_ids());
+  if (!args.masks.empty()) masks = args.masks_of(ownership.all_ids());
 }
 
 /* ----------------------------------------------------------------------
@@ -101,7 +103,7 @@ void Motion::forget(const std::string &why)
 
 void Motion::impose_masks()
 {
-  if (!bodies.change_masks(masks) || !started)
+  if (!ownership.change_masks(masks) || !started)
     return;    // only those of a restart file can be others
   started = false;
   if (comm->me == 0)

@@ -30,7 +30,8 @@ namespace LAMMPS_NS::GearQuat {
 class Motion : protected Pointers {
  public:
   /// bodies: empty, with histories of args.scheme.
-  Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies);
+  Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, Bodies &bodies, Ownership &ownership,
+         Sites &sites);
 
   /// The store has made its bodies, and they receive their masks.  Collective.
   void meet_bodies();
@@ -61,7 +62,7 @@ class Motion : protected Pointers {
   /// The largest error of a body here in the last step, as a length.
   double last_error() const;
   /// True if this motion is that of the atom.
-  bool moves(int atom) const { return bodies.in_body(atom); }
+  bool moves(int atom) const { return ownership.in_body(atom); }
   /// Both leave states with their frames.
   void predict(double **f);
   /// f: forces that the loads were gathered from.
@@ -113,6 +114,8 @@ class Motion : protected Pointers {
   Fix *fix;
   const Arguments &args;
   Bodies &bodies;
+  Ownership &ownership;
+  Sites &sites;
   Blowup blowup;
   std::map<tagint, Mask> masks;                        ///< of the command, by the IDs of bodies
   std::unique_ptr<IsokineticConstraint> isokinetic;    ///< null without

@@ -121,8 +121,7 @@ bool Motion::forces_changed(double **f)
   double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
   for (auto *other : modify->get_fix_list())
     if (const Motion *same = motion_of(other)) here[0] = std::max(here[0], same->last_error());
-  for (const auto &site : bodies.sites)
-    here[1] = std::max(here[1], force->ftm2v * length(f[site.atom]));
+  for (const Site &site : sites) here[1] = std::max(here[1], force->ftm2v * length(f[site.atom]));
   const auto largest = over_ranks(MPI_MAX, here, world);
 
   double ratio = 0.0;
@@ -181,6 +180,8 @@ Party Motion::party(bool needed)
 {
   return {fix,
           &bodies,
+          &ownership,
+          &sites,
           isokinetic.get(),
           thermostat.get(),
           tolerance ? tolerance->scheme_of_start() : args.scheme,

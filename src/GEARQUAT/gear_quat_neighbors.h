@@ -14,7 +14,7 @@
 #ifndef LMP_GEAR_QUAT_NEIGHBORS_H
 #define LMP_GEAR_QUAT_NEIGHBORS_H
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_sites.h"
 
 #include <string>
 #include <vector>
@@ -30,7 +30,8 @@ struct NeighborRule;
 
 class Neighbors : protected Pointers {
  public:
-  Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args);
+  Neighbors(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership, Sites &sites,
+            const Arguments &args);
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
@@ -60,10 +61,12 @@ class Neighbors : protected Pointers {
  private:
   const Fix *fix;
   Bodies &bodies;
+  Ownership &ownership;
+  Sites &sites;
   const Arguments &args;
   std::vector<const Fix *> taken;      ///< whose velocities bodies take over
   std::vector<const Fix *> watched;    ///< that may move single atoms
-  size_t sample = 0;                   ///< the site that is looked at next
+  int sample = 0;                      ///< the site that is looked at next
   double noted[3];                     ///< its velocity or place
   bool warned_noise = false;           ///< of random forces
   bool warned_friction = false;        ///< of forces that depend on velocities
@@ -76,8 +79,8 @@ class Neighbors : protected Pointers {
   void refuse(const Fix *other, const NeighborRule &row, tagint atom) const;
   bool gather_impulses();
   void note(double **values);
-  bool is_noted(const Bodies::Site &site, double **values) const;
-  void tell(const Bodies::Site &site, const char *what);
+  bool is_noted(const Site &site, double **values) const;
+  void tell(const Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };
 

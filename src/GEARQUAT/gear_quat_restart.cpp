@@ -24,15 +24,15 @@ using namespace GearQuat;
 static constexpr double MAGIC = 0x6765617271756174;    // "gearquat"
 static constexpr double FORMAT = 5;
 
-Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
-    Pointers(lmp), fix(fix), bodies(bodies), motion(motion), block(), waiting(false), place(0)
+Restart::Restart(LAMMPS *lmp, const Fix *fix, Ownership &ownership, Motion &motion) :
+    Pointers(lmp), fix(fix), ownership(ownership), motion(motion), block(), waiting(false), place(0)
 {
 }
 
 void Restart::write(FILE *fp) const
 {
-  const Block data = {MAGIC, FORMAT, (double) bodies.has_extended(), (double) atom->natoms,
-                      motion.checkpoint()};
+  const Block data = {MAGIC, FORMAT, (double) ownership.extended().has_records(),
+                      (double) atom->natoms, motion.checkpoint()};
   const int size = sizeof(data);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&data, size, 1, fp);
@@ -57,7 +57,7 @@ void Restart::read(const char *buf)
 /// Other fixes step over these data: the first number tells how many there are.
 int Restart::pack(int i, double *buf) const
 {
-  const int n = HEAD + bodies.pack_exchange(i, buf + HEAD);
+  const int n = HEAD + ownership.pack_exchange(i, buf + HEAD);
   buf[0] = n;
   buf[1] = ubuf(atom->tag[i]).d;
   return n;
@@ -91,8 +91,8 @@ std::vector<const double *> Restart::packed_atoms() const
 bool Restart::resume(int group)
 {
   waiting = false;
-  using Resumed = Bodies::Resumed;
-  const Resumed found = bodies.resume(packed_atoms(), block.extended != 0.0, group);
+  using Resumed = Ownership::Resumed;
+  const Resumed found = ownership.resume(packed_atoms(), block.extended != 0.0, group);
   if (found == Resumed::NONE) {
     if (comm->me == 0)
       error->warning(FLERR,

@@ -19,7 +19,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class Restart : protected Pointers {
  public:
-  Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion);
+  Restart(LAMMPS *lmp, const Fix *fix, Ownership &ownership, Motion &motion);
 
   void write(FILE *fp) const;
   /// Ends the run if another release wrote this with other contents.
@@ -27,8 +27,8 @@ class Restart : protected Pointers {
   bool was_read() const { return waiting; }
 
   int pack(int atom, double *buf) const;
-  int size(int atom) const { return HEAD + bodies.packed_size(atom); }
-  int max_size() const { return HEAD + bodies.max_exchange(); }
+  int size(int atom) const { return HEAD + ownership.packed_size(atom); }
+  int max_size() const { return HEAD + ownership.max_exchange(); }
   /// The data of atoms are behind those of so many other fixes.
   void note_place(int n) { place = n; }
 
@@ -38,7 +38,7 @@ class Restart : protected Pointers {
 
  private:
   const Fix *fix;
-  Bodies &bodies;
+  Ownership &ownership;
   Motion &motion;
 
   struct Block {

@@ -27,9 +27,14 @@
 #include "gear_quat_exact_sum.h"
 #include "gear_quat_momentum.h"
 #include "gear_quat_startup.h"
+#include "pointers.h"
 
 #include <array>
 #include <string>
+
+namespace LAMMPS_NS {
+class Fix;
+}    // namespace LAMMPS_NS
 
 namespace LAMMPS_NS::GearQuat {
 

@@ -21,6 +21,7 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_repeat.h"
 #include "gear_quat_step_control.h"
+#include "pointers.h"
 
 namespace LAMMPS_NS::GearQuat {
 
