@@ -14,12 +14,13 @@
 #include "fix_gear_quat.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_bodies.h"
-#include "gear_quat_fleet.h"
+#include "gear_quat_compare.h"
 #include "gear_quat_fixes.h"
+#include "gear_quat_fleet.h"
 #include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_outputs.h"
+#include "gear_quat_remap.h"
 #include "gear_quat_report.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_scene.h"
@@ -63,22 +64,26 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   add_citations(lmp, *args);
   ecouple_flag = args->thermostat.damp > 0.0;
   fleet.reset(new Fleet);
-  bodies.reset(new Bodies(lmp, this, args->scheme));
-  other_fixes.reset(new OtherFixes(lmp, this, *bodies, *args));
+  bodies.reset(new Bodies(args->scheme));
+  ownership.reset(new Ownership(lmp, this, *bodies, args->scheme));
+  sites.reset(new Sites(lmp, *bodies, *ownership));
+  other_fixes.reset(new OtherFixes(lmp, this, *bodies, *ownership, *sites, *args));
   const auto tally = [this](int vflag, double **f) {
     tally_virial(vflag, f);
   };
-  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *other_fixes, tally));
-  motion.reset(new Motion(lmp, this, *args, *fleet, *bodies, *other_fixes, *step));
-  restarts.reset(new Restart(lmp, this, *bodies, *motion));
+  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes,
+                      tally));
+  motion.reset(new Motion(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes,
+                          *step));
+  restarts.reset(new Restart(lmp, this, *bodies, *ownership, *motion));
   respa.reset(new RespaForces(lmp));
-  table.reset(new BodyTable(lmp, *bodies));
+  table.reset(new BodyTable(lmp, *bodies, *sites));
   sums.reset(new Sums(lmp, *bodies));
   size_vector = Sums::ELEMENTS + motion->elements();
-  extracts.reset(new Extract(lmp, *bodies, *sums, args->mol));
+  extracts.reset(new Extract(lmp, *bodies, *ownership, *sums, args->mol));
   readers.reset(new Readers);
-  maxexchange = bodies->max_exchange();
-  comm_forward = bodies->max_forward();
+  maxexchange = ownership->max_exchange();
+  comm_forward = ownership->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
 
   create_bodies();
@@ -95,12 +100,12 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
     utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", bodies->number(),
-                   bodies->number_of_sites());
+                   ownership->number_of_atoms());
 }
 
 void FixGearQuat::create_bodies()
 {
-  bodies->create(args->body_ids(groupbit), read_given_bodies(lmp, args->infile));
+  ownership->create(args->body_ids(groupbit), read_given_bodies(lmp, args->infile));
 }
 
 FixGearQuat::~FixGearQuat()
@@ -129,14 +134,14 @@ void FixGearQuat::meet_fleet()
   fleet->members.clear();
   for (auto *other : modify->get_fix_list())
     if (auto *same = dynamic_cast<FixGearQuat *>(other))
-      fleet->members.push_back({same, same->motion.get(), same->bodies.get(),
+      fleet->members.push_back({same, same->motion.get(), same->ownership.get(),
                                 same->step->tolerance != nullptr, same->args->scheme.tuned});
 }
 
 void FixGearQuat::init()
 {
   meet_fleet();
-  refuse_scene(lmp, this, *fleet, *bodies);
+  refuse_scene(lmp, this, *fleet, *ownership);
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
@@ -144,11 +149,11 @@ void FixGearQuat::init()
   other_fixes->init();
   if (!reported) {
     stated = read_stated(lmp, args->mol);
-    warn_of_partial_molecules(lmp, this, *args, *fleet, *bodies);
+    warn_of_partial_molecules(lmp, this, *args, *fleet, *ownership);
   }
   motion->init();
   step->expect_readers(!reader_of_predicted_velocities(lmp, this).empty());
-  bodies->expect_forces(makes_forces(lmp, this) || other_fixes->any_taken());
+  sites->expect_forces(makes_forces(lmp, this) || other_fixes->any_taken());
 }
 
 void FixGearQuat::reset_dt()
@@ -158,25 +163,26 @@ void FixGearQuat::reset_dt()
 
 void FixGearQuat::setup_pre_exchange()
 {
-  if (bodies->follow_box())
+  if (remap_bodies(lmp, *bodies, *ownership))
     motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
 }
 
 /// Bodies keep their state between runs, and take over what the user has changed in the atoms.
 void FixGearQuat::setup_pre_neighbor()
 {
-  bodies->check_whole();
-  bodies->choose_large();
-  bodies->update_ghosts();
+  ownership->check_whole();
+  ownership->choose_large();
+  update_bodies();
   if (met_atoms) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
-  if (from_atoms && (args->reinit || !met_atoms) && !bodies->atoms_match()) {
-    bodies->recreate();
-    bodies->update_ghosts();
+  if (from_atoms && (args->reinit || !met_atoms) &&
+      !atoms_match(lmp, *bodies, *ownership, *sites)) {
+    ownership->recreate();
+    update_bodies();
     motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
                    "them");
   }
-  bodies->note_box();
+  ownership->note_box();
   motion->impose_masks();
   met_atoms = true;
   step->note_comparison();
@@ -187,16 +193,15 @@ void FixGearQuat::setup_pre_neighbor()
 void FixGearQuat::setup(int vflag)
 {
   *readers = readers_at_end(lmp, this);
-  bodies->spread_states();
+  ownership->spread_states();
   if (!reported) other_fixes->check_gravity();
-  bodies->gather_loads(atom->f, atom->torque);
+  sites->gather_loads(atom->f, atom->torque);
   motion->begin_run();
-  bodies->place_velocities();
+  sites->place_velocities();
   bodies->forget_work();    // positions are the corrected ones
   tally_virial(vflag, atom->f);
-  table->forget();
   show_bodies();
-  if (!reported) report_scene(lmp, this, *args, *fleet, *bodies);
+  if (!reported) report_scene(lmp, this, *args, *fleet, *bodies, *ownership, *sites);
   reported = true;
 }
 
@@ -216,9 +221,14 @@ void FixGearQuat::show_bodies()
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
-  bodies->update_ghosts();
-  table->forget();
+  update_bodies();
   count_rows();
+}
+
+void FixGearQuat::update_bodies()
+{
+  ownership->update();
+  sites->list();
 }
 
 /* ----------------------------------------------------------------------
@@ -242,13 +252,11 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
   motion->take_velocities(update->ntimestep - 1, true);
   if (motion->begins_steps()) Motion::begin_steps(*fleet, f, torque);
   step->begin(vflag, f);
-  table->forget();
 }
 
 void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
-  table->forget();
   if (is_due(lmp, readers->of_atoms))
     comm->forward_comm();    // ghost atoms are where the forces were taken
   if (is_due(lmp, readers->of_local_data)) show_bodies();
@@ -267,23 +275,16 @@ void FixGearQuat::post_run()
   motion->end_run();
 }
 
-/// Virial of the constraint forces m a - f, at the pose where the forces were taken.  Those of a
-/// body add up to zero, so any origin serves; for the centroid form it is the mean place of its
-/// sites.
+/// Virial of the constraint forces, at the pose where the forces were taken.
 void FixGearQuat::tally_virial(int vflag, double **f)
 {
   v_init(vflag);
   if (!evflag) return;
-  bodies->spread_loads();
-  const auto centroids = cvflag_atom ? bodies->centroids() : std::vector<Load>();
-  for (size_t n = cvflag_atom ? 0 : bodies->first_arm(); n < bodies->sites.size(); ++n) {
-    const auto &site = bodies->sites[n];
-    auto constraint = bodies->constraint_force(site, f);
-    double centroid[3] = {0.0, 0.0, 0.0};
-    if (cvflag_atom) std::copy_n(centroids[site.body].force, 3, centroid);
-    int i = site.atom;
-    v_tally(1, &i, 1.0, constraint.virial, constraint.arm, constraint.force, centroid);
-  }
+  sites->visit_constraint_forces(f, cvflag_atom != 0,
+                                 [this](int i, Sites::ConstraintForce &constraint) {
+                                   v_tally(1, &i, 1.0, constraint.virial, constraint.arm,
+                                           constraint.force, constraint.centroid);
+                                 });
 }
 
 /* ----------------------------------------------------------------------
@@ -313,8 +314,7 @@ void FixGearQuat::meet_forces()
   if (!motion->awaits_forces() || update->whichflag != 1) return;    // in a run
   const bool levels = !RespaForces::steps(lmp).empty();
   if (levels) respa->sum_present();
-  bodies->gather_loads(levels ? respa->forces() : atom->f,
-                       levels ? respa->torques() : atom->torque);
+  sites->gather_loads(levels ? respa->forces() : atom->f, levels ? respa->torques() : atom->torque);
   motion->meet_forces();
 }
 
@@ -343,7 +343,7 @@ double FixGearQuat::compute_array(int i, int j)
 
 bigint FixGearQuat::dof(int tgroup)
 {
-  return bodies->removed_freedoms(group->bitmask[tgroup]);
+  return count_atoms(lmp, *bodies, *ownership, group->bitmask[tgroup]).removed_freedoms;
 }
 
 int FixGearQuat::modify_param(int narg, char **arg)
@@ -353,28 +353,29 @@ int FixGearQuat::modify_param(int narg, char **arg)
 
 double FixGearQuat::memory_usage()
 {
-  return bodies->memory_usage() + table->memory_usage() + respa->memory_usage();
+  return ownership->memory_usage() + sites->memory_usage() + table->memory_usage() +
+      respa->memory_usage();
 }
 
 /* ----------------------------------------------------------------------
-   per-atom data, forwarded to the body store
+   per-atom data, forwarded to the ownership of bodies
 ------------------------------------------------------------------------- */
 
 void FixGearQuat::grow_arrays(int nmax)
 {
-  bodies->grow_arrays(nmax);
+  ownership->grow_arrays(nmax);
 }
 
 void FixGearQuat::copy_arrays(int i, int j, int delflag)
 {
-  bodies->copy_arrays(i, j, delflag);
+  ownership->copy_arrays(i, j, delflag);
 }
 
 /// A new atom is in no body unless set_molecule() follows.
 void FixGearQuat::set_arrays(int i)
 {
-  bodies->set_arrays(i);
-  if (atom->mask[i] & groupbit) bodies->note_stranger(1);
+  ownership->set_arrays(i);
+  if (atom->mask[i] & groupbit) ownership->note_outside_atom(1);
 }
 
 /// Another fix has inserted a molecule of the template, on all ranks together.
@@ -382,9 +383,9 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *
                                double *velocity, double *quat)
 {
   for (int i = first; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) bodies->note_stranger(-1);
+    if (atom->mask[i] & groupbit) ownership->note_outside_atom(-1);
   const bool known = which >= 0 && which < (int) stated.size();
-  add_molecule(lmp, *bodies, first, known ? &stated[which] : nullptr, {center, velocity, quat});
+  add_molecule(lmp, *ownership, first, known ? &stated[which] : nullptr, {center, velocity, quat});
 }
 
 void *FixGearQuat::extract(const char *name, int &dim)
@@ -394,32 +395,32 @@ void *FixGearQuat::extract(const char *name, int &dim)
 
 int FixGearQuat::pack_exchange(int i, double *buf)
 {
-  return bodies->pack_exchange(i, buf);
+  return ownership->pack_exchange(i, buf);
 }
 
 int FixGearQuat::unpack_exchange(int nlocal, double *buf)
 {
-  return bodies->unpack_exchange(nlocal, buf);
+  return ownership->unpack_exchange(nlocal, buf);
 }
 
 int FixGearQuat::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
 {
-  return bodies->pack_forward(n, list, buf);
+  return ownership->pack_forward(n, list, buf);
 }
 
 void FixGearQuat::unpack_forward_comm(int n, int first, double *buf)
 {
-  bodies->unpack_forward(n, first, buf);
+  ownership->unpack_forward(n, first, buf);
 }
 
 int FixGearQuat::pack_reverse_comm(int n, int first, double *buf)
 {
-  return bodies->pack_reverse(n, first, buf);
+  return ownership->pack_reverse(n, first, buf);
 }
 
 void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  bodies->unpack_reverse(n, list, buf);
+  ownership->unpack_reverse(n, list, buf);
 }
 
 /* ----------------------------------------------------------------------

@@ -31,8 +31,10 @@ namespace GearQuat {
   class Extract;
   class Motion;
   class OtherFixes;
+  class Ownership;
   class RespaForces;
   class Restart;
+  class Sites;
   class Step;
   class Sums;
   struct Arguments;
@@ -93,6 +95,8 @@ class FixGearQuat : public Fix {
   std::unique_ptr<GearQuat::Arguments> args;
   std::unique_ptr<GearQuat::Fleet> fleet;
   std::unique_ptr<GearQuat::Bodies> bodies;
+  std::unique_ptr<GearQuat::Ownership> ownership;
+  std::unique_ptr<GearQuat::Sites> sites;
   std::unique_ptr<GearQuat::OtherFixes> other_fixes;
   std::unique_ptr<GearQuat::Step> step;
   std::unique_ptr<GearQuat::Motion> motion;
@@ -109,6 +113,7 @@ class FixGearQuat : public Fix {
   std::unique_ptr<GearQuat::Readers> readers;    // other fixes at the end of a step
 
   void create_bodies();
+  void update_bodies();
   void resume();
   void meet_fleet();
   void meet_forces();

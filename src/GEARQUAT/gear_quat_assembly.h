@@ -15,11 +15,10 @@
 #ifndef LMP_GEAR_QUAT_ASSEMBLY_H
 #define LMP_GEAR_QUAT_ASSEMBLY_H
 
+#include "gear_quat_bodies.h"
 #include "gear_quat_exact_sum.h"
 #include "gear_quat_infile.h"
-#include "gear_quat_integrator.h"
 #include "gear_quat_parts.h"
-#include "gear_quat_rigid_body.h"
 #include "pointers.h"
 
 #include <algorithm>
@@ -28,30 +27,6 @@
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
-
-/// The properties of a body, which travel with its owner atom.
-struct Body {
-  RigidBody rigid;
-  tagint id;        ///< the user's: molecule ID, group number or custom value
-  tagint natoms;    ///< sites
-  double extent;    ///< largest distance of a site from the owner atom
-  int from_file;    ///< mass and inertia were given, not summed
-  int fresh;        ///< has come in this step: no history yet
-  int large;        ///< on several ranks: not all of its sites can see their owner atom
-  Mask off;         ///< components of the load that do not act
-
-  /// The way of the outermost part of the body, a site or a part of a solid, per radian.
-  double reach() const
-  {
-    const double *i = rigid.inertia;
-    return std::max(extent, std::sqrt(std::max({i[0], i[1], i[2]}) / rigid.mass));
-  }
-  /// The error of a step as a length.
-  double length(const Correction &error) const
-  {
-    return std::max(error.position_error(), reach() * error.angle_error());
-  }
-};
 
 class Extended;
 

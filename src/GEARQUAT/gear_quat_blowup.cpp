@@ -247,13 +247,13 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   const double time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
   std::string molecule;
   int bad = -1;    // a site on which the force is no number
-  for (const auto &site : bodies.sites) {
+  for (const Site &site : sites) {
     if (site.body != ibody) continue;
     if (atom->molecule_flag && atom->molecule[site.atom] != id)
       molecule = fmt::format(" (molecule {})", atom->molecule[site.atom]);
     if (!std::isfinite(length(f[site.atom]))) bad = site.atom;
   }
-  if (bodies.is_large(ibody)) bodies.tell_ids_to_ghosts();
+  if (bodies.is_large(ibody)) ownership.tell_ids_to_ghosts();
   const Meeting met = nearest(ibody, bad);
   const Cause cause = first_cause(ibody, s, h);
   const std::string text = fmt::format(
@@ -268,7 +268,7 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
 /// the rank whose site is nearest to another atom.
 std::string Blowup::agree(const std::string &text, int ibody, int bad, const Meeting &met) const
 {
-  const bool any = std::any_of(bodies.sites.begin(), bodies.sites.end(), [&](const auto &site) {
+  const bool any = std::any_of(sites.begin(), sites.end(), [&](const auto &site) {
     return site.body == ibody;
   });
   struct {
@@ -379,13 +379,13 @@ Blowup::Meeting Blowup::nearest(int ibody, int only) const
   Meeting found = {-1, -1, NONE};
   std::vector<int> others;    // along x: only those are looked at that may be nearer
   for (int j = 0; j < atom->nlocal + atom->nghost; ++j)
-    if (bodies.id_of(j) != bodies.body_at(ibody).id && std::isfinite(atom->x[j][0]))
+    if (ownership.id_of(j) != bodies.body_at(ibody).id && std::isfinite(atom->x[j][0]))
       others.push_back(j);
   std::sort(others.begin(), others.end(), [this](int i, int j) {
     return atom->x[i][0] < atom->x[j][0];
   });
 
-  for (const auto &site : bodies.sites) {
+  for (const Site &site : sites) {
     if (site.body != ibody || (only >= 0 && site.atom != only)) continue;
     const double *x = atom->x[site.atom];
     const auto look = [&](int j) {    // false: this atom and those beyond are too far away

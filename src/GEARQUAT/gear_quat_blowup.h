@@ -15,6 +15,7 @@
 
 #include "gear_quat_coupling.h"
 #include "gear_quat_limits.h"
+#include "gear_quat_sites.h"
 
 #include <string>
 
@@ -43,8 +44,10 @@ void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, const 
 class Blowup : protected Pointers {
  public:
   /// shortest: what keyword dtmin says, or 0.
-  Blowup(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, double shortest) :
-      Pointers(lmp), bodies(bodies), scheme(scheme), shortest(shortest)
+  Blowup(LAMMPS *lmp, const Bodies &bodies, Ownership &ownership, const Sites &sites,
+         const Scheme &scheme, double shortest) :
+      Pointers(lmp),
+      bodies(bodies), ownership(ownership), sites(sites), scheme(scheme), shortest(shortest)
   {
   }
 
@@ -68,7 +71,9 @@ class Blowup : protected Pointers {
   [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
 
  private:
-  Bodies &bodies;
+  const Bodies &bodies;
+  Ownership &ownership;
+  const Sites &sites;
   const Scheme &scheme;
   double shortest;
 

@@ -23,6 +23,7 @@
 #include "gear_quat_sections.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_step_control.h"
+#include "pointers.h"
 
 #include <functional>
 #include <limits>

@@ -15,7 +15,6 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
-#include "memory.h"
 #include "modify.h"
 #include "update.h"
 #include "utils.h"
@@ -30,8 +29,10 @@ static constexpr double RIGID = 1.0e-6;    // of the velocity of a site, for a m
 
 /* ---------------------------------------------------------------------- */
 
-OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args) :
-    Pointers(lmp), fix(fix), bodies(bodies), args(args)
+OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership,
+                     Sites &sites, const Arguments &args) :
+    Pointers(lmp),
+    fix(fix), bodies(bodies), ownership(ownership), sites(sites), args(args)
 {
   std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // equal to nothing
 }
@@ -122,12 +123,12 @@ void OtherFixes::tell_friction()
                                                              : "formulation first or values 4");
 }
 
-tagint GearQuat::shared_atom(LAMMPS *lmp, const Bodies &bodies, const Fix *other)
+tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other)
 {
   const Atom *atom = lmp->atom;
   tagint shared = 0;
   for (int i = 0; i < atom->nlocal; ++i)
-    if (bodies.in_body(i) && (atom->mask[i] & other->groupbit))
+    if (ownership.in_body(i) && (atom->mask[i] & other->groupbit))
       shared = std::max(shared, atom->tag[i]);
   return over_ranks(MPI_MAX, shared, lmp->world);
 }
@@ -173,15 +174,15 @@ void OtherFixes::check_gravity()
     if (n) forces.assign(atom->f[0], atom->f[0] + n);
     if (n) std::fill_n(atom->f[0], n, 0.0);
     other->post_force(0);
-    bodies.gather_loads(atom->f, atom->torque);
+    sites.gather_loads(atom->f, atom->torque);
     int here[2] = {0, 0};    // atoms that feel it, bodies that should feel more or less
-    for (const auto &site : bodies.sites) {
+    for (const Site &site : sites) {
       const double *f = atom->f[site.atom];
       if (dot3(f, f) == 0.0) continue;
       here[0] = 1;
       if (site.body >= bodies.nmoved()) continue;
       const double factor =
-          force->ftm2v * bodies.rigid_of(site.body).mass / bodies.atom_mass(site.atom);
+          force->ftm2v * bodies.rigid_of(site.body).mass / ownership.mass_of(site.atom);
       double off[3];
       for (int k = 0; k < 3; ++k) off[k] = factor * f[k] - bodies.load_of(site.body).force[k];
       if (dot3(off, off) > RIGID * RIGID * factor * factor * dot3(f, f)) here[1] = 1;
@@ -232,11 +233,11 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
     changed.push_back(ibody);
   }
   bodies.put_back_loads(before);    // accelerations of bodies follow from them
-  bodies.spread_states();
+  ownership.spread_states();
 
   tagint torn = 0;
-  for (const auto &site : bodies.sites) {
-    const Bodies::Expected v = bodies.expected_velocity(site);
+  for (const Site &site : sites) {
+    const Sites::Expected v = sites.expected_velocity(site);
     double off[3];
     for (int k = 0; k < 3; ++k) off[k] = atom->v[site.atom][k] - v.value[k];
     if (!(length(off) <= RIGID * v.size)) torn = bodies.body_at(site.body).id;
@@ -250,7 +251,7 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
                "a bias that divides them",
                names(acted), torn, step);
   bodies.put_back_states(before);
-  bodies.spread_states();
+  ownership.spread_states();
   return {};
 }
 
@@ -259,23 +260,11 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
 bool OtherFixes::gather_impulses()
 {
   int differs = 0;
-  for (const auto &site : bodies.sites)
-    if (!bodies.is_as_fast(site)) differs = 1;
+  for (const Site &site : sites)
+    if (!sites.is_as_fast(site)) differs = 1;
   if (!over_ranks(MPI_MAX, differs, world)) return false;
 
-  double **impulse, **twist;
-  memory->create(impulse, atom->nlocal + 1, 3, "gear/quat:impulse");
-  memory->create(twist, atom->nlocal + 1, 3, "gear/quat:twist");
-  std::fill_n(impulse[0], 3 * ((size_t) atom->nlocal + 1), 0.0);
-  std::fill_n(twist[0], 3 * ((size_t) atom->nlocal + 1), 0.0);
-  for (const auto &site : bodies.sites) {
-    const Bodies::Expected v = bodies.expected_velocity(site);
-    const double mass = bodies.atom_mass(site.atom) / force->ftm2v;
-    for (int k = 0; k < 3; ++k) impulse[site.atom][k] = mass * (atom->v[site.atom][k] - v.value[k]);
-  }
-  bodies.gather_loads(impulse, twist);
-  memory->destroy(impulse);
-  memory->destroy(twist);
+  sites.gather_impulses();
   return true;
 }
 
@@ -285,10 +274,10 @@ bool OtherFixes::gather_impulses()
 
 void OtherFixes::note(double **values)
 {
-  if (sample < bodies.sites.size()) std::copy_n(values[bodies.sites[sample].atom], 3, noted);
+  if (sample < sites.number()) std::copy_n(values[sites[sample].atom], 3, noted);
 }
 
-bool OtherFixes::is_noted(const Bodies::Site &site, double **values) const
+bool OtherFixes::is_noted(const Site &site, double **values) const
 {
   return std::equal(noted, noted + 3, values[site.atom]);
 }
@@ -296,7 +285,7 @@ bool OtherFixes::is_noted(const Bodies::Site &site, double **values) const
 /// The next sample begins.
 void OtherFixes::note_velocity()
 {
-  if (++sample >= bodies.sites.size()) sample = 0;
+  if (++sample >= sites.number()) sample = 0;
   note(atom->v);
 }
 
@@ -307,16 +296,16 @@ void OtherFixes::note_place()
 
 void OtherFixes::check_velocities()
 {
-  if (warned_change || sample >= bodies.sites.size()) return;
-  const auto &site = bodies.sites[sample];
-  if (!is_noted(site, atom->v) && !bodies.is_as_fast(site)) tell(site, "velocity");
+  if (warned_change || sample >= sites.number()) return;
+  const Site &site = sites[sample];
+  if (!is_noted(site, atom->v) && !sites.is_as_fast(site)) tell(site, "velocity");
 }
 
 void OtherFixes::check_places()
 {
   if (!watched.empty()) {
-    for (const auto &site : bodies.sites)
-      if (!bodies.is_there(site))
+    for (const Site &site : sites)
+      if (!sites.is_there(site))
         error->one(FLERR,
                    "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
                    "follow; " +
@@ -325,23 +314,23 @@ void OtherFixes::check_places()
                    update->ntimestep);
     return;
   }
-  if (warned_change || sample >= bodies.sites.size()) return;
-  const auto &site = bodies.sites[sample];
-  if (!is_noted(site, atom->x) && !bodies.is_there(site)) tell(site, "place");
+  if (warned_change || sample >= sites.number()) return;
+  const Site &site = sites[sample];
+  if (!is_noted(site, atom->x) && !sites.is_there(site)) tell(site, "place");
 }
 
 void OtherFixes::check_all()
 {
-  for (const auto &site : bodies.sites) {
+  for (const Site &site : sites) {
     if (warned_change) return;
-    if (!bodies.is_there(site))
+    if (!sites.is_there(site))
       tell(site, "place");
-    else if (!bodies.is_as_fast(site))
+    else if (!sites.is_as_fast(site))
       tell(site, "velocity");
   }
 }
 
-void OtherFixes::tell(const Bodies::Site &site, const char *what)
+void OtherFixes::tell(const Site &site, const char *what)
 {
   warned_change = true;
   std::vector<const Fix *> others;

@@ -14,7 +14,7 @@
 #ifndef LMP_GEAR_QUAT_FIXES_H
 #define LMP_GEAR_QUAT_FIXES_H
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_sites.h"
 
 #include <string>
 #include <vector>
@@ -29,11 +29,12 @@ struct Arguments;
 struct ActOnAtoms;
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
-tagint shared_atom(LAMMPS *lmp, const Bodies &bodies, const Fix *other);
+tagint shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other);
 
 class OtherFixes : protected Pointers {
  public:
-  OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Arguments &args);
+  OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership, Sites &sites,
+            const Arguments &args);
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
@@ -63,10 +64,12 @@ class OtherFixes : protected Pointers {
  private:
   const Fix *fix;
   Bodies &bodies;
+  Ownership &ownership;
+  Sites &sites;
   const Arguments &args;
   std::vector<const Fix *> taken;      ///< whose velocities bodies take over
   std::vector<const Fix *> watched;    ///< that may move single atoms
-  size_t sample = 0;                   ///< the site that is looked at next
+  int sample = 0;                      ///< the site that is looked at next
   double noted[3];                     ///< its velocity or place
   bool warned_noise = false;           ///< of random forces
   bool warned_friction = false;        ///< of forces that depend on velocities
@@ -74,13 +77,13 @@ class OtherFixes : protected Pointers {
 
   void tell_noise(const Fix *other);
   void tell_friction();
-  tagint shared_atom(const Fix *other) const { return GearQuat::shared_atom(lmp, bodies, other); }
+  tagint shared_atom(const Fix *other) const { return GearQuat::shared_atom(lmp, ownership, other); }
   void refuse_thermostat(const Fix *other) const;
   void refuse(const Fix *other, const ActOnAtoms &row, tagint atom) const;
   bool gather_impulses();
   void note(double **values);
-  bool is_noted(const Bodies::Site &site, double **values) const;
-  void tell(const Bodies::Site &site, const char *what);
+  bool is_noted(const Site &site, double **values) const;
+  void tell(const Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };
 

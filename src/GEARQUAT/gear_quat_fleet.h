@@ -9,7 +9,7 @@
 #ifndef LMP_GEAR_QUAT_FLEET_H
 #define LMP_GEAR_QUAT_FLEET_H
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_ownership.h"
 
 #include "atom.h"
 #include "fix.h"
@@ -24,7 +24,7 @@ struct Fleet {
   struct Member {
     Fix *fix;
     Motion *motion;
-    const Bodies *bodies;
+    const Ownership *ownership;
     bool changes_step;    ///< keyword tolerance
     bool tuned;           ///< its coefficients
   };
@@ -42,7 +42,7 @@ struct Fleet {
   bool moves(const Fix *fix, const Atom *atom, int i) const
   {
     const Member *member = find(fix);
-    return member ? member->bodies->in_body(i) : (atom->mask[i] & fix->groupbit) != 0;
+    return member ? member->ownership->in_body(i) : (atom->mask[i] & fix->groupbit) != 0;
   }
 };
 

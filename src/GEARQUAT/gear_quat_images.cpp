@@ -46,24 +46,30 @@ static bool is_periodic(const Domain *domain, int direction)
 
 /* ---------------------------------------------------------------------- */
 
-void GearQuat::undo_image_flag_overflow(const Domain *domain, const double *expected,
-                                        double *unwrapped)
+bool GearQuat::image_flag_overflow(const Domain *domain, const double *expected,
+                                   const double *unwrapped, double *turns)
 {
   const double range = (double) IMGMASK + 1.0;    // so many boxes, then flags begin again
   const double away[3] = {expected[0] - unwrapped[0], expected[1] - unwrapped[1],
                           expected[2] - unwrapped[2]};
   double boxes[3];
   to_periods(domain, away, boxes);
-  double lost[3] = {};
   bool any = false;
   for (int k = 0; k < 3; ++k) {
+    turns[k] = 0.0;
     if (!(std::fabs(boxes[k]) > 0.5 * range) || !is_periodic(domain, k)) continue;
-    lost[k] = range * std::round(boxes[k] / range);
+    turns[k] = range * std::round(boxes[k] / range);
     any = true;
   }
-  if (!any) return;
-  double way[3];
-  through(domain->h, lost, way);
+  return any;
+}
+
+void GearQuat::undo_image_flag_overflow(const Domain *domain, const double *expected,
+                                        double *unwrapped)
+{
+  double turns[3], way[3];
+  if (!image_flag_overflow(domain, expected, unwrapped, turns)) return;
+  through(domain->h, turns, way);
   for (int k = 0; k < 3; ++k) unwrapped[k] += way[k];
 }
 

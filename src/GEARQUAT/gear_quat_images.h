@@ -15,6 +15,11 @@ class Domain;
 
 namespace LAMMPS_NS::GearQuat {
 
+/// True if image flags have turned over: turns (3) are the periods by which `unwrapped` (3), made of
+/// the flags, has to be moved to be nearest to `expected` (3); 0 where flags have not turned over.
+bool image_flag_overflow(const Domain *domain, const double *expected, const double *unwrapped,
+                         double *turns);
+
 /// Add to `unwrapped` (3) the turns of the image flags that bring it nearest to `expected` (3).
 /// It is not touched where the flags have not turned over.
 void undo_image_flag_overflow(const Domain *domain, const double *expected, double *unwrapped);

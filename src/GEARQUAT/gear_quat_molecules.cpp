@@ -6,7 +6,6 @@
 #include "gear_quat_molecules.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_bodies.h"
 #include "gear_quat_fleet.h"
 #include "gear_quat_parts.h"
 #include "gear_quat_ranks.h"
@@ -68,7 +67,7 @@ static std::string remedy(const LAMMPS *lmp, const Fix *fix, const Arguments &ar
 }
 
 void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                         const Fleet &fleet, const Bodies &bodies)
+                                         const Fleet &fleet, const Ownership &ownership)
 {
   const Atom *atom = lmp->atom;
   if (!atom->molecule_flag) return;
@@ -80,7 +79,7 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Argu
     for (const int i : parts.atoms(part)) {
       Membership &one = memberships[part];
       ++one.all;
-      if (bodies.in_body(i))
+      if (ownership.in_body(i))
         ++one.in_bodies;
       else if (!is_moved(lmp, fix, fleet, i))
         ++one.unmoved;

@@ -16,14 +16,14 @@ class LAMMPS;
 
 namespace LAMMPS_NS::GearQuat {
 
-class Bodies;
+class Ownership;
 struct Arguments;
 struct Fleet;
 
 /// Rank 0 warns if molecules have atoms in bodies and others that no fix moves: it says how many,
 /// names one, and says what to change.  Before a run, when all fixes are defined.  Collective.
 void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                               const Fleet &fleet, const Bodies &bodies);
+                               const Fleet &fleet, const Ownership &ownership);
 
 }    // namespace LAMMPS_NS::GearQuat
 

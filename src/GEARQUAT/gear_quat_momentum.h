@@ -27,6 +27,7 @@
 
 #include "gear_quat_bodies.h"
 #include "gear_quat_exact_sum.h"
+#include "pointers.h"
 
 #include <algorithm>
 #include <string>

@@ -39,15 +39,16 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 /* ---------------------------------------------------------------------- */
 
 Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-               OtherFixes &others, Step &step) :
+               Ownership &ownership, Sites &sites, OtherFixes &others, Step &step) :
     Pointers(lmp),
-    fix(fix), args(args), fleet(fleet), bodies(bodies), others(others), step(step)
+    fix(fix), args(args), fleet(fleet), bodies(bodies), ownership(ownership), sites(sites),
+    others(others), step(step)
 {
 }
 
 void Motion::meet_bodies()
 {
-  if (!args.masks.empty()) masks = args.masks_of(bodies.all_ids());
+  if (!args.masks.empty()) masks = args.masks_of(ownership.all_ids());
 }
 
 /* ----------------------------------------------------------------------
@@ -69,7 +70,7 @@ void Motion::forget(const std::string &why)
 
 void Motion::impose_masks()
 {
-  if (!bodies.change_masks(masks) || !step.started)
+  if (!ownership.change_masks(masks) || !step.started)
     return;    // only those of a restart file can be others
   step.started = false;
   if (comm->me == 0)
@@ -129,8 +130,8 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
   for (const auto &one : fleet.members) {
     Motion &motion = *one.motion;
     motion.take_velocities(motion.update->ntimestep - 1, true);
-    motion.bodies.spread_states();
-    motion.bodies.gather_loads(f, torque);
+    motion.ownership.spread_states();
+    motion.sites.gather_loads(f, torque);
   }
   for (const auto &one : fleet.members) {
     Step &step = one.motion->step;
@@ -214,7 +215,7 @@ bool Motion::forces_changed(double **f)
   const Integrator &integrator = *step.present_integrator();
   double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
   for (const auto &one : fleet.members) here[0] = std::max(here[0], one.motion->last_error());
-  for (const auto &site : bodies.sites)
+  for (const Site &site : sites)
     here[1] = std::max(here[1], force->ftm2v * length(f[site.atom]));
   const auto largest = over_ranks(MPI_MAX, here, world);
 
@@ -272,7 +273,7 @@ bool Motion::has_to_start(double **f)
 
 Starter Motion::starter(bool needed)
 {
-  return {fix, &bodies, step.coupling.get(),
+  return {fix, &bodies, &ownership, &sites, step.coupling.get(),
           step.tolerance ? step.tolerance->scheme_of_start() : args.scheme, needed};
 }
 

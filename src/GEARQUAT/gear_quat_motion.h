@@ -22,7 +22,7 @@ class Motion : protected Pointers {
  public:
   /// bodies: empty, with histories of args.scheme.
   Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-         OtherFixes &others, Step &step);
+         Ownership &ownership, Sites &sites, OtherFixes &others, Step &step);
 
   /// The store has made its bodies, and they receive their masks.  Collective.
   void meet_bodies();
@@ -76,6 +76,8 @@ class Motion : protected Pointers {
   const Arguments &args;
   const Fleet &fleet;
   Bodies &bodies;
+  Ownership &ownership;
+  Sites &sites;
   OtherFixes &others;
   Step &step;
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies

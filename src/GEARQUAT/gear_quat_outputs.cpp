@@ -99,7 +99,7 @@ double **BodyTable::local()
 
 double BodyTable::global(int row, int column)
 {
-  if (!gathered) gather_rows();
+  if (gathered != sites.placements()) gather_rows();
   return row < (int) all.size() ? all[row][column] : 0.0;
 }
 
@@ -152,7 +152,7 @@ void BodyTable::gather_rows()
   all = gather_sorted(rows_here, world, [](const Row &a, const Row &b) {
     return a[ID] < b[ID];
   });
-  gathered = true;
+  gathered = sites.placements();
 }
 
 /* ----------------------------------------------------------------------
@@ -177,8 +177,7 @@ void *Extract::extract(const std::string &name, int &dim)
   if (name == "body") {
     dim = 1;
     body.assign(atom->nlocal + 1, -1);    // one more: no null pointer on a rank without atoms
-    for (const auto &site : bodies.sites)
-      if (site.atom < atom->nlocal) body[site.atom] = site.body;
+    for (int i = 0; i < atom->nlocal; ++i) body[i] = ownership.body_of(i);
     return body.data();
   }
   if (name == "masstotal") {

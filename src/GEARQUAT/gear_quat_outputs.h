@@ -9,7 +9,7 @@
 #ifndef LMP_GEAR_QUAT_OUTPUTS_H
 #define LMP_GEAR_QUAT_OUTPUTS_H
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_sites.h"
 #include "gear_quat_template.h"
 
 #include <array>
@@ -70,15 +70,16 @@ class BodyTable : protected Pointers {
     COLUMNS = 28
   };
 
-  BodyTable(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
+  BodyTable(LAMMPS *lmp, const Bodies &bodies, const Sites &sites) :
+      Pointers(lmp), bodies(bodies), sites(sites)
+  {
+  }
 
   /// Rows of owned bodies, anew at every call; the pointers stay valid until the next one.
   double **local();
   /// A number of the global array, 0 in rows without a body.  Rows are gathered when the first is
-  /// asked for after forget(): collective.
+  /// asked for after sites were listed or placed: collective.
   double global(int row, int column);
-  /// Poses, loads or bodies have changed.
-  void forget() { gathered = false; }
   double memory_usage() const
   {
     return (mine.capacity() + all.capacity()) * sizeof(Row) + rows.capacity() * sizeof(double *);
@@ -86,10 +87,11 @@ class BodyTable : protected Pointers {
 
  private:
   const Bodies &bodies;
+  const Sites &sites;
   using Row = std::array<double, COLUMNS>;
   std::vector<Row> mine, all;
   std::vector<double *> rows;
-  bool gathered = false;    ///< `all` is of the present poses
+  int gathered = -1;    ///< `all` is of this number of placements
 
   void wrap(const double *center, double *wrapped, double *image) const;
   void fill_row(int ibody, double *row) const;
@@ -101,8 +103,10 @@ class BodyTable : protected Pointers {
 class Extract : protected Pointers {
  public:
   /// template_id: that of keyword mol, or empty.
-  Extract(LAMMPS *lmp, const Bodies &bodies, const Sums &sums, const std::string &template_id) :
-      Pointers(lmp), bodies(bodies), sums(sums), template_id(template_id)
+  Extract(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership, const Sums &sums,
+          const std::string &template_id) :
+      Pointers(lmp),
+      bodies(bodies), ownership(ownership), sums(sums), template_id(template_id)
   {
     find_template(lmp, template_id);    // it has to exist
   }
@@ -120,6 +124,7 @@ class Extract : protected Pointers {
 
  private:
   const Bodies &bodies;
+  const Ownership &ownership;
   const Sums &sums;
   std::string template_id;
 

@@ -6,9 +6,9 @@
 #include "gear_quat_report.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_bodies.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
+#include "gear_quat_sites.h"
 
 #include "citeme.h"
 #include "comm.h"
@@ -140,7 +140,8 @@ static Scene::Top top_of(const RigidBody &rigid, int dimension)
 }
 
 /// Collective; bodies: after their ghosts were updated.
-static Scene look_at(LAMMPS *lmp, const Bodies &bodies)
+static Scene look_at(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership,
+                     const Sites &sites)
 {
   const int dimension = lmp->domain->dimension;
   bigint here[Scene::COUNTS] = {};
@@ -155,16 +156,16 @@ static Scene look_at(LAMMPS *lmp, const Bodies &bodies)
     largest_here[1] = std::max(largest_here[1], -(double) body.natoms);
     largest_here[2] = std::max(largest_here[2], (double) body.natoms);
   }
-  for (const auto &site : bodies.sites) {
+  for (const Site &site : sites) {
     here[Scene::SITES_OFF_CENTER] += dot3(site.arm_body, site.arm_body) > 0.0;
     here[Scene::SITES_OF_GHOSTS] += site.body >= bodies.nowned();
   }
-  here[Scene::EXTENDED_SITES] = bodies.number_of_extended_here();
+  here[Scene::EXTENDED_SITES] = sites.number_of_extended();
   const auto count = over_ranks(MPI_SUM, here, lmp->world);
   const auto largest = over_ranks(MPI_MAX, largest_here, lmp->world);
   const bool any = count[Scene::BODIES] > 0;
   return {count, any ? (bigint) -largest[1] : 0, any ? (bigint) largest[2] : 0,
-          bodies.number_of_large(), largest[0]};
+          ownership.number_of_large(), largest[0]};
 }
 
 /* ----------------------------------------------------------------------
@@ -293,20 +294,20 @@ static std::string settings(const Arguments &args)
 /* ---------------------------------------------------------------------- */
 
 void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-                            Bodies &bodies)
+                            const Bodies &bodies, Ownership &ownership, const Sites &sites)
 {
-  const auto advice = advice_on_surroundings(lmp, fix, args, fleet, bodies);
+  const auto advice = advice_on_surroundings(lmp, fix, args, fleet, bodies, ownership);
   if (args.report == Arguments::Report::NO) return;
-  const Scene scene = look_at(lmp, bodies);
+  const Scene scene = look_at(lmp, bodies, ownership, sites);
   const auto rows = effects(lmp, fix, args, scene);
   if (lmp->comm->me != 0) return;
 
-  const std::string sites = scene.fewest_sites == scene.most_sites
+  const std::string numbers = scene.fewest_sites == scene.most_sites
       ? fmt::format("{}", scene.most_sites)
       : fmt::format("{} to {}", scene.fewest_sites, scene.most_sites);
   std::string text =
       fmt::format("Fix gear/quat {}: {} bodies of {} sites, {} degrees of freedom\n", fix->id,
-                  scene.count[Scene::BODIES], sites, scene.count[Scene::FREEDOMS]);
+                  scene.count[Scene::BODIES], numbers, scene.count[Scene::FREEDOMS]);
   text += settings(args);
   for (const auto &row : rows) {
     text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);

@@ -20,6 +20,8 @@ class LAMMPS;
 namespace LAMMPS_NS::GearQuat {
 
 class Bodies;
+class Ownership;
+class Sites;
 struct Arguments;
 struct Fleet;
 
@@ -30,14 +32,15 @@ void add_citations(LAMMPS *lmp, const Arguments &args);
 /// of advice_on_surroundings() in any case.  Collective; to be called in setup(), when neighbor
 /// lists are built and bodies have their ghosts.
 void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-                  Bodies &bodies);
+                  const Bodies &bodies, Ownership &ownership, const Sites &sites);
 
 /// A part of the report: pairs of atoms that nothing moves, pairs within a body, and atoms of the
 /// fix group that no body uses, found in the neighbor lists of the pair styles.  A sentence each,
 /// below it the line of the input script that mends it; nothing is changed.  Rank 0 warns if the
 /// pair style acts between atoms of a body.  Collective.
 std::vector<std::string> advice_on_surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                                const Fleet &fleet, Bodies &bodies);
+                                                const Fleet &fleet, const Bodies &bodies,
+                                                Ownership &ownership);
 
 }    // namespace LAMMPS_NS::GearQuat
 

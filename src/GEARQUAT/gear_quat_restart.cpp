@@ -24,16 +24,16 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-Restart::Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion) :
-    Pointers(lmp), fix(fix), bodies(bodies), motion(motion), waiting(false), place(0)
+Restart::Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership, Motion &motion) :
+    Pointers(lmp), fix(fix), bodies(bodies), ownership(ownership), motion(motion), waiting(false), place(0)
 {
 }
 
 void Restart::write(FILE *fp) const
 {
   Sections file;
-  file.put("bodies", {(double) bodies.has_extended(), (double) atom->natoms});
-  file.put("parts of atoms", Bodies::packed_parts().numbers());
+  file.put("bodies", {(double) ownership.extended().has_records(), (double) atom->natoms});
+  file.put("parts of atoms", Ownership::packed_parts().numbers());
   motion.write(file);
   const Sections::Numbers data = file.packed();
   const int size = (int) (data.size() * sizeof(double));
@@ -74,7 +74,7 @@ void Restart::read(const char *buf)
 /// Other fixes step over these data: the first number tells how many there are.
 int Restart::pack(int i, double *buf) const
 {
-  const int n = HEAD + bodies.pack_exchange(i, buf + HEAD);
+  const int n = HEAD + ownership.pack_exchange(i, buf + HEAD);
   buf[0] = n;
   buf[1] = ubuf(atom->tag[i]).d;
   return n;
@@ -106,11 +106,11 @@ std::vector<const double *> Restart::packed_atoms() const
 }
 
 /// The data of atoms in the lengths of this release.
-Bodies::Resumed Restart::resume_bodies(int group) const
+Ownership::Resumed Restart::resume_bodies(int group) const
 {
   std::vector<const double *> packed = packed_atoms();
   const AtomParts parts = AtomParts::of(sections.get("parts of atoms"));
-  const AtomParts mine = Bodies::packed_parts();
+  const AtomParts mine = Ownership::packed_parts();
   const bool extended = sections.number("bodies", 0) != 0.0;
   std::vector<Sections::Numbers> converted;
   if (!(parts == mine)) {
@@ -121,13 +121,13 @@ Bodies::Resumed Restart::resume_bodies(int group) const
       data = converted.back().data();
     }
   }
-  return bodies.resume(packed, extended, group);
+  return ownership.resume(packed, extended, group);
 }
 
 bool Restart::resume(int group)
 {
   waiting = false;
-  using Resumed = Bodies::Resumed;
+  using Resumed = Ownership::Resumed;
   const Resumed found = resume_bodies(group);
   if (found == Resumed::NONE) {
     if (comm->me == 0)

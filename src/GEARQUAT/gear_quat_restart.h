@@ -21,7 +21,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class Restart : protected Pointers {
  public:
-  Restart(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Motion &motion);
+  Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership, Motion &motion);
 
   void write(FILE *fp) const;
   /// Ends the run if this is of 0.2.0 or before, or of a release that does not write sections.
@@ -29,8 +29,8 @@ class Restart : protected Pointers {
   bool was_read() const { return waiting; }
 
   int pack(int atom, double *buf) const;
-  int size(int atom) const { return HEAD + bodies.packed_size(atom); }
-  int max_size() const { return HEAD + bodies.max_exchange(); }
+  int size(int atom) const { return HEAD + ownership.packed_size(atom); }
+  int max_size() const { return HEAD + ownership.max_exchange(); }
   /// The data of atoms are behind those of so many other fixes.
   void note_place(int n) { place = n; }
 
@@ -41,12 +41,13 @@ class Restart : protected Pointers {
   /// The text beside a restart file: all bodies in the format of infile, sorted by ID, with all
   /// digits.  A file that cannot be written ends the run.  A file of this name is whole at any time:
   /// it is written under another name and then renamed.  rows: those of BodyTable for this rank's
-  /// owned bodies.  Collective.
+  /// owned ownership.  Collective.
   void write_bodies(const std::string &filename, double **rows) const;
 
  private:
   const Fix *fix;
-  Bodies &bodies;
+  const Bodies &bodies;
+  Ownership &ownership;
   Motion &motion;
 
   Sections sections;      ///< of the file
@@ -57,7 +58,7 @@ class Restart : protected Pointers {
   static constexpr int HEAD = 2;    ///< of an atom: how many numbers there are, and its ID
 
   std::vector<const double *> packed_atoms() const;
-  Bodies::Resumed resume_bodies(int group) const;
+  Ownership::Resumed resume_bodies(int group) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -56,7 +56,7 @@ static void refuse_box_changes(LAMMPS *lmp)
 }
 
 static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
-                                     const Bodies &bodies)
+                                     const Ownership &ownership)
 {
   for (auto *other : lmp->modify->get_fix_list()) {
     if (other == fix || !other->time_integrate) continue;
@@ -67,7 +67,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &f
     const Atom *atom = lmp->atom;
     tagint shared = 0;
     for (int i = 0; i < atom->nlocal; ++i) {
-      if (!bodies.in_body(i) || !fleet.moves(other, atom, i)) continue;
+      if (!ownership.in_body(i) || !fleet.moves(other, atom, i)) continue;
       if (its_body && its_body[i] < 0) continue;
       shared = atom->tag[i];
     }
@@ -97,7 +97,8 @@ static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
                           other->id, other->style, first->id, fix->id);
 }
 
-void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Bodies &bodies)
+void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
+                            const Ownership &ownership)
 {
   if (lmp->update->whichflag == 2)
     lmp->error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
@@ -105,9 +106,9 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, con
     lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}",
                     lmp->update->dt);
   refuse_box_changes(lmp);
-  bodies.refuse_atoms();
+  ownership.refuse_atoms();
   refuse_respa_with_steps(lmp);
-  refuse_other_integrators(lmp, fix, fleet, bodies);
+  refuse_other_integrators(lmp, fix, fleet, ownership);
   warn_of_walls(lmp, fix);
 }
 

@@ -21,14 +21,14 @@ class LAMMPS;
 
 namespace LAMMPS_NS::GearQuat {
 
-class Bodies;
+class Ownership;
 struct Fleet;
 
 
 /// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, a box
 /// that changes, r-RESPA with different steps, atoms of a kind that cannot be followed, atoms
 /// that another fix moves too.  Warns of granular walls that do not know the masses of the bodies.
-void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Bodies &bodies);
+void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
 
 /// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that
 /// asks.

@@ -79,7 +79,7 @@ bool Start::run()
     if (!one.needed) continue;
     one.seed_local(3, h);
     const Noise noise = forces.noise([&one](int i) {
-      return one.bodies->in_body(i);
+      return one.ownership->in_body(i);
     });
     if (comm->me != 0) continue;
     utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
@@ -202,13 +202,13 @@ struct Start::Search {
       Bodies &bodies = *one.bodies;
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         bodies.change_state(ibody) = our.collocation.state_at(node, one.work[ibody], spacing);
-      bodies.spread_states();
-      bodies.place_sites(true);
+      one.ownership->spread_states();
+      one.sites->place(true);
     }
     if (forces.largest_displacement() > 0.5 * skin) return false;
     forces.evaluate();
     ++our.evaluations;
-    for (auto &one : our.starters) one.bodies->gather_loads(our.atom->f, our.atom->torque);
+    for (auto &one : our.starters) one.sites->gather_loads(our.atom->f, our.atom->torque);
     for (auto &one : our.starters)
       if (one.coupling) one.coupling->visit_node(nodes(), node);
     for (auto &one : our.starters)
@@ -232,7 +232,7 @@ StartFound Start::search(Forces &forces)
   const double copies = 3.0 * sizeof(double) * (atom->torque_flag ? 4 : 3) *
       (atom->nlocal + atom->nghost);    // positions, velocities, forces
   for (auto &one : starters)
-    one.bodies->note_scratch(one.work.capacity() * sizeof(Collocation::Workspace) + copies);
+    one.ownership->note_scratch(one.work.capacity() * sizeof(Collocation::Workspace) + copies);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
     if (lowers_order(start))
@@ -243,8 +243,8 @@ StartFound Start::search(Forces &forces)
   forces.restore();
   all.put_back();
   for (auto &one : starters) {
-    one.bodies->spread_states();
-    one.bodies->place_extended();
+    one.ownership->spread_states();
+    one.sites->place_extended();
   }
   return start;
 }
@@ -256,7 +256,7 @@ double Start::first_spacing() const
   double fastest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (std::none_of(starters.begin(), starters.end(), [i](const Starter &one) {
-          return one.bodies->in_body(i);
+          return one.ownership->in_body(i);
         }))
       continue;
     fastest = std::max(fastest, dot3(atom->v[i], atom->v[i]));

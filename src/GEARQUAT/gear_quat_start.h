@@ -12,6 +12,7 @@
 
 #include "gear_quat_coupling.h"
 #include "gear_quat_forces.h"
+#include "gear_quat_sites.h"
 
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ namespace LAMMPS_NS::GearQuat {
 struct Starter {
   const Fix *fix;
   Bodies *bodies;        ///< states and loads are those of the start
+  Ownership *ownership;
+  Sites *sites;
   Coupling *coupling;    ///< null without
   Scheme scheme;
   bool needed;    ///< false if there are histories, to be kept where not all rows can be found

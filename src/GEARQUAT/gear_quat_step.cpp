@@ -33,9 +33,11 @@ static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, cons
 }
 
 Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-           OtherFixes &others, Tally tally) :
-    Pointers(lmp), time_step(lmp), blowup(lmp, bodies, args.scheme, args.control.shortest),
-    coupling(make_coupling(lmp, fix, args, bodies)), args(args), bodies(bodies), others(others),
+           Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally) :
+    Pointers(lmp), time_step(lmp), 
+    blowup(lmp, bodies, ownership, sites, args.scheme, args.control.shortest),
+    coupling(make_coupling(lmp, fix, args, bodies)), args(args), bodies(bodies),
+    ownership(ownership), sites(sites), others(others),
     tally(std::move(tally))
 {
   blowup.coupling = coupling.get();
@@ -62,7 +64,7 @@ void Step::end(double **f, double **torque)
 {
   others.check_places();
   for (;;) {
-    bodies.gather_loads(f, torque);
+    sites.gather_loads(f, torque);
     tally(vflag_of_step, f);    // here: the atoms are those that forces belong to
     correct(f);
     if (is_accepted()) break;
@@ -72,8 +74,8 @@ void Step::end(double **f, double **torque)
     tolerance->evaluate(vflag_of_step);
   }
   hold(f);
-  bodies.spread_moved();
-  bodies.place_sites(true);
+  ownership.spread_moved();
+  sites.place(true);
   others.note_velocity();
 }
 
@@ -126,8 +128,8 @@ void Step::predict(double **f)
 
 void Step::place_prediction()
 {
-  bodies.spread_moved();
-  bodies.place_sites(velocities_read);
+  ownership.spread_moved();
+  sites.place(velocities_read);
   others.note_place();
 }
 

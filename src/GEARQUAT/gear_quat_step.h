@@ -22,6 +22,7 @@
 #include "gear_quat_blowup.h"
 #include "gear_quat_coupling.h"
 #include "gear_quat_fixes.h"
+#include "gear_quat_sites.h"
 #include "gear_quat_time_step.h"
 #include "gear_quat_tolerance.h"
 
@@ -35,8 +36,8 @@ class Step : protected Pointers {
  public:
   /// tally(vflag, f): adds the virial of the constraint forces, by the forces f on atoms.
   using Tally = std::function<void(int, double **)>;
-  Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-       OtherFixes &others, Tally tally);
+  Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
+       Bodies &bodies, Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally);
 
   /// f: forces on atoms.
   void begin(int vflag, double **f);
@@ -74,6 +75,8 @@ class Step : protected Pointers {
  private:
   const Arguments &args;
   Bodies &bodies;
+  Ownership &ownership;
+  Sites &sites;
   OtherFixes &others;
   Tally tally;
   std::unique_ptr<Integrator> integrator;

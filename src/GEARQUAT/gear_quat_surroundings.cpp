@@ -47,8 +47,9 @@ namespace {
 class Surroundings : protected Pointers {
  public:
   Surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-               Bodies &bodies) :
-      Pointers(lmp), fix(fix), args(args), fleet(fleet), bodies(bodies), label(labels())
+               const Bodies &bodies, Ownership &ownership) :
+      Pointers(lmp),
+      fix(fix), args(args), fleet(fleet), bodies(bodies), ownership(ownership), label(labels())
   {
   }
   std::vector<std::string> advice() const;
@@ -58,7 +59,8 @@ class Surroundings : protected Pointers {
   const Fix *fix;
   const Arguments &args;
   const Fleet &fleet;
-  Bodies &bodies;
+  const Bodies &bodies;
+  Ownership &ownership;
   const std::vector<double> label;    ///< of atoms, ghosts too: what moves them
 
   std::vector<double> labels() const;
@@ -80,8 +82,8 @@ std::vector<double> Surroundings::labels() const
       if (fleet.moves(other, atom, i)) made[i] = MOVED_BY_OTHERS;
   }
   for (int i = 0; i < atom->nlocal; ++i)
-    if (bodies.in_body(i)) made[i] = (double) bodies.id_of(i);
-  bodies.spread_labels(made);
+    if (ownership.in_body(i)) made[i] = (double) ownership.id_of(i);
+  ownership.spread_labels(made);
   return made;
 }
 
@@ -121,7 +123,7 @@ std::array<bigint, 3> Surroundings::count_atoms() const
   bigint here[3] = {0, 0, 0};
   for (int i = 0; i < atom->nlocal; ++i) {
     here[0] += label[i] == STILL;
-    if (!(atom->mask[i] & fix->groupbit) || bodies.in_body(i)) continue;
+    if (!(atom->mask[i] & fix->groupbit) || ownership.in_body(i)) continue;
     ++here[1];
     here[2] += label[i] == STILL;
   }
@@ -261,9 +263,10 @@ std::string Surroundings::exclude_own() const
 
 std::vector<std::string> GearQuat::advice_on_surroundings(LAMMPS *lmp, const Fix *fix,
                                                           const Arguments &args, const Fleet &fleet,
-                                                          Bodies &bodies)
+                                                          const Bodies &bodies,
+                                                          Ownership &ownership)
 {
-  const Surroundings surroundings(lmp, fix, args, fleet, bodies);
+  const Surroundings surroundings(lmp, fix, args, fleet, bodies, ownership);
   surroundings.warn_of_own_pairs();
   return surroundings.advice();
 }

@@ -5,7 +5,7 @@
 
 #include "gear_quat_template.h"
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_ownership.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -58,8 +58,8 @@ static GivenBody given_at(const StatedMolecule &stated, const Insertion &at)
   return given;
 }
 
-void GearQuat::add_molecule(LAMMPS *lmp, Bodies &bodies, int first, const StatedMolecule *stated,
-                            const Insertion &insertion)
+void GearQuat::add_molecule(LAMMPS *lmp, Ownership &ownership, int first,
+                            const StatedMolecule *stated, const Insertion &insertion)
 {
   const Atom *atom = lmp->atom;
   tagint smallest = MAXTAGINT;
@@ -70,5 +70,5 @@ void GearQuat::add_molecule(LAMMPS *lmp, Bodies &bodies, int first, const Stated
   if (stated && stated->differs) given[id] = given_at(*stated, insertion);
   std::vector<tagint> ids(atom->nlocal, 0);
   std::fill(ids.begin() + first, ids.end(), id);
-  bodies.add(ids, given, true);
+  ownership.add(ids, given, true);
 }

@@ -20,7 +20,7 @@ class Molecule;
 
 namespace LAMMPS_NS::GearQuat {
 
-class Bodies;
+class Ownership;
 
 /// What a molecule of a template states of itself, in the frame of the template.
 struct StatedMolecule {
@@ -55,7 +55,7 @@ inline bool any_differs(const std::vector<StatedMolecule> &stated)
 /// One body of the atoms that were just created on all ranks, from index `first` on; its ID is the
 /// smallest molecule ID of its atoms.  It is fresh: its history begins with the forces of this
 /// step.  Collective.
-void add_molecule(LAMMPS *lmp, Bodies &bodies, int first, const StatedMolecule *stated,
+void add_molecule(LAMMPS *lmp, Ownership &ownership, int first, const StatedMolecule *stated,
                   const Insertion &insertion);
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -31,6 +31,10 @@
 #include <array>
 #include <string>
 
+namespace LAMMPS_NS {
+class Fix;
+}    // namespace LAMMPS_NS
+
 namespace LAMMPS_NS::GearQuat {
 
 class Thermostat : public Coupling {

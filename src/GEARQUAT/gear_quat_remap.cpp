@@ -3,15 +3,13 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Body store, before a run: bodies in a box that has changed.
+/* The atoms of each body meet on one rank, which compares their positions with those that the body
+   had in the old box, direction by direction. */
 
-   change_box remap takes every atom to the same place of the new box, relative to its faces, and so
-   stretches bodies.  Here the atoms of each body meet on one rank, which compares their positions
-   with those that the body had in the old box, direction by direction. */
-
-#include "gear_quat_bodies.h"
+#include "gear_quat_remap.h"
 
 #include "gear_quat_images.h"
+#include "gear_quat_ownership.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -146,7 +144,7 @@ static std::vector<Order> orders_to(const Domain *domain, const double *box_befo
     for (last = first; last < all.size() && all[last].owner == all[first].owner;) ++last;
     Member *atoms = &all[first];
     const int n = (int) (last - first);
-    if (atoms->natoms != n) continue;    // Bodies::check_whole() ends the run
+    if (atoms->natoms != n) continue;    // Ownership::check_whole() ends the run
     place_members(domain, box_before, atoms, n);
     double center[3];
     const Change change = change_of(domain, box_before, atoms, n, center);
@@ -167,66 +165,63 @@ static std::vector<Order> orders_to(const Domain *domain, const double *box_befo
   return orders;
 }
 
-/* ---------------------------------------------------------------------- */
-
-void Bodies::note_box()
-{
-  box.assign(domain->h, domain->h + 6);
-  box.insert(box.end(), domain->boxlo, domain->boxlo + 3);
-}
-
-bool Bodies::follow_box()
-{
-  if (box.empty() ||
-      (std::equal(domain->h, domain->h + 6, box.begin()) &&
-       std::equal(domain->boxlo, domain->boxlo + 3, box.begin() + 6)))
-    return false;
-
-  std::vector<Member> mine;
-  std::vector<int> ranks;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!in_body(i)) continue;
-    Member one = Member();
-    one.rank = comm->me;
-    one.local = i;
-    one.owner = owner_tag[i];
-    one.id = body_id[i];
-    std::copy_n(site_body[i].data(), 3, one.arm_body);
-    domain->unmap(atom->x[i], atom->image[i], one.found);
-    if (owned[i] >= 0) {
-      one.natoms = body[owned[i]].natoms;
-      one.state = state[owned[i]];
-    }
-    mine.push_back(one);
-    ranks.push_back((int) (one.owner % comm->nprocs));
-  }
-  std::vector<Member> all = send_to_ranks(comm, mine, ranks);
-  bigint remapped = 0;
-  tagint deformed = 0;
-  const auto orders = orders_to(domain, box.data(), all, ranks, remapped, deformed);
-  for (const Order &order : send_to_ranks(comm, orders, ranks)) {
-    for (int k = 0; k < 3; ++k) atom->x[order.local][k] += order.way[k];
-    if (order.owns) std::copy_n(order.center, 3, state[owned[order.local]].center);
-  }
-  return tell_of_box(remapped, deformed);
-}
-
 /// True if any bodies were remapped.  Rank 0 warns.
-bool Bodies::tell_of_box(bigint remapped, tagint deformed) const
+static bool tell_of_box(LAMMPS *lmp, bigint remapped, tagint deformed)
 {
-  const bigint all = over_ranks(MPI_SUM, remapped, world);
-  const tagint any = over_ranks(MPI_MAX, deformed, world);
-  if (all && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: atoms of {} bodies were remapped with the box; the bodies keep "
-                   "their shapes and orientations, and their centers of mass are remapped",
-                   all);
-  if (any && comm->me == 0)
-    error->warning(
+  const bigint all = over_ranks(MPI_SUM, remapped, lmp->world);
+  const tagint any = over_ranks(MPI_MAX, deformed, lmp->world);
+  if (all && lmp->comm->me == 0)
+    lmp->error->warning(
+        FLERR,
+        "Fix gear/quat: atoms of {} bodies were remapped with the box; the bodies keep "
+        "their shapes and orientations, and their centers of mass are remapped",
+        all);
+  if (any && lmp->comm->me == 0)
+    lmp->error->warning(
         FLERR,
         "Fix gear/quat: body {} has another shape than in the last run, and a remap from "
         "the old box to the new one does not explain it; if several commands have "
         "changed the box, put run 0 between them",
         any);
   return all > 0;
+}
+
+bool GearQuat::remap_bodies(LAMMPS *lmp, Bodies &bodies, const Ownership &ownership)
+{
+  const Domain *domain = lmp->domain;
+  Atom *atom = lmp->atom;
+  const auto &box = ownership.box();
+  if (std::equal(domain->h, domain->h + 6, box.begin()) &&
+      std::equal(domain->boxlo, domain->boxlo + 3, box.begin() + 6))
+    return false;
+
+  std::vector<Member> mine;
+  std::vector<int> ranks;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!ownership.in_body(i)) continue;
+    Member one = Member();
+    one.rank = lmp->comm->me;
+    one.local = i;
+    one.owner = ownership.owner_tags()[i];
+    one.id = ownership.id_of(i);
+    std::copy_n(ownership.arm_of(i), 3, one.arm_body);
+    lmp->domain->unmap(atom->x[i], atom->image[i], one.found);
+    const int ibody = ownership.owned_by(i);
+    if (ibody >= 0) {
+      one.natoms = bodies.body_at(ibody).natoms;
+      one.state = bodies.state_of(ibody);
+    }
+    mine.push_back(one);
+    ranks.push_back((int) (one.owner % lmp->comm->nprocs));
+  }
+  std::vector<Member> all = send_to_ranks(lmp->comm, mine, ranks);
+  bigint remapped = 0;
+  tagint deformed = 0;
+  const auto orders = orders_to(domain, box.data(), all, ranks, remapped, deformed);
+  for (const Order &order : send_to_ranks(lmp->comm, orders, ranks)) {
+    for (int k = 0; k < 3; ++k) atom->x[order.local][k] += order.way[k];
+    if (order.owns)
+      std::copy_n(order.center, 3, bodies.change_state(ownership.owned_by(order.local)).center);
+  }
+  return tell_of_box(lmp, remapped, deformed);
 }

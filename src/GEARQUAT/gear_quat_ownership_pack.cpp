@@ -3,9 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The body store as streams of doubles: between ranks, to ghosts and back, and in restart files. */
+/* Bodies as streams of doubles: between ranks, to ghosts and back, and in restart files. */
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_ownership.h"
 
 #include <algorithm>
 #include <cstring>
@@ -17,60 +17,61 @@ using namespace GearQuat;
    one atom, with its body if it owns one, as doubles: exchange between ranks and restart files
 ------------------------------------------------------------------------- */
 
-int Bodies::pack_exchange(int i, double *buf) const
+int Ownership::pack_exchange(int i, double *buf) const
 {
   int m = 0;
   buf[m++] = ubuf(body_id[i]).d;
   if (body_id[i] == 0) return m;
   buf[m++] = ubuf(owner_tag[i]).d;
-  for (int k = 0; k < 3; ++k) buf[m++] = site_body[i][k];
-  m += extended.pack(i, buf + m);
+  for (int k = 0; k < 3; ++k) buf[m++] = arm[i][k];
+  m += records.pack(i, buf + m);
   const int ibody = owned[i];
-  buf[m++] = ubuf(ibody < 0 ? 0 : row_size).d;
+  buf[m++] = ubuf(ibody < 0 ? 0 : bodies.history_size()).d;
   if (ibody < 0) return m;
   return m + pack_moved(ibody, buf + m);
 }
 
 /// In a restart file a history may be of another scheme.
-int Bodies::unpack_exchange(int i, const double *buf)
+int Ownership::unpack_exchange(int i, const double *buf)
 {
   int m = 0;
   set_arrays(i);
   body_id[i] = (tagint) ubuf(buf[m++]).i;
   if (body_id[i] == 0) return m;
   owner_tag[i] = (tagint) ubuf(buf[m++]).i;
-  for (int k = 0; k < 3; ++k) site_body[i][k] = buf[m++];
-  m += extended.unpack(i, buf + m);
+  for (int k = 0; k < 3; ++k) arm[i][k] = buf[m++];
+  m += records.unpack(i, buf + m);
   const int size = (int) ubuf(buf[m++]).i;
   if (size == 0) return m;
   return m + unpack_moved(add_owned(i), buf + m, size);
 }
 
-int Bodies::pack_moved(int ibody, double *buf) const
+int Ownership::pack_moved(int ibody, double *buf) const
 {
-  int m = pack_body(body[ibody], state[ibody], buf);
-  std::memcpy(buf + m, &last[ibody], sizeof(Correction));
+  int m = pack_body(ibody, buf);
+  std::memcpy(buf + m, &bodies.last_of(ibody), sizeof(Correction));
   m += LAST_SIZE;
-  std::memcpy(buf + m, &load[ibody], sizeof(Load));
+  std::memcpy(buf + m, &bodies.load_of(ibody), sizeof(Load));
   m += LOAD_SIZE;
-  std::copy_n(history(ibody), row_size, buf + m);
-  return m + row_size;
+  std::copy_n(bodies.history(ibody), bodies.history_size(), buf + m);
+  return m + bodies.history_size();
 }
 
 /// size: of the history, which is passed over if it is of another scheme.
-int Bodies::unpack_moved(int ibody, const double *buf, int size)
+int Ownership::unpack_moved(int ibody, const double *buf, int size)
 {
-  int m = unpack_body(buf, body[ibody], state[ibody]);
-  std::memcpy(&last[ibody], buf + m, sizeof(Correction));
+  int m = unpack_body(buf, ibody);
+  std::memcpy(&bodies.change_last(ibody), buf + m, sizeof(Correction));
   m += LAST_SIZE;
-  std::memcpy(&load[ibody], buf + m, sizeof(Load));
+  std::memcpy(&bodies.change_load(ibody), buf + m, sizeof(Load));
   m += LOAD_SIZE;
-  if (size == row_size) std::copy_n(buf + m, size, history(ibody));
+  if (size == bodies.history_size()) std::copy_n(buf + m, size, bodies.history(ibody));
   return m + size;
 }
 
-int Bodies::pack_body(const Body &body, const BodyState &state, double *buf)
+int Ownership::pack_body(int ibody, double *buf) const
 {
+  const Body &body = bodies.body_at(ibody);
   int m = 0;
   buf[m++] = ubuf(body.id).d;
   buf[m++] = ubuf(body.natoms).d;
@@ -81,12 +82,13 @@ int Bodies::pack_body(const Body &body, const BodyState &state, double *buf)
   buf[m++] = body.extent;
   buf[m++] = body.rigid.mass;
   for (double moment : body.rigid.inertia) buf[m++] = moment;
-  std::memcpy(buf + m, &state, sizeof(BodyState));
+  std::memcpy(buf + m, &bodies.state_of(ibody), sizeof(BodyState));
   return BODY_SIZE;
 }
 
-int Bodies::unpack_body(const double *buf, Body &body, BodyState &state)
+int Ownership::unpack_body(const double *buf, int ibody)
 {
+  Body &body = bodies.change_body(ibody);
   int m = 0;
   body.id = (tagint) ubuf(buf[m++]).i;
   body.natoms = (tagint) ubuf(buf[m++]).i;
@@ -97,23 +99,23 @@ int Bodies::unpack_body(const double *buf, Body &body, BodyState &state)
   body.extent = buf[m++];
   body.rigid.mass = buf[m++];
   for (double &moment : body.rigid.inertia) moment = buf[m++];
-  std::memcpy(&state, buf + m, sizeof(BodyState));
+  std::memcpy(&bodies.change_state(ibody), buf + m, sizeof(BodyState));
   return BODY_SIZE;
 }
 
-int Bodies::packed_size(int i) const
+int Ownership::packed_size(int i) const
 {
   if (body_id[i] == 0) return 1;
-  const int site = SITE_SIZE + extended.packed_size(i);
+  const int site = ATOM_SIZE + records.packed_size(i);
   return owned[i] < 0 ? site : site + moved_size();
 }
 
-int Bodies::max_exchange() const
+int Ownership::max_exchange() const
 {
-  return SITE_SIZE + Extended::RECORD_SIZE + moved_size();
+  return ATOM_SIZE + Extended::RECORD_SIZE + moved_size();
 }
 
-int Bodies::max_forward() const
+int Ownership::max_forward() const
 {
   return 2 + BODY_SIZE;
 }
@@ -122,59 +124,57 @@ int Bodies::max_forward() const
    ghost bodies: from owner atoms to their ghosts and back
 ------------------------------------------------------------------------- */
 
-int Bodies::pack_forward(int n, const int *list, double *buf)
+int Ownership::pack_forward(int n, const int *list, double *buf)
 {
   int m = 0;
-  if (forward == Forward::LABELS) {
+  if (message == Message::LABELS) {
     for (int i = 0; i < n; ++i) buf[m++] = labels[list[i]];
     return m;
   }
   for (int i = 0; i < n; ++i) {
     const int ibody = shared[list[i]];
-    if (forward == Forward::GHOSTS) {
+    if (message == Message::GHOSTS) {
       buf[m++] = ubuf(body_id[list[i]]).d;
       buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
-      if (ibody >= 0) m += pack_body(body[ibody], state[ibody], buf + m);
+      if (ibody >= 0) m += pack_body(ibody, buf + m);
     } else if (ibody < 0) {
       continue;
-    } else if (forward == Forward::STATES) {
-      std::memcpy(buf + m, &state[ibody], sizeof(BodyState));
+    } else if (message == Message::STATES) {
+      std::memcpy(buf + m, &bodies.state_of(ibody), sizeof(BodyState));
       m += STATE_SIZE;
     } else {
-      std::memcpy(buf + m, &load[ibody], sizeof(Load));
+      std::memcpy(buf + m, &loads[ibody], sizeof(Load));
       m += LOAD_SIZE;
     }
   }
   return m;
 }
 
-void Bodies::unpack_forward(int n, int first, const double *buf)
+void Ownership::unpack_forward(int n, int first, const double *buf)
 {
   int m = 0;
-  if (forward == Forward::LABELS) {
+  if (message == Message::LABELS) {
     std::copy_n(buf, n, labels + first);
     return;
   }
   for (int i = first; i < first + n; ++i) {
-    if (forward == Forward::GHOSTS) {
+    if (message == Message::GHOSTS) {
       body_id[i] = (tagint) ubuf(buf[m++]).i;
       if (ubuf(buf[m++]).i == 0) continue;
-      owned[i] = shared[i] = (int) body.size();
-      body.emplace_back();
-      state.emplace_back();
-      m += unpack_body(buf + m, body.back(), state.back());
-    } else if (shared[i] >= 0 && forward == Forward::STATES) {
-      std::memcpy(&state[shared[i]], buf + m, sizeof(BodyState));
+      owned[i] = shared[i] = bodies.add_ghost();
+      m += unpack_body(buf + m, owned[i]);
+    } else if (shared[i] >= 0 && message == Message::STATES) {
+      std::memcpy(&bodies.change_state(shared[i]), buf + m, sizeof(BodyState));
       m += STATE_SIZE;
     } else if (shared[i] >= 0) {
-      std::memcpy(&load[shared[i]], buf + m, sizeof(Load));
+      std::memcpy(&loads[shared[i]], buf + m, sizeof(Load));
       m += LOAD_SIZE;
     }
   }
 }
 
 /// Labels of atoms, while there are any, or else loads.
-int Bodies::pack_reverse(int n, int first, double *buf)
+int Ownership::pack_reverse(int n, int first, double *buf)
 {
   if (labels) {
     std::copy_n(labels + first, n, buf);
@@ -183,14 +183,14 @@ int Bodies::pack_reverse(int n, int first, double *buf)
   int m = 0;
   for (int i = first; i < first + n; ++i) {
     if (shared[i] < 0) continue;
-    std::memcpy(buf + m, &load[shared[i]], sizeof(Load));
+    std::memcpy(buf + m, &loads[shared[i]], sizeof(Load));
     m += LOAD_SIZE;
   }
   return m;
 }
 
 /// Both are added up.
-void Bodies::unpack_reverse(int n, const int *list, const double *buf)
+void Ownership::unpack_reverse(int n, const int *list, const double *buf)
 {
   if (labels) {
     for (int i = 0; i < n; ++i) labels[list[i]] += buf[i];
@@ -200,7 +200,7 @@ void Bodies::unpack_reverse(int n, const int *list, const double *buf)
   for (int i = 0; i < n; ++i) {
     const int ibody = shared[list[i]];
     if (ibody < 0) continue;
-    for (int k = 0; k < 3; ++k) load[ibody].force[k] += buf[m++];
-    for (int k = 0; k < 3; ++k) load[ibody].torque_space[k] += buf[m++];
+    for (int k = 0; k < 3; ++k) loads[ibody].force[k] += buf[m++];
+    for (int k = 0; k < 3; ++k) loads[ibody].torque_space[k] += buf[m++];
   }
 }

@@ -3,14 +3,14 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Body store, large bodies: those whose sites cannot all see their owner atom.
+/* Ownership of large bodies: those whose sites cannot all see their owner atom.
 
    Before a run, and when they become more or fewer, their owners give them to all ranks, with their
    histories.  From then on every rank predicts and corrects them, from the same loads and so to the
    same bits, and keeps them while atoms are exchanged: the one message of a step is the sum of the
    loads. */
 
-#include "gear_quat_bodies.h"
+#include "gear_quat_ownership.h"
 
 #include "gear_quat_ranks.h"
 
@@ -30,55 +30,55 @@ static double ghost_cutoff(const Comm *comm, const Domain *domain)
   return domain->triclinic ? cut[2] / domain->h_inv[2] : cut[2];
 }
 
-void Bodies::choose_large()
+void Ownership::choose_large()
 {
-  drop_ghosts();
+  drop_copies();
   packed_large.clear();
   const double cutoff = ghost_cutoff(comm, domain);
-  for (int ibody = 0; ibody < nown; ++ibody) {
-    Body &one = body[ibody];
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    Body &one = bodies.change_body(ibody);
     one.large = comm->nprocs > 1 && (one.large || one.extent > cutoff);
   }
   count_large();
 }
 
-void Bodies::count_large()
+void Ownership::count_large()
 {
   bigint here = 0;
-  for (int ibody = 0; ibody < nown; ++ibody) here += body[ibody].large;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).large;
   nlarge = over_ranks(MPI_SUM, here, world);
 }
 
 /// A site does not see its owner atom, though that is there: from here on its body is large.
-void Bodies::promote()
+void Ownership::promote()
 {
   std::sort(unseen.begin(), unseen.end());
   unseen.erase(std::unique(unseen.begin(), unseen.end()), unseen.end());
   const std::vector<tagint> all = gather_sorted(unseen, world);
-  for (int ibody = 0; ibody < nown; ++ibody)
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     if (std::binary_search(all.begin(), all.end(), atom->tag[owner_atom[ibody]]))
-      body[ibody].large = 1;
+      bodies.change_body(ibody).large = 1;
   count_large();
 }
 
 /// Before atoms are exchanged: the owner may be another rank afterwards.
-void Bodies::pack_large()
+void Ownership::pack_large()
 {
-  packed_large.resize(large.size() * large_size());
+  packed_large.resize(bodies.large.size() * large_size());
   double *buf = packed_large.data();
-  for (const Large &one : large) {
-    buf[0] = ubuf(one.owner).d;
-    pack_moved(one.body, buf + 1);
+  for (size_t n = 0; n < bodies.large.size(); ++n) {
+    buf[0] = ubuf(large_owners[n]).d;
+    pack_moved(bodies.large[n], buf + 1);
     buf += large_size();
   }
 }
 
 /// The same from their owners.  Collective.
-void Bodies::gather_large()
+void Ownership::gather_large()
 {
   std::vector<double> mine;
-  for (int ibody = 0; ibody < nown; ++ibody) {
-    if (!body[ibody].large) continue;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    if (!bodies.body_at(ibody).large) continue;
     mine.resize(mine.size() + large_size());
     double *buf = &mine[mine.size() - large_size()];
     buf[0] = ubuf(atom->tag[owner_atom[ibody]]).d;
@@ -88,56 +88,51 @@ void Bodies::gather_large()
 }
 
 /// Large bodies of other ranks, behind the owned ones.
-void Bodies::share_large()
+void Ownership::share_large()
 {
   const int size = large_size();
   if ((bigint) packed_large.size() != nlarge * size) gather_large();
+  std::map<tagint, int> found;    // by the atom IDs of their owners
   for (size_t m = 0; m < packed_large.size(); m += size) {
     const tagint tag = (tagint) ubuf(packed_large[m]).i;
     const int owner = atom->map(tag);
     int ibody = owner >= 0 && owner < atom->nlocal ? owned[owner] : -1;
     if (ibody < 0) {
-      ibody = nmove++;
-      body.emplace_back();
-      state.emplace_back();
-      last.emplace_back();
-      load.emplace_back();
-      rows.resize((size_t) nmove * row_size);
-      unpack_moved(ibody, &packed_large[m + 1], row_size);
+      ibody = bodies.add_copy();
+      unpack_moved(ibody, &packed_large[m + 1], bodies.history_size());
     }
-    large.push_back({tag, ibody});
+    found[tag] = ibody;
   }
-  std::sort(large.begin(), large.end(), [](const Large &a, const Large &b) {
-    return a.owner < b.owner;
-  });
+  for (const auto &one : found) {
+    large_owners.push_back(one.first);
+    bodies.large.push_back(one.second);
+  }
 }
 
 /// The body of an owned atom, -1 if that is not to be seen from here.
-int Bodies::body_of(int i) const
+int Ownership::find_body(int i) const
 {
-  const auto before = [](const Large &one, tagint tag) {
-    return one.owner < tag;
-  };
-  const auto found = std::lower_bound(large.begin(), large.end(), owner_tag[i], before);
-  if (found != large.end() && found->owner == owner_tag[i]) return found->body;
+  const auto found = std::lower_bound(large_owners.begin(), large_owners.end(), owner_tag[i]);
+  if (found != large_owners.end() && *found == owner_tag[i])
+    return bodies.large[found - large_owners.begin()];
   const int owner = atom->map(owner_tag[i]);
   return owner < 0 ? -1 : owned[owner];
 }
 
-void Bodies::sum_large_loads()
+void Ownership::sum_large(std::vector<Load> &column)
 {
-  parts.resize(large.size() * LOAD_SIZE);
+  parts.resize(bodies.large.size() * LOAD_SIZE);
   sums.resize(parts.size());
   double *part = parts.data();
-  for (const Large &one : large) {
-    part = std::copy_n(load[one.body].force, 3, part);
-    part = std::copy_n(load[one.body].torque_space, 3, part);
+  for (const int ibody : bodies.large) {
+    part = std::copy_n(column[ibody].force, 3, part);
+    part = std::copy_n(column[ibody].torque_space, 3, part);
   }
   MPI_Allreduce(parts.data(), sums.data(), (int) parts.size(), MPI_DOUBLE, MPI_SUM, world);
   const double *sum = sums.data();
-  for (const Large &one : large) {
-    std::copy_n(sum, 3, load[one.body].force);
-    std::copy_n(sum + 3, 3, load[one.body].torque_space);
+  for (const int ibody : bodies.large) {
+    std::copy_n(sum, 3, column[ibody].force);
+    std::copy_n(sum + 3, 3, column[ibody].torque_space);
     sum += LOAD_SIZE;
   }
 }

@@ -1,0 +1,420 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_ownership.h"
+
+#include "gear_quat_assembly.h"
+#include "gear_quat_compare.h"
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ---------------------------------------------------------------------- */
+
+Ownership::Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies, const Scheme &scheme) :
+    Pointers(lmp), fix(fix), bodies(bodies), records(lmp, scheme)
+{
+  if (atom->map_style == Atom::MAP_NONE)
+    error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
+  if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
+  grow_arrays(atom->nmax);
+  clear();
+}
+
+double Ownership::mass_of(int i) const
+{
+  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+/// On a single rank ghosts are images of own atoms, on several their owners tell them.
+tagint Ownership::id_of(int i) const
+{
+  return body_id[i < atom->nlocal ? i : atom->map(atom->tag[i])];
+}
+
+/* ----------------------------------------------------------------------
+   life cycle
+------------------------------------------------------------------------- */
+
+void Ownership::clear(bool with_extended)
+{
+  packed_large.clear();
+  large_owners.clear();
+  bodies.clear();
+  owner_atom.clear();
+  index.clear();
+  records.reset(with_extended, (int) owned.size());
+  for (size_t i = 0; i < owned.size(); ++i) set_arrays(i);
+}
+
+void Ownership::create(const std::vector<tagint> &ids, const GivenBodies &given)
+{
+  clear();
+  add(ids, given, false);
+}
+
+void Ownership::count()
+{
+  bigint here[2] = {bodies.nowned(), 0};
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here[1] += bodies.body_at(ibody).natoms;
+  const auto all = over_ranks(MPI_SUM, here, world);
+  bodies.set_number(all[0]);
+  natoms = all[1];
+  note_box();
+}
+
+void Ownership::note_box()
+{
+  last_box.assign(domain->h, domain->h + 6);
+  last_box.insert(last_box.end(), domain->boxlo, domain->boxlo + 3);
+}
+
+void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh)
+{
+  std::vector<int> atoms;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (ids[i] != 0) atoms.push_back(i);
+  records.refuse(atoms);
+  const bool any_extended = records.any(atoms);
+  if (any_extended && !records.has_records()) records.reset(true, (int) owned.size());
+
+  const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids);
+  note_scratch(assembly.memory_usage() + ids.capacity() * sizeof(tagint));
+  assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
+    body_id[i] = one.body.id;
+    owner_tag[i] = one.owner;
+    std::copy_n(arm_body, 3, arm[i].begin());
+    if (any_extended) records.attach(i, mass_of(i), one.state.q);
+  });
+  for (const auto &one : assembly.bodies()) {
+    if (one.owner_rank != comm->me) continue;
+    const int ibody = add_owned(one.local);
+    bodies.change_body(ibody) = one.body;
+    bodies.change_body(ibody).fresh = fresh;
+    bodies.change_state(ibody) = one.state;
+  }
+  count();
+}
+
+void Ownership::recreate()
+{
+  create(std::vector<tagint>(body_id.begin(), body_id.begin() + atom->nlocal), GivenBodies());
+  choose_large();
+}
+
+Ownership::Resumed Ownership::resume(const std::vector<const double *> &packed, bool with_extended,
+                                     int group)
+{
+  const std::vector<tagint> ids(body_id.begin(),
+                                body_id.begin() + atom->nlocal);    // as the command has them
+  const bigint expected = bodies.number();
+  clear(with_extended);
+  int here[2] = {0, 0};    // atoms that are in a body only here, only in the file
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (packed[i]) unpack_exchange(i, packed[i]);
+    if (group && !(atom->mask[i] & group)) continue;
+    if (body_id[i] == 0 && ids[i] != 0) here[0] = 1;
+    if (body_id[i] != 0 && ids[i] == 0) here[1] = 1;
+    body_id[i] = ids[i];
+    if (owned[i] >= 0) bodies.change_body(owned[i]).id = ids[i];
+  }
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (body_id[i] != 0) continue;    // left out, or in no body
+    if (owned[i] >= 0) remove_owned(owned[i]);
+    set_arrays(i);
+  }
+  count();
+  const auto any = over_ranks(MPI_MAX, here, world);
+  const bool whole = !count_atoms(lmp, bodies, *this).broken;
+  if (!any[0] && whole && (group || bodies.number() == expected))
+    return any[1] ? Resumed::FEWER : Resumed::ALL;
+  clear();
+  return Resumed::NONE;
+}
+
+void Ownership::refuse_atoms() const
+{
+  std::vector<int> atoms;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (in_body(i)) atoms.push_back(i);
+  records.refuse(atoms);
+}
+
+void Ownership::check_whole()
+{
+  const Comparison found = count_atoms(lmp, bodies, *this);
+  if (found.broken) {
+    const std::string had = found.had
+        ? fmt::format("has {} of its {} atoms left", found.left, found.had)
+        : fmt::format("has {} of its atoms left, without its owner atom", found.left);
+    error->all(FLERR,
+               "Fix gear/quat: body {} {}; a body must be removed as a whole, and no atom "
+               "of it may leave the box through a face that is not periodic",
+               found.broken, had);
+  }
+  follow_atom_ids();
+}
+
+/// Owners may have got other atom IDs (reset_atoms id, delete_atoms compress yes): told to their
+/// sites.
+void Ownership::follow_atom_ids()
+{
+  std::vector<tagint> changed;    // before and now
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const int owner = owner_atom[ibody];
+    if (owner_tag[owner] != atom->tag[owner])
+      changed.insert(changed.end(), {owner_tag[owner], atom->tag[owner]});
+  }
+  const std::vector<tagint> all = gather(changed, world);
+  std::unordered_map<tagint, tagint> now;
+  for (size_t n = 0; n < all.size(); n += 2) now[all[n]] = all[n + 1];
+  for (int i = 0; i < atom->nlocal && !now.empty(); ++i) {
+    const auto found = now.find(owner_tag[i]);
+    if (in_body(i) && found != now.end()) owner_tag[i] = found->second;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   ownership
+------------------------------------------------------------------------- */
+
+void Ownership::drop_copies()
+{
+  if (!bodies.large.empty()) pack_large();
+  bodies.drop_copies();
+  large_owners.clear();
+}
+
+int Ownership::add_owned(int atom)
+{
+  drop_copies();
+  const int ibody = bodies.add_owned();
+  owner_atom.push_back(atom);
+  owned[atom] = ibody;
+  return ibody;
+}
+
+void Ownership::remove_owned(int ibody)
+{
+  drop_copies();
+  owned[owner_atom[ibody]] = -1;
+  bodies.remove_owned(ibody);
+  const int end = bodies.nowned();
+  if (ibody != end) {
+    owner_atom[ibody] = owner_atom[end];
+    owned[owner_atom[ibody]] = ibody;
+  }
+  owner_atom.resize(end);
+}
+
+void Ownership::update()
+{
+  do {
+    drop_copies();
+    share_large();
+    if (comm->nprocs > 1) {
+      std::fill(owned.begin() + atom->nlocal, owned.end(), -1);
+      std::fill(shared.begin(), shared.end(), -1);
+      if (nlarge < bodies.number()) {
+        share_owners();
+        tell_ghosts();
+      }
+    }
+    bodies.list();
+    find_bodies();
+  } while (!take_stock());
+}
+
+/// Owner atoms of bodies that are not large learn whether sites on other ranks look for them.
+void Ownership::share_owners()
+{
+  std::vector<double> sought(atom->nlocal + atom->nghost, 0.0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int owner = in_body(i) ? atom->map(owner_tag[i]) : -1;
+    if (owner >= atom->nlocal) sought[owner] = 1.0;
+  }
+  labels = sought.data();
+  comm->reverse_comm(fix, 1);
+  labels = nullptr;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (sought[i] > 0.0 && owned[i] >= 0 && !bodies.is_large(owned[i])) shared[i] = owned[i];
+}
+
+/// The IDs of their bodies for ghost atoms, and the bodies themselves for ghosts of shared owner
+/// atoms.
+void Ownership::tell_ghosts()
+{
+  message = Message::GHOSTS;
+  comm->forward_comm(fix);
+}
+
+/// The bodies of all owned atoms.
+void Ownership::find_bodies()
+{
+  unseen.clear();
+  index.assign(atom->nlocal, -1);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!in_body(i)) continue;
+    index[i] = find_body(i);
+    if (index[i] < 0) unseen.push_back(owner_tag[i]);
+  }
+}
+
+/// Count what all ranks have.  False if some bodies have become large: all is to be done again.
+bool Ownership::take_stock()
+{
+  const bigint lost = (bigint) unseen.size();
+  bigint here[7] = {bodies.nowned(), 0, 0, lost, outside_atoms, 0, 0};
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    here[1] += bodies.body_at(ibody).natoms;
+    here[6] += bodies.is_large(ibody);
+  }
+  for (int i = 0; i < atom->nlocal; ++i) {
+    here[2] += in_body(i);
+    here[5] += index[i] >= bodies.nmoved();
+  }
+  const auto all = over_ranks(MPI_SUM, here, world);
+  bodies.set_number(all[0]);
+  natoms = all[1];
+  any_ghosts = all[5] > 0;
+  nlarge = all[6];
+  if (all[1] != all[2] || all[3] > 0) check_whole();
+  if (nlarge != (bigint) bodies.large.size()) return false;    // one was removed
+  if (all[3] > 0) {
+    promote();
+    return false;
+  }
+  if (all[4] > 0 && !warned_outside) {
+    warned_outside = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat: {} atoms of the fix group were created after the fix was "
+                     "defined; they belong to no body and this fix does not move them",
+                     all[4]);
+  }
+  return true;
+}
+
+std::vector<tagint> Ownership::all_ids() const
+{
+  std::vector<tagint> mine;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) mine.push_back(bodies.body_at(ibody).id);
+  return gather_sorted(mine, world);
+}
+
+bool Ownership::change_masks(const std::map<tagint, Mask> &masks)
+{
+  int changed = 0;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    Body &body = bodies.change_body(ibody);
+    const auto place = masks.find(body.id);
+    const Mask wanted = place == masks.end() ? 0 : place->second;
+    if (body.off != wanted) changed = 1;
+    body.off = wanted;
+  }
+  return over_ranks(MPI_MAX, changed, world) != 0;
+}
+
+void Ownership::spread_labels(std::vector<double> &label)
+{
+  labels = label.data();
+  message = Message::LABELS;
+  comm->forward_comm(fix, 1);
+  labels = nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+void Ownership::spread_states()
+{
+  bodies.update_frames(bodies.tops);
+  spread_moved();
+}
+
+void Ownership::spread_moved()
+{
+  if (!any_ghosts) return;
+  message = Message::STATES;
+  comm->forward_comm(fix, STATE_SIZE);
+  bodies.update_frames(bodies.ghost_tops);
+}
+
+void Ownership::sum(std::vector<Load> &column)
+{
+  loads = column.data();
+  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
+  if (!bodies.large.empty()) sum_large(column);
+}
+
+void Ownership::spread(std::vector<Load> &column)
+{
+  if (!any_ghosts) return;
+  loads = column.data();
+  message = Message::LOADS;
+  comm->forward_comm(fix, LOAD_SIZE);
+}
+
+/* ----------------------------------------------------------------------
+   per-atom arrays
+------------------------------------------------------------------------- */
+
+void Ownership::grow_arrays(int n)
+{
+  body_id.resize(n);
+  owner_tag.resize(n);
+  owned.resize(n, -1);
+  shared.resize(n, -1);
+  arm.resize(n);
+  records.grow(n);
+}
+
+void Ownership::set_arrays(int i)
+{
+  body_id[i] = owner_tag[i] = 0;
+  owned[i] = shared[i] = -1;
+  arm[i] = {};
+  records.set(i);
+}
+
+void Ownership::copy_arrays(int from, int to, int delflag)
+{
+  if (delflag && owned[to] >= 0) remove_owned(owned[to]);
+  body_id[to] = body_id[from];
+  owner_tag[to] = owner_tag[from];
+  owned[to] = owned[from];
+  arm[to] = arm[from];
+  records.copy(from, to);
+  if (owned[to] >= 0) owner_atom[owned[to]] = to;
+}
+
+double Ownership::present_memory() const
+{
+  const double per_atom = 2 * sizeof(tagint) + 2 * sizeof(int) + 3 * sizeof(double);
+  return bodies.memory_usage() + owned.capacity() * per_atom +
+      (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
+      large_owners.capacity() * sizeof(tagint) +
+      (owner_atom.capacity() + index.capacity()) * sizeof(int) + records.memory_usage();
+}
+
+void Ownership::note_scratch(double bytes)
+{
+  peak = std::max(peak, present_memory() + bytes);
+}
+
+double Ownership::memory_usage() const
+{
+  return std::max(peak, present_memory());
+}

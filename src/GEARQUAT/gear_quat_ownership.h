@@ -1,0 +1,215 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Which atoms form a body, and which rank owns it: fills the store of bodies, and carries messages
+   about bodies between ranks.
+
+   A body belongs to the rank that owns its owner atom and migrates with it.  Ranks whose atoms
+   belong to it have a ghost body: a copy of pose and velocities, found through the ghost of the
+   owner atom.  Few bodies lie across the border of two ranks, so only the owner atoms of these are
+   shared with their ghosts.
+
+   A body that reaches further than ghost atoms are seen is large: every rank has it, with its
+   history, and moves it as its owner does; its loads are summed over all ranks.  Of all other
+   bodies only the owner has the history.
+
+   The fix calls update() after every exchange of atoms, and spread_states() whenever states have
+   changed, or spread_moved() if their frames were written with them. */
+
+#ifndef LMP_GEAR_QUAT_OWNERSHIP_H
+#define LMP_GEAR_QUAT_OWNERSHIP_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_extended.h"
+#include "gear_quat_infile.h"
+#include "gear_quat_sections.h"
+#include "pointers.h"
+
+#include <array>
+#include <map>
+
+namespace LAMMPS_NS {
+class Fix;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class Ownership : protected Pointers {
+ public:
+  Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies, const Scheme &scheme);
+
+  // atoms
+
+  bool in_body(int atom) const { return body_id[atom] != 0; }
+  /// The user's ID of an atom's body, of ghosts too; 0 for none.
+  tagint id_of(int atom) const;
+  /// The index of an owned atom's body, as of update(); -1 for none.
+  int body_of(int atom) const { return atom < (int) index.size() ? index[atom] : -1; }
+  /// The index of the body that an owned atom is the owner of, -1 for none.
+  int owned_by(int atom) const { return owned[atom]; }
+  /// For each atom the atom ID of the owner of its body, 0 for none; owned atoms come first.
+  const std::vector<tagint> &owner_tags() const { return owner_tag; }
+  /// From the center of mass of its body, along the principal axes.
+  const double *arm_of(int atom) const { return arm[atom].data(); }
+  double mass_of(int atom) const;
+  /// An atom of the fix group was created or, with -1, put into a body: it belongs to no body yet.
+  void note_outside_atom(int change) { outside_atoms += change; }
+  /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
+  void spread_labels(std::vector<double> &label);
+  /// Ghost atoms learn the IDs of their bodies if all bodies are large.  Collective.
+  void tell_ids_to_ghosts()
+  {
+    if (nlarge == bodies.number()) tell_ghosts();
+  }
+
+  /// How atoms that are more than points sit in their bodies.
+  Extended &extended() { return records; }
+  const Extended &extended() const { return records; }
+
+  // life cycle, all collective
+
+  /// Build all bodies anew from the atoms; ids: body of every owned atom, 0 for none.
+  void create(const std::vector<tagint> &ids, const GivenBodies &given);
+  /// Build more bodies, of atoms that are in none.  fresh: in a step, without histories.
+  void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
+  /// Build the same bodies anew from the atoms' present masses, positions and velocities.
+  void recreate();
+  /// Bodies as a restart file has them, in place of those that the command has just made of the
+  /// same atoms; the command numbers them and may leave some out.  NONE, and no bodies are left, if
+  /// they differ otherwise.  packed: of every owned atom, or null; with_extended: there are records
+  /// of atoms that are more than points; group: atoms outside of it are in what bodies the file
+  /// says, 0 for none.
+  enum class Resumed { ALL, FEWER, NONE };
+  Resumed resume(const std::vector<const double *> &packed, bool with_extended, int group);
+  /// Ends the run if an atom of a body is of a kind that cannot be followed.
+  void refuse_atoms() const;
+  /// Before a run: bodies that reach further than ghost atoms are seen are large.
+  void choose_large();
+  /// Find the body of every atom after atoms were exchanged, created or removed; one that not all
+  /// of its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
+  void update();
+  /// Ends the run if a body has lost some of its atoms, and follows changed atom IDs; needs no
+  /// ghosts.
+  void check_whole();
+  /// The IDs of all bodies, sorted, on all ranks.  Collective.
+  std::vector<tagint> all_ids() const;
+  /// Gives these masks, by IDs, to all bodies.  True if one had another; collective.
+  bool change_masks(const std::map<tagint, Mask> &masks);
+  /// Atoms in bodies, and large bodies, on all ranks.
+  bigint number_of_atoms() const { return natoms; }
+  bigint number_of_large() const { return nlarge; }
+  /// The box that the positions of bodies belong to, as Domain::h and boxlo.
+  const std::vector<double> &box() const { return last_box; }
+  /// The present one.
+  void note_box();
+
+  // a step
+
+  void spread_states();
+  /// The same where the frames of all bodies that this rank moves are those of their states.
+  void spread_moved();
+  /// A load for each body, of this rank's atoms: becomes the sum over all ranks for bodies that
+  /// this rank moves.
+  void sum(std::vector<Load> &loads);
+  /// Ghost bodies receive the loads of their owners.
+  void spread(std::vector<Load> &loads);
+
+  // what the fix forwards
+
+  void grow_arrays(int nmax);
+  void copy_arrays(int from, int to, int delflag);
+  void set_arrays(int atom);
+  int packed_size(int atom) const;
+  int pack_exchange(int atom, double *buf) const;
+  int unpack_exchange(int atom, const double *buf);
+  /// Of pack_exchange().
+  static AtomParts packed_parts()
+  {
+    return {ATOM_SIZE - 1, Extended::RECORD_SIZE, BODY_SIZE - STATE_SIZE, STATE_SIZE, LAST_SIZE,
+            LOAD_SIZE};
+  }
+  int pack_forward(int n, const int *list, double *buf);
+  void unpack_forward(int n, int first, const double *buf);
+  int pack_reverse(int n, int first, double *buf);
+  void unpack_reverse(int n, const int *list, const double *buf);
+  int max_exchange() const;
+  int max_forward() const;
+  /// The most that was needed at a time, with the store; see note_scratch().
+  double memory_usage() const;
+  /// So many bytes more are allocated now, and will be freed before the next step.
+  void note_scratch(double bytes);
+
+ private:
+  Fix *fix;
+  Bodies &bodies;
+  Extended records;
+
+  bigint natoms = 0, nlarge = 0;    ///< on all ranks
+  int outside_atoms = 0;            ///< created since the fix was defined, in no body
+  bool warned_outside = false;      ///< that there are such atoms
+  bool any_ghosts = false;          ///< an atom, on any rank, has its body on another one, which
+                                    ///< is not large; changes only when atoms are exchanged
+  std::vector<double> last_box;
+  std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
+  std::vector<int> index;         ///< see body_of()
+  std::vector<tagint> unseen;     ///< owner atoms that atoms here do not see
+  double peak = 0.0;              ///< bytes
+
+  std::vector<tagint> large_owners;    ///< atom IDs of the owners of bodies.large, sorted
+  std::vector<double> packed_large;    ///< large bodies while atoms are exchanged
+  std::vector<double> parts, sums;     ///< their loads: of the atoms here, and of all
+
+  // per atom, ghosts too
+
+  std::vector<tagint> body_id;      ///< the user's ID of its body, 0 for none
+  std::vector<tagint> owner_tag;    ///< atom ID of the owner of its body
+  std::vector<int> owned;           ///< the body it owns, or -1
+  std::vector<int> shared;    ///< the same if atoms on other ranks are in that body, otherwise -1
+  std::vector<std::array<double, 3>> arm;    ///< see arm_of()
+
+  /// packed: IDs of body and owner, arm, size of history; behind the arm the record of an atom that
+  /// is more than a point
+  static constexpr int ATOM_SIZE = 6;
+  static constexpr int STATE_SIZE = sizeof(BodyState) / sizeof(double);
+  static constexpr int LOAD_SIZE = sizeof(Load) / sizeof(double);
+  static constexpr int BODY_SIZE = 11 + STATE_SIZE;
+  static constexpr int LAST_SIZE = sizeof(Correction) / sizeof(double);
+
+  enum class Message { GHOSTS, STATES, LOADS, LABELS };
+  Message message = Message::STATES;    ///< what communication with ghosts carries
+  double *labels = nullptr;             ///< of all atoms, while these are sent
+  Load *loads = nullptr;                ///< of all bodies, while these are sent
+
+  double present_memory() const;
+  void clear(bool with_extended = false);
+  void count();
+  void follow_atom_ids();
+  void drop_copies();
+  void tell_ghosts();
+  void share_owners();
+  int add_owned(int atom);
+  void remove_owned(int ibody);
+  int find_body(int atom) const;
+  void find_bodies();
+  bool take_stock();
+  void pack_large();
+  void gather_large();
+  void share_large();
+  void promote();
+  void count_large();
+  void sum_large(std::vector<Load> &column);
+
+  int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + bodies.history_size(); }
+  /// of a large body: atom ID of its owner atom, and what an owner has
+  int large_size() const { return 1 + moved_size(); }
+  int pack_moved(int ibody, double *buf) const;
+  int unpack_moved(int ibody, const double *buf, int size);
+  int pack_body(int ibody, double *buf) const;
+  int unpack_body(const double *buf, int ibody);
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

@@ -1,0 +1,382 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_sites.h"
+
+#include "gear_quat_images.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "force.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// atoms count as moved by the user when they are off by more than rounding of coordinates and
+// velocities, relative to box and body
+
+static constexpr double SAME = 1.0e-11;
+
+/* ---------------------------------------------------------------------- */
+
+Sites::Sites(LAMMPS *lmp, Bodies &bodies, Ownership &ownership) :
+    Pointers(lmp), bodies(bodies), ownership(ownership)
+{
+}
+
+/* ----------------------------------------------------------------------
+   the list
+------------------------------------------------------------------------- */
+
+void Sites::list()
+{
+  ++nplacements;
+  sort();
+  image.resize(sites.size());
+  any_images = false;
+  for (size_t n = 0; n < sites.size(); ++n) {
+    find_image(sites[n], image[n]);
+    any_images = any_images || image[n] != std::array<int, 3>{0, 0, 0};
+  }
+  Extended &extended = ownership.extended();
+  extended.sites.clear();
+  if (extended.has_records())
+    for (const Site &site : sites) extended.list(site.atom, site.body);
+}
+
+/// Counts the sites of each body, then puts each where it belongs.
+void Sites::sort()
+{
+  const int n = bodies.nhere();
+  const auto is_centered = [this](int i) {
+    const double *arm = ownership.arm_of(i);
+    return dot3(arm, arm) == 0.0;
+  };
+  first.assign(n + 1, 0);
+  first_arm.assign(n, 0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int ibody = ownership.body_of(i);
+    if (ibody < 0) continue;
+    ++first[ibody + 1];
+    first_arm[ibody] += is_centered(i);
+  }
+  for (int ibody = 0; ibody < n; ++ibody) {
+    first[ibody + 1] += first[ibody];
+    first_arm[ibody] += first[ibody];
+  }
+  if ((size_t) first[n] > sites.capacity()) sites = std::vector<Site>();    // not both
+  sites.resize(first[n]);
+  std::vector<int> next(first.begin(), first.end() - 1), next_arm(first_arm);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int ibody = ownership.body_of(i);
+    if (ibody < 0) continue;
+    const double *arm = ownership.arm_of(i);
+    sites[is_centered(i) ? next[ibody]++ : next_arm[ibody]++] = {
+        i, ibody, {arm[0], arm[1], arm[2]}};
+  }
+}
+
+void Sites::find_image(const Site &site, std::array<int, 3> &periods) const
+{
+  const imageint flags = atom->image[site.atom];
+  periods = {(int) (flags & IMGMASK) - IMGMAX, (int) (flags >> IMGBITS & IMGMASK) - IMGMAX,
+             (int) (flags >> IMG2BITS) - IMGMAX};
+  double away[3] = {0.0, 0.0, 0.0}, arm[3], expected[3], turns[3];
+  domain->unmap(away, flags);
+  to_space(bodies.axes(site.body), site.arm_body, arm);
+  const double *center = bodies.state_of(site.body).center, *x = atom->x[site.atom];
+  for (int k = 0; k < 3; ++k) expected[k] = center[k] + arm[k] - x[k];
+  if (image_flag_overflow(domain, expected, away, turns))
+    for (int k = 0; k < 3; ++k) periods[k] += (int) turns[k];
+}
+
+/* ----------------------------------------------------------------------
+   positions and velocities
+------------------------------------------------------------------------- */
+
+/// The way through so many periods, with the operations of Domain::unmap(): h: as Domain::h.
+template <bool TILTED> static void through(const double *h, const int *periods, double *way)
+{
+  for (int k = 0; k < 3; ++k) way[k] = h[k] * periods[k];
+  if (!TILTED) return;
+  way[0] = way[0] + h[5] * periods[1] + h[4] * periods[2];
+  way[1] = way[1] + h[3] * periods[2];
+}
+
+template <bool POSITIONS, bool VELOCITIES, Sites::Images IMAGES> void Sites::place_points()
+{
+  const double *h = domain->h;
+  const auto put = [&](int n, const double *where) {
+    double *x = atom->x[sites[n].atom], way[3];
+    if (IMAGES != Images::NONE) through<IMAGES == Images::TILTED>(h, image[n].data(), way);
+    for (int k = 0; k < 3; ++k) x[k] = IMAGES == Images::NONE ? where[k] : where[k] - way[k];
+  };
+  for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    const BodyFrame &fr = bodies.frame_of(ibody);
+    int n = first[ibody];
+    for (; n < first_arm[ibody]; ++n) {
+      if (POSITIONS) put(n, s.center);
+      if (VELOCITIES) std::copy_n(s.velocity, 3, atom->v[sites[n].atom]);
+    }
+    for (; n < first[ibody + 1]; ++n) {
+      double arm[3], spin[3], where[3];
+      to_space(fr.axes, sites[n].arm_body, arm);
+      for (int k = 0; k < 3; ++k) where[k] = s.center[k] + arm[k];
+      if (POSITIONS) put(n, where);
+      if (!VELOCITIES) continue;
+      double *v = atom->v[sites[n].atom];
+      cross3(fr.omega_space, arm, spin);
+      for (int k = 0; k < 3; ++k) v[k] = s.velocity[k] + spin[k];
+    }
+  }
+}
+
+template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
+{
+  ++nplacements;
+  if (!POSITIONS || !any_images)
+    place_points<POSITIONS, VELOCITIES, Images::NONE>();
+  else if (domain->triclinic)
+    place_points<POSITIONS, VELOCITIES, Images::TILTED>();
+  else
+    place_points<POSITIONS, VELOCITIES, Images::STRAIGHT>();
+  const Extended &extended = ownership.extended();
+  if (!extended.sites.empty()) extended.place(bodies.states(), POSITIONS, VELOCITIES);
+}
+
+void Sites::place(bool velocities)
+{
+  velocities ? place_points<true, true>() : place_points<true, false>();
+}
+
+void Sites::place_velocities()
+{
+  place_points<false, true>();
+}
+
+void Sites::place_extended()
+{
+  const Extended &extended = ownership.extended();
+  if (!extended.sites.empty()) extended.place(bodies.states(), true, true);
+}
+
+/// What its image takes from an unwrapped position.
+void Sites::wrap(const Site &site, double *away) const
+{
+  const int *periods = image[&site - begin()].data();
+  domain->triclinic ? through<true>(domain->h, periods, away)
+                    : through<false>(domain->h, periods, away);
+}
+
+Sites::Expected Sites::expected_position(const Site &site) const
+{
+  const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
+  const double *center = bodies.state_of(site.body).center;
+  double arm[3], away[3];
+  Expected x;
+  wrap(site, away);
+  to_space(bodies.axes(site.body), site.arm_body, arm);
+  for (int k = 0; k < 3; ++k) x.value[k] = center[k] + arm[k] - away[k];
+  x.size = box + std::sqrt(dot3(center, center) + dot3(away, away));
+  return x;
+}
+
+Sites::Expected Sites::expected_velocity(const Site &site) const
+{
+  const double *velocity = bodies.state_of(site.body).velocity;
+  const BodyFrame &frame = bodies.frame_of(site.body);
+  double arm[3], spin[3];
+  Expected v;
+  to_space(frame.axes, site.arm_body, arm);
+  cross3(frame.omega_space, arm, spin);
+  for (int k = 0; k < 3; ++k) v.value[k] = velocity[k] + spin[k];
+  v.size = length(velocity) + length(spin);
+  return v;
+}
+
+void Sites::unwrapped(const Site &site, double *found, double *expected) const
+{
+  const Expected there = expected_position(site);
+  double away[3];
+  wrap(site, away);
+  for (int k = 0; k < 3; ++k) {
+    expected[k] = there.value[k] + away[k];
+    found[k] = atom->x[site.atom][k] + away[k];
+  }
+}
+
+static bool same(const double *a, const Sites::Expected &expected)
+{
+  for (int k = 0; k < 3; ++k)
+    if (!(std::fabs(a[k] - expected.value[k]) <= SAME * expected.size)) return false;
+  return true;
+}
+
+bool Sites::is_there(const Site &site) const
+{
+  return same(atom->x[site.atom], expected_position(site));
+}
+
+bool Sites::is_as_fast(const Site &site) const
+{
+  return same(atom->v[site.atom], expected_velocity(site));
+}
+
+/* ----------------------------------------------------------------------
+   sums over sites
+------------------------------------------------------------------------- */
+
+/// One sum for each body here: start(ibody) makes it, add(sum, site, arm_space) takes in a site,
+/// finish(ibody, sum) receives it.  arm_space: null for a site at the center of mass.
+template <class Start, class Add, class Finish>
+void Sites::sum_over_sites(Start start, Add add, Finish finish) const
+{
+  for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
+    auto sum = start(ibody);
+    int n = first[ibody];
+    for (; n < first_arm[ibody]; ++n) add(sum, sites[n], nullptr);
+    for (; n < first[ibody + 1]; ++n) {
+      double arm[3];
+      to_space(bodies.axes(ibody), sites[n].arm_body, arm);
+      add(sum, sites[n], arm);
+    }
+    finish(ibody, sum);
+  }
+}
+
+/// The loads of all bodies from the force on each site: force_on(site, force).
+template <class Force> void Sites::gather(Force force_on, double **torque)
+{
+  std::vector<Load> &loads = bodies.change_loads();
+  sum_over_sites(
+      [](int) {
+        return Load();
+      },
+      [&](Load &sum, const Site &site, const double *arm) {
+        double f[3], moment[3];
+        force_on(site, f);
+        add3(f, sum.force);
+        if (!arm) return;
+        cross3(arm, f, moment);
+        add3(moment, sum.torque_space);
+      },
+      [&](int ibody, const Load &sum) {
+        loads[ibody] = sum;
+      });
+  const Extended &extended = ownership.extended();
+  if (!extended.sites.empty()) extended.add_torques(torque, loads);
+  ownership.sum(loads);
+
+  const double ftm2v = force->ftm2v;
+  if (ftm2v == 1.0) return;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    for (int k = 0; k < 3; ++k) {
+      loads[ibody].force[k] *= ftm2v;
+      loads[ibody].torque_space[k] *= ftm2v;
+    }
+}
+
+void Sites::expect_forces(bool any)
+{
+  any_forces = any;
+  if (!any) std::fill(bodies.change_loads().begin(), bodies.change_loads().end(), Load());
+}
+
+void Sites::gather_loads(double **f, double **torque)
+{
+  if (!any_forces) return;
+  gather(
+      [f](const Site &site, double *of_site) {
+        std::copy_n(f[site.atom], 3, of_site);
+      },
+      torque);
+}
+
+void Sites::gather_impulses()
+{
+  gather(
+      [this](const Site &site, double *impulse) {
+        const Expected expected = expected_velocity(site);
+        const double mass = ownership.mass_of(site.atom) / force->ftm2v;
+        for (int k = 0; k < 3; ++k) impulse[k] = mass * (atom->v[site.atom][k] - expected.value[k]);
+      },
+      nullptr);
+}
+
+/// Mean of the arms of all sites of each body, owned and ghost, in `force`.  Collective.
+std::vector<Load> Sites::centroids()
+{
+  std::vector<Load> means(bodies.nhere());
+  sum_over_sites(
+      [](int) {
+        return Load();
+      },
+      [this](Load &sum, const Site &site, const double *arm) {
+        if (!arm) return;
+        const tagint natoms = bodies.body_at(site.body).natoms;
+        for (int k = 0; k < 3; ++k) sum.force[k] += arm[k] / natoms;
+      },
+      [&means](int ibody, const Load &sum) {
+        means[ibody] = sum;
+      });
+  ownership.sum(means);
+  ownership.spread(means);
+  return means;
+}
+
+void Sites::visit_constraint_forces(double **f, bool all,
+                                    const std::function<void(int, ConstraintForce &)> &tally)
+{
+  struct Acceleration {
+    double linear[3], angular[3];    // in space
+  };
+  ownership.spread(bodies.change_loads());
+  const std::vector<Load> means = all ? centroids() : std::vector<Load>();
+  sum_over_sites(
+      [this](int ibody) {
+        const RigidBody &rigid = bodies.rigid_of(ibody);
+        const Load &load = bodies.load_of(ibody);
+        Acceleration acceleration;
+        double torque_body[3], alpha_body[3];
+        to_body(bodies.axes(ibody), load.torque_space, torque_body);
+        angular_acceleration(rigid, torque_body, bodies.state_of(ibody).omega_body, alpha_body);
+        to_space(bodies.axes(ibody), alpha_body, acceleration.angular);
+        for (int k = 0; k < 3; ++k) acceleration.linear[k] = load.force[k] / rigid.mass;
+        return acceleration;
+      },
+      [&](const Acceleration &acceleration, const Site &site, const double *arm) {
+        if (!arm && !all) return;
+        ConstraintForce constraint = {};
+        double *lacking = constraint.force[0], *arm_space = constraint.arm[0];
+        if (arm) std::copy_n(arm, 3, arm_space);
+        if (all) std::copy_n(means[site.body].force, 3, constraint.centroid);
+        const double *omega_space = bodies.frame_of(site.body).omega_space;
+        double tangential[3], spin[3], radial[3];
+        cross3(acceleration.angular, arm_space, tangential);
+        cross3(omega_space, arm_space, spin);
+        cross3(omega_space, spin, radial);
+        const double mass = ownership.mass_of(site.atom) / force->ftm2v;
+        for (int k = 0; k < 3; ++k)
+          lacking[k] =
+              mass * (acceleration.linear[k] + tangential[k] + radial[k]) - f[site.atom][k];
+        for (int k = 0; k < 3; ++k) constraint.virial[k] = arm_space[k] * lacking[k];
+        constraint.virial[3] = arm_space[0] * lacking[1];
+        constraint.virial[4] = arm_space[0] * lacking[2];
+        constraint.virial[5] = arm_space[1] * lacking[2];
+        tally(site.atom, constraint);
+      },
+      [](int, const Acceleration &) {
+      });
+}
+
+double Sites::memory_usage() const
+{
+  return sites.capacity() * sizeof(Site) + image.capacity() * sizeof(image[0]) +
+      (first.capacity() + first_arm.capacity()) * sizeof(int);
+}

@@ -1,0 +1,123 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The atoms of bodies: sites, listed body by body, so that a sum over the sites of a body needs
+   nothing of other bodies.  Positions and velocities of atoms follow from the states of their
+   bodies, loads of bodies from the forces on their atoms.
+
+   The periodic images of sites are integers, and the way that they stand for is computed from the
+   present box: nothing that depends on the box is kept.
+
+   The fix calls list() after Ownership::update(); and every step:
+     [predict states] -> Ownership::spread_moved() -> place() -> [forces] -> gather_loads()
+     -> [correct states] -> Ownership::spread_moved() -> place() */
+
+#ifndef LMP_GEAR_QUAT_SITES_H
+#define LMP_GEAR_QUAT_SITES_H
+
+#include "gear_quat_ownership.h"
+
+#include <functional>
+
+namespace LAMMPS_NS::GearQuat {
+
+/// An owned atom of a body; stays valid until atoms are exchanged.
+struct Site {
+  int atom, body;
+  double arm_body[3];    ///< from the center of mass, along the principal axes
+};
+
+class Sites : protected Pointers {
+ public:
+  Sites(LAMMPS *lmp, Bodies &bodies, Ownership &ownership);
+
+  // body by body; within a body those at its center of mass first, then by local index
+
+  int number() const { return (int) sites.size(); }
+  const Site *begin() const { return sites.data(); }
+  const Site *end() const { return begin() + sites.size(); }
+  const Site &operator[](int n) const { return sites[n]; }
+
+  /// Find the sites of all bodies, after atoms were exchanged or bodies were made.
+  void list();
+  /// Sites on this rank that are more than points.
+  bigint number_of_extended() const { return (bigint) ownership.extended().sites.size(); }
+
+  // positions and velocities
+
+  /// Positions of all sites, and velocities if anything reads them before the next call.
+  void place(bool velocities);
+  /// Velocities alone: before a run positions were made by the last step, or by the user.
+  void place_velocities();
+  /// Orientations and rates of atoms that are more than points, where these were moved alone.
+  void place_extended();
+  /// How often sites were listed or placed, the same on all ranks: what was made of positions or
+  /// loads at another number is out of date.
+  int placements() const { return nplacements; }
+
+  struct Expected {    ///< position or velocity of a site by the state of its body
+    double value[3];
+    double size;    ///< what its rounding is relative to
+  };
+  // site: one of this list
+  Expected expected_position(const Site &site) const;
+  Expected expected_velocity(const Site &site) const;
+  /// Unwrapped positions: of the atom, and where its body has it.
+  void unwrapped(const Site &site, double *found, double *expected) const;
+  // True if place or velocity of the atom are those of its body, up to rounding.
+  bool is_there(const Site &site) const;
+  bool is_as_fast(const Site &site) const;
+
+  // sums over sites
+
+  /// any: something in the scene may make a force; otherwise no loads are gathered.
+  void expect_forces(bool any);
+  /// Loads of all bodies that this rank moves, from the forces on the sites of all ranks.  torque:
+  /// of the atoms themselves, used where they are more than points; null for none.
+  void gather_loads(double **f, double **torque);
+  /// The same of the momenta by which velocities of atoms differ from those of their bodies.
+  void gather_impulses();
+
+  /// Constraint force m a - f of a site under the present loads, its arm from the center of mass,
+  /// its virial (xx yy zz xy xz yz), and the mean place of the body's sites.
+  struct ConstraintForce {
+    double force[1][3], arm[1][3], virial[6], centroid[3];
+  };
+  /// tally: of an atom and its constraint force.  Those of a body add up to zero, so any origin
+  /// serves for the virial.  all: sites at centers of mass and centroids too, as the centroid form
+  /// of the virial needs them, otherwise 0.  Collective.
+  void visit_constraint_forces(double **f, bool all,
+                               const std::function<void(int, ConstraintForce &)> &tally);
+
+  double memory_usage() const;
+
+ private:
+  Bodies &bodies;
+  Ownership &ownership;
+
+  std::vector<Site> sites;
+  std::vector<std::array<int, 3>> image;    ///< of the sites: periods that their unwrapped
+                                            ///< positions are away
+  std::vector<int> first, first_arm;    ///< of each body: its first site, its first one with an arm
+  bool any_images = false;              ///< some of these are not zero
+  bool any_forces = true;
+  int nplacements = 0;
+
+  enum class Images { NONE, STRAIGHT, TILTED };    ///< in which box
+
+  void sort();
+  void find_image(const Site &site, std::array<int, 3> &periods) const;
+  void wrap(const Site &site, double *away) const;
+  template <bool POSITIONS, bool VELOCITIES> void place_points();
+  template <bool POSITIONS, bool VELOCITIES, Images IMAGES> void place_points();
+  template <class Start, class Add, class Finish>
+  void sum_over_sites(Start start, Add add, Finish finish) const;
+  template <class Force> void gather(Force force_on, double **torque);
+  std::vector<Load> centroids();
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif
