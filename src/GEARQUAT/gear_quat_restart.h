@@ -39,9 +39,9 @@ class Restart : protected Pointers {
   bool resume(int group);
 
   /// The text beside a restart file: all bodies in the format of infile, sorted by ID, with all
-  /// digits.  A file that cannot be written ends the run.  A file of this name is whole at any time:
-  /// it is written under another name and then renamed.  rows: those of BodyTable for this rank's
-  /// owned ownership.  Collective.
+  /// digits.  A file that cannot be written ends the run.  A file of this name is whole at any
+  /// time: it is written under another name and then renamed.  rows: those of BodyTable for this
+  /// rank's owned bodies.  Collective.
   void write_bodies(const std::string &filename, double **rows) const;
 
  private:

@@ -124,9 +124,9 @@ struct AtomParts {
   }
   static constexpr size_t NUMBERS = 6;
 
-  /// The data of an atom whose parts have these lengths, with the lengths of `other`: numbers that
-  /// are not there are 0, and those that `other` does not know are left out.  extended: the file has
-  /// extended sites.
+  /// The data of an atom whose parts have these lengths, with the lengths of `other`: numbers
+  /// that are not there are 0, and those that `other` does not know are left out.  extended: the
+  /// file has extended sites.
   Sections::Numbers converted(const double *data, const AtomParts &other, bool extended) const
   {
     Sections::Numbers result;

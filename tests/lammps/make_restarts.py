@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Restart files of a release, and what this release makes of them: tests/lammps/restarts/RELEASE.
 
-    .venv/bin/python tests/lammps/make_restarts.py 1.2.3                # with the build of this tree
-    .venv/bin/python tests/lammps/make_restarts.py 1.2.3 --lmp FILE     # with that of another one
+    .venv/bin/python tests/lammps/make_restarts.py 1.2.3               # with the build of this tree
+    .venv/bin/python tests/lammps/make_restarts.py 1.2.3 --lmp FILE    # with that of another one
 
 When a release is made, the first line keeps its files for the tests of all later ones
 (doc/release.md); remove the folder first if it was made before.  Files of earlier releases are not
@@ -31,15 +31,19 @@ STEPS = 20
 CASES = {
     "first": ("formulation first", ""),
     "second": ("formulation second", ""),
-    "tolerance": ("formulation second tolerance 1e-7", "f_move[9] f_move[11] f_move[12] f_move[16]"),
+    "tolerance": (
+        "formulation second tolerance 1e-7",
+        "f_move[9] f_move[11] f_move[12] f_move[16]",
+    ),
     "isokinetic": ("formulation first isokinetic separate", "f_move[9] f_move[10] f_move[11]"),
     "temp": (
         "formulation second temp 300 300 60 tchain 3 thermostat separate",
         "econserve f_move[9] f_move[10] f_move[11] f_move[13] f_move[14]",
     ),
+    "spheres": ("formulation second", ""),
 }
 
-WRITE = f"""
+WATER = """
 units real
 atom_style full
 read_data data.water
@@ -47,12 +51,38 @@ pair_style lj/charmm/coul/charmm 2.7 3.9
 pair_coeff 1 1 0.1553 3.166
 pair_coeff 2 2 0.0 1.0
 pair_coeff 1 2 0.0 1.0
+"""
+SPHERES = """
+units lj
+atom_style hybrid molecular sphere
+atom_modify map array
+boundary f f f
+region box block -9 9 -9 9 -9 9
+create_box 1 box
+create_atoms 1 single 0.0 0.0 0.0
+create_atoms 1 single 1.0 0.1 0.0
+create_atoms 1 single 0.3 1.5 0.2
+create_atoms 1 single 1.1 1.9 0.6
+create_atoms 1 single 0.9 0.5 1.6
+create_atoms 1 single 1.7 0.2 2.1
+set atom 1*2 mol 1
+set atom 3*4 mol 2
+set atom 5*6 mol 3
+set atom 1*6 diameter 0.6
+set atom 2*4 diameter 0.9
+velocity all create 1.0 4711 loop geom
+pair_style lj/cut 8.0
+pair_coeff * * 1.0 1.0
+"""
+WRITE = f"""
+{{scene}}
 neighbor 0.9 bin
 neigh_modify every 1 delay 0 check yes exclude molecule/intra all
 atom_modify sort 0 0.0
-timestep 0.2
+timestep {{dt}}
 velocity all zero linear
 fix move all gear/quat molecule {{words}}
+thermo_style custom step pe
 run {STEPS}
 write_restart {{name}}.restart
 """
@@ -62,9 +92,9 @@ read_restart {{file}}
 neighbor 0.9 bin
 neigh_modify every 1 delay 0 check yes exclude molecule/intra all
 atom_modify sort 0 0.0
-timestep 0.2
+timestep {{dt}}
 fix move all gear/quat molecule {{words}}
-thermo_style custom step time pe ke f_move[1] f_move[2] {{columns}}
+thermo_style custom step time pe f_move[1] f_move[2] {{columns}}
 thermo_modify norm no format float %.17g
 thermo 5
 run {STEPS}
@@ -72,14 +102,21 @@ write_dump all custom {{name}}.end id xu yu zu vx vy vz modify sort id format fl
 """
 
 
+def words_of(name):
+    """What differs between the decks."""
+    words, columns = CASES[name]
+    scene, dt = (SPHERES, 0.002) if name == "spheres" else (WATER, 0.2)
+    return dict(name=name, words=words, columns=columns, scene=scene, dt=dt)
+
+
 def go_on(lmp, name, file, change=lambda words: words, ranks=1):
     """Output of a run that continues from a file, as the stored one is, and what was said.
 
     change: of the words of the fix.
     """
-    words, columns = CASES[name]
-    deck = CONTINUE.format(name=name, file=file, words=change(words), columns=columns)
-    result = lmp.succeed(deck, ranks=ranks)
+    parts = words_of(name)
+    parts["words"] = change(parts["words"])
+    result = lmp.succeed(CONTINUE.format(file=file, **parts), ranks=ranks)
     frame = last_frame(lmp.folder / f"{name}.end")
     return {"thermo": result.thermo[-1], "frame": frame.tolist()}, result
 
@@ -98,8 +135,8 @@ def main():
             "release", arguments.lmp, running.OPEN_MPI_LAUNCHER, Path(work), environment
         )
         water_data(lmp.folder / "data.water", n=2)
-        for name, (words, _) in CASES.items():
-            lmp.succeed(WRITE.format(name=name, words=words))
+        for name in CASES:
+            lmp.succeed(WRITE.format(**words_of(name)))
             file = folder / f"{name}.restart"
             file.write_bytes((lmp.folder / file.name).read_bytes())
             continued[name], _ = go_on(lmp, name, file)

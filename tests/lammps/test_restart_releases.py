@@ -16,7 +16,10 @@ from make_restarts import CASES, FOLDER, go_on
 RELEASES = sorted(path.name for path in FOLDER.iterdir())
 ROUNDING = 1e-12
 ANEW = "histories start anew"
-SUMS = "does not have the kinetic energies of past steps that temp needs (its friction and energy are kept)"
+SUMS = (
+    "does not have the kinetic energies of past steps that temp needs "
+    "(its friction and energy are kept)"
+)
 
 # Later releases that compute something else than these, and by how much they differ after 20 steps.
 # 0.3.0 integrated chains as histories of their own: the two methods differ by their errors.
@@ -76,7 +79,7 @@ def test_chains_of_0_3_0_keep_friction_and_energy(lmp_tree):
     assert "start of order 8" in result.words
 
 
-@pytest.mark.parametrize("name", ["first", "second", "isokinetic", "temp"])
+@pytest.mark.parametrize("name", ["first", "second", "isokinetic", "temp", "spheres"])
 @pytest.mark.parametrize("release", RELEASES)
 def test_on_two_ranks(lmp_tree, release, name):
     output, _ = go_on(lmp_tree, name, FOLDER / release / f"{name}.restart", ranks=2)
@@ -106,9 +109,9 @@ def changed(file: Path, folder: Path, change) -> Path:
     k = 24
     while k < size:
         name = block[k : k + 16].rstrip(b"\0").decode()
-        (count,) = struct.unpack("d", block[k + 16 : k + 24])
-        sections[name] = list(struct.unpack(f"{int(count)}d", block[k + 24 : k + 24 + 8 * int(count)]))
-        k += 24 + 8 * int(count)
+        count = int(struct.unpack("d", block[k + 16 : k + 24])[0])
+        sections[name] = list(struct.unpack(f"{count}d", block[k + 24 : k + 24 + 8 * count]))
+        k += 24 + 8 * count
     change(sections)
     written = b"".join(
         name.encode().ljust(16, b"\0") + struct.pack(f"{len(numbers) + 1}d", len(numbers), *numbers)

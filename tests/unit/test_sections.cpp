@@ -1,4 +1,5 @@
-/* Sections of restart files, the lengths of an atom's data, and files of releases without sections. */
+/* Sections of restart files, the lengths of an atom's data, and files of releases without
+   sections. */
 
 #include "checks.h"
 
