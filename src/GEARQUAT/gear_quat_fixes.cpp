@@ -240,7 +240,7 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
     const Sites::Expected v = sites.expected_velocity(site);
     double off[3];
     for (int k = 0; k < 3; ++k) off[k] = atom->v[site.atom][k] - v.value[k];
-    if (!(length(off) <= RIGID * v.size)) torn = bodies.body_at(site.body).id;
+    if (!(length(off) <= RIGID * v.size)) torn = std::max(torn, bodies.body_at(site.body).id);
   }
   torn = over_ranks(MPI_MAX, torn, world);
   if (!torn) return changed;
