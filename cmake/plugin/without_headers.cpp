@@ -30,6 +30,12 @@ class Respa {
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
+/// Whether the run style could do so is in a header, too.
+bool Forces::evaluated_by_run_style(int, int)
+{
+  return false;
+}
+
 void Forces::clear()
 {
   void *style = update->integrate;

@@ -69,6 +69,8 @@ Noise Forces::noise(const std::function<bool(int)> &in_body) const
 void Forces::look_at_styles()
 {
   if (lmp->kokkos) why = "the KOKKOS package is on";
+  if (const char *reason = unrepeatable_run_style(update->integrate_style))
+    why = fmt::format("run style {} {}", update->integrate_style, reason);
   if (const char *style = unrepeatable_bond(force))
     why = fmt::format("bonds of style {} may break or change for good", style);
   if (known(PairFact::UNREPEATABLE, force))
@@ -218,8 +220,10 @@ void Forces::evaluate(int eflag, int vflag)
   for (auto *fix : post_force) fix->post_force(vflag);
 }
 
+/// What Verlet::run() does in a step without new neighbor lists, up to post_force() of fixes.
 void Forces::evaluate_styles(int eflag, int vflag)
 {
+  if (evaluated_by_run_style(eflag, vflag)) return;
   comm->forward_comm();
   clear();
   for (auto *fix : pre_force) fix->pre_force(vflag);

@@ -98,6 +98,7 @@ class Forces : protected Pointers {
   void look_at_variables();
   void look_at_time();
   std::vector<double> loads_at(bigint step, bool of_fixes);
+  bool evaluated_by_run_style(int eflag, int vflag);
   void clear();
   void clear_owned();
   void evaluate_styles(int eflag, int vflag);

@@ -4,7 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* What this package knows about other styles of LAMMPS by their names.  LAMMPS does not tell these
-   facts, so they were read in its source; every row of a table has its reason.  What follows from a
+   facts, so they were read in its source; every row of a table has its reason.  Where LAMMPS does
+   (gear_quat_declared.h), its word counts.  What follows from a
    fact is decided by those who ask.  In each table the first row that matches counts.  Patterns are
    those of utils::strmatch(). */
 
@@ -12,11 +13,13 @@
 #define LMP_GEAR_QUAT_KNOWN_STYLES_H
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 class Compute;
 class Fix;
 class Force;
+class LAMMPS;
 }    // namespace LAMMPS_NS
 
 namespace LAMMPS_NS::GearQuat {
@@ -58,10 +61,15 @@ enum class ComputeFact {
 const char *known(PairFact what, const Force *force);
 const char *known(FixFact what, const Fix *fix);
 const char *known(ComputeFact what, const Compute *compute);
+/// Whether, and by whom, forces of all styles can be evaluated again: a line each.
+std::vector<std::string> sources_of_repeatability(LAMMPS *lmp);
 /// The bond style whose bonds may break or change for good when they are evaluated, null for none.
 const char *unrepeatable_bond(const Force *force);
 /// True if that variable, as `info variables` shows it, is another one whenever it is evaluated.
 bool is_unrepeatable(const std::string &variable);
+
+/// Why a run style evaluates forces otherwise than LAMMPS' run styles verlet and respa, null if not.
+const char *unrepeatable_run_style(const std::string &style);
 
 /// False for no style and for style zero, of pairs, bonds, angles, dihedrals or impropers.
 bool exerts_forces(const void *style, const char *name);

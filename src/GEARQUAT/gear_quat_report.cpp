@@ -6,6 +6,8 @@
 #include "gear_quat_report.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_bodies.h"
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 #include "gear_quat_sites.h"
@@ -313,6 +315,10 @@ void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, 
     text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);
     if (args.report == Arguments::Report::LONG && (!row.on || row.in_part) && !row.omits.empty())
       text += fmt::format("  {:<20}      leaves out {}\n", "", row.omits);
+  }
+  if (args.report == Arguments::Report::LONG) {
+    text += "  forces that can be evaluated again in a step\n";
+    for (const auto &line : sources_of_repeatability(lmp)) text += "    " + line + "\n";
   }
   for (const auto &line : advice) text += "  " + line + "\n";
   utils::logmesg(lmp, text);
