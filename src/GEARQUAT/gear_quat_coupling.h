@@ -150,7 +150,16 @@ class Coupling : protected Pointers {
   /// for both parts; null if none is.  separate: each part has a friction of its own, which scales
   /// it; moves: the parts that have degrees of freedom.
   static const char *part_at_rest(const double (&energies)[2], const bool (&moves)[2],
-                                  bool separate);
+                                  bool separate)
+  {
+    constexpr double NOTHING = 1.0e-24;    // of the whole: rounding of velocities
+    const double all = energies[0] + energies[1];
+    if (all <= 0.0) return "";
+    for (int part = 0; separate && part < 2; ++part)
+      if (moves[part] && energies[part] <= NOTHING * all)
+        return part == 0 ? "translational " : "rotational ";
+    return nullptr;
+  }
 
  private:
   std::vector<Integrator::Pending> pending;

@@ -6,7 +6,7 @@
 #include "gear_quat_forces.h"
 
 #include "gear_quat_known_styles.h"
-#include "gear_quat_quaternion.h"
+#include "gear_quat_math.h"
 #include "gear_quat_ranks.h"
 
 #include "angle.h"

@@ -16,7 +16,7 @@
 #ifndef LMP_GEAR_QUAT_FORCES_H
 #define LMP_GEAR_QUAT_FORCES_H
 
-#include "gear_quat_noise.h"
+#include "gear_quat_limits.h"
 
 #include "lmptype.h"
 #include "pointers.h"

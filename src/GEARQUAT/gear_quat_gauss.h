@@ -16,7 +16,7 @@
 #ifndef GEAR_QUAT_GAUSS_H
 #define GEAR_QUAT_GAUSS_H
 
-#include "gear_quat_rigid_body.h"
+#include "gear_quat_math.h"
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -133,16 +133,6 @@ inline Load damped_load(const RigidBody &body, const BodyState &state, const Loa
   }
   return damped;
 }
-
-/// In place of Friction where there is none.
-struct Undamped {
-  static constexpr bool implicit = false;
-
-  double force(int, double met, double, double) const { return met; }
-  double torque(double met, double) const { return met; }
-  double implicit_force(int, double, double residual, double) const { return residual; }
-  double implicit_torque(double) const { return 1.0; }
-};
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -20,10 +20,20 @@
 #define GEAR_QUAT_INTEGRATOR_H
 
 #include "gear_quat_gauss.h"
-#include "gear_quat_kinematics.h"
+#include "gear_quat_history.h"
 #include "gear_quat_tuned.h"
 
 namespace LAMMPS_NS::GearQuat {
+
+/// In place of Friction where there is none.
+struct Undamped {
+  static constexpr bool implicit = false;
+
+  double force(int, double met, double, double) const { return met; }
+  double torque(double met, double) const { return met; }
+  double implicit_force(int, double, double residual, double) const { return residual; }
+  double implicit_torque(double) const { return 1.0; }
+};
 
 class Integrator : public Kinematics {
  public:

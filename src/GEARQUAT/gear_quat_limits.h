@@ -3,52 +3,38 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What no step can be right about: a body that turns by half a turn in one step (from the poses
-   alone nobody can tell which way round), that crosses the whole scene in one, whose quaternion is
-   so far from unit length that unprojected sites are a hundred times too far out or in, or whose
-   motion is no number.  All are far outside of what is stable, so only runs that are lost end here:
-   the quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h =
-   1.57, and no method here is stable beyond 1.42.
+/* What a method follows in steps of h, found by trial with the method itself, so that no table is
+   needed: free rotations, vibrations, forces without derivatives, and friction.
 
-   Which of the slower rotations a method follows at a given step depends on the number of values,
-   on the passes and on the moments: a free flight on trial tells, and needs no table. */
+   Which rotations a method follows depends on the number of values, on the passes and on the
+   moments: a free flight tells.
+
+   Forces without derivatives are random, or those of collisions, which last a single step.  What a
+   history makes of their derivatives heats the bodies.  A force in one step alone, and none
+   afterwards, changes the velocity in the steps that follow by d_1, d_2, ..., whose sum is 1 in
+   units of h F/m.  Forces that are independent from step to step change the velocity in a step by
+   sum d_k^2 times the right mean square.
+
+   A step of h turns the rows of a free body under the constant friction xi into others: predict,
+   then add c_j times the residual that Integrator::correct_pass() finds.  This map is linear and
+   depends on h xi alone.  While its spectral radius is 1 or less, the method is stable.  Far from
+   its target a chain has a friction of several times 1/tau. */
 
 #ifndef GEAR_QUAT_LIMITS_H
 #define GEAR_QUAT_LIMITS_H
 
+#include "gear_quat_chain.h"
 #include "gear_quat_startup.h"
+#include "gear_quat_tuned.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
-
-struct MotionLimits {
-  static constexpr double TURN = 3.14159265358979323846;    ///< radians in a step
-  static constexpr double NORM2 = 100.0;    ///< |q|^2 is less than this, and more than its inverse
-
-  double speed2 = 0.0, rate2 = 0.0;
-
-  MotionLimits() = default;
-  /// h: the time step, not zero.  length: of the scene, infinite for none.
-  MotionLimits(double h, double length) :
-      speed2((length / h) * (length / h)), rate2((TURN / h) * (TURN / h))
-  {
-  }
-
-  /// False for velocities beyond the limits, and for any that are no numbers.
-  bool keep_velocities(const BodyState &s) const
-  {
-    return dot3(s.velocity, s.velocity) < speed2 && dot3(s.omega_body, s.omega_body) < rate2;
-  }
-
-  /// And for |q|.  Of a corrected state: a predicted q is not meant to have unit length.
-  bool keep(const BodyState &s) const
-  {
-    const double norm2 = dot4(s.q, s.q);
-    return keep_velocities(s) && norm2 < NORM2 && norm2 > 1.0 / NORM2;
-  }
-};
 
 /// The state with the velocities that a load gives it in a step h.
 inline BodyState kicked(const RigidBody &body, const BodyState &before, const Load &load, double h)
@@ -142,6 +128,211 @@ inline double rounded_down(double number)
   if (!std::isfinite(number) || number <= 0.0) return number;
   const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
   return std::floor(number / unit * (1.0 + 1.0e-12)) * unit;
+}
+
+/* ---------------------------------------------------------------------- */
+
+enum class Noise { NONE, RANDOM, COLLISIONS };
+
+/// sum d_k^2 of the center of mass, with these coefficients.
+inline double noise_gain(const Scheme &scheme, const CorrectorCoefficients &c)
+{
+  constexpr int STEPS = 1000;    // roots of 0.99 have faded
+  const int n = scheme.values(), order = scheme.first() ? 1 : 2;
+  double rows[MAX_VALUES] = {}, gain = 0.0;
+  for (int step = 0; step < STEPS; ++step) {
+    const double before = rows[order - 1];
+    Nordsieck<1>::predict(rows, n);
+    const double residual = (step == 0 ? 1.0 / order : 0.0) - rows[order];
+    Nordsieck<1>::correct<1>(rows, n, c.driven.data(), 0, &residual);
+    const double change = rows[order - 1] - before;
+    gain += change * change;
+  }
+  return gain;
+}
+
+/// With the coefficients of the scheme.
+inline double noise_gain(const Scheme &scheme)
+{
+  return noise_gain(scheme, CorrectorCoefficients(scheme));
+}
+
+/// Values that do not heat with Gear's coefficients (tests/lammps/test_neighbors.py).
+inline int most_with_noise(const Scheme &scheme, Noise noise)
+{
+  if (noise == Noise::NONE) return MAX_VALUES;
+  if (noise == Noise::COLLISIONS) return scheme.first() ? 3 : 4;
+  return scheme.first() ? 4 : 6;
+}
+
+/// False if such forces heat bodies more than they do with the largest of these numbers.
+inline bool suits_noise(const Scheme &scheme, Noise noise)
+{
+  const int most = most_with_noise(scheme, noise);
+  if (!scheme.tuned) return scheme.values() <= most;
+  Scheme limit = scheme;
+  limit.tuned = false;
+  limit.rows = most;
+  return noise == Noise::NONE || noise_gain(scheme) <= 1.001 * noise_gain(limit);
+}
+
+/// The keywords that suit this noise, in words; empty if those of the scheme do.
+inline std::string remedy_for_noise(const Scheme &scheme, Noise noise)
+{
+  if (suits_noise(scheme, noise)) return "";
+  const int most = most_with_noise(scheme, noise);
+  if (!scheme.tuned) return "values " + std::to_string(most) + " at most";
+  Scheme other = scheme;
+  int suited = 0;
+  for (const int values : tuned_values(scheme.formulation)) {
+    other.rows = values;
+    if (suits_noise(other, noise)) suited = values;
+  }
+  if (suited) return "values " + std::to_string(suited);
+  return "corrector gear and values " + std::to_string(most) + " at most";
+}
+
+/// Whether the momentum of a free body fades under a friction that takes this part of it in a step.
+/// The force is that of the predicted velocity, as in a step of the fix.
+inline bool friction_fades(const Scheme &scheme, double part)
+{
+  constexpr int STEPS = 2000;
+  const CorrectorCoefficients c(scheme);
+  const int n = scheme.values(), order = scheme.first() ? 1 : 2;
+  double rows[MAX_VALUES] = {};
+  rows[order - 1] = 1.0;
+  for (int step = 0; step < STEPS; ++step) {
+    Nordsieck<1>::predict(rows, n);
+    const double residual = -part / order * rows[order - 1] - rows[order];
+    Nordsieck<1>::correct<1>(rows, n, c.driven.data(), 0, &residual);
+  }
+  return std::fabs(rows[order - 1]) < 1.0;
+}
+
+/// The largest part of a momentum, in hundredths, that friction may take in a step.
+inline double largest_friction(const Scheme &scheme)
+{
+  int hundredths = 0;
+  while (hundredths < 100 && friction_fades(scheme, 0.01 * (hundredths + 1))) ++hundredths;
+  return 0.01 * hundredths;
+}
+
+/* ---------------------------------------------------------------------- */
+
+class FrictionLimit {
+ public:
+  /// h xi that is followed: stable, and not a large part of a momentum in a step.
+  static double of(const Scheme &scheme) { return std::min(stable(scheme), ACCURATE); }
+
+  /// The smallest unstable h xi, positive; MOST if there is none below.
+  static double stable(const Scheme &scheme)
+  {
+    const FrictionLimit map(scheme);
+    double stable = LEAST;
+    while (stable < MOST && !map.grows(stable * RATIO)) stable *= RATIO;
+    if (stable >= MOST) return MOST;
+    double unstable = stable * RATIO;
+    for (int n = 0; n < HALVINGS; ++n) {
+      const double middle = 0.5 * (stable + unstable);
+      (map.grows(middle) ? unstable : stable) = middle;
+    }
+    return stable;
+  }
+
+  static constexpr double MOST = 4.0, ACCURATE = 0.5;
+
+ private:
+  static constexpr double LEAST = 0.02, RATIO = 1.05;
+  static constexpr int HALVINGS = 8;
+  // powers of the map up to 2^16, which may grow by this if it is stable
+  static constexpr int SQUARINGS = 16;
+  static constexpr double TRANSIENT = 1.0e6;
+
+  using Matrix = std::array<std::array<double, MAX_VALUES>, MAX_VALUES>;
+
+  const bool first;
+  const int n;    ///< rows of momenta, or of velocities
+  CorrectorCoefficients c;
+
+  explicit FrictionLimit(const Scheme &scheme) :
+      first(scheme.first()), n(scheme.values() - !first), c(scheme)
+  {
+  }
+
+  /// The rows of a velocity v of the second formulation are (j + 1) times those of a position behind
+  /// the first one, divided by h.
+  Matrix map(double friction) const
+  {
+    Matrix a = {};
+    const double share = friction * (first ? c.driven[0] : 0.5 * c.driven[1]);
+    for (int column = 0; column < n; ++column) {
+      double predicted[MAX_VALUES];
+      for (int j = 0; j < n; ++j) predicted[j] = j > column ? 0.0 : binomial(column, j);
+      const double residual = (-friction * predicted[0] - predicted[1]) / (1.0 + share);
+      for (int j = 0; j < n; ++j) {
+        const double feeds = first ? c.driven[j] : 0.5 * (j + 1) * c.driven[j + 1];
+        a[j][column] = predicted[j] + feeds * residual;
+      }
+    }
+    return a;
+  }
+
+  static double binomial(int n, int k)
+  {
+    double product = 1.0;
+    for (int i = 0; i < k; ++i) product *= double(n - i) / (i + 1);
+    return product;
+  }
+
+  bool grows(double friction) const
+  {
+    Matrix a = map(friction);
+    for (int k = 0; k < SQUARINGS; ++k) {
+      Matrix square = {};
+      for (int i = 0; i < n; ++i)
+        for (int l = 0; l < n; ++l)
+          for (int j = 0; j < n; ++j) square[i][j] += a[i][l] * a[l][j];
+      a = square;
+      double largest = 0.0;
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) largest = std::max(largest, std::fabs(a[i][j]));
+      if (largest > TRANSIENT) return true;
+      if (largest < 1.0e-3) return false;
+    }
+    return false;
+  }
+};
+
+/// The largest |xi_1| (1/time) that a chain of a single variable reaches with an ideal gas, from its
+/// first integral (xi tau)^2 + f - ln f with f = 2K/(g kT); longer chains stay below it.
+inline double friction_bound(const Chain &chain, const ChainTarget &target, double twice_kinetic)
+{
+  const double part = twice_kinetic / (target.freedoms * target.kt);
+  const double begun = chain.friction() * target.period;
+  return std::sqrt(begun * begun + std::max(0.0, part - 1.0 - std::log(part))) / target.period;
+}
+
+/// The same of this chain in steps of h, found by a trial of two damping times; infinite if it
+/// cannot be followed.  A gas takes up heat only by its kinetic energy, so bodies with a potential
+/// energy need no more.
+inline double friction_on_trial(Chain chain, const ChainTarget &target, double twice_kinetic,
+                                double h)
+{
+  constexpr int VALUES = 5, PASSES = 2;
+  const double size = std::fabs(h);
+  double largest = std::fabs(chain.friction());
+  for (double time = 0.0; time < 2.0 * target.period; time += size) {
+    const double before = chain.friction();
+    double twice = twice_kinetic;
+    for (int pass = 0; pass < PASSES; ++pass) {
+      if (!chain.advance(target, twice, size, VALUES)) return HUGE_VAL;
+      twice = twice_kinetic * std::exp(-size * (before + chain.friction()));
+    }
+    chain.conclude();
+    twice_kinetic = twice;
+    largest = std::max(largest, std::fabs(chain.friction()));
+  }
+  return largest;
 }
 
 }    // namespace LAMMPS_NS::GearQuat

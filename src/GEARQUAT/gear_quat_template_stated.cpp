@@ -5,8 +5,7 @@
 
 #include "gear_quat_template.h"
 
-#include "gear_quat_quaternion.h"
-#include "gear_quat_rigid_body.h"
+#include "gear_quat_math.h"
 
 #include "atom.h"
 #include "comm.h"

@@ -5,7 +5,7 @@
 
 #include "gear_quat_thermostat.h"
 
-#include "gear_quat_friction.h"
+#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"

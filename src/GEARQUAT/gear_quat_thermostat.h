@@ -79,8 +79,6 @@ class Thermostat : public Coupling {
               const Include &include) const override;
   Cause instability(double h) const override;
 
-  // in gear_quat_thermostat_start.cpp
-
   void begin_start(const StartNodes &nodes) override;
   void foretell(const StartNodes &nodes) override;
   void visit_node(const StartNodes &nodes, int node) override;

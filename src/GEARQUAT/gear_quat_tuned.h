@@ -37,7 +37,7 @@
 #ifndef GEAR_QUAT_TUNED_H
 #define GEAR_QUAT_TUNED_H
 
-#include "gear_quat_nordsieck.h"
+#include "gear_quat_history.h"
 
 #include <algorithm>
 #include <array>

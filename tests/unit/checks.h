@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "gear_quat_quaternion.h"
+#include "gear_quat_math.h"
 #include "numbers.h"
 #include "oracles/euler_angles.h"
 

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "gear_quat_quaternion.h"
+#include "gear_quat_math.h"
 
 #include <cmath>
 #include <vector>

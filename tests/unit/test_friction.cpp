@@ -3,7 +3,7 @@
 
 #include "thermostatted.h"
 
-#include "gear_quat_friction.h"
+#include "gear_quat_limits.h"
 
 using namespace Thermostatted;
 

@@ -1,7 +1,7 @@
 // Masks: what acts of a load, and the work of what was met.
 
 #include "drive.h"
-#include "gear_quat_rigid_body.h"
+#include "gear_quat_math.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-/* gear_quat_nordsieck.h: the history is a polynomial, and prediction moves along it exactly. */
+/* gear_quat_history.h: the history is a polynomial, and prediction moves along it exactly. */
 
 #include "checks.h"
-#include "gear_quat_nordsieck.h"
+#include "gear_quat_history.h"
 
 using namespace LAMMPS_NS::GearQuat;
 using Check::largest_difference;

@@ -2,7 +2,7 @@
    energies, the body, the symmetry of the charges, forces and torques as gradients. */
 
 #include "checks.h"
-#include "gear_quat_quaternion.h"
+#include "gear_quat_math.h"
 #include "oracles/cage_scene.h"
 
 using namespace LAMMPS_NS::GearQuat;

@@ -1,4 +1,4 @@
-/* gear_quat_quaternion.h: the paper's Eqs. 2 to 10 with the misprints of W and A corrected. */
+/* gear_quat_math.h: the paper's Eqs. 2 to 10 with the misprints of W and A corrected. */
 
 #include "checks.h"
 #include "oracles/paper_step.h"

@@ -1,4 +1,4 @@
-/* gear_quat_rigid_body.h: Euler's equations, energies, and the principal axes of any tensor. */
+/* gear_quat_math.h: Euler's equations, energies, and the principal axes of any tensor. */
 
 #include "checks.h"
 #include "oracles/cage_scene.h"

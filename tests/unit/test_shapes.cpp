@@ -1,7 +1,7 @@
-/* gear_quat_rigid_body.h: own inertia of sites with a size, and orientations that follow a body. */
+/* gear_quat_math.h: own inertia of sites with a size, and orientations that follow a body. */
 
 #include "checks.h"
-#include "gear_quat_rigid_body.h"
+#include "gear_quat_math.h"
 
 using namespace LAMMPS_NS::GearQuat;
 using Check::largest_difference;

@@ -1,4 +1,4 @@
-/* gear_quat_start_plan.h: which pair of nodes comes next, when enough is known, and how many evaluations
+/* gear_quat_startup.h: which pair of nodes comes next, when enough is known, and how many evaluations
    of the forces that takes. */
 
 #include "scenes.h"

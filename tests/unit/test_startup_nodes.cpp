@@ -1,5 +1,5 @@
 /* Collocation in gear_quat_startup.h: its polynomials, how far the inner nodes see ahead, and the number
-   that gear_quat_start_plan.h judges. */
+   that gear_quat_startup.h judges. */
 
 #include "scenes.h"
 

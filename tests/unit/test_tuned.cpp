@@ -1,7 +1,7 @@
-/* gear_quat_tuned.h and gear_quat_noise.h: the order conditions, against the characteristic equation
+/* gear_quat_tuned.h and gear_quat_limits.h: the order conditions, against the characteristic equation
    in exact fractions; every tuned set, whatever its numbers; and what random forces make of it. */
 
-#include "gear_quat_noise.h"
+#include "gear_quat_limits.h"
 #include "oracles/characteristic.h"
 #include "oracles/exact_flow.h"
 #include "oracles/rational.h"

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "euler_angles.h"
-#include "gear_quat_rigid_body.h"
+#include "gear_quat_math.h"
 
 namespace Oracle {
 

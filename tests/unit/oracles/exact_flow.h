@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "gear_quat_rigid_body.h"
+#include "gear_quat_math.h"
 
 #include <algorithm>
 #include <array>
