@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -21,6 +22,35 @@ using namespace GearQuat;
 // velocities, relative to box and body
 
 static constexpr double SAME = 1.0e-11;
+
+// Of many sites the atoms are not in the cache: those of so many sites ahead are asked for.
+
+static constexpr int MANY = 20000, AHEAD = 24;
+
+template <bool TO_WRITE> static inline void prefetch(const double *place)
+{
+#ifdef __GNUC__
+  __builtin_prefetch(place, TO_WRITE);
+#else
+  (void) place;
+#endif
+}
+
+/// LAMMPS' arrays of vectors are one block of memory.
+static double *first_of(double **vectors)
+{
+  return vectors ? vectors[0] : nullptr;
+}
+
+/// The way through so many periods of the present box, with the operations of Domain::unmap().
+static void through(const Domain *domain, const int *periods, double *way)
+{
+  const double *h = domain->h;
+  for (int k = 0; k < 3; ++k) way[k] = h[k] * periods[k];
+  if (!domain->triclinic) return;
+  way[0] = way[0] + h[5] * periods[1] + h[4] * periods[2];
+  way[1] = way[1] + h[3] * periods[2];
+}
 
 /* ---------------------------------------------------------------------- */
 
@@ -37,12 +67,21 @@ void Sites::list()
 {
   ++nplacements;
   sort();
+  far = number() > MANY;
+  std::map<std::array<int, 3>, int> known;
+  images.clear();
   image.resize(sites.size());
-  any_images = false;
   for (size_t n = 0; n < sites.size(); ++n) {
-    find_image(sites[n], image[n]);
-    any_images = any_images || image[n] != std::array<int, 3>{0, 0, 0};
+    const auto periods = image_of(sites[n]);
+    if (n > 0 && periods == images[image[n - 1]]) {
+      image[n] = image[n - 1];
+      continue;
+    }
+    const auto entry = known.emplace(periods, (int) images.size());
+    if (entry.second) images.push_back(periods);
+    image[n] = entry.first->second;
   }
+  any_images = images.size() > 1 || (!images.empty() && images[0] != std::array<int, 3>{0, 0, 0});
   Extended &extended = ownership.extended();
   extended.sites.clear();
   if (extended.has_records())
@@ -81,11 +120,12 @@ void Sites::sort()
   }
 }
 
-void Sites::find_image(const Site &site, std::array<int, 3> &periods) const
+std::array<int, 3> Sites::image_of(const Site &site) const
 {
   const imageint flags = atom->image[site.atom];
-  periods = {(int) (flags & IMGMASK) - IMGMAX, (int) (flags >> IMGBITS & IMGMASK) - IMGMAX,
-             (int) (flags >> IMG2BITS) - IMGMAX};
+  std::array<int, 3> periods = {(int) (flags & IMGMASK) - IMGMAX,
+                                (int) (flags >> IMGBITS & IMGMASK) - IMGMAX,
+                                (int) (flags >> IMG2BITS) - IMGMAX};
   double away[3] = {0.0, 0.0, 0.0}, arm[3], expected[3], turns[3];
   domain->unmap(away, flags);
   to_space(bodies.axes(site.body), site.arm_body, arm);
@@ -93,46 +133,52 @@ void Sites::find_image(const Site &site, std::array<int, 3> &periods) const
   for (int k = 0; k < 3; ++k) expected[k] = center[k] + arm[k] - x[k];
   if (image_flag_overflow(domain, expected, away, turns))
     for (int k = 0; k < 3; ++k) periods[k] += (int) turns[k];
+  return periods;
 }
 
 /* ----------------------------------------------------------------------
    positions and velocities
 ------------------------------------------------------------------------- */
 
-/// The way through so many periods, with the operations of Domain::unmap(): h: as Domain::h.
-template <bool TILTED> static void through(const double *h, const int *periods, double *way)
+/// What the images take from unwrapped positions in the present box, with the operations of
+/// Domain::unmap().
+void Sites::find_ways()
 {
-  for (int k = 0; k < 3; ++k) way[k] = h[k] * periods[k];
-  if (!TILTED) return;
-  way[0] = way[0] + h[5] * periods[1] + h[4] * periods[2];
-  way[1] = way[1] + h[3] * periods[2];
+  ways.resize(images.size());
+  for (size_t m = 0; m < images.size(); ++m) through(domain, images[m].data(), ways[m].data());
 }
 
-template <bool POSITIONS, bool VELOCITIES, Sites::Images IMAGES> void Sites::place_points()
+template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_points()
 {
-  const double *h = domain->h;
-  const auto put = [&](int n, const double *where) {
-    double *x = atom->x[sites[n].atom], way[3];
-    if (IMAGES != Images::NONE) through<IMAGES == Images::TILTED>(h, image[n].data(), way);
-    for (int k = 0; k < 3; ++k) x[k] = IMAGES == Images::NONE ? where[k] : where[k] - way[k];
-  };
-  for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
+  const Site *site = begin();
+  const auto *way = ways.data();
+  double *const x = first_of(atom->x), *const v = first_of(atom->v);
+  for (int ibody = 0, n = 0; ibody < bodies.nhere(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
-    const BodyFrame &fr = bodies.frame_of(ibody);
-    int n = first[ibody];
-    for (; n < first_arm[ibody]; ++n) {
-      if (POSITIONS) put(n, s.center);
-      if (VELOCITIES) std::copy_n(s.velocity, 3, atom->v[sites[n].atom]);
-    }
+    const BodyFrame &frame = bodies.frame_of(ibody);
+    const double center[3] = {s.center[0], s.center[1], s.center[2]};
+    const double velocity[3] = {s.velocity[0], s.velocity[1], s.velocity[2]};
+    const auto put = [&](const double *arm, const double *spin) {
+      const size_t i = 3 * (size_t) site[n].atom;
+      for (int k = 0; k < 3; ++k) {
+        if (POSITIONS) {
+          const double unwrapped = arm ? center[k] + arm[k] : center[k];
+          x[i + k] = WRAPPED ? unwrapped - way[image[n]][k] : unwrapped;
+        }
+        if (VELOCITIES) v[i + k] = spin ? velocity[k] + spin[k] : velocity[k];
+      }
+    };
+    for (; n < first_arm[ibody]; ++n) put(nullptr, nullptr);
     for (; n < first[ibody + 1]; ++n) {
-      double arm[3], spin[3], where[3];
-      to_space(fr.axes, sites[n].arm_body, arm);
-      for (int k = 0; k < 3; ++k) where[k] = s.center[k] + arm[k];
-      if (POSITIONS) put(n, where);
-      if (!VELOCITIES) continue;
-      double *v = atom->v[sites[n].atom];
-      cross3(fr.omega_space, arm, spin);
-      for (int k = 0; k < 3; ++k) v[k] = s.velocity[k] + spin[k];
+      if (far) {
+        const size_t soon = 3 * (size_t) site[std::min(n + AHEAD, number() - 1)].atom;
+        if (POSITIONS) prefetch<true>(x + soon);
+        if (VELOCITIES) prefetch<true>(v + soon);
+      }
+      double arm[3], spin[3];
+      to_space(frame.axes, site[n].arm_body, arm);
+      if (VELOCITIES) cross3(frame.omega_space, arm, spin);
+      put(arm, spin);
     }
   }
 }
@@ -140,12 +186,11 @@ template <bool POSITIONS, bool VELOCITIES, Sites::Images IMAGES> void Sites::pla
 template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
 {
   ++nplacements;
-  if (!POSITIONS || !any_images)
-    place_points<POSITIONS, VELOCITIES, Images::NONE>();
-  else if (domain->triclinic)
-    place_points<POSITIONS, VELOCITIES, Images::TILTED>();
-  else
-    place_points<POSITIONS, VELOCITIES, Images::STRAIGHT>();
+  if (POSITIONS && any_images) {
+    find_ways();
+    place_points<POSITIONS, VELOCITIES, true>();
+  } else
+    place_points<POSITIONS, VELOCITIES, false>();
   const Extended &extended = ownership.extended();
   if (!extended.sites.empty()) extended.place(bodies.states(), POSITIONS, VELOCITIES);
 }
@@ -169,9 +214,7 @@ void Sites::place_extended()
 /// What its image takes from an unwrapped position.
 void Sites::wrap(const Site &site, double *away) const
 {
-  const int *periods = image[&site - begin()].data();
-  domain->triclinic ? through<true>(domain->h, periods, away)
-                    : through<false>(domain->h, periods, away);
+  through(domain, images[image[&site - begin()]].data(), away);
 }
 
 Sites::Expected Sites::expected_position(const Site &site) const
@@ -233,15 +276,17 @@ bool Sites::is_as_fast(const Site &site) const
 ------------------------------------------------------------------------- */
 
 /// One sum for each body here: start(ibody) makes it, add(sum, site, arm_space) takes in a site,
-/// finish(ibody, sum) receives it.  arm_space: null for a site at the center of mass.
+/// finish(ibody, sum) receives it.  arm_space: null for a site at the center of mass.  values: of
+/// atoms, that add() will read, or null.
 template <class Start, class Add, class Finish>
-void Sites::sum_over_sites(Start start, Add add, Finish finish) const
+void Sites::sum_over_sites(double **values, Start start, Add add, Finish finish) const
 {
-  for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
+  const double *const read = far ? first_of(values) : nullptr;
+  for (int ibody = 0, n = 0; ibody < bodies.nhere(); ++ibody) {
     auto sum = start(ibody);
-    int n = first[ibody];
     for (; n < first_arm[ibody]; ++n) add(sum, sites[n], nullptr);
     for (; n < first[ibody + 1]; ++n) {
+      if (read) prefetch<false>(read + 3 * (size_t) sites[std::min(n + AHEAD, number() - 1)].atom);
       double arm[3];
       to_space(bodies.axes(ibody), sites[n].arm_body, arm);
       add(sum, sites[n], arm);
@@ -250,19 +295,20 @@ void Sites::sum_over_sites(Start start, Add add, Finish finish) const
   }
 }
 
-/// The loads of all bodies from the force on each site: force_on(site, force).
-template <class Force> void Sites::gather(Force force_on, double **torque)
+/// The loads of all bodies from the force on each site, which force_on(site) points to.
+template <class Force> void Sites::gather(double **values, Force force_on, double **torque)
 {
   std::vector<Load> &loads = bodies.change_loads();
   sum_over_sites(
+      values,
       [](int) {
         return Load();
       },
       [&](Load &sum, const Site &site, const double *arm) {
-        double f[3], moment[3];
-        force_on(site, f);
+        const double *f = force_on(site);
         add3(f, sum.force);
         if (!arm) return;
+        double moment[3];
         cross3(arm, f, moment);
         add3(moment, sum.torque_space);
       },
@@ -291,20 +337,25 @@ void Sites::expect_forces(bool any)
 void Sites::gather_loads(double **f, double **torque)
 {
   if (!any_forces) return;
+  const double *const all = first_of(f);
   gather(
-      [f](const Site &site, double *of_site) {
-        std::copy_n(f[site.atom], 3, of_site);
+      f,
+      [all](const Site &site) {
+        return all + 3 * (size_t) site.atom;
       },
       torque);
 }
 
 void Sites::gather_impulses()
 {
+  double impulse[3];
   gather(
-      [this](const Site &site, double *impulse) {
+      atom->v,
+      [this, &impulse](const Site &site) {
         const Expected expected = expected_velocity(site);
         const double mass = ownership.mass_of(site.atom) / force->ftm2v;
         for (int k = 0; k < 3; ++k) impulse[k] = mass * (atom->v[site.atom][k] - expected.value[k]);
+        return impulse;
       },
       nullptr);
 }
@@ -314,6 +365,7 @@ std::vector<Load> Sites::centroids()
 {
   std::vector<Load> means(bodies.nhere());
   sum_over_sites(
+      nullptr,
       [](int) {
         return Load();
       },
@@ -339,6 +391,7 @@ void Sites::visit_constraint_forces(double **f, bool all,
   ownership.spread(bodies.change_loads());
   const std::vector<Load> means = all ? centroids() : std::vector<Load>();
   sum_over_sites(
+      nullptr,
       [this](int ibody) {
         const RigidBody &rigid = bodies.rigid_of(ibody);
         const Load &load = bodies.load_of(ibody);
@@ -377,6 +430,7 @@ void Sites::visit_constraint_forces(double **f, bool all,
 
 double Sites::memory_usage() const
 {
-  return sites.capacity() * sizeof(Site) + image.capacity() * sizeof(image[0]) +
-      (first.capacity() + first_arm.capacity()) * sizeof(int);
+  return sites.capacity() * sizeof(Site) + images.capacity() * sizeof(images[0]) +
+      ways.capacity() * sizeof(ways[0]) +
+      (image.capacity() + first.capacity() + first_arm.capacity()) * sizeof(int);
 }

@@ -98,23 +98,24 @@ class Sites : protected Pointers {
   Ownership &ownership;
 
   std::vector<Site> sites;
-  std::vector<std::array<int, 3>> image;    ///< of the sites: periods that their unwrapped
-                                            ///< positions are away
+  std::vector<std::array<int, 3>> images;     ///< periods that unwrapped positions are away
+  std::vector<int> image;                     ///< of the sites: index of the image
+  std::vector<std::array<double, 3>> ways;    ///< scratch: of the images, in the present box
   std::vector<int> first, first_arm;    ///< of each body: its first site, its first one with an arm
   bool any_images = false;              ///< some of these are not zero
+  bool far = false;                     ///< so many sites that their atoms are not in the cache
   bool any_forces = true;
   int nplacements = 0;
 
-  enum class Images { NONE, STRAIGHT, TILTED };    ///< in which box
-
   void sort();
-  void find_image(const Site &site, std::array<int, 3> &periods) const;
+  std::array<int, 3> image_of(const Site &site) const;
   void wrap(const Site &site, double *away) const;
+  void find_ways();
   template <bool POSITIONS, bool VELOCITIES> void place_points();
-  template <bool POSITIONS, bool VELOCITIES, Images IMAGES> void place_points();
+  template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place_points();
   template <class Start, class Add, class Finish>
-  void sum_over_sites(Start start, Add add, Finish finish) const;
-  template <class Force> void gather(Force force_on, double **torque);
+  void sum_over_sites(double **values, Start start, Add add, Finish finish) const;
+  template <class Force> void gather(double **values, Force force_on, double **torque);
   std::vector<Load> centroids();
 };
 
