@@ -81,7 +81,6 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   sums.reset(new Sums(lmp, *bodies));
   size_vector = Sums::ELEMENTS + motion->elements();
   extracts.reset(new Extract(lmp, *bodies, *ownership, *sums, args->mol));
-  readers.reset(new Readers);
   maxexchange = ownership->max_exchange();
   comm_forward = ownership->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
@@ -192,7 +191,7 @@ void FixGearQuat::setup_pre_neighbor()
 /// Atoms are changed when nothing can refuse the run any more.
 void FixGearQuat::setup(int vflag)
 {
-  *readers = readers_at_end(lmp, this);
+  step->expect_readers_at_end(readers_at_end(lmp, this));
   ownership->spread_states();
   if (!reported) other_fixes->check_gravity();
   sites->gather_loads(atom->f, atom->torque);
@@ -201,6 +200,7 @@ void FixGearQuat::setup(int vflag)
   bodies->forget_work();    // positions are the corrected ones
   tally_virial(vflag, atom->f);
   show_bodies();
+  motion_acts = true;
   if (!reported) report_scene(lmp, this, *args, *fleet, *bodies, *ownership, *sites);
   reported = true;
 }
@@ -249,17 +249,18 @@ void FixGearQuat::final_integrate()
 /// in the list starts the bodies of all of them.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
-  motion->take_velocities(update->ntimestep - 1, true);
-  if (motion->begins_steps()) Motion::begin_steps(*fleet, f, torque);
+  if (motion_acts) {
+    motion->take_velocities(update->ntimestep - 1, true);
+    if (motion->begins_steps()) Motion::begin_steps(*fleet, f, torque);
+    motion_acts = other_fixes->any_taken();
+  }
   step->begin(vflag, f);
 }
 
 void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
-  if (is_due(lmp, readers->of_atoms))
-    comm->forward_comm();    // ghost atoms are where the forces were taken
-  if (is_due(lmp, readers->of_local_data)) show_bodies();
+  if (step->shows_local_data()) show_bodies();
 }
 
 /// LAMMPS calls this with keyword tolerance only, when all fixes have finished the step.

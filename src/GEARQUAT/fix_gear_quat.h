@@ -39,7 +39,6 @@ namespace GearQuat {
   class Sums;
   struct Arguments;
   struct Fleet;
-  struct Readers;
   struct StatedMolecule;
 }    // namespace GearQuat
 
@@ -110,7 +109,7 @@ class FixGearQuat : public Fix {
 
   bool met_atoms = false;         // bodies were compared with the atoms in a run before
   bool reported = false;          // the scene, once
-  std::unique_ptr<GearQuat::Readers> readers;    // other fixes at the end of a step
+  bool motion_acts = true;    // before the next step: on velocities of other fixes, or a start
 
   void create_bodies();
   void update_bodies();

@@ -24,9 +24,6 @@ using namespace GearQuat;
 
 static constexpr double NONE = std::numeric_limits<double>::infinity();
 
-/// Codes of LAMMPS from this one on mean faces that follow the atoms.
-static constexpr int SHRINKS = 2;
-
 static constexpr double NEARLY_LINEAR = 0.01;    // smallest moment by the largest
 static constexpr bigint MANY = 10;               // bodies that share their energy
 static constexpr double MARGIN = 0.6;    // of the longest step: later forces may vary faster
@@ -217,17 +214,6 @@ static std::string advice_on_spin(const RigidBody &body, const double *omega_bod
    in a step
 ------------------------------------------------------------------------- */
 
-MotionLimits Blowup::limits(double h) const
-{
-  double longest = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    const int *faces = domain->boundary[k];
-    const bool follows = faces[0] >= SHRINKS || faces[1] >= SHRINKS;
-    longest = std::max(longest, follows ? NONE : domain->prd[k]);
-  }
-  return MotionLimits(h, longest);
-}
-
 void Blowup::check_loads(double h, double **f) const
 {
   for (const auto *list : {&bodies.points, &bodies.tops, &bodies.fresh})
@@ -238,7 +224,7 @@ void Blowup::check_load(int ibody, double h, double **f) const
 {
   const BodyState after =
       kicked(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.load_of(ibody), h);
-  if (!limits(h).keep_velocities(after)) stop(ibody, after, h, f);
+  if (!limits.keep_velocities(after)) stop(ibody, after, h, f);
 }
 
 void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
@@ -354,7 +340,7 @@ std::string Blowup::what_happened(int ibody, const BodyState &s, double h) const
   if (!std::isfinite(push)) return "meets a force that is not a finite number";
   if (!std::isfinite(twist)) return "meets a torque that is not a finite number";
   const std::string under = fmt::format("under a force of {:g} and a torque of {:g}", push, twist);
-  if (!limits(h).keep_velocities(s))
+  if (!limits.keep_velocities(s))
     return fmt::format("moves by {:g} and turns by {:g} radians in one step, {}",
                        length(s.velocity) * std::fabs(h), length(s.omega_body) * std::fabs(h),
                        under);

@@ -56,8 +56,8 @@ class Blowup : protected Pointers {
   /// Where it is unstable, it was so before the bodies were; may be null.
   const Coupling *coupling = nullptr;
 
-  /// The limits for a step h in the present box.  A box that follows the atoms sets none.
-  MotionLimits limits(double h) const;
+  /// Those of the present step and box.
+  MotionLimits limits;
 
   /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms
   /// are where the loads were taken; f: forces on them.

@@ -267,7 +267,7 @@ bool Motion::has_to_start(double **f)
   const bool needs = !step.started || reason;
   movers = present_movers();
   if (step.coupling) step.coupling->begin_steps(needs);
-  if (needs) step.blowup.check_loads(step.length(), f);
+  if (needs) step.check_loads(f);
   return needs;
 }
 

@@ -289,6 +289,7 @@ bool Ownership::take_stock()
   natoms = all[1];
   any_ghosts = all[5] > 0;
   nlarge = all[6];
+  bodies.set_copies(any_ghosts || nlarge > 0);
   if (all[1] != all[2] || all[3] > 0) check_whole();
   if (nlarge != (bigint) bodies.large.size()) return false;    // one was removed
   if (all[3] > 0) {

@@ -166,12 +166,3 @@ Readers GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
   }
   return readers;
 }
-
-bool GearQuat::is_due(LAMMPS *lmp, const std::vector<int> &periods)
-{
-  const bigint step = lmp->update->ntimestep;
-  return lmp->output->next == step ||
-      std::any_of(periods.begin(), periods.end(), [step](int period) {
-           return step % period == 0;
-         });
-}

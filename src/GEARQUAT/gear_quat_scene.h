@@ -44,9 +44,6 @@ struct Readers {
 };
 Readers readers_at_end(LAMMPS *lmp, const Fix *owner);
 
-/// True if output is due in this step, or one of the periods ends with it.
-bool is_due(LAMMPS *lmp, const std::vector<int> &periods);
-
 }    // namespace LAMMPS_NS::GearQuat
 
 #endif

@@ -317,7 +317,7 @@ template <class Force> void Sites::gather(double **values, Force force_on, doubl
       });
   const Extended &extended = ownership.extended();
   if (!extended.sites.empty()) extended.add_torques(torque, loads);
-  ownership.sum(loads);
+  if (bodies.have_copies()) ownership.sum(loads);
 
   const double ftm2v = force->ftm2v;
   if (ftm2v == 1.0) return;

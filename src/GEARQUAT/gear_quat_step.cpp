@@ -9,8 +9,12 @@
 #include "gear_quat_start.h"
 #include "gear_quat_thermostat.h"
 
+#include "comm.h"
+#include "domain.h"
+#include "output.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -74,9 +78,10 @@ void Step::end(double **f, double **torque)
     tolerance->evaluate(vflag_of_step);
   }
   hold(f);
-  ownership.spread_moved();
+  if (bodies.have_copies()) ownership.spread_moved();
   sites.place(true);
   others.note_velocity();
+  if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where the forces were taken
 }
 
 void Step::choose_next()
@@ -104,12 +109,12 @@ void Step::check_other_fixes()
 
 void Step::predict(double **f)
 {
-  const double h = length();
+  const double h = integrator->step();
   time_step.begin();
-  limits = blowup.limits(h);
+  find_limits();
   const auto check = [&](int ibody) {
     const BodyState &state = bodies.state_of(ibody);
-    if (!tolerance && !limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
+    if (!tolerance && !blowup.limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
   };
   for (const int ibody : bodies.points) {
     double *rows = bodies.history(ibody);
@@ -128,7 +133,7 @@ void Step::predict(double **f)
 
 void Step::place_prediction()
 {
-  ownership.spread_moved();
+  if (bodies.have_copies()) ownership.spread_moved();
   sites.place(velocities_read);
   others.note_place();
 }
@@ -207,7 +212,7 @@ void Step::hold(double **f)
     for (const auto *list : {&bodies.points, &bodies.tops})
       for (const int ibody : *list) check_limits(ibody, f);
   }
-  if (coupling) coupling->note_step(length());
+  if (coupling) coupling->note_step(integrator->step());
   begin_fresh(f);
 }
 
@@ -216,11 +221,46 @@ void Step::begin_fresh(double **f)
 {
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
-    blowup.check_load(ibody, length(), f);
-    seed_body(bodies, ibody, acting(ibody), scheme(), length(), known);
+    blowup.check_load(ibody, integrator->step(), f);
+    seed_body(bodies, ibody, acting(ibody), scheme(), integrator->step(), known);
   }
-  bodies.take_in_fresh();
-  if (coupling) coupling->follow_changes(length());
+  if (!bodies.fresh.empty()) bodies.take_in_fresh();
+  if (coupling) coupling->follow_changes(integrator->step());
+}
+
+/// A box that follows the atoms sets no limits.
+void Step::find_limits()
+{
+  constexpr int SHRINKS = 2;    // codes of LAMMPS from this one on mean faces that follow the atoms
+  double longest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const int *faces = domain->boundary[k];
+    const bool follows = faces[0] >= SHRINKS || faces[1] >= SHRINKS;
+    longest = std::max(longest, follows ? HUGE_VAL : domain->prd[k]);
+  }
+  blowup.limits = MotionLimits(length(), longest);
+}
+
+/// Of a corrected state.
+inline void Step::check_limits(int ibody, double **f) const
+{
+  const BodyState &state = bodies.state_of(ibody);
+  if (!blowup.limits.keep(state)) blowup.stop(ibody, state, integrator->step(), f);
+}
+
+void Step::check_loads(double **f)
+{
+  find_limits();
+  blowup.check_loads(length(), f);
+}
+
+/// True if output is due in this step, or one of the periods ends with it.
+bool Step::is_due(const std::vector<int> &periods) const
+{
+  const bigint now = update->ntimestep;
+  return output->next == now || std::any_of(periods.begin(), periods.end(), [now](int period) {
+           return now % period == 0;
+         });
 }
 
 /* ----------------------------------------------------------------------

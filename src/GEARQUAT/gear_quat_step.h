@@ -22,6 +22,7 @@
 #include "gear_quat_blowup.h"
 #include "gear_quat_coupling.h"
 #include "gear_quat_fixes.h"
+#include "gear_quat_scene.h"
 #include "gear_quat_sites.h"
 #include "gear_quat_time_step.h"
 #include "gear_quat_tolerance.h"
@@ -57,6 +58,13 @@ class Step : protected Pointers {
   /// Histories have the number of values of scheme().
   void make_integrator();
 
+  /// Ends the run if the present loads would make a body unstable in the next step.
+  void check_loads(double **f);
+  /// Other fixes that read atoms, or local data of this fix, at the end of a step.
+  void expect_readers_at_end(const Readers &others) { readers = others; }
+  /// True if something may read local data at the end of this step.
+  bool shows_local_data() const { return is_due(readers.of_local_data); }
+
   /// True once bodies have histories of the present length.
   bool started = false;
 
@@ -80,10 +88,10 @@ class Step : protected Pointers {
   OtherFixes &others;
   Tally tally;
   std::unique_ptr<Integrator> integrator;
-  MotionLimits limits;            ///< of the present step
   int vflag_of_step = 0;          ///< what LAMMPS asked of the virial when the step began
   bool velocities_read = true;    ///< between prediction and correction, by others
   bool compared = false;
+  Readers readers;
 
   void check_other_fixes();
   void predict(double **f);
@@ -96,11 +104,9 @@ class Step : protected Pointers {
   void shorten();
   void hold(double **f);
   void begin_fresh(double **f);
-  void check_limits(int ibody, double **f) const
-  {
-    const BodyState &state = bodies.state_of(ibody);
-    if (!limits.keep(state)) blowup.stop(ibody, state, time_step.made(), f);
-  }
+  void check_limits(int ibody, double **f) const;
+  void find_limits();
+  bool is_due(const std::vector<int> &periods) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat
