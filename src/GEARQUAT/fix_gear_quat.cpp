@@ -14,7 +14,6 @@
 #include "fix_gear_quat.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_compare.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_fleet.h"
 #include "gear_quat_molecules.h"
@@ -175,7 +174,7 @@ void FixGearQuat::setup_pre_neighbor()
   if (met_atoms) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
   if (from_atoms && (args->reinit || !met_atoms) &&
-      !atoms_match(lmp, *bodies, *ownership, *sites)) {
+      !sites->match_bodies()) {
     ownership->recreate();
     update_bodies();
     motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
@@ -344,7 +343,7 @@ double FixGearQuat::compute_array(int i, int j)
 
 bigint FixGearQuat::dof(int tgroup)
 {
-  return count_atoms(lmp, *bodies, *ownership, group->bitmask[tgroup]).removed_freedoms;
+  return ownership->count_atoms(group->bitmask[tgroup]).removed_freedoms;
 }
 
 int FixGearQuat::modify_param(int narg, char **arg)

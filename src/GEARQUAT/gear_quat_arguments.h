@@ -27,7 +27,7 @@ struct Arguments : protected Pointers {
   std::vector<std::string> groups;    ///< group: one per body
   std::string custom;                 ///< custom: i_name or v_name
 
-  // what the keywords say; the table in gear_quat_keywords.cpp has the defaults
+  // what the keywords say; the table in gear_quat_keyword_table.cpp has the defaults
 
   Scheme scheme;
   StepControl control;        ///< eps 0: the step is LAMMPS' own

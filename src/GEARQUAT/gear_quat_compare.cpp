@@ -3,12 +3,14 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_compare.h"
+/* The atoms of all bodies compared with what the bodies know of them: their number, masses and
+   places.  Once per run, not per step. */
+
+#include "gear_quat_sites.h"
 
 #include "gear_quat_images.h"
 #include "gear_quat_parts.h"
 #include "gear_quat_ranks.h"
-#include "gear_quat_sites.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -269,10 +271,9 @@ Comparison Comparer::all()
 
 /* ---------------------------------------------------------------------- */
 
-Comparison GearQuat::count_atoms(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership,
-                                 int groupbit)
+Comparison Ownership::count_atoms(int groupbit) const
 {
-  Comparer comparer(lmp, bodies, ownership, groupbit);
+  Comparer comparer(lmp, bodies, *this, groupbit);
   comparer.merge();
   return comparer.all();
 }
@@ -294,21 +295,20 @@ static void refuse_tears(Error *error, const Comparison &found)
         found.cut);
 }
 
-bool GearQuat::atoms_match(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership,
-                           const Sites &sites)
+bool Sites::match_bodies() const
 {
   int moved = 0;
   for (const Site &site : sites)
-    if (!sites.is_there(site) || !sites.is_as_fast(site) ||
+    if (!is_there(site) || !is_as_fast(site) ||
         !ownership.extended().match(site.atom, ownership.mass_of(site.atom),
                                     bodies.state_of(site.body)))
       moved = 1;
-  const int any = over_ranks(MPI_MAX, moved, lmp->world);
+  const int any = over_ranks(MPI_MAX, moved, world);
   Comparer comparer(lmp, bodies, ownership, 0);
-  comparer.describe(sites);
+  comparer.describe(*this);
   comparer.merge();
-  comparer.look_for_tears(sites);
+  comparer.look_for_tears(*this);
   const Comparison found = comparer.all();
-  if (any) refuse_tears(lmp->error, found);
+  if (any) refuse_tears(error, found);
   return !any && !found.mass_changed;
 }

@@ -6,7 +6,6 @@
 #include "gear_quat_ownership.h"
 
 #include "gear_quat_assembly.h"
-#include "gear_quat_compare.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -136,7 +135,7 @@ Ownership::Resumed Ownership::resume(const std::vector<const double *> &packed, 
   }
   count();
   const auto any = over_ranks(MPI_MAX, here, world);
-  const bool whole = !count_atoms(lmp, bodies, *this).broken;
+  const bool whole = !count_atoms().broken;
   if (!any[0] && whole && (group || bodies.number() == expected))
     return any[1] ? Resumed::FEWER : Resumed::ALL;
   clear();
@@ -153,7 +152,7 @@ void Ownership::refuse_atoms() const
 
 void Ownership::check_whole()
 {
-  const Comparison found = count_atoms(lmp, bodies, *this);
+  const Comparison found = count_atoms();
   if (found.broken) {
     const std::string had = found.had
         ? fmt::format("has {} of its {} atoms left", found.left, found.had)

@@ -36,6 +36,16 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
+/// What a comparison has found, the same on all ranks; bodies are named by their IDs, 0 for none.
+struct Comparison {
+  bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
+  tagint broken = 0;              ///< a body that has lost atoms, or that several IDs name
+  bigint left = 0, had = 0;       ///< its atoms now and before
+  tagint mass_changed = 0;        ///< one whose atoms have another mass, center or inertia
+  tagint torn = 0;                ///< one whose atoms are whole periods further apart than before
+  tagint cut = 0;                 ///< one that another box has torn at the faces of the box
+};
+
 class Ownership : protected Pointers {
  public:
   Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies, const Scheme &scheme);
@@ -93,6 +103,10 @@ class Ownership : protected Pointers {
   /// Ends the run if a body has lost some of its atoms, and follows changed atom IDs; needs no
   /// ghosts.
   void check_whole();
+  /// Numbers and masses of atoms compared with those of their bodies.  Needs no ghost atoms, so it
+  /// can be called at any time.  groupbit: the group that degrees of freedom are asked for, 0 for
+  /// none.  In gear_quat_compare.cpp.  Collective.
+  Comparison count_atoms(int groupbit = 0) const;
   /// The IDs of all bodies, sorted, on all ranks.  Collective.
   std::vector<tagint> all_ids() const;
   /// Gives these masks, by IDs, to all bodies.  True if one had another; collective.

@@ -55,8 +55,18 @@ static void through(const Domain *domain, const int *periods, double *way)
 /* ---------------------------------------------------------------------- */
 
 Sites::Sites(LAMMPS *lmp, Bodies &bodies, Ownership &ownership) :
-    Pointers(lmp), bodies(bodies), ownership(ownership)
+    Pointers(lmp), bodies(bodies), ownership(ownership), extended(ownership.extended())
 {
+}
+
+int Sites::number() const
+{
+  return (int) sites.size();
+}
+
+const Site &Sites::operator[](int n) const
+{
+  return sites[n];
 }
 
 /* ----------------------------------------------------------------------
@@ -82,7 +92,6 @@ void Sites::list()
     image[n] = entry.first->second;
   }
   any_images = images.size() > 1 || (!images.empty() && images[0] != std::array<int, 3>{0, 0, 0});
-  Extended &extended = ownership.extended();
   extended.sites.clear();
   if (extended.has_records())
     for (const Site &site : sites) extended.list(site.atom, site.body);
@@ -191,7 +200,6 @@ template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
     place_points<POSITIONS, VELOCITIES, true>();
   } else
     place_points<POSITIONS, VELOCITIES, false>();
-  const Extended &extended = ownership.extended();
   if (!extended.sites.empty()) extended.place(bodies.states(), POSITIONS, VELOCITIES);
 }
 
@@ -207,7 +215,6 @@ void Sites::place_velocities()
 
 void Sites::place_extended()
 {
-  const Extended &extended = ownership.extended();
   if (!extended.sites.empty()) extended.place(bodies.states(), true, true);
 }
 
@@ -315,7 +322,6 @@ template <class Force> void Sites::gather(double **values, Force force_on, doubl
       [&](int ibody, const Load &sum) {
         loads[ibody] = sum;
       });
-  const Extended &extended = ownership.extended();
   if (!extended.sites.empty()) extended.add_torques(torque, loads);
   if (bodies.have_copies()) ownership.sum(loads);
 

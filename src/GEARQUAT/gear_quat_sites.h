@@ -35,15 +35,15 @@ class Sites : protected Pointers {
 
   // body by body; within a body those at its center of mass first, then by local index
 
-  int number() const { return (int) sites.size(); }
+  int number() const;
   const Site *begin() const { return sites.data(); }
   const Site *end() const { return begin() + sites.size(); }
-  const Site &operator[](int n) const { return sites[n]; }
+  const Site &operator[](int n) const;
 
   /// Find the sites of all bodies, after atoms were exchanged or bodies were made.
   void list();
   /// Sites on this rank that are more than points.
-  bigint number_of_extended() const { return (bigint) ownership.extended().sites.size(); }
+  bigint number_of_extended() const { return (bigint) extended.sites.size(); }
 
   // positions and velocities
 
@@ -53,6 +53,10 @@ class Sites : protected Pointers {
   void place_velocities();
   /// Orientations and rates of atoms that are more than points, where these were moved alone.
   void place_extended();
+  /// True if masses, positions and velocities of all atoms are those of their bodies.  Ends the run
+  /// if image flags or another box have torn a body.  Sites are listed, and Ownership::box() is the
+  /// box before.  In gear_quat_compare.cpp.  Collective.
+  bool match_bodies() const;
   /// How often sites were listed or placed, the same on all ranks: what was made of positions or
   /// loads at another number is out of date.
   int placements() const { return nplacements; }
@@ -96,6 +100,7 @@ class Sites : protected Pointers {
  private:
   Bodies &bodies;
   Ownership &ownership;
+  Extended &extended;
 
   std::vector<Site> sites;
   std::vector<std::array<int, 3>> images;     ///< periods that unwrapped positions are away

@@ -111,7 +111,7 @@ void Step::predict(double **f)
 {
   const double h = integrator->step();
   time_step.begin();
-  find_limits();
+  find_limits(h);
   const auto check = [&](int ibody) {
     const BodyState &state = bodies.state_of(ibody);
     if (!tolerance && !blowup.limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
@@ -229,7 +229,7 @@ void Step::begin_fresh(double **f)
 }
 
 /// A box that follows the atoms sets no limits.
-void Step::find_limits()
+void Step::find_limits(double h)
 {
   constexpr int SHRINKS = 2;    // codes of LAMMPS from this one on mean faces that follow the atoms
   double longest = 0.0;
@@ -238,7 +238,7 @@ void Step::find_limits()
     const bool follows = faces[0] >= SHRINKS || faces[1] >= SHRINKS;
     longest = std::max(longest, follows ? HUGE_VAL : domain->prd[k]);
   }
-  blowup.limits = MotionLimits(length(), longest);
+  blowup.limits = MotionLimits(h, longest);
 }
 
 /// Of a corrected state.
@@ -250,8 +250,13 @@ inline void Step::check_limits(int ibody, double **f) const
 
 void Step::check_loads(double **f)
 {
-  find_limits();
+  find_limits(length());
   blowup.check_loads(length(), f);
+}
+
+bool Step::shows_local_data() const
+{
+  return is_due(readers.of_local_data);
 }
 
 /// True if output is due in this step, or one of the periods ends with it.

@@ -63,7 +63,7 @@ class Step : protected Pointers {
   /// Other fixes that read atoms, or local data of this fix, at the end of a step.
   void expect_readers_at_end(const Readers &others) { readers = others; }
   /// True if something may read local data at the end of this step.
-  bool shows_local_data() const { return is_due(readers.of_local_data); }
+  bool shows_local_data() const;
 
   /// True once bodies have histories of the present length.
   bool started = false;
@@ -105,7 +105,7 @@ class Step : protected Pointers {
   void hold(double **f);
   void begin_fresh(double **f);
   void check_limits(int ibody, double **f) const;
-  void find_limits();
+  void find_limits(double h);
   bool is_due(const std::vector<int> &periods) const;
 };
 

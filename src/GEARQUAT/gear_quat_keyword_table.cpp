@@ -1,0 +1,144 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_arguments.h"
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// A third pass rarely pays, and a number with too many digits would seem to hang.
+
+static constexpr int PASSES_MOST = 100;
+
+static constexpr char INTEGRATION[] = "integration", STEP[] = "step", BODIES[] = "bodies",
+                      PHYSICS[] = "physics", OUTPUT[] = "output";
+
+static constexpr char HELD[] =
+    "it acts on all momenta; define a second fix for the bodies that are held";
+static constexpr char FOR_CORRECTED[] = "tuned coefficients are those for the corrected one";
+static constexpr char ONE_TEMPERATURE[] =
+    "both hold the kinetic energy of the bodies; leave out one of the two";
+static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies come";
+
+using Value = KeywordValue;
+
+/* ----------------------------------------------------------------------
+   the table; what decided the defaults is in doc/decisions.md
+------------------------------------------------------------------------- */
+
+// clang-format off
+
+static const std::vector<Keyword> TABLE = {
+  Keyword("formulation", INTEGRATION, "which equations of motion are integrated",
+          [](Arguments &a, const Value &v) {
+            a.scheme.formulation = v.is("first") ? Formulation::FIRST : Formulation::SECOND;
+          }).word({"second", "first"}),
+  Keyword("values", INTEGRATION, "how many values a history keeps of each function",
+          [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
+      .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, VARIABLE_MOST)
+      .with_tables(),
+  Keyword("corrector", INTEGRATION, "which coefficients correct a history",
+          [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
+      .word({"tuned", "gear"}).standard_with_tolerance("gear")
+      .cannot_go_with({"tolerance", "tuned", "rows of tuned coefficients forget a change of the "
+                       "step too slowly; leave out corrector, or write corrector gear"}),
+  Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
+          [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
+      .integer({{1, PASSES_MOST, 2}}),
+  Keyword("compensate", INTEGRATION, "whether sums carry along what rounding takes from them",
+          [](Arguments &a, const Value &v) { a.scheme.compensate = v.is("yes"); })
+      .word({"no", "yes"}),
+  Keyword("start", INTEGRATION, "which derivatives a history begins with",
+          [](Arguments &a, const Value &v) {
+            a.start = v.is("zero") ? Arguments::Start::ZERO : Arguments::Start::BOOTSTRAP;
+          }).word({"bootstrap", "zero"}),
+  Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
+          [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })
+      .word({"position", "velocity"}).requires_also({"formulation", "second", ""})
+      .requires_also({"corrector", "gear", "tuned coefficients have a c_0 of their own"}),
+  Keyword("omega", INTEGRATION, "which angular velocity corrects the quaternion",
+          [](Arguments &a, const Value &v) { a.scheme.predicted_omega = v.is("predicted"); })
+      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
+      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
+  Keyword("momentum", INTEGRATION, "which momentum corrects the position",
+          [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
+      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
+      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
+  Keyword("project", INTEGRATION, "whether quaternions are kept at unit length",
+          [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
+      .word({"yes", "no"}),
+  Keyword("tolerance", STEP, "the error that a step may make, which the time step follows",
+          [](Arguments &a, const Value &v) {
+            a.control.eps = v.number * v.unit;
+            a.control.energy = v.measure == "energy";
+          }).number({"length", "energy"})
+      .cannot_go_with({"isokinetic", "", "heat and multipliers are those of one step and one "
+                       "number of values"}),
+  Keyword("dtmin", STEP, "the time step does not become shorter",
+          [](Arguments &a, const Value &v) { a.control.shortest = v.number; })
+      .number().requires_also({"tolerance", "", ""}),
+  Keyword("dtmax", STEP, "the time step does not become longer",
+          [](Arguments &a, const Value &v) { a.control.longest = v.number; })
+      .number().requires_also({"tolerance", "", ""}),
+  Keyword("every/time", STEP, "the interval of time at whose multiples steps end",
+          [](Arguments &a, const Value &v) { a.every_time = v.number; })
+      .number().requires_also({"tolerance", "", ""}),
+  Keyword("infile", BODIES, "the file that states bodies",
+          [](Arguments &a, const Value &v) { a.infile = v.text; })
+      .follows(Keyword::NAME, {"filename"}),
+  Keyword("reinit", BODIES, "whether changes in the atoms are taken over between runs",
+          [](Arguments &a, const Value &v) { a.reinit = v.is("yes"); })
+      .word({"yes", "no"})
+      .cannot_go_with({"infile", "yes", "the file states the bodies once and for all"}),
+  Keyword("mol", BODIES, "the template of bodies that other fixes insert",
+          [](Arguments &a, const Value &v) { a.mol = v.text; })
+      .follows(Keyword::NAME, {"template-ID"}).requires_also({"bodystyle", "molecule", ""})
+      .cannot_go_with({"isokinetic", "", "bodies that come bring kinetic energy"}),
+  Keyword("force", PHYSICS, "which components of the total force act on bodies M",
+          [](Arguments &a, const Value &v) { a.masks.push_back(v.mask); })
+      .follows(Keyword::MASK, {"M", "xflag", "yflag", "zflag"})
+      .cannot_go_with({"mol", "", RENUMBERED}).cannot_go_with({"isokinetic", "", HELD}),
+  Keyword("torque", PHYSICS, "which components of the total torque act on bodies M",
+          [](Arguments &a, const Value &v) { a.masks.push_back(v.mask); })
+      .follows(Keyword::MASK, {"M", "xflag", "yflag", "zflag"})
+      .cannot_go_with({"mol", "", RENUMBERED}).cannot_go_with({"isokinetic", "", HELD}),
+  Keyword("isokinetic", PHYSICS, "which kinetic energy of all bodies is kept constant",
+          [](Arguments &a, const Value &v) {
+            a.isokinetic = v.is("total") ? Isokinetic::TOTAL
+                : v.is("separate")       ? Isokinetic::SEPARATE
+                                         : Isokinetic::NONE;
+          }).word({"none", "total", "separate"})
+      .requires_also({"formulation", "first", "its constraint acts on momenta, which formulation "
+                      "second does not have"}),
+  Keyword("rescale", PHYSICS, "whether momenta are scaled to exactly that energy",
+          [](Arguments &a, const Value &v) { a.rescale = v.is("yes"); })
+      .word({"yes", "no"}).requires_also({"isokinetic", "", ""}),
+  Keyword("temp", PHYSICS, "the temperature of all bodies, at the beginning and at the end of a run",
+          [](Arguments &a, const Value &v) {
+            a.thermostat.start = v.numbers[0];
+            a.thermostat.stop = v.numbers[1];
+            a.thermostat.damp = v.numbers[2];
+          }).follows(Keyword::NUMBERS, {"Tstart", "Tstop", "Tdamp"})
+      .cannot_go_with({"isokinetic", "", ONE_TEMPERATURE}),
+  Keyword("tchain", PHYSICS, "how many variables a thermostat has",
+          [](Arguments &a, const Value &v) { a.thermostat.length = v.integer; })
+      .integer({{1, Chain::LONGEST, 3}}).requires_also({"temp", "", ""}),
+  Keyword("thermostat", PHYSICS, "whether translation and rotation have one thermostat each",
+          [](Arguments &a, const Value &v) { a.thermostat.separate = v.is("separate"); })
+      .word({"total", "separate"}).requires_also({"temp", "", ""}),
+  Keyword("report", OUTPUT, "what the log says about the scene",
+          [](Arguments &a, const Value &v) {
+            a.report = v.is("no") ? Arguments::Report::NO
+                : v.is("long")    ? Arguments::Report::LONG
+                                  : Arguments::Report::SHORT;
+          }).word({"no", "short", "long"}, "short"),
+};
+
+// clang-format on
+
+const std::vector<Keyword> &GearQuat::keyword_table()
+{
+  return TABLE;
+}
