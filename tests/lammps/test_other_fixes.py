@@ -30,7 +30,7 @@ def rows_of_the_code():
 
 def rows_of_the_manual():
     """Style -> the second column of its row."""
-    table = MANUAL.read_text().split(".. neighbors begin")[1].split(".. neighbors end")[0]
+    table = MANUAL.read_text().split(".. other fixes begin")[1].split(".. other fixes end")[0]
     rows = re.findall(r"\* - (.*?)\n\s+- (.*?)(?=\n\s+\* -|\Z)", table, re.S)
     names = re.compile(r"\*([a-z_/]+)\*")
     told = [(style, text) for styles, text in rows for style in names.findall(styles)]
