@@ -68,6 +68,20 @@ void Bodies::remove_owned(int ibody)
   drop_copies();
 }
 
+void Bodies::permute(const std::vector<int> &from)
+{
+  const auto permute_column = [&from](auto &column, int width) {
+    auto before = column;
+    for (size_t n = 0; n < from.size(); ++n)
+      std::copy_n(&before[(size_t) from[n] * width], width, &column[n * width]);
+  };
+  permute_column(body, 1);
+  permute_column(state, 1);
+  permute_column(load, 1);
+  permute_column(last, 1);
+  permute_column(rows, row_size);
+}
+
 void Bodies::clear()
 {
   nown = 0;

@@ -142,6 +142,8 @@ class Bodies {
   int add_ghost();
   /// The last owned body takes the place of this one.  Copies must not be there.
   void remove_owned(int ibody);
+  /// Body n becomes what body from[n] was; a permutation of owned bodies.  Copies must not be there.
+  void permute(const std::vector<int> &from);
   void clear();
   /// Makes the lists and the frames of all bodies.
   void list();

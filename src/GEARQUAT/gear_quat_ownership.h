@@ -207,6 +207,7 @@ class Ownership : protected Pointers {
   void remove_owned(int ibody);
   int find_body(int atom) const;
   void find_bodies();
+  void order_bodies();
   bool take_stock();
   void pack_large();
   void gather_large();
