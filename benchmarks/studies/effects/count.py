@@ -21,7 +21,7 @@ HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|
 FIX = re.compile(r"LAMMPS_NS::(FixGearQuat|GearQuat::(Motion|Step))::")
 ASIDE = re.compile(
     r"FixGearQuat::show_bodies\(|GearQuat::Motion::begin_steps\(|Comm\w+::forward_comm\(int\)"
-    r"|GearQuat::OtherFixes::(check|take)_\w+\("
+    r"|GearQuat::OtherFixes::(check|note|take)_\w+\("
 )
 ADDRESS = re.compile("0x[0-9a-f]+")
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")
