@@ -16,7 +16,6 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_fleet.h"
-#include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_remap.h"

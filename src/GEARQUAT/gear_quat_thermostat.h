@@ -25,7 +25,7 @@
 #include "gear_quat_chain.h"
 #include "gear_quat_coupling.h"
 #include "gear_quat_exact_sum.h"
-#include "gear_quat_keywords.h"
+#include "gear_quat_arguments.h"
 #include "gear_quat_momentum.h"
 
 #include <array>
