@@ -16,7 +16,6 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_fleet.h"
-#include "gear_quat_molecules.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_remap.h"
@@ -70,10 +69,9 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   const auto tally = [this](int vflag, double **f) {
     tally_virial(vflag, f);
   };
-  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes,
-                      tally));
-  motion.reset(new Motion(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes,
-                          *step));
+  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes, tally));
+  motion.reset(
+      new Motion(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes, *step));
   restarts.reset(new Restart(lmp, this, *bodies, *ownership, *motion));
   respa.reset(new RespaForces(lmp));
   table.reset(new BodyTable(lmp, *bodies, *sites));
@@ -173,8 +171,7 @@ void FixGearQuat::setup_pre_neighbor()
   update_bodies();
   if (met_atoms) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
-  if (from_atoms && (args->reinit || !met_atoms) &&
-      !sites->match_bodies()) {
+  if (from_atoms && (args->reinit || !met_atoms) && !sites->match_bodies()) {
     ownership->recreate();
     update_bodies();
     motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "

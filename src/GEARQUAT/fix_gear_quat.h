@@ -107,8 +107,8 @@ class FixGearQuat : public Fix {
 
   std::vector<GearQuat::StatedMolecule> stated;    // by molecules of the template
 
-  bool met_atoms = false;         // bodies were compared with the atoms in a run before
-  bool reported = false;          // the scene, once
+  bool met_atoms = false;     // bodies were compared with the atoms in a run before
+  bool reported = false;      // the scene, once
   bool motion_acts = true;    // before the next step: on velocities of other fixes, or a start
 
   void create_bodies();

@@ -3,20 +3,189 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The words of the fix command: which atoms make bodies, and how they are integrated. */
+/* The words of the fix command: which atoms make bodies, and how they are integrated.
+
+   The keywords of the fix command: one table with one row for each.  A row says what follows the
+   keyword, what holds without it, which other keywords it requires or excludes, what it means, and
+   where its value is stored.  The parser is a loop over these rows, error messages are made from
+   them, and `fix ID group gear/quat keywords` prints them for people and for programs. */
 
 #ifndef LMP_GEAR_QUAT_ARGUMENTS_H
 #define LMP_GEAR_QUAT_ARGUMENTS_H
 
-#include "gear_quat_keywords.h"
 #include "gear_quat_step_control.h"
 #include "pointers.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
+
+struct Arguments;
+
+/// Keyword force or torque with its words: which components act on which bodies.
+struct MaskWords {
+  bool torque;          ///< or force
+  std::string range;    ///< of bodies, counted from 1 in the order of their IDs
+  bool on[3];
+};
+
+/// What keywords temp, tchain and thermostat say.
+struct ThermostatWords {
+  double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
+  int length = 0;
+  bool separate = false;
+  bool may_wait = false;    ///< bodies may come later, so that there may be none
+};
+
+/// The words behind a keyword, after they were read.
+struct KeywordValue {
+  std::string text;                    ///< the first word as it stands
+  int integer = 0;                     ///< of an INTEGER
+  double number = 0.0;                 ///< of a NUMBER, in units of `unit`
+  std::string measure = {};            ///< of a NUMBER, the word behind it
+  double unit = 1.0;                   ///< of a NUMBER, the number behind that word
+  std::vector<double> numbers = {};    ///< of NUMBERS
+  MaskWords mask = {};                 ///< of a MASK
+
+  bool is(const char *word) const { return text == word; }
+};
+
+struct Keyword {
+  /// WORD: one of some words; NUMBER: a positive one, perhaps with a word behind it, which may have
+  /// a unit, another positive number; NUMBERS: some positive ones; NAME: any word that is not
+  /// empty; MASK: four words, and the keyword may be given many times.
+  enum Kind { WORD, INTEGER, NUMBER, NAME, MASK, NUMBERS };
+  struct Range {
+    int fewest, most, standard;
+    int standard_gear = 0;    ///< the default with corrector gear; 0: the same
+  };
+  /// Another keyword that has to be given, or must not be; value: empty for any but "none".
+  struct Condition {
+    std::string keyword, value;
+    std::string reason;    ///< ends the error message, may be empty
+    std::string
+        only_for;    ///< what is required: by this value of the keyword alone, empty: by any
+  };
+  using Store = void (*)(Arguments &, const KeywordValue &);
+
+  const char *name;
+  const char *about;    ///< integration, step, bodies, physics or output
+  const char *meaning;
+  Store store;
+
+  Kind kind = WORD;
+  std::vector<std::string> words;    ///< WORD: the possible ones; NUMBER: those behind it, the
+                                     ///< first is the default; NAME, MASK, NUMBERS: what follows
+  std::string standard;              ///< WORD: the default
+  std::string with_tolerance;        ///< WORD: the default then, empty: the same
+  std::vector<Range> ranges;         ///< INTEGER: one, or those of formulation second and first
+  int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
+  bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them
+  std::vector<Condition> needs, excludes;
+
+  Keyword(const char *name, const char *about, const char *meaning, Store store) :
+      name(name), about(about), meaning(meaning), store(store)
+  {
+  }
+
+  // what the rows of the table are written with; an empty default is the first word
+
+  Keyword &word(const std::vector<std::string> &possible, const std::string &default_word = "")
+  {
+    standard = default_word.empty() ? possible.front() : default_word;
+    return follows(WORD, possible);
+  }
+  Keyword &integer(const std::vector<Range> &possible, int at_most_with_tolerance = 0)
+  {
+    ranges = possible;
+    most_with_tolerance = at_most_with_tolerance;
+    return follows(INTEGER, {});
+  }
+  Keyword &standard_with_tolerance(const std::string &word)
+  {
+    with_tolerance = word;
+    return *this;
+  }
+  Keyword &with_tables()
+  {
+    of_tables = true;
+    return *this;
+  }
+  Keyword &number(const std::vector<std::string> &measures = {})
+  {
+    return follows(NUMBER, measures);
+  }
+  Keyword &follows(Kind what, const std::vector<std::string> &names)
+  {
+    kind = what;
+    words = names;
+    return *this;
+  }
+  Keyword &requires_also(const Condition &condition)
+  {
+    needs.push_back(condition);
+    return *this;
+  }
+  Keyword &cannot_go_with(const Condition &condition)
+  {
+    excludes.push_back(condition);
+    return *this;
+  }
+
+  /// Of the formulation, where there are two.
+  const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
+
+  /// The default of a WORD.
+  const std::string &standard_word(bool tolerance) const
+  {
+    return tolerance && !with_tolerance.empty() ? with_tolerance : standard;
+  }
+
+  /// The default of an INTEGER.
+  int standard_of(const Range &range, bool tolerance, bool gear) const
+  {
+    if (tolerance && most_with_tolerance) return std::min(range.most, most_with_tolerance);
+    return gear && range.standard_gear ? range.standard_gear : range.standard;
+  }
+
+  /// Reads the words behind arg[0] into value and returns how many they are.  Words that cannot be
+  /// meant end the run on all ranks.
+  int read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const;
+  /// What the words have to be, as a sentence has it: "no, short or long", "1 to 100", "M xflag
+  /// yflag zflag".
+  std::string required() const;
+  /// The same with what holds for some settings of other keywords.
+  std::string possible_values() const;
+};
+
+/// All rows, in the order of the manual.
+const std::vector<Keyword> &keyword_table();
+
+/// The row of a keyword.  An unknown one ends the run on all ranks, with what to write instead if
+/// it is a keyword of the rigid fixes, or else with what may follow `before`, the keyword ahead of
+/// it.
+const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
+
+/// The numbers of values of a formulation that have tuned coefficients, in a row.
+std::string tuned_numbers(bool first, const std::string &between);
+
+/// Whether a word is an integer, and which.
+bool read_integer(const std::string &text, int &integer);
+
+/// The table as text: a line of titles and a line for each row, whose columns are separated by two
+/// or more blanks; an empty cell is a hyphen.
+std::string list_of_keywords();
+
+// words of the rigid fixes that this fix does not have
+
+/// The words of fix_modify that the rigid fixes have: returns how many were used, and ends the run
+/// on all ranks where this fix cannot do what they ask for.
+int modify_like_rigid(LAMMPS *lmp, int narg, char **arg);
+
+/* ---------------------------------------------------------------------- */
 
 struct Arguments : protected Pointers {
   enum class BodyStyle { SINGLE, MOLECULE, GROUP, CUSTOM };

@@ -18,7 +18,7 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_exact_sum.h"
 #include "gear_quat_infile.h"
-#include "gear_quat_parts.h"
+#include "gear_quat_ranks.h"
 #include "pointers.h"
 
 #include <algorithm>

@@ -9,7 +9,6 @@
 #include "gear_quat_sites.h"
 
 #include "gear_quat_images.h"
-#include "gear_quat_parts.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"

@@ -135,6 +135,12 @@ class Coupling : protected Pointers {
       for (const int ibody : *list) act(ibody);
   }
 
+  /// Calls act with the load of a body, less the components that are turned off.
+  template <class Act> void with_load(int ibody, Act act) const
+  {
+    bodies.body_at(ibody).off == 0 ? act(bodies.load_of(ibody)) : act(bodies.acting(ibody));
+  }
+
   /// The loop of all couplings.  Law has
   ///   void begin_passes(const Integrator &)
   ///   void add_prediction(const Integrator &, int ibody, const Pending &)    of an owned body
@@ -177,8 +183,9 @@ void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int pas
   pending.resize(bodies.nmoved());
   law.begin_passes(integrator);
   for_moved([&](int ibody) {
-    pending[ibody] =
-        integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
+    with_load(ibody, [&](const Load &load) {
+      pending[ibody] = integrator.begin(load, bodies.axes(ibody), bodies.history(ibody));
+    });
     if (ibody < bodies.nowned()) law.add_prediction(integrator, ibody, pending[ibody]);
   });
 
@@ -208,7 +215,9 @@ void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int pas
     Correction &last = bodies.change_last(ibody);
     const bool masked = bodies.body_at(ibody).off != 0;
     const BodyState before = masked ? state : BodyState();
-    last = integrator.finish(bodies.acting(ibody), rows, pending[ibody]);
+    with_load(ibody, [&](const Load &load) {
+      last = integrator.finish(load, rows, pending[ibody]);
+    });
     law.finish(integrator, rigid, rows);
     integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
     if (masked) last.work = work_between(bodies.load_of(ibody), before, state);

@@ -30,7 +30,7 @@ static constexpr double RIGID = 1.0e-6;    // of the velocity of a site, for a m
 /* ---------------------------------------------------------------------- */
 
 OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership,
-                     Sites &sites, const Arguments &args) :
+                       Sites &sites, const Arguments &args) :
     Pointers(lmp),
     fix(fix), bodies(bodies), ownership(ownership), sites(sites), args(args)
 {

@@ -34,7 +34,7 @@ tagint shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other);
 class OtherFixes : protected Pointers {
  public:
   OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership, Sites &sites,
-            const Arguments &args);
+             const Arguments &args);
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
@@ -77,7 +77,10 @@ class OtherFixes : protected Pointers {
 
   void tell_noise(const Fix *other);
   void tell_friction();
-  tagint shared_atom(const Fix *other) const { return GearQuat::shared_atom(lmp, ownership, other); }
+  tagint shared_atom(const Fix *other) const
+  {
+    return GearQuat::shared_atom(lmp, ownership, other);
+  }
   void refuse_thermostat(const Fix *other) const;
   void refuse(const Fix *other, const ActOnAtoms &row, tagint atom) const;
   bool gather_impulses();

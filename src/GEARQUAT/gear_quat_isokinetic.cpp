@@ -17,7 +17,8 @@ using namespace GearQuat;
 
 IsokineticConstraint::IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme,
                                            Isokinetic mode, bool rescale) :
-    Coupling(lmp, bodies), scheme(scheme), mode(mode), scales(rescale), heat_at_nodes()
+    Coupling(lmp, bodies),
+    scheme(scheme), mode(mode), scales(rescale), heat_at_nodes()
 {
 }
 

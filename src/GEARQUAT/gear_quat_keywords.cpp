@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_keywords.h"
+#include "gear_quat_arguments.h"
 
 #include "gear_quat_tuned.h"
 

@@ -215,8 +215,7 @@ bool Motion::forces_changed(double **f)
   const Integrator &integrator = *step.present_integrator();
   double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
   for (const auto &one : fleet.members) here[0] = std::max(here[0], one.motion->last_error());
-  for (const Site &site : sites)
-    here[1] = std::max(here[1], force->ftm2v * length(f[site.atom]));
+  for (const Site &site : sites) here[1] = std::max(here[1], force->ftm2v * length(f[site.atom]));
   const auto largest = over_ranks(MPI_MAX, here, world);
 
   double ratio = 0.0;
@@ -273,8 +272,13 @@ bool Motion::has_to_start(double **f)
 
 Starter Motion::starter(bool needed)
 {
-  return {fix, &bodies, &ownership, &sites, step.coupling.get(),
-          step.tolerance ? step.tolerance->scheme_of_start() : args.scheme, needed};
+  return {fix,
+          &bodies,
+          &ownership,
+          &sites,
+          step.coupling.get(),
+          step.tolerance ? step.tolerance->scheme_of_start() : args.scheme,
+          needed};
 }
 
 /// Histories have started.  full: all their rows are known.

@@ -35,10 +35,7 @@ class Motion : protected Pointers {
   /// Poses, velocities and loads are those of the first step.  Collective.
   void begin_run();
   /// True if degrees of freedom depend on forces that LAMMPS' setup may not have shown yet.
-  bool awaits_forces() const
-  {
-    return set_up && step.coupling && step.coupling->awaits_forces();
-  }
+  bool awaits_forces() const { return set_up && step.coupling && step.coupling->awaits_forces(); }
   /// The loads are those of all fixes.  Collective.
   void meet_forces() { step.coupling->meet_forces(); }
   void end_run();

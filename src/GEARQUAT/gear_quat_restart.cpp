@@ -24,8 +24,10 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-Restart::Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership, Motion &motion) :
-    Pointers(lmp), fix(fix), bodies(bodies), ownership(ownership), motion(motion), waiting(false), place(0)
+Restart::Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership,
+                 Motion &motion) :
+    Pointers(lmp),
+    fix(fix), bodies(bodies), ownership(ownership), motion(motion), waiting(false), place(0)
 {
 }
 

@@ -37,10 +37,7 @@ class ScalarHistory {
   void rescale(double ratio, int values) { Nordsieck<1>::rescale(rows.data(), values, ratio); }
 
   /// To the end of the step, where y' = rate.
-  void advance(const Integrator &integrator, double rate)
-  {
-    integrator.advance(rows.data(), rate);
-  }
+  void advance(const Integrator &integrator, double rate) { integrator.advance(rows.data(), rate); }
 
   /// For restart files.
   const Rows &record() const { return rows; }

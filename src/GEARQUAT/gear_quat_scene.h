@@ -22,13 +22,18 @@ class LAMMPS;
 namespace LAMMPS_NS::GearQuat {
 
 class Ownership;
+struct Arguments;
 struct Fleet;
-
 
 /// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, a box
 /// that changes, r-RESPA with different steps, atoms of a kind that cannot be followed, atoms
 /// that another fix moves too.  Warns of granular walls that do not know the masses of the bodies.
 void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
+
+/// Rank 0 warns if molecules have atoms in bodies and others that no fix moves: it says how many,
+/// names one, and says what to change.  Before a run, when all fixes are defined.  Collective.
+void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &args,
+                               const Fleet &fleet, const Ownership &ownership);
 
 /// Who reads velocities between prediction and correction, empty for nobody.  owner: the fix that
 /// asks.

@@ -23,19 +23,6 @@ using namespace GearQuat;
 
 static constexpr double SAME = 1.0e-11;
 
-// Of many sites the atoms are not in the cache: those of so many sites ahead are asked for.
-
-static constexpr int MANY = 20000, AHEAD = 24;
-
-template <bool TO_WRITE> static inline void prefetch(const double *place)
-{
-#ifdef __GNUC__
-  __builtin_prefetch(place, TO_WRITE);
-#else
-  (void) place;
-#endif
-}
-
 /// LAMMPS' arrays of vectors are one block of memory.
 static double *first_of(double **vectors)
 {
@@ -77,7 +64,6 @@ void Sites::list()
 {
   ++nplacements;
   sort();
-  far = number() > MANY;
   std::map<std::array<int, 3>, int> known;
   images.clear();
   image.resize(sites.size());
@@ -179,11 +165,6 @@ template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_point
     };
     for (; n < first_arm[ibody]; ++n) put(nullptr, nullptr);
     for (; n < first[ibody + 1]; ++n) {
-      if (far) {
-        const size_t soon = 3 * (size_t) site[std::min(n + AHEAD, number() - 1)].atom;
-        if (POSITIONS) prefetch<true>(x + soon);
-        if (VELOCITIES) prefetch<true>(v + soon);
-      }
       double arm[3], spin[3];
       to_space(frame.axes, site[n].arm_body, arm);
       if (VELOCITIES) cross3(frame.omega_space, arm, spin);
@@ -283,17 +264,14 @@ bool Sites::is_as_fast(const Site &site) const
 ------------------------------------------------------------------------- */
 
 /// One sum for each body here: start(ibody) makes it, add(sum, site, arm_space) takes in a site,
-/// finish(ibody, sum) receives it.  arm_space: null for a site at the center of mass.  values: of
-/// atoms, that add() will read, or null.
+/// finish(ibody, sum) receives it.  arm_space: null for a site at the center of mass.
 template <class Start, class Add, class Finish>
-void Sites::sum_over_sites(double **values, Start start, Add add, Finish finish) const
+void Sites::sum_over_sites(Start start, Add add, Finish finish) const
 {
-  const double *const read = far ? first_of(values) : nullptr;
   for (int ibody = 0, n = 0; ibody < bodies.nhere(); ++ibody) {
     auto sum = start(ibody);
     for (; n < first_arm[ibody]; ++n) add(sum, sites[n], nullptr);
     for (; n < first[ibody + 1]; ++n) {
-      if (read) prefetch<false>(read + 3 * (size_t) sites[std::min(n + AHEAD, number() - 1)].atom);
       double arm[3];
       to_space(bodies.axes(ibody), sites[n].arm_body, arm);
       add(sum, sites[n], arm);
@@ -303,11 +281,10 @@ void Sites::sum_over_sites(double **values, Start start, Add add, Finish finish)
 }
 
 /// The loads of all bodies from the force on each site, which force_on(site) points to.
-template <class Force> void Sites::gather(double **values, Force force_on, double **torque)
+template <class Force> void Sites::gather(Force force_on, double **torque)
 {
   std::vector<Load> &loads = bodies.change_loads();
   sum_over_sites(
-      values,
       [](int) {
         return Load();
       },
@@ -345,7 +322,6 @@ void Sites::gather_loads(double **f, double **torque)
   if (!any_forces) return;
   const double *const all = first_of(f);
   gather(
-      f,
       [all](const Site &site) {
         return all + 3 * (size_t) site.atom;
       },
@@ -356,7 +332,6 @@ void Sites::gather_impulses()
 {
   double impulse[3];
   gather(
-      atom->v,
       [this, &impulse](const Site &site) {
         const Expected expected = expected_velocity(site);
         const double mass = ownership.mass_of(site.atom) / force->ftm2v;
@@ -371,7 +346,6 @@ std::vector<Load> Sites::centroids()
 {
   std::vector<Load> means(bodies.nhere());
   sum_over_sites(
-      nullptr,
       [](int) {
         return Load();
       },
@@ -397,7 +371,6 @@ void Sites::visit_constraint_forces(double **f, bool all,
   ownership.spread(bodies.change_loads());
   const std::vector<Load> means = all ? centroids() : std::vector<Load>();
   sum_over_sites(
-      nullptr,
       [this](int ibody) {
         const RigidBody &rigid = bodies.rigid_of(ibody);
         const Load &load = bodies.load_of(ibody);

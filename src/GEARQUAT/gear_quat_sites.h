@@ -108,7 +108,6 @@ class Sites : protected Pointers {
   std::vector<std::array<double, 3>> ways;    ///< scratch: of the images, in the present box
   std::vector<int> first, first_arm;    ///< of each body: its first site, its first one with an arm
   bool any_images = false;              ///< some of these are not zero
-  bool far = false;                     ///< so many sites that their atoms are not in the cache
   bool any_forces = true;
   int nplacements = 0;
 
@@ -119,8 +118,8 @@ class Sites : protected Pointers {
   template <bool POSITIONS, bool VELOCITIES> void place_points();
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place_points();
   template <class Start, class Add, class Finish>
-  void sum_over_sites(double **values, Start start, Add add, Finish finish) const;
-  template <class Force> void gather(double **values, Force force_on, double **torque);
+  void sum_over_sites(Start start, Add add, Finish finish) const;
+  template <class Force> void gather(Force force_on, double **torque);
   std::vector<Load> centroids();
 };
 

@@ -22,7 +22,7 @@ namespace LAMMPS_NS::GearQuat {
 /// The bodies of one fix in a start.
 struct Starter {
   const Fix *fix;
-  Bodies *bodies;        ///< states and loads are those of the start
+  Bodies *bodies;    ///< states and loads are those of the start
   Ownership *ownership;
   Sites *sites;
   Coupling *coupling;    ///< null without

@@ -38,11 +38,10 @@ static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, cons
 
 Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
            Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally) :
-    Pointers(lmp), time_step(lmp), 
-    blowup(lmp, bodies, ownership, sites, args.scheme, args.control.shortest),
+    Pointers(lmp),
+    time_step(lmp), blowup(lmp, bodies, ownership, sites, args.scheme, args.control.shortest),
     coupling(make_coupling(lmp, fix, args, bodies)), args(args), bodies(bodies),
-    ownership(ownership), sites(sites), others(others),
-    tally(std::move(tally))
+    ownership(ownership), sites(sites), others(others), tally(std::move(tally))
 {
   blowup.coupling = coupling.get();
   if (args.control.eps > 0.0)

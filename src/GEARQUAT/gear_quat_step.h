@@ -37,8 +37,8 @@ class Step : protected Pointers {
  public:
   /// tally(vflag, f): adds the virial of the constraint forces, by the forces f on atoms.
   using Tally = std::function<void(int, double **)>;
-  Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-       Bodies &bodies, Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally);
+  Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
+       Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally);
 
   /// f: forces on atoms.
   void begin(int vflag, double **f);

@@ -36,7 +36,8 @@ static constexpr double STRONG = 1.0e-3;
 
 Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
                        const Scheme &scheme) :
-    Coupling(lmp, bodies), fix(fix), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
+    Coupling(lmp, bodies),
+    fix(fix), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
     most_friction(FrictionLimit::of(scheme)), single_pass(scheme.passes == 1),
     total(lmp, bodies, words.damp)
 {

@@ -22,10 +22,10 @@
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H
 
+#include "gear_quat_arguments.h"
 #include "gear_quat_chain.h"
 #include "gear_quat_coupling.h"
 #include "gear_quat_exact_sum.h"
-#include "gear_quat_keywords.h"
 #include "gear_quat_momentum.h"
 
 #include <array>
@@ -176,8 +176,7 @@ class Thermostat : public Coupling {
   void begin_passes(const Integrator &integrator);
   void add_prediction(const Integrator &integrator, int ibody, const Integrator::Pending &);
   void find_friction(const Integrator &integrator, int pass);
-  void add(int ibody, const double *velocity, const double *omega_body,
-           const Integrator::Pending &)
+  void add(int ibody, const double *velocity, const double *omega_body, const Integrator::Pending &)
   {
     add_kinetic(ibody, velocity, omega_body, here);
   }

@@ -49,6 +49,18 @@ def test_decompositions(lmp_tree, data, fix, settings):
     assert difference(one, other) < 1e-12
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_many_bodies_follow_the_order_of_their_atoms(lmp_tree, data, fix, ranks):
+    """Bodies with histories are put into another order where a rank has more than 4000 of them."""
+    settings = dict(fix=fix, before=f"replicate 6 6 {5 * ranks}")
+    one, _ = run(lmp_tree, data, ranks, run="run 4\nrun 4", steps=8, **settings)
+    assert len(one) > 3 * 4000 * ranks
+    sorted_run = "run 4\natom_modify sort 3 2.0\nrun 4"
+    other, _ = run(lmp_tree, data, ranks, run=sorted_run, steps=8, **settings)
+    assert difference(one, other) < 1e-12
+    assert difference(one, one * 1.01) > 5e-3
+
+
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_triclinic_box(lmp_tree, ranks):
     """Tilted by a whole period the box is the same crystal as the orthogonal one, by half not."""
