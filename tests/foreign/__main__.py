@@ -18,13 +18,13 @@ from collections import Counter
 from benchmarks.engine.provenance import commit
 from running import ROOT, tree_source
 
-from . import decks, engine, neighbors, scene, selfcheck, suffixes, yamls
+from . import beside, decks, engine, scene, selfcheck, suffixes, yamls
 from .page import RELEASES, page
 
 #: of the decks that run in a few seconds each
 SHORT = r"examples/rigid/in\.rigid(\.small|\.poems|\.early|\.property|\.nve|\.infile)?$"
 SCRATCH = ROOT / "build" / "foreign"
-PARTS = ("neighbors", "suffixes", "decks", "units")
+PARTS = ("styles", "suffixes", "decks", "units")
 #: what the decks of a release may take; the others are "not run"
 SECONDS = 3600
 
@@ -46,20 +46,20 @@ class Report:
             say("   " + "\n      ".join(text))
 
 
-def try_neighbors(report, lammps, ranks, only, temp=()):
+def try_styles(report, lammps, ranks, only, temp=()):
     """All styles of one LAMMPS: outcomes, reasons, numbers of runs and of restarts.
 
     ``temp``: kinds of styles to try beside keyword temp; without any, all are tried without it.
     """
     name = lammps.name + ", temp" * bool(temp)
-    begin, folder = time.monotonic(), SCRATCH / f"neighbors-{name}"
+    begin, folder = time.monotonic(), SCRATCH / f"styles-{name}"
     scene.write_files(folder)
-    scenes, reasons, unknown = neighbors.scenes_of(lammps.executable, only)
+    scenes, reasons, unknown = beside.scenes_of(lammps.executable, only)
     for style in unknown:
         report.add(False, f"a new style is seen: {style}; tests/foreign/styles.py does not know it")
     if temp:
-        scenes = neighbors.scenes_with_temp(scenes, temp)
-    campaign = neighbors.Campaign(
+        scenes = beside.scenes_with_temp(scenes, temp)
+    campaign = beside.Campaign(
         scenes,
         ranks,
         lambda jobs, number: lammps.answers(jobs, folder, number),
@@ -78,20 +78,20 @@ def try_neighbors(report, lammps, ranks, only, temp=()):
     return outcomes, reasons, len(campaign.answers), restarts
 
 
-def neighbors_of(report, wheel, tree, words):
-    """What all LAMMPS found in `try_neighbors`: name -> (ranks, findings)."""
+def styles_of(report, wheel, tree, words):
+    """What all LAMMPS found in `try_styles`: name -> (ranks, findings)."""
     if words.all:
         kinds, intel = ("fix", "compute"), tree.with_suffix("intel")
         tries = [(wheel, (1, 2)), (tree, (1, 4)), *([(intel, (1, 4))] if intel else [])]
         tries = [(*one, words.only, temp) for one in tries for temp in ((), kinds)]
     else:
-        often, with_temp = words.only or neighbors.OFTEN, words.only or neighbors.OFTEN_WITH_TEMP
+        often, with_temp = words.only or beside.OFTEN, words.only or beside.OFTEN_WITH_TEMP
         tries = [(wheel, (1,), words.only, temp) for temp in ((), ("fix",))]
         tries += [(tree, (1, 4), often, ()), (tree, (1, 4), with_temp, ("fix",))]
     return {
         lammps.name + ", temp" * bool(temp): (
             ranks,
-            try_neighbors(report, lammps, ranks, only, temp),
+            try_styles(report, lammps, ranks, only, temp),
         )
         for lammps, ranks, only, temp in tries
     }
@@ -144,8 +144,8 @@ def run_part(part, report, words):
         for what, seen in selfcheck.all_errors(wheel, SCRATCH / "check"):
             report.add(seen, f"{what}, and nothing is noticed")
         return None
-    if part == "neighbors":
-        return neighbors_of(report, wheel, tree, words)
+    if part == "styles":
+        return styles_of(report, wheel, tree, words)
     if part == "suffixes":
         return try_suffixes(report, wheel, tree, words)
     if part == "units":

@@ -11,7 +11,7 @@ import jinja2
 from benchmarks.engine.page import markdown_table
 from benchmarks.engine.provenance import processor, system
 
-from . import decks, neighbors, scene, thermostat
+from . import beside, decks, scene, thermostat
 
 COMMAND = "tests/run foreign --all --publish"
 VERDICTS = ("agrees", "refused", "runs", "not run", "NEITHER")
@@ -19,8 +19,8 @@ RELEASES = {"oldest": "4 Feb 2025", "newest": "4 Jul 2026"}
 RESULTS = ("same", "acts", "warned", "refused", "LAMMPS refuses", "DIFFERS")
 
 
-def neighbors_table(tried):
-    """``tried``: LAMMPS' name -> (ranks, what try_neighbors returned)."""
+def styles_table(tried):
+    """``tried``: LAMMPS' name -> (ranks, what try_styles returned)."""
     header = ("LAMMPS", "ranks", "styles", "scenes", "runs", "of them with a restart", *RESULTS)
     rows = []
     for name, (ranks, (outcomes, _, runs, restarts)) in tried.items():
@@ -116,7 +116,7 @@ def measured_at(commits):
     """The commit of all parts, or that of each."""
     if len(set(commits)) == 1:
         return f"Commit {commits[0]}"
-    parts = zip(("Neighbors", "variants", "decks", "unit tests"), commits)
+    parts = zip(("Other styles", "variants", "decks", "unit tests"), commits)
     return ", ".join(f"{part} at commit {name}" for part, name in parts if name)
 
 
@@ -124,7 +124,7 @@ def page(commits, tried, variants, verdicts, units):
     """Text of doc/foreign.md; arguments as in __main__, ``commits`` in the order of the others."""
     parts = (
         ("decks", verdicts),
-        ("neighbors", tried),
+        ("other styles", tried),
         ("variants of styles", variants),
         ("unit tests", units),
     )
@@ -145,8 +145,8 @@ def page(commits, tried, variants, verdicts, units):
         rules=decks,
         decks="\n\n".join((counts_table(verdicts), decks_table(verdicts))),
         scene=scene,
-        same=neighbors.SAME,
-        neighbors="\n\n".join((neighbors_table(tried), by_result(every))),
+        same=beside.SAME,
+        styles="\n\n".join((styles_table(tried), by_result(every))),
         thermostat=thermostat,
         refused_by_temp=", ".join(refused_by_temp(every, beside_temp)) or "none",
         excused=not_kept(every + beside_temp) or "nothing.",

@@ -3,7 +3,7 @@
 import copy
 from dataclasses import replace
 
-from . import neighbors, scene, styles, suffixes, thermostat
+from . import beside, scene, styles, suffixes, thermostat
 
 #: style -> its arguments, wrong by 1 %
 WRONG = {
@@ -26,31 +26,31 @@ def all_errors(engine, folder):
 
 
 def wrong_forces(engine, folder):
-    """Neighbors that are wrong by 1 %, against fix rigid."""
+    """Other styles that are wrong by 1 %, against fix rigid."""
     jobs = {}
     for style, wrong in WRONG.items():
         right = styles.FIXES[style][0]
         off = replace(right, args=wrong)
-        jobs[style, "gear"] = neighbors.script("fix", style, off, "gear", divide=4)
+        jobs[style, "gear"] = beside.script("fix", style, off, "gear", divide=4)
         for divide in (4, 8):
-            jobs[style, divide] = neighbors.script("fix", style, right, "rigid", "before", divide)
+            jobs[style, divide] = beside.script("fix", style, right, "rigid", "before", divide)
     answers = engine.answers(jobs, folder)
     for style in WRONG:
         coarse, fine = answers[style, 4], answers[style, 8]
-        wrong = neighbors.beyond(answers[style, "gear"], coarse, fine, styles.FIXES[style][0])
+        wrong = beside.beyond(answers[style, "gear"], coarse, fine, styles.FIXES[style][0])
         yield f"{style} is wrong by 1 %", bool(wrong)
 
 
 def wrong_thermostats(engine, folder):
     """Degrees of freedom, heat and target of keyword temp."""
-    job = neighbors.script("fix", "", styles.Try(styles.PASSIVE), "temp", alone=True)
+    job = beside.script("fix", "", styles.Try(styles.PASSIVE), "temp", alone=True)
     target = f"temp {thermostat.TARGET}"
     warmer = [line.replace(target, f"temp {1.01 * thermostat.TARGET}") for line in job]
     answers = engine.answers({"right": job, "warmer": warmer}, folder)
     right = answers["right"]
     yield "the thermostat is judged wrong without an error", not thermostat.faults(right, True)
-    apart = neighbors.distances(right, answers["warmer"])
-    yield "the target is wrong by 1 %", bool(neighbors.worst(apart, neighbors.SAME))
+    apart = beside.distances(right, answers["warmer"])
+    yield "the target is wrong by 1 %", bool(beside.worst(apart, beside.SAME))
 
     def seen(change):
         wrong = copy.deepcopy(right)

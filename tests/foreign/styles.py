@@ -11,7 +11,7 @@ from functools import partial
 
 from . import scene
 
-#: what a neighbor does to atoms
+#: what another style does to atoms
 PASSIVE = "passive"  # nothing
 FORCE = "force"  # adds forces that have no memory and no chance in them
 CHANCE = "chance"  # draws random numbers in each step

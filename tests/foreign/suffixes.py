@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from . import neighbors, scene, thermostat
+from . import beside, scene, thermostat
 
 STEPS = 20
 #: SPC/E: places and charges of the sites, and their masses
@@ -38,7 +38,7 @@ def water():
 def of_molecules(pair, *more):
     """Lines that make the molecules of scene.py with another pair style."""
     lines = [f"pair_style {pair}" if "pair_style" in line else line for line in scene.begin()]
-    return [*lines, *more, *thermostat.BEGIN, f"timestep {neighbors.DT}"]
+    return [*lines, *more, *thermostat.BEGIN, f"timestep {beside.DT}"]
 
 
 #: of the order that package INTEL has by default, and like its styles without tables of Coulomb forces
@@ -97,7 +97,7 @@ SCENES = {
 def script(name, temp, suffix="", known=False):
     """Lines of a job; ``known`` if the start shall take known forces only."""
     here = SCENES[name]
-    lines = [*here.lines, f"fix m bodies {here.temp if temp else neighbors.MOVERS['gear']}"]
+    lines = [*here.lines, f"fix m bodies {here.temp if temp else beside.MOVERS['gear']}"]
     lines += [UNFOLLOWED] if known else []
     # LAMMPS refuses it if no such style is in use
     lines += [f"compute variant all pair {here.variants[suffix]}"] if suffix else []
@@ -150,7 +150,7 @@ def judge(name, suffix, ranks, ours, plain, known):
         reference = known
         if "order 2" not in outcome.start or suffix not in outcome.start.lower():
             outcome.faults.append(f"{outcome.start}, and without the suffix {start_of(plain)}")
-    wrong = neighbors.worst(neighbors.distances(ours, reference), neighbors.SAME)
+    wrong = beside.worst(beside.distances(ours, reference), beside.SAME)
     if wrong:
         outcome.faults.append(f"another motion than without the suffix: {wrong}")
     if temp:

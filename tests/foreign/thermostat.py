@@ -1,7 +1,7 @@
 """Keyword temp beside other styles: which degrees of freedom it must have, measured from the motion.
 
 All atoms are in bodies, and their total momentum is zero at first.  A component of it that is constant
-but for rounding is no degree of freedom, whatever the neighbor is; any other is one.
+but for rounding is no degree of freedom, whatever the other style is; any other is one.
 """
 
 import itertools
@@ -18,9 +18,9 @@ MOVER = f"gear/quat molecule temp {TARGET} {TARGET} 0.5"
 OUTPUT = ("thermo_modify norm no",)
 #: after the scene is made: no atoms outside of bodies, no total momentum
 BEGIN = ("delete_atoms group free compress no", "velocity all zero linear")
-#: neighbors that are thermostats themselves, which the fix refuses
+#: styles that are thermostats themselves, which the fix refuses
 THERMOSTATS = re.compile(r"temp/.*|langevin")
-#: neighbors that put atoms into their group: the others act on nothing if it is empty
+#: styles that put atoms into their group: the others act on nothing if it is empty
 INSERTS = ("deposit", "gcmc")
 #: when it is noted: at the end of the first run and of the second
 MOMENTS = ("middle", "atoms")
@@ -82,7 +82,7 @@ def freedoms(atoms, vector, directions, bodies):
 
 
 def faults(answer, conserves, bodies=Bodies()):
-    """Texts of what is wrong in an answer; ``conserves`` if the neighbor's energy is in the total."""
+    """Texts of what is wrong in an answer; ``conserves`` if the other style's energy is in the total."""
     found = []
     for before, moment in zip(("begin", *MOMENTS), MOMENTS):
         atoms, vector = answer.noted[moment], answer.noted[f"vector-{moment}"]

@@ -15,7 +15,7 @@ import yaml
 
 from lammps_gearquat.trials import script
 
-from . import convert, neighbors
+from . import beside, convert
 
 STEPS, DT = 8, 0.25
 COEFFICIENTS = """pair_style lj/cut 8.0
@@ -43,7 +43,7 @@ group solvent molecule 3:5""".splitlines()
 NOT_TRIED = (
     (
         r"(brownian|deform|move|nph|npt|nve|nvt|press).*|python_move.*",
-        "the fix under test integrates time or changes the box: tried among the neighbors",
+        "the fix under test integrates time or changes the box: tried among the other styles",
     ),
     (
         r"adapt_(hybrid|pair|coul).*|.*tip4p.*|.*dipole.*|wall_table.*",
@@ -51,11 +51,11 @@ NOT_TRIED = (
     ),
     (
         r"(shake|rattle|recenter|oneway|temp_csld|wall_reflect|smd).*",
-        "refused beside bodies, or moves by chance: tried among the neighbors",
+        "refused beside bodies, or moves by chance: tried among the other styles",
     ),
     (
         r"(momentum|heat|temp)_?.*",
-        "fix rigid does not follow such changes of velocities: tried among the neighbors",
+        "fix rigid does not follow such changes of velocities: tried among the other styles",
     ),
 )
 
@@ -77,7 +77,7 @@ def lines_of(test, method, folder, divide=1):
         if line.rigid:
             text, bodies = convert.converted(line) if method == "gear" else text, True
         elif words[0] == "fix" and words[3] == "nve":
-            text, bodies = f"fix {words[1]} {words[2]} {neighbors.MOVERS[method]}", True
+            text, bodies = f"fix {words[1]} {words[2]} {beside.MOVERS[method]}", True
         commands.append(text)
     if not bodies:
         return None
@@ -127,7 +127,7 @@ def _judge(name, test, gear, as_listed, coarse, fine):
     outcome = Outcome(name)
     if gear.error or fine.error:
         outcome.notes.append(gear.first_line or fine.first_line)
-        if gear.error and neighbors.REFUSES.search(gear.error):
+        if gear.error and beside.REFUSES.search(gear.error):
             outcome.result = "refused"
         return outcome
     if "rigid" in name:
@@ -137,10 +137,10 @@ def _judge(name, test, gear, as_listed, coarse, fine):
         if not apart < 1e-9:
             outcome.notes.append(f"fix rigid is {apart:.1e} from what the test lists")
             return outcome
-    error = neighbors.distances(coarse, fine)
-    ours = neighbors.distances(gear, fine)
-    wrong = neighbors.worst(
-        ours, {key: neighbors.WITHIN * value + 1e-9 for key, value in error.items()}
+    error = beside.distances(coarse, fine)
+    ours = beside.distances(gear, fine)
+    wrong = beside.worst(
+        ours, {key: beside.WITHIN * value + 1e-9 for key, value in error.items()}
     )
     outcome.notes.append(f"apart {ours}, error of the reference {error}")
     outcome.result = "NEITHER" if wrong else "agrees"

@@ -1,12 +1,12 @@
 """Every fix and compute of LAMMPS beside fix gear/quat: what has to be the same, and is.
 
 For each scene of styles.py these are compared, positions and velocities as well as every output of
-the neighbor:
+the other style:
 
-    order      the neighbor defined before and after the fix that moves bodies
+    order      the other style defined before and after the fix that moves bodies
     ranks      1 and several MPI ranks
     restart    through, and with a restart in the middle
-    alone      with and without a neighbor that does nothing to atoms
+    alone      with and without a style that does nothing to atoms
     rigid      with fix rigid/nve/small, at small steps or (kind COUNT) at the same step
 
 With keyword temp there is no such reference; there the judge of thermostat.py counts degrees of freedom.
@@ -44,7 +44,7 @@ SAME = 2e-9
 WITHIN = 4.0
 #: error of fix rigid at step DT in the plain scene, in units of that at DT/4 to DT/8
 BROAD = 1e-5
-#: what LAMMPS says where variants of styles cannot do what a neighbor needs
+#: what LAMMPS says where variants of styles cannot do what a style needs
 NO_VARIANT = re.compile(r"INTEL package does not support")
 REFUSES = re.compile(r"[Ff]ix gear/quat")
 
@@ -59,17 +59,17 @@ def listed(executable, kind):
 
 # --- scripts --------------------------------------------------------------------------------------
 def _fixes(kind, style, a_try, method, order, divide):
-    neighbor = []
+    others = []
     if style:
         words = styles.scaled(a_try.args, divide)
-        neighbor = [styles.scaled(line, divide) for line in a_try.before]
-        neighbor += [f"{kind} n {a_try.group} {style} {words}"]
+        others = [styles.scaled(line, divide) for line in a_try.before]
+        others += [f"{kind} n {a_try.group} {style} {words}"]
         if a_try.modify:
-            neighbor += [f"{kind}_modify n {a_try.modify}"]
+            others += [f"{kind}_modify n {a_try.modify}"]
     movers = [f"fix m bodies {MOVERS[method]}"]
     if a_try.kind not in (INTEGRATES, BOX):
         movers += ["fix f free nve"]
-    lines = neighbor + movers if order == "before" else movers + neighbor
+    lines = others + movers if order == "before" else movers + others
     if "sphere" in a_try.atoms:
         lines += ["compute ts all temp/sphere", "thermo_modify temp ts"]
     lines += thermostat.OUTPUT if method == "temp" else ()
@@ -142,7 +142,7 @@ def beyond(ours, coarse, fine, a_try):
     """What of ``ours`` is further from the finer reference than its error allows, as text."""
     error = distances(coarse, fine, a_try.sums)
     apart = distances(ours, fine, a_try.sums)
-    if a_try.pieces:  # what the neighbor counts begins anew with each piece
+    if a_try.pieces:  # what the style counts begins anew with each piece
         apart = {name: apart[name] for name in apart if name in ("x", "v", "atoms", "error")}
     wrong = worst(apart, {name: WITHIN * error[name] + a_try.floor for name in error})
     if not wrong:
@@ -274,7 +274,7 @@ class Campaign:
         name = re.compile(rf"\b{re.escape(outcome.style)}\b")
 
         def said(answer):
-            """What the fix, or else LAMMPS, has against the neighbor."""
+            """What the fix, or else LAMMPS, has against the style."""
             warnings = (
                 line
                 for line in answer.warnings
@@ -324,7 +324,7 @@ class Campaign:
                 outcome.faults.append(f"{run}: {wrong} (with fix rigid: {rigid})")
 
     def _beside_none(self, outcome, answer):
-        """Against the same atoms without a neighbor: the same if it is passive, others if it has a force."""
+        """Against the same atoms without another style: the same if it is passive, others if it has a force."""
         (plain,) = (
             n
             for n, (_, style, a_try) in enumerate(self.scenes)
