@@ -7,7 +7,7 @@
 
    Owner, mass properties, pose and velocities of a body follow from sums, extremes and counts over
    its sites.  Every rank adds up the sites that it owns, and a few numbers per body and rank are
-   sent (gear_quat_parts.h), so that memory and messages do not grow with the sites of a body.  The
+   sent (gear_quat_ranks.h), so that memory and messages do not grow with the sites of a body.  The
    sums do not depend on the order of the sites (gear_quat_exact_sum.h), so bodies are the same, to
    the last bit, on any number of ranks.  The sums of a small body are plain ones in the order of the
    atom IDs: every rank that has one of its sites receives the others. */

@@ -92,21 +92,24 @@ def test_lammps_format(path, tmp_path):
 
 
 # --- what is in the package ----------------------------------------------------------------------
-WITH_MPI = {"gear_quat_ranks.h", "gear_quat_parts.h"}
+README = (PACKAGE / "README").read_text()
 
 
-def test_readme_names_every_file():
-    """Headers of the kernel are named as a whole."""
-    text = (PACKAGE / "README").read_text()
-    named = set(re.findall(r"^  (gear_quat_[\w.]+|fix_\w+)  ", text.partition("What is where\n")[2], re.M))
-    assert named == {path.stem for path in PACKAGE.glob("*.cpp")} | WITH_MPI
+def files_listed(readme):
+    """Files that the README lists; a name without an ending stands for a header and a source file."""
+    for name, ending in re.findall(r"^ +((?:fix_)?gear_quat\w*)(\.h|\.cpp)?  ", readme, re.M):
+        yield from [name + ending] if ending else [f"{name}.cpp", f"{name}.h"]
+
+
+def test_readme_names_every_file_once():
+    files = [path.name for path in SOURCES]
+    assert sorted(files_listed(README)) == sorted(files)
+    assert sorted(files_listed(README.replace(" gear_quat_step ", " gear_quat_stop "))) != sorted(files)
 
 
 def test_the_kernel_needs_the_standard_library_only():
-    """Headers without a .cpp, but for the two of MPI, include each other and the standard library."""
-    kernel = {path.name for path in SOURCES if not path.with_suffix(".cpp").exists()}
-    kernel -= WITH_MPI
-    assert "gear_quat_integrator.h" in kernel
+    kernel = set(files_listed(README.partition("  The kernel")[2].partition("\n\n  The command")[0]))
+    assert "gear_quat_integrator.h" in kernel and len(kernel) > 8
     for name in kernel:
         text = (PACKAGE / name).read_text()
         assert set(re.findall(r'#include "(.*)"', text)) <= kernel, name

@@ -77,7 +77,7 @@ inline Scheme with_velocity_c0(Scheme scheme)
   return scheme;
 }
 
-// The start as the host finds it (gear_quat_bootstrap.cpp).
+// The start as the host finds it (gear_quat_start.cpp).
 
 /// The host of find_start(), for one body.
 struct StartHost {

@@ -3,7 +3,7 @@
    Every function takes a Corrector and returns LOST if its motion does not stay finite. */
 
 #include "drive.h"
-#include "gear_quat_noise.h"
+#include "gear_quat_limits.h"
 #include "oracles/cage_scene.h"
 #include "oracles/swinging_top.h"
 

@@ -18,9 +18,10 @@ from .scenes import write_molecules
 INSTALL = "install it by\n  sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
 HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
 #: what the fix does for output, before the first step, and once a step however many bodies there are
-FIX = re.compile(r"LAMMPS_NS::FixGearQuat::")
+FIX = re.compile(r"LAMMPS_NS::(FixGearQuat|GearQuat::(Motion|Step))::")
 ASIDE = re.compile(
-    r"FixGearQuat::(show_bodies|begin_steps)\(|Comm\w+::forward_comm\(int\)|GearQuat::Neighbors::(check|take)_\w+\("
+    r"FixGearQuat::show_bodies\(|GearQuat::Motion::begin_steps\(|Comm\w+::forward_comm\(int\)"
+    r"|GearQuat::OtherFixes::(check|note|take)_\w+\("
 )
 ADDRESS = re.compile("0x[0-9a-f]+")
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")

@@ -25,6 +25,8 @@ ISOKINETIC = f"{FIRST} isokinetic total"
 TEMP = "temp 300.0 300.0 0.1"
 #: functions that solve a chain once a step: their instructions depend on the motion, not on the number of bodies
 ONCE_A_STEP = r"GearQuat::Chain(Drive)?::"
+#: functions that correct all bodies together
+TOGETHER = r"|GearQuat::(Step::correct_together|Coupling::correct_by_passes<)"
 SET = "set group all"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
@@ -77,13 +79,13 @@ EFFECTS = (
         own=r"GearQuat::(Integrator|Kinematics)::(correct|body_state|correct_all<.*>)\("
         r"|GearQuat::Bodies::update_frame\(",
     ),
-    Effect("torques of forces", MOVED, FULL, own=r"GearQuat::Bodies::gather_loads"),
+    Effect("torques of forces", MOVED, FULL, own=r"GearQuat::Sites::gather_loads"),
     Effect("finite size", SIZED, UNSIZED, own=r"GearQuat::Extended::", off=UNSIZED, never=FULL),
     Effect(
         "images",
         replace(PERIODIC, crossing=True),
         PERIODIC,
-        own=r"GearQuat::Bodies::place<\w+, \w+, true>",
+        own=r"GearQuat::Sites::place_points<\w+, \w+, true>",
         off=PERIODIC,
         never=FULL,
     ),
@@ -91,12 +93,12 @@ EFFECTS = (
         "virial",
         replace(EACH, columns="press"),
         EACH,
-        own=r"::(tally_virial|v_tally|constraint_force|spread_loads)\(",
+        own=r"::(tally_virial|v_tally|visit_constraint_forces)\(",
         off=MOVED,
         never=moved(after="fix_modify move virial no"),
     ),
     Effect(
-        "ghost bodies", None, MOVED, own=r"GearQuat::Bodies::(un)?pack_|FixGearQuat::(un)?pack_"
+        "ghost bodies", None, MOVED, own=r"GearQuat::Ownership::(un)?pack_|FixGearQuat::(un)?pack_"
     ),
     Effect("predicted velocities", moved(after="fix reads all viscous 0.0"), MOVED),
     Effect(
@@ -115,9 +117,9 @@ EFFECTS = (
         "isokinetic",
         moved(words=ISOKINETIC),
         moved(words=FIRST),
-        own=r"GearQuat::IsokineticConstraint::|GearQuat::Motion::correct_together",
+        own=r"GearQuat::IsokineticConstraint::" + TOGETHER,
     ),
-    Effect("temp", moved(words=TEMP), MOVED, own=r"GearQuat::(Thermostat|TotalMomentum)::"),
+    Effect("temp", moved(words=TEMP), MOVED, own=r"GearQuat::(Thermostat|TotalMomentum)::" + TOGETHER),
     Effect("compensated sums", moved(words="compensate yes"), MOVED),
 )
 
