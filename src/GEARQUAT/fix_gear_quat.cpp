@@ -18,7 +18,6 @@
 #include "gear_quat_fleet.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_outputs.h"
-#include "gear_quat_remap.h"
 #include "gear_quat_report.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_scene.h"
@@ -159,7 +158,7 @@ void FixGearQuat::reset_dt()
 
 void FixGearQuat::setup_pre_exchange()
 {
-  if (remap_bodies(lmp, *bodies, *ownership))
+  if (ownership->follow_box())
     motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
 }
 

@@ -3,19 +3,35 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The assembly of bodies: principal axes, their directions, and the rotation. */
+/* The assembly of bodies: principal axes, their directions, and the rotation; what no body can be,
+   and what is probably a mistake. */
 
 #include "gear_quat_assembly.h"
 
+#include "gear_quat_images.h"
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
 #include "domain.h"
+#include "error.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
+static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
+static constexpr double HALF = 0.5;          // of a period
+static constexpr double NONE = std::numeric_limits<double>::infinity();
+
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
+
+/* ----------------------------------------------------------------------
+   principal axes
+------------------------------------------------------------------------- */
 
 /// Principal moments and axes, the latter without directions.
 void Assembly::find_axes(int part, const Momenta &momenta)
@@ -111,4 +127,171 @@ void Assembly::direct(double *axes, const Sides &sides)
   const int last = first == third ? 1 : first ? 2 : 0;
   if (last != 1) turn(1);
   cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
+}
+
+/* ----------------------------------------------------------------------
+   what no body can be
+------------------------------------------------------------------------- */
+
+/// In the order of Assembly's faults, of which the first one is reported.
+static const char *const FAULT_TEXTS[] = {
+    "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
+    "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
+    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment; no body "
+    "has",
+    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the two "
+    "others; no body has",
+    "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
+    "position and its image flags right?"};
+
+/// A given center may lie outside of the body, but not by half a box: image flags belong to it.
+void Assembly::check_place(int part, const Momenta &momenta)
+{
+  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
+  const double far = made[part].body.extent + 0.5 * longest;
+  if (!(momenta.from_center2 <= far * far)) faulty[APART] = made[part].body.id;
+}
+
+/// Of sums over masses all this holds by itself, up to rounding.
+void Assembly::check_moments(const Made &one)
+{
+  const double *moments = one.body.rigid.inertia;
+  const double largest = std::max({moments[0], moments[1], moments[2]});
+  const double smallest = std::min({moments[0], moments[1], moments[2]});
+  const double sum = moments[0] + moments[1] + moments[2];
+  if (!std::isfinite(sum))
+    faulty[NOT_FINITE] = one.body.id;
+  else if (smallest < -LINEAR_FRACTION * largest)
+    faulty[NEGATIVE] = one.body.id;
+  else if (one.body.from_file && domain->dimension == 3 &&
+           (1.0 - ROUNDED) * largest > sum - largest)
+    faulty[UNBALANCED] = one.body.id;
+}
+
+void Assembly::report_faults()
+{
+  const auto any = over_ranks(MPI_MAX, faulty, world);
+  for (int fault = 0; fault < FAULTS; ++fault)
+    if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
+}
+
+void Assembly::report_missing() const
+{
+  if (over_ranks(MPI_SUM, (int) found.size(), world) == (int) given.size()) return;
+  for (const auto &stated : given) {
+    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
+    if (!over_ranks(MPI_MAX, here, world))
+      error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   bodies of several clumps
+------------------------------------------------------------------------- */
+
+namespace {
+
+/// The sites of a body along each direction, in intervals that are half a period long unless the
+/// body extends over many periods: two sites in one interval have no gap of more than half a period
+/// between them.
+struct Clumps {
+  static constexpr int INTERVALS = 16;
+  double lo[3][INTERVALS], hi[3][INTERVALS];
+
+  Clumps()
+  {
+    for (int k = 0; k < 3; ++k) {
+      std::fill_n(lo[k], INTERVALS, NONE);
+      std::fill_n(hi[k], INTERVALS, -NONE);
+    }
+  }
+  void merge(const Clumps &other)
+  {
+    for (int k = 0; k < 3; ++k)
+      for (int n = 0; n < INTERVALS; ++n) {
+        lo[k][n] = std::min(lo[k][n], other.lo[k][n]);
+        hi[k][n] = std::max(hi[k][n], other.hi[k][n]);
+      }
+  }
+  void add(int direction, double interval, double along)
+  {
+    const int n = std::min((int) (along / interval), INTERVALS - 1);
+    lo[direction][n] = std::min(lo[direction][n], along);
+    hi[direction][n] = std::max(hi[direction][n], along);
+  }
+  bool have_gap() const
+  {
+    for (int k = 0; k < 3; ++k) {
+      double last = NONE;
+      for (int n = 0; n < INTERVALS; ++n) {
+        if (lo[k][n] > hi[k][n]) continue;    // no site
+        if (lo[k][n] - last > HALF) return true;
+        last = hi[k][n];
+      }
+    }
+    return false;
+  }
+};
+
+}    // namespace
+
+/// Bounds of the coordinates of a body, in units of the periods.
+std::array<double, 2> Assembly::bounds(int part, int direction) const
+{
+  std::array<double, 2> found = {NONE, -NONE};
+  for (int corner = 0; corner < 8; ++corner) {
+    double x[3], periods[3];
+    for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? extremes[part].hi : extremes[part].lo)[k];
+    to_periods(domain, x, periods);
+    found[0] = std::min(found[0], periods[direction]);
+    found[1] = std::max(found[1], periods[direction]);
+  }
+  return found;
+}
+
+/// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
+void Assembly::warn_of_clumps() const
+{
+  std::vector<tagint> wide(atom->nlocal, 0);    // bodies that may have a gap
+  for (int part = 0; part < parts.number(); ++part)
+    for (int k = 0; k < 3; ++k) {
+      const auto bound = bounds(part, k);
+      if (!domain->periodicity[k] || !(bound[1] - bound[0] > HALF)) continue;
+      for (const int i : parts.atoms(part)) wide[i] = parts.key(part);
+    }
+  const int here = std::any_of(wide.begin(), wide.end(), [](tagint id) {
+    return id != 0;
+  });
+  if (!over_ranks(MPI_MAX, here, world)) return;
+
+  const Parts suspects(comm, wide.data(), atom->nlocal);
+  std::vector<Clumps> clumps(suspects.number());
+  for (int suspect = 0; suspect < suspects.number(); ++suspect) {
+    const int part = parts.find(suspects.key(suspect));
+    double lo[3], interval[3];
+    for (int k = 0; k < 3; ++k) {
+      const auto bound = bounds(part, k);
+      lo[k] = bound[0];
+      interval[k] = std::max(HALF, (bound[1] - bound[0]) / Clumps::INTERVALS);
+    }
+    for (const int i : parts.atoms(part)) {
+      double x[3], periods[3];
+      unwrapped(part, i, x);
+      to_periods(domain, x, periods);
+      for (int k = 0; k < 3; ++k)
+        if (domain->periodicity[k])
+          clumps[suspect].add(k, interval[k], std::max(0.0, periods[k] - lo[k]));
+    }
+  }
+  suspects.merge(clumps);
+  tagint in_clumps = 0;
+  for (int suspect = 0; suspect < suspects.number(); ++suspect)
+    if (clumps[suspect].have_gap()) in_clumps = suspects.key(suspect);
+  in_clumps = over_ranks(MPI_MAX, in_clumps, world);
+  if (in_clumps && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
+                   "they belong together, the image flags of its atoms do not: unwrap them in the "
+                   "data file, or use set image before this fix",
+                   in_clumps);
 }

@@ -135,10 +135,12 @@ class Coupling : protected Pointers {
       for (const int ibody : *list) act(ibody);
   }
 
-  /// Calls act with the load of a body, less the components that are turned off.
-  template <class Act> void with_load(int ibody, Act act) const
+  /// The load of a body without the components that are turned off; `masked` may hold it.
+  const Load &load_of(int ibody, Load &masked) const
   {
-    bodies.body_at(ibody).off == 0 ? act(bodies.load_of(ibody)) : act(bodies.acting(ibody));
+    if (bodies.body_at(ibody).off == 0) return bodies.load_of(ibody);
+    masked = bodies.acting(ibody);
+    return masked;
   }
 
   /// The loop of all couplings.  Law has
@@ -183,9 +185,9 @@ void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int pas
   pending.resize(bodies.nmoved());
   law.begin_passes(integrator);
   for_moved([&](int ibody) {
-    with_load(ibody, [&](const Load &load) {
-      pending[ibody] = integrator.begin(load, bodies.axes(ibody), bodies.history(ibody));
-    });
+    Load masked;
+    pending[ibody] =
+        integrator.begin(load_of(ibody, masked), bodies.axes(ibody), bodies.history(ibody));
     if (ibody < bodies.nowned()) law.add_prediction(integrator, ibody, pending[ibody]);
   });
 
@@ -214,10 +216,10 @@ void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int pas
     BodyState &state = bodies.change_state(ibody);
     Correction &last = bodies.change_last(ibody);
     const bool masked = bodies.body_at(ibody).off != 0;
-    const BodyState before = masked ? state : BodyState();
-    with_load(ibody, [&](const Load &load) {
-      last = integrator.finish(load, rows, pending[ibody]);
-    });
+    Load load;
+    BodyState before;
+    if (masked) before = state;
+    last = integrator.finish(load_of(ibody, load), rows, pending[ibody]);
     law.finish(integrator, rigid, rows);
     integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
     if (masked) last.work = work_between(bodies.load_of(ibody), before, state);

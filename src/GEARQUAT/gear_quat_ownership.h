@@ -118,6 +118,11 @@ class Ownership : protected Pointers {
   const std::vector<double> &box() const { return last_box; }
   /// The present one.
   void note_box();
+  /// Before a run, and before atoms are exchanged: where change_box has remapped the atoms of
+  /// bodies from box() to the present box, these get back their shapes and orientations, and their
+  /// centers are remapped.  True, with a warning, if there are any; warns of bodies that another
+  /// box has deformed otherwise.  Needs no ghosts.  In gear_quat_remap.cpp.  Collective.
+  bool follow_box();
 
   // a step
 

@@ -3,13 +3,17 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The atoms of each body meet on one rank, which compares their positions with those that the body
+/* Bodies in a box that has changed between two runs.
+
+   change_box remap takes every atom to the same place of the new box, relative to its faces, and so
+   stretches bodies.
+
+   The atoms of each body meet on one rank, which compares their positions with those that the body
    had in the old box, direction by direction. */
 
-#include "gear_quat_remap.h"
+#include "gear_quat_ownership.h"
 
 #include "gear_quat_images.h"
-#include "gear_quat_ownership.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -186,42 +190,38 @@ static bool tell_of_box(LAMMPS *lmp, bigint remapped, tagint deformed)
   return all > 0;
 }
 
-bool GearQuat::remap_bodies(LAMMPS *lmp, Bodies &bodies, const Ownership &ownership)
+bool Ownership::follow_box()
 {
-  const Domain *domain = lmp->domain;
-  Atom *atom = lmp->atom;
-  const auto &box = ownership.box();
-  if (std::equal(domain->h, domain->h + 6, box.begin()) &&
-      std::equal(domain->boxlo, domain->boxlo + 3, box.begin() + 6))
+  if (std::equal(domain->h, domain->h + 6, last_box.begin()) &&
+      std::equal(domain->boxlo, domain->boxlo + 3, last_box.begin() + 6))
     return false;
 
   std::vector<Member> mine;
   std::vector<int> ranks;
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!ownership.in_body(i)) continue;
+    if (!in_body(i)) continue;
     Member one = Member();
-    one.rank = lmp->comm->me;
+    one.rank = comm->me;
     one.local = i;
-    one.owner = ownership.owner_tags()[i];
-    one.id = ownership.id_of(i);
-    std::copy_n(ownership.arm_of(i), 3, one.arm_body);
-    lmp->domain->unmap(atom->x[i], atom->image[i], one.found);
-    const int ibody = ownership.owned_by(i);
+    one.owner = owner_tags()[i];
+    one.id = id_of(i);
+    std::copy_n(arm_of(i), 3, one.arm_body);
+    domain->unmap(atom->x[i], atom->image[i], one.found);
+    const int ibody = owned_by(i);
     if (ibody >= 0) {
       one.natoms = bodies.body_at(ibody).natoms;
       one.state = bodies.state_of(ibody);
     }
     mine.push_back(one);
-    ranks.push_back((int) (one.owner % lmp->comm->nprocs));
+    ranks.push_back((int) (one.owner % comm->nprocs));
   }
-  std::vector<Member> all = send_to_ranks(lmp->comm, mine, ranks);
+  std::vector<Member> all = send_to_ranks(comm, mine, ranks);
   bigint remapped = 0;
   tagint deformed = 0;
-  const auto orders = orders_to(domain, box.data(), all, ranks, remapped, deformed);
-  for (const Order &order : send_to_ranks(lmp->comm, orders, ranks)) {
+  const auto orders = orders_to(domain, last_box.data(), all, ranks, remapped, deformed);
+  for (const Order &order : send_to_ranks(comm, orders, ranks)) {
     for (int k = 0; k < 3; ++k) atom->x[order.local][k] += order.way[k];
-    if (order.owns)
-      std::copy_n(order.center, 3, bodies.change_state(ownership.owned_by(order.local)).center);
+    if (order.owns) std::copy_n(order.center, 3, bodies.change_state(owned_by(order.local)).center);
   }
   return tell_of_box(lmp, remapped, deformed);
 }

@@ -145,30 +145,34 @@ void Sites::find_ways()
 
 template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_points()
 {
-  const Site *site = begin();
   const auto *way = ways.data();
+  const Site *site = begin();
   double *const x = first_of(atom->x), *const v = first_of(atom->v);
-  for (int ibody = 0, n = 0; ibody < bodies.nhere(); ++ibody) {
+  const int n = bodies.nhere();
+  for (int ibody = 0; ibody < n; ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
     const BodyFrame &frame = bodies.frame_of(ibody);
-    const double center[3] = {s.center[0], s.center[1], s.center[2]};
-    const double velocity[3] = {s.velocity[0], s.velocity[1], s.velocity[2]};
-    const auto put = [&](const double *arm, const double *spin) {
-      const size_t i = 3 * (size_t) site[n].atom;
+    const Site *const arms = begin() + first_arm[ibody], *const end = begin() + first[ibody + 1];
+    for (; site != arms; ++site) {
+      const size_t i = 3 * (size_t) site->atom;
+#pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
-        if (POSITIONS) {
-          const double unwrapped = arm ? center[k] + arm[k] : center[k];
-          x[i + k] = WRAPPED ? unwrapped - way[image[n]][k] : unwrapped;
-        }
-        if (VELOCITIES) v[i + k] = spin ? velocity[k] + spin[k] : velocity[k];
+        if (POSITIONS) x[i + k] = s.center[k];
+        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - begin()]][k];
+        if (VELOCITIES) v[i + k] = s.velocity[k];
       }
-    };
-    for (; n < first_arm[ibody]; ++n) put(nullptr, nullptr);
-    for (; n < first[ibody + 1]; ++n) {
+    }
+    for (; site != end; ++site) {
+      const size_t i = 3 * (size_t) site->atom;
       double arm[3], spin[3];
-      to_space(frame.axes, site[n].arm_body, arm);
+      to_space(frame.axes, site->arm_body, arm);
       if (VELOCITIES) cross3(frame.omega_space, arm, spin);
-      put(arm, spin);
+#pragma GCC unroll 3
+      for (int k = 0; k < 3; ++k) {
+        if (POSITIONS) x[i + k] = s.center[k] + arm[k];
+        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - begin()]][k];
+        if (VELOCITIES) v[i + k] = s.velocity[k] + spin[k];
+      }
     }
   }
 }
@@ -268,7 +272,8 @@ bool Sites::is_as_fast(const Site &site) const
 template <class Start, class Add, class Finish>
 void Sites::sum_over_sites(Start start, Add add, Finish finish) const
 {
-  for (int ibody = 0, n = 0; ibody < bodies.nhere(); ++ibody) {
+  const int nbodies = bodies.nhere();
+  for (int ibody = 0, n = 0; ibody < nbodies; ++ibody) {
     auto sum = start(ibody);
     for (; n < first_arm[ibody]; ++n) add(sum, sites[n], nullptr);
     for (; n < first[ibody + 1]; ++n) {
