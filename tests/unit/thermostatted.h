@@ -73,7 +73,7 @@ struct Host {
       vector<double> at;
       for (int k = -twice.pairs; k <= twice.pairs; ++k) at.push_back(k);
       const ChainDrive drive = ChainDrive::through(
-          at.size(), at.data(), twice.rate + collocation.pairs() - twice.pairs);
+          at.size(), at.data(), twice.rate[collocation.pairs() - twice.pairs]);
       return our.chain.flow(our.target_of(our.time()), drive, our.h, node).y[0];
     }
     bool held = false;
@@ -124,7 +124,7 @@ struct Host {
     for (size_t b = 0; b < bodies.size(); ++b)
       seed(scheme, bodies[b], collocation.series(search.work[b], found.pairs), h, h,
            rows[b].data());
-    chain.seed(search.twice.rate + collocation.pairs(), found.pairs, h, scheme.values() + 1);
+    chain.seed(search.twice.rate[collocation.pairs()], found.pairs, h, scheme.values() + 1);
     pending.resize(bodies.size());
   }
 
