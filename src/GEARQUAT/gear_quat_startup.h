@@ -349,6 +349,9 @@ class Collocation {
   /// The same of a scalar.
   void set_rate(int node, double rate, Scalar &s) const { s.met[node > 0][0] = rate; }
 
+  /// The rate at the start; before and behind it in memory are those at the other nodes.
+  const double *rate_at_start(const Scalar &s) const { return s.rate[half]; }
+
   /// The polynomial goes through what was met at both nodes of a pair: neither side is first, so
   /// the start is symmetric under time reversal.
   template <int WIDTH, int ORDER> void settle(int pair, Nodes<WIDTH, ORDER> &w) const

@@ -317,19 +317,13 @@ void Thermostat::foretell(const StartNodes &nodes)
   for (auto &twice : twice_at_nodes) nodes.collocation.foretell(twice);
 }
 
-/// 2K at a node; behind and before it in memory are those at the other nodes.
-static const double *at_start(const Collocation &collocation, const Collocation::Scalar &twice)
-{
-  return twice.rate[collocation.pairs()];
-}
-
 /// 2K about the start, in units of the node spacing.
 static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice)
 {
   double at[ChainDrive::MOST];
   const int points = 2 * twice.pairs + 1;
   for (int i = 0; i < points; ++i) at[i] = i - twice.pairs;
-  return ChainDrive::through(points, at, at_start(collocation, twice) - twice.pairs);
+  return ChainDrive::through(points, at, collocation.rate_at_start(twice) - twice.pairs);
 }
 
 void Thermostat::visit_node(const StartNodes &nodes, int node)
@@ -352,7 +346,7 @@ void Thermostat::settle(const StartNodes &nodes, int pair)
 void Thermostat::seed(const StartNodes &nodes, int pairs, int values)
 {
   for (size_t c = 0; c < chains.size(); ++c)
-    chains[c].seed(at_start(nodes.collocation, twice_at_nodes[c]), pairs, nodes.spacing,
+    chains[c].seed(nodes.collocation.rate_at_start(twice_at_nodes[c]), pairs, nodes.spacing,
                    values + 1);
 }
 

@@ -72,8 +72,8 @@ struct Host {
       if (!our.length || held) return our.chain.friction();
       vector<double> at;
       for (int k = -twice.pairs; k <= twice.pairs; ++k) at.push_back(k);
-      const ChainDrive drive = ChainDrive::through(
-          at.size(), at.data(), twice.rate[collocation.pairs() - twice.pairs]);
+      const ChainDrive drive =
+          ChainDrive::through(at.size(), at.data(), collocation.rate_at_start(twice) - twice.pairs);
       return our.chain.flow(our.target_of(our.time()), drive, our.h, node).y[0];
     }
     bool held = false;
@@ -124,7 +124,7 @@ struct Host {
     for (size_t b = 0; b < bodies.size(); ++b)
       seed(scheme, bodies[b], collocation.series(search.work[b], found.pairs), h, h,
            rows[b].data());
-    chain.seed(search.twice.rate[collocation.pairs()], found.pairs, h, scheme.values() + 1);
+    chain.seed(collocation.rate_at_start(search.twice), found.pairs, h, scheme.values() + 1);
     pending.resize(bodies.size());
   }
 
@@ -141,15 +141,12 @@ struct Host {
       pending[b] =
           integrator.begin(loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data());
     for (int pass = 0; pass < scheme.passes; ++pass) {
-      if (length) {
-        ASSERT_TRUE(chain.advance(target_of(time() - h), twice_kinetic(), h, n));
-      }
+      if (length) { ASSERT_TRUE(chain.advance(target_of(time() - h), twice_kinetic(), h, n)); }
       const double xi = length ? chain.friction() : 0.0;
       Friction friction = Multipliers{xi, xi};
       friction.implicit = std::fabs(h * xi) > 1.0e-3;
       for (size_t b = 0; b < bodies.size(); ++b) {
-        integrator.correct_pass(bodies[b], loads[b], friction, rows[b].data(),
-                                pending[b]);
+        integrator.correct_pass(bodies[b], loads[b], friction, rows[b].data(), pending[b]);
         integrator.velocities_of_pass(bodies[b], rows[b].data(), pending[b], states[b].velocity,
                                       states[b].omega_body);
       }
