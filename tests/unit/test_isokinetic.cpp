@@ -26,7 +26,7 @@ struct Host {
 
   Integrator integrator{scheme, h};
   vector<vector<double>> rows{};
-  ScalarHistory heat;
+  ScalarHistory heat{};
   KineticSums target{};
 
   KineticSums sums(const vector<Load> &loads) const
