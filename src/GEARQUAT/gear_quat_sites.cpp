@@ -146,19 +146,19 @@ void Sites::find_ways()
 template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_points()
 {
   const auto *way = ways.data();
-  const Site *site = begin();
+  const Site *const all = sites.data(), *site = all;
   double *const x = first_of(atom->x), *const v = first_of(atom->v);
   const int n = bodies.nhere();
   for (int ibody = 0; ibody < n; ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
     const BodyFrame &frame = bodies.frame_of(ibody);
-    const Site *const arms = begin() + first_arm[ibody], *const end = begin() + first[ibody + 1];
+    const Site *const arms = all + first_arm[ibody], *const end = all + first[ibody + 1];
     for (; site != arms; ++site) {
       const size_t i = 3 * (size_t) site->atom;
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
         if (POSITIONS) x[i + k] = s.center[k];
-        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - begin()]][k];
+        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - all]][k];
         if (VELOCITIES) v[i + k] = s.velocity[k];
       }
     }
@@ -170,7 +170,7 @@ template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_point
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
         if (POSITIONS) x[i + k] = s.center[k] + arm[k];
-        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - begin()]][k];
+        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - all]][k];
         if (VELOCITIES) v[i + k] = s.velocity[k] + spin[k];
       }
     }
