@@ -5,7 +5,7 @@
 
 /* The words of the fix command: which atoms make bodies, and how they are integrated.
 
-   The keywords of the fix command: one table with one row for each.  A row says what follows the
+   The keywords stand in one table with one row for each.  A row says what follows the
    keyword, what holds without it, which other keywords it requires or excludes, what it means, and
    where its value is stored.  The parser is a loop over these rows, error messages are made from
    them, and `fix ID group gear/quat keywords` prints them for people and for programs. */

@@ -72,7 +72,7 @@ struct AtomsOfBody {
   void merge(const AtomsOfBody &other);
 };
 
-/// Compares body by body; all() is what all ranks have found.
+/// Compares body by body; all() returns the findings of all ranks.
 class Comparer : protected Pointers {
  public:
   /// The atoms of this rank are counted.

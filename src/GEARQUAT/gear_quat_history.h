@@ -340,10 +340,10 @@ class Kinematics {
   }
 };
 
-/// What no step can be right about: a body that turns by half a turn in one step (from the poses
-/// alone nobody can tell which way round), that crosses the whole scene in one, whose quaternion is
-/// so far from unit length that unprojected sites are a hundred times too far out or in, or whose
-/// motion is no number.  All are far outside of what is stable, so only runs that are lost end here:
+/// No step can be right if a body turns by half a turn in it (from the poses alone nobody can tell
+/// which way round), if it crosses the whole scene, if its quaternion is so far from unit length that
+/// unprojected sites are a hundred times too far out or in, or if its motion is no number.  All of
+/// this is far outside of the stable range, so only runs that are lost end here:
 /// the quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h =
 /// 1.57, and no method here is stable beyond 1.42.
 struct MotionLimits {

@@ -5,9 +5,8 @@
 
 /* What this package knows about other styles of LAMMPS by their names.  LAMMPS does not tell these
    facts, so they were read in its source; every row of a table has its reason.  Where LAMMPS does
-   (gear_quat_declared.h), its word counts.  What follows from a
-   fact is decided by those who ask.  In each table the first row that matches counts.  Patterns are
-   those of utils::strmatch(). */
+   tell them (gear_quat_declared.h), its word counts.  The callers decide what follows from a fact.
+   In each table the first row that matches counts.  Patterns have the syntax of utils::strmatch(). */
 
 #ifndef LMP_GEAR_QUAT_KNOWN_STYLES_H
 #define LMP_GEAR_QUAT_KNOWN_STYLES_H

@@ -32,7 +32,7 @@ class Motion : protected Pointers {
   void forget(const std::string &why);
   /// The masks of the command replace those of a restart file.  Collective.
   void impose_masks();
-  /// Poses, velocities and loads are those of the first step.  Collective.
+  /// Before the first step, whose poses, velocities and loads are present.  Collective.
   void begin_run();
   /// True if degrees of freedom depend on forces that LAMMPS' setup may not have shown yet.
   bool awaits_forces() const { return set_up && step.coupling && step.coupling->awaits_forces(); }
