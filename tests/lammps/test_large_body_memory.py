@@ -29,11 +29,14 @@ thermo 10
 {run}
 """
 RUN = "run 10"
-#: runs a program and prints the most memory that it had at a time, in kilobytes
+#: runs a program and writes the most memory that it had at a time, in kilobytes, to a file of its
+#: own: what a process prints after MPI_Finalize can be lost by mpirun
 WRAPPER = """
-import resource, subprocess, sys
-code = subprocess.run(sys.argv[1:]).returncode
-print("\\nPEAK", resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+import os, pathlib, resource, subprocess, sys
+folder, *command = sys.argv[1:]
+code = subprocess.run(command).returncode
+peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+pathlib.Path(folder, str(os.getpid())).write_text(str(peak))
 sys.exit(code)
 """
 FIX, RIGID = "gear/quat single report no", "rigid single"
@@ -45,16 +48,22 @@ MOST = 1.35
 def peak(lmp_tree):
     """(fix, edge of the block in cells, ranks) -> largest memory of a process, bytes."""
     wrapper, measured = lmp_tree.folder / "wrapper.py", lmp_tree.folder / "measured"
+    peaks = lmp_tree.folder / "peaks"
+    peaks.mkdir()
     wrapper.write_text(WRAPPER)
-    measured.write_text(f'#!/bin/sh\nexec {sys.executable} {wrapper} {lmp_tree.executable} "$@"\n')
+    command = f"{sys.executable} {wrapper} {peaks} {lmp_tree.executable}"
+    measured.write_text(f'#!/bin/sh\nexec {command} "$@"\n')
     measured.chmod(0o755)
     lmp = replace(lmp_tree, executable=measured)
 
     def measure(style, cells, ranks=1, run=RUN):
-        result = lmp.succeed(WALL.format(style=style, cells=cells, run=run), ranks=ranks)
-        peaks = re.findall(r"^PEAK (\d+)", result.stdout, re.MULTILINE)
-        assert len(peaks) == ranks
-        return 1024 * max(map(int, peaks))
+        lmp.succeed(WALL.format(style=style, cells=cells, run=run), ranks=ranks)
+        files = list(peaks.iterdir())
+        assert len(files) == ranks
+        found = [int(file.read_text()) for file in files]
+        for file in files:
+            file.unlink()
+        return 1024 * max(found)
 
     return measure
 
