@@ -31,22 +31,38 @@ namespace LAMMPS_NS::GearQuat {
 
 enum class Formulation { FIRST, SECOND };
 
+/// What keeps quaternions at unit length.  YES: they are projected after every step.  NO: nothing,
+/// and formulas take |q| = 1 for granted (the paper's).  AUTO: equations that hold for any length,
+/// where the method has them (Scheme::any_norm), otherwise YES.
+enum class Projection { AUTO, YES, NO };
+
 /// What is the same for all bodies of a run.
 struct Scheme {
   Formulation formulation = Formulation::SECOND;
   int rows = 0;                    ///< values kept; 0: as many as the paper
-  int passes = 1;                  ///< corrections with the same forces
+  int passes = 1;                  ///< corrections with the same forces; 0: see fixed_passes()
   bool tuned = false;              ///< coefficients of gear_quat_tuned.h, otherwise Gear's
   bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
   bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
-  bool project = true;                ///< keep |q| = 1 and q.qdot = 0
-  bool compensate = false;            ///< compensated sums of the rows that are integrated
-  bool trial = false;                 ///< one more row, see gear_quat_step_control.h
+  Projection projection = Projection::YES;
+  bool compensate = false;    ///< compensated sums of the rows that are integrated
+  bool trial = false;         ///< one more row, see gear_quat_step_control.h
 
   bool first() const { return formulation == Formulation::FIRST; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
+  /// Whether quaternions obey equations for any length: not with even numbers of values, whose
+  /// leading error damps and therefore gains nothing, nor with Gear's coefficients.
+  bool any_norm() const
+  {
+    const int n = values();
+    return projection == Projection::AUTO && !first() && tuned && (n == 5 || n == 7 || n == 9);
+  }
+  /// Passes of the method as a whole.  If passes is 0, a rotation with any_norm() is corrected until
+  /// it converges.
+  int fixed_passes() const { return passes ? passes : AUTOMATIC_PASSES; }
+  static constexpr int AUTOMATIC_PASSES = 2;
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
   /// Doubles of a history: rows, carries, trial row.
   int size() const { return (values() + carries() + trial) * width(); }
@@ -68,7 +84,7 @@ struct Scheme {
 
   /// What q is divided by where a unit quaternion is meant: unprojected, the paper's formulas are
   /// taken as they stand, and a body is only as rigid as |q| = 1 holds.
-  double norm2(const double *q) const { return project ? dot4(q, q) : 1.0; }
+  double norm2(const double *q) const { return projection != Projection::NO ? dot4(q, q) : 1.0; }
 };
 
 /// Doubles of the longest history, compensated and with a trial row.
@@ -256,7 +272,10 @@ class Kinematics {
     double omegadot_body[3], qdot[4], now[4], kept[4] = {};
     angular_acceleration(body, state, scheme.norm2(state.q), load, omegadot_body);
     quaternion_rate(rows + quat, state.omega_body, qdot);
-    quaternion_acceleration(rows + quat, qdot, omegadot_body, now);
+    if (scheme.any_norm())
+      quaternion_acceleration(rows + quat, qdot, state.omega_body, omegadot_body, 0.0, 0.0, now);
+    else
+      quaternion_acceleration(rows + quat, qdot, omegadot_body, now);
     if (scheme.first()) {
       double scaled[3], before[4];    // times h, h^2
       for (int i = 0; i < 3; ++i) scaled[i] = h * rates[Scheme::OMEGA + i];

@@ -12,13 +12,14 @@
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
    Second-order formulation (Rapaport), 7 components:
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
-   Equation numbers: Pratt & Bin Mohamad Zaini.  The host calls, in this order and once a step:
+   With Scheme::any_norm() the second equation is that of gear_quat_any_norm.h.  Equation numbers: Pratt & Bin Mohamad Zaini.  The host calls, in this order and once a step:
    predict(), body_state(), [forces at that state], correct(); for a body without moments of inertia
    the three whose names end in center, which leave all that belongs to rotation as it is. */
 
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
 
+#include "gear_quat_any_norm.h"
 #include "gear_quat_gauss.h"
 #include "gear_quat_history.h"
 #include "gear_quat_tuned.h"
@@ -44,7 +45,7 @@ class Integrator : public Kinematics {
   }
   /// With other coefficients than those of the scheme, of as many values.
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
-      Kinematics(scheme, h), n(scheme.values()), c(coefficients)
+      Kinematics(scheme, h), n(scheme.values()), any_norm(scheme), c(coefficients)
   {
   }
 
@@ -141,7 +142,7 @@ class Integrator : public Kinematics {
     } else {
       double q[4], qdot[4];
       velocity_of_pass(rows, pending.total.x, velocity);
-      rotation_of_pass(rows, pending.total.q, q, qdot);
+      rotation_of_pass(any_norm.projected_part(rows), rows, pending.total.q, q, qdot);
       angular_velocity(q, scheme.norm2(q), qdot, omega_body);
     }
   }
@@ -208,6 +209,7 @@ class Integrator : public Kinematics {
   }
 
   int n;
+  AnyNorm any_norm;
   CorrectorCoefficients c;
 
   /// Residual of a column is target - row, row that of the order of the equation.
@@ -275,9 +277,9 @@ class Integrator : public Kinematics {
   {
     Residual &total = pending.total;
     correct_center(history, body, load, Undamped(), rows, total.x);
-    for (int pass = 0; pass < scheme.passes; ++pass)
+    for (int k = scheme.fixed_passes(); k > 0; --k)
       correct_rotation(history, body, pending.torque_body, Undamped(), rows, total.q);
-    if (scheme.project) project_row(history, rows);
+    if (scheme.projection != Projection::NO) project_row(history, rows);
   }
 
   template <int CARRIES>
@@ -291,7 +293,7 @@ class Integrator : public Kinematics {
   template <int CARRIES>
   void finish_passes(First<CARRIES> history, double *rows, const Pending &) const
   {
-    if (scheme.project) project_row(history, rows);
+    if (scheme.projection != Projection::NO) project_row(history, rows);
   }
 
   void add_first(double *rows, int component, const double *change) const
@@ -343,42 +345,56 @@ class Integrator : public Kinematics {
     // quaternions (Eqs. 6, 7, 18): with c_2 = 1 the residuals of all passes add up to target -
     // prediction, so the history is corrected once
 
-    for (int pass = 0; pass < scheme.passes; ++pass)
-      rotation_residual(body, per_inertia, pending.torque_body, Undamped(), rows, total);
+    const double part = any_norm.projected_part(rows);
+    const auto pass = [&] {
+      rotation_residual(body, per_inertia, pending.torque_body, Undamped(), part, rows, total);
+    };
+    if (any_norm.converges(part))
+      AnyNorm::repeat(part, total, pass);
+    else
+      for (int k = scheme.fixed_passes(); k > 0; --k) pass();
     history.template correct<WIDTH>(rows, n, c.driven.data(), 0, residual);
     copy(residual + Scheme::POSITION, 3, pending.total.x);
     copy(total, 4, pending.total.q);
-    if (scheme.project) project(history, rows);
+    project(history, part, rows);
   }
 
-  /// The residual of the quaternion after one more pass; total: of the passes before.
+  /// The residual of the quaternion after one more pass; total: of the passes before; part: see
+  /// AnyNorm::projected_part().
   template <class Damper>
   void rotation_residual(const RigidBody &body, const double *per_inertia,
-                         const double *torque_body, const Damper &damper, const double *rows,
-                         double *total) const
+                         const double *torque_body, const Damper &damper, double part,
+                         const double *rows, double *total) const
   {
     const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::SECOND_QUATERNION;
     const double half_h2 = 0.5 * h * h;
     double omega_body[3], torque[3], omegadot_body[3], q[4], qdot[4], target[4];
-    rotation_of_pass(rows, total, q, qdot);
+    rotation_of_pass(part, rows, total, q, qdot);
     angular_velocity(q, scheme.norm2(q), qdot, omega_body);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * omega_body[i]);
     angular_acceleration(body, per_inertia, torque, omega_body, omegadot_body);
-    quaternion_acceleration(q, qdot, omegadot_body, target);
+    if (part < 1.0)
+      quaternion_acceleration(q, qdot, omega_body, omegadot_body,
+                              AnyNorm::STIFFNESS * per_h * per_h, part, target);
+    else
+      quaternion_acceleration(q, qdot, omegadot_body, target);
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[i];
   }
 
   // what predicted rows and the residuals of a pass stand for
 
-  void rotation_of_pass(const double *rows, const double *total, double *q, double *qdot) const
+  /// Without projection the pose is the predicted one, where the torque was met.
+  void rotation_of_pass(double part, const double *rows, const double *total, double *q,
+                        double *qdot) const
   {
     const double *place = rows + Scheme::SECOND_QUATERNION, *rates = place + Scheme::SECOND_WIDTH;
+    const double c0 = part * c.driven[0];
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
-      q[i] = place[i] + c.driven[0] * total[i];
+      q[i] = place[i] + c0 * total[i];
       qdot[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
     }
   }
@@ -405,15 +421,20 @@ class Integrator : public Kinematics {
       damped.force[i] = friction.force(i, load.force[i], body.mass * velocity[i], body.mass);
     position_residual(body, damped, rows, pending.total.x);
     inverse_moments(body, per_inertia);
+    const double part = any_norm.projected_part(rows);
+    double *total = pending.total.q;
+    const auto turn = [&] {
+      rotation_residual(body, per_inertia, pending.torque_body, friction, part, rows, total);
+    };
     if (!friction.implicit) {
-      rotation_residual(body, per_inertia, pending.torque_body, friction, rows, pending.total.q);
+      any_norm.converges(part) ? AnyNorm::repeat(part, total, turn) : turn();
       return;
     }
     for (int i = 0; i < 3; ++i)
       pending.total.x[i] = friction.implicit_force(i, share, pending.total.x[i], 0.5 * h * h);
-    copy(pending.total.q, 4, before);
-    rotation_residual(body, per_inertia, pending.torque_body, friction, rows, pending.total.q);
-    withhold(body, rows, before, 1.0 - friction.implicit_torque(share), pending.total.q);
+    copy(total, 4, before);
+    turn();
+    withhold(body, rows, before, 1.0 - friction.implicit_torque(share), total);
   }
 
   /// Takes back a part of how a residual has changed, where there is friction: neither its radial
@@ -436,16 +457,24 @@ class Integrator : public Kinematics {
     double residual[Scheme::SECOND_WIDTH];
     copy(pending.total.x, 3, residual + Scheme::POSITION);
     copy(pending.total.q, 4, residual + Scheme::SECOND_QUATERNION);
+    const double part = any_norm.projected_part(rows);
     history.template correct<Scheme::SECOND_WIDTH>(rows, n, c.driven.data(), 0, residual);
-    if (scheme.project) project(history, rows);
+    project(history, part, rows);
   }
 
   /// A rescaled q with a radial rate left in would damp the spin: the rate is projected too
-  /// (Eq. 4).
-  template <int CARRIES> void project(Second<CARRIES> history, double *rows) const
+  /// (Eq. 4).  part: see AnyNorm::projected_part().
+  template <int CARRIES> void project(Second<CARRIES> history, double part, double *rows) const
   {
+    if (scheme.projection == Projection::NO || part == 0.0) return;
     const double *q = rows + Scheme::SECOND_QUATERNION, *rates = q + Scheme::SECOND_WIDTH;
-    double change[4];
+    double change[4], of_q[4];
+    if (part < 1.0) {
+      AnyNorm::projection(part, q, rates, of_q, change);
+      history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, of_q);
+      history.template add<4>(rows, n, 1, Scheme::SECOND_QUATERNION, change);
+      return;
+    }
     project_row(history, rows);
     const double radial = -dot4(q, rates);
     for (int i = 0; i < 4; ++i) change[i] = radial * q[i];

@@ -67,7 +67,7 @@ static const std::vector<Keyword> TABLE = {
       .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
       .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
   Keyword("project", INTEGRATION, "whether quaternions are kept at unit length",
-          [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
+          [](Arguments &a, const Value &v) { a.scheme.projection = v.is("yes") ? Projection::YES : Projection::NO; })
       .word({"yes", "no"}),
   Keyword("tolerance", STEP, "the error that a step may make, which the time step follows",
           [](Arguments &a, const Value &v) {

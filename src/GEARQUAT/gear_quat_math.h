@@ -98,6 +98,24 @@ inline void quaternion_acceleration(const double *q, const double *qdot,
   w_times(q, half, qddot);
 }
 
+/// The same for a q of any length r, with s = q.qdot/r^2 = r'/r:
+///   qddot = 1/2 W(q) (omegadot_body + 2 s omega_body, -1/2 |omega_body|^2 + 2 r''/r),
+///   r''/r = -1/2 stiffness (r^2 - 1), which keeps the length close to 1.
+/// part: of Eq. 6 in a mixture of both equations, 0 to 1.
+inline void quaternion_acceleration(const double *q, const double *qdot, const double *omega_body,
+                                    const double *omegadot_body, double stiffness, double part,
+                                    double *qddot)
+{
+  const double norm2 = dot4(q, q), rate2 = dot4(qdot, qdot), other = 1.0 - part;
+  const double grows = other * dot4(q, qdot) / norm2;
+  const double turns = 0.25 * dot3(omega_body, omega_body);
+  const double half[4] = {0.5 * omegadot_body[0] + grows * omega_body[0],
+                          0.5 * omegadot_body[1] + grows * omega_body[1],
+                          0.5 * omegadot_body[2] + grows * omega_body[2],
+                          -other * (turns + 0.5 * stiffness * (norm2 - 1.0)) - part * rate2};
+  w_times(q, half, qddot);
+}
+
 /// omega_body = 2 W(q)^T qdot / norm2, the inverse of Eq. 5.
 /// norm2: |q|^2, or 1 where the paper's formulas are wanted as they stand.
 inline void angular_velocity(const double *q, double norm2, const double *qdot, double *omega_body)

@@ -132,6 +132,7 @@ struct TunedSet {
   Columns columns;                  ///< that have these
   std::vector<long double> tail;    ///< c_2 ... c_(N-1) of formulation first, c_3 ... of second
   long double c0 = SOLVED;          ///< where order does not determine it
+  bool any_norm = false;            ///< replaces another set where quaternions have any length
 
   bool solves_c0() const { return std::isnan(c0); }
   int values() const { return (int) tail.size() + (formulation == Formulation::FIRST ? 2 : 3); }
@@ -174,6 +175,7 @@ inline const std::vector<TunedSet> &tuned_sets()
        {1.168083887L, 0.680906246L, 0.213715031L, 0.042664217L, 0.003990708L, 0.000315392L}},
       {SECOND, DRIVEN, {0.518283853L}},
       {SECOND, DRIVEN, {0.612194931L, 0.286697465L}, 0.005707609L},
+      {SECOND, DRIVEN, {7.0L / 12.0L, 0.285L}, 0.00214L, true},
       {SECOND, DRIVEN, {0.68109688L, 0.214659532L, 0.054497661L}},
       {SECOND, DRIVEN, {0.764735219L, 0.414859115L, 0.077867825L, 0.021600975L}, 0.027779193L},
       {SECOND, DRIVEN, {0.767583958L, 0.315047149L, 0.095050269L, 0.010917458L, 0.001670165L}},
@@ -198,13 +200,21 @@ inline const std::vector<TunedSet> &tuned_sets()
   return sets;
 }
 
-/// Null if there is none.
-inline const TunedSet *tuned_set(Formulation formulation, int values, Columns columns)
+/// Null if there is none.  any_norm: the set for quaternions of any length, if there is one.
+inline const TunedSet *tuned_set(Formulation formulation, int values, Columns columns,
+                                 bool any_norm = false)
 {
+  const TunedSet *found = nullptr;
   for (const TunedSet &set : tuned_sets())
-    if (set.formulation == formulation && set.values() == values && set.columns == columns)
-      return &set;
-  return nullptr;
+    if (set.formulation == formulation && set.values() == values && set.columns == columns &&
+        (any_norm || !set.any_norm) && (!found || set.any_norm))
+      found = &set;
+  return found;
+}
+
+inline const TunedSet *tuned_set(const Scheme &scheme, Columns columns)
+{
+  return tuned_set(scheme.formulation, scheme.values(), columns, scheme.any_norm());
 }
 
 /// Whether there are tuned coefficients for this number of values.
@@ -227,7 +237,7 @@ inline std::vector<int> tuned_values(Formulation formulation)
 inline int Scheme::order() const
 {
   if (!tuned) return (velocity_c0 ? values() - 1 : values()) | 1;
-  const TunedSet *set = tuned_set(formulation, values(), Columns::DRIVEN);
+  const TunedSet *set = tuned_set(*this, Columns::DRIVEN);
   return set && !set->solves_c0() ? values() - 1 : values();
 }
 
@@ -272,7 +282,7 @@ struct CorrectorCoefficients {
   static double fill_tuned(const Scheme &scheme, Columns columns, Array &c)
   {
     const int n = scheme.values();
-    const TunedSet *set = tuned_set(scheme.formulation, n, columns);
+    const TunedSet *set = tuned_set(scheme, columns);
     if (!set)
       throw std::domain_error("there are no tuned coefficients for " + std::to_string(n) +
                               " values");

@@ -30,7 +30,7 @@ Load some_load(const BodyState &s, double norm2)
 /// the body axes held as they were met.  Unprojected: a projection moves q afterwards.
 double missed(const RigidBody &judge, Scheme scheme, int passes, double h)
 {
-  scheme.project = false;
+  scheme.projection = Projection::NO;
   Motion motion(TOP, top_state(0.0), some_load, passing(scheme, passes), h, Start::BOOTSTRAP, h);
   motion.steps(3);
   motion.predict();

@@ -159,7 +159,7 @@ TEST(TunedSets, AreOneForEachKindOfColumnsOfEachNumber)
     EXPECT_GE(set.values(), fewest(set.formulation));
     EXPECT_LE(set.values(), most(set.formulation));
     EXPECT_TRUE(has_tuned(set.formulation, set.values()));
-    EXPECT_EQ(tuned_set(set.formulation, set.values(), set.columns), &set) << "listed twice";
+    EXPECT_EQ(tuned_set(set.formulation, set.values(), set.columns, set.any_norm), &set) << "listed twice";
     EXPECT_EQ(tuned_set(set.formulation, set.values(), Columns::INTEGRATED) != nullptr,
               set.formulation == FIRST);
   }
