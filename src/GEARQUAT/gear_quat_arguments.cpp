@@ -165,8 +165,11 @@ void Arguments::check_ranges()
     const Keyword::Range &range = row.range(scheme.first());
     KeywordValue value;
     value.integer = row.standard_of(range, tolerance, !scheme.tuned);
-    if (given.count(row.name)) value = given.at(row.name);
+    const bool is_stated = given.count(row.name) && !given.at(row.name).is("auto");
+    if (is_stated) value = given.at(row.name);
     row.store(*this, value);
+    if (row.of_tables) automatic_values = !is_stated && !tolerance;
+    if (row.may_be_auto && !is_stated) continue;
     if (value.integer < range.fewest || value.integer > range.most)
       error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.text,
                  range.fewest, range.most,

@@ -84,6 +84,7 @@ struct Keyword {
   std::vector<Range> ranges;         ///< INTEGER: one, or those of formulation second and first
   int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
   bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them
+  bool may_be_auto = false;          ///< INTEGER: the word auto is possible, and the default
   std::vector<Condition> needs, excludes;
 
   Keyword(const char *name, const char *about, const char *meaning, Store store) :
@@ -112,6 +113,11 @@ struct Keyword {
   Keyword &with_tables()
   {
     of_tables = true;
+    return *this;
+  }
+  Keyword &or_auto()
+  {
+    may_be_auto = true;
     return *this;
   }
   Keyword &number(const std::vector<std::string> &measures = {})
@@ -199,8 +205,9 @@ struct Arguments : protected Pointers {
   // what the keywords say; the table in gear_quat_keyword_table.cpp has the defaults
 
   Scheme scheme;
-  StepControl control;        ///< eps 0: the step is LAMMPS' own
-  double every_time = 0.0;    ///< steps end at its multiples; 0: at any times
+  bool automatic_values = false;    ///< the number of values of `scheme` is that of smooth motion
+  StepControl control;              ///< eps 0: the step is LAMMPS' own
+  double every_time = 0.0;          ///< steps end at its multiples; 0: at any times
   Start start;
   bool reinit;
   Report report;
@@ -214,6 +221,9 @@ struct Arguments : protected Pointers {
   /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
   /// names the word and what is required.
   Arguments(LAMMPS *lmp, int narg, char **arg);
+
+  /// Whether the command has this keyword.
+  bool states(const std::string &keyword) const { return given.count(keyword) > 0; }
 
   /// Keyword tolerance and those that bound its steps, as in the command; empty without it.
   std::string words_of_control() const;

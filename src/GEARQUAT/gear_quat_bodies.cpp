@@ -15,6 +15,13 @@ Bodies::Bodies(const Scheme &scheme) :
 {
 }
 
+void Bodies::set_scheme(const Scheme &other)
+{
+  scheme = other;
+  row_size = scheme.size() * (scheme.trial ? 2 : 1);
+  rows.assign((size_t) nmove * row_size, 0.0);
+}
+
 /* ----------------------------------------------------------------------
    which bodies there are
 ------------------------------------------------------------------------- */

@@ -55,6 +55,8 @@ class Bodies {
  public:
   /// No bodies; histories will be those of the scheme.
   explicit Bodies(const Scheme &scheme);
+  /// Histories will be those of another scheme; those that there are lose their rows.
+  void set_scheme(const Scheme &other);
 
   int nhere() const { return (int) body.size(); }
   int nowned() const { return nown; }

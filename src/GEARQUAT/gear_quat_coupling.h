@@ -53,6 +53,10 @@ class Coupling : protected Pointers {
   /// the forces of all fixes yet.  anew: there are no histories.  Ends the run if the coupling
   /// cannot act.
   virtual void begin_run(bool anew, double h) = 0;
+  /// The method of the bodies is another one; there are no histories.  Local.
+  virtual void set_scheme(const Scheme & /*scheme*/) {}
+  /// After begin_run(): the strongest friction that the run will have, times the step.  Local.
+  virtual double friction_ahead(double /*h*/) const { return 0.0; }
   /// True if degrees of freedom depend on the forces of all fixes.  Local.
   virtual bool awaits_forces() const { return false; }
   /// The loads are those of all fixes.

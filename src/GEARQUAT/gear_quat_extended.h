@@ -33,6 +33,7 @@ namespace LAMMPS_NS::GearQuat {
 class Extended : protected Pointers {
  public:
   Extended(LAMMPS *lmp, const Scheme &scheme);
+  void set_scheme(const Scheme &other) { scheme = other; }
 
   /// Ends the run on all ranks, naming an atom, if one of `atoms` (local indices) cannot be moved.
   void refuse(const std::vector<int> &atoms) const;

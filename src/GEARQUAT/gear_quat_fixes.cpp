@@ -6,6 +6,7 @@
 #include "gear_quat_fixes.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_choice.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
@@ -90,31 +91,39 @@ void OtherFixes::tell_noise(const Fix *other)
 {
   const bool collides = known(FixFact::COLLISIONS, other);
   if (warned_noise || (!collides && !known(FixFact::RANDOM, other))) return;
-  const std::string remedy =
-      remedy_for_noise(args.scheme, collides ? Noise::COLLISIONS : Noise::RANDOM);
+  ChoiceOfValues scene;
+  scene.noise = collides ? Noise::COLLISIONS : Noise::RANDOM;
+  scene.may_be_gear = !args.states("corrector");
+  const Scheme scheme = args.automatic_values ? scene.choose(args.scheme).scheme : args.scheme;
+  const std::string remedy = remedy_for_noise(scheme, scene.noise);
   if (remedy.empty() || (!collides && !shared_atom(other))) return;
   warned_noise = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: forces of fix {} ({}) are random, and {} values make heat of "
                    "them; use {}",
-                   other->id, other->style, args.scheme.values(), remedy);
+                   other->id, other->style, scheme.values(), remedy);
 }
 
-/// Forces see predicted velocities, which limits the friction that a step can take.
-void OtherFixes::tell_friction()
+std::string OtherFixes::source_of_friction() const
 {
-  constexpr double ENOUGH = 0.1;    // of a momentum in a step
-  if (warned_friction) return;
   std::string source;
   if (known(PairFact::FRICTION, force)) source = fmt::format("pair style {}", force->pair_style);
   for (const auto *other : modify->get_fix_list())
     if (known(FixFact::FRICTION, other) && shared_atom(other))
       source = fmt::format("fix {} ({})", other->id, other->style);
+  return source;
+}
+
+/// Forces see predicted velocities, which limits the friction that a step can take.
+void OtherFixes::tell_friction()
+{
+  if (warned_friction || args.automatic_values) return;
+  const std::string source = source_of_friction();
   if (source.empty()) return;
   warned_friction = true;
   const double most = largest_friction(args.scheme);
-  if (most < ENOUGH && comm->me == 0)
+  if (most < ChoiceOfValues::DAMPING && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat {}: forces of {} depend on velocities, and {} values gain energy "
                    "if they take more than {} of a momentum in a step; use {}, or a shorter step",

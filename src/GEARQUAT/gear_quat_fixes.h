@@ -38,6 +38,8 @@ class OtherFixes : protected Pointers {
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
+  /// What makes forces on bodies that depend on velocities, empty for nothing.  Collective.
+  std::string source_of_friction() const;
   /// True if some fix may change velocities, and bodies take that over.
   bool any_taken() const { return !taken.empty(); }
 

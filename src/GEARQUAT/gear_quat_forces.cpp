@@ -51,17 +51,17 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
   if (why.empty()) look_at_time();
 }
 
-Noise Forces::noise(const std::function<bool(int)> &in_body) const
+Noise GearQuat::noise_of_forces(const LAMMPS *lmp, const std::function<bool(int)> &in_body)
 {
   Noise found = Noise::NONE;
-  if (known(PairFact::RANDOM, force)) found = Noise::RANDOM;
-  for (const auto *fix : modify->get_fix_list()) {
+  if (known(PairFact::RANDOM, lmp->force)) found = Noise::RANDOM;
+  for (const auto *fix : lmp->modify->get_fix_list()) {
     if (known(FixFact::COLLISIONS, fix)) return Noise::COLLISIONS;
     if (!known(FixFact::RANDOM, fix)) continue;
     int here = 0;
-    for (int i = 0; i < atom->nlocal; ++i)
-      if ((atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
-    if (over_ranks(MPI_MAX, here, world)) found = Noise::RANDOM;
+    for (int i = 0; i < lmp->atom->nlocal; ++i)
+      if ((lmp->atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
+    if (over_ranks(MPI_MAX, here, lmp->world)) found = Noise::RANDOM;
   }
   return found;
 }

@@ -59,6 +59,9 @@ class Tallies : protected Pointers {
   bigint tallied[4];
 };
 
+/// Which forces without derivatives act on the atoms that `in_body` tells.  Collective.
+Noise noise_of_forces(const LAMMPS *lmp, const std::function<bool(int)> &in_body);
+
 class Forces : protected Pointers {
  public:
   /// Looks at the scene.  owners: the fixes that ask, themselves not evaluated.  Collective.
@@ -66,9 +69,6 @@ class Forces : protected Pointers {
 
   /// Empty if forces can be followed, else what stands in the way.
   const std::string &reason() const { return why; }
-
-  /// Which forces without derivatives act on the atoms that `in_body` tells.  Collective.
-  Noise noise(const std::function<bool(int)> &in_body) const;
 
   /// Keep all data of all atoms, ghosts too, whatever the atom style has: positions, velocities,
   /// forces, and what pair styles sum up or overwrite besides, such as rates of energies.

@@ -41,6 +41,7 @@ class IsokineticConstraint : public Coupling {
   {
     correct_by_passes(*this, integrator, passes);
   }
+  void set_scheme(const Scheme &other) override { scheme = other; }
   void rescale(double ratio) override { heat.rescale(ratio, scheme.values()); }
 
   void begin_start(const StartNodes &nodes) override;

@@ -38,7 +38,7 @@ static const std::vector<Keyword> TABLE = {
   Keyword("values", INTEGRATION, "how many values a history keeps of each function",
           [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
       .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, VARIABLE_MOST)
-      .with_tables(),
+      .with_tables().or_auto(),
   Keyword("corrector", INTEGRATION, "which coefficients correct a history",
           [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
       .word({"tuned", "gear"}).standard_with_tolerance("gear")
@@ -46,7 +46,7 @@ static const std::vector<Keyword> TABLE = {
                        "step too slowly; leave out corrector, or write corrector gear"}),
   Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
           [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
-      .integer({{1, PASSES_MOST, 2}}),
+      .integer({{1, PASSES_MOST, 0}}).or_auto(),
   Keyword("compensate", INTEGRATION, "whether sums carry along what rounding takes from them",
           [](Arguments &a, const Value &v) { a.scheme.compensate = v.is("yes"); })
       .word({"no", "yes"}),
@@ -66,9 +66,12 @@ static const std::vector<Keyword> TABLE = {
           [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
       .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
       .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
-  Keyword("project", INTEGRATION, "whether quaternions are kept at unit length",
-          [](Arguments &a, const Value &v) { a.scheme.projection = v.is("yes") ? Projection::YES : Projection::NO; })
-      .word({"yes", "no"}),
+  Keyword("project", INTEGRATION, "whether quaternions are projected to unit length",
+          [](Arguments &a, const Value &v) {
+            a.scheme.projection = v.is("auto") ? Projection::AUTO
+                : v.is("yes")                  ? Projection::YES
+                                               : Projection::NO;
+          }).word({"auto", "yes", "no"}),
   Keyword("tolerance", STEP, "the error that a step may make, which the time step follows",
           [](Arguments &a, const Value &v) {
             a.control.eps = v.number * v.unit;

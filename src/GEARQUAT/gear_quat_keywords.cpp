@@ -105,9 +105,9 @@ std::string Keyword::required() const
                          : "a positive number and perhaps " + utils::join_words(words, " or ") +
             " and perhaps its unit";
   if (kind == INTEGER)
-    return of_formulations(*this, [](const Range &range) {
-      return fmt::format("{} to {}", range.fewest, range.most);
-    });
+    return (may_be_auto ? "auto or " : "") + of_formulations(*this, [](const Range &range) {
+             return fmt::format("{} to {}", range.fewest, range.most);
+           });
   if (kind != WORD) return utils::join_words(words, " ");
   std::string text;
   for (size_t n = 0; n < words.size(); ++n)
@@ -155,7 +155,8 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
 
   if (kind == WORD && !std::count(words.begin(), words.end(), value.text))
     error->all(FLERR, "Fix gear/quat {}: unknown value {} ({})", name, value.text, required());
-  if (kind == INTEGER && !read_integer(value.text, value.integer))
+  if (kind == INTEGER && !(may_be_auto && value.is("auto")) &&
+      !read_integer(value.text, value.integer))
     error->all(FLERR, "Fix gear/quat {}: {} is not an integer; required: {}", name, value.text,
                required());
   if (kind == NUMBER && !read_positive(value.text, value.number))
@@ -203,8 +204,7 @@ std::string default_cell(const Keyword &row)
       return std::to_string(row.standard_of(range, tolerance, gear));
     });
   };
-  std::string cell = standard(false, false);
-  if (row.of_tables) cell += ", with corrector gear " + standard(false, true);
+  std::string cell = row.may_be_auto ? "auto" : standard(false, false);
   if (row.most_with_tolerance) cell += ", with tolerance " + standard(true, true);
   return cell;
 }

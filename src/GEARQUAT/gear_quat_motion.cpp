@@ -85,7 +85,15 @@ void Motion::begin_run()
   const double h = step.length();
   if (update->nsteps > 0) step.blowup.pace = pace_of(lmp, bodies);
   if (!step.started && !step.tolerance && update->nsteps > 0)
-    check_spins(lmp, bodies, args.scheme, step.blowup.pace, h);
+    check_spins(lmp, bodies,
+                args.automatic_values ? scene_of(sums_by_loads(bodies)).choose(args.scheme).scheme
+                                      : step.scheme(),
+                step.blowup.pace, h);
+  if (step.coupling && args.automatic_values && !step.started && !args.scheme.first()) {
+    Scheme damped = args.scheme;    // as much friction as any number of values permits
+    damped.rows = SECOND_FEWEST;
+    step.coupling->set_scheme(damped);
+  }
   if (step.coupling)
     step.coupling->begin_run(!step.started, step.tolerance ? std::min(h, longest_step()) : h);
   if (step.tolerance) step.tolerance->announce_output();
@@ -117,6 +125,91 @@ void Motion::take_velocities(bigint of_step, bool end)
   for (const int ibody : changed)
     step.present_integrator()->set_velocities(bodies.rigid_of(ibody), bodies.state_of(ibody),
                                               step.acting(ibody), bodies.history(ibody));
+}
+
+/* ----------------------------------------------------------------------
+   the number of values, where the command does not state it
+------------------------------------------------------------------------- */
+
+/// What decides on it.  here: of the bodies that this rank owns.  Collective.
+ChoiceOfValues Motion::scene_of(const MotionSums &here) const
+{
+  MotionSums all = here;
+  all.sums = over_ranks(MPI_SUM, here.sums, world);
+  all.omega2 = over_ranks(MPI_MAX, here.omega2, world);
+  ChoiceOfValues scene;
+  scene.edge = all.fast_edge(step.length());
+  scene.turn = all.turn(step.length());
+  scene.noise = noise_of_forces(lmp, [this](int i) {
+    return ownership.in_body(i);
+  });
+  scene.damped = !others.source_of_friction().empty();
+  scene.may_be_gear = !args.states("corrector");
+  return scene;
+}
+
+/// Histories have this scheme after the call.
+Scheme Motion::choose_scheme(const MotionSums &here)
+{
+  ChoiceOfValues scene = scene_of(here);
+  if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
+  const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
+  tell_choice(scene, choice);
+  step.set_scheme(choice.scheme);
+  return choice.scheme;
+}
+
+void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const
+{
+  using Reason = ChoiceOfValues::Reason;
+  if (comm->me != 0 || bodies.number() == 0) return;
+  std::string why;
+  if (choice.reason == Reason::NOISE)
+    why = scene.noise == Noise::RANDOM ? "because forces are random"
+                                       : "because forces of collisions act in a single step";
+  else if (choice.reason == Reason::FRICTION)
+    why = scene.damped ? "because forces depend on velocities"
+                       : "because the thermostat has a strong friction";
+  else if (choice.reason == Reason::FORMULATION)
+    why = choice.scheme.tuned ? "as always with formulation first"
+                              : "as always with corrector gear";
+  else if (std::isfinite(scene.edge))
+    why = fmt::format("for vibrations of {:.2g} and rotations of {:.2g} radians in a step",
+                      scene.edge, scene.turn);
+  else
+    why = "because nothing moves yet, so that vibrations are not known";
+  const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
+  utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
+                 other_corrector ? " and corrector gear" : "", why);
+  if (scene.too_long(choice.scheme))
+    error->warning(
+        FLERR,
+        "Fix gear/quat {}: vibrations of {:.2g} radians in a step are more than any "
+        "number of values can follow for long; use a time step of {:g} or shorter",
+        fix->id, scene.edge,
+        rounded_down(std::fabs(step.length()) * ChoiceOfValues::LONGEST_EDGE / scene.edge));
+}
+
+/// Returns why histories should begin anew with another number of values, null if they should not.
+/// Collective.
+const char *Motion::another_scheme_suits()
+{
+  if (!args.automatic_values || resumed) return nullptr;
+  const Scheme &present = step.scheme();
+  MotionSums here = sums_by_loads(bodies);
+  if (!present.first() && present.tuned && present.values() > 4) {
+    here = MotionSums();
+    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+      here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.history(ibody),
+               step.length());
+  }
+  using Reason = ChoiceOfValues::Reason;
+  const ChoiceOfValues::Choice choice = scene_of(here).choose(args.scheme, present.values());
+  if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
+    return nullptr;
+  if (choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION)
+    return "forces suit another number of values";
+  return can_start_anew() ? "the motion suits another number of values" : nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -178,6 +271,7 @@ const char *Motion::reason_to_start_anew(double **f)
     return "the time step is more than twice that of the last steps";
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
+  if (const char *other = another_scheme_suits()) return other;
   const char *changed = step.coupling ? step.coupling->reason_to_start_anew() : nullptr;
   if (changed && bootstraps() && forces_can_be_followed()) return changed;
   return forces_changed(f) ? "forces are not those of the last step" : nullptr;
@@ -222,7 +316,7 @@ bool Motion::forces_changed(double **f)
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) {
       double rows[MAX_SIZE];
-      std::copy_n(bodies.history(ibody), args.scheme.size(), rows);
+      std::copy_n(bodies.history(ibody), step.scheme().size(), rows);
       const Body &body = bodies.body_at(ibody);
       const Correction found = list == &bodies.points
           ? integrator.correct_center(body.rigid, step.acting(ibody), rows)
@@ -272,19 +366,26 @@ bool Motion::has_to_start(double **f)
 
 Starter Motion::starter(bool needed)
 {
+  std::function<Scheme(const MotionSums &)> choose;
+  if (args.automatic_values)
+    choose = [this](const MotionSums &here) {
+      return choose_scheme(here);
+    };
   return {fix,
           &bodies,
           &ownership,
           &sites,
           step.coupling.get(),
-          step.tolerance ? step.tolerance->scheme_of_start() : args.scheme,
-          needed};
+          step.tolerance ? step.tolerance->scheme_of_start() : step.scheme(),
+          needed,
+          choose};
 }
 
 /// Histories have started.  full: all their rows are known.
 void Motion::begin(bool full)
 {
   step.started = true;
+  resumed = false;
   if (!step.tolerance) return;
   step.tolerance->begin(full);
   step.make_integrator();
@@ -312,13 +413,36 @@ int Motion::extensive(int n) const
 
 void Motion::write(Sections &file) const
 {
-  const Scheme &scheme = args.scheme;
+  const Scheme &scheme = step.tolerance ? args.scheme : step.scheme();
   file.put("scheme",
            {(double) scheme.first(), (double) scheme.values(), (double) scheme.compensate,
-            (double) scheme.trial, (double) scheme.tuned});
+            (double) scheme.trial, (double) scheme.tuned, (double) (int) scheme.projection,
+            (double) scheme.passes});
   file.put("motion", {(double) step.started, step.length()});
   if (step.tolerance) step.tolerance->write(file);
   if (step.coupling) step.coupling->write(file);
+}
+
+/// Files of releases up to 0.3.0 have neither projection nor passes; these were their defaults.
+void Motion::adopt_scheme(const Sections &file)
+{
+  constexpr int PROJECTION = 5, PASSES = 6;
+  Scheme scheme = args.scheme;
+  const bool both = file.has("scheme", PASSES + 1);
+  const int values = (int) file.number("scheme", 1);
+  if (step.tolerance || file.number("scheme", 3) != 0.0 || file.number("motion", 0) == 0.0 ||
+      file.number("scheme", 0) != (double) scheme.first())
+    return;
+  if (args.automatic_values) scheme.rows = values;
+  if (scheme.values() != values) return;
+  if (!args.states("corrector")) scheme.tuned = file.number("scheme", 4) != 0.0;
+  if (scheme.tuned && !has_tuned(scheme.formulation, values)) return;
+  if (!args.states("project"))
+    scheme.projection = both ? (Projection) (int) file.number("scheme", PROJECTION)
+                             : Projection::YES;
+  if (!args.states("passes"))
+    scheme.passes = both ? (int) file.number("scheme", PASSES) : Scheme::AUTOMATIC_PASSES;
+  step.set_scheme(scheme);
 }
 
 std::string Motion::read(const Sections &file)
@@ -338,7 +462,7 @@ std::string Motion::read(const Sections &file)
   compare(both ? "thermostat" : "temp", "thermostat", 0);
   if (both) compare("tchain", "thermostat", 1);
   const bool same = others.empty(), had_started = file.number("motion", 0) != 0.0;
-  step.started = had_started && same;
+  step.started = resumed = had_started && same;
 
   std::vector<std::string> missing;
   const auto take = [&](auto &part) {
@@ -356,7 +480,7 @@ std::string Motion::read(const Sections &file)
         FLERR,
         "Fix gear/quat: the restart file was written with corrector {}; its histories go "
         "on with corrector {}",
-        tuned != 0.0 ? "tuned" : "gear", args.scheme.tuned ? "tuned" : "gear");
+        tuned != 0.0 ? "tuned" : "gear", step.scheme().tuned ? "tuned" : "gear");
   if (had_started && !same && comm->me == 0)
     error->warning(
         FLERR,

@@ -63,6 +63,9 @@ class Motion : protected Pointers {
 
   /// What is not a history, as sections of a restart file.
   void write(Sections &file) const;
+  /// Before the histories of the file arrive: those of its settings that this command does not
+  /// state become those of the fix, if histories can go on with them.
+  void adopt_scheme(const Sections &file);
   /// The histories of the file have arrived.  If they do not fit this command they start anew, and
   /// rank 0 says so, as it does if they go on with another corrector.  Returns what the file does
   /// not have of the rest, empty if it has all.
@@ -78,12 +81,17 @@ class Motion : protected Pointers {
   OtherFixes &others;
   Step &step;
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
-  bool set_up = false;    ///< LAMMPS has evaluated forces for a run, no step of it has begun
-  std::string movers;     ///< IDs of the other fixes that moved atoms in the last steps
+  bool set_up = false;     ///< LAMMPS has evaluated forces for a run, no step of it has begun
+  bool resumed = false;    ///< histories are those of a restart file
+  std::string movers;      ///< IDs of the other fixes that moved atoms in the last steps
 
   int of_tolerance() const { return step.tolerance ? (int) Tolerance::ELEMENTS : 0; }
   int of_coupling() const { return step.coupling ? step.coupling->elements() : 0; }
   double longest_step() const;
+  ChoiceOfValues scene_of(const MotionSums &here) const;
+  Scheme choose_scheme(const MotionSums &here);
+  void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
+  const char *another_scheme_suits();
   /// True if a start finds all derivatives, as far as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
   bool has_to_start(double **f);

@@ -124,7 +124,8 @@ int Ownership::packed_size(int i) const
 
 int Ownership::max_exchange() const
 {
-  return ATOM_SIZE + Extended::RECORD_SIZE + moved_size();
+  return ATOM_SIZE + Extended::RECORD_SIZE + moved_size() - bodies.history_size() +
+      std::max(bodies.history_size(), MAX_SIZE);
 }
 
 int Ownership::max_forward() const

@@ -287,9 +287,14 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
 static std::string settings(const Arguments &args)
 {
   const Scheme &scheme = args.scheme;
-  return fmt::format("  formulation {}, {}{} values, {} pass{}, corrector {}\n",
-                     scheme.first() ? "first" : "second", args.control.eps > 0.0 ? "at most " : "",
-                     scheme.values(), scheme.passes, scheme.passes == 1 ? "" : "es",
+  const std::string values = args.automatic_values
+      ? "values auto"
+      : fmt::format("{}{} values", args.control.eps > 0.0 ? "at most " : "", scheme.values());
+  const std::string passes = scheme.passes
+      ? fmt::format("{} pass{}", scheme.passes, scheme.passes == 1 ? "" : "es")
+      : "passes auto";
+  return fmt::format("  formulation {}, {}, {}, corrector {}\n",
+                     scheme.first() ? "first" : "second", values, passes,
                      scheme.tuned ? "tuned" : "gear");
 }
 

@@ -130,6 +130,7 @@ bool Restart::resume(int group)
 {
   waiting = false;
   using Resumed = Ownership::Resumed;
+  motion.adopt_scheme(sections);
   const Resumed found = resume_bodies(group);
   if (found == Resumed::NONE) {
     if (comm->me == 0)

@@ -21,8 +21,26 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
+MotionSums GearQuat::sums_by_loads(const Bodies &bodies)
+{
+  MotionSums here;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    double torque_body[3];
+    to_body(bodies.axes(ibody), bodies.acting(ibody).torque_space, torque_body);
+    here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), torque_body);
+  }
+  return here;
+}
+
+void Starter::choose_by_loads()
+{
+  if (!choose) return;
+  scheme = choose(sums_by_loads(*bodies));
+}
+
 void Starter::seed_local(int terms, double h)
 {
+  choose_by_loads();
   if (coupling) {
     coupling->measure();
     coupling->seed_local(h, terms);
@@ -78,7 +96,7 @@ bool Start::run()
   for (auto &one : starters) {
     if (!one.needed) continue;
     one.seed_local(3, h);
-    const Noise noise = forces.noise([&one](int i) {
+    const Noise noise = noise_of_forces(lmp, [&one](int i) {
       return one.ownership->in_body(i);
     });
     if (comm->me != 0) continue;
@@ -235,6 +253,7 @@ StartFound Start::search(Forces &forces)
     one.ownership->note_scratch(one.work.capacity() * sizeof(Collocation::Workspace) + copies);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
+    choose(start, all.snapshots);
     if (lowers_order(start))
       reason = fmt::format(", because forces vary in jumps, by {:.1g} of the motion in a step",
                            start.change);
@@ -264,6 +283,20 @@ double Start::first_spacing() const
   const double way = span * std::sqrt(over_ranks(MPI_MAX, fastest, world));
   const double reach = 0.25 * neighbor->skin;
   return way > reach ? h * reach / way : h;
+}
+
+/// By the derivatives that were found, with the states of the start.
+void Start::choose(const StartFound &start, const std::vector<Bodies::Snapshot> &snapshots)
+{
+  for (size_t p = 0; p < starters.size(); ++p) {
+    Starter &one = starters[p];
+    if (!one.choose) continue;
+    MotionSums here;
+    for (int ibody = 0; ibody < one.bodies->nowned(); ++ibody)
+      here.add(one.bodies->rigid_of(ibody), snapshots[p].states[ibody],
+               collocation.series(one.work[ibody], start.pairs), start.spacing);
+    one.scheme = one.choose(here);
+  }
 }
 
 /// Histories of all bodies from the polynomials that were found.

@@ -10,14 +10,19 @@
 #ifndef LMP_GEAR_QUAT_START_H
 #define LMP_GEAR_QUAT_START_H
 
+#include "gear_quat_choice.h"
 #include "gear_quat_coupling.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_sites.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
+
+/// What loads tell of the motion of the bodies that this rank owns.
+MotionSums sums_by_loads(const Bodies &bodies);
 
 /// The bodies of one fix in a start.
 struct Starter {
@@ -28,6 +33,9 @@ struct Starter {
   Coupling *coupling;    ///< null without
   Scheme scheme;
   bool needed;    ///< false if there are histories, to be kept where not all rows can be found
+  /// The scheme for this motion, which histories have after the call; null where it is given.
+  /// Collective.
+  std::function<Scheme(const MotionSums &)> choose;
 
   std::vector<Collocation::Workspace> work = {};
 
@@ -35,6 +43,8 @@ struct Starter {
   /// Histories of all bodies from what states and loads determine.  terms: 2 for the paper's start,
   /// in which every second and higher derivative is zero, or 3 with the loads.  Collective.
   void seed_local(int terms, double h);
+  /// The scheme by what loads tell of the motion.  Collective.
+  void choose_by_loads();
 };
 
 /// History of one body from what its state and the load that acts on it determine.  terms: 2, or 3
@@ -66,6 +76,7 @@ class Start : protected Pointers {
   std::string orders(const StartFound &start) const;
   double first_spacing() const;
   StartFound search(Forces &forces);
+  void choose(const StartFound &start, const std::vector<Bodies::Snapshot> &snapshots);
   void seed_all(const StartFound &start);
 };
 

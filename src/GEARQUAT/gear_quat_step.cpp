@@ -39,9 +39,9 @@ static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, cons
 Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
            Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally) :
     Pointers(lmp),
-    time_step(lmp), blowup(lmp, bodies, ownership, sites, args.scheme, args.control.shortest),
-    coupling(make_coupling(lmp, fix, args, bodies)), args(args), bodies(bodies),
-    ownership(ownership), sites(sites), others(others), tally(std::move(tally))
+    time_step(lmp), blowup(lmp, bodies, ownership, sites, present, args.control.shortest),
+    coupling(make_coupling(lmp, fix, args, bodies)), args(args), present(args.scheme),
+    bodies(bodies), ownership(ownership), sites(sites), others(others), tally(std::move(tally))
 {
   blowup.coupling = coupling.get();
   if (args.control.eps > 0.0)
@@ -274,6 +274,15 @@ bool Step::is_due(const std::vector<int> &periods) const
 void Step::make_integrator()
 {
   integrator = std::make_unique<Integrator>(scheme(), length());
+}
+
+void Step::set_scheme(const Scheme &scheme)
+{
+  present = scheme;
+  bodies.set_scheme(scheme);
+  ownership.extended().set_scheme(scheme);
+  if (coupling) coupling->set_scheme(scheme);
+  if (length() != 0.0) make_integrator();
 }
 
 void Step::follow_length()

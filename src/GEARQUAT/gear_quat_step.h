@@ -57,6 +57,8 @@ class Step : protected Pointers {
   void follow_length();
   /// Histories have the number of values of scheme().
   void make_integrator();
+  /// Another method, without keyword tolerance; there are no histories.
+  void set_scheme(const Scheme &scheme);
 
   /// Ends the run if the present loads would make a body unstable in the next step.
   void check_loads(double **f);
@@ -68,7 +70,7 @@ class Step : protected Pointers {
   /// True once bodies have histories of the present length.
   bool started = false;
 
-  const Scheme &scheme() const { return tolerance ? tolerance->scheme() : args.scheme; }
+  const Scheme &scheme() const { return tolerance ? tolerance->scheme() : present; }
   double length() const { return time_step.length(); }
   /// Null before the first run.
   const Integrator *present_integrator() const { return integrator.get(); }
@@ -82,6 +84,7 @@ class Step : protected Pointers {
 
  private:
   const Arguments &args;
+  Scheme present;    ///< without keyword tolerance
   Bodies &bodies;
   Ownership &ownership;
   Sites &sites;

@@ -38,9 +38,15 @@ Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Thermo
                        const Scheme &scheme) :
     Coupling(lmp, bodies),
     fix(fix), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
-    most_friction(FrictionLimit::of(scheme)), single_pass(scheme.passes == 1),
     total(lmp, bodies, words.damp)
 {
+  set_scheme(scheme);
+}
+
+void Thermostat::set_scheme(const Scheme &scheme)
+{
+  most_friction = FrictionLimit::of(scheme);
+  single_pass = scheme.fixed_passes() == 1;
 }
 
 /* ----------------------------------------------------------------------

@@ -49,6 +49,8 @@ class Thermostat : public Coupling {
 
   /// Ends the run if there is nothing to be thermostatted, or if the friction would be too strong.
   void begin_run(bool anew, double h) override;
+  void set_scheme(const Scheme &scheme) override;
+  double friction_ahead(double h) const override;
   bool awaits_forces() const override { return true; }
   void meet_forces() override;
   /// Where histories begin, the total momentum is judged by the present forces alone.  Ends the run
@@ -123,8 +125,8 @@ class Thermostat : public Coupling {
   bool waiting = false;               ///< no step of this run has begun
   bool anew = false;                  ///< where it began there were no histories
   double friction[2] = {};            ///< xi_1 of the chains
-  const double most_friction;         ///< times the step, that bodies can follow
-  const bool single_pass;             ///< of the corrector
+  double most_friction;               ///< times the step, that bodies can follow
+  bool single_pass;                   ///< of the corrector
   bool strong = false;                ///< the friction of this step is taken implicitly
   double unit = 1.0;                  ///< of the sums, see scale()
   double cold[2] = {};                ///< for how long the parts have been cold

@@ -242,6 +242,22 @@ void Thermostat::refuse_friction(double h) const
   }
 }
 
+double Thermostat::friction_ahead(double h) const
+{
+  constexpr double WEAK = 0.1;    // times the step: any method follows it
+  const double size = std::fabs(h);
+  double strongest = 0.0;
+  for (int c = 0; c < (int) chains.size(); ++c) {
+    const ChainTarget target = target_of(c, 0.0, h);
+    if (!(twice_of(c) > 0.0) || !(target.freedoms > 0.0)) continue;
+    double bound = friction_bound(chains[c], target, twice_of(c));
+    if (size * bound > WEAK)
+      bound = std::min(bound, friction_on_trial(chains[c], target, twice_of(c), h));
+    strongest = std::max(strongest, size * bound);
+  }
+  return strongest;
+}
+
 /// The longest step that the friction, and the damping time, permit.
 double Thermostat::longest_step() const
 {

@@ -1,0 +1,186 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Which number of values suits a scene.
+
+   The fast edge z of a motion is the frequency of its fastest vibrations times the step.  With y the
+   positions and orientations of all bodies, weighted by masses and moments of inertia,
+
+     z^4 = h^4 sum |y''''|^2 / sum |y''|^2.
+
+   A single vibration gives its own frequency exactly, many the upper end of their spectrum.  A start
+   knows these derivatives, and so does a history.  Where neither does, the mean square frequency of
+   rotations, the sum of torque^2/I over that of I omega^2, stands for them.
+
+   More values give a higher order, but a narrower range of frequencies that conserves energy.
+   Measured drifts of liquids decide where five values take over from nine (doc/theory.md).  Random
+   forces and friction exclude many values whatever the motion is (gear_quat_limits.h). */
+
+#ifndef GEAR_QUAT_CHOICE_H
+#define GEAR_QUAT_CHOICE_H
+
+#include "gear_quat_limits.h"
+#include "gear_quat_startup.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace LAMMPS_NS::GearQuat {
+
+/// Sums over bodies, and over ranks by the host, that tell how fast a motion is.
+class MotionSums {
+ public:
+  /// sums of |y''''|^2, |y''|^2, torque^2/I and I omega^2; they add up
+  static constexpr int SUMS = 4;
+  std::array<double, SUMS> sums = {};
+  /// |omega|^2 of the body that turns fastest; the largest counts
+  double omega2 = 0.0;
+
+  /// A body at the beginning of a series with steps of this length.
+  void add(const RigidBody &body, const BodyState &state, const TaylorSeries &series, double step)
+  {
+    if (series.terms > 4)
+      add_derivatives(body, series.c[2], series.c[4], series.c[2] + 3, series.c[4] + 3, step);
+    add_spin(body, state);
+  }
+  /// A body with a history of the second formulation and five values or more, in steps of h.
+  void add(const RigidBody &body, const BodyState &state, const double *rows, double h)
+  {
+    const double *second = rows + 2 * Scheme::SECOND_WIDTH,
+                 *fourth = rows + 4 * Scheme::SECOND_WIDTH;
+    add_derivatives(body, second, fourth, second + Scheme::SECOND_QUATERNION,
+                    fourth + Scheme::SECOND_QUATERNION, h);
+    add_spin(body, state);
+  }
+  /// A body of which the load alone is known.
+  void add(const RigidBody &body, const BodyState &state, const double *torque_body)
+  {
+    for (int k = 0; k < 3; ++k) {
+      if (!(body.inertia[k] > 0.0)) continue;
+      sums[2] += torque_body[k] * torque_body[k] / body.inertia[k];
+      sums[3] += body.inertia[k] * state.omega_body[k] * state.omega_body[k];
+    }
+    add_spin(body, state);
+  }
+
+  /// Radians in a step; infinite if nothing tells it, 0 if nothing moves.
+  double fast_edge(double h) const
+  {
+    const double size = std::fabs(h);
+    if (sums[1] > 0.0) return size * std::pow(sums[0] / sums[1], 0.25);
+    if (sums[3] > 0.0) return EDGE_BY_MEAN * size * std::sqrt(sums[2] / sums[3]);
+    return sums[2] > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  }
+  double turn(double h) const { return std::fabs(h) * std::sqrt(omega2); }
+
+ private:
+  static constexpr double EDGE_BY_MEAN = 1.75;    ///< in SPC/E at 300 K
+
+  /// Rows 2 and 4: h^2/2 y'' and h^4/24 y''''.
+  void add_derivatives(const RigidBody &body, const double *x2, const double *x4, const double *q2,
+                       const double *q4, double h)
+  {
+    const double *inertia = body.inertia;
+    const int axes = std::max(1, body.rotational_freedoms());
+    const double of_turn = 4.0 * (inertia[0] + inertia[1] + inertia[2]) / axes;
+    const double per_h2 = 2.0 / (h * h), per_h4 = 24.0 / (h * h * h * h);
+    sums[0] += per_h4 * per_h4 * (body.mass * dot3(x4, x4) + of_turn * dot4(q4, q4));
+    sums[1] += per_h2 * per_h2 * (body.mass * dot3(x2, x2) + of_turn * dot4(q2, q2));
+  }
+  void add_spin(const RigidBody &body, const BodyState &state)
+  {
+    double all = 0.0;
+    for (int k = 0; k < 3; ++k)
+      if (body.inertia[k] > 0.0) all += state.omega_body[k] * state.omega_body[k];
+    omega2 = std::max(omega2, all);
+  }
+};
+
+/// What decides on the number of values.
+struct ChoiceOfValues {
+  double edge = 0.0;    ///< radians in a step, see MotionSums
+  double turn = 0.0;    ///< radians in a step of the body that turns fastest
+  Noise noise = Noise::NONE;
+  bool damped = false;        ///< forces depend on velocities
+  double friction = 0.0;      ///< of a coupling, times the step
+  bool may_be_gear = true;    ///< the corrector is free, too
+
+  enum class Reason { FORMULATION, MOTION, NOISE, FRICTION };
+  struct Choice {
+    Scheme scheme;
+    Reason reason;
+  };
+
+  // second formulation, tuned: radians in a step up to which nine values are best, those beyond
+  // which no number holds, and the factor by which a present choice may leave its limits
+
+  static constexpr double EDGE_OF_NINE = 0.2, TURN_OF_NINE = 0.4, LONGEST_EDGE = 0.8;
+  static constexpr double BAND = 1.3;
+  /// A part of a momentum that forces may take in a step.
+  static constexpr double DAMPING = 0.1;
+
+  /// scheme: with the number of values that smooth motion has.  present: the number so far, 0 for
+  /// none.
+  Choice choose(const Scheme &scheme, int present = 0) const
+  {
+    Choice choice = {scheme, Reason::FORMULATION};
+    if (!scheme.first() && scheme.tuned) choice = {by_motion(scheme, present), Reason::MOTION};
+    if (permits(choice.scheme)) return choice;
+    const Reason why = suits_noise(choice.scheme, noise) ? Reason::FRICTION : Reason::NOISE;
+    for (const Scheme &other : others(scheme)) {
+      choice = {other, why};
+      if (permits(other)) break;
+    }
+    return choice;
+  }
+
+  /// Whether a step is too long for any number of values; only with tuned coefficients of the second
+  /// formulation.
+  bool too_long(const Scheme &scheme) const
+  {
+    return !scheme.first() && scheme.tuned && std::isfinite(edge) && edge > LONGEST_EDGE;
+  }
+
+ private:
+  Scheme by_motion(Scheme scheme, int present) const
+  {
+    const double band = present == 9 ? BAND : present == 5 ? 1.0 / BAND : 1.0;
+    scheme.rows = edge <= band * EDGE_OF_NINE && turn <= band * TURN_OF_NINE ? 9 : 5;
+    return scheme;
+  }
+
+  bool permits(const Scheme &scheme) const
+  {
+    return suits_noise(scheme, noise) && (!damped || largest_friction(scheme) >= DAMPING) &&
+        (friction == 0.0 || friction <= FrictionLimit::of(scheme));
+  }
+
+  /// What may take the place of a scheme, the best first and in the end what permits most.
+  std::vector<Scheme> others(const Scheme &scheme) const
+  {
+    std::vector<Scheme> list;
+    const auto add = [&](bool tuned, int values) {
+      Scheme other = scheme;
+      other.tuned = tuned;
+      other.rows = values;
+      list.push_back(other);
+    };
+    const int fewest = scheme.first() ? FIRST_FEWEST : SECOND_FEWEST;
+    if (scheme.tuned)
+      for (const int n :
+           scheme.first() ? std::vector<int>{7, 6, 5, 4, 3} : std::vector<int>{9, 7, 5, 4})
+        add(true, n);
+    if (!scheme.tuned || may_be_gear)
+      for (int n = scheme.first() ? 6 : 8; n >= fewest; --n) add(false, n);
+    return list;
+  }
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif
