@@ -25,7 +25,6 @@
 #include "gear_quat_startup.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -37,7 +36,7 @@ class MotionSums {
  public:
   /// sums of |y''''|^2, |y''|^2, torque^2/I and I omega^2; they add up
   static constexpr int SUMS = 4;
-  std::array<double, SUMS> sums = {};
+  double sums[SUMS] = {};
   /// |omega|^2 of the body that turns fastest; the largest counts
   double omega2 = 0.0;
 

@@ -135,8 +135,9 @@ void Motion::take_velocities(bigint of_step, bool end)
 ChoiceOfValues Motion::scene_of(const MotionSums &here) const
 {
   MotionSums all = here;
-  all.sums = over_ranks(MPI_SUM, here.sums, world);
-  all.omega2 = over_ranks(MPI_MAX, here.omega2, world);
+  const auto sums = over_ranks(MPI_SUM, all.sums, world);
+  std::copy(sums.begin(), sums.end(), all.sums);
+  all.omega2 = over_ranks(MPI_MAX, all.omega2, world);
   ChoiceOfValues scene;
   scene.edge = all.fast_edge(step.length());
   scene.turn = all.turn(step.length());

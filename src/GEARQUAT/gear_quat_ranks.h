@@ -25,6 +25,7 @@ namespace LAMMPS_NS::GearQuat {
 /// N numbers (int, tagint, bigint or double) of every rank brought together, number by number.
 template <typename T, size_t N> std::array<T, N> over_ranks(MPI_Op op, T (&here)[N], MPI_Comm world)
 {
+  static_assert(std::is_arithmetic<T>::value);
   std::array<T, N> all;
   const MPI_Datatype type = std::is_same<T, double>::value ? MPI_DOUBLE
       : std::is_same<T, int>::value                        ? MPI_INT
