@@ -1,0 +1,235 @@
+/* gear_quat_choice.h: the fast edge of known motions, and the number of values for each scene. */
+
+#include "gear_quat_choice.h"
+#include "scenes.h"
+
+using namespace Drive;
+using Reason = ChoiceOfValues::Reason;
+
+namespace {
+
+Scheme automatic(Formulation formulation, bool is_tuned = true)
+{
+  Scheme scheme = scheme_of(formulation, 0, 0);
+  scheme.tuned = is_tuned;
+  scheme.projection = Projection::AUTO;
+  scheme.rows = formulation == FIRST ? (is_tuned ? 8 : 6) : (is_tuned ? 9 : 8);
+  return scheme;
+}
+
+/// A body in a spring, which vibrates with this angular frequency about any axis and direction.
+constexpr double OMEGA = 3.0;
+const RigidBody BALL = {2.0, {0.7, 0.7, 0.7}};
+
+BodyState swinging(double phase)
+{
+  BodyState s = {};
+  const double angle = 1e-4;    // small, so that the motion is harmonic
+  s.center[1] = 0.01 * std::cos(phase);
+  s.velocity[1] = -0.01 * OMEGA * std::sin(phase);
+  s.q[2] = 0.5 * angle * std::cos(phase);
+  s.q[3] = std::sqrt(1.0 - s.q[2] * s.q[2]);
+  s.omega_body[2] = -angle * OMEGA * std::sin(phase);
+  return s;
+}
+
+Load springs(const BodyState &s, double norm2)
+{
+  Load l = {};
+  for (int i = 0; i < 3; ++i) l.force[i] = -BALL.mass * OMEGA * OMEGA * s.center[i];
+  l.torque_space[2] = -BALL.inertia[2] * OMEGA * OMEGA * 2.0 * s.q[2] / std::sqrt(norm2);
+  return l;
+}
+
+MotionSums sums_of_start(const RigidBody &body, const BodyState &s, const LoadOf &load, double step)
+{
+  MotionSums sums;
+  sums.add(body, s, settled_series(9, body, s, load, step), step);
+  return sums;
+}
+
+ChoiceOfValues scene(double edge, double turn = 0.0)
+{
+  ChoiceOfValues scene;
+  scene.edge = edge;
+  scene.turn = turn;
+  return scene;
+}
+
+}    // namespace
+
+// --- the fast edge
+
+TEST(FastEdge, IsTheFrequencyOfAVibrationAtAnyPhaseAndSpacing)
+{
+  for (const double phase : {0.1, 0.8, 1.4})
+    for (const double step : {0.02, 0.05})
+      for (const double h : {0.04, -0.1}) {
+        const double z = sums_of_start(BALL, swinging(phase), springs, step).fast_edge(h);
+        EXPECT_NEAR(z, std::fabs(h) * OMEGA, 0.002 * std::fabs(h) * OMEGA) << phase;
+        EXPECT_GT(std::fabs(z / (1.01 * std::fabs(h) * OMEGA) - 1.0), 0.005);
+      }
+}
+
+TEST(FastEdge, IsTheSameFromAHistory)
+{
+  const Scheme scheme = automatic(SECOND);
+  const double h = 0.05;
+  Motion motion(BALL, swinging(0.4), springs, scheme, h, Start::BOOTSTRAP, h);
+  motion.steps(50);
+  MotionSums sums;
+  sums.add(BALL, motion.state(), motion.rows, h);
+  EXPECT_NEAR(sums.fast_edge(h), h * OMEGA, 0.01 * h * OMEGA);
+}
+
+TEST(FastEdge, OfAFreeRotationIsThatOfItsQuaternion)
+{
+  BodyState s = {};
+  s.q[3] = 1.0;
+  s.omega_body[0] = 2.0;
+  const MotionSums sums = sums_of_start(BALL, s, free_of_load, 0.05);
+  EXPECT_NEAR(sums.fast_edge(0.1), 0.1, 1e-4);    // omega/2
+  EXPECT_NEAR(sums.turn(0.1), 0.2, 1e-15);
+}
+
+TEST(FastEdge, OfManyIsThatOfTheFastOnes)
+{
+  // as much energy in a slow vibration as in a fast one
+  MotionSums both;
+  for (const double omega : {1.0, 3.0}) {
+    TaylorSeries series = {};
+    series.terms = 9;
+    series.c[2][0] = 0.5 * omega;    // amplitude 1/omega
+    series.c[4][0] = omega * omega * omega / 24.0;
+    both.add({1.0, {0.0, 0.0, 0.0}}, {}, series, 1.0);
+  }
+  EXPECT_GT(both.fast_edge(1.0), 2.7);
+  EXPECT_LT(both.fast_edge(1.0), 3.0);
+}
+
+TEST(FastEdge, ByLoadsIsOfTheMeanSquareFrequency)
+{
+  MotionSums sums;
+  BodyState s = {};
+  s.omega_body[1] = 0.5;
+  const double torque[3] = {0.0, 0.7 * 0.5 * 4.0, 0.0};    // omega' = 4 omega
+  sums.add(BALL, s, torque);
+  EXPECT_NEAR(sums.fast_edge(0.1), 1.75 * 0.4, 1e-12);
+  s.omega_body[1] = 0.0;
+  MotionSums at_rest, nothing;
+  at_rest.add(BALL, s, torque);
+  EXPECT_TRUE(std::isinf(at_rest.fast_edge(0.1)));
+  EXPECT_EQ(nothing.fast_edge(0.1), 0.0);
+}
+
+// --- the choice
+
+TEST(Choice, SlowMotionHasNineAndFastMotionFive)
+{
+  const Scheme scheme = automatic(SECOND);
+  const double edge = ChoiceOfValues::EDGE_OF_NINE, turn = ChoiceOfValues::TURN_OF_NINE;
+  EXPECT_EQ(scene(0.99 * edge).choose(scheme).scheme.values(), 9);
+  EXPECT_EQ(scene(1.01 * edge).choose(scheme).scheme.values(), 5);
+  EXPECT_EQ(scene(0.0, 0.99 * turn).choose(scheme).scheme.values(), 9);
+  EXPECT_EQ(scene(0.0, 1.01 * turn).choose(scheme).scheme.values(), 5);
+  EXPECT_EQ(scene(INFINITY).choose(scheme).scheme.values(), 5);
+  EXPECT_EQ(scene(0.1).choose(scheme).reason, Reason::MOTION);
+  EXPECT_TRUE(scene(0.5).choose(scheme).scheme.any_norm());
+}
+
+TEST(Choice, APresentNumberStaysWithinABand)
+{
+  const Scheme scheme = automatic(SECOND);
+  const double edge = ChoiceOfValues::EDGE_OF_NINE, band = ChoiceOfValues::BAND;
+  for (const double part : {0.99 / band, 1.01 / band, 0.99 * band, 1.01 * band}) {
+    EXPECT_EQ(scene(part * edge).choose(scheme, 9).scheme.values(), part < band ? 9 : 5);
+    EXPECT_EQ(scene(part * edge).choose(scheme, 5).scheme.values(), part < 1.0 / band ? 9 : 5);
+  }
+}
+
+TEST(Choice, OtherMethodsHaveTheirOwnNumber)
+{
+  for (const double edge : {0.0, 0.3, 0.9}) {
+    EXPECT_EQ(scene(edge).choose(automatic(FIRST)).scheme.values(), 8);
+    EXPECT_EQ(scene(edge).choose(automatic(FIRST, false)).scheme.values(), 6);
+    EXPECT_EQ(scene(edge).choose(automatic(SECOND, false)).scheme.values(), 8);
+    EXPECT_EQ(scene(edge).choose(automatic(FIRST)).reason, Reason::FORMULATION);
+  }
+}
+
+TEST(Choice, WithRandomForcesAndCollisionsNothingHeats)
+{
+  for (const Formulation formulation : {FIRST, SECOND})
+    for (const bool is_tuned : {false, true})
+      for (const Noise noise : {Noise::RANDOM, Noise::COLLISIONS})
+        for (const double edge : {0.0, 0.5}) {
+          ChoiceOfValues noisy = scene(edge);
+          noisy.noise = noise;
+          const auto choice = noisy.choose(automatic(formulation, is_tuned));
+          EXPECT_TRUE(suits_noise(choice.scheme, noise));
+          EXPECT_EQ(choice.reason, Reason::NOISE);
+          EXPECT_TRUE(is_tuned || !choice.scheme.tuned);
+        }
+  ChoiceOfValues noisy = scene(0.0);
+  noisy.noise = Noise::RANDOM;
+  EXPECT_EQ(noisy.choose(automatic(SECOND)).scheme.values(), 4);
+  EXPECT_TRUE(noisy.choose(automatic(SECOND)).scheme.tuned);
+  // a stated corrector stays, whatever it does
+  noisy.noise = Noise::COLLISIONS;
+  noisy.may_be_gear = false;
+  EXPECT_TRUE(noisy.choose(automatic(SECOND)).scheme.tuned);
+}
+
+TEST(Choice, FrictionIsFollowed)
+{
+  ChoiceOfValues damped = scene(0.0);
+  damped.damped = true;
+  for (const Formulation formulation : {FIRST, SECOND})
+    for (const bool is_tuned : {false, true}) {
+      const auto choice = damped.choose(automatic(formulation, is_tuned));
+      EXPECT_GE(largest_friction(choice.scheme), ChoiceOfValues::DAMPING);
+    }
+  // of a thermostat: the first number that follows it
+  for (const double edge : {0.0, 0.5})
+    for (const double friction : {0.0, 0.1, 0.2, 0.4}) {
+      ChoiceOfValues hot = scene(edge);
+      hot.friction = friction;
+      const Scheme chosen = hot.choose(automatic(SECOND)).scheme;
+      EXPECT_LE(friction, FrictionLimit::of(chosen));
+      const Scheme wanted = scene(edge).choose(automatic(SECOND)).scheme;
+      EXPECT_TRUE(friction > FrictionLimit::of(wanted) || chosen.values() == wanted.values());
+    }
+}
+
+TEST(Choice, LongStepsAreTold)
+{
+  EXPECT_FALSE(scene(0.79).too_long(automatic(SECOND)));
+  EXPECT_TRUE(scene(0.81).too_long(automatic(SECOND)));
+  EXPECT_FALSE(scene(INFINITY).too_long(automatic(SECOND)));
+  EXPECT_FALSE(scene(0.81).too_long(automatic(FIRST)));
+}
+
+// --- is it right?
+
+TEST(Choice, ConservesTheEnergyOfAVibrationAtBothSidesOfTheEdge)
+{
+  // energy that a harmonic motion loses in 20 000 steps, chosen beside the other number
+  const auto drift = [](int values, double z) {
+    Scheme scheme = automatic(SECOND);
+    scheme.rows = values;
+    const double h = z / OMEGA;
+    BodyState s = swinging(0.3);
+    for (double &w : s.omega_body) w = 0.0;
+    Motion motion(BALL, s, springs, scheme, h, Start::BOOTSTRAP, h);
+    const auto energy = [&motion] {
+      const BodyState now = motion.state();
+      return dot3(now.velocity, now.velocity) + OMEGA * OMEGA * dot3(now.center, now.center);
+    };
+    const double before = energy();
+    motion.steps(20000);
+    return std::fabs(energy() / before - 1.0);
+  };
+  const double low = 0.5 * ChoiceOfValues::EDGE_OF_NINE, high = 3.0 * ChoiceOfValues::EDGE_OF_NINE;
+  EXPECT_LT(drift(9, low), drift(5, low));
+  EXPECT_LT(drift(5, high), drift(9, high));
+}
