@@ -8,11 +8,13 @@
    The fast edge z of a motion is the frequency of its fastest vibrations times the step.  With y the
    positions and orientations of all bodies, weighted by masses and moments of inertia,
 
-     z^4 = h^4 sum |y''''|^2 / sum |y''|^2.
+     z^4 = sum (|h^4 y''''|^2 + |h^5 y'''''|^2) / sum (|h^2 y''|^2 + |h^3 y'''|^2).
 
-   A single vibration gives its own frequency exactly, many the upper end of their spectrum.  A start
-   knows these derivatives, and so does a history.  Where neither does, the mean square frequency of
-   rotations, the sum of torque^2/I over that of I omega^2, stands for them.
+   A single vibration gives its own frequency exactly, at any phase, and many give the upper end of
+   their spectrum.  A start knows these derivatives, and so does a history of six values or more.  One
+   of five values lacks the fifth derivative, so that at some phases z comes out too small.  Where
+   derivatives are not known, the mean square frequency of rotations, the sum of torque^2/I over that
+   of I omega^2, stands for them.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
    Measured drifts of liquids decide where five values take over from nine (doc/theory.md).  Random
@@ -34,7 +36,7 @@ namespace LAMMPS_NS::GearQuat {
 /// Sums over bodies, and over ranks by the host, that tell how fast a motion is.
 class MotionSums {
  public:
-  /// sums of |y''''|^2, |y''|^2, torque^2/I and I omega^2; they add up
+  /// those of (z/h)^4, torque^2/I and I omega^2; they add up
   static constexpr int SUMS = 4;
   double sums[SUMS] = {};
   /// |omega|^2 of the body that turns fastest; the largest counts
@@ -43,17 +45,16 @@ class MotionSums {
   /// A body at the beginning of a series with steps of this length.
   void add(const RigidBody &body, const BodyState &state, const TaylorSeries &series, double step)
   {
-    if (series.terms > 4)
-      add_derivatives(body, series.c[2], series.c[4], series.c[2] + 3, series.c[4] + 3, step);
+    const double *rows[] = {series.c[2], series.c[3], series.c[4], series.c[5]};
+    if (series.terms > 4) add_derivatives(body, rows, 3, series.terms > 5 ? 4 : 3, step);
     add_spin(body, state);
   }
-  /// A body with a history of the second formulation and five values or more, in steps of h.
-  void add(const RigidBody &body, const BodyState &state, const double *rows, double h)
+  /// A body with a history of the second formulation and n values, five or more, in steps of h.
+  void add(const RigidBody &body, const BodyState &state, const double *rows, int n, double h)
   {
-    const double *second = rows + 2 * Scheme::SECOND_WIDTH,
-                 *fourth = rows + 4 * Scheme::SECOND_WIDTH;
-    add_derivatives(body, second, fourth, second + Scheme::SECOND_QUATERNION,
-                    fourth + Scheme::SECOND_QUATERNION, h);
+    const double *of[4];
+    for (int k = 0; k < 4; ++k) of[k] = rows + std::min(k + 2, n - 1) * Scheme::SECOND_WIDTH;
+    add_derivatives(body, of, Scheme::SECOND_QUATERNION, n > 5 ? 4 : 3, h);
     add_spin(body, state);
   }
   /// A body of which the load alone is known.
@@ -80,16 +81,22 @@ class MotionSums {
  private:
   static constexpr double EDGE_BY_MEAN = 1.75;    ///< in SPC/E at 300 K
 
-  /// Rows 2 and 4: h^2/2 y'' and h^4/24 y''''.
-  void add_derivatives(const RigidBody &body, const double *x2, const double *x4, const double *q2,
-                       const double *q4, double h)
+  /// rows: 2 to 5, h^k/k! times the derivatives, of which `known` are; quaternion: its column.
+  void add_derivatives(const RigidBody &body, const double *const *rows, int quaternion, int known,
+                       double h)
   {
+    constexpr double FACTORIAL[] = {2.0, 6.0, 24.0, 120.0};
     const double *inertia = body.inertia;
     const int axes = std::max(1, body.rotational_freedoms());
     const double of_turn = 4.0 * (inertia[0] + inertia[1] + inertia[2]) / axes;
-    const double per_h2 = 2.0 / (h * h), per_h4 = 24.0 / (h * h * h * h);
-    sums[0] += per_h4 * per_h4 * (body.mass * dot3(x4, x4) + of_turn * dot4(q4, q4));
-    sums[1] += per_h2 * per_h2 * (body.mass * dot3(x2, x2) + of_turn * dot4(q2, q2));
+    double size[4] = {};    // squares of h^k y^(k)
+    for (int k = 0; k < known; ++k) {
+      const double *x = rows[k], *q = rows[k] + quaternion;
+      size[k] = FACTORIAL[k] * FACTORIAL[k] * (body.mass * dot3(x, x) + of_turn * dot4(q, q));
+    }
+    const double per_h4 = 1.0 / (h * h * h * h);    // in units of y''
+    sums[0] += per_h4 * per_h4 * (size[2] + size[3]);
+    sums[1] += per_h4 * (size[0] + size[1]);
   }
   void add_spin(const RigidBody &body, const BodyState &state)
   {

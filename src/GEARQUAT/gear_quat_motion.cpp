@@ -152,16 +152,22 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
 /// Histories have this scheme after the call.
 Scheme Motion::choose_scheme(const MotionSums &here)
 {
-  ChoiceOfValues scene = scene_of(here);
-  if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
-  const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
-  tell_choice(scene, choice);
-  step.set_scheme(choice.scheme);
-  return choice.scheme;
+  if (!decided) {
+    ChoiceOfValues scene = scene_of(here);
+    if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
+    decided = std::make_unique<Decision>(Decision{scene, scene.choose(args.scheme)});
+  }
+  const Scheme scheme = decided->choice.scheme;
+  edge_rate = decided->scene.edge / std::fabs(step.length());
+  tell_choice(*decided);
+  decided.reset();
+  step.set_scheme(scheme);
+  return scheme;
 }
 
-void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const
+void Motion::tell_choice(const Decision &decision) const
 {
+  const auto &[scene, choice] = decision;
   using Reason = ChoiceOfValues::Reason;
   if (comm->me != 0 || bodies.number() == 0) return;
   std::string why;
@@ -202,15 +208,20 @@ const char *Motion::another_scheme_suits()
     here = MotionSums();
     for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
       here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.history(ibody),
-               step.length());
+               present.values(), step.length());
   }
   using Reason = ChoiceOfValues::Reason;
-  const ChoiceOfValues::Choice choice = scene_of(here).choose(args.scheme, present.values());
+  ChoiceOfValues scene = scene_of(here);
+  if (present.values() == 5)    // whose histories may find too small an edge
+    scene.edge = std::max(scene.edge, edge_rate * std::fabs(step.length()));
+  const ChoiceOfValues::Choice choice = scene.choose(args.scheme, present.values());
   if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
     return nullptr;
-  if (choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION)
-    return "forces suit another number of values";
-  return can_start_anew() ? "the motion suits another number of values" : nullptr;
+  const bool of_forces = choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION;
+  if (!of_forces && !can_start_anew()) return nullptr;
+  decided = std::make_unique<Decision>(Decision{scene, choice});
+  return of_forces ? "forces suit another number of values"
+                   : "the motion suits another number of values";
 }
 
 /* ----------------------------------------------------------------------

@@ -1,0 +1,168 @@
+"""`values auto`: the number that histories get, when it is chosen again, and when it stays."""
+
+import re
+
+import numpy as np
+import pytest
+from scenes import last_frame, placed, restarted, water
+
+CHOSEN = re.compile(r"Fix gear/quat move: (\d+) values( and corrector gear)?, (.*)")
+SHORT, LONG = 0.5, 2.0  # fs, on either side of the limit in these boxes of water
+
+
+def chosen(result):
+    """(values, whether corrector gear, reason) of every choice that the log tells."""
+    return [(int(n), bool(gear), why) for n, gear, why in CHOSEN.findall(result.stdout)]
+
+
+def numbers(result):
+    return [n for n, _, _ in chosen(result)]
+
+
+def run(lmp, data, words="", ranks=1, **settings):
+    settings = dict(steps=4) | settings
+    return lmp.succeed(water(data, f"gear/quat molecule {words}", **settings), ranks=ranks)
+
+
+# --- what is chosen ------------------------------------------------------------------------------
+def test_the_step_decides(lmp_tree, data):
+    for dt, expected in ((SHORT, 9), (LONG, 5)):
+        choices = chosen(run(lmp_tree, data, dt=dt))
+        assert [choice[:2] for choice in choices] == [(expected, False)]
+        edge = float(re.match(r"for vibrations of ([\d.]+) and rotations of [\d.]+", choices[0][2])[1])
+        assert (edge > 0.2) == (expected == 5)
+    assert "values auto, passes auto" in run(lmp_tree, data, "values auto").stdout
+
+
+def test_the_edge_is_proportional_to_the_step(lmp_tree, data):
+    edges = []
+    for dt in (0.25, 0.5):
+        why = chosen(run(lmp_tree, data, dt=dt))[0][2]
+        edges.append(float(re.search(r"vibrations of ([\d.]+)", why)[1]))
+    assert edges[1] == pytest.approx(2 * edges[0], rel=0.1)
+
+
+@pytest.mark.parametrize("words", ["values 9", "values 5 project yes", "tolerance 1e-6"])
+def test_stated_numbers_are_not_changed(lmp_tree, data, words):
+    assert chosen(run(lmp_tree, data, words, dt=LONG)) == []
+
+
+def test_other_methods(lmp_tree, data):
+    for words, expected in (
+        ("formulation first", 8),
+        ("formulation first corrector gear", 6),
+        ("corrector gear", 8),
+    ):
+        assert numbers(run(lmp_tree, data, words, dt=LONG)) == [expected]
+
+
+@pytest.mark.parametrize("words, expected", [("", (4, False)), ("formulation first", (7, False))])
+def test_random_forces(lmp_tree, data, words, expected):
+    after = "fix l all langevin 300 300 100 4711"
+    result = run(lmp_tree, data, words, after=after, dt=SHORT)
+    assert [choice[:2] for choice in chosen(result)] == [expected]
+    assert "because forces are random" in result.stdout
+    assert "heat" not in result.stdout
+
+
+def test_forces_that_depend_on_velocities(lmp_tree, data):
+    result = run(lmp_tree, data, after="fix v all viscous 0.01", dt=SHORT)
+    (n, gear, why), = chosen(result)
+    assert n in (4, 5, 7) and not gear and "depend on velocities" in why
+    assert "gain energy" not in result.stdout
+
+
+def test_a_stated_number_that_heats_is_warned_of(lmp_tree, data):
+    after = "fix l all langevin 300 300 100 4711"
+    assert "make heat of" in run(lmp_tree, data, "values 9", after=after, dt=SHORT).stdout
+
+
+def test_the_friction_of_a_thermostat(lmp_tree, data):
+    def with_target(target, damp):
+        deck = water(data, f"gear/quat molecule temp {target} {target} {damp}", dt=LONG, steps=4)
+        return chosen(lmp_tree.succeed(deck.replace("fix_modify move energy yes", "")))
+
+    assert with_target(300, 200)[0][0] == 5
+    ((n, _, why),) = with_target(5, 20)
+    assert n != 5 and "friction" in why
+
+
+def test_a_step_too_long_for_any(lmp_tree, data):
+    result = run(lmp_tree, data, dt=8.0, steps=1)
+    step = re.search(r"more than any number of values can follow for long; use a time step of ([\d.]+)", result.stdout)
+    assert 1.0 < float(step[1]) < 8.0
+    assert "more than any" not in run(lmp_tree, data, dt=float(step[1]), steps=1).stdout
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_all_ranks_choose_alike(lmp_tree, data, ranks):
+    frames = []
+    for n in (1, ranks):
+        result = run(lmp_tree, data, dt=1.0, ranks=n, steps=20)
+        frames.append((numbers(result), last_frame(lmp_tree.folder / "poses.dump")))
+    assert frames[0][0] == frames[1][0]
+    assert np.abs(frames[0][1][:, 1:] - frames[1][1][:, 1:]).max() < 1e-10
+
+
+# --- when it is chosen again ---------------------------------------------------------------------
+def springs(lmp, dt, commands, words=""):
+    """A dumbbell and a triangle that vibrate about where they are, with at most 1.42 radians per time."""
+    bodies = [[(0, 0, 0), (1, 0, 0), (0, 1.2, 0.1)], [(3, 3, 3), (4, 3.2, 3.1)]]
+    settings = dict(before="fix s all spring/self 2.0", dt=dt, run=commands, steps=3)
+    fix = f"gear/quat molecule {words}"
+    return lmp.succeed(placed(bodies, np.full((5, 3), 0.1), [1] * 5, fix=fix, **settings))
+
+
+def test_a_run_in_another_range_begins_with_another_number(lmp_tree):
+    result = springs(lmp_tree, 0.12, "run 9\ntimestep 0.2\nrun 9\ntimestep 0.1\nrun 9")
+    assert numbers(result) == [9, 5, 9]
+    assert result.stdout.count("the motion suits another number of values, histories start anew") == 2
+
+
+def test_close_to_the_limit_it_stays(lmp_tree):
+    commands = "run 9" + 3 * "\ntimestep 0.16\nrun 9\ntimestep 0.13\nrun 9"
+    assert numbers(springs(lmp_tree, 0.13, commands)) == [9]
+    assert numbers(springs(lmp_tree, 0.16, commands)) == [5]
+
+
+def test_without_setup_it_stays(lmp_tree):
+    commands = "run 9\ntimestep 0.2\nrun 9 pre no"
+    assert numbers(springs(lmp_tree, 0.12, commands)) == [9]
+    assert numbers(springs(lmp_tree, 0.12, commands + "\nrun 9")) == [9, 5]
+
+
+def test_random_forces_that_come_and_go(lmp_tree, data):
+    text = "run 3\nfix l all langevin 300 300 100 4711\nrun 3\nunfix l\nrun 3"
+    assert numbers(run(lmp_tree, data, dt=LONG, run=text)) == [5, 4, 5]
+
+
+# --- restart files -------------------------------------------------------------------------------
+def continued(lmp, data, words, later="", dt=LONG, before=""):
+    """The end of a run of 40 steps, that of one that was written and read after 20, and its result."""
+    lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nrun 20"))
+    whole = last_frame(lmp.folder / "poses.dump")
+    lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nwrite_restart half"))
+    deck = water(data, f"gear/quat molecule {later}", dt=dt, steps=20, dump="half.dump", before=before)
+    result = lmp.succeed(restarted(deck, "half"))
+    return whole, last_frame(lmp.folder / "half.dump"), result
+
+
+@pytest.mark.parametrize("words", ["", "values 7", "values 9 project yes passes 2", "corrector gear"])
+def test_a_restart_goes_on_with_the_method_of_the_file(lmp_tree, data, words):
+    whole, half, result = continued(lmp_tree, data, words)
+    assert chosen(result) == [] and "start anew" not in result.stdout
+    assert np.array_equal(whole, half)
+
+
+def test_a_restart_keeps_its_number_outside_of_its_range(lmp_tree, data):
+    lmp_tree.succeed(water(data, dt=1.5, steps=20, run="run 20\nwrite_restart half"))
+    deck = restarted(water(data, dt=2.8, steps=5), "half")
+    result = lmp_tree.succeed(deck)
+    assert chosen(result) == [] and "start anew" not in result.stdout
+
+
+def test_what_the_script_states_counts(lmp_tree, data):
+    whole, half, result = continued(lmp_tree, data, "", later="project yes")
+    assert "start anew" not in result.stdout and not np.array_equal(whole, half)
+    result = continued(lmp_tree, data, "", later="values 9")[2]
+    assert "other settings of values" in result.stdout
