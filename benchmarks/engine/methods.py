@@ -35,8 +35,10 @@ TUNED = {"second": (4, 5, 6, 7, 8, 9, 10, 11, 12), "first": (3, 4, 5, 6, 7, 8)}
 def gear(formulation, values, compensate=False, **more):
     """Fix gear/quat with so many ``values``; ``more``: variables of the decks, such as passes or c0.
 
-    The coefficients are Gear's where there are no others.
+    The coefficients are Gear's where there are no others; 0 passes are as many as converge.
     """
+    if more.get("passes") == 0:
+        del more["passes"]
     if values not in TUNED.get(formulation, ()):
         more = {"corrector": "gear"} | more
     variables = {"formulation": formulation, "values": values, **more}
@@ -55,11 +57,13 @@ def rigid(style, method):
     return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
 
 
-#: what the fix takes unless told: values of each formulation, and passes
-DEFAULT_VALUES, DEFAULT_PASSES = {"second": 9, "first": 8}, 2
-#: the defaults, and those of version 0.2, which took Gear's coefficients
+#: what the fix takes for smooth motion unless told: values of each formulation, and passes
+DEFAULT_VALUES, DEFAULT_PASSES = {"second": 9, "first": 8}, 0
+#: these defaults, and those of version 0.2, which took Gear's coefficients
 DEFAULTS = {f: gear(f, n, passes=DEFAULT_PASSES) for f, n in DEFAULT_VALUES.items()}
 GEARS = {f: gear(f, n, passes=2, corrector="gear") for f, n in (("second", 8), ("first", 6))}
+#: the fix without a keyword, which chooses the number of values itself
+AUTOMATIC = Method("automatic", "no keyword", {"formulation": "second"}, "second")
 
 
 def looks(methods):

@@ -54,11 +54,12 @@ class AnyNorm {
   /// Whether passes are to be repeated.
   bool converges(double part) const { return repeats && part < 1.0; }
 
-  /// Calls pass(), which finds the residual `total` anew, until this no longer changes.
+  /// Calls pass(), which finds the residual `total` anew, until this no longer changes, or until it
+  /// changes by more than before.
   template <class Pass> static void repeat(double part, const double *total, Pass pass)
   {
     const int fewest = part > 0.0 ? FEWEST_OF_FAST : FEWEST;
-    double before[4], change[4];
+    double before[4], change[4], last = HUGE_VAL;
     for (int k = 1; k < fewest; ++k) pass();
     for (int k = fewest; k <= MOST; ++k) {
 #pragma GCC unroll 4
@@ -66,7 +67,9 @@ class AnyNorm {
       pass();
 #pragma GCC unroll 4
       for (int i = 0; i < 4; ++i) change[i] = total[i] - before[i];
-      if (dot4(change, change) <= CHANGE * CHANGE * dot4(total, total)) return;
+      const double now = dot4(change, change);
+      if (now <= CHANGE * CHANGE * dot4(total, total) || !(now < last)) return;
+      last = now;
     }
   }
 

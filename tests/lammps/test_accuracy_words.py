@@ -146,7 +146,7 @@ def test_values_without_tuned_coefficients_are_refused(lmp_wheel, formulation, v
     assert lmp_wheel.succeed(deck.format(formulation, "gear", values)).output
     tuned = deck.format(formulation, "tuned", values)
     if values in named:
-        assert f"{values} values, 2 passes, corrector tuned" in lmp_wheel.succeed(tuned).output
+        assert f"{values} values, passes auto, corrector tuned" in lmp_wheel.succeed(tuned).output
     else:
         message = f"formulation {formulation} has no tuned coefficients for {values} but for "
         lmp_wheel.refuse(tuned, message + ", ".join(map(str, named)), ranks=2)

@@ -285,7 +285,14 @@ def test_log_and_warning_agree_on_random_forces(lmp_wheel, words, most):
 
 @pytest.mark.parametrize(
     "words, warned",
-    [("", True), ("corrector gear", True), ("values 4", False), ("formulation first", False)],
+    [
+        ("values 9", True),
+        ("corrector gear values 8", True),
+        ("", False),
+        ("corrector gear", False),
+        ("values 4", False),
+        ("formulation first", False),
+    ],
 )
 def test_friction_that_a_step_cannot_take_is_warned_of(lmp_wheel, words, warned):
     deck = two_molecules(f"molecule {words}", after="fix drag all viscous 0.01\nrun 1")
@@ -338,13 +345,13 @@ def test_few_values_suit_srd(lmp_wheel):
     for n, (x, y) in enumerate([(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]):
         lines += [f"create_atoms 1 single {x} {y} 0", f"create_atoms 1 single {x + 1} {y} 0"]
         lines.append(f"set atom {2 * n + 1}*{2 * n + 2} mol {n + 1} diameter 1.0")
-    words = ("values 4", "formulation first values 3", "")
-    fixes = [f"gear/quat molecule corrector gear {word}" for word in words]
-    fixes.append("rigid/small molecule")
+    words = ["corrector gear values 4", "corrector gear formulation first values 3"]
+    words += ["", "formulation first", "corrector gear values 8"]
+    fixes = [*(f"gear/quat molecule {word}" for word in words), "rigid/small molecule"]
     decks = [SRD.format(atoms="\n".join(lines), fix=fix) for fix in fixes]
     result = lmp_wheel.succeed(one_after_the_other(decks))
-    second, first, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
-    assert [second, first] == pytest.approx([rigid, rigid], rel=0.25)
-    assert many > 2 * rigid  # the default, which the log warns of
+    *few, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
+    assert few == pytest.approx([rigid] * 4, rel=0.25)  # as the fix chooses them, too
+    assert many > 2 * rigid  # which the log warns of
     told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4"
     assert result.words.count("are random, and") == 1 and told in result.words

@@ -213,6 +213,11 @@ TEST(AnyNorm, AGivenNumberOfPassesIsMade)
     total[0] += std::pow(0.5, ++calls);
   });
   EXPECT_EQ(calls, 8);
+  calls = 0;
+  AnyNorm::repeat(0.0, total, [&] {
+    total[0] = std::pow(1e9, ++calls);
+  });    // without an end
+  EXPECT_EQ(calls, 3);
   EXPECT_TRUE(AnyNorm(tuned(9)).converges(0.0));
   EXPECT_FALSE(AnyNorm(tuned(9)).converges(1.0));
   EXPECT_FALSE(AnyNorm(tuned(9, Projection::AUTO, 2)).converges(0.0));
