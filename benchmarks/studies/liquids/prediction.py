@@ -21,6 +21,8 @@ from .quantities import FEMTOSECONDS
 
 #: samples of a window; its side lobes are far below what long steps make of high frequencies
 SEGMENT, WINDOW = 1024, "blackmanharris"
+#: an axis with less than this part of the power of all is one without a moment of inertia
+AT_REST = 1e-9
 
 
 def response(corrector, omega_h):
@@ -52,7 +54,7 @@ class Spectrum:
         """Spectrum of velocities and angular velocities in the body frame, each (samples, bodies, 3).
 
         ``dt``: time between samples, fs.  Each axis counts alike, as equipartition has it; about one
-        without a moment of inertia the angular velocity is zero, and it does not count.
+        without a moment of inertia the angular velocity is zero to rounding, and it does not count.
         """
         omega, translation = _power(velocities, dt)
         _, rotation = _power(rotations, dt)
@@ -72,7 +74,7 @@ def _power(series, dt):
     options = {"window": WINDOW, "nperseg": SEGMENT, "detrend": False, "axis": 0}
     frequency, power = welch(series, 1 / dt, **options)
     power = power.sum(axis=1)[1:]
-    power = power[:, power.sum(axis=0) > 0]
+    power = power[:, power.sum(axis=0) > AT_REST * power.sum()]
     return 2 * np.pi * frequency[1:], power / power.sum(axis=0)
 
 
