@@ -222,7 +222,7 @@ def test_methods_agree_at_a_short_step(small, key):
     for run in (own, other):  # energies of bodies are those of their atoms
         np.testing.assert_allclose(run.translation + run.rotation, run.kinetic, rtol=1e-9)
     assert abs(own.pressure[-1] - other.pressure[-1]) < 0.02 * np.ptp(own.pressure) + 10
-    assert np.ptp(own.total) < 1e-2 * np.ptp(own.potential)
+    assert np.ptp(own.total) < 2e-2 * np.ptp(own.potential)
 
 
 def test_starts_differ_and_samples_tell_the_values(small):

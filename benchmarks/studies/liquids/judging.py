@@ -1,4 +1,7 @@
-"""What the study of liquids asks of fix gear/quat: measurements with their bounds."""
+"""What the study of liquids asks of fix gear/quat: measurements with their bounds.
+
+Where errors decide, there are bounds only if the errors are from several starts.
+"""
 
 import math
 
@@ -26,6 +29,11 @@ def lost(runs):
     return [run for run in runs if run.lost]
 
 
+def several(results):
+    """Whether errors are from the scatter among starts."""
+    return results.plan.starts > 1
+
+
 def drift_of(results, scene, method, dt):
     """Drift and its standard error, infinite if a run was lost."""
     runs = results.runs[scene.key, method.key, dt]
@@ -48,7 +56,7 @@ def drifts(results):
                 most = MOST_DRIFT[dt] + WITHIN * error
                 bounds = {"least": -most, "most": most}
             remark = f"{NVE_SMALL.label}: {theirs}"
-            yield Measurement(f"{scene.title}, {dt:g} fs: drift", rate, error, "+.4f", UNIT, remark, **bounds)
+            yield Measurement(f"{scene.title}, {dt:g} fs: drift", rate, error, ".4f", UNIT, remark, **bounds)
 
 
 def survivals(results):
@@ -64,14 +72,14 @@ def survivals(results):
 def equipartition(results):
     """Translation less rotation, of the fix within its errors, and of rigid/nve/small beside it."""
     for dt in TEMPERED:
-        own, other = (
-            of.warmer(runs, MAIN.liquid)
-            for runs in (results.runs[MAIN.key, m.key, dt] for m in (DEFAULT, NVE_SMALL))
-            if not lost(runs)
-        )
+        both = [results.runs[MAIN.key, method.key, dt] for method in (DEFAULT, NVE_SMALL)]
+        if any(map(lost, both)):  # which drifts() refuses
+            continue
+        own, other = (of.warmer(runs, MAIN.liquid) for runs in both)
         remark, most = f"{NVE_SMALL.label}: {with_error(other.value, other.error, '+')}", WITHIN * own.error
         what = f"{MAIN.title}, {dt:g} fs: T translation − T rotation"
-        yield Measurement(what, own.value, own.error, "+.2f", "K", remark, -most, most)
+        bounds = {"least": -most, "most": most} if several(results) else {}
+        yield Measurement(what, own.value, own.error, ".2f", "K", remark, **bounds)
 
 
 def beside_the_best(results):
@@ -88,7 +96,7 @@ def beside_the_best(results):
             excess.append(((abs(rate) - abs(best)) / noise if noise else math.inf, dt))
         worst, dt = max(excess)
         what = f"{scene.title}: size of the drift less that of the best number of values, in standard errors"
-        yield Measurement(what, worst, spec="+.1f", remark=f"at {dt:g} fs", most=NOISE)
+        yield Measurement(what, worst, spec=".1f", remark=f"at {dt:g} fs", most=NOISE if several(results) else None)
 
 
 def predictions(results):
@@ -103,7 +111,7 @@ def predictions(results):
             ratios.append((wrong / allowed if math.isfinite(rate) else math.inf, dt))
         worst, dt = max(ratios)
         what = f"{scene.title}: error of the predicted drift by what is allowed"
-        yield Measurement(what, worst, spec=".2f", remark=f"at {dt:g} fs", most=1.0)
+        yield Measurement(what, worst, spec=".2f", remark=f"at {dt:g} fs", most=1.0 if several(results) else None)
 
 
 def calibration(results):

@@ -198,7 +198,8 @@ FLOORS |= {f: (DEFAULT, NVE_SMALL) for f in (*FAMILIES["energy shifted"], *SINGL
 class Plan:
     """How much is run: numbers of starts, durations in ps, steps of equilibration.
 
-    ``starts`` and ``duration`` are of an Extent of many, ``few`` and ``short`` of the others;
+    ``starts`` and ``duration`` are of an Extent of many, ``few`` and ``short`` of the others and of the
+    shortest step, which takes longest;
     ``temperatures``: of many in MAIN at the steps where temperatures are compared; ``floor``: of the
     floor; ``spectrum``: of the run for the spectra of a liquid.
     """
@@ -214,12 +215,12 @@ class Plan:
 
     def extent(self, scene, method, dt):
         """Number of starts, and duration in fs."""
-        if not scene.methods[method].many:
+        if not scene.methods[method].many or dt == STEPS[0]:
             return self.few, 1000 * self.short
         long = scene is MAIN and dt in TEMPERED
         return self.starts, 1000 * (self.temperatures if long else self.duration)
 
 
-QUICK = Plan(1, 1, 1.8, 1.8, 1.8, 0.6, 2.1, equilibration=500)
+QUICK = Plan(1, 1, 1.26, 1.26, 1.26, 0.3, 1.1, equilibration=500)
 #: temperatures to half a kelvin
 FULL = Plan(temperatures=200.0)
