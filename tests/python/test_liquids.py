@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from benchmarks.engine import EXAMPLES, Lab
+from benchmarks.engine.logs import Log
+from benchmarks.engine.methods import DEFAULT_VALUES
 from benchmarks.engine.page import render
 from benchmarks.engine.sites import read_sites
 from benchmarks.studies import liquids as study
@@ -233,6 +235,14 @@ def test_starts_differ_and_samples_tell_the_values(small):
     assert np.abs(first.positions - second.positions).max() > 0.1
     assert follow(small, "seven", "nitrogen", VALUES[7]).values == 7
     assert follow(small, "none", "nitrogen", NVE_SMALL).values == 0
+
+
+def test_the_number_that_was_chosen_last_counts(tmp_path):
+    path = tmp_path / "log.some"
+    path.write_text("Fix gear/quat move: 9 values, smooth\nFix gear/quat move: 5 values, fast\n", encoding="utf-8")
+    assert runs.values_of(Log(path), DEFAULT) == 5
+    path.write_text("Fix gear/quat move: start of order 8 from 22 force evaluations\n", encoding="utf-8")
+    assert runs.values_of(Log(path), DEFAULT) == DEFAULT_VALUES["second"]
 
 
 def test_heavier_bodies_have_the_same_energies(small):
