@@ -97,8 +97,9 @@ def results(rates=(), lost=(), ratio=1.0):
     spectra = {liquid.key: spectrum() for liquid in plan.LIQUIDS}
     bins = np.linspace(0, 9, 90)
     pairs = np.array([np.stack([bins, k + np.exp(-bins), 2 + bins], axis=1) for k in range(5)])
-    places = [(MAIN.key, plan.NORMAL_STEP)] + [(HEAVY.key, dt) for dt in HEAVY.methods[DEFAULT].steps]
-    return runs.Results(made, found, floors, spectra, dict.fromkeys(places, pairs))
+    places = {(MAIN.key, dt): pairs for dt in MAIN.pairs}
+    places |= {(HEAVY.key, dt): pairs + [0, 0.1, 0] for dt in HEAVY.pairs}
+    return runs.Results(made, found, floors, spectra, places)
 
 
 def refused(data):
@@ -165,7 +166,8 @@ def test_page_and_pictures(tmp_path):
     assert float(rows[plan.NAMES[VALUES[9]]][1].split()[0]) == pytest.approx(-0.27, rel=1e-2)
     assert rows[plan.NAMES[VALUES[9]]][3] == "1 of 3 lost, after 0.2 ps"
     assert render("liquids.md.j2", study.STUDY, finding, "Somewhere.").count("1 of 3 lost") == 2
-    assert finding.tables["heavy"].rows[0][-2] == "3.00 ± 0.71"
+    heights = [row[-2] for row in finding.tables["heavy"].rows]
+    assert heights[:2] == ["3.00 ± 0.71", "+0.1000 ± 0.0000"]
     for name in ("drift", "heavy"):
         picture = finding.pictures[name]
         path = tmp_path / f"{name}.png"

@@ -19,7 +19,7 @@ from . import judging
 from . import quantities as of
 from .judging import UNIT, lost, predicted
 from .plan import DEFAULT, FAMILIES, FLOOR_STEP, FLOORS, FORESEEN, HEAVY, LIQUIDS, MAIN, METHODS, NAMES
-from .plan import NORMAL_STEP, NVE_SMALL, SCENES, SINGLE, STEPS, VALUES
+from .plan import NVE_SMALL, SCENES, SINGLE, STEPS, VALUES
 from .runs import measure
 
 #: the drift is drawn linearly below this size
@@ -99,25 +99,30 @@ def first_peaks(pairs):
     return np.max(np.asarray(pairs)[:, :, 1:], axis=1)
 
 
+def averages(runs, pairs):
+    """Averages (3, starts): potential energy per molecule, and the two first_peaks of ``pairs``."""
+    energies = [run.potential.mean() / MAIN.liquid.molecules for run in runs]
+    return np.vstack([energies, first_peaks(pairs).T])
+
+
 def heavy_table(results):
-    """Static averages with larger inertia beside those of the model."""
-    rows, normal = [], results.runs[MAIN.key, DEFAULT.key, NORMAL_STEP]
-    rows.append(("1", NORMAL_STEP, normal, results.pairs[MAIN.key, NORMAL_STEP]))
-    for dt in HEAVY.methods[DEFAULT].steps:
-        runs, pairs = results.runs[HEAVY.key, DEFAULT.key, dt], results.pairs.get((HEAVY.key, dt), [])
-        rows.append((f"{HEAVY.inertia:g}", dt, runs, pairs))
-    columns = ["inertia", "step, fs", f"drift, {UNIT}", "potential energy, kcal/mol per molecule"]
-    columns += ["T translation − T rotation, K", "first maximum of g(r), O–O", "O–H"]
-    shown = []
-    for inertia, dt, runs, pairs in rows:
-        cells = [inertia, f"{dt:g}", show_drift(runs, MAIN.liquid)]
-        if not lost(runs):
-            energies = [run.potential.mean() / MAIN.liquid.molecules for run in runs]
-            warmer, peaks = of.warmer(runs, MAIN.liquid), first_peaks(pairs).T
-            means = of.of_starts(energies), (warmer.value, warmer.error), *map(of.of_starts, peaks)
-            cells += [with_error(*pair) for pair in means]
-        shown.append(cells + [""] * (len(columns) - len(cells)))
-    return Table(columns, shown)
+    """Static averages of the model, and by how much they differ, start by start, with larger inertia."""
+    columns = ["inertia", "step, fs", f"drift, {UNIT}", "T translation − T rotation, K"]
+    columns += ["potential energy, kcal/mol per molecule", "first maximum of g(r), O–O", "O–H"]
+    rows, model = [], None
+    for scene in (MAIN, HEAVY):
+        for dt in scene.pairs:
+            runs = results.runs[scene.key, DEFAULT.key, dt]
+            cells = [f"{scene.inertia:g}", f"{dt:g}", show_drift(runs, scene.liquid)]
+            if not lost(runs):
+                warmer = of.warmer(runs, scene.liquid)
+                found = averages(runs, results.pairs[scene.key, dt])
+                shown, sign = (found, "") if scene is MAIN else (found - model, "+")
+                model = found if scene is MAIN else model
+                cells += [with_error(warmer.value, warmer.error)]
+                cells += [with_error(*of.of_starts(row), sign) for row in shown]
+            rows.append(cells + [""] * (len(columns) - len(cells)))
+    return Table(columns, rows)
 
 
 def show_fluctuation(run):

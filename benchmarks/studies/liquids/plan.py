@@ -135,12 +135,16 @@ class Extent:
 
 @dataclass(frozen=True)
 class Scene:
-    """A liquid that methods follow, Method -> Extent, with moments of ``inertia`` larger by a factor."""
+    """A liquid that methods follow, Method -> Extent, with moments of ``inertia`` larger by a factor.
+
+    ``pairs``: steps in fs at which DEFAULT leaves radial distribution functions.
+    """
 
     key: str
     liquid: Liquid
     methods: dict
     inertia: float = 1.0
+    pairs: tuple = ()
 
     @property
     def forces(self):
@@ -152,25 +156,24 @@ class Scene:
         """A heading."""
         return f"{self.liquid.title}, {self.liquid.kspace} {power(self.forces.accuracy)}"
 
-    @property
-    def pairs(self):
-        """Whether its radial distribution functions are kept."""
-        return self.liquid is SPCE
+
+#: the step in fs with the moments of the model that heavier bodies are compared with
+NORMAL_STEP = 2.0
 
 
 def _scene(liquid):
     methods = {DEFAULT: Extent(), NVE_SMALL: Extent(many=liquid is SPCE)}
     methods |= {method: Extent(FORESEEN, many=False) for method in VALUES.values()}
-    return Scene(liquid.key, liquid, {method: methods[method] for method in METHODS})
+    pairs = (NORMAL_STEP,) if liquid is SPCE else ()
+    return Scene(liquid.key, liquid, {method: methods[method] for method in METHODS}, pairs=pairs)
 
 
 SCENES = tuple(map(_scene, LIQUIDS))
 MAIN = SCENES[0]
 #: moments of inertia that are larger by this factor, with the same masses
 HEAVIER = 4.0
-HEAVY = Scene("heavy", SPCE, {DEFAULT: Extent((3.0, 4.0, 5.0))}, HEAVIER)
-#: the step in fs with the moments of the model that heavier bodies are compared with
-NORMAL_STEP = 2.0
+HEAVY_STEPS = (3.0, 4.0, 5.0)
+HEAVY = Scene("heavy", SPCE, {DEFAULT: Extent(HEAVY_STEPS)}, HEAVIER, HEAVY_STEPS)
 
 #: what limits accuracy, with SPC/E water at a step in fs that is short enough to see it
 FLOOR_STEP = 0.5
@@ -217,7 +220,7 @@ class Plan:
         """Number of starts, and duration in fs."""
         if not scene.methods[method].many or dt == STEPS[0]:
             return self.few, 1000 * self.short
-        long = scene is MAIN and dt in TEMPERED
+        long = scene.key == MAIN.key and dt in TEMPERED
         return self.starts, 1000 * (self.temperatures if long else self.duration)
 
 

@@ -13,8 +13,8 @@ from benchmarks.studies import drift
 
 from . import prediction
 from .heavier import write_bodies
-from .plan import DEFAULT, FLOOR_INTERVAL, FLOOR_STEP, FLOORS, FULL, HEAVY, INTERVAL, LIQUIDS, MAIN
-from .plan import NORMAL_STEP, QUICK, SCENES, SPCE, Plan
+from .plan import DEFAULT, FLOOR_INTERVAL, FLOOR_STEP, FLOORS, FULL, HEAVY, INTERVAL, LIQUIDS
+from .plan import QUICK, SCENES, SPCE, Plan
 
 #: what LAMMPS says, besides numbers that are not finite, where atoms fly away
 FLOWN = ("Out of range atoms", "Lost atoms", "Rigid body atoms", "Bond atoms missing")
@@ -139,7 +139,7 @@ def _of_scene(scene, plan, data, lab):
                     path = lab.dump(f"{scene.key}_{start}").with_suffix(".infile").resolve()
                     write_bodies(path, read_sites(own.with_suffix(".start")), scene)
                     more["infile"] = path
-                if method is DEFAULT and (scene is HEAVY or scene is MAIN and dt == NORMAL_STEP):
+                if method is DEFAULT and dt in scene.pairs:
                     more["pairs"] = "yes"
                 made = job(scene.liquid, own, scene.forces, method, dt, duration, **more)
                 name = f"{scene.key}_{method.key}_dt{dt:g}_{start}"
