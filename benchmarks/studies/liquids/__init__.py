@@ -114,7 +114,7 @@ def heavy_table(results):
         for dt in scene.pairs:
             runs = results.runs[scene.key, DEFAULT.key, dt]
             cells = [f"{scene.inertia:g}", f"{dt:g}", show_drift(runs, scene.liquid)]
-            if not lost(runs):
+            if not lost(runs) and (scene is MAIN or model is not None):
                 warmer = of.warmer(runs, scene.liquid)
                 found = averages(runs, results.pairs[scene.key, dt])
                 shown, sign = (found, "") if scene is MAIN else (found - model, "+")

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from benchmarks.engine.statistics import with_error
+from benchmarks.engine.statistics import allowed, with_error
 from benchmarks.engine.study import Measurement
 from benchmarks.studies.coefficients.kernel import tuned
 
@@ -18,8 +18,6 @@ UNIT = "kT/ns/dof"
 #: step in fs -> largest size of the drift of water, to which WITHIN standard errors are added
 MOST_DRIFT = {2.5: 0.02, 3.0: 0.03, 4.0: 0.25}
 WITHIN = 2.0
-#: as many standard errors of a difference are noise where the best of several is compared
-NOISE = 3.0
 #: a prediction may be wrong by this, or by this part of the drift, and by WITHIN standard errors
 PREDICTED, PART = 0.03, 0.3
 
@@ -84,19 +82,20 @@ def equipartition(results):
 
 def beside_the_best(results):
     """In the other liquids, the drift of no keyword less that of the best number of values."""
-    for scene in SCENES:
-        if scene.liquid in WATERS:
-            continue
+    others = [scene for scene in SCENES if scene.liquid not in WATERS]
+    freedoms = results.plan.starts + results.plan.few - 2
+    most = allowed(len(others) * len(FORESEEN), freedoms) if several(results) else None
+    for scene in others:
         excess = []
         for dt in FORESEEN:
             rate, error = drift_of(results, scene, DEFAULT, dt)
-            others = [drift_of(results, scene, method, dt) for method in VALUES.values()]
-            best, scatter = min(others, key=lambda found: abs(found[0]))
+            stated = [drift_of(results, scene, method, dt) for method in VALUES.values()]
+            best, scatter = min(stated, key=lambda found: abs(found[0]))
             noise = math.hypot(error, scatter)
             excess.append(((abs(rate) - abs(best)) / noise if noise else math.inf, dt))
         worst, dt = max(excess)
         what = f"{scene.title}: size of the drift less that of the best number of values, in standard errors"
-        yield Measurement(what, worst, spec=".1f", remark=f"at {dt:g} fs", most=NOISE if several(results) else None)
+        yield Measurement(what, worst, spec=".1f", remark=f"at {dt:g} fs", most=most)
 
 
 def predictions(results):
@@ -107,8 +106,8 @@ def predictions(results):
             rate, error = drift_of(results, scene, DEFAULT, dt)
             values = results.runs[scene.key, DEFAULT.key, dt][0].values
             wrong = abs(predicted(results, scene, values, dt) - rate)
-            allowed = max(PREDICTED, PART * abs(rate)) + WITHIN * error
-            ratios.append((wrong / allowed if math.isfinite(rate) else math.inf, dt))
+            most = max(PREDICTED, PART * abs(rate)) + WITHIN * error
+            ratios.append((wrong / most if math.isfinite(rate) else math.inf, dt))
         worst, dt = max(ratios)
         what = f"{scene.title}: error of the predicted drift by what is allowed"
         yield Measurement(what, worst, spec=".2f", remark=f"at {dt:g} fs", most=1.0 if several(results) else None)
