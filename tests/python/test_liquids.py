@@ -6,32 +6,44 @@ import numpy as np
 import pytest
 
 from benchmarks.engine import EXAMPLES, Lab
+from benchmarks.engine.logs import Log
+from benchmarks.engine.methods import DEFAULT_VALUES
 from benchmarks.engine.page import render
+from benchmarks.engine.sites import read_sites
 from benchmarks.studies import liquids as study
-from benchmarks.studies.liquids import plan, quantities, runs
-from benchmarks.studies.liquids.plan import LONG_STEPS, MAIN, NVE_SMALL, SCENES, SECOND, SPCE
+from benchmarks.studies.liquids import heavier, judging, plan, prediction, quantities, runs
+from benchmarks.studies.liquids.plan import CO2, DEFAULT, HEAVY, MAIN, NVE_SMALL, SCENES, SPCE, VALUES
 
-TIME = 30.0 * np.arange(667)
+TIME = 60.0 * np.arange(334)
 
 
 # --- quantities -----------------------------------------------------------------------------------
-def made_up(rate=0.0, liquid=SPCE, ratio=1.0, seed=1, time=TIME, duration=TIME[-1]):
+def made_up(rate=0.0, liquid=SPCE, ratio=1.0, seed=1, time=TIME, duration=TIME[-1], values=7):
     """A Run with noise whose energy drifts at ``rate``, and whose rotation is warmer by ``ratio``."""
     noise = np.random.default_rng(seed).normal(size=(4, len(time)))
     total = -9000.0 + rate * quantities.unit(liquid) * time + 0.02 * noise[0]
     half = quantities.BOLTZMANN * liquid.temperature / 2
     kinetic = [n * half * (1 + 0.05 * x) for n, x in zip(liquid.freedoms, noise[1:])]
     pressure = 100 + 500 * noise[3]
-    return runs.Run(time, total, kinetic[0], ratio * kinetic[1], pressure, duration, 3e-3)
+    energies = kinetic[0], ratio * kinetic[1], sum(kinetic)
+    return runs.Run(time, total, *energies, pressure, duration, 3e-3, values)
 
 
 def test_drift_is_one_kt_per_nanosecond_and_freedom():
     """216 rigid molecules have 1293 degrees of freedom; 1 ns has a million fs."""
     gained = 1293 * 0.0019872067 * 298.15  # kcal/mol
     run = replace(made_up(), total=gained * TIME / 1e6)
-    assert quantities.drift(run, SPCE)[0] == pytest.approx(1.0, rel=1e-9)
+    assert quantities.drift([run], SPCE)[0] == pytest.approx(1.0, rel=1e-9)
     linear = replace(SPCE, axes=2)
-    assert quantities.drift(run, linear)[0] == pytest.approx(1293 / 1077, rel=1e-9)
+    assert quantities.drift([run], linear)[0] == pytest.approx(1293 / 1077, rel=1e-9)
+
+
+def test_error_of_a_drift_is_from_the_scatter_of_the_starts():
+    rates = np.array([-0.3, 0.1, 0.2, 0.5])
+    rate, error = quantities.drift([made_up(r, seed=k) for k, r in enumerate(rates)], SPCE)
+    assert rate == pytest.approx(rates.mean(), abs=2e-3)
+    assert error == pytest.approx(np.sqrt(np.var(rates, ddof=1) / 4), rel=0.01)
+    assert error > 20 * quantities.drift([made_up(0.1)], SPCE)[1]
 
 
 def test_fluctuation_leaves_out_the_drift():
@@ -43,64 +55,124 @@ def test_fluctuation_leaves_out_the_drift():
 def test_one_percent_of_rotation_is_seen(liquid):
     """The temperatures are those of equipartition, and cold rotation counts as such."""
     for ratio in (1.0, 0.99):
-        mean = quantities.cooler(made_up(liquid=liquid, ratio=ratio), liquid)
-        expected = (ratio - 1) * liquid.temperature
+        several = [made_up(liquid=liquid, ratio=ratio, seed=seed) for seed in range(5)]
+        mean = quantities.warmer(several, liquid)
+        expected = (1 - ratio) * liquid.temperature
         assert abs(mean.value - expected) < 4 * mean.error < 0.01 * liquid.temperature
 
 
+def test_samples_are_those_of_whole_steps():
+    for dt in plan.STEPS:
+        assert plan.INTERVAL % dt == 0
+    assert plan.FLOOR_INTERVAL % plan.FLOOR_STEP == 0
+    assert 1000 * plan.QUICK.spectrum > prediction.SEGMENT * runs.SPECTRUM_STEP
+
+
 # --- what is found --------------------------------------------------------------------------------
-def results(rates=(), lost=()):
-    """Results of all runs; ``rates``: (scene, method, step) -> drift; ``lost``: such keys."""
-    rates, seed, found = dict(rates), 0, {}
-    for scene in SCENES:
-        for method in scene.methods:
-            for dt in scene.liquid.steps:
-                key, seed = (scene.key, method.key, dt), seed + 1
-                time = TIME[:9] if key in lost else TIME
-                found[key] = made_up(rates.get(key, 0.0), scene.liquid, seed=seed, time=time)
+DRIFT, LOSS, BEST, WRONG = ": drift", "without loss", "best number", "predicted drift"
+
+
+def spectrum(axes=3):
+    """A Spectrum of which all predicted drifts are small."""
+    omega = np.linspace(0.001, 0.05, 50)
+    return prediction.Spectrum(omega, np.full(50, 0.02), np.full(50, 0.02), axes)
+
+
+def results(rates=(), lost=(), ratio=1.0):
+    """Results of all runs; ``rates``: (scene, method, step) -> drift; ``lost``: keys of one run lost."""
+    rates, seed, found, made = dict(rates), 0, {}, plan.Plan()
+    for scene in (*SCENES, HEAVY):
+        for method, extent in scene.methods.items():
+            for dt in extent.steps:
+                key, count = (scene.key, method.key, dt), made.extent(scene, method, dt)[0]
+                own = rates.get(key, 0.0), scene.liquid, ratio
+                found[key] = [made_up(*own, seed=(seed := seed + 1)) for _ in range(count)]
+                if key in lost:
+                    found[key][-1] = made_up(*own, time=TIME[:4])
     floors = {
         (forces.text, method.key): made_up(seed=k)
         for k, (forces, methods) in enumerate(plan.FLOORS.items())
         for method in methods
     }
-    return runs.Results(plan.Plan(), found, floors)
+    spectra = {liquid.key: spectrum() for liquid in plan.LIQUIDS}
+    bins = np.linspace(0, 9, 90)
+    pairs = np.array([np.stack([bins, k + np.exp(-bins), 2 + bins], axis=1) for k in range(5)])
+    places = {(MAIN.key, dt): pairs for dt in MAIN.pairs}
+    places |= {(HEAVY.key, dt): pairs + [0, 0.1, 0] for dt in HEAVY.pairs}
+    return runs.Results(made, found, floors, spectra, places)
 
 
 def refused(data):
-    """What the measurements that do not hold are about."""
-    return [m.what for m in study.find(data).measurements if not m.holds]
+    """What the measurements that do not hold are about; the noise of made-up temperatures is none of it."""
+    return [m.what for m in judging.measurements(data) if not m.holds and "T trans" not in m.what]
 
 
-def test_drifts_are_bounded():
-    """At 2 fs by what is noise of both, at 2.5 fs by a tenth; at 3 fs only the loss is refused."""
-    methods = {1.0: SECOND, 2.0: SECOND, 2.5: LONG_STEPS, 3.0: LONG_STEPS}
-    keys = {dt: (MAIN.key, method.key, dt) for dt, method in methods.items()}
-    good = results({keys[2.5]: 0.09, keys[3.0]: 5.0})
-    error = quantities.drift(good.runs[keys[2.0]], SPCE)[1]
-    assert refused(good) == []
-    assert [w.count("2 fs") for w in refused(results({keys[2.0]: 8 * error}))] == [1]
-    assert [w.count("2.5 fs") for w in refused(results({keys[2.5]: -0.11}))] == [1]
-    assert [w.count("time without loss") for w in refused(results(lost=[keys[3.0]]))] == [1]
+@pytest.mark.parametrize("scene", SCENES[:2], ids=lambda scene: scene.key)
+@pytest.mark.parametrize("dt", judging.MOST_DRIFT)
+def test_drifts_of_water_are_bounded(scene, dt):
+    """By the bound and two standard errors, in both directions."""
+    most, key = judging.MOST_DRIFT[dt], (scene.key, DEFAULT.key, dt)
+    keys = [(scene.key, method.key, dt) for method in VALUES.values()]
+    for rate, count in ((0.9, 0), (-0.9, 0), (1.5, 1), (-1.5, 1)):
+        data = results({k: rate * most for k in (key, *keys)})
+        found = [what for what in refused(data) if DRIFT in what and WRONG not in what]
+        assert [what.count(f" {dt:g} fs") for what in found] == [1] * count
+
+
+def test_a_lost_body_is_noticed():
+    key = SCENES[1].key, DEFAULT.key, plan.STEPS[-1]
+    assert [LOSS in what for what in refused(results(lost=[key]))] == [True]
+    lost = (SCENES[1].key, DEFAULT.key, 3.0)
+    assert sum(DRIFT in what for what in refused(results(lost=[lost]))) == 1
+
+
+def test_other_liquids_drift_no_more_than_with_the_best_number():
+    key = CO2.key, DEFAULT.key, 4.0
+    assert refused(results()) == []
+    assert sum(BEST in what for what in refused(results({key: 0.02}))) == 1
+    others = {(CO2.key, method.key, 4.0): 0.02 for method in VALUES.values()}
+    assert sum(BEST in what for what in refused(results({key: -0.02, **others}))) == 0
+
+
+def test_a_wrong_prediction_is_noticed():
+    """What is measured drifts by 0.04 more than what is predicted."""
+    key = CO2.key, DEFAULT.key, 3.0
+    assert sum(WRONG in what for what in refused(results({key: 0.04}))) == 1
+    assert sum(WRONG in what for what in refused(results({key: 0.02}))) == 0
+
+
+def test_cold_rotation_is_noticed():
+    def cold(ratio):
+        found = judging.measurements(results(ratio=ratio))
+        return sum(not m.holds for m in found if "T trans" in m.what)
+
+    assert cold(0.99) == 3 > cold(1.0)
 
 
 def test_error_bars_are_judged_by_what_does_not_drift():
-    ratio = study.calibration(results()).value
-    assert 0.6 < ratio < 1.6
-    keys = [(scene.key, NVE_SMALL.key, dt) for scene in SCENES for dt in scene.liquid.steps]
-    assert study.calibration(results(dict.fromkeys(keys, 0.5))).value > 3 * ratio
+    ratio = judging.calibration(results()).value
+    assert 0.6 < ratio < 2.0
+    wrong = {
+        (scene.key, NVE_SMALL.key, dt): 0.5 for scene in SCENES for dt in plan.STEPS
+    }
+    assert judging.calibration(results(wrong)).value > 3 * ratio
 
 
 def test_page_and_pictures(tmp_path):
-    data = results({(MAIN.key, SECOND.key, 2.0): -0.27}, [(MAIN.key, SECOND.key, 3.0)])
+    key = MAIN.key, VALUES[9].key
+    data = results({(*key, 2.0): -0.27}, [(*key, 3.0)])
     finding = study.find(data)
     rows = {row[0]: row[1:] for row in finding.tables["drift_spce"].rows}
-    assert float(rows[plan.NAMES[SECOND]][1].split()[0]) == pytest.approx(-0.27, rel=1e-2)
-    assert rows[plan.NAMES[SECOND]][-1] == "lost after 0.2 ps"
-    assert render("liquids.md.j2", study.STUDY, finding, "Somewhere.").count("lost after 0.2 ps") == 2
-    for scene in SCENES:
-        assert len(finding.tables[f"state_{scene.key}"].rows) == len(scene.methods) * len(scene.liquid.steps)
-    finding.pictures["drift"](tmp_path / "drift.png")
-    assert (tmp_path / "drift.png").stat().st_size > 10_000
+    assert float(rows[plan.NAMES[VALUES[9]]][1].split()[0]) == pytest.approx(-0.27, rel=1e-2)
+    assert rows[plan.NAMES[VALUES[9]]][3] == "1 of 3 lost, after 0.2 ps"
+    assert render("liquids.md.j2", study.STUDY, finding, "Somewhere.").count("1 of 3 lost") == 2
+    heights = [row[-2] for row in finding.tables["heavy"].rows]
+    assert heights[:2] == ["3.00 ± 0.71", "+0.1000 ± 0.0000"]
+    for name in ("drift", "heavy"):
+        picture = finding.pictures[name]
+        path = tmp_path / f"{name}.png"
+        picture(path) if callable(picture) else study.draw(path, picture)
+        assert path.stat().st_size > 10_000
 
 
 def test_error_has_two_digits():
@@ -111,32 +183,28 @@ def test_error_has_two_digits():
 # --- LAMMPS ---------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
-    """A Lab, and the four liquids with few molecules, hardly equilibrated."""
-    lab, data = Lab(tmp_path_factory.mktemp("liquids")), {}
+    """A Lab, and the liquids with few molecules, hardly equilibrated."""
+    lab = Lab(tmp_path_factory.mktemp("liquids"))
     # large enough that no molecule sees its own images, which the deck leaves out, too
-    edges = {"spce": 4, "tip4p": 4, "co2": 3, "benzene": 3}
-    liquids = [replace(liquid, edge=edges[liquid.key]) for liquid in plan.LIQUIDS]
-    original, runs.LIQUIDS = runs.LIQUIDS, liquids
-    try:
-        data = runs.equilibrate(lab, replace(plan.QUICK, equilibration=100))
-    finally:
-        runs.LIQUIDS = original
+    edges = {"spce": 4, "tip4p": 4, "methanol": 4}
+    liquids = [replace(liquid, edge=edges.get(liquid.key, 3)) for liquid in plan.LIQUIDS]
+    data = runs.equilibrate(lab, replace(plan.QUICK, equilibration=100), liquids)
     return lab, {liquid.key: liquid for liquid in liquids}, data
 
 
-def follow(small, name, key, method, forces=None, dt=0.5, duration=60.0):
+def follow(small, name, key, method, forces=None, dt=0.5, duration=60.0, **more):
     """Run of a liquid with few molecules."""
     lab, liquids, data = small
     liquid = liquids[key]
     forces = forces or plan.Forces(liquid.pair, kspace=liquid.kspace)
-    job = runs.job(liquid, data, forces, method, dt, duration)
-    return runs.read(lab.many({name: job})[name], liquid, job.steps, dt)
+    job = runs.job(liquid, data[key, 0], forces, method, dt, duration, **more)
+    return runs.read(lab.many({name: job})[name], job.steps, dt, method)
 
 
 @pytest.mark.parametrize("key", [liquid.key for liquid in plan.LIQUIDS])
 def test_temperature_of_the_start_is_exact(small, key):
     """Masses, degrees of freedom and units: the data files were scaled to the temperature."""
-    run, liquid = follow(small, f"start_{key}", key, SECOND), small[1][key]
+    run, liquid = follow(small, f"start_{key}", key, DEFAULT), small[1][key]
     translation, rotation = quantities.temperatures(run, liquid)
     freedoms = np.array(liquid.freedoms)
     mean = freedoms @ [translation[0], rotation[0]] / freedoms.sum()
@@ -148,21 +216,60 @@ def test_temperature_of_the_start_is_exact(small, key):
 def test_methods_agree_at_a_short_step(small, key):
     """Energies and pressure after 60 fs; the massless site of TIP4P/2005 included."""
     own, other = (
-        follow(small, f"{method.key}_{key}", key, method, dt=0.25) for method in (SECOND, NVE_SMALL)
+        follow(small, f"{method.key}_{key}", key, method, dt=0.25, interval=30.0)
+        for method in (DEFAULT, NVE_SMALL)
     )
     assert not own.lost and not other.lost
     for name in ("translation", "rotation"):
         ours, theirs = getattr(own, name)[-1], getattr(other, name)[-1]
         assert ours == pytest.approx(theirs, rel=2e-3)
+    for run in (own, other):  # energies of bodies are those of their atoms
+        np.testing.assert_allclose(run.translation + run.rotation, run.kinetic, rtol=1e-9)
     assert abs(own.pressure[-1] - other.pressure[-1]) < 0.02 * np.ptp(own.pressure) + 10
-    assert np.ptp(own.total) < 1e-2 * np.ptp(own.translation)
+    assert np.ptp(own.total) < 2e-2 * np.ptp(own.potential)
+
+
+def test_starts_differ_and_samples_tell_the_values(small):
+    lab, liquids, _ = small
+    liquid = liquids["nitrogen"]
+    data = runs.equilibrate(lab, replace(plan.QUICK, starts=2, equilibration=100), [liquid])
+    first, second = (read_sites(path.with_suffix(".start")) for path in data.values())
+    assert np.abs(first.positions - second.positions).max() > 0.1
+    assert follow(small, "seven", "nitrogen", VALUES[7]).values == 7
+    assert follow(small, "none", "nitrogen", NVE_SMALL).values == 0
+
+
+def test_the_number_that_was_chosen_last_counts(tmp_path):
+    path = tmp_path / "log.some"
+    path.write_text("Fix gear/quat move: 9 values, smooth\nFix gear/quat move: 5 values, fast\n", encoding="utf-8")
+    assert runs.values_of(Log(path), DEFAULT) == 5
+    path.write_text("Fix gear/quat move: start of order 8 from 22 force evaluations\n", encoding="utf-8")
+    assert runs.values_of(Log(path), DEFAULT) == DEFAULT_VALUES["second"]
+
+
+def test_heavier_bodies_have_the_same_energies(small):
+    """Rotation keeps its energy, and the atoms, whose masses are as before, tell a quarter of it."""
+    lab, liquids, data = small
+    sites = read_sites(data["spce", 0].with_suffix(".start"))
+    energies = []
+    for factor in (1.0, plan.HEAVIER):
+        scene, path = replace(HEAVY, liquid=liquids["spce"], inertia=factor), lab.out / f"{factor:g}"
+        heavier.write_bodies(path, sites, scene)
+        run = follow(small, f"heavy{factor:g}", "spce", DEFAULT, dt=1.0, infile=path.resolve())
+        assert np.ptp(run.total) < 2e-3 * run.rotation[0]
+        assert run.kinetic[0] == pytest.approx(run.translation[0] + run.rotation[0] / factor, rel=1e-9)
+        energies.append((run.potential[0], run.translation[0], run.rotation[0]))
+    plain = follow(small, "light", "spce", DEFAULT, dt=1.0)
+    energies.append((plain.potential[0], plain.translation[0], plain.rotation[0]))
+    np.testing.assert_allclose(energies[0], energies[2], rtol=1e-9)
+    np.testing.assert_allclose(energies[1], energies[2], rtol=1e-9)
 
 
 def test_charges_within_a_molecule_change_no_pressure(small):
     """The deck leaves their pairs out, but not from kspace; the constraint forces balance that."""
     lab, liquids, data = small
     forces = plan.Forces(plan.TIP4P, kspace="pppm/tip4p")
-    job = runs.job(liquids["tip4p"], data, forces, SECOND, 0.5, 60.0)
+    job = runs.job(liquids["tip4p"], data["tip4p", 0], forces, DEFAULT, 0.5, 60.0)
     excluded = " exclude molecule/intra all"
     deck = job.deck.read_text().replace("include liquid", f"include {job.deck.parent}/liquid")
     deck = deck.replace("../../../examples", str(EXAMPLES))
@@ -172,14 +279,14 @@ def test_charges_within_a_molecule_change_no_pressure(small):
         changed = lab.out / f"in.pairs{k}"
         changed.write_text(deck.replace(excluded, other))
         finished = lab.many({changed.name: replace(job, deck=changed)})[changed.name]
-        found.append(runs.read(finished, liquids["tip4p"], job.steps, 0.5))
+        found.append(runs.read(finished, job.steps, 0.5, DEFAULT))
     np.testing.assert_allclose(found[0].pressure, found[1].pressure, rtol=1e-7)
     assert abs(found[0].total[0] - found[1].total[0]) > 100
 
 
 def test_shifted_energies_change_no_trajectory(small):
     plain, shifted = (
-        follow(small, name.split()[1], "spce", SECOND, plan.Forces(modify=name))
+        follow(small, name.split()[1], "spce", DEFAULT, plan.Forces(modify=name))
         for name in ("shift no", "shift yes")
     )
     np.testing.assert_allclose(plain.translation, shifted.translation, rtol=1e-9)

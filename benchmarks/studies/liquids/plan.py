@@ -5,23 +5,22 @@ Another liquid needs an entry of LIQUIDS, its files ``liquid.KEY`` and ``molecul
 
 from dataclasses import dataclass
 
-from benchmarks.engine.methods import DEFAULT_PASSES, DEFAULTS, GEARS, gear, rigid
+from scipy.constants import Avogadro
+
+from benchmarks.engine.methods import Method, gear, rigid
 
 NVE_SMALL = rigid("rigid/nve/small", "rigid")
-SMALL = rigid("rigid/small", "rigid_verlet")
-SECOND, FIRST = DEFAULTS["second"], DEFAULTS["first"]
-#: what the manual recommends for liquids at long steps
-LONG_STEPS = gear("second", 7, passes=DEFAULT_PASSES)
+#: fix gear/quat without a keyword, which chooses the number of values itself
+DEFAULT = Method("default", "fix gear/quat", {}, "second")
+#: number of values -> the method that is told to take so many
+VALUES = {n: gear("second", n) for n in (5, 7, 9)}
 #: how the page calls them
 NAMES = {
-    SECOND: "second formulation, default",
-    FIRST: "first formulation, default",
-    LONG_STEPS: "second formulation, `values 7`",
-    GEARS["second"]: "second formulation, Gear's coefficients",
+    DEFAULT: "`fix gear/quat`",
+    **{method: f"`fix gear/quat`, `values {n}`" for n, method in VALUES.items()},
     NVE_SMALL: f"`{NVE_SMALL.label}`",
-    SMALL: f"`{SMALL.label}`",
 }
-METHODS, ALL_METHODS = (SECOND, LONG_STEPS, FIRST, NVE_SMALL), tuple(NAMES)
+METHODS = tuple(NAMES)
 
 CUTOFF = 9.0
 PLAIN, CHECKED = f"lj/cut/coul/long {CUTOFF:g}", "every 1 delay 0 check yes"
@@ -71,12 +70,20 @@ class Forces:
         return "; ".join(self.lines)
 
 
+#: steps in fs; at the last one it is seen whether bodies are lost
+STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0)
+#: those at which drifts are predicted, and temperatures compared
+FORESEEN, TEMPERED = (2.0, 2.5, 3.0, 4.0), (2.0, 2.5, 3.0)
+#: time between samples in fs, a multiple of all steps, and with the short step of the floor
+INTERVAL, FLOOR_INTERVAL = 60.0, 10.0
+
+
 @dataclass(frozen=True)
 class Liquid:
     """A liquid of ``edge``^3 rigid molecules at a ``density`` in g/cm^3 and a ``temperature`` in K.
 
-    ``mass`` of a molecule in g/mol; ``axes``: about how many it rotates; ``pair``, ``kspace``: words of
-    LAMMPS.  Its runs have ``steps`` in fs and samples every ``interval`` fs, a multiple of all of them.
+    ``mass`` of a molecule in g/mol; ``types``: of atoms; ``axes``: about how many it rotates; ``pair``,
+    ``kspace``: words of LAMMPS, and ``accuracy`` of the latter.
     """
 
     key: str
@@ -85,11 +92,11 @@ class Liquid:
     density: float
     temperature: float
     mass: float
+    types: int = 2
     axes: int = 3
     pair: str = PLAIN
     kspace: str = "pppm"
-    steps: tuple = (1.0, 2.0, 2.5, 3.0)
-    interval: float = 30.0
+    accuracy: float = 1e-5
 
     @property
     def molecules(self):
@@ -97,50 +104,79 @@ class Liquid:
         return self.edge**3
 
     @property
+    def length(self):
+        """Edge of the box in Angstrom."""
+        return (self.molecules * self.mass / (self.density * 1e-24 * Avogadro)) ** (1 / 3)
+
+    @property
     def freedoms(self):
         """Degrees of freedom of translation, without total momentum, and of rotation."""
         return 3 * self.molecules - 3, self.axes * self.molecules
 
 
-_SLOW = {"steps": (2.0, 4.0, 6.0, 8.0), "interval": 24.0}
 SPCE = Liquid("spce", "SPC/E water", 6, 0.997, 298.15, 18.0154)
 WATER4 = Liquid(
-    "tip4p", "TIP4P/2005 water", 6, 0.997, 298.15, 18.0154, pair=TIP4P, kspace="pppm/tip4p"
+    "tip4p", "TIP4P/2005 water", 5, 0.997, 298.15, 18.0154, pair=TIP4P, kspace="pppm/tip4p"
 )
-CO2 = Liquid("co2", "TraPPE carbon dioxide", 6, 1.046, 250.0, 44.0098, axes=2, **_SLOW)
-BENZENE = Liquid("benzene", "OPLS-AA benzene", 4, 0.876, 298.15, 78.114, **_SLOW)
-LIQUIDS = (SPCE, WATER4, CO2, BENZENE)
+CO2 = Liquid("co2", "TraPPE carbon dioxide", 5, 1.046, 250.0, 44.0098, axes=2)
+# small charges, of which pppm 1e-5 leaves so much in real space that energies jump at the cut-off
+BENZENE = Liquid("benzene", "OPLS-AA benzene", 4, 0.876, 298.15, 78.114, accuracy=1e-6)
+NITROGEN = Liquid("nitrogen", "TraPPE nitrogen", 5, 0.807, 77.0, 28.0134, axes=2)
+METHANOL = Liquid("methanol", "TraPPE-UA methanol", 5, 0.787, 298.15, 32.0419, types=3)
+LIQUIDS = (SPCE, WATER4, CO2, BENZENE, NITROGEN, METHANOL)
+WATERS = (SPCE, WATER4)
+
+
+@dataclass(frozen=True)
+class Extent:
+    """What of a method is run: its ``steps`` in fs; ``many``: from all starts and for the full time."""
+
+    steps: tuple = STEPS
+    many: bool = True
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A liquid with forces, followed by ``methods`` at the steps of the liquid."""
+    """A liquid that methods follow, Method -> Extent, with moments of ``inertia`` larger by a factor.
+
+    ``pairs``: steps in fs at which DEFAULT leaves radial distribution functions.
+    """
 
     key: str
     liquid: Liquid
-    accuracy: float = 1e-5
-    methods: tuple = METHODS
+    methods: dict
+    inertia: float = 1.0
+    pairs: tuple = ()
 
     @property
     def forces(self):
         """Forces of the scene."""
-        return Forces(self.liquid.pair, kspace=self.liquid.kspace, accuracy=self.accuracy)
+        liquid = self.liquid
+        return Forces(liquid.pair, kspace=liquid.kspace, accuracy=liquid.accuracy)
 
     @property
     def title(self):
         """A heading."""
-        return f"{self.liquid.title}, {self.liquid.kspace} {power(self.accuracy)}"
+        return f"{self.liquid.title}, {self.liquid.kspace} {power(self.forces.accuracy)}"
 
 
-MAIN = Scene("spce", SPCE, methods=ALL_METHODS)
-SCENES = (
-    MAIN,
-    Scene("spce_coarse", SPCE, 1e-4),
-    Scene("spce_fine", SPCE, 1e-6),
-    Scene("tip4p", WATER4),
-    Scene("co2", CO2),
-    Scene("benzene", BENZENE),
-)
+#: the step in fs with the moments of the model that heavier bodies are compared with
+NORMAL_STEP = 2.0
+
+
+def _scene(liquid):
+    methods = {DEFAULT: Extent(), NVE_SMALL: Extent(many=liquid is SPCE)}
+    methods |= {method: Extent(FORESEEN, many=False) for method in VALUES.values()}
+    pairs = (NORMAL_STEP,) if liquid is SPCE else ()
+    return Scene(liquid.key, liquid, {method: methods[method] for method in METHODS}, pairs=pairs)
+
+
+SCENES = tuple(map(_scene, LIQUIDS))
+MAIN = SCENES[0]
+#: moments of inertia that are larger by this factor, with the same masses
+HEAVIER = 4.0
+HEAVY_STEPS = (3.0, 4.0, 5.0)
+HEAVY = Scene("heavy", SPCE, {DEFAULT: Extent(HEAVY_STEPS)}, HEAVIER, HEAVY_STEPS)
 
 #: what limits accuracy, with SPC/E water at a step in fs that is short enough to see it
 FLOOR_STEP = 0.5
@@ -160,22 +196,37 @@ SINGLE = (
     Forces(accuracy=1e-6, skin=1.0, neighbors="every 40 delay 0 check no"),
 )
 #: Forces -> methods that are run with them
-FLOORS = {f: (SECOND,) for family in FAMILIES.values() for f in family}
-FLOORS |= {f: (SECOND, NVE_SMALL) for f in (*FAMILIES["energy shifted"], *SINGLE)}
+FLOORS = {f: (DEFAULT,) for family in FAMILIES.values() for f in family}
+FLOORS |= {f: (DEFAULT, NVE_SMALL) for f in (*FAMILIES["energy shifted"], *SINGLE)}
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Durations: those of the main scene, the others and the floor in ps, steps of equilibration."""
+    """How much is run: numbers of starts, durations in ps, steps of equilibration.
 
-    main: float = 20.0
-    others: float = 5.0
-    floor: float = 2.0
-    equilibration: int = 10_000
+    ``starts`` and ``duration`` are of an Extent of many, ``few`` and ``short`` of the others and of the
+    shortest step, which takes longest;
+    ``temperatures``: of many in MAIN at the steps where temperatures are compared; ``floor``: of the
+    floor; ``spectrum``: of the run for the spectra of a liquid.
+    """
 
-    def duration(self, scene):
-        """Duration of the runs of a scene, fs."""
-        return 1000 * (self.main if scene is MAIN else self.others)
+    starts: int = 5
+    few: int = 3
+    duration: float = 20.0
+    temperatures: float = 20.0
+    short: float = 10.0
+    floor: float = 1.0
+    spectrum: float = 4.1
+    equilibration: int = 5000
+
+    def extent(self, scene, method, dt):
+        """Number of starts, and duration in fs."""
+        if not scene.methods[method].many or dt == STEPS[0]:
+            return self.few, 1000 * self.short
+        long = scene.key == MAIN.key and dt in TEMPERED
+        return self.starts, 1000 * (self.temperatures if long else self.duration)
 
 
-QUICK = Plan(main=0.6, others=0.6, floor=0.6, equilibration=500)
+QUICK = Plan(1, 1, 1.26, 1.26, 1.26, 0.3, 1.1, equilibration=500)
+#: temperatures to half a kelvin
+FULL = Plan(temperatures=200.0)

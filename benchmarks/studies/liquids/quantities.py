@@ -1,11 +1,11 @@
-"""What follows from the samples of a Run: drift, fluctuation, temperatures, pressure."""
+"""What follows from the samples of Runs: drift, fluctuation, temperatures, pressure."""
 
 import numpy as np
-from scipy.stats import linregress
 
-from benchmarks.engine.statistics import Mean, blocks_of, mean_of_series
+from benchmarks.engine.statistics import Mean, mean_of_series, slope
 
 BOLTZMANN, FEMTOSECONDS = 0.0019872067, 1e6  # kcal/mol/K; in a nanosecond
+#: blocks of each run for the errors of means
 BLOCKS = 10
 
 
@@ -14,14 +14,17 @@ def unit(liquid):
     return BOLTZMANN * liquid.temperature * sum(liquid.freedoms) / FEMTOSECONDS
 
 
-def drift(run, liquid):
-    """Slope of the total energy and its standard error, kT per ns and degree of freedom.
+def drift(runs, liquid):
+    """Mean slope of the total energy of some Runs and its standard error, kT per ns and degree of freedom.
 
-    Both are those of a least-squares line through means of blocks, which are nearly independent where
-    samples are not.  kT is that of the liquid's temperature, whatever becomes of it.
+    The slopes are those of least-squares lines through all samples, and the error follows from their
+    scatter.  That of a single run is from the scatter of its samples about the line.  kT is that of the
+    liquid's temperature, whatever becomes of it.
     """
-    line = linregress(blocks_of(run.time, BLOCKS), blocks_of(run.total, BLOCKS))
-    return line.slope / unit(liquid), line.stderr / unit(liquid)
+    rates, errors = np.transpose([slope(run.time, run.total) for run in runs]) / unit(liquid)
+    if len(runs) == 1:
+        return float(rates[0]), float(errors[0])
+    return float(rates.mean()), float(rates.std(ddof=1) / np.sqrt(len(rates)))
 
 
 def fluctuation(run):
@@ -36,12 +39,22 @@ def temperatures(run, liquid):
     return tuple(2 * k / (n * BOLTZMANN) for k, n in zip(energies, liquid.freedoms))
 
 
-def block_mean(series):
-    """Mean of a series without its first sample, with a standard error from blocks."""
-    return mean_of_series([series], BLOCKS)
+def mean(runs, read) -> Mean:
+    """Mean of the series ``read(run)`` of some Runs without their first samples, its error from blocks."""
+    return mean_of_series([read(run) for run in runs], BLOCKS)
 
 
-def cooler(run, liquid) -> Mean:
-    """Temperature of rotation less that of translation, kelvin."""
-    translation, rotation = temperatures(run, liquid)
-    return block_mean(rotation - translation)
+def warmer(runs, liquid) -> Mean:
+    """Temperature of translation less that of rotation, kelvin."""
+
+    def difference(run):
+        translation, rotation = temperatures(run, liquid)
+        return translation - rotation
+
+    return mean(runs, difference)
+
+
+def of_starts(values):
+    """Mean of a number of each start and its standard error, NaN for a single start."""
+    n = len(values)
+    return float(np.mean(values)), float(np.std(values, ddof=1) / np.sqrt(n)) if n > 1 else np.nan

@@ -7,46 +7,71 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine import EXAMPLES, Job
-from benchmarks.studies.drift import is_lost
+from benchmarks.engine.methods import DEFAULT_VALUES
+from benchmarks.engine.sites import read_sites
+from benchmarks.studies import drift
 
-from .plan import FLOOR_STEP, FLOORS, LIQUIDS, QUICK, SCENES, SPCE, Plan
+from . import prediction
+from .heavier import write_bodies
+from .plan import DEFAULT, FLOOR_INTERVAL, FLOOR_STEP, FLOORS, FULL, HEAVY, INTERVAL, LIQUIDS
+from .plan import QUICK, SCENES, SPCE, Plan
 
-#: LAMMPS' real units: g/mol (Angstrom/fs)^2 in kcal/mol
-ENERGY = 48.88821291**2
+#: what LAMMPS says, besides numbers that are not finite, where atoms fly away
+FLOWN = ("Out of range atoms", "Lost atoms", "Rigid body atoms", "Bond atoms missing")
+#: step of the runs for spectra, fs
+SPECTRUM_STEP = 1.0
 
 
 @dataclass(frozen=True)
 class Run:
     """A run of one method: samples (n,) at ``time`` in fs, energies in kcal/mol, ``pressure`` in atm.
 
-    ``duration``: what was asked for, fs.  ``seconds``: per step, NaN if the run failed.
+    ``kinetic``: that of the atoms, which is that of the bodies unless their inertia is another one.
+    ``duration``: what was asked for, fs.  ``seconds``: per step, NaN if the run failed.  ``values``: how
+    many fix gear/quat has, 0 for another fix.
     """
 
     time: np.ndarray
     total: np.ndarray
     translation: np.ndarray
     rotation: np.ndarray
+    kinetic: np.ndarray
     pressure: np.ndarray
     duration: float
     seconds: float
+    values: int = 0
 
     @property
     def lost(self):
         """Whether it ended early, or numbers are not finite."""
         return not len(self.time) or self.time[-1] < 0.999 * self.duration
 
+    @property
+    def potential(self):
+        """Potential energy (n,)."""
+        return self.total - self.translation - self.rotation
+
 
 @dataclass(frozen=True)
 class Results:
     """What was measured.
 
-    ``runs``: (key of scene, key of method, step) -> Run.  ``floors``: (text of Forces, key of method) ->
-    Run.
+    ``runs``: (key of scene, key of method, step) -> list of Run, one for each start.  ``floors``: (text of
+    Forces, key of method) -> Run.  ``spectra``: key of liquid -> Spectrum.  ``pairs``: (key of scene, step) ->
+    radial distribution functions (starts, bins, 3): distance in Angstrom, and between sites of the first
+    type, and of the first and the second.
     """
 
     plan: Plan
     runs: dict
     floors: dict
+    spectra: dict
+    pairs: dict
+
+
+def is_lost(text):
+    """Whether LAMMPS' words say that a run ended because its numbers did, or its atoms were gone."""
+    return drift.is_lost(text) or any(words in text for words in FLOWN)
 
 
 def _deck(name):
@@ -60,67 +85,114 @@ def template(liquid):
     return own if own.is_file() else EXAMPLES / "water" / name
 
 
-def equilibrate(lab, plan):
-    """Key of liquid -> path of its data file."""
+def equilibrate(lab, plan, liquids=LIQUIDS):
+    """(key of liquid, number of start) -> path of its data file; beside it a dump, with suffix .start."""
     jobs, data = {}, {}
-    for liquid in LIQUIDS:
-        names = "edge", "density", "mass", "temperature", "pair", "kspace"
-        variables = {"liquid": liquid.key} | {name: getattr(liquid, name) for name in names}
-        variables |= {"template": template(liquid), "steps": plan.equilibration}
-        name = f"equilibrate_{liquid.key}"
-        jobs[name] = Job(_deck("equilibrate"), variables, plan.equilibration)
-        data[liquid.key] = lab.dump(name).with_suffix(".data").resolve()
+    names = "types", "edge", "density", "mass", "temperature", "pair", "kspace"
+    for liquid in liquids:
+        own = {"liquid": liquid.key} | {name: getattr(liquid, name) for name in names}
+        own |= {"template": template(liquid), "steps": plan.equilibration}
+        for start in range(plan.starts):
+            name = f"equilibrate_{liquid.key}_{start}"
+            jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration)
+            data[liquid.key, start] = lab.dump(name).with_suffix(".data").resolve()
     lab.many(jobs, keep=True)
     return data
 
 
-def job(liquid, data, forces, method, dt, duration):
-    """Job of in.liquid; ``dt`` and ``duration`` in fs."""
-    every = round(liquid.interval / dt)
+def job(liquid, data, forces, method, dt, duration, interval=INTERVAL, **more):
+    """Job of in.liquid; ``data``: path, ``dt``, ``duration`` and ``interval`` in fs, ``more``: variables."""
+    every = round(interval / dt)
     steps = every * math.ceil(duration / (every * dt) - 1e-9)
-    variables = {"liquid": liquid.key, "data": data[liquid.key], **forces.variables}
-    variables |= {"dt": f"{dt:.17g}", "every": every, "steps": steps, **method.variables}
+    variables = {"liquid": liquid.key, "data": data, **forces.variables}
+    variables |= {"dt": f"{dt:.17g}", "every": every, "steps": steps, **method.variables, **more}
     return Job(_deck("liquid"), variables, steps)
 
 
-def read(finished, liquid, steps, dt):
-    """Run of a log.  It may have been refused before its first sample."""
+def values_of(log, method):
+    """Number of values of a method that has left a Log: the one it chose last, or was told, or the default."""
+    if not method.gear:
+        return 0
+    return [method.variables.get("values", DEFAULT_VALUES[method.kind]), *log.chosen_values][-1]
+
+
+def read(finished, steps, dt, method):
+    """Run of a method from its log.  It may have been refused before its first sample."""
     if not finished.log.tables or not len(finished.thermo["Step"]):
-        return Run(*np.zeros((5, 0)), steps * dt, math.nan)
-    thermo = finished.thermo
-    translation = 0.5 * ENERGY * liquid.mass * thermo["v_squares"]
-    columns = [thermo["Time"], thermo["TotEng"], translation, thermo["KinEng"] - translation]
-    columns = np.array([*columns, thermo["Press"]])
+        return Run(*np.zeros((6, 0)), steps * dt, math.nan)
+    names = "Time", "v_total", "v_ketrans", "v_kerot", "KinEng", "Press"
+    columns = np.array([finished.thermo[name] for name in names])
     columns = columns[:, np.isfinite(columns).all(axis=0)]
     seconds = math.nan if finished.error else finished.log.seconds / steps
-    return Run(*columns, steps * dt, seconds)
+    return Run(*columns, steps * dt, seconds, values_of(finished.log, method))
 
 
-def measure(lab, plan=None, scenes=SCENES, floors=FLOORS):
-    """Results.  What a call with the same input has finished is not run again."""
-    plan = plan or (QUICK if lab.quick else Plan())
-    with lab.share(0.03):
-        data = equilibrate(lab, plan)
-    jobs, keys = {}, {}
-    for scene in scenes:
-        for method in scene.methods:
-            for dt in scene.liquid.steps:
-                name = f"{scene.key}_{method.key}_dt{dt:g}"
-                keys[name] = scene.liquid, (scene.key, method.key, dt)
-                duration = plan.duration(scene)
-                jobs[name] = job(scene.liquid, data, scene.forces, method, dt, duration)
+def _of_scene(scene, plan, data, lab):
+    """Name -> (Job, (key of scene, method, step)) of a scene."""
+    jobs = {}
+    for method, extent in scene.methods.items():
+        for dt in extent.steps:
+            starts, duration = plan.extent(scene, method, dt)
+            for start in range(starts):
+                own, more = data[scene.liquid.key, start], {}
+                if scene.inertia != 1.0:
+                    path = lab.dump(f"{scene.key}_{start}").with_suffix(".infile").resolve()
+                    write_bodies(path, read_sites(own.with_suffix(".start")), scene)
+                    more["infile"] = path
+                if method is DEFAULT and dt in scene.pairs:
+                    more["pairs"] = "yes"
+                made = job(scene.liquid, own, scene.forces, method, dt, duration, **more)
+                name = f"{scene.key}_{method.key}_dt{dt:g}_{start}"
+                jobs[name] = made, (scene.key, method, dt)
+    return jobs
+
+
+def _of_floors(floors, plan, data):
+    """Name -> (Job, (text of Forces, method))."""
+    jobs, one = {}, data[SPCE.key, 0]
     for k, (forces, methods) in enumerate(floors.items()):
         for method in methods:
-            name = f"floor{k}_{method.key}"
-            keys[name] = SPCE, (forces, method.key, FLOOR_STEP)
-            jobs[name] = job(SPCE, data, forces, method, FLOOR_STEP, 1000 * plan.floor)
-    with lab.share(0.97):
+            made = job(SPCE, one, forces, method, FLOOR_STEP, 1000 * plan.floor, FLOOR_INTERVAL)
+            jobs[f"floor{k}_{method.key}"] = made, (forces.text, method)
+    return jobs
+
+
+def _of_spectra(scenes, plan, data):
+    """Name -> (Job, key of liquid)."""
+    jobs = {}
+    for scene in scenes:
+        liquid, length = scene.liquid, 1000 * plan.spectrum
+        own = data[liquid.key, 0], scene.forces, DEFAULT, SPECTRUM_STEP, length
+        jobs[f"spectrum_{scene.key}"] = job(liquid, *own, bodies="yes"), liquid.key
+    return jobs
+
+
+def read_pairs(path):
+    """Distance and two radial distribution functions (bins, 3) of a file of in.liquid."""
+    return np.loadtxt(path, skiprows=4)[:, [1, 2, 4]]
+
+
+def measure(lab, plan=None, scenes=SCENES, heavy=HEAVY, floors=FLOORS):
+    """Results.  What a call with the same input has finished is not run again."""
+    plan = plan or (QUICK if lab.quick else FULL if lab.full else Plan())
+    with lab.share(0.08):
+        data = equilibrate(lab, plan, [scene.liquid for scene in scenes])
+    followed, foreseen = {}, _of_spectra(scenes, plan, data)
+    for scene in (*scenes, heavy):
+        followed |= _of_scene(scene, plan, data, lab)
+    limits = _of_floors(floors, plan, data)
+    jobs = {name: made for name, (made, _) in (followed | limits | foreseen).items()}
+    with lab.share(0.92):
         finished = lab.many(jobs, may_fail=is_lost, keep=True)
-    runs, limits = {}, {}
-    for name, (liquid, key) in keys.items():
-        run = read(finished[name], liquid, jobs[name].steps, key[-1])
-        if isinstance(key[0], str):
-            runs[key] = run
-        else:
-            limits[key[0].text, key[1]] = run
-    return Results(plan, runs, limits)
+    results = Results(plan, {}, {}, {}, {})
+    for name, (made, (key, method, dt)) in followed.items():
+        run = read(finished[name], made.steps, dt, method)
+        results.runs.setdefault((key, method.key, dt), []).append(run)
+        if "pairs" in made.variables and not run.lost:
+            found = read_pairs(lab.dump(name).with_suffix(".pairs"))
+            results.pairs.setdefault((key, dt), []).append(found)
+    for name, (made, (text, method)) in limits.items():
+        results.floors[text, method.key] = read(finished[name], made.steps, FLOOR_STEP, method)
+    for name, (made, key) in foreseen.items():
+        results.spectra[key] = prediction.read(lab.dump(name).with_suffix(".bodies"), SPECTRUM_STEP)
+    return results

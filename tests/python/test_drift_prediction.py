@@ -1,0 +1,92 @@
+"""The drift that a spectrum predicts: the response against measured damping, spectra of known motions."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from benchmarks.studies.coefficients.kernel import gear, tuned
+from benchmarks.studies.coefficients.search import spectrum as roots
+from benchmarks.studies.liquids import prediction
+from benchmarks.studies.liquids.prediction import SEGMENT, Spectrum, response
+
+PHASES = (0.2, 0.3, 0.4, 0.5)
+EVERY = [pytest.param(tuned("second", n), id=f"tuned-{n}") for n in (6, 7, 8, 10)]
+EVERY += [pytest.param(gear("second", n), id=f"gear-{n}") for n in (5, 6, 7)]
+
+
+def one_percent_off(corrector):
+    """The Corrector with a wrong c_1."""
+    c = list(corrector.sets[0])
+    c[1] *= Fraction(101, 100)
+    return replace(corrector, sets=(tuple(c),) * 2)
+
+
+@pytest.mark.parametrize("corrector", EVERY)
+def test_damping_of_an_oscillator_is_that_of_the_response(corrector):
+    """Its amplitude is multiplied by the principal root in each step; a wrong coefficient is seen."""
+    damping = 2 * np.log1p(roots(corrector, PHASES)[:, 0]) / PHASES
+    np.testing.assert_allclose(-response(corrector, PHASES).imag, damping, rtol=0.01)
+    wrong = -response(one_percent_off(corrector), PHASES).imag
+    assert np.all(abs(wrong / damping - 1) > 0.05)
+
+
+@pytest.mark.parametrize("omega_h", PHASES)
+@pytest.mark.parametrize("corrector", [one for one in EVERY if one.id.startswith("tuned")])
+def test_a_body_in_wells_loses_what_the_response_says(corrector, omega_h):
+    """Small librations with the kernel itself, quaternions and all."""
+    short, long, amplitude, frequency = 2000, 6000, 1e-3, (1.0, 1.0, 1.0)
+    before, after = (corrector.libration(omega_h, frequency, amplitude, n) for n in (short, long))
+    damping = np.log((1 + after) / (1 + before)) / (long - short) / omega_h
+    assert -response(corrector, [omega_h])[0].imag == pytest.approx(damping, rel=0.01)
+
+
+# --- spectra --------------------------------------------------------------------------------------
+def oscillations(omega, axes=3, bodies=5, dt=1.0):
+    """Velocities (samples, bodies, 3) that oscillate with ``omega``, those of further axes zero to rounding."""
+    random = np.random.default_rng(1)
+    phases = random.uniform(0, 2 * np.pi, (bodies, 3))
+    series = np.cos(omega * dt * np.arange(3 * SEGMENT)[:, None, None] + phases)
+    return np.where(np.arange(3) < axes, series, 1e-12 * random.normal(size=series.shape))
+
+
+@pytest.mark.parametrize("axes", (2, 3))
+def test_drift_of_a_single_frequency(axes):
+    """That of each degree of freedom is -omega Im H; axes without rotation do not count."""
+    slow, fast, dt, own = 0.05, 0.1, 4.0, tuned("second", 7)
+    found = Spectrum.of(oscillations(slow), oscillations(fast, axes), 1.0)
+    rates = [-1e6 * omega * response(own, [omega * dt])[0].imag for omega in (slow, fast)]
+    expected = np.average(rates, weights=(3, axes))
+    assert found.axes == axes
+    # a line is as wide as the window, and H rises with a high power of the frequency
+    assert found.drift(own, dt) == pytest.approx(expected, rel=0.1)
+    assert found.drift(own, 1.02 * dt) != pytest.approx(expected, rel=0.1)
+
+
+def test_leakage_is_below_what_long_steps_see():
+    """A slow motion has no power at high frequencies."""
+    found = Spectrum.of(oscillations(0.02), oscillations(0.02), 1.0)
+    assert found.rotation.sum() == pytest.approx(1.0)
+    assert found.rotation[found.omega > 0.1].sum() < 1e-9
+    assert abs(found.drift(tuned("second", 7), 4.0)) < 1e-3
+
+
+def test_frequencies_that_steps_cannot_see_are_left_out():
+    own = tuned("second", 5)
+    found = Spectrum.of(oscillations(1.0), oscillations(1.0), 1.0)
+    assert np.isfinite(found.drift(own, 4.0)) and abs(found.drift(own, 4.0)) < 1.0
+
+
+def test_file_of_a_deck_is_read(tmp_path):
+    """Three comments, then for each step its number, that of its rows, and rows of six velocities."""
+    velocities, rotations = oscillations(0.1), oscillations(0.2)
+    lines = ["# a", "# b", "# c"]
+    for k, rows in enumerate(np.concatenate([velocities, rotations], axis=2)):
+        lines += [f"{k} {len(rows)}"]
+        lines += [" ".join([str(n + 1), *map(repr, map(float, row))]) for n, row in enumerate(rows)]
+    path = tmp_path / "a.bodies"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    found, expected = prediction.read(path, 1.0), Spectrum.of(velocities, rotations, 1.0)
+    np.testing.assert_allclose(found.rotation, expected.rotation, rtol=1e-12)
+    np.testing.assert_allclose(found.translation, expected.translation, rtol=1e-12)
