@@ -344,6 +344,7 @@ std::string Blowup::what_happened(int ibody, const BodyState &s, double h) const
     return fmt::format("moves by {:g} and turns by {:g} radians in one step, {}",
                        length(s.velocity) * std::fabs(h), length(s.omega_body) * std::fabs(h),
                        under);
+  if (scheme.any_norm()) return "turns faster than a step can follow, " + under;
   return fmt::format("has a quaternion of squared length {:g} instead of 1, {}", dot4(s.q, s.q),
                      under);
 }

@@ -306,9 +306,9 @@ def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
 
 def test_a_restart_with_an_inserted_body(lmp_tree):
     commands = INSERT.format(count=1) + "run 10\nwrite_restart half\nrun 10"
-    lmp_tree.succeed(liquid(lmp_tree, commands, MOL, TEMPLATE), ranks=2)
+    lmp_tree.succeed(liquid(lmp_tree, commands, MOL + " values 9", TEMPLATE), ranks=2)
     dumped = poses(lmp_tree)
-    lmp_tree.succeed(restarted(liquid(lmp_tree, "run 10", MOL, TEMPLATE), "half"), ranks=2)
+    lmp_tree.succeed(restarted(liquid(lmp_tree, "run 10", MOL + " values 9", TEMPLATE), "half"), ranks=2)
     close(dumped, poses(lmp_tree), 1e-12)
 
 

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from benchmarks.engine.methods import DEFAULT_VALUES
+
 #: sites of a body in Angstrom, and their charges; all masses are equal
 SHAPES = {
     "point": [(0.0, 0.0, 0.0)],
@@ -28,7 +30,7 @@ velocity all create 300.0 4711 loop geom
 {forces}
 neigh_modify exclude molecule/intra all every 100000 delay 0 check no
 timestep 0.0005
-fix move all gear/quat molecule report no {scene.words}
+fix move all gear/quat molecule report no {method} {scene.words}
 {scene.after}
 thermo_style custom step {scene.columns}
 thermo {every}
@@ -45,7 +47,9 @@ _FORCES = {
 
 @dataclass(frozen=True)
 class Scene:
-    """One scene.  ``words``: keywords of the fix; ``before``, ``after``: lines around it;
+    """One scene, with two passes and a given number of values: instructions do not depend on the motion.
+
+    ``words``: keywords of the fix; ``before``, ``after``: lines around it;
     ``columns``: of the output besides the step; ``each``: output in every step, not at the end only;
     ``crossing``: bodies lie across the boundaries of the box.
     """
@@ -63,8 +67,10 @@ class Scene:
 
     def deck(self, side, steps):
         """Script with side^3 bodies; its second run has ``steps`` steps, the first one the start."""
+        values = DEFAULT_VALUES["first" if "formulation first" in self.words else "second"]
         return _DECK.format(
             scene=self,
+            method="passes 2" if "values" in self.words else f"passes 2 values {values}",
             spacing=SPACING,
             side=side,
             origin=0.0 if self.crossing else 0.4,
