@@ -184,6 +184,11 @@ TEST(AnyNorm, QuaternionsStayCloseToUnitLength)
   }
 }
 
+TEST(AnyNorm, FiveValuesAreStableToTheLimitOfTheManual)
+{
+  EXPECT_NEAR(fastest_oscillation(tuned(5)), 1.08, 0.021);
+}
+
 // --- passes
 
 TEST(AnyNorm, PassesConverge)
