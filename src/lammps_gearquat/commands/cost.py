@@ -61,7 +61,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
     cloup.option(
         "--budget",
         type=POSITIVE,
-        default=180.0,
+        default=300.0,
         help="Seconds of wall time for everything, runs before the measured one included.",
     ),
     cloup.option("--timings", type=COUNT, default=5, help="Timings of each trial that matters, interleaved."),

@@ -24,9 +24,9 @@ from gearquat_analysis.tables import rounded
 
 from . import BOUND, drift, evaluate, sampling
 from .budget import Budget
-from .doubt import MARGIN, cut_to, diverging, exploded, known_until
+from .doubt import MANY, MARGIN, chaotic, cut_to, diverging, known_until
 from .explain import explained
-from .methods import methods, named
+from .methods import methods, named, stated
 from .script import DeckError
 from .worker import NOT_FINISHED, TrialError
 
@@ -213,9 +213,10 @@ class Study:
     def find_reference(self, end, target, largest=math.inf):
         """(accurate trial, trial with CONFIRMATION), as fine as the budget allows.
 
-        Of the former's halvings of the step it is the one that changes least.  Where two of them show that chaos makes
-        errors larger than ``largest``, these two are the answer.
+        Of the former's halvings of the step it is the one that changes least.  The latter is None where trajectories of
+        many bodies diverge, so that not even an error of ``largest`` can be judged at the end of the deck's run.
         """
+        many = len(self.deck.scene.bodies) >= MANY and largest < math.inf
         accurate = self.deck.accurate
         steps = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1)
         reserve = (1.0 - SHARE_REFERENCE) * self.budget.left()
@@ -227,8 +228,8 @@ class Study:
             failed += trial is None
             if len(finer) > 1:
                 between = self.gap(finer[-2], finer[-1])
-                if exploded(between, largest):
-                    return finer[-1], finer[-2]
+                if many and chaotic(trial.time, between, self.deck.end, largest):
+                    return trial, None
                 gaps.append(between[-1])
                 # far better than required, or nothing gained by two further halvings
                 stalled = len(gaps) > 2 and gaps[-1] > 0.5 * gaps[-3]
@@ -355,20 +356,21 @@ class Study:
     def choose(self, costs, errors):
         """Rows of ``costs`` whose recommended steps were run for the drift of their energy, and not refused for it.
 
-        What is left of the budget is shared by these runs, and each refusal makes another choice.
+        Short runs come first, and each refusal makes another choice.  Then what is left of the budget is shared by long runs.
         """
-        for attempt in range(drift.ATTEMPTS):
-            costs.rows = rows_of(costs, errors)
-            chosen = dict.fromkeys(row.recommended for row in costs.rows if row.choice)
-            new = [pair for pair in chosen if pair not in costs.drifts]
-            share = 1.0 if attempt == drift.ATTEMPTS - 1 else 0.5
-            for number, (keywords, dt) in enumerate(new):
-                seconds = share * self.budget.left() / (len(new) - share * number)
-                found = drift.of_step(self, keywords, dt, costs.end, seconds, costs.bound)
-                costs.drifts[keywords, dt] = found
-            if not any(costs.drifts[pair].refused for pair in new):
-                return
-        costs.rows = rows_of(costs, errors)
+        long = set()
+        for part in (drift.FIRST_TRY, 1.0):
+            while True:
+                costs.rows = rows_of(costs, errors)
+                chosen = dict.fromkeys(row.recommended for row in costs.rows if row.choice)
+                new = [pair for pair in chosen if pair not in (long if part == 1.0 else costs.drifts)]
+                if not new:
+                    break
+                seconds = part * self.budget.left() / (len(new) + (part == 1.0))
+                found = drift.of_step(self, *new[0], costs.end, seconds, costs.bound)
+                if found.refused or found.time >= costs.drifts.get(new[0], found).time:
+                    costs.drifts[new[0]] = found
+                long |= {new[0]} if part == 1.0 else set()
 
 
 def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bound=BOUND):
@@ -387,10 +389,12 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
     study.check(tries)
     whole, reason = (time, "") if time else study.affordable_end()
     reference, confirmation = study.find_reference(whole, min(errors), math.inf if asked else max(errors))
-    doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
-    parting = "" if asked else diverging(reference.time, doubt, deck.end, max(errors))
-    if parting:
-        return sampling.measure(study, tries, bound, [*deck.notes, parting])
+    parted = confirmation is None
+    if not parted:
+        doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
+        parted = not asked and diverging(reference.time, doubt, deck.end, max(errors))
+    if parted:
+        return sampling.measure(study, tries, bound)
     last, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
     end = whole * (last + 1) / SAMPLES
     costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=study.before, bound=bound)
@@ -421,11 +425,11 @@ def warnings_of(trials):
     methods_of = {}
     for trial in trials:
         for line in trial.warnings:
-            methods_of.setdefault(line, {})[trial.label] = True
-    methods = {trial.label for trial in trials if trial.keywords is not None}
+            methods_of.setdefault(line, {})[stated(trial.keywords)] = True
+    labels = {stated(trial.keywords) for trial in trials if trial.keywords is not None}
     return [
-        f"{line} ({'every fix gear/quat' if methods <= set(labels) else ', '.join(labels)})"
-        for line, labels in methods_of.items()
+        f"{line} ({'every fix gear/quat' if labels <= set(names) else ', '.join(names)})"
+        for line, names in methods_of.items()
     ]
 
 

@@ -8,8 +8,8 @@ from gearquat_analysis.tables import rounded
 
 MARGIN = 3.0  # an error is judged if it is this much larger than the doubt about the reference
 SHORTEST = 0.1  # of the time to be measured
-#: no regular motion lets a difference grow by this factor from the first sample to the last
-EXPLOSION = 1e5
+#: so many bodies are taken for chaotic if their trajectories differ as if they were
+MANY = 8
 
 
 def judged_at(doubt, error):
@@ -50,7 +50,7 @@ def cut_to(time, doubt, errors):
 
 
 def diverging(time, doubt, end, error):
-    """Why the trajectory cannot be followed to ``end``, "" if it can.
+    """Whether the trajectory cannot be followed to ``end``.
 
     That is so if two trials of high accuracy that differ by ``doubt`` (S,) at the times (S,) will differ by
     too much for the largest ``error`` of interest then, at the latest.  Later than the last time the difference grows by
@@ -59,17 +59,14 @@ def diverging(time, doubt, end, error):
     largest = np.maximum.accumulate(doubt)
     half = len(time) // 2
     power = max(math.log(largest[-1] / largest[half - 1]) / math.log(time[-1] / time[half - 1]), 1.0)
-    beyond = largest[-1] * max(end / time[-1], 1.0) ** power
-    if MARGIN * beyond < error:
-        return ""
-    return (
-        f"trajectories diverge before the end of the run at t = {rounded(end, 4)}: two of the most accurate trials differ by"
-        f" {rounded(largest[-1], 2)} at t = {rounded(time[-1], 4)} already.  Steps are therefore judged by the energy and the"
-        " temperatures of a long run, and not by the error of a trajectory, which --error and --time ask for"
-    )
+    return bool(MARGIN * largest[-1] * max(end / time[-1], 1.0) ** power > error)
 
 
-def exploded(difference, error):
-    """Whether a ``difference`` (S,) of two trials has grown beyond ``error`` as only that of chaotic motion does."""
+def chaotic(time, difference, end, error):
+    """Whether a ``difference`` (S,) of two trials at the times (S,) would be larger than ``error`` at ``end`` if it grew
+    exponentially, as that of many bodies does, at the rate of the second half.
+    """
     largest = np.maximum.accumulate(difference)
-    return bool(MARGIN * largest[-1] > error and largest[-1] > EXPLOSION * largest[0])
+    half = len(time) // 2
+    rate = math.log(largest[-1] / largest[half - 1]) / (time[-1] - time[half - 1])
+    return math.log(MARGIN * largest[-1] / error) + rate * (end - time[-1]) > 0.0 and end > 1.01 * time[-1]

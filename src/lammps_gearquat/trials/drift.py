@@ -14,14 +14,14 @@ from .worker import NOT_FINISHED, TrialError
 BALANCE = 0.01
 #: the part of the budget that is kept for these runs beside trials of an error
 SHARE = 0.2
-#: times at which a run is sampled, if it has so many steps
-SAMPLES = 400
+#: times at which a run is sampled, if it has so many steps, and means of these for the slope of the energy
+SAMPLES, MEANS = 400, 100
 #: longest run, in ns
 LONGEST = 0.1
 #: standard errors that a drift has to be away from the bound to be judged
 SURE = 2.0
-#: steps at which the drift is measured before a method is given up, for each error
-ATTEMPTS = 4
+#: the part of the time left that the first, shorter try of a step takes
+FIRST_TRY = 0.1
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,10 @@ def of_trial(trial, nanosecond, freedoms=None, boltzmann=1.0, bound=BOUND):
     thermal = 2.0 * kinetic.mean()  # kT times the number of degrees of freedom
     if not thermal > 0.0:
         return Drift(time=float(trial.time[-1]), reason="there is no kinetic energy", bound=bound)
-    rate, error = (nanosecond * number / thermal for number in evaluate.trend(trial.time, energy))
+    # means over equal times have all that white noise and a random walk say of the slope
+    many = len(energy) // min(len(energy), MEANS)
+    time, energy = (values[: len(values) // many * many].reshape(-1, many).mean(axis=1) for values in (trial.time, energy))
+    rate, error = (nanosecond * number / thermal for number in evaluate.trend(time, energy))
     found = Drift(rate, error, float(trial.time[-1]), bound=bound)
     if freedoms is None or not parts:
         return found

@@ -51,7 +51,7 @@ class Trial:
 
     @property
     def label(self):
-        return DECK_ITSELF if self.keywords is None else self.keywords or "no keyword"
+        return DECK_ITSELF if self.keywords is None else self.keywords
 
     @property
     def fastest(self):

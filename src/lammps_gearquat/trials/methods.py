@@ -17,6 +17,11 @@ def methods():
     return (DEFAULT, *(text for text in stated if text not in repeated))
 
 
+def stated(method):
+    """A method in a table: the keywords, or words where there are none."""
+    return "the deck's own" if method is None else method or "no keyword"
+
+
 def named(method):
     """A method in words: keywords of fix gear/quat, or None for the deck's own fix."""
     return "your fix" if method is None else f"gear/quat {method or '(no keyword)'}"

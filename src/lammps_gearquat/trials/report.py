@@ -6,7 +6,7 @@ from gearquat_analysis.tables import aligned, rounded, with_error, write_rows
 
 from . import NORMS, drift
 from .evaluate import usable_step
-from .methods import named
+from .methods import named, stated
 from .script import conserved
 
 
@@ -148,7 +148,7 @@ def _explained(costs):
         "the conserved energy over a further run, in kT of the mean kinetic energy.  A step at which it is larger than",
         f"{costs.bound:g} (--drift) is not recommended.",
     ]
-    starts = {p.method: p for row in costs.rows for p in (row.own, row.best) if p}
+    starts = {stated(p.method): p for row in costs.rows for p in (row.own, row.best) if p}
     words = [
         f"{rounded(p.start_seconds, 2)} s and {_count(p.start_evaluations, 'evaluation')} with {name}"
         for name, p in starts.items()
@@ -223,7 +223,7 @@ def write_costs(folder, deck, costs):
     fields = ["timestep", "evaluations", "seconds", "kind", "start_evaluations", "start_seconds"]
     rows = []
     for row in costs.rows:
-        cells = [row.error, row.best.method if row.best else ""]
+        cells = [row.error, stated(row.best.method) if row.best else ""]
         for price in (row.best, row.own):
             names = ["dt", *fields[1:]]
             cells += [getattr(price, name) if price else "" for name in names]
@@ -238,7 +238,7 @@ def write_costs(folder, deck, costs):
     header += [norm.replace(" ", "_") for norm in NORMS]
     header += ["seconds_least", "seconds_most", "timings", "start_seconds"]
     rows = [
-        [trial.label, trial.dt, trial.steps, trial.start_evaluations, *errors]
+        [stated(trial.keywords), trial.dt, trial.steps, trial.start_evaluations, *errors]
         + [trial.fastest, max(trial.seconds), len(trial.seconds), trial.fastest_start]
         for trial, errors in costs.trials
     ]

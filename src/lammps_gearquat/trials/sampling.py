@@ -3,7 +3,7 @@
 There the error of a trajectory says little.  What counts is that the energy does not drift and that translation and
 rotation have the same temperature.
 
-1. Short runs of every method: from the cheapest step that is known upwards, until one drifts.
+1. Short runs of every method for which there is time: from the longest step that is known upwards, until one drifts.
 2. Longer and longer runs of the cheapest step that may hold.  Where it does not, the next shorter one is tried,
    unless another method is cheaper then.
 3. The deck as it is, for as long, to compare with.
@@ -12,23 +12,21 @@ rotation have the same temperature.
 import math
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from . import drift
 from .methods import DEFAULT, methods, named
 
 #: time steps that are tried, in powers of ten
 STEPS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
-#: the part of the budget that is left for short runs, and how many of them it is meant for by method
-SHARE_SHORT, RUNS_PER_METHOD = 0.45, 3
+#: the part of the budget that short runs take, and how many of them it is meant for
+SHARE_SHORT, SHORT_RUNS = 0.4, 12
 #: steps of a short run at least
 FEWEST = 200
 #: the part of the longest time from which on temperatures are compared: they fluctuate slowly
 BALANCED = 0.1
 #: the shortest step that is tried, as a part of the deck's own
 SHORTEST = 1.0 / 16.0
-#: what recommendations take of the time that is left, and the first, shorter try of it
-SHARE_LONG, FIRST_TRY = 0.6, 0.25
+#: what the run of a recommended step takes of the time that is left, and the first, shorter try of it
+SHARE_LONG, FIRST_TRY = 0.7, 0.2
 #: another method has to be faster by this factor than one that stands before it
 WORTHWHILE = 1.05
 
@@ -121,10 +119,10 @@ class Search:
         pace = self.seconds_per_step(keywords)
         steps = min(self.end / dt, max((seconds - self.study.overhead) / pace, FEWEST))
         timeout = max(min(3.0 * seconds + 30.0, self.study.budget.left()), 0.0)
-        if steps * pace > timeout:
-            return drift.Drift(reason="the budget left no time for a run", bound=self.answer.bound)
-        balance = steps * dt > BALANCED * self.end
-        found = drift.run(self.study, keywords, dt, steps, timeout, self.answer.bound, balance)
+        found = drift.Drift(reason="the budget left no time for a run", bound=self.answer.bound)
+        if steps * pace < timeout:
+            balance = steps * dt > BALANCED * self.end
+            found = drift.run(self.study, keywords, dt, steps, timeout, self.answer.bound, balance)
         self.answer.add(Run(keywords, dt, self.seconds_per_step(keywords) / dt, found))
         return found
 
@@ -157,19 +155,24 @@ class Search:
     def short_runs(self, tries):
         """Dictionary keywords -> the longest step that may hold, for every method for which there is time."""
         deck, budget = self.study.deck, self.study.budget
-        tried = list(dict.fromkeys([*filter(deck.takes, methods()), *tries]))
+        tried = dict.fromkeys([*filter(deck.takes, methods()), *tries])
         self.shortest, self.best = SHORTEST * deck.dt, 0.0
         until = (1.0 - SHARE_SHORT) * budget.left()
-        seconds = (budget.left() - until) / (RUNS_PER_METHOD * (len(tried) + 1))
-        # each has its share, and what others leave of theirs
-        ends = np.linspace(budget.left(), until, len(tried) + 2)[1:]
-        found = {None: self.climb(None, deck.dt, seconds, ends[0])}
-        for keywords, end in zip(tried, ends[1:]):
-            if budget.left() < until:
+        seconds = (budget.left() - until) / SHORT_RUNS
+        own = self.run(None, deck.dt, seconds)
+        found = {}
+        for keywords in tried:
+            if budget.left() < until + seconds:
                 self.answer.notes.append(f"the budget leaves no time for {named(keywords)}")
                 continue
-            found[keywords] = self.climb(keywords, self.best or neighbor(deck.dt, 0), seconds, end)
+            found[keywords] = self.climb(keywords, self.best or neighbor(deck.dt, 0), seconds, until)
             self.best = max(self.best, found[keywords] or 0.0)
+        if own.refused:
+            found[None] = self.climb(None, shorter(deck.dt), seconds, until)
+        elif budget.left() > until + seconds:
+            found[None] = self.climb(None, neighbor(deck.dt, 1), seconds, until) or deck.dt
+        else:
+            found[None] = deck.dt
         return {keywords: step for keywords, step in found.items() if step}
 
     # --- 2. long runs ---------------------------------------------------------------------------------
@@ -214,9 +217,16 @@ class Search:
                 self.run(None, dt, seconds)
 
 
-def measure(study, tries, bound, notes):
+#: why there is no error of a trajectory in the answer
+PARTED = (
+    "trajectories diverge before the end of the run, so steps are judged by the energy and the temperatures of a long run;"
+    " --error and --time ask for the error of a trajectory"
+)
+
+
+def measure(study, tries, bound):
     """Sampling of a cost.Study whose trajectory diverges; arguments as of cost.measure."""
-    answer = Sampling(bound, study.deck.dt, study.before, notes=notes)
+    answer = Sampling(bound, study.deck.dt, study.before, notes=[*study.deck.notes, PARTED])
     search = Search(study, answer)
     answer.recommended = search.long_runs(search.short_runs(tries))
     search.compare()

@@ -5,7 +5,7 @@ import math
 from gearquat_analysis.tables import aligned, rounded, with_error, write_rows
 
 from . import drift
-from .methods import named
+from .methods import named, stated
 from .report import _drift_unit, _quantity, _scene, map_lines
 
 
@@ -113,9 +113,8 @@ def write(folder, answer):
         found = run.drift
         numbers = [found.rate, found.error, found.temperature, found.difference.value, found.difference.error]
         numbers = ["" if math.isnan(number) else number for number in numbers]
-        name = "the deck's own" if run.keywords is None else run.keywords
         words = [verdict(run), "yes" if run is answer.choice else "no"]
-        return [name, run.dt, run.seconds, found.time or "", *numbers, *words]
+        return [stated(run.keywords), run.dt, run.seconds, found.time or "", *numbers, *words]
 
     write_rows(folder / "cost.csv", header, map(cells, answer.rows))
     write_rows(folder / "trials.csv", header, map(cells, answer.runs))
