@@ -426,8 +426,9 @@ def test_cost_keeps_its_budget(monkeypatch, pace, overhead):
         # the step has been tried, holds the error, and is not much shorter than it has to be
         assert deck.error(keywords, dt) * costs.end < row.error
         # but for what would drift: 1000 time units, and kT of one degree of freedom is twice the energy
-        assert deck.error(keywords, 1.3 * dt) * costs.end > row.error or 10.0 * deck.error(keywords, 1.3 * dt) > costs.bound
-        assert row.choice.kind == "measured"
+        drifts = 10.0 * deck.error(keywords, 1.3 * dt) > costs.bound
+        assert deck.error(keywords, 1.3 * dt) * costs.end > row.error or drifts
+        assert row.choice.kind == "measured" or drifts
         found = costs.drifts[row.recommended]
         assert abs(found.rate) < costs.bound or pace > 0.1
         assert found.rate == pytest.approx(10.0 * deck.error(*row.recommended)) or pace > 0.1
@@ -475,7 +476,7 @@ def test_cost_of_a_deck_that_equilibrates(tmp_path):
     result = CliRunner().invoke(cost_command, [str(path), "--budget", "20", "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     assert "executed once, and all trials start from their end" in result.output
-    assert "rigid/nve/small" in result.output and "start (s)" in result.output
+    assert "your fix, as it is" in result.output and "T trans - T rot (K)" in result.output
 
 
 def test_time_is_cut_where_the_reference_is_not_known():

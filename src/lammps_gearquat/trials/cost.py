@@ -216,7 +216,7 @@ class Study:
         Of the former's halvings of the step it is the one that changes least.  The latter is None where trajectories of
         many bodies diverge, so that not even an error of ``largest`` can be judged at the end of the deck's run.
         """
-        many = len(self.deck.scene.bodies) >= MANY and largest < math.inf
+        many = largest < math.inf
         accurate = self.deck.accurate
         steps = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1)
         reserve = (1.0 - SHARE_REFERENCE) * self.budget.left()
@@ -374,7 +374,7 @@ class Study:
 
 
 def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bound=BOUND):
-    """Costs of a Deck, or its sampling.Sampling where its trajectory diverges and neither errors nor a time are given.
+    """Costs of a Deck, or its sampling.Sampling where many trajectories diverge and neither errors nor a time are given.
 
     ``budget``, a Budget that began before the deck was opened; ``errors`` in units of the deck
     (radians for orientations; none: DECADES of the size of the bodies); ``time``, of the trials;
@@ -382,17 +382,18 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
     may drift by, in kT per degree of freedom and ns.  Raises DeckError where nothing can
     be measured.
     """
-    unit, asked = evaluate.decade(deck.size) if norm < 2 else 1.0, bool(errors or time)
+    unit = evaluate.decade(deck.size) if norm < 2 else 1.0
+    many = len(deck.scene.bodies) >= MANY and not (errors or time)
     errors = sorted(errors or [unit * decade for decade in DECADES], reverse=True)
     study = Study(deck, budget, timings, norm)
     study.probe()
     study.check(tries)
     whole, reason = (time, "") if time else study.affordable_end()
-    reference, confirmation = study.find_reference(whole, min(errors), math.inf if asked else max(errors))
+    reference, confirmation = study.find_reference(whole, min(errors), max(errors) if many else math.inf)
     parted = confirmation is None
     if not parted:
         doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
-        parted = not asked and diverging(reference.time, doubt, deck.end, max(errors))
+        parted = many and diverging(reference.time, doubt, deck.end, max(errors))
     if parted:
         return sampling.measure(study, tries, bound)
     last, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)

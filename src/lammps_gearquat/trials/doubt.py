@@ -8,7 +8,7 @@ from gearquat_analysis.tables import rounded
 
 MARGIN = 3.0  # an error is judged if it is this much larger than the doubt about the reference
 SHORTEST = 0.1  # of the time to be measured
-#: so many bodies are taken for chaotic if their trajectories differ as if they were
+#: with so many bodies a run is made for averages if their trajectories diverge
 MANY = 8
 
 

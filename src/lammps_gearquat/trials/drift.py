@@ -13,7 +13,7 @@ from .worker import NOT_FINISHED, TrialError
 #: the part of the temperature by which those of translation and rotation may differ
 BALANCE = 0.01
 #: the part of the budget that is kept for these runs beside trials of an error
-SHARE = 0.2
+SHARE = 0.15
 #: times at which a run is sampled, if it has so many steps, and means of these for the slope of the energy
 SAMPLES, MEANS = 400, 100
 #: longest run, in ns
