@@ -165,7 +165,9 @@ def test_a_regular_motion_does_not_diverge():
     assert not doubt.chaotic(time, 1e-2 * time, 20.0, 1e-3)
 
 
-@pytest.mark.parametrize(("dt", "longer", "shorter"), [(2.0, 2.5, 1.5), (1.7, 2.0, 1.5), (8.0, 10.0, 6.0), (1.0, 1.2, 0.8), (1e-3, 1.2e-3, 8e-4)])
+@pytest.mark.parametrize(
+    ("dt", "longer", "shorter"), [(2.0, 2.5, 1.5), (1.7, 2.0, 1.5), (8.0, 10.0, 6.0), (1.0, 1.2, 0.8), (1e-3, 1.2e-3, 8e-4)]
+)
 def test_steps_that_people_write(dt, longer, shorter):
     assert (sampling.neighbor(dt, 1), sampling.shorter(dt)) == (longer, shorter)
 

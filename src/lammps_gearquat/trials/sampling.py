@@ -25,10 +25,10 @@ FEWEST = 200
 BALANCED = 0.1
 #: the shortest step that is tried, as a part of the deck's own
 SHORTEST = 1.0 / 16.0
-#: what the run of a recommended step takes of the time that is left, and the first, shorter try of it
-SHARE_LONG, FIRST_TRY = 0.7, 0.2
-#: another method has to be faster by this factor than one that stands before it
-WORTHWHILE = 1.05
+#: what the run of a recommended step takes of the time that is left, and a first, shorter try before it
+SHARE_LONG, FIRST_TRY = 0.8, 0.15
+#: another method has to be faster by this factor than the deck's own fix and the default: times are noisy
+WORTHWHILE = 1.1
 
 
 def neighbor(dt, shift):
@@ -111,8 +111,9 @@ class Search:
         self.end = drift.longest(study.deck)
 
     def seconds_per_step(self, keywords):
-        known = self.study.pace
-        return known.get(keywords, max(known.values()))
+        """The smallest that is known: what else the machine does can only add to it."""
+        known = [run.seconds * run.dt for run in self.answer.runs if run.keywords == keywords and run.drift.known]
+        return min(known, default=max(self.study.pace.values()))
 
     def run(self, keywords, dt, seconds):
         """The Drift of a run of so many seconds at most, up to the longest time."""
@@ -123,7 +124,7 @@ class Search:
         if steps * pace < timeout:
             balance = steps * dt > BALANCED * self.end
             found = drift.run(self.study, keywords, dt, steps, timeout, self.answer.bound, balance)
-        self.answer.add(Run(keywords, dt, self.seconds_per_step(keywords) / dt, found))
+        self.answer.add(Run(keywords, dt, self.study.pace.get(keywords, pace) / dt, found))
         return found
 
     # --- 1. short runs --------------------------------------------------------------------------------
@@ -183,6 +184,10 @@ class Search:
         first = [keywords for keywords in (None, DEFAULT) if prices.get(keywords, math.inf) <= WORTHWHILE * least]
         return (first or [min(prices, key=prices.get)])[0]
 
+    def close_to_bound(self, found):
+        """Whether a longer run could hardly show that this drift is within its bound."""
+        return found.known and found.error < 0.25 * found.bound and abs(found.rate) + found.error > found.bound
+
     def long_runs(self, steps):
         """Lengthen runs of the cheapest steps until one is known to hold: (keywords, step), or None."""
         budget = self.study.budget
@@ -190,17 +195,16 @@ class Search:
             keywords = self.cheapest(steps)
             dt = steps[keywords]
             whole = self.end / dt * self.seconds_per_step(keywords) + self.study.overhead
-            seconds = min(whole, SHARE_LONG * budget.left())
-            if seconds < self.study.overhead + FEWEST * self.seconds_per_step(keywords):
+            if budget.left() < self.study.overhead + FEWEST * self.seconds_per_step(keywords):
                 return None
-            found = self.run(keywords, dt, FIRST_TRY * seconds)
-            if not found.refused:
-                found = self.run(keywords, dt, seconds)
-            if found.holds:
-                return keywords, dt
+            found = self.run(keywords, dt, min(whole, FIRST_TRY * budget.left()))
+            if found.known and not found.refused and not self.close_to_bound(found):
+                found = self.run(keywords, dt, min(whole, SHARE_LONG * budget.left()))
+                if found.holds:
+                    return keywords, dt
             steps[keywords] = shorter(dt)
             # a run that says nothing says no more with a shorter step
-            silent = not found.refused and not (found.known and found.error < 0.25 * found.bound)
+            silent = not found.refused and not self.close_to_bound(found)
             if silent or steps[keywords] < self.shortest:
                 del steps[keywords]
         return None

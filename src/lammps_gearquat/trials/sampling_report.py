@@ -20,7 +20,7 @@ def text(deck, answer):
             f"The runs before it were executed once, and all trials start from their end ({answer.before:.1f} s of the budget)."
         )
     lines += [f"Note: {note}." for note in answer.notes]
-    lines += ["", aligned(header, [_cells(answer, run, drift.nanosecond(deck)) for run in answer.rows]), "", *_explained(deck, answer), ""]
+    lines += ["", aligned(header, [_cells(answer, run, drift.nanosecond(deck)) for run in answer.rows]), "", *_explained(answer), ""]
     return "\n".join([*lines, *_advice(deck, answer), *_failures(answer)])
 
 
@@ -60,12 +60,12 @@ def _cells(answer, run, nanosecond):
     ]
 
 
-def _explained(deck, answer):
+def _explained(answer):
     return [
         "Drift is the slope of the conserved energy over the longest run at this step, in kT of the mean kinetic energy",
-        f"and per degree of freedom.  A step holds if that is below {answer.bound:g}, with {drift.SURE:g} standard errors added, and if the",
-        f"temperatures of translation and rotation do not differ by more than {100 * drift.BALANCE:g} % for sure.  Seconds are wall times of the",
-        "steps.  Speed-up is over the deck as it is.",
+        f"and per degree of freedom.  A step holds if that is below {answer.bound:g}, with {drift.SURE:g} standard errors added, and if",
+        f"the temperatures of translation and rotation do not differ by more than {100 * drift.BALANCE:g} % for sure.  Seconds are",
+        "wall times of the steps.  Speed-up is over the deck as it is.",
     ]
 
 
