@@ -227,8 +227,19 @@ def test_translation_and_rotation_are_those_of_the_bodies(make_deck, style):
     assert drifted[0] > 0.2 and trial.positions.shape[0] == 1
 
 
+@pytest.mark.parametrize(("standard", "repeated"), [("9 (second), 8 (first)", True), ("auto", False)])
+def test_what_only_repeats_the_default_is_tried_once(monkeypatch, standard, repeated):
+    """Whether the fix has a number of values by default or chooses it."""
+    table = {"formulation": "second", "values": standard}
+    rows = {name: types.SimpleNamespace(standard=lambda value=value: value) for name, value in table.items()}
+    monkeypatch.setattr(methods.keywords, "table", lambda: rows)
+    assert ("formulation second values 9" not in methods.methods()) == repeated
+    assert "formulation first values 8" in methods.methods()
+
+
 def test_the_default_of_the_fix_stands_first_and_once():
     found = methods.methods()
     assert found[0] == methods.DEFAULT == "" and len(set(found)) == len(found)
     assert "formulation second values 7" in found
+    assert not {f"formulation second values {n}" for n in (7, 5, 11)} - set(found)
     assert methods.named("") == "gear/quat (no keyword)" and methods.named(None) == "your fix"
