@@ -42,7 +42,7 @@ def _look(keywords, methods):
     kin.sort(key=_rank)
     place = kin.index(keywords) / max(len(kin) - 1, 1) if keywords in kin else 0.5
     color = matplotlib.colormaps[FORMULATION[family]](0.35 + 0.6 * place)
-    return {"color": color, "marker": "o", "label": keywords.replace("formulation ", "")}
+    return {"color": color, "marker": "o", "label": keywords.replace("formulation ", "") or "no keyword"}
 
 
 def draw_cost(path, deck, costs):
@@ -91,6 +91,28 @@ def _draw_prices(axis, name, costs):
     axis.axhspan(1e-300, costs.doubt, color="#dddddd", zorder=0)
     note = {"fontsize": 7, "color": OWN, "va": "top", "ha": "left", "clip_on": True}
     axis.text(0.01, costs.doubt, "below the uncertainty of the reference", transform=edge, **note)
+
+
+def draw_drifts(path, deck, answer):
+    """Drift of the energy against the step, by method, with the bound; an answer of the module sampling."""
+    title = f"Drift of the energy: {deck.path.name}"
+    rows = [run for run in answer.rows if run.drift.known]
+    names = list(dict.fromkeys(run.keywords for run in rows))
+    with picture(path, title, figsize=(8, 5)) as (figure, axis):
+        for keywords in names:
+            mine = [run for run in rows if run.keywords == keywords]
+            values = [[run.dt, run.drift.rate, run.drift.error] for run in mine]
+            dt, rate, error = np.transpose(values)
+            look = _look(keywords, names)
+            axis.errorbar(dt, rate, error, capsize=2, markersize=3, **look)
+        axis.axhspan(-answer.bound, answer.bound, color="#dddddd", zorder=0, label="bound")
+        if answer.choice:
+            star = {"color": "black", "markersize": 9, "zorder": 4, "label": "recommended"}
+            axis.plot([answer.choice.dt], [answer.choice.drift.rate], "*", **star)
+        axis.set_yscale("symlog", linthresh=answer.bound)
+        axis.set_xlabel(named("time step", deck.time_unit))
+        axis.set_ylabel(f"drift ({'kT/ns/dof' if deck.time_unit else 'kT/1000 time units/dof'})")
+        figure.legend(fontsize=8, loc="outside right upper")
 
 
 # --- horizon --------------------------------------------------------------------------------------

@@ -37,13 +37,15 @@ def test_drift_is_the_slope_by_twice_the_kinetic_energy():
 
 @pytest.mark.parametrize(("white", "walk"), [(1.0, 0.0), (0.0, 1.0), (1.0, 0.3)])
 def test_error_of_a_drift_is_that_of_its_noise(white, walk):
-    """Noise that is bounded, that is a random walk, and both: errors are never much too small."""
+    """Noise that is bounded, that is a random walk, and both: over many seeds the deviations have the stated errors."""
     random = np.random.default_rng(1)
-    noise = 1e-6 * (white * random.normal(size=(60, 100)) + walk * random.normal(size=(60, 100)).cumsum(axis=1))
+    noise = 1e-6 * (white * random.normal(size=(300, 100)) + walk * random.normal(size=(300, 100)).cumsum(axis=1))
     found = [drift.of_trial(trial_of(6e-6 * TIME + one), drift.nanosecond(REAL)) for one in noise]
     z = np.array([(one.rate - 1.0) / one.error for one in found])
-    assert 0.4 < np.sqrt(np.mean(z**2)) < 1.5
-    assert np.mean(z) == pytest.approx(0.0, abs=0.4)
+    # with white noise alone a walk cannot be ruled out, so the error is too large; nowhere is it much too small
+    assert 0.45 < np.sqrt(np.mean(z**2)) < 1.4
+    assert np.mean(z) == pytest.approx(0.0, abs=0.25)
+    assert np.mean(np.abs(z) > drift.SURE) < 0.15
 
     naive = np.array([(np.polyfit(TIME, 6e-6 * TIME + one, 1)[0] - 6e-6) for one in noise]).std()
     assert np.mean([one.error for one in found]) * 6e-6 > 0.7 * naive
@@ -83,7 +85,7 @@ def test_what_is_conserved_with_each_keyword_is_watched(make_deck, keywords, bou
     """The heat of a thermostat is part of it, and so is the way from the predicted to the corrected pose."""
     with Deck(make_deck(**{FIX: f"{FIX} {keywords}"}, **FOR_GEAR), [("style", "gear/quat")]) as deck:
         trial = deck.run(None, [10] * 50, 0.001, energies=True)
-    energy, kinetic = trial.energies.T
+    energy, kinetic = trial.energies.T[:2]
     assert np.ptp(energy) < bound * kinetic.mean()
     assert abs(drift.of_trial(trial, 1.0).rate) < bound
 
@@ -113,9 +115,8 @@ def test_the_longest_run_that_is_possible_is_measured(make_deck):
     with Deck(make_deck(**FOR_GEAR), [("style", "gear/quat")]) as deck:
         study = cost.Study(deck, cost.Budget(60.0))
         study.probe()
-        costs = cost.Costs(1.2, 0.0, None, None, 0)
-        costs.rows = [cost.Row(1e-3, own=price_of("the deck's own", 0.004))]
-        found = drift.measure(study, costs)[None, 0.004]
+        found = drift.of_step(study, None, 0.004, 1.2, study.budget.left())
+    assert not found.fails and bool(found.failure) == (found.time < 50.0)
     assert found.time == pytest.approx(1.2) or found.time > 50.0
     assert not math.isnan(found.rate)
 
@@ -139,21 +140,25 @@ def said(make_deck):
     return lines
 
 
-def test_a_step_that_drifts_is_warned_of(said):
+def test_a_step_that_drifts_is_not_recommended(said):
     text = said(Drift(5.83, 0.31, 40.0))
-    assert "# for short runs: the energy drifts by 5.83 ± 0.31 kT/1000 time units/dof\n    fix 1" in text
-    assert "WARNING: gear/quat values 7, timestep 3.8: the energy drifts by 5.83 ± 0.31" in text and "over 40" in text
-    assert "To measure" not in text
+    assert "Not recommended: gear/quat values 7, timestep 3.8, for the energy drifts by 5.83 ± 0.31" in text and "over 40" in text
+    assert "To measure" not in text and "WARNING" not in text
 
 
-def test_a_step_that_fails_in_a_longer_run_is_warned_of(said):
+def test_a_step_that_fails_in_a_longer_run_is_not_recommended(said):
     """As in rigid water at 4 fs, which holds an error of 0.001 Å for 100 fs and blows up after 260 fs."""
-    text = said(Drift(reason="no run was long enough", failure="blow-up in step 65: use a smaller time step"))
-    assert "# for short runs: a longer one ended with an error, see the warning below\n    fix 1" in text
-    assert "timestep 3.8: a run that was longer than the trials ended with an error:\n    blow-up in step 65" in text
+    found = Drift(reason="no run was long enough", failure="blow-up in step 65: use a smaller time step")
+    assert found.fails and found.refused and not Drift(failure="molecules left the box", gone=True).refused
+    text = said(found)
+    assert "Not recommended: gear/quat values 7, timestep 3.8: a run" in text and "ended with an error:\n    blow-up in step 65" in text
     assert "has not been measured" not in text
-    text = said(Drift(0.01, 0.02, 5.0, failure="molecules left the box"))
-    assert "molecules left the box" in text and "has not been measured" not in text
+
+
+def test_bodies_that_leave_the_box_in_a_longer_run_are_warned_of(said):
+    text = said(Drift(0.01, 0.02, 5.0, failure="molecules left the box", gone=True))
+    assert "# for short runs: a longer one ended with an error, see the warning below\n    fix 1" in text
+    assert "WARNING: gear/quat values 7, timestep 3.8: a run that was longer" in text and "molecules left the box" in text
 
 
 def test_nothing_is_said_of_a_step_that_holds(said):
@@ -201,7 +206,7 @@ def costs_from(seconds):
     for dt, timings in zip((0.1, 0.05, 0.025), seconds):
         trial = measure.Trial("a", dt, 1 / dt, None, None, None, 1, timings, [0.1] * len(timings))
         costs.trials.append((trial, (dt**6,) * 4))
-    cost.fill_rows(costs, [2e-6, 2e-8, 3e-10])
+    costs.rows = cost.rows_of(costs, [2e-6, 2e-8, 3e-10])
     return costs
 
 
@@ -225,6 +230,5 @@ def test_the_same_holds_for_the_own_fix():
     costs = costs_from([[7.0], [6.0], [4.0]])
     for trial, _ in costs.trials:
         trial.keywords = None
-    costs.rows = []
-    cost.fill_rows(costs, [2e-6, 3e-10])
+    costs.rows = cost.rows_of(costs, [2e-6, 3e-10])
     assert [row.own.seconds for row in costs.rows] == [4.0, 4.0]

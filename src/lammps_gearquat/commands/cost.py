@@ -6,7 +6,7 @@ import cloup
 
 from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly, out_option
 
-from ..trials import NORMS
+from ..trials import BOUND, NORMS
 from ..trials.script import DeckError, pairs
 from ..trials.worker import TrialError
 from .common import announce, deck_options, ending_cleanly, shown_progress
@@ -40,6 +40,15 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
         help="Time of the trials.  Default: that of the deck's run, or what budget and chaos allow.",
     ),
     cloup.option(
+        "--drift",
+        "bound",
+        type=POSITIVE,
+        default=BOUND,
+        show_default=True,
+        help="Drift of the energy, in kT per degree of freedom and ns (units lj: 1000 time units), above which no step"
+        " is recommended.",
+    ),
+    cloup.option(
         "--try",
         "tries",
         multiple=True,
@@ -52,14 +61,14 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
     cloup.option(
         "--budget",
         type=POSITIVE,
-        default=180.0,
+        default=300.0,
         help="Seconds of wall time for everything, runs before the measured one included.",
     ),
     cloup.option("--timings", type=COUNT, default=5, help="Timings of each trial that matters, interleaved."),
     out_option("gearquat-cost", "cost.csv, trials.csv and cost.png"),
 )
 @failing_clearly(DeckError, TrialError)
-def cost(scene, errors, time, norm, budget, timings, tries, out):
+def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
     """Measure what accuracy costs in the scene of DECK, and print the lines to put into it.
 
     DECK is any LAMMPS input script with fix gear/quat, rigid, rigid/nve, rigid/small or
@@ -67,11 +76,15 @@ def cost(scene, errors, time, norm, budget, timings, tries, out):
     trials start from their end.  Short trials over time steps and orders are compared with a finer
     one and with the deck's own fix, which is recommended where no other is faster.  Errors are judged only as
     far as the finest trial is confirmed by a second one of the other formulation.
+
+    Where trajectories diverge before the end of the run, as in a liquid, and neither --error nor --time is given, long
+    runs are compared instead, by the drift of the energy and by the temperatures of translation and rotation.  No step is
+    recommended whose energy drifts by more than --drift.
     """
     begin = monotonic()
     from .. import figures
     from ..trials import cost as trials
-    from ..trials import report
+    from ..trials import report, sampling, sampling_report
     from ..trials.measure import Deck
 
     for text in tries:
@@ -82,9 +95,14 @@ def cost(scene, errors, time, norm, budget, timings, tries, out):
         clock.say("following the deck")
         say = announce(scene["path"], progress)
         with Deck(**scene, say=say, on_wait=clock.spent, timeout=trials.SHARE_BEFORE * budget) as deck:
-            costs = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries)
+            answer = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries, bound)
     out.mkdir(parents=True, exist_ok=True)
-    report.write_costs(out, deck, costs)
-    figures.draw_cost(out / "cost.png", deck, costs)
-    text = report.cost_text(deck, costs)
+    if isinstance(answer, sampling.Sampling):
+        sampling_report.write(out, answer)
+        figures.draw_drifts(out / "cost.png", deck, answer)
+        text = sampling_report.text(deck, answer)
+    else:
+        report.write_costs(out, deck, answer)
+        figures.draw_cost(out / "cost.png", deck, answer)
+        text = report.cost_text(deck, answer)
     cloup.echo(f"{text}\n\nTables and picture are in {out.resolve()}")

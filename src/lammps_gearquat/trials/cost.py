@@ -7,7 +7,10 @@
 2. Every method from coarse to fine steps, to the same time.
 3. Those that matter at the steps that interpolation promises: what is recommended has been tried.
 4. Those again and again, interleaved, for their wall time: the smallest counts.
-5. What is recommended for as long as the budget allows, for the drift of its energy.
+5. What is recommended for as long as the budget allows, for the drift of its energy.  Where that is beyond
+   its bound, the next cheapest is tried.
+
+Where trajectories diverge before the end of the deck's run, ``sampling`` takes the place of all but the first.
 """
 
 import math
@@ -19,24 +22,19 @@ import numpy as np
 from gearquat_analysis.superposition import angles
 from gearquat_analysis.tables import rounded
 
-from . import drift, evaluate
+from . import BOUND, drift, evaluate, sampling
 from .budget import Budget
+from .doubt import MANY, MARGIN, chaotic, cut_to, diverging, known_until
 from .explain import explained
+from .methods import methods, named, stated
 from .script import DeckError
 from .worker import NOT_FINISHED, TrialError
 
 CONFIRMATION = "formulation first values 6 compensate yes"
-#: the default first; fewer values follow forces that change quickly, more are better where all is smooth
-METHODS = (
-    *(f"formulation second values {n}" for n in (9, 7, 5, 11)),
-    *(f"formulation first values {n}" for n in (8, 6, 4)),
-)
 #: default errors, in powers of ten of the size of the bodies
 DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 
 SAMPLES = 20  # of a reference in time
-MARGIN = 3.0  # an error is judged if it is this much larger than the doubt about the reference
-SHORTEST = 0.1  # of the time to be measured
 #: full-length runs at the deck's own step that fit into the budget: the time is chosen so
 RUNS_IN_BUDGET = 100
 SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.15
@@ -86,7 +84,8 @@ class Costs:
     ``end``, the time of the trials; ``doubt``, how far the two best trials are apart there;
     ``trials``, list of (Trial, errors) with one error for each of NORMS; ``norm``, the index of the
     one that was chosen; ``rows``, list of Row; ``before``, seconds that following the deck took;
-    ``drifts``, dictionary Row.recommended -> drift.Drift.
+    ``drifts``, dictionary (keywords, step), as in Row.recommended, -> drift.Drift, also of what is not recommended
+    for its sake; ``bound``, what a drift may be.
     """
 
     end: float
@@ -99,6 +98,7 @@ class Costs:
     notes: list = field(default_factory=list)
     before: float = 0.0
     drifts: dict = field(default_factory=dict)
+    bound: float = BOUND
 
     @property
     def doubt_limit(self):
@@ -106,9 +106,17 @@ class Costs:
         return MARGIN * self.doubt
 
     def points(self):
-        """Dictionary keywords -> list of evaluate.Point, with the largest errors that ``doubt`` allows."""
-        points = {}
+        """Dictionary keywords -> list of evaluate.Point, with the largest errors that ``doubt`` allows.
+
+        Steps are left out whose energy drifts too much, or that are longer than such a step.
+        """
+        points, limit = {}, {}
+        for (keywords, dt), found in self.drifts.items():
+            if found.refused:
+                limit[keywords] = min(dt, limit.get(keywords, math.inf))
         for trial, errors in self.trials:
+            if evaluate.usable_step(trial.dt) >= limit.get(trial.keywords, math.inf):
+                continue
             cost = trial.steps, trial.fastest, errors[self.norm] + self.doubt
             start = trial.start_evaluations, trial.fastest_start
             point = evaluate.Point(trial.label, trial.dt, *cost, *start)
@@ -131,7 +139,7 @@ class Study:
 
     def attempt(self, keywords, end, steps, samples=1):
         """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
-        self.budget.say(f"{keywords or 'own fix'}, step {rounded(end / steps)}")
+        self.budget.say(f"{named(keywords)}, step {rounded(end / steps)}")
         timeout = min(PATIENCE + 3 * self.expected(keywords, steps), self.budget.left())
         begin = clock.monotonic()
         try:
@@ -165,7 +173,7 @@ class Study:
             return DeckError(f"{what}: {reason}")
         return DeckError(
             f"the budget of {self.budget.seconds:g} s was used up before {'this' if self.pace else 'a first'}"
-            f" trial ended ({keywords or 'own fix'}); {rounded(self.before, 2)} s had passed before the trials:"
+            f" trial ended ({named(keywords)}); {rounded(self.before, 2)} s had passed before the trials:"
             f" try a budget of {self.enough()} s or more"
         )
 
@@ -202,11 +210,13 @@ class Study:
         return min(steps, whole) * self.deck.dt, f"the budget of {self.budget.seconds:g} s"
 
     # --- 1. the reference -------------------------------------------------------------------------------
-    def find_reference(self, end, target):
+    def find_reference(self, end, target, largest=math.inf):
         """(accurate trial, trial with CONFIRMATION), as fine as the budget allows.
 
-        Of the former's halvings of the step it is the one that changes least.
+        Of the former's halvings of the step it is the one that changes least.  The latter is None where trajectories of
+        many bodies diverge, so that not even an error of ``largest`` can be judged at the end of the deck's run.
         """
+        many = largest < math.inf
         accurate = self.deck.accurate
         steps = SAMPLES * max(math.ceil(end / self.deck.dt / SAMPLES), 1)
         reserve = (1.0 - SHARE_REFERENCE) * self.budget.left()
@@ -217,7 +227,10 @@ class Study:
                 finer.append(trial)
             failed += trial is None
             if len(finer) > 1:
-                gaps.append(self.gap(finer[-2], finer[-1])[-1])
+                between = self.gap(finer[-2], finer[-1])
+                if many and chaotic(trial.time, between, self.deck.end, largest):
+                    return trial, None
+                gaps.append(between[-1])
                 # far better than required, or nothing gained by two further halvings
                 stalled = len(gaps) > 2 and gaps[-1] > 0.5 * gaps[-3]
                 if gaps[-1] < 0.03 * target or stalled:
@@ -296,22 +309,22 @@ class Study:
 
     def climb_all(self, costs, errors, tries):
         """Trials of all methods into ``costs``."""
-        methods = [None, *dict.fromkeys([*filter(self.deck.takes, METHODS), *tries])]
+        tried = [None, *dict.fromkeys([*filter(self.deck.takes, methods()), *tries])]
         middle = math.log(errors[0] * errors[-1]) / 2
         own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
         timing = (SHARE_TIMING + drift.SHARE) * self.budget.seconds
-        for count, keywords in enumerate(methods):
+        for count, keywords in enumerate(tried):
             left = max(self.budget.left() - timing, 0.0)
-            reserve = timing + left * (1.0 - 1.0 / (len(methods) - count))
+            reserve = timing + left * (1.0 - 1.0 / (len(tried) - count))
             if left == 0.0 or not self.affords(keywords, gear_steps, timing):
-                costs.notes.append(f"the budget leaves no time for {keywords or 'the own fix'}")
+                costs.notes.append(f"the budget leaves no time for {named(keywords)}")
                 continue
             first = own_steps if keywords is None else gear_steps
             rungs = self.ladder(costs, keywords, errors, first, reserve)
             if rungs and keywords is not None:  # the next method begins in the middle
                 gear_steps = min(rungs, key=lambda steps: abs(math.log(rungs[steps] + 1e-300) - middle))
             if not rungs and keywords in self.failures:
-                costs.notes.append(f"no trial of {keywords} came to its end: {self.failures[keywords]}")
+                costs.notes.append(f"no trial of {named(keywords)} came to its end: {self.failures[keywords]}")
 
     # --- 3. the steps between -------------------------------------------------------------------------
     def refine(self, costs, errors):
@@ -339,26 +352,53 @@ class Study:
                     trial.seconds += again.seconds
                     trial.start_seconds += again.start_seconds
 
+    # --- 5. the drift -----------------------------------------------------------------------------------
+    def choose(self, costs, errors):
+        """Rows of ``costs`` whose recommended steps were run for the drift of their energy, and not refused for it.
 
-def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
-    """Costs of a Deck.
+        Short runs come first, and each refusal makes another choice.  Then what is left of the budget is shared by long runs.
+        """
+        long = set()
+        for part in (drift.FIRST_TRY, 1.0):
+            while True:
+                costs.rows = rows_of(costs, errors)
+                chosen = dict.fromkeys(row.recommended for row in costs.rows if row.choice)
+                new = [pair for pair in chosen if pair not in (long if part == 1.0 else costs.drifts)]
+                if not new:
+                    break
+                seconds = part * self.budget.left() / (len(new) + (part == 1.0))
+                found = drift.of_step(self, *new[0], costs.end, seconds, costs.bound)
+                if found.refused or found.time >= costs.drifts.get(new[0], found).time:
+                    costs.drifts[new[0]] = found
+                long |= {new[0]} if part == 1.0 else set()
+
+
+def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bound=BOUND):
+    """Costs of a Deck, or its sampling.Sampling where many trajectories diverge and neither errors nor a time are given.
 
     ``budget``, a Budget that began before the deck was opened; ``errors`` in units of the deck
     (radians for orientations; none: DECADES of the size of the bodies); ``time``, of the trials;
-    ``tries``, keywords of fix gear/quat to try beside METHODS.  Raises DeckError where nothing can
+    ``tries``, keywords of fix gear/quat to try beside ``methods``; ``bound``, what the energy of a recommended step
+    may drift by, in kT per degree of freedom and ns.  Raises DeckError where nothing can
     be measured.
     """
     unit = evaluate.decade(deck.size) if norm < 2 else 1.0
+    many = len(deck.scene.bodies) >= MANY and not (errors or time)
     errors = sorted(errors or [unit * decade for decade in DECADES], reverse=True)
     study = Study(deck, budget, timings, norm)
     study.probe()
     study.check(tries)
     whole, reason = (time, "") if time else study.affordable_end()
-    reference, confirmation = study.find_reference(whole, min(errors))
-    doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
+    reference, confirmation = study.find_reference(whole, min(errors), max(errors) if many else math.inf)
+    parted = confirmation is None
+    if not parted:
+        doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
+        parted = many and diverging(reference.time, doubt, deck.end, max(errors))
+    if parted:
+        return sampling.measure(study, tries, bound)
     last, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
     end = whole * (last + 1) / SAMPLES
-    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=study.before)
+    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=study.before, bound=bound)
     costs.notes += deck.notes
     if reason:
         costs.notes.append(f"{reason} allows trials until t = {whole:g}, and the run ends at {deck.end:g}")
@@ -375,26 +415,10 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=()):
     study.refine(costs, wanted)
     for _ in range(ATTEMPTS):  # other methods may matter when times are known better
         study.repeat(worth_timing(costs, wanted))
-    fill_rows(costs, errors)
-    costs.drifts = drift.measure(study, costs)
+    study.choose(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
     return costs
-
-
-def judged_at(doubt, error):
-    """Indices of the samples up to which an error can be judged."""
-    return np.flatnonzero(MARGIN * np.maximum.accumulate(doubt) < error)
-
-
-def known_until(time, doubt, errors):
-    """Until what time errors that cannot be judged at the end could be: list of notes."""
-    notes = []
-    for error in errors:
-        known = judged_at(doubt, error)
-        until = f"only until t = {time[known[-1]]:g}" if len(known) else f"not even until t = {time[0]:g}"
-        notes.append(f"an error of {error:g} can be judged {until}: the two best trials differ by more")
-    return notes
 
 
 def warnings_of(trials):
@@ -402,34 +426,12 @@ def warnings_of(trials):
     methods_of = {}
     for trial in trials:
         for line in trial.warnings:
-            methods_of.setdefault(line, {})[trial.label] = True
-    methods = {trial.label for trial in trials if trial.keywords is not None}
+            methods_of.setdefault(line, {})[stated(trial.keywords)] = True
+    labels = {stated(trial.keywords) for trial in trials if trial.keywords is not None}
     return [
-        f"{line} ({'every fix gear/quat' if methods <= set(labels) else ', '.join(labels)})"
-        for line, labels in methods_of.items()
+        f"{line} ({'every fix gear/quat' if labels <= set(names) else ', '.join(names)})"
+        for line, names in methods_of.items()
     ]
-
-
-def cut_to(time, doubt, errors):
-    """(index of the sample at which to end, why if it is not the last).
-
-    The latest sample at which the smallest error can be judged; if that is too early, the next.
-    """
-    last = len(time) - 1
-    for error in sorted(errors):
-        good = judged_at(doubt, error)
-        if len(good) and (good[-1] + 1) / len(time) >= SHORTEST:
-            if good[-1] == last:
-                return last, ""
-            return int(good[-1]), (
-                f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, because later the two best"
-                f" ones differ by more than {rounded(error / MARGIN, 2)}, so an error of {error:g} cannot be judged"
-            )
-    index = max(int(SHORTEST * len(time)) - 1, 0)
-    return index, (
-        f"the two best trials differ by {rounded(doubt[index], 2)} already at a tenth of the time, so none of"
-        " the errors can be judged in this scene"
-    )
 
 
 def worth_timing(costs, errors):
@@ -443,8 +445,8 @@ def worth_timing(costs, errors):
     return list(chosen.values())
 
 
-def fill_rows(costs, errors):
-    """One row for each error: what it costs with the deck's own method, and at best.
+def rows_of(costs, errors):
+    """One Row for each error: what it costs with the deck's own method, and at best.
 
     A smaller error that was measured as cheaper serves a larger one as well: times are noisy.
     """
@@ -457,4 +459,4 @@ def fill_rows(costs, errors):
             own = min(own, finer.own, key=lambda price: price.seconds)
         bests = [*prices.values(), finer.best] if finer.best else prices.values()
         rows.append(Row(error, own, min(bests, key=lambda price: price.seconds, default=None)))
-    costs.rows += sorted(rows, key=lambda row: errors.index(row.error))
+    return sorted(rows, key=lambda row: errors.index(row.error))

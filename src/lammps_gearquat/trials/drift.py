@@ -1,24 +1,27 @@
-"""Drift of the energy at the steps that are recommended."""
+"""How the energy drifts at a step, and whether translation and rotation have the same temperature."""
 
 import math
 from dataclasses import dataclass, replace
 
+from gearquat_analysis.blocks import Estimate, of_series
 from gearquat_analysis.units import UNITS
 
-from . import evaluate
-from .explain import explained
+from . import BOUND, evaluate
+from .explain import explained, left_the_box
 from .worker import NOT_FINISHED, TrialError
 
-#: kT per degree of freedom and ns above which a step is warned of
-BOUND = 0.1
-#: the part of the budget that is kept for these runs
-SHARE = 0.1
-#: times at which a run is sampled
-SAMPLES = 100
+#: the part of the temperature by which those of translation and rotation may differ
+BALANCE = 0.01
+#: the part of the budget that is kept for these runs beside trials of an error
+SHARE = 0.15
+#: times at which a run is sampled, if it has so many steps, and means of these for the slope of the energy
+SAMPLES, MEANS = 400, 100
 #: longest run, in ns
 LONGEST = 0.1
 #: standard errors that a drift has to be away from the bound to be judged
 SURE = 2.0
+#: the part of the time left that the first, shorter try of a step takes
+FIRST_TRY = 0.1
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,9 @@ class Drift:
 
     ``rate`` and its standard ``error`` are in kT per degree of freedom and ns (in units lj: 1000 time units), with
     the kT of the mean kinetic energy.  Both are NaN if they are unknown, and then ``reason`` says why.
-    ``failure`` is the error that ended a longer run, if there was one.
+    ``failure`` is the error that ended a run, if there was one, and ``gone`` whether it was that bodies left the box.
+    ``difference``, Estimate of T translation - T rotation in kelvin, and ``temperature``, their mean, likewise.
+    ``bound``: what ``rate`` may be.
     """
 
     rate: float = math.nan
@@ -35,16 +40,39 @@ class Drift:
     time: float = 0.0
     reason: str = ""
     failure: str = ""
+    gone: bool = False
+    difference: Estimate = Estimate.missing("not measured")
+    temperature: float = math.nan
+    bound: float = BOUND
+
+    @property
+    def known(self):
+        return not math.isnan(self.rate)
 
     @property
     def drifts(self):
-        """Whether the drift is beyond BOUND for sure."""
-        return abs(self.rate) - SURE * self.error > BOUND
+        """Whether the drift is beyond the bound for sure."""
+        return abs(self.rate) - SURE * self.error > self.bound
+
+    @property
+    def unbalanced(self):
+        """Whether the temperatures of translation and rotation differ by more than BALANCE of them for sure."""
+        return abs(self.difference.value) - SURE * self.difference.error > BALANCE * self.temperature
+
+    @property
+    def fails(self):
+        """Whether a run ended with an error that the step is to be blamed for."""
+        return bool(self.failure) and not self.gone
+
+    @property
+    def refused(self):
+        """Whether the step is not to be recommended."""
+        return self.drifts or self.unbalanced or self.fails
 
     @property
     def holds(self):
-        """Whether the drift is within BOUND for sure."""
-        return abs(self.rate) + SURE * self.error < BOUND
+        """Whether the drift is within the bound for sure, and nothing else speaks against the step."""
+        return abs(self.rate) + SURE * self.error < self.bound and not self.refused
 
 
 def nanosecond(deck):
@@ -52,45 +80,70 @@ def nanosecond(deck):
     return 1000.0 / UNITS[deck.units].ps
 
 
-def of_trial(trial, nanosecond):
-    """Drift of a trial with energies."""
-    energy, kinetic = trial.energies.T
+def longest(deck, end=0.0):
+    """The longest time over which drifts are measured, in the unit of time of the deck; not below ``end``."""
+    return max(LONGEST * nanosecond(deck), end)
+
+
+def of_trial(trial, nanosecond, freedoms=None, boltzmann=1.0, bound=BOUND):
+    """Drift of a trial with energies (S, 2), or (S, 4) where there are ``freedoms`` of translation and rotation."""
+    energy, kinetic, *parts = trial.energies.T
     thermal = 2.0 * kinetic.mean()  # kT times the number of degrees of freedom
     if not thermal > 0.0:
-        return Drift(time=trial.time[-1], reason="there is no kinetic energy")
-    rate, error = (nanosecond * number / thermal for number in evaluate.trend(trial.time, energy))
-    return Drift(rate, error, float(trial.time[-1]))
+        return Drift(time=float(trial.time[-1]), reason="there is no kinetic energy", bound=bound)
+    # means over equal times have all that white noise and a random walk say of the slope
+    many = len(energy) // min(len(energy), MEANS)
+    time, energy = (values[: len(values) // many * many].reshape(-1, many).mean(axis=1) for values in (trial.time, energy))
+    rate, error = (nanosecond * number / thermal for number in evaluate.trend(time, energy))
+    found = Drift(rate, error, float(trial.time[-1]), bound=bound)
+    if freedoms is None or not parts:
+        return found
+    translation, rotation = (2.0 * part / (number * boltzmann) for part, number in zip(parts, freedoms))
+    mean = float(0.5 * (translation + rotation).mean())
+    return replace(found, difference=of_series(translation - rotation), temperature=mean)
 
 
-def measure(study, costs):
-    """Drift of each recommended step: dictionary (keywords, step) -> Drift.
+def run(study, keywords, dt, steps, timeout, bound=BOUND, balance=False):
+    """Drift in a run of about so many ``steps``; NaN, with a reason, where it was not finished or ended with an error.
 
-    What is left of the budget is shared by runs as long as it allows, up to LONGEST or the trials' own length.
+    ``balance``: whether the temperatures of translation and rotation are compared, as in a liquid in equilibrium.
     """
-    chosen = list(dict.fromkeys(row.recommended for row in costs.rows if row.choice))
-    found = {}
-    for number, (keywords, dt) in enumerate(chosen):
-        found[keywords, dt] = _of_step(study, costs, keywords, dt, study.budget.left() / (len(chosen) - number))
-    return found
+    deck = study.deck
+    if deck.partial and deck.others:
+        reason = "LAMMPS does not print the whole kinetic energy of these bodies and of the other atoms"
+        return Drift(reason=reason, bound=bound)
+    stride = max(int(steps) // SAMPLES, 1)
+    samples = int(steps) // stride
+    if samples < evaluate.FEWEST:
+        return Drift(reason="no run was long enough", bound=bound)
+    study.budget.say(f"drift of {keywords or ('own fix' if keywords is None else 'no keyword')}, step {dt:g}")
+    try:
+        trial = deck.run(keywords, [stride] * samples, dt, timeout, energies=True)
+    except TrialError as error:
+        said = str(error)
+        if said.startswith(NOT_FINISHED):
+            return Drift(reason=f"a run was {said}", bound=bound)
+        return Drift(failure=explained(said, deck, dt), gone=left_the_box(said, deck), bound=bound)
+    finally:
+        study.budget.spent()
+    study.pace[keywords] = trial.seconds[0] / trial.steps
+    freedoms = deck.freedoms if balance else None
+    return of_trial(trial, nanosecond(deck), freedoms, UNITS[deck.units].boltzmann, bound)
 
 
-def _of_step(study, costs, keywords, dt, seconds):
-    """Drift at a step, from a run that takes so many seconds at most; from a shorter one where that does not end."""
-    if study.deck.partial and study.deck.others:
-        return Drift(reason="LAMMPS does not print the whole kinetic energy of these bodies and of the other atoms")
-    ns = nanosecond(study.deck)
-    longest = max(LONGEST * ns, costs.end) / dt
+def of_step(study, keywords, dt, end, seconds, bound=BOUND):
+    """Drift at a step, from a run that takes so many seconds at most, up to ``longest``.
+
+    Where that ends with an error a run to ``end``, for which the step is recommended, is made as well.
+    """
     affordable = (seconds - study.overhead) / (1.2 * study.pace[keywords])
-    whole, judged = (int(steps / SAMPLES) for steps in (min(longest, affordable), min(costs.end / dt, affordable)))
-    reason, failure = "no run was long enough", ""
-    for stride in dict.fromkeys(filter(None, (whole, judged))):
+    whole, judged = (int(min(time / dt, affordable)) for time in (longest(study.deck, end), end))
+    found = Drift(reason="no run was long enough", bound=bound)
+    for steps in dict.fromkeys(filter(None, (whole, judged))):
         timeout = max(min(2.0 * seconds, study.budget.left()), 0.0)
-        try:
-            trial = study.deck.run(keywords, [stride] * SAMPLES, dt, timeout, energies=True)
-            return replace(of_trial(trial, ns), failure=failure)
-        except TrialError as error:
-            if str(error).startswith(NOT_FINISHED):
-                reason = f"a run was {error}"
-            else:
-                failure = failure or explained(str(error), study.deck, dt)
-    return Drift(reason=reason, failure=failure)
+        latest = run(study, keywords, dt, steps, timeout, bound)
+        if latest.known or not found.failure:
+            found = replace(latest, failure=latest.failure or found.failure, gone=latest.gone or found.gone)
+        if latest.known or latest.fails:
+            break
+    return found

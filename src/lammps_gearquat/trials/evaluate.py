@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -123,6 +124,8 @@ FEWEST = 20
 WALKS = np.concatenate([[0.0], np.logspace(-5, 0, 21)])
 
 
+
+
 def trend(time, values):
     """Slope of ``values`` (n,) against equidistant ``time`` (n,), and its standard error.
 
@@ -134,27 +137,38 @@ def trend(time, values):
     n = len(time)
     if n < FEWEST:
         raise ValueError(f"a trend needs {FEWEST} samples or more, not {n}")
-    rank, span = np.arange(1, n + 1), time[-1] - time[0]
-    walk, columns = np.minimum.outer(rank, rank), np.column_stack([np.ones(n), (time - np.mean(time)) / span])
-    slopes, variances, odds = np.array([_weighted_line(columns, values, walk, part) for part in WALKS]).T
+    slopes, variances, odds = np.array([_weighted_line(values, *line) for line in _lines(n)]).T
     weights = np.exp(odds - odds.max())
     weights /= weights.sum()
-    slope = weights @ slopes
+    slope, span = weights @ slopes, time[-1] - time[0]
     error = math.sqrt(weights @ (variances + (slopes - slope) ** 2))
     return float(slope / span), float(error / span)
 
 
-def _weighted_line(columns, values, walk, part):
-    """Slope, its variance and the logarithm of the restricted likelihood for noise with this part of a random walk."""
-    n = len(values)
-    root = np.linalg.cholesky((1.0 - part) * np.eye(n) + part * walk)
-    white = np.linalg.solve(root, np.column_stack([columns, values]))
-    q, r = np.linalg.qr(white[:, :2])
-    fit = q.T @ white[:, 2]
-    left = white[:, 2] - q @ fit
-    scatter, inverse = max(left @ left, np.finfo(float).tiny), np.linalg.inv(r)
-    odds = -0.5 * (n - 2) * math.log(scatter) - np.log(np.diag(root)).sum() - np.log(abs(np.diag(r))).sum()
-    return (inverse @ fit)[1], scatter / (n - 2) * (inverse[1] @ inverse[1]), odds
+@cache
+def _lines(n):
+    """What a line through n samples takes for each of WALKS: (q^T L^-1, L^-1, r^-1, logarithm of determinants).
+
+    L L^T is the covariance of the noise, and q r = L^-1 (1, t) the factors of the equations for the line.
+    """
+    rank = np.arange(1, n + 1)
+    columns = np.column_stack([np.ones(n), (rank - rank.mean()) / (n - 1)])
+    lines = []
+    for part in WALKS:
+        root = np.linalg.cholesky((1.0 - part) * np.eye(n) + part * np.minimum.outer(rank, rank))
+        whiten = np.linalg.inv(root)
+        q, r = np.linalg.qr(whiten @ columns)
+        determinants = np.log(np.diag(root)).sum() + np.log(abs(np.diag(r))).sum()
+        lines.append((q.T @ whiten, whiten, np.linalg.inv(r), determinants))
+    return lines
+
+
+def _weighted_line(values, project, whiten, inverse, determinants):
+    """Slope, its variance and the logarithm of the restricted likelihood for noise with one part of a random walk."""
+    fit, white = project @ values, whiten @ values
+    scatter = max(white @ white - fit @ fit, np.finfo(float).tiny)
+    left = len(values) - 2
+    return (inverse @ fit)[1], scatter / left * (inverse[1] @ inverse[1]), -0.5 * left * math.log(scatter) - determinants
 
 
 # --- how a difference grows -----------------------------------------------------------------------

@@ -38,6 +38,11 @@ def explained(message, deck, dt, reached=None):
     )
 
 
+def left_the_box(message, deck):
+    """Whether an error means that bodies left a box whose boundary is fixed, whatever the step is."""
+    return bool(_GONE.search(message) and _fixed_boundary(deck))
+
+
 def _fixed_boundary(deck):
     """The command of the deck that makes a boundary fixed, or ""."""
     commands = [command.text.split() for command in deck.start.commands]

@@ -32,7 +32,9 @@ class Trial:
     start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies;
     ``start_evaluations``, evaluations of the forces before the first step; ``seconds`` and
     ``start_seconds``, wall times of the steps and of what comes before them, one for each repetition;
-    ``energies`` (S, 2), the conserved and the kinetic energy of the system, or None if they were not asked for.
+    ``energies`` (S, 4), the conserved and the kinetic energy of the system, and those of translation (without that of
+    all bodies together) and rotation of the bodies; None if they were not asked for, and with them ``positions`` and
+    ``center`` are those at the end only.
     """
 
     keywords: str
@@ -85,6 +87,19 @@ class Scene:
         arms = positions[order] - self.bodies.center(positions[order])[self.bodies.of]
         reach = self.bodies.largest(np.linalg.norm(arms, axis=1))[self.bodies.counts > 1]
         self.size = float(np.median(reach)) if len(reach) else 0.0
+        self.bodies.set_shape(self.positions)
+
+    @property
+    def freedoms(self):
+        """Degrees of freedom of translation, without that of all bodies together, and of rotation of sites as points."""
+        count, bodies = len(self.bodies), self.bodies
+        return 3 * (count - 1), int(3 * count - bodies.linear.sum() - 3 * bodies.point.sum())
+
+    @property
+    def ranges(self):
+        """``ids`` as words of the command group, such as 1:3000."""
+        ids = np.sort(self.ids)
+        return [f"{part[0]}:{part[-1]}" for part in np.split(ids, np.flatnonzero(np.diff(ids) > 1) + 1)]
 
     def of_sites(self, parts):
         """Positions (n, 3) of the sites of the bodies, from the Sites of all ranks."""
@@ -198,6 +213,13 @@ class Deck:
         return self._situation.rotating or any("infile" in dict(line.keywords) for line in self.lines)
 
     @property
+    def freedoms(self):
+        """Scene.freedoms, or None where bodies are held, or their sites and three dimensions do not tell."""
+        held = any(key in script.MASKS for line in self.lines for key, _ in line.keywords)
+        known = not (held or self.partial or self._situation.flat) and min(self.scene.freedoms) > 0
+        return self.scene.freedoms if known else None
+
+    @property
     def map_missing(self):
         """Whether the deck lacks the atom map that fix gear/quat needs."""
         return self._situation.map_missing
@@ -228,6 +250,7 @@ class Deck:
     def run(self, keywords, segments, dt, timeout=None, energies=False):
         """Trial over segments of these numbers of steps, perhaps with energies.  Raises TrialError if LAMMPS does."""
         new = self._anew if keywords is None else {b.id: b for b in self.fix_lines_of(keywords)}
+        watched = {"partial": self.partial, "ids": self.scene.ranges, "unit": UNITS[self.units].energy}
         outcomes = self._ask(
             "trial",
             timeout,
@@ -237,7 +260,7 @@ class Deck:
             ramp_steps=round(self.end / dt),
             dt=dt,
             segments=list(segments),
-            energies={"partial": self.partial} if energies else None,
+            energies=watched if energies else None,
         )
         samples = zip(*(outcome.samples for outcome in outcomes))
         positions = np.array([self.scene.of_sites(parts) for parts in samples])

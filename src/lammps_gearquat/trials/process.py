@@ -19,7 +19,7 @@ import numpy as np
 
 from . import checkpoint
 from .interpreter import Interpreter
-from .script import DeckError, conserved
+from .script import DeckError, conserved, kinetic_parts
 from .worker import Outcome, Sites, Situation, TrialError
 
 _STARTED = re.compile(r"Fix gear/quat \S+: start of order (\d+) from (\d+) force evaluations")
@@ -27,8 +27,9 @@ _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
 _LOOP = re.compile(r"^Loop time of (\S+) on", re.MULTILINE)
 SITES = "gearquat_sites"
-#: variables with the energy that is conserved, and with the kinetic one
-ENERGIES = ("gearquat_conserved", "gearquat_kinetic")
+BODIES = "gearquat_bodies"
+#: variables with the energy that is conserved, the kinetic one, and those of translation and rotation of the bodies
+ENERGIES = ("gearquat_conserved", "gearquat_kinetic", "gearquat_translation", "gearquat_rotation")
 #: what atoms have that rotate by themselves
 ROTATING = ("omega_flag", "angmom_flag")
 COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
@@ -112,6 +113,7 @@ def follow(deck, variables, without, which, log, tell):
             body_labels(lammps, start.movers),
             of_atoms(lammps, "mass"),
             any(lammps.extract_setting(flag) for flag in ROTATING),
+            lammps.extract_setting("dimension") == 2,
         )
         if start.checkpoints:
             steps = min(TEST_STEPS, start.steps)
@@ -147,9 +149,18 @@ def replay(lammps, folder, start, lines, need_map):
             lammps.command(lines[command.mover.id].text())
 
 
-def watch_energies(lammps, lines, partial):
-    """Make ENERGIES the energies of ``script.conserved`` for these FixLines."""
+def watch_energies(lammps, lines, partial, ids, unit):
+    """Make ENERGIES those of ``script.conserved`` and ``script.kinetic_parts`` for these FixLines.
+
+    ``ids``: words of the command group that choose the atoms of all bodies; ``unit``: mass times square of the
+    velocity in the unit of energy.  The translation of all bodies together is not counted.
+    """
     *formulas, commands = conserved(lines, partial)
+    translation, rotation, more = kinetic_parts(lines)
+    square = "+".join(f"vcm({BODIES},{x})^2" for x in "xyz")
+    formulas += [f"{translation}-{0.5 * unit:.17g}*mass({BODIES})*({square})", rotation]
+    groups = [f"group {BODIES} id {' '.join(ids[k : k + 50])}" for k in range(0, len(ids), 50)]
+    commands = [*groups, *dict.fromkeys([*commands, *more])]
     commands += [f"variable {name} equal {formula}" for name, formula in zip(ENERGIES, formulas)]
     names = " ".join(f"v_{name}" for name in ENERGIES)
     # LAMMPS computes what the formulas name only if it is printed itself
@@ -163,8 +174,8 @@ def _energies(lammps):
 def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, energies, tell):
     """Outcome of a trial: ``segments`` are numbers of steps, after each of which sites are read.
 
-    With ``energies``, arguments of watch_energies, these are read, too, which takes an evaluation of the energy in
-    that step.  What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
+    With ``energies``, arguments of watch_energies, these are read instead, which takes an evaluation of the energy in
+    that step, and sites at the end only.  What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
     ``tell`` is called with the number of steps of each segment that is done.
     """
     lammps = open_lammps(deck, variables, log)
@@ -186,8 +197,10 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
             begin = time.perf_counter()
             lammps.command(f"run {steps} {ramp}{pre}{post}")
             seconds += time.perf_counter() - begin
-            samples.append(_sites(lammps))
-            watched += [_energies(lammps)] if energies else []
+            if energies:
+                watched.append(_energies(lammps))
+            if not energies or number == len(segments) - 1:
+                samples.append(_sites(lammps))
             tell(steps)
         rank = lammps.extract_setting("world_rank")
     finally:

@@ -6,6 +6,7 @@ from gearquat_analysis.tables import aligned, rounded, with_error, write_rows
 
 from . import NORMS, drift
 from .evaluate import usable_step
+from .methods import named, stated
 from .script import conserved
 
 
@@ -62,18 +63,19 @@ def _cost_cells(costs, row):
     price, cells = row.choice, [f"{row.error:.1e}"]
     if price is None:
         known = "is not reached" if row.error > costs.doubt_limit else "cannot be judged"
+        known = "drifts" if any(found.refused for found in costs.drifts.values()) and row.error > costs.doubt_limit else known
         return cells + [known, *"-----"]
     speed_up = "-"
     if row.own and not row.keep:
         speed_up = "~" * (row.own.kind != "measured") + rounded(row.own.seconds / price.seconds)
     found = costs.drifts.get(row.recommended, drift.Drift())
     return cells + [
-        "keep your fix" if row.keep else "gear/quat " + price.method,
+        "keep your fix" if row.keep else named(price.method),
         f"{usable_step(price.dt):g}",
         ("<= " if price.kind == "at most" else "") + f"{rounded(price.seconds / costs.end)}",
         speed_up,
         rounded(price.start_seconds, 2),
-        "not measured" if math.isnan(found.rate) else with_error(found.rate, found.error),
+        with_error(found.rate, found.error) if found.known else "not known",
     ]
 
 
@@ -87,27 +89,25 @@ def _drift(deck, found):
 
 
 def _drift_lines(deck, costs):
-    """Warnings of steps whose energy drifts, or may do so, and how to measure that."""
+    """What is not recommended because its energy drifts, warnings of what may drift, and how to measure that."""
     lines, doubtful = [], []
+    recommended = {row.recommended for row in costs.rows if row.choice}
     for (keywords, dt), found in costs.drifts.items():
-        name = f"{'your fix' if keywords is None else f'gear/quat {keywords}'}, timestep {dt:g}"
+        name = f"{named(keywords)}, timestep {dt:g}"
         measured = f"{_drift(deck, found)} over {_quantity(found.time, deck.time_unit)}"
-        if found.failure:
+        if found.drifts:
+            lines.append(f"Not recommended: {name}, for the energy drifts by {measured}.")
+        elif found.failure:
+            beginning = "Not recommended" if found.fails else "WARNING"
             lines += [
-                f"WARNING: {name}: a run that was longer than the trials ended with an error:",
+                f"{beginning}: {name}: a run that was longer than the trials ended with an error:",
                 f"    {found.failure}",
             ]
-        if found.drifts:
-            lines += [
-                f"WARNING: {name}: the energy drifts by {measured}.",
-                f"    A drift above {drift.BOUND:g} spoils long runs: take this step for short ones only, or a shorter"
-                " one of the table.",
-            ]
-        elif not found.holds and not (found.failure and found.reason):
+        elif not found.holds and (keywords, dt) in recommended:
             doubtful.append(keywords)
             lines += [
                 f"WARNING: {name}: whether the energy drifts in long runs has not been measured:",
-                f"    {found.reason or f'{measured} do not tell whether it is above {drift.BOUND:g}'}.",
+                f"    {found.reason or f'{measured} do not tell whether it is above {found.bound:g}'}.",
             ]
     return ["", *lines, *_how_to_measure(deck, doubtful)] if lines else []
 
@@ -145,10 +145,10 @@ def _explained(costs):
         "about the reference added.  <= marks a cost where no step a little longer was tried.  Speed-up is",
         "over the deck's own fix at the same error; ~ marks one where the own cost is not known closely.",
         "Where a smaller error was measured as cheaper, its step serves the larger one as well.  Drift is the slope of",
-        "the conserved energy over a further run, in kT of the mean kinetic energy; forces that are no gradient of a",
-        "potential, such as friction, change that energy as well.",
+        "the conserved energy over a further run, in kT of the mean kinetic energy.  A step at which it is larger than",
+        f"{costs.bound:g} (--drift) is not recommended.",
     ]
-    starts = {p.method: p for row in costs.rows for p in (row.own, row.best) if p}
+    starts = {stated(p.method): p for row in costs.rows for p in (row.own, row.best) if p}
     words = [
         f"{rounded(p.start_seconds, 2)} s and {_count(p.start_evaluations, 'evaluation')} with {name}"
         for name, p in starts.items()
@@ -168,22 +168,20 @@ def _explained(costs):
 def _script_lines(deck, costs):
     """What to put into the script for each error that was reached, and what to do about the others."""
     lines, reached = [], [row for row in costs.rows if row.choice]
-    if deck.map_missing and not all(row.keep for row in reached):
-        lines += ["Above the command that makes the box (read_data, create_box):"]
-        lines += ["    atom_modify map yes", ""]
+    if not all(row.keep for row in reached):
+        lines += map_lines(deck)
     for row in reached:
         lines.append(f"For an error of {row.error:.1e} at t = {costs.end:g}:")
         keeping = ["# keep your fix: no other is faster"] if row.keep else []
-        found = costs.drifts.get(row.recommended, drift.Drift())
-        if found.drifts:
-            keeping.append(f"# for short runs: the energy drifts by {_drift(deck, found)}")
-        if found.failure:
+        if costs.drifts.get(row.recommended, drift.Drift()).failure:
             keeping.append("# for short runs: a longer one ended with an error, see the warning below")
         line = None if row.keep else row.best.method
         words = [*keeping, *deck.fix_lines(line), f"timestep {usable_step(row.choice.dt):g}"]
         lines += [f"    {word}" for word in words]
-    for row in costs.rows:
-        if not row.choice and row.error > costs.doubt_limit:
+    missing = [row for row in costs.rows if not row.choice and row.error > costs.doubt_limit]
+    lines += _nothing_holds(deck, costs, missing)
+    for row in missing:
+        if not _refused(costs):
             remedy = "try a longer --budget, a shorter --time or a larger --error."
             lines.append(f"No trial within the budget had an error of {row.error:.1e}: {remedy}")
             if row.own:
@@ -191,12 +189,41 @@ def _script_lines(deck, costs):
     return lines or ["None of the errors can be judged: try --budget, a shorter --time or a larger --error."]
 
 
+def _refused(costs):
+    """Those of the drifts for whose sake a step is not recommended."""
+    return {pair: found for pair, found in costs.drifts.items() if found.refused}
+
+
+def _nothing_holds(deck, costs, rows):
+    """That the steps which reach the errors of these rows drift, and by how much at least."""
+    refused = _refused(costs)
+    if not rows or not refused:
+        return []
+    errors = ", ".join(f"{row.error:.1e}" for row in rows)
+    lines = [
+        f"Nothing is recommended for an error of {errors}: no step that reaches it holds the bound of {costs.bound:g}"
+        f" {_drift_unit(deck)} (--drift)."
+    ]
+    known = {pair: found for pair, found in costs.drifts.items() if found.known}
+    if known:
+        (keywords, dt), least = min(known.items(), key=lambda item: abs(item[1].rate))
+        lines.append(f"    The smallest drift seen is {_drift(deck, least)}, with {named(keywords)}, timestep {dt:g}.")
+    return lines
+
+
+def map_lines(deck):
+    """What fix gear/quat needs above the box of the deck, as lines."""
+    if not deck.map_missing:
+        return []
+    return ["Above the command that makes the box (read_data, create_box):", "    atom_modify map yes", ""]
+
+
 def write_costs(folder, deck, costs):
     """cost.csv, the table, and trials.csv, every trial."""
     fields = ["timestep", "evaluations", "seconds", "kind", "start_evaluations", "start_seconds"]
     rows = []
     for row in costs.rows:
-        cells = [row.error, row.best.method if row.best else ""]
+        cells = [row.error, stated(row.best.method) if row.best else ""]
         for price in (row.best, row.own):
             names = ["dt", *fields[1:]]
             cells += [getattr(price, name) if price else "" for name in names]
@@ -211,7 +238,7 @@ def write_costs(folder, deck, costs):
     header += [norm.replace(" ", "_") for norm in NORMS]
     header += ["seconds_least", "seconds_most", "timings", "start_seconds"]
     rows = [
-        [trial.label, trial.dt, trial.steps, trial.start_evaluations, *errors]
+        [stated(trial.keywords), trial.dt, trial.steps, trial.start_evaluations, *errors]
         + [trial.fastest, max(trial.seconds), len(trial.seconds), trial.fastest_start]
         for trial, errors in costs.trials
     ]

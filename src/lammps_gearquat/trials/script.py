@@ -219,12 +219,19 @@ def conserved(lines, partial=False):
     commands = [f"fix_modify {line.id} energy yes" for line in own if not line.has_chains]
     if not partial:
         return "+".join(["econserve", *heats]), "ke", commands
-    parts = [f"f_{line.id}[{k}]" for line in own for k in (1, 2)]
+    *parts, more = kinetic_parts(lines)
+    return "+".join(["pe", "ecouple", *parts, *heats]), "+".join(parts), commands + more
+
+
+def kinetic_parts(lines):
+    """Kinetic energies of the bodies that these FixLines move: (formula of translation, of rotation, commands before them)."""
+    parts, commands = ([], []), []
     for line in lines:
-        if line not in own:
-            commands += [f"compute {line.id}_{kind} all {kind}/rigid {line.id}" for kind in ("ke", "erotate")]
-            parts += [f"c_{line.id}_{kind}" for kind in ("ke", "erotate")]
-    return "+".join(["pe", "ecouple", *parts, *heats]), "+".join(parts), commands
+        for number, kind in enumerate(("ke", "erotate")):
+            own = line.style == "gear/quat"
+            parts[number].append(f"f_{line.id}[{number + 1}]" if own else f"c_{line.id}_{kind}")
+            commands += [] if own else [f"compute {line.id}_{kind} all {kind}/rigid {line.id}"]
+    return *map("+".join, parts), commands
 
 
 def pairs(text):

@@ -43,7 +43,8 @@ class Situation:
 
     ``start``, a Start; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
     by ID; ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
-    ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``continued``, the sites ``test_steps`` steps later.
+    ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``flat``, whether all is in two
+    dimensions; ``continued``, the sites ``test_steps`` steps later.
     """
 
     start: object
@@ -54,6 +55,7 @@ class Situation:
     labels: object
     masses: object
     rotating: bool
+    flat: bool = False
     test_steps: int = 0
     continued: Sites = None
 

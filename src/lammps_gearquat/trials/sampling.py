@@ -1,0 +1,243 @@
+"""The longest steps that serve a long run of a scene whose trajectory diverges, as that of a liquid does.
+
+There the error of a trajectory says little.  What counts is that the energy does not drift and that translation and
+rotation have the same temperature.
+
+1. Short runs of every method for which there is time: from the longest step that is known upwards, until one drifts.
+2. Longer and longer runs of the cheapest step that may hold.  Where it does not, the next shorter one is tried,
+   unless another method is cheaper then.
+3. The deck as it is, for as long, to compare with.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+from . import drift
+from .methods import DEFAULT, methods, named
+
+#: time steps that are tried, in powers of ten
+STEPS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+#: the part of the budget that short runs take, and how many of them it is meant for
+SHARE_SHORT, SHORT_RUNS = 0.4, 12
+#: steps of a short run at least
+FEWEST = 200
+#: the part of the longest time from which on temperatures are compared: they fluctuate slowly
+BALANCED = 0.1
+#: the shortest step that is tried, as a part of the deck's own
+SHORTEST = 1.0 / 16.0
+#: what the run of a recommended step takes of the time that is left, and a first, shorter try before it
+SHARE_LONG, FIRST_TRY = 0.75, 0.15
+#: a run may take longer than expected by this factor
+SLACK = 1.2
+#: another method has to be faster by this factor than the deck's own fix and the default: times are noisy
+WORTHWHILE = 1.1
+
+
+def neighbor(dt, shift):
+    """The step of STEPS times a power of ten that is ``shift`` places from the longest one not above ``dt``."""
+    power = math.floor(math.log10(dt) + 1e-9)
+    place = max(k for k, step in enumerate(STEPS) if step <= dt / 10.0**power * (1 + 1e-6)) + shift
+    decade, place = divmod(place, len(STEPS))
+    return float(f"{STEPS[place] * 10.0 ** (power + decade):.2g}")
+
+
+def shorter(dt):
+    """The longest step of STEPS times a power of ten that is shorter than ``dt``."""
+    return neighbor(dt, 0) if neighbor(dt, 0) < dt * (1 - 1e-6) else neighbor(dt, -1)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run with ``keywords`` (None: the deck's own fix) at a step said: ``seconds`` per unit of time, and a Drift."""
+
+    keywords: str
+    dt: float
+    seconds: float
+    drift: drift.Drift
+
+
+@dataclass
+class Sampling:
+    """The answer for a scene whose trajectory diverges; times in units of the deck.
+
+    ``runs``, list of Run; ``recommended``, (keywords, step) or None where nothing is known to hold ``bound``.
+    """
+
+    bound: float
+    own_dt: float
+    before: float
+    runs: list = field(default_factory=list)
+    recommended: tuple = None
+    notes: list = field(default_factory=list)
+
+    def add(self, run):
+        self.runs.append(run)
+
+    @property
+    def rows(self):
+        """The longest Run of each method and step that is known best, by method and step."""
+        best = {}
+        for run in self.runs:
+            key, old = (run.keywords, run.dt), best.get((run.keywords, run.dt))
+            if old is None or run.drift.fails or (not old.drift.fails and run.drift.time >= old.drift.time):
+                best[key] = run
+        order = list(dict.fromkeys(run.keywords for run in self.runs))
+        return sorted(best.values(), key=lambda run: (order.index(run.keywords), run.dt))
+
+    def row(self, keywords, dt):
+        """The row of a method and step, or None."""
+        return next((run for run in self.rows if (run.keywords, run.dt) == (keywords, dt)), None)
+
+    @property
+    def own(self):
+        """The row of the deck as it is."""
+        return self.row(None, self.own_dt)
+
+    @property
+    def choice(self):
+        """The row that is recommended, or None."""
+        return self.row(*self.recommended) if self.recommended else None
+
+    @property
+    def least(self):
+        """The row with the smallest drift, or None where none is known."""
+        known = [run for run in self.rows if run.drift.known and not run.drift.fails]
+        return min(known, key=lambda run: abs(run.drift.rate), default=None)
+
+
+class Search:
+    """Runs of a cost.Study for an answer, a Sampling."""
+
+    def __init__(self, study, answer):
+        self.study, self.answer = study, answer
+        self.end = drift.longest(study.deck)
+
+    def seconds_per_step(self, keywords):
+        """The smallest that is known: what else the machine does can only add to it."""
+        known = [run.seconds * run.dt for run in self.answer.runs if run.keywords == keywords and run.drift.known]
+        return min(known, default=max(self.study.pace.values()))
+
+    def run(self, keywords, dt, seconds):
+        """The Drift of a run of so many seconds at most, up to the longest time."""
+        # the latest pace, for the machine may do more by now; what does not end within the budget says nothing
+        pace = SLACK * self.study.pace.get(keywords, self.seconds_per_step(keywords))
+        steps = min(self.end / dt, max((seconds - self.study.overhead) / pace, FEWEST))
+        timeout = max(min(3.0 * seconds + 30.0, self.study.budget.left()), 0.0)
+        found = drift.Drift(reason="the budget left no time for a run", bound=self.answer.bound)
+        if steps * pace < timeout:
+            balance = steps * dt > BALANCED * self.end
+            found = drift.run(self.study, keywords, dt, steps, timeout, self.answer.bound, balance)
+        self.answer.add(Run(keywords, dt, self.study.pace.get(keywords, self.seconds_per_step(keywords)) / dt, found))
+        return found
+
+    # --- 1. short runs --------------------------------------------------------------------------------
+    def climb(self, keywords, dt, seconds, until):
+        """The longest step that may hold, from ``dt`` on, or None; runs end when the budget has ``until`` seconds left."""
+        def may_hold(step):
+            found = self.run(keywords, step, seconds)
+            # a run that says nothing is no reason for a longer step
+            return not found.refused, found.known and drift.SURE * found.error < self.answer.bound
+
+        good, sure = may_hold(dt)
+        while good and sure and self.study.budget.left() > until:
+            longer = neighbor(dt, 1)
+            good, sure = may_hold(longer)
+            if not good:
+                return dt
+            dt = longer
+        if good:
+            return dt
+        competitive = max(self.shortest, 0.8 * self.best)
+        while self.study.budget.left() > until:
+            dt = shorter(dt)
+            if dt < competitive:
+                return None
+            if may_hold(dt)[0]:
+                return dt
+        return None
+
+    def short_runs(self, tries):
+        """Dictionary keywords -> the longest step that may hold, for every method for which there is time."""
+        deck, budget = self.study.deck, self.study.budget
+        tried = dict.fromkeys([*filter(deck.takes, methods()), *tries])
+        self.shortest, self.best = SHORTEST * deck.dt, 0.0
+        until = (1.0 - SHARE_SHORT) * budget.left()
+        seconds = (budget.left() - until) / SHORT_RUNS
+        own = self.run(None, deck.dt, seconds)
+        found = {}
+        for keywords in tried:
+            if budget.left() < until + seconds:
+                self.answer.notes.append(f"the budget leaves no time for {named(keywords)}")
+                continue
+            found[keywords] = self.climb(keywords, self.best or neighbor(deck.dt, 0), seconds, until)
+            self.best = max(self.best, found[keywords] or 0.0)
+        if own.refused:
+            found[None] = self.climb(None, shorter(deck.dt), seconds, until)
+        elif budget.left() > until + seconds:
+            found[None] = self.climb(None, neighbor(deck.dt, 1), seconds, until) or deck.dt
+        else:
+            found[None] = deck.dt
+        return {keywords: step for keywords, step in found.items() if step}
+
+    # --- 2. long runs ---------------------------------------------------------------------------------
+    def cheapest(self, steps):
+        """The method to try next: the deck's own fix, or else the default, unless another one is clearly cheaper."""
+        prices = {keywords: self.seconds_per_step(keywords) / dt for keywords, dt in steps.items()}
+        least = min(prices.values())
+        first = [keywords for keywords in (None, DEFAULT) if prices.get(keywords, math.inf) <= WORTHWHILE * least]
+        return (first or [min(prices, key=prices.get)])[0]
+
+    def close_to_bound(self, found):
+        """Whether a longer run could hardly show that this drift is within its bound."""
+        return found.known and found.error < 0.25 * found.bound and abs(found.rate) + found.error > found.bound
+
+    def long_runs(self, steps):
+        """Lengthen runs of the cheapest steps until one is known to hold: (keywords, step), or None."""
+        budget = self.study.budget
+        while steps:
+            keywords = self.cheapest(steps)
+            dt = steps[keywords]
+            whole = SLACK * self.end / dt * self.seconds_per_step(keywords) + self.study.overhead
+            if budget.left() < self.study.overhead + FEWEST * self.seconds_per_step(keywords):
+                return None
+            found = self.run(keywords, dt, min(whole, FIRST_TRY * budget.left()))
+            if found.known and not found.refused and not self.close_to_bound(found):
+                found = self.run(keywords, dt, min(whole, SHARE_LONG * budget.left()))
+                if found.holds:
+                    return keywords, dt
+            steps[keywords] = shorter(dt)
+            # a run that says nothing says no more with a shorter step
+            silent = not found.refused and not self.close_to_bound(found)
+            if silent or steps[keywords] < self.shortest:
+                del steps[keywords]
+        return None
+
+    # --- 3. the deck as it is ---------------------------------------------------------------------------
+    def compare(self):
+        """A run of the deck as it is that is as long as that of the recommendation, or as the budget allows."""
+        own, choice = self.answer.own, self.answer.choice
+        wanted = choice.drift.time if choice else 0.0
+        if own and own.drift.time < 0.9 * wanted and not own.drift.fails:
+            dt, pace = self.study.deck.dt, self.seconds_per_step(None)
+            seconds = min(SLACK * wanted / dt * pace + self.study.overhead, 0.8 * self.study.budget.left())
+            if seconds * dt / pace > 2.0 * own.drift.time:
+                self.run(None, dt, seconds)
+
+
+#: why there is no error of a trajectory in the answer
+PARTED = (
+    "trajectories diverge before the end of the run, so steps are judged by the energy and the temperatures of a long run;"
+    " --error and --time ask for the error of a trajectory"
+)
+
+
+def measure(study, tries, bound):
+    """Sampling of a cost.Study whose trajectory diverges; arguments as of cost.measure."""
+    answer = Sampling(bound, study.deck.dt, study.before, notes=[*study.deck.notes, PARTED])
+    search = Search(study, answer)
+    answer.recommended = search.long_runs(search.short_runs(tries))
+    if answer.recommended is None:  # shorter runs may have shown it
+        best = min((run for run in answer.rows if run.drift.holds), key=lambda run: run.seconds, default=None)
+        answer.recommended = (best.keywords, best.dt) if best else None
+    search.compare()
+    return answer
