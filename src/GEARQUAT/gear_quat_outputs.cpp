@@ -119,7 +119,7 @@ void BodyTable::wrap(const double *center, double *wrapped, double *image) const
   if (tilted) domain->lamda2x(wrapped, wrapped);
 }
 
-/// Quaternions have the scalar first, as everywhere in LAMMPS.
+/// Quaternions have unit length, and the scalar first, as everywhere in LAMMPS.
 void BodyTable::fill_row(int ibody, double *row) const
 {
   const Body &body = bodies.body_at(ibody);
@@ -136,8 +136,11 @@ void BodyTable::fill_row(int ibody, double *row) const
     row[FORCE + i] = l.force[i] / force->ftm2v;
     row[TORQUE + i] = l.torque_space[i] / force->ftm2v;
   }
-  row[QUATERNION] = s.q[3];
-  std::copy_n(s.q, 3, row + QUATERNION + 1);
+  double unit[4];
+  std::copy_n(s.q, 4, unit);
+  project_norm(unit);
+  row[QUATERNION] = unit[3];
+  std::copy_n(unit, 3, row + QUATERNION + 1);
   std::copy_n(s.omega_body, 3, row + OMEGA_BODY);
   to_space(a, momentum_body, row + ANGULAR_MOMENTUM);
   row[POSITION_ERROR] = bodies.last_of(ibody).position_error();

@@ -72,7 +72,7 @@ def straight(tmp_path_factory):
 @pytest.mark.tree
 def test_a_refused_thermostat_has_not_changed(tmp_path):
     """Its damping time is too short for a long step, far from the target."""
-    fix = "gear/quat molecule temp 30 30 20 tchain 1"
+    fix = "gear/quat molecule values 9 temp 30 30 20 tchain 1"
     water_data(tmp_path / "data.water")
     straight = run(tmp_path, fix=fix)
     result = run(tmp_path, "timestep 4.0", "timestep 0.5", fix)
