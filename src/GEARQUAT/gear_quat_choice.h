@@ -125,7 +125,10 @@ struct ChoiceOfValues {
   // second formulation, tuned: radians in a step up to which nine values are best, those beyond
   // which no number holds, and the factor by which a present choice may leave its limits
 
-  static constexpr double EDGE_OF_NINE = 0.2, TURN_OF_NINE = 0.4, LONGEST_EDGE = 0.8;
+  static constexpr double EDGE_OF_NINE = 0.2, TURN_OF_NINE = 0.4, LONGEST_EDGE = 0.7;
+  /// The edge at the step that is advised beyond LONGEST_EDGE: also gases, whose collisions are
+  /// sharper than the vibrations of liquids, conserve their energy there.
+  static constexpr double ADVISED_EDGE = 0.5;
   static constexpr double BAND = 1.3;
   /// A part of a momentum that forces may take in a step.
   static constexpr double DAMPING = 0.1;

@@ -203,10 +203,10 @@ TEST(Choice, FrictionIsFollowed)
 
 TEST(Choice, LongStepsAreTold)
 {
-  EXPECT_FALSE(scene(0.79).too_long(automatic(SECOND)));
-  EXPECT_TRUE(scene(0.81).too_long(automatic(SECOND)));
+  EXPECT_FALSE(scene(0.69).too_long(automatic(SECOND)));
+  EXPECT_TRUE(scene(0.71).too_long(automatic(SECOND)));
   EXPECT_FALSE(scene(INFINITY).too_long(automatic(SECOND)));
-  EXPECT_FALSE(scene(0.81).too_long(automatic(FIRST)));
+  EXPECT_FALSE(scene(0.71).too_long(automatic(FIRST)));
 }
 
 // --- is it right?
