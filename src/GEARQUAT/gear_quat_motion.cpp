@@ -350,7 +350,8 @@ std::string Motion::read(const Sections &file)
     if (file.number(section, n) != mine.number(section, n)) others.emplace_back(keyword);
   };
   compare("formulation", "scheme", 0);
-  compare("values", "scheme", 1);
+  // a default depends on the formulation
+  if (args.states("values") || others.empty()) compare("values", "scheme", 1);
   compare("compensate", "scheme", 2);
   compare("tolerance", "scheme", 3);
   compare("isokinetic", "isokinetic", 0);
@@ -369,6 +370,10 @@ std::string Motion::read(const Sections &file)
   if (step.tolerance && step.started) take(step.tolerance);
   step.time_step.restore(file.number("motion", 1));
   if (step.length() != 0.0) step.make_integrator();
+
+  if (step.started && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: histories of the restart file go on with {}\n", fix->id,
+                   words_of_scheme());
 
   const double tuned = file.number("scheme", 4);
   if (step.started && tuned != mine.number("scheme", 4) && comm->me == 0)

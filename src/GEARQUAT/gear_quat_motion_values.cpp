@@ -30,7 +30,8 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
   std::copy(sums.begin(), sums.end(), all.sums);
   all.omega2 = over_ranks(MPI_MAX, all.omega2, world);
   ChoiceOfValues scene;
-  scene.edge = all.fast_edge(step.length());
+  scene.edge = bodies.number() > 0 ? all.fast_edge(step.length()) : HUGE_VAL;
+  scene.exact = all.knows_derivatives();
   scene.turn = all.turn(step.length());
   scene.noise = noise_of_forces(lmp, [this](int i) {
     return ownership.in_body(i);
@@ -43,24 +44,19 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
 /// Histories have this scheme after the call.
 Scheme Motion::choose_scheme(const MotionSums &here)
 {
-  if (!decided) {
-    ChoiceOfValues scene = scene_of(here);
-    if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
-    decided = std::make_unique<Decision>(Decision{scene, scene.choose(args.scheme)});
-  }
-  const Scheme scheme = decided->choice.scheme;
-  edge_rate = decided->scene.edge / std::fabs(step.length());
-  tell_choice(*decided);
-  decided.reset();
-  step.set_scheme(scheme);
-  return scheme;
+  ChoiceOfValues scene = scene_of(here);
+  if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
+  const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
+  edge_rate = scene.edge / std::fabs(step.length());
+  tell_choice(scene, choice);
+  step.set_scheme(choice.scheme);
+  return choice.scheme;
 }
 
-void Motion::tell_choice(const Decision &decision) const
+void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const
 {
-  const auto &[scene, choice] = decision;
   using Reason = ChoiceOfValues::Reason;
-  if (comm->me != 0 || bodies.number() == 0) return;
+  if (comm->me != 0) return;
   std::string why;
   if (choice.reason == Reason::NOISE)
     why = scene.noise == Noise::RANDOM ? "because forces are random"
@@ -75,45 +71,40 @@ void Motion::tell_choice(const Decision &decision) const
     why = fmt::format("for vibrations of {:.2g} and rotations of {:.2g} radians in a step",
                       scene.edge, scene.turn);
   else
-    why = "because nothing moves yet, so that vibrations are not known";
+    why = bodies.number() > 0 ? "because the motion is not known before it begins"
+                              : "because there are no bodies yet";
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
                  other_corrector ? " and corrector gear" : "", why);
   if (scene.too_long(choice.scheme))
     error->warning(
         FLERR,
-        "Fix gear/quat {}: vibrations of {:.2g} radians in a step are more than any "
-        "number of values can follow for long; use a time step of {:g} or shorter, or, if atoms "
-        "overlap, begin with a run with keywords tolerance and temp",
-        fix->id, scene.edge,
-        rounded_down(std::fabs(step.length()) * ChoiceOfValues::ADVISED_EDGE / scene.edge));
+        "Fix gear/quat {}: vibrations of {:.2g} and rotations of {:.2g} radians in a step are more "
+        "than any number of values can follow for long; use a time step of {:g} or shorter, or, if "
+        "atoms overlap, begin with a run with keywords tolerance and temp",
+        fix->id, scene.edge, scene.turn,
+        rounded_down(std::fabs(step.length()) * scene.advised_part()));
 }
 
-/// Returns why histories should begin anew with another number of values, null if they should not.
-/// Collective.
+/// Returns why histories should begin anew with another number of values, null if they should not:
+/// the step, a rotation or forces have changed.  Vibrations count as in the last start, which alone
+/// measures them.  Collective.
 const char *Motion::another_scheme_suits()
 {
   if (!args.automatic_values || resumed) return nullptr;
-  const Scheme &present = step.scheme();
-  MotionSums here = sums_by_loads(bodies);
-  if (!present.first() && present.tuned && present.values() > 4) {
-    here = MotionSums();
-    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-      here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.history(ibody),
-               present.values(), step.length());
-  }
-  using Reason = ChoiceOfValues::Reason;
+  MotionSums here;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here.add(bodies.rigid_of(ibody), bodies.state_of(ibody));
   ChoiceOfValues scene = scene_of(here);
-  if (present.values() == 5)    // whose histories may find too small an edge
-    scene.edge = std::max(scene.edge, edge_rate * std::fabs(step.length()));
+  scene.edge = edge_rate * std::fabs(step.length());
+  using Reason = ChoiceOfValues::Reason;
+  const Scheme &present = step.scheme();
   const ChoiceOfValues::Choice choice = scene.choose(args.scheme, present.values());
   if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
     return nullptr;
-  const bool of_forces = choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION;
-  if (!of_forces && !can_start_anew()) return nullptr;
-  decided = std::make_unique<Decision>(Decision{scene, choice});
-  return of_forces ? "forces suit another number of values"
-                   : "the motion suits another number of values";
+  if (choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION)
+    return "forces suit another number of values";
+  return can_start_anew() ? "the motion suits another number of values" : nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -140,4 +131,15 @@ void Motion::adopt_scheme(const Sections &file)
   if (!args.states("passes"))
     scheme.passes = both ? (int) file.number("scheme", PASSES) : Scheme::AUTOMATIC_PASSES;
   step.set_scheme(scheme);
+}
+
+std::string Motion::words_of_scheme() const
+{
+  const Scheme &s = step.scheme();
+  const std::string passes = s.passes ? std::to_string(s.passes) : "auto";
+  const char *project = s.projection == Projection::AUTO ? "auto"
+      : s.projection == Projection::YES                  ? "yes"
+                                                         : "no";
+  return fmt::format("values {}, corrector {}, passes {}, project {}", s.values(),
+                     s.tuned ? "tuned" : "gear", passes, project);
 }
