@@ -18,14 +18,14 @@ from benchmarks.engine.methods import (
     rigid,
 )
 
-PASSES = 1, 2
+PASSES = 1, DEFAULT_PASSES
 #: columns of the log of every scene (examples/common/in.motion), and the further one asked for
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
 VALUES = {"second": range(4, 13), "first": range(3, 9)}
 
 
 def setting(formulation, values, passes=DEFAULT_PASSES, **more):
-    """A setting of fix gear/quat whose name says the passes."""
+    """A setting of fix gear/quat whose name says the passes, unless they are as many as converge."""
     return gear(formulation, values, passes=passes, **more)
 
 
