@@ -384,7 +384,7 @@ def test_errors_of_a_run_and_its_repetition(lammps, tmp_path):
 def test_defaults_are_those_of_the_fix(lammps):
     """Giving the keywords that plan.py takes for defaults changes nothing, to the bit."""
     for formulation, method in DEFAULTS.items():
-        given = {} if method == plan.DEFAULT else {"formulation": formulation}
+        given = {} if formulation == "second" else {"formulation": formulation}
         bare = plan.Run(SCENE, method, 320).variables(False)
         bare = {k: v for k, v in bare.items() if k not in method.variables} | given
         told = plan.Run(SCENE, method, 320).perform(lammps)

@@ -66,7 +66,9 @@ def test_every_value_is_documented():
 @pytest.mark.parametrize("key", [key for key in TABLE if TABLE[key].ranges])
 def test_every_range_is_documented(key):
     syntax = section("Syntax").partition(f"*{key}* value")[2]
-    text = " ".join(syntax.splitlines()[1].split())
+    syntax = syntax.partition("\n       *")[0]
+    text = " ".join(syntax.split())
+    assert TABLE[key].values.startswith("auto or ") == ("*auto* or " in syntax.splitlines()[0])
     for formulation, (least, most) in TABLE[key].ranges.items():
         assert f"{least} to {most}" + (f" for *{formulation}*" if formulation else "") in text
 
@@ -80,9 +82,9 @@ def test_every_default_is_documented():
         if row.kind == "word" and row.standard() != row.standard(tolerance=True):
             either = f"{key} = {row.standard()}, or {key} = {row.standard(tolerance=True)}"
             assert f"{either} with tolerance" in text
-    plain, gear, most = re.findall(r"(\d+) \(second\), (\d+) \(first\)", TABLE["values"].default)
-    others = "({} and {} with corrector gear, {} and {} with tolerance)".format(*gear, *most)
-    assert "values = {} for *second* and {} for *first* ".format(*plain) + others in text
+    plain, most = re.fullmatch(r"(\w+), with tolerance (.*)", TABLE["values"].default).groups()
+    most = re.fullmatch(r"(\d+) \(second\), (\d+) \(first\)", most).groups()
+    assert f"values = {plain}, or up to {most[0]} for *second* and {most[1]} for *first* with tolerance" in text
 
 
 def test_a_list_that_is_cut_off_is_no_list():
@@ -322,10 +324,12 @@ def test_growth_of_stable_steps():
 def test_noise_of_the_manual():
     """Random forces: what tuned sets make of them is compared with Gear's at the limit."""
     text = " ".join(MANUAL.split())
-    words = r"only \*values (\d)\* suits .*? and \*values (\d)\* or fewer in \*first\*"
+    words = r"\*Values auto\* therefore has (\d) values in formulation \*second\* and at most (\d) in \*first\*"
     second, first = map(int, re.search(words, text).groups())
+    words = r"\*values (\d)\* or fewer in formulation \*second\*, and with \*values (\d)\* or fewer in \*first\*"
+    limits = map(int, re.search(words, text).groups())
     suited = {}
-    for formulation, values, limit in (("second", SECOND, 6), ("first", FIRST, 4)):
+    for formulation, values, limit in zip(("second", "first"), (SECOND, FIRST), limits):
         most = 1.001 * kernel.gear(formulation, limit).noise
         suited[formulation] = [n for n in values if kernel.tuned(formulation, n).noise <= most]
     assert suited == {"second": [second], "first": list(range(3, first + 1))}

@@ -75,9 +75,9 @@ def find(results):
         shown["other_speedups"] = tables.other_speedups(results)
     if "top" in scenes:
         task = results, "top", FINE, "evaluations"
-        one, two = (tables.cheapest_setting(*task, passes)[1] for passes in plan.PASSES)
-        if one and two:
-            saved = 1 - two.value / one.value
+        one, several = (tables.cheapest_setting(*task, passes)[1] for passes in plan.PASSES)
+        if one and several:
+            saved = 1 - several.value / one.value
             context["passes"] = {"error": tables.power(FINE), "saved": saved}
     if {"water", "water-plain"} <= scenes:
         context["cutoff"] = tables.cutoff(results)

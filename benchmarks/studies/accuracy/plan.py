@@ -10,6 +10,7 @@ from functools import cache
 
 from benchmarks.engine import decks
 from benchmarks.engine.methods import (
+    AUTOMATIC,
     DEFAULT_PASSES,
     DEFAULT_VALUES,
     DEFAULTS,
@@ -18,22 +19,24 @@ from benchmarks.engine.methods import (
     rigid,
 )
 
-PASSES = 1, 2
+PASSES = 1, DEFAULT_PASSES
 #: columns of the log of every scene (examples/common/in.motion), and the further one asked for
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
 VALUES = {"second": range(4, 13), "first": range(3, 9)}
 
 
 def setting(formulation, values, passes=DEFAULT_PASSES, **more):
-    """A setting of fix gear/quat whose name says the passes."""
+    """A setting of fix gear/quat whose name says the passes, unless they are as many as converge."""
     return gear(formulation, values, passes=passes, **more)
 
 
-DEFAULT = DEFAULTS["second"]
+#: the fix as it is without a keyword
+DEFAULT = AUTOMATIC
 RIGID_NVE, RIGID_SMALL = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
 ALL_METHODS = (
     *(setting(name, n, passes) for passes in PASSES for name in VALUES for n in VALUES[name]),
     *GEARS.values(),
+    DEFAULT,
     RIGID_NVE,
     RIGID_SMALL,
 )
@@ -42,7 +45,7 @@ METHODS = {method.key: method for method in ALL_METHODS}
 
 def _few(*settings):
     """Settings, the defaults and LAMMPS' own fixes, each once."""
-    return tuple(dict.fromkeys((*settings, *DEFAULTS.values(), RIGID_NVE, RIGID_SMALL)))
+    return tuple(dict.fromkeys((*settings, *DEFAULTS.values(), DEFAULT, RIGID_NVE, RIGID_SMALL)))
 
 
 #: methods of the scenes where a step costs milliseconds, and of a first look; and where forces jump
@@ -202,7 +205,7 @@ def scenes(quick):
 #: steps of the runs that show rounding, and of those that time the fix itself
 ROUNDING_STEPS = (0.02, 0.01, 0.005, 0.002, 0.001)
 MODIFY_STEPS, MODIFY_DT = 200_000, 0.02
-MODIFY = (RIGID_NVE, *DEFAULTS.values(), RIGID_SMALL)
+MODIFY = (RIGID_NVE, DEFAULT, DEFAULTS["first"], RIGID_SMALL)
 
 
 def scene_runs(scene):

@@ -44,10 +44,10 @@ def significant(number, digits=2):
 def cheapest_setting(results, scene, target, unit="seconds", passes=None):
     """(Method, Cost) of the cheapest setting of fix gear/quat; (None, None) if none gets there.
 
-    ``passes``: only settings with so many.
+    ``passes``: only settings with so many, 0 for as many as converge.
     """
     ours = [m for m in results.scenes[scene].methods if m.gear]
-    ours = [m for m in ours if passes in (None, m.variables["passes"])]
+    ours = [m for m in ours if passes in (None, m.variables.get("passes", 0))]
     return cheapest({method: price(results, scene, method, target, unit) for method in ours})
 
 
@@ -128,7 +128,7 @@ def order_fits(results):
 def orders(results):
     """Slope of each N beside the order, and the largest stable steps; table and measurements."""
     header = ["formulation", "N", "order", "slope", "ω Δt, linear", "ω Δt, Gear's"]
-    header += ["largest usable step, 1 pass", "largest usable step, 2 passes"]
+    header += ["largest usable step, 1 pass", "largest usable step, `passes auto`"]
     rows, found = [], []
     for (name, n), (steps, errors, fit) in order_fits(results).items():
         expected, cancels = expected_order(name, n), sign_change(steps, errors)
