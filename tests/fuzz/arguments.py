@@ -182,12 +182,16 @@ def agrees(key, given):
 
 
 def has_coefficients(given):
-    """Whether there are coefficients for the number of values."""
+    """Whether there are coefficients for the number of values; the fix chooses one that has them."""
     formulation = given.get("formulation", TABLE["formulation"].default)
-    standard = TABLE["values"].standard("tolerance" in given)
-    defaults = {name: number for number, name in re.findall(r"(\d+) \((\w+)\)", standard)}
-    values = integer(given.get("values", defaults[formulation]))
-    return in_use("corrector", given, "gear") or values in TABLE["values"].tuned[formulation]
+    if is_automatic("values", given) or in_use("corrector", given, "gear"):
+        return True
+    return integer(given["values"]) in TABLE["values"].tuned[formulation]
+
+
+def is_automatic(key, given):
+    """Whether an integer is left to the fix."""
+    return given.get(key, "auto") == "auto" == TABLE[key].standard()
 
 
 def bounds(key, given):
@@ -229,7 +233,9 @@ def is_valid(words):
         return False
     for key in INTEGERS:
         least, most = bounds(key, given)
-        if key in given and not (integer(given[key]) is not None and least <= integer(given[key]) <= most):
+        if key not in given or is_automatic(key, given):
+            continue
+        if not (integer(given[key]) is not None and least <= integer(given[key]) <= most):
             return False
     if not has_coefficients(given):
         return False
@@ -261,7 +267,7 @@ def valid(rng):
     words = bodies_at_random(rng)
     choices = {key: rng.choice(values) for key, values in WORDS.items()}
     choices |= {key: rng.choice(("1e-5", "0.1", "1")) for key in NUMBERS}
-    choices |= {"passes": str(rng.randint(1, 3)), "infile": "bodies", "mol": "two"}
+    choices |= {"passes": rng.choice(("auto", "1", "2", "3")), "infile": "bodies", "mol": "two"}
     choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
     choices["dtmin"], choices["every/time"] = "1e-5", rng.choice(("0.05", "1"))
     choices["temp"], choices["tchain"] = "1.5 1.5 1.5", str(rng.randint(*bounds("tchain", {})))
@@ -273,7 +279,7 @@ def valid(rng):
         if key in given and not agrees(key, given):
             del given[key]
     if rng.random() < 0.35:
-        given["values"] = str(rng.randint(*bounds("values", given)))
+        given["values"] = rng.choice(("auto", *map(str, 4 * [rng.randint(*bounds("values", given))])))
     if not has_coefficients(given) and rng.random() < 0.9:
         given["corrector"] = "gear"
     if given["formulation"] == TABLE["formulation"].default and rng.random() < 0.65:
