@@ -11,10 +11,10 @@
      z^4 = sum (|h^4 y''''|^2 + |h^5 y'''''|^2) / sum (|h^2 y''|^2 + |h^3 y'''|^2).
 
    A single vibration gives its own frequency exactly, at any phase, and many give the upper end of
-   their spectrum.  A start knows these derivatives, and so does a history of six values or more.  One
-   of five values lacks the fifth derivative, so that at some phases z comes out too small.  Where
-   derivatives are not known, the mean square frequency of rotations, the sum of torque^2/I over that
-   of I omega^2, stands for them.
+   their spectrum.  A start has computed these derivatives.  The rows of a history are no measure: with
+   tuned coefficients the higher ones keep errors that make z up to twice as large.  Where derivatives
+   are not known, the mean square frequency of rotations, the sum of torque^2/I over that of
+   I omega^2, stands for them.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
    Measured drifts of liquids decide where five values take over from nine (doc/theory.md).  Random
@@ -49,14 +49,8 @@ class MotionSums {
     if (series.terms > 4) add_derivatives(body, rows, 3, series.terms > 5 ? 4 : 3, step);
     add_spin(body, state);
   }
-  /// A body with a history of the second formulation and n values, five or more, in steps of h.
-  void add(const RigidBody &body, const BodyState &state, const double *rows, int n, double h)
-  {
-    const double *of[4];
-    for (int k = 0; k < 4; ++k) of[k] = rows + std::min(k + 2, n - 1) * Scheme::SECOND_WIDTH;
-    add_derivatives(body, of, Scheme::SECOND_QUATERNION, n > 5 ? 4 : 3, h);
-    add_spin(body, state);
-  }
+  /// How fast a body turns, and nothing else of it.
+  void add(const RigidBody &body, const BodyState &state) { add_spin(body, state); }
   /// A body of which the load alone is known.
   void add(const RigidBody &body, const BodyState &state, const double *torque_body)
   {
@@ -76,6 +70,8 @@ class MotionSums {
     if (sums[3] > 0.0) return EDGE_BY_MEAN * size * std::sqrt(sums[2] / sums[3]);
     return sums[2] > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   }
+  /// Whether derivatives tell it.
+  bool knows_derivatives() const { return sums[1] > 0.0; }
   double turn(double h) const { return std::fabs(h) * std::sqrt(omega2); }
 
  private:
@@ -109,8 +105,9 @@ class MotionSums {
 
 /// What decides on the number of values.
 struct ChoiceOfValues {
-  double edge = 0.0;    ///< radians in a step, see MotionSums
-  double turn = 0.0;    ///< radians in a step of the body that turns fastest
+  double edge = 0.0;     ///< radians in a step, see MotionSums
+  bool exact = false;    ///< known from derivatives
+  double turn = 0.0;     ///< radians in a step of the body that turns fastest
   Noise noise = Noise::NONE;
   bool damped = false;        ///< forces depend on velocities
   double friction = 0.0;      ///< of a coupling, times the step
@@ -123,12 +120,15 @@ struct ChoiceOfValues {
   };
 
   // second formulation, tuned: radians in a step up to which nine values are best, those beyond
-  // which no number holds, and the factor by which a present choice may leave its limits
+  // which no number conserves the energy for long, those at the step that is advised then, and the
+  // factor by which a present choice may leave its limits
 
-  static constexpr double EDGE_OF_NINE = 0.2, TURN_OF_NINE = 0.4, LONGEST_EDGE = 0.8;
+  static constexpr double EDGE_OF_NINE = 0.25, TURN_OF_NINE = 0.4;
+  static constexpr double LONGEST_EDGE = 0.6, LONGEST_TURN = 0.5;
+  static constexpr double ADVISED_EDGE = 0.5, ADVISED_TURN = 0.4;
   static constexpr double BAND = 1.3;
   /// A part of a momentum that forces may take in a step.
-  static constexpr double DAMPING = 0.1;
+  static constexpr double DAMPING = 0.2;
 
   /// scheme: with the number of values that smooth motion has.  present: the number so far, 0 for
   /// none.
@@ -149,10 +149,19 @@ struct ChoiceOfValues {
   /// formulation.
   bool too_long(const Scheme &scheme) const
   {
-    return !scheme.first() && scheme.tuned && std::isfinite(edge) && edge > LONGEST_EDGE;
+    return !scheme.first() && scheme.tuned && (shakes() || turn > LONGEST_TURN);
+  }
+  /// A step, as a part of the present one, that is not too long.
+  double advised_part() const
+  {
+    return std::min(shakes() ? ADVISED_EDGE / edge : 1.0,
+                    turn > LONGEST_TURN ? ADVISED_TURN / turn : 1.0);
   }
 
  private:
+  /// Random forces make no vibrations.
+  bool shakes() const { return exact && noise == Noise::NONE && edge > LONGEST_EDGE; }
+
   Scheme by_motion(Scheme scheme, int present) const
   {
     const double band = present == 9 ? BAND : present == 5 ? 1.0 / BAND : 1.0;

@@ -128,103 +128,6 @@ void Motion::take_velocities(bigint of_step, bool end)
 }
 
 /* ----------------------------------------------------------------------
-   the number of values, where the command does not state it
-------------------------------------------------------------------------- */
-
-/// What decides on it.  here: of the bodies that this rank owns.  Collective.
-ChoiceOfValues Motion::scene_of(const MotionSums &here) const
-{
-  MotionSums all = here;
-  const auto sums = over_ranks(MPI_SUM, all.sums, world);
-  std::copy(sums.begin(), sums.end(), all.sums);
-  all.omega2 = over_ranks(MPI_MAX, all.omega2, world);
-  ChoiceOfValues scene;
-  scene.edge = all.fast_edge(step.length());
-  scene.turn = all.turn(step.length());
-  scene.noise = noise_of_forces(lmp, [this](int i) {
-    return ownership.in_body(i);
-  });
-  scene.damped = !others.source_of_friction().empty();
-  scene.may_be_gear = !args.states("corrector");
-  return scene;
-}
-
-/// Histories have this scheme after the call.
-Scheme Motion::choose_scheme(const MotionSums &here)
-{
-  if (!decided) {
-    ChoiceOfValues scene = scene_of(here);
-    if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
-    decided = std::make_unique<Decision>(Decision{scene, scene.choose(args.scheme)});
-  }
-  const Scheme scheme = decided->choice.scheme;
-  edge_rate = decided->scene.edge / std::fabs(step.length());
-  tell_choice(*decided);
-  decided.reset();
-  step.set_scheme(scheme);
-  return scheme;
-}
-
-void Motion::tell_choice(const Decision &decision) const
-{
-  const auto &[scene, choice] = decision;
-  using Reason = ChoiceOfValues::Reason;
-  if (comm->me != 0 || bodies.number() == 0) return;
-  std::string why;
-  if (choice.reason == Reason::NOISE)
-    why = scene.noise == Noise::RANDOM ? "because forces are random"
-                                       : "because forces of collisions act in a single step";
-  else if (choice.reason == Reason::FRICTION)
-    why = scene.damped ? "because forces depend on velocities"
-                       : "because the thermostat has a strong friction";
-  else if (choice.reason == Reason::FORMULATION)
-    why = choice.scheme.tuned ? "as always with formulation first"
-                              : "as always with corrector gear";
-  else if (std::isfinite(scene.edge))
-    why = fmt::format("for vibrations of {:.2g} and rotations of {:.2g} radians in a step",
-                      scene.edge, scene.turn);
-  else
-    why = "because nothing moves yet, so that vibrations are not known";
-  const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
-  utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
-                 other_corrector ? " and corrector gear" : "", why);
-  if (scene.too_long(choice.scheme))
-    error->warning(
-        FLERR,
-        "Fix gear/quat {}: vibrations of {:.2g} radians in a step are more than any "
-        "number of values can follow for long; use a time step of {:g} or shorter",
-        fix->id, scene.edge,
-        rounded_down(std::fabs(step.length()) * ChoiceOfValues::LONGEST_EDGE / scene.edge));
-}
-
-/// Returns why histories should begin anew with another number of values, null if they should not.
-/// Collective.
-const char *Motion::another_scheme_suits()
-{
-  if (!args.automatic_values || resumed) return nullptr;
-  const Scheme &present = step.scheme();
-  MotionSums here = sums_by_loads(bodies);
-  if (!present.first() && present.tuned && present.values() > 4) {
-    here = MotionSums();
-    for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-      here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.history(ibody),
-               present.values(), step.length());
-  }
-  using Reason = ChoiceOfValues::Reason;
-  ChoiceOfValues scene = scene_of(here);
-  if (present.values() == 5)    // whose histories may find too small an edge
-    scene.edge = std::max(scene.edge, edge_rate * std::fabs(step.length()));
-  const ChoiceOfValues::Choice choice = scene.choose(args.scheme, present.values());
-  if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
-    return nullptr;
-  const bool of_forces = choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION;
-  if (!of_forces && !can_start_anew()) return nullptr;
-  decided = std::make_unique<Decision>(Decision{scene, choice});
-  return of_forces ? "forces suit another number of values"
-                   : "the motion suits another number of values";
-}
-
-/* ----------------------------------------------------------------------
    which histories go on
 ------------------------------------------------------------------------- */
 
@@ -376,8 +279,11 @@ bool Motion::has_to_start(double **f)
   return needs;
 }
 
+/// Quaternions begin with unit length, whatever they had.
 Starter Motion::starter(bool needed)
 {
+  for (int ibody = 0; ibody < bodies.nmoved() && step.scheme().any_norm(); ++ibody)
+    project_norm(bodies.change_state(ibody).q);
   std::function<Scheme(const MotionSums &)> choose;
   if (args.automatic_values)
     choose = [this](const MotionSums &here) {
@@ -435,28 +341,6 @@ void Motion::write(Sections &file) const
   if (step.coupling) step.coupling->write(file);
 }
 
-/// Files of releases up to 0.3.0 have neither projection nor passes; these were their defaults.
-void Motion::adopt_scheme(const Sections &file)
-{
-  constexpr int PROJECTION = 5, PASSES = 6;
-  Scheme scheme = args.scheme;
-  const bool both = file.has("scheme", PASSES + 1);
-  const int values = (int) file.number("scheme", 1);
-  if (step.tolerance || file.number("scheme", 3) != 0.0 || file.number("motion", 0) == 0.0 ||
-      file.number("scheme", 0) != (double) scheme.first())
-    return;
-  if (args.automatic_values) scheme.rows = values;
-  if (scheme.values() != values) return;
-  if (!args.states("corrector")) scheme.tuned = file.number("scheme", 4) != 0.0;
-  if (scheme.tuned && !has_tuned(scheme.formulation, values)) return;
-  if (!args.states("project"))
-    scheme.projection = both ? (Projection) (int) file.number("scheme", PROJECTION)
-                             : Projection::YES;
-  if (!args.states("passes"))
-    scheme.passes = both ? (int) file.number("scheme", PASSES) : Scheme::AUTOMATIC_PASSES;
-  step.set_scheme(scheme);
-}
-
 std::string Motion::read(const Sections &file)
 {
   Sections mine;
@@ -466,7 +350,8 @@ std::string Motion::read(const Sections &file)
     if (file.number(section, n) != mine.number(section, n)) others.emplace_back(keyword);
   };
   compare("formulation", "scheme", 0);
-  compare("values", "scheme", 1);
+  // a default depends on the formulation
+  if (args.states("values") || others.empty()) compare("values", "scheme", 1);
   compare("compensate", "scheme", 2);
   compare("tolerance", "scheme", 3);
   compare("isokinetic", "isokinetic", 0);
@@ -485,6 +370,10 @@ std::string Motion::read(const Sections &file)
   if (step.tolerance && step.started) take(step.tolerance);
   step.time_step.restore(file.number("motion", 1));
   if (step.length() != 0.0) step.make_integrator();
+
+  if (step.started && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: histories of the restart file go on with {}\n", fix->id,
+                   words_of_scheme());
 
   const double tuned = file.number("scheme", 4);
   if (step.started && tuned != mine.number("scheme", 4) && comm->me == 0)

@@ -14,7 +14,6 @@
 #include "gear_quat_step.h"
 
 #include <map>
-#include <memory>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
@@ -90,15 +89,11 @@ class Motion : protected Pointers {
   int of_coupling() const { return step.coupling ? step.coupling->elements() : 0; }
   double longest_step() const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
-  struct Decision {
-    ChoiceOfValues scene;
-    ChoiceOfValues::Choice choice;
-  };
-  double edge_rate = 0.0;               ///< fast edge by time, when the number was chosen
-  std::unique_ptr<Decision> decided;    ///< by the present histories, for the start that comes
+  double edge_rate = 0.0;    ///< fast edge by time, when the number was chosen
   Scheme choose_scheme(const MotionSums &here);
-  void tell_choice(const Decision &decision) const;
+  void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   const char *another_scheme_suits();
+  std::string words_of_scheme() const;
   /// True if a start finds all derivatives, as far as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
   bool has_to_start(double **f);

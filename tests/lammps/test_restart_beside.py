@@ -29,7 +29,7 @@ def keeping(data, order, commands, restart=None):
     mark = "" if restart else "variable mark atom id*id\nset group all d_mark v_mark"
     where = {order: KEEPERS.format(marks=mark)}
     run = f"{SHOW}thermo_modify norm no format float %.17g\nthermo 50\n{commands}"
-    deck = water(data, dt=1.0, run=run, **where)
+    deck = water(data, "gear/quat molecule values 9", dt=1.0, run=run, **where)
     return restarted(deck, restart) if restart else deck
 
 

@@ -125,7 +125,8 @@ def test_a_mask_counts_the_bodies_of_the_command(halves):
 
 def test_bodies_of_another_style_that_are_the_same_go_on(halves):
     mark = NUMBERED.format(set="set group all i_number v_number")
-    whole = halves.write("gear/quat molecule", before=mark)
-    found, said = halves.read("gear/quat custom i_number", before=NUMBERED.format(set=""))
+    whole = halves.write("gear/quat molecule values 9", before=mark)
+    words = "gear/quat custom i_number values 9"
+    found, said = halves.read(words, before=NUMBERED.format(set=""))
     assert WARNING not in said and START not in said
     close(found, whole)

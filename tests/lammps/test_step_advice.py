@@ -167,8 +167,8 @@ def test_overlaps(lmp_tree):
     text = LIQUID.format(name="n2", **(LIQUIDS["n2"] | dict(lattice=2.6)))
     fix, run = "fix move all gear/quat molecule", "timestep 1.0\nthermo 50\nrun 300\n"
     begin = text.partition("fix move")[0]
-    words = lmp_tree.refuse(f"{begin}{fix}\n{run}", "The forces became unstable first").words
-    assert "as after a run with keywords tolerance and temp" in words
+    words = lmp_tree.refuse(f"{begin}{fix}\n{run}", "blow-up").words
+    assert "if atoms overlap, begin with a run with keywords tolerance and temp" in words
     keywords = "tolerance 1e-4 dtmax 1.0 temp 100 100 100"
     longer = run.replace("300", "1200")
     table = lmp_tree.succeed(f"{begin}{fix} {keywords}\n{longer}").thermo[-1]

@@ -361,7 +361,7 @@ def test_216_molecules_of_water(lmp_tree):
 
     def fixed(steps):
         dt = duration / steps
-        deck = WATER_216.format(data, f"{dt:.17g}", "", "pe", steps, "", f"run {steps}")
+        deck = WATER_216.format(data, f"{dt:.17g}", "values 9", "pe", steps, "", f"run {steps}")
         lmp_tree.succeed(deck)
         return frames(lmp_tree.folder / "poses.dump")[steps]
 

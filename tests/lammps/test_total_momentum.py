@@ -263,9 +263,10 @@ def test_a_wall_that_is_left_still_counts(lmp_tree):
     settings = dict(after="fix wall all wall/harmonic zlo -3.2 100.0 0.0 1.0\n", every=1)
     settings["columns"] = "f_wall f_wall[1]"
     run = f"run 200\nwrite_restart half\nrun 100\n{END.format('halves')}"
+    words = f"{TEMP} values 9"
     velocity = (0.0, 0.0, -2.0)
-    deck = moving(TEMP, velocity, run=run, **settings)
-    rest = moving(TEMP, velocity, run=f"run 100\n{END.format('again')}", **settings)
+    deck = moving(words, velocity, run=run, **settings)
+    rest = moving(words, velocity, run=f"run 100\n{END.format('again')}", **settings)
     again = re.sub("velocity all set.*", "", continued(rest, "half"))
     result = lmp_tree.succeed(one_after_the_other([deck, again]))
     first, second, _ = tables(result)

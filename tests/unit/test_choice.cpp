@@ -71,17 +71,6 @@ TEST(FastEdge, IsTheFrequencyOfAVibrationAtAnyPhaseAndSpacing)
       }
 }
 
-TEST(FastEdge, IsTheSameFromAHistory)
-{
-  const Scheme scheme = automatic(SECOND);
-  const double h = 0.05;
-  Motion motion(BALL, swinging(0.4), springs, scheme, h, Start::BOOTSTRAP, h);
-  motion.steps(50);
-  MotionSums sums;
-  sums.add(BALL, motion.state(), motion.rows, scheme.values(), h);
-  EXPECT_NEAR(sums.fast_edge(h), h * OMEGA, 0.01 * h * OMEGA);
-}
-
 TEST(FastEdge, OfAFreeRotationIsThatOfItsQuaternion)
 {
   BodyState s = {};
@@ -203,10 +192,23 @@ TEST(Choice, FrictionIsFollowed)
 
 TEST(Choice, LongStepsAreTold)
 {
-  EXPECT_FALSE(scene(0.79).too_long(automatic(SECOND)));
-  EXPECT_TRUE(scene(0.81).too_long(automatic(SECOND)));
-  EXPECT_FALSE(scene(INFINITY).too_long(automatic(SECOND)));
-  EXPECT_FALSE(scene(0.81).too_long(automatic(FIRST)));
+  const auto told = [](double edge, double turn, bool exact, Noise noise, Formulation formulation) {
+    ChoiceOfValues long_step = scene(edge, turn);
+    long_step.exact = exact;
+    long_step.noise = noise;
+    return long_step.too_long(automatic(formulation));
+  };
+  EXPECT_FALSE(told(0.59, 0.49, true, Noise::NONE, SECOND));
+  EXPECT_TRUE(told(0.61, 0.0, true, Noise::NONE, SECOND));
+  EXPECT_FALSE(told(0.61, 0.0, false, Noise::NONE, SECOND));
+  EXPECT_FALSE(told(0.61, 0.0, true, Noise::RANDOM, SECOND));
+  EXPECT_TRUE(told(0.0, 0.51, false, Noise::RANDOM, SECOND));
+  EXPECT_FALSE(told(0.61, 0.51, true, Noise::NONE, FIRST));
+  ChoiceOfValues both = scene(1.0, 1.0);
+  both.exact = true;
+  EXPECT_DOUBLE_EQ(both.advised_part(), 0.4);
+  both.turn = 0.1;
+  EXPECT_DOUBLE_EQ(both.advised_part(), 0.5);
 }
 
 // --- is it right?
@@ -229,7 +231,7 @@ TEST(Choice, ConservesTheEnergyOfAVibrationAtBothSidesOfTheEdge)
     motion.steps(20000);
     return std::fabs(energy() / before - 1.0);
   };
-  const double low = 0.5 * ChoiceOfValues::EDGE_OF_NINE, high = 3.0 * ChoiceOfValues::EDGE_OF_NINE;
+  const double low = 0.5 * ChoiceOfValues::EDGE_OF_NINE, high = 2.2 * ChoiceOfValues::EDGE_OF_NINE;
   EXPECT_LT(drift(9, low), drift(5, low));
   EXPECT_LT(drift(5, high), drift(9, high));
 }

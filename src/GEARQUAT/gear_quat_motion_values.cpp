@@ -1,0 +1,145 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_motion.h"
+
+#include "gear_quat_ranks.h"
+
+#include "comm.h"
+#include "error.h"
+#include "fix.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ----------------------------------------------------------------------
+   the number of values, where the command does not state it
+------------------------------------------------------------------------- */
+
+/// What decides on it.  here: of the bodies that this rank owns.  Collective.
+ChoiceOfValues Motion::scene_of(const MotionSums &here) const
+{
+  MotionSums all = here;
+  const auto sums = over_ranks(MPI_SUM, all.sums, world);
+  std::copy(sums.begin(), sums.end(), all.sums);
+  all.omega2 = over_ranks(MPI_MAX, all.omega2, world);
+  ChoiceOfValues scene;
+  scene.edge = bodies.number() > 0 ? all.fast_edge(step.length()) : HUGE_VAL;
+  scene.exact = all.knows_derivatives();
+  scene.turn = all.turn(step.length());
+  scene.noise = noise_of_forces(lmp, [this](int i) {
+    return ownership.in_body(i);
+  });
+  scene.damped = !others.source_of_friction().empty();
+  scene.may_be_gear = !args.states("corrector");
+  return scene;
+}
+
+/// Histories have this scheme after the call.
+Scheme Motion::choose_scheme(const MotionSums &here)
+{
+  ChoiceOfValues scene = scene_of(here);
+  if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
+  const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
+  edge_rate = scene.edge / std::fabs(step.length());
+  tell_choice(scene, choice);
+  step.set_scheme(choice.scheme);
+  return choice.scheme;
+}
+
+void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const
+{
+  using Reason = ChoiceOfValues::Reason;
+  if (comm->me != 0) return;
+  std::string why;
+  if (choice.reason == Reason::NOISE)
+    why = scene.noise == Noise::RANDOM ? "because forces are random"
+                                       : "because forces of collisions act in a single step";
+  else if (choice.reason == Reason::FRICTION)
+    why = scene.damped ? "because forces depend on velocities"
+                       : "because the thermostat has a strong friction";
+  else if (choice.reason == Reason::FORMULATION)
+    why = choice.scheme.tuned ? "as always with formulation first"
+                              : "as always with corrector gear";
+  else if (std::isfinite(scene.edge))
+    why = fmt::format("for vibrations of {:.2g} and rotations of {:.2g} radians in a step",
+                      scene.edge, scene.turn);
+  else
+    why = bodies.number() > 0 ? "because the motion is not known before it begins"
+                              : "because there are no bodies yet";
+  const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
+  utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
+                 other_corrector ? " and corrector gear" : "", why);
+  if (scene.too_long(choice.scheme))
+    error->warning(
+        FLERR,
+        "Fix gear/quat {}: vibrations of {:.2g} and rotations of {:.2g} radians in a step are more "
+        "than any number of values can follow for long; use a time step of {:g} or shorter, or, if "
+        "atoms overlap, begin with a run with keywords tolerance and temp",
+        fix->id, scene.edge, scene.turn,
+        rounded_down(std::fabs(step.length()) * scene.advised_part()));
+}
+
+/// Returns why histories should begin anew with another number of values, null if they should not:
+/// the step, a rotation or forces have changed.  Vibrations count as in the last start, which alone
+/// measures them.  Collective.
+const char *Motion::another_scheme_suits()
+{
+  if (!args.automatic_values || resumed) return nullptr;
+  MotionSums here;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here.add(bodies.rigid_of(ibody), bodies.state_of(ibody));
+  ChoiceOfValues scene = scene_of(here);
+  scene.edge = edge_rate * std::fabs(step.length());
+  using Reason = ChoiceOfValues::Reason;
+  const Scheme &present = step.scheme();
+  const ChoiceOfValues::Choice choice = scene.choose(args.scheme, present.values());
+  if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
+    return nullptr;
+  if (choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION)
+    return "forces suit another number of values";
+  return can_start_anew() ? "the motion suits another number of values" : nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   the method of a restart file
+------------------------------------------------------------------------- */
+
+/// Files of releases up to 0.3.0 have neither projection nor passes; these were their defaults.
+void Motion::adopt_scheme(const Sections &file)
+{
+  constexpr int PROJECTION = 5, PASSES = 6;
+  Scheme scheme = args.scheme;
+  const bool both = file.has("scheme", PASSES + 1);
+  const int values = (int) file.number("scheme", 1);
+  if (step.tolerance || file.number("scheme", 3) != 0.0 || file.number("motion", 0) == 0.0 ||
+      file.number("scheme", 0) != (double) scheme.first())
+    return;
+  if (args.automatic_values) scheme.rows = values;
+  if (scheme.values() != values) return;
+  if (!args.states("corrector")) scheme.tuned = file.number("scheme", 4) != 0.0;
+  if (scheme.tuned && !has_tuned(scheme.formulation, values)) return;
+  if (!args.states("project"))
+    scheme.projection = both ? (Projection) (int) file.number("scheme", PROJECTION)
+                             : Projection::YES;
+  if (!args.states("passes"))
+    scheme.passes = both ? (int) file.number("scheme", PASSES) : Scheme::AUTOMATIC_PASSES;
+  step.set_scheme(scheme);
+}
+
+std::string Motion::words_of_scheme() const
+{
+  const Scheme &s = step.scheme();
+  const std::string passes = s.passes ? std::to_string(s.passes) : "auto";
+  const char *project = s.projection == Projection::AUTO ? "auto"
+      : s.projection == Projection::YES                  ? "yes"
+                                                         : "no";
+  return fmt::format("values {}, corrector {}, passes {}, project {}", s.values(),
+                     s.tuned ? "tuned" : "gear", passes, project);
+}
