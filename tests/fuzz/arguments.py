@@ -184,10 +184,9 @@ def agrees(key, given):
 def has_coefficients(given):
     """Whether there are coefficients for the number of values."""
     formulation = given.get("formulation", TABLE["formulation"].default)
-    standard = TABLE["values"].standard("tolerance" in given)
-    defaults = {name: number for number, name in re.findall(r"(\d+) \((\w+)\)", standard)}
-    values = integer(given.get("values", defaults[formulation]))
-    return in_use("corrector", given, "gear") or values in TABLE["values"].tuned[formulation]
+    values = given.get("values", "auto")
+    tuned = values == "auto" or integer(values) in TABLE["values"].tuned[formulation]
+    return tuned or in_use("corrector", given, "gear")
 
 
 def bounds(key, given):
@@ -196,6 +195,14 @@ def bounds(key, given):
     formulation = given.get("formulation", TABLE["formulation"].default)
     least, most = ranges.get("") or ranges[formulation]
     return least, min(most, int(limit[1])) if limit and "tolerance" in given else most
+
+
+def is_count(key, given):
+    """Whether an integer within its bounds follows the keyword, or auto where the fix may choose."""
+    (least, most), number = bounds(key, given), integer(given[key])
+    if given[key] == "auto" and TABLE[key].values.startswith("auto or "):
+        return True
+    return number is not None and least <= number <= most
 
 
 def allowed(key, words):
@@ -227,10 +234,8 @@ def is_valid(words):
         return False
     if not all(allowed(key, behind) for key, behind in single if key not in INTEGERS):
         return False
-    for key in INTEGERS:
-        least, most = bounds(key, given)
-        if key in given and not (integer(given[key]) is not None and least <= integer(given[key]) <= most):
-            return False
+    if not all(is_count(key, given) for key in INTEGERS if key in given):
+        return False
     if not has_coefficients(given):
         return False
     if {"dtmin", "dtmax"} <= set(given) and positive(given["dtmin"]) > positive(given["dtmax"]):
@@ -261,7 +266,7 @@ def valid(rng):
     words = bodies_at_random(rng)
     choices = {key: rng.choice(values) for key, values in WORDS.items()}
     choices |= {key: rng.choice(("1e-5", "0.1", "1")) for key in NUMBERS}
-    choices |= {"passes": str(rng.randint(1, 3)), "infile": "bodies", "mol": "two"}
+    choices |= {"passes": rng.choice(("auto", "1", "2", "3")), "infile": "bodies", "mol": "two"}
     choices["tolerance"] = rng.choice(("1e-10", "1e-6", "0.01"))
     choices["dtmin"], choices["every/time"] = "1e-5", rng.choice(("0.05", "1"))
     choices["temp"], choices["tchain"] = "1.5 1.5 1.5", str(rng.randint(*bounds("tchain", {})))
@@ -273,7 +278,7 @@ def valid(rng):
         if key in given and not agrees(key, given):
             del given[key]
     if rng.random() < 0.35:
-        given["values"] = str(rng.randint(*bounds("values", given)))
+        given["values"] = rng.choice(("auto", *2 * [str(rng.randint(*bounds("values", given)))]))
     if not has_coefficients(given) and rng.random() < 0.9:
         given["corrector"] = "gear"
     if given["formulation"] == TABLE["formulation"].default and rng.random() < 0.65:
