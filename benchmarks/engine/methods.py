@@ -63,7 +63,7 @@ DEFAULT_VALUES, DEFAULT_PASSES = {"second": 9, "first": 8}, 0
 DEFAULTS = {f: gear(f, n, passes=DEFAULT_PASSES) for f, n in DEFAULT_VALUES.items()}
 GEARS = {f: gear(f, n, passes=2, corrector="gear") for f, n in (("second", 8), ("first", 6))}
 #: the fix without a keyword, which chooses the number of values itself
-AUTOMATIC = Method("automatic", "no keyword", {"formulation": "second"}, "second")
+AUTOMATIC = Method("default", "no keyword", {}, "second")
 
 
 def looks(methods):

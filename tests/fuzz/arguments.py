@@ -182,16 +182,11 @@ def agrees(key, given):
 
 
 def has_coefficients(given):
-    """Whether there are coefficients for the number of values; the fix chooses one that has them."""
+    """Whether there are coefficients for the number of values."""
     formulation = given.get("formulation", TABLE["formulation"].default)
-    if is_automatic("values", given) or in_use("corrector", given, "gear"):
-        return True
-    return integer(given["values"]) in TABLE["values"].tuned[formulation]
-
-
-def is_automatic(key, given):
-    """Whether an integer is left to the fix."""
-    return given.get(key, "auto") == "auto" == TABLE[key].standard()
+    values = given.get("values", "auto")
+    tuned = values == "auto" or integer(values) in TABLE["values"].tuned[formulation]
+    return tuned or in_use("corrector", given, "gear")
 
 
 def bounds(key, given):
@@ -200,6 +195,14 @@ def bounds(key, given):
     formulation = given.get("formulation", TABLE["formulation"].default)
     least, most = ranges.get("") or ranges[formulation]
     return least, min(most, int(limit[1])) if limit and "tolerance" in given else most
+
+
+def is_count(key, given):
+    """Whether an integer within its bounds follows the keyword, or auto where the fix may choose."""
+    (least, most), number = bounds(key, given), integer(given[key])
+    if given[key] == "auto" and TABLE[key].values.startswith("auto or "):
+        return True
+    return number is not None and least <= number <= most
 
 
 def allowed(key, words):
@@ -231,12 +234,8 @@ def is_valid(words):
         return False
     if not all(allowed(key, behind) for key, behind in single if key not in INTEGERS):
         return False
-    for key in INTEGERS:
-        least, most = bounds(key, given)
-        if key not in given or is_automatic(key, given):
-            continue
-        if not (integer(given[key]) is not None and least <= integer(given[key]) <= most):
-            return False
+    if not all(is_count(key, given) for key in INTEGERS if key in given):
+        return False
     if not has_coefficients(given):
         return False
     if {"dtmin", "dtmax"} <= set(given) and positive(given["dtmin"]) > positive(given["dtmax"]):
@@ -279,7 +278,7 @@ def valid(rng):
         if key in given and not agrees(key, given):
             del given[key]
     if rng.random() < 0.35:
-        given["values"] = rng.choice(("auto", *map(str, 4 * [rng.randint(*bounds("values", given))])))
+        given["values"] = rng.choice(("auto", *2 * [str(rng.randint(*bounds("values", given)))]))
     if not has_coefficients(given) and rng.random() < 0.9:
         given["corrector"] = "gear"
     if given["formulation"] == TABLE["formulation"].default and rng.random() < 0.65:

@@ -71,7 +71,7 @@ def test_the_yardstick_is_beaten(run_case, formulation):
 
 @pytest.mark.parametrize("formulation", LIMIT)
 def test_quaternion_stays_of_length_one(run_case, formulation):
-    projected = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100)
+    projected = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100, project="yes")
     assert projected.q_error.max() < 1e-14
     free = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100, project="no")
     assert free.q_error.max() > 1e-14

@@ -280,7 +280,7 @@ def find(results):
         "scenes": SCENES,
         "main": MAIN,
         "heavy": HEAVY,
-        "names": {"default": DEFAULT.label},
+        "names": {"default": NAMES[DEFAULT]},
         "liquids": LIQUIDS,
         "blocks": of.BLOCKS,
         "unit": UNIT,

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 from scipy.constants import Avogadro
 
-from benchmarks.engine.methods import Method, gear, rigid
+from benchmarks.engine.methods import AUTOMATIC, gear, rigid
 
 NVE_SMALL = rigid("rigid/nve/small", "rigid")
-#: fix gear/quat without a keyword, which chooses the number of values itself
-DEFAULT = Method("default", "fix gear/quat", {}, "second")
+DEFAULT = AUTOMATIC
 #: number of values -> the method that is told to take so many
 VALUES = {n: gear("second", n) for n in (5, 7, 9)}
 #: how the page calls them
