@@ -73,6 +73,13 @@ class AnyNorm {
     }
   }
 
+  /// The square of a residual without its radial part, which turns nothing; q: predicted.
+  double turning2(const double *total, const double *q) const
+  {
+    const double radial = on ? dot4(q, total) : 0.0;
+    return dot4(total, total) - radial * radial / dot4(q, q);
+  }
+
   /// What the projection adds to rows 0 and 1 where both equations have a part.  As long as that of
   /// Eq. 6 is small, rates are scaled as q is, which leaves the angular velocity as it is.
   static void projection(double part, const double *q, const double *rates, double *of_q,

@@ -312,7 +312,7 @@ class Integrator : public Kinematics {
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
     const Residual &total = pending.total;
     return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body),
-            c.weight2 * dot3(total.x, total.x), c.weight2 * dot4(total.q, total.q)};
+            c.weight2 * dot3(total.x, total.x), c.weight2 * any_norm.turning2(total.q, pending.q)};
   }
 
   /// Positions (Eq. 17): forces stay, so one pass is all.

@@ -62,8 +62,11 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
     why = scene.noise == Noise::RANDOM ? "because forces are random"
                                        : "because forces of collisions act in a single step";
   else if (choice.reason == Reason::FRICTION)
-    why = scene.damped ? "because forces depend on velocities"
-                       : "because the thermostat has a strong friction";
+    why = scene.damped
+        ? fmt::format(
+              "because forces depend on velocities, which may take {:g} of a momentum in a step",
+              largest_friction(choice.scheme))
+        : "because the thermostat has a strong friction";
   else if (choice.reason == Reason::FORMULATION)
     why = choice.scheme.tuned ? "as always with formulation first"
                               : "as always with corrector gear";
