@@ -34,7 +34,7 @@ OFTEN = (
 #: and of those with keyword temp, besides one that only reads: with a force, and with bodies that go
 OFTEN_WITH_TEMP = r"store/force|wall/harmonic|evaporate"
 MOVERS = {
-    "gear": "gear/quat molecule",
+    "gear": "gear/quat molecule values 9",  # whatever the style beside it is
     "rigid": "rigid/nve/small molecule",
     "temp": thermostat.MOVER,
 }

@@ -13,7 +13,7 @@ import numpy as np
 from . import scene
 
 TARGET = 1.2
-MOVER = f"gear/quat molecule temp {TARGET} {TARGET} 0.5"
+MOVER = f"gear/quat molecule values 9 temp {TARGET} {TARGET} 0.5"
 #: LAMMPS 4 Feb 2025 does not divide the heat by the number of atoms
 OUTPUT = ("thermo_modify norm no",)
 #: after the scene is made: no atoms outside of bodies, no total momentum
