@@ -59,7 +59,10 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
 
   args.reset(new Arguments(lmp, narg, arg));
   add_citations(lmp, *args);
-  ecouple_flag = args->thermostat.damp > 0.0;
+  ecouple_flag = args->thermostat.damp > 0.0 || args->pressure.any();
+  constexpr int EDGES[] = {BOX_CHANGE_X, BOX_CHANGE_Y, BOX_CHANGE_Z};
+  for (int k = 0; k < 3; ++k)
+    if (args->pressure.on[k]) box_change |= EDGES[k];
   fleet.reset(new Fleet);
   bodies.reset(new Bodies(args->scheme));
   ownership.reset(new Ownership(lmp, this, *bodies, args->scheme));
@@ -189,7 +192,7 @@ void FixGearQuat::setup(int vflag)
   step->expect_readers_at_end(readers_at_end(lmp, this));
   ownership->spread_states();
   if (!reported) other_fixes->check_gravity();
-  sites->gather_loads(atom->f, atom->torque);
+  step->gather(atom->f, atom->torque);
   motion->begin_run();
   sites->place_velocities();
   bodies->forget_work();    // positions are the corrected ones
@@ -310,7 +313,7 @@ void FixGearQuat::meet_forces()
   if (!motion->awaits_forces() || update->whichflag != 1) return;    // in a run
   const bool levels = !RespaForces::steps(lmp).empty();
   if (levels) respa->sum_present();
-  sites->gather_loads(levels ? respa->forces() : atom->f, levels ? respa->torques() : atom->torque);
+  step->gather(levels ? respa->forces() : atom->f, levels ? respa->torques() : atom->torque);
   motion->meet_forces();
 }
 

@@ -108,6 +108,7 @@ void Arguments::parse_keywords(int narg, char **arg)
   check_conditions();
   check_ranges();
   if (is_on("tolerance", "")) check_control();
+  check_pressure();
   thermostat.may_wait = !mol.empty();
   if (!infile.empty()) reinit = false;    // what a file states is not computed again from the atoms
 }
@@ -211,6 +212,50 @@ void Arguments::check_control()
         "tolerance: the target changes with the number of the step, and steps have no common "
         "length; use several runs with a target each",
         thermostat.start, thermostat.stop);
+}
+
+/// Coupled directions need the same numbers, and directions without a period have no pressure.
+void Arguments::check_pressure()
+{
+  static constexpr char NAMES[] = "xyz";
+  PressureWords &p = pressure;
+  if (!p.any()) {
+    for (const char *keyword : {"couple", "pchain", "ptemp", "fixedpoint"})
+      if (given.count(keyword) && is_on(keyword, ""))
+        error->all(FLERR, "Fix gear/quat keyword {} requires keyword iso, aniso, x, y or z", keyword);
+    return;
+  }
+  std::string whole;
+  for (const char *keyword : {"iso", "aniso", "x", "y", "z"}) {
+    if (!given.count(keyword)) continue;
+    if (!whole.empty())
+      error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}: it is about all edges of "
+                 "the box", whole, keyword);
+    if (keyword[1] != '\0') whole = keyword;
+  }
+  if (whole == "iso" && is_on("couple", ""))
+    error->all(FLERR, "Fix gear/quat keyword iso cannot be used with couple: it couples all edges");
+  if (domain->dimension == 2) {
+    if (whole.empty() && p.on[2])
+      error->all(FLERR, "Fix gear/quat z: there is no pressure along z in two dimensions");
+    p.on[2] = false;
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (p.on[k] && !domain->periodicity[k])
+      error->all(FLERR,
+                 "Fix gear/quat: the box is not periodic along {0}, so there is no constant pressure "
+                 "along {0}; use boundary p for {0}, or keywords for the other directions",
+                 std::string(1, NAMES[k]));
+    const int first = p.tied[k];
+    if (first == k || (domain->dimension == 2 && k == 2)) continue;
+    if (p.on[k] != p.on[first] || p.start[k] != p.start[first] || p.stop[k] != p.stop[first] ||
+        p.period[k] != p.period[first])
+      error->all(FLERR,
+                 "Fix gear/quat couple: directions {} and {} need keywords with the same Pstart, "
+                 "Pstop and Pdamp",
+                 std::string(1, NAMES[first]), std::string(1, NAMES[k]));
+  }
+  if (thermostat.damp == 0.0 && !given.count("pchain")) p.length = 0;
 }
 
 std::string Arguments::words_of_control() const

@@ -40,6 +40,30 @@ struct ThermostatWords {
   bool may_wait = false;    ///< bodies may come later, so that there may be none
 };
 
+/// What the keywords of constant pressure say, for the components xx yy zz yz xz xy.
+struct PressureWords {
+  static constexpr int COMPONENTS = 6;
+  bool on[COMPONENTS] = {};
+  double start[COMPONENTS] = {}, stop[COMPONENTS] = {}, period[COMPONENTS] = {};
+  int tied[3] = {0, 1, 2};    ///< directions with the same number change by the same factor
+  int length = 0;             ///< of the chain of the box; 0: none
+  double temperature = 0.0;
+  std::vector<double> fixed;    ///< point; empty: the center of the box
+
+  bool any() const { return std::count(on, on + COMPONENTS, true) > 0; }
+  void set(int component, const std::vector<double> &numbers)
+  {
+    on[component] = true;
+    start[component] = numbers[0];
+    stop[component] = numbers[1];
+    period[component] = numbers[2];
+  }
+  void set_all(const std::vector<double> &numbers)
+  {
+    for (int k = 0; k < 3; ++k) set(k, numbers);
+  }
+};
+
 /// The words behind a keyword, after they were read.
 struct KeywordValue {
   std::string text;                    ///< the first word as it stands
@@ -82,6 +106,7 @@ struct Keyword {
   std::string standard;              ///< WORD: the default
   std::string with_tolerance;        ///< WORD: the default then, empty: the same
   std::vector<Range> ranges;         ///< INTEGER: one, or those of formulation second and first
+  int any_sign = 0;                  ///< NUMBERS: so many of the first may be negative or zero
   int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
   bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them
   bool may_be_auto = false;          ///< INTEGER: the word auto is possible, and the default
@@ -123,6 +148,11 @@ struct Keyword {
   Keyword &number(const std::vector<std::string> &measures = {})
   {
     return follows(NUMBER, measures);
+  }
+  Keyword &numbers(const std::vector<std::string> &names, int of_any_sign)
+  {
+    any_sign = of_any_sign;
+    return follows(NUMBERS, names);
   }
   Keyword &follows(Kind what, const std::vector<std::string> &names)
   {
@@ -217,6 +247,7 @@ struct Arguments : protected Pointers {
   Isokinetic isokinetic;
   bool rescale;
   ThermostatWords thermostat;    ///< damp 0: none
+  PressureWords pressure;        ///< none on: the box stays
 
   /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
   /// names the word and what is required.
@@ -245,6 +276,7 @@ struct Arguments : protected Pointers {
   void check_conditions() const;
   void check_ranges();
   void check_control();
+  void check_pressure();
   std::vector<tagint> molecule_ids(int groupbit) const;
   std::vector<tagint> group_ids(int groupbit) const;
   std::vector<tagint> custom_ids(int groupbit) const;

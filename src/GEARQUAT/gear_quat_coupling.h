@@ -69,7 +69,18 @@ class Coupling : protected Pointers {
   /// False if a start would lose what the coupling has kept.  Local.
   virtual bool may_start_anew() const { return true; }
 
-  // a step
+  // a step; a moving box is that of a barostat, and all below is for that alone
+
+  /// Histories are predicted, and states hold what their rows say: the box becomes the predicted
+  /// one, and centers and velocities of states those in space.
+  virtual void predict(const Integrator & /*integrator*/) {}
+  /// Loads are those of the forces f on atoms, which LAMMPS has just evaluated.
+  virtual void meet_virial(double ** /*f*/) {}
+  /// A state with the scaled center and velocity that a history has.  Local.
+  virtual BodyState scaled(const BodyState &s) const { return s; }
+  /// False if LAMMPS needs the virial of the constraint forces for nothing but this coupling, in
+  /// the present step.  Local.
+  virtual bool others_ask_for_virial() const { return true; }
 
   /// Friction and rates by the present states and loads.
   virtual void measure() = 0;
@@ -111,6 +122,13 @@ class Coupling : protected Pointers {
   virtual void seed(const StartNodes &nodes, int pairs, int values) = 0;
   /// From the present alone, after measure(); the histories of bodies have `terms` terms.
   virtual void seed_local(double h, int terms) = 0;
+  // With a moving box: its histories begin anew; it becomes that of a node, and states, which have
+  // scaled centers, those in space; it is that of the start again.
+  virtual void refer_to_box(double /*h*/) {}
+  virtual void enter_node(const StartNodes & /*nodes*/, int /*node*/) {}
+  virtual void leave_nodes() {}
+  /// The virial that forces at nodes are evaluated with, as LAMMPS' vflag.  Local.
+  virtual int vflag() const { return 0; }
 
   // elements of the fix's vector
 
@@ -138,6 +156,12 @@ class Coupling : protected Pointers {
     for (const auto *list : {&bodies.points, &bodies.tops})
       for (const int ibody : *list) act(ibody);
   }
+
+  // what a law may have otherwise: the force that acts on a scaled center, and what a corrected
+  // state, which has a scaled center, becomes
+
+  const Load &met(int ibody) const { return bodies.load_of(ibody); }
+  void place(int /*ibody*/, const Integrator::Pending &, BodyState &, Correction &) const {}
 
   /// The load of a body without the components that are turned off; `masked` may hold it.
   const Load &load_of(int ibody, Load &masked) const
@@ -183,6 +207,12 @@ inline Load acting_on(const Bodies &bodies, const Coupling *coupling, int ibody)
   return coupling ? coupling->acting(ibody) : bodies.acting(ibody);
 }
 
+/// The state that the history of a body has.
+inline BodyState scaled_of(const Bodies &bodies, const Coupling *coupling, int ibody)
+{
+  return coupling ? coupling->scaled(bodies.state_of(ibody)) : bodies.state_of(ibody);
+}
+
 template <class Law>
 void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int passes)
 {
@@ -202,7 +232,7 @@ void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int pas
       const RigidBody &rigid = bodies.rigid_of(ibody);
       double *rows = bodies.history(ibody);
       if (bodies.body_at(ibody).off == 0)
-        integrator.correct_pass(rigid, bodies.load_of(ibody), law.of_all, rows, pending[ibody]);
+        integrator.correct_pass(rigid, law.met(ibody), law.of_all, rows, pending[ibody]);
       else
         integrator.correct_pass(rigid, bodies.acting(ibody), law.friction_of(ibody), rows,
                                 pending[ibody]);
@@ -226,6 +256,7 @@ void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int pas
     last = integrator.finish(load_of(ibody, load), rows, pending[ibody]);
     law.finish(integrator, rigid, rows);
     integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
+    law.place(ibody, pending[ibody], state, last);
     if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
   });
 }

@@ -99,36 +99,40 @@ struct Friction {
 
   // what acts on component i of a momentum p, or of an angular momentum l along the principal axes
 
-  double force(int i, double met, double p, double mass) const
+  double force(int i, double met, const double *p, double mass) const
   {
-    return met - translation[i] * (p - mass * common[i]);
+    return met - translation[i] * (p[i] - mass * common[i]);
   }
   double torque(double met, double l) const { return met - rotation * l; }
 
-  // A residual r changes a velocity by `share` * r, and thereby the friction: the residual that
-  // solves for both, of component i, and the part of an explicit one that does so for rotation.
+  // A residual r changes a velocity by `share` * r, and thereby the friction: explicit residuals
+  // of a center become those that solve for both; and the part of one of rotation that does so.
   // share: with the units of a time.  unit: the residual that an acceleration makes.  The common
   // motion has no friction, so its residual is the explicit one.
 
-  double implicit_force(int i, double share, double residual, double unit) const
+  void solve(double share, double unit, double *residual) const
   {
-    const double damped = share * translation[i];
-    return (residual + damped * unit * unforeseen[i]) / (1.0 + damped);
+    for (int i = 0; i < 3; ++i) {
+      const double damped = share * translation[i];
+      residual[i] = (residual[i] + damped * unit * unforeseen[i]) / (1.0 + damped);
+    }
   }
   double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
 };
 
 /// The load with the forces of friction, -alpha (p - m common) and -alpha L.
-inline Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
-                        const Friction &alpha)
+template <class Damper>
+Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
+                 const Damper &alpha)
 {
-  double a[9], momentum_body[3], momentum_space[3];
+  double a[9], momentum_body[3], momentum_space[3], momentum[3];
   rotation_matrix(state.q, dot4(state.q, state.q), a);
   for (int i = 0; i < 3; ++i) momentum_body[i] = body.inertia[i] * state.omega_body[i];
   to_space(a, momentum_body, momentum_space);
   Load damped = load;
+  for (int i = 0; i < 3; ++i) momentum[i] = body.mass * state.velocity[i];
   for (int i = 0; i < 3; ++i) {
-    damped.force[i] = alpha.force(i, load.force[i], body.mass * state.velocity[i], body.mass);
+    damped.force[i] = alpha.force(i, load.force[i], momentum, body.mass);
     damped.torque_space[i] -= alpha.rotation * momentum_space[i];
   }
   return damped;

@@ -30,9 +30,9 @@ namespace LAMMPS_NS::GearQuat {
 struct Undamped {
   static constexpr bool implicit = false;
 
-  double force(int, double met, double, double) const { return met; }
+  double force(int, double met, const double *, double) const { return met; }
   double torque(double met, double) const { return met; }
-  double implicit_force(int, double, double residual, double) const { return residual; }
+  void solve(double, double, double *) const {}
   double implicit_torque(double) const { return 1.0; }
 };
 
@@ -114,7 +114,9 @@ class Integrator : public Kinematics {
     return pending;
   }
 
-  void correct_pass(const RigidBody &body, const Load &load, const Friction &friction, double *rows,
+  /// Damper: Friction, or what has its functions.
+  template <class Damper>
+  void correct_pass(const RigidBody &body, const Load &load, const Damper &friction, double *rows,
                     Pending &pending) const
   {
     with_history([&](auto history) {
@@ -239,10 +241,8 @@ class Integrator : public Kinematics {
     copy(momentum, 3, before);
     for (int i = 0; i < 3; ++i)
       target[i] =
-          h * damper.force(i, load.force[i], before[i], body.mass) - rates[Scheme::MOMENTUM + i];
-    if (damper.implicit)
-      for (int i = 0; i < 3; ++i)
-        target[i] = damper.implicit_force(i, h * c.driven[0], target[i], h * body.mass);
+          h * damper.force(i, load.force[i], before, body.mass) - rates[Scheme::MOMENTUM + i];
+    if (damper.implicit) damper.solve(h * c.driven[0], h * body.mass, target);
     feed_back<3>(history, c.driven, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
@@ -282,9 +282,9 @@ class Integrator : public Kinematics {
     if (scheme.projection != Projection::NO) project_row(history, rows);
   }
 
-  template <int CARRIES>
-  void pass(First<CARRIES> history, const RigidBody &body, const Load &load,
-            const Friction &friction, double *rows, Pending &pending) const
+  template <int CARRIES, class Damper>
+  void pass(First<CARRIES> history, const RigidBody &body, const Load &load, const Damper &friction,
+            double *rows, Pending &pending) const
   {
     correct_center(history, body, load, friction, rows, pending.total.x);
     correct_rotation(history, body, pending.torque_body, friction, rows, pending.total.q);
@@ -405,20 +405,21 @@ class Integrator : public Kinematics {
   }
 
   /// Finds residuals alone: rows stay predicted until finish_passes().
-  template <int CARRIES>
-  void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Friction &friction,
+  template <int CARRIES, class Damper>
+  void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
             double *rows, Pending &pending) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
     const double share = 0.5 * h * c.driven[1];
-    double velocity[3], per_inertia[3], before[4];
+    double velocity[3], momentum[3], per_inertia[3], before[4];
     Load damped = load;
     if (friction.implicit)
       for (int i = 0; i < 3; ++i) velocity[i] = per_h * rates[i];
     else
       velocity_of_pass(rows, pending.total.x, velocity);
+    for (int i = 0; i < 3; ++i) momentum[i] = body.mass * velocity[i];
     for (int i = 0; i < 3; ++i)
-      damped.force[i] = friction.force(i, load.force[i], body.mass * velocity[i], body.mass);
+      damped.force[i] = friction.force(i, load.force[i], momentum, body.mass);
     position_residual(body, damped, rows, pending.total.x);
     inverse_moments(body, per_inertia);
     const double part = any_norm.projected_part(rows);
@@ -430,8 +431,7 @@ class Integrator : public Kinematics {
       any_norm.converges(part) ? AnyNorm::repeat(part, total, turn) : turn();
       return;
     }
-    for (int i = 0; i < 3; ++i)
-      pending.total.x[i] = friction.implicit_force(i, share, pending.total.x[i], 0.5 * h * h);
+    friction.solve(share, 0.5 * h * h, pending.total.x);
     copy(total, 4, before);
     turn();
     withhold(body, rows, before, 1.0 - friction.implicit_torque(share), total);

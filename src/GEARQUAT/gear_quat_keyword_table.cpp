@@ -20,6 +20,7 @@ static constexpr char HELD[] =
 static constexpr char FOR_CORRECTED[] = "tuned coefficients are those for the corrected one";
 static constexpr char ONE_TEMPERATURE[] =
     "both hold the kinetic energy of the bodies; leave out one of the two";
+static constexpr char MOVING_BOX[] = "with a moving box it is not possible yet";
 static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies come";
 
 using Value = KeywordValue;
@@ -27,6 +28,17 @@ using Value = KeywordValue;
 /* ----------------------------------------------------------------------
    the table; what decided the defaults is in doc/decisions.md
 ------------------------------------------------------------------------- */
+
+/// A keyword that makes components of the pressure constant.
+static Keyword pressure(const char *name, const char *meaning, Keyword::Store store)
+{
+  Keyword row(name, PHYSICS, meaning, store);
+  row.numbers({"Pstart", "Pstop", "Pdamp"}, 2)
+      .cannot_go_with({"isokinetic", "", "constant kinetic energy needs a constant box"});
+  for (const char *other : {"tolerance", "mol", "force", "torque"})
+    row.cannot_go_with({other, "", MOVING_BOX});
+  return row;
+}
 
 // clang-format off
 
@@ -131,6 +143,36 @@ static const std::vector<Keyword> TABLE = {
   Keyword("thermostat", PHYSICS, "whether translation and rotation have one thermostat each",
           [](Arguments &a, const Value &v) { a.thermostat.separate = v.is("separate"); })
       .word({"total", "separate"}).requires_also({"temp", "", ""}),
+  pressure("iso", "the pressure, by which all edges of the box change alike",
+           [](Arguments &a, const Value &v) {
+             a.pressure.set_all(v.numbers);
+             std::fill_n(a.pressure.tied, 3, 0);
+           }),
+  pressure("aniso", "the pressure along each edge of the box, which change one by one",
+           [](Arguments &a, const Value &v) { a.pressure.set_all(v.numbers); }),
+  pressure("x", "the pressure along x, by which that edge of the box changes",
+           [](Arguments &a, const Value &v) { a.pressure.set(0, v.numbers); }),
+  pressure("y", "the pressure along y, by which that edge of the box changes",
+           [](Arguments &a, const Value &v) { a.pressure.set(1, v.numbers); }),
+  pressure("z", "the pressure along z, by which that edge of the box changes",
+           [](Arguments &a, const Value &v) { a.pressure.set(2, v.numbers); }),
+  Keyword("couple", PHYSICS, "which edges of the box change alike, by their mean pressure",
+          [](Arguments &a, const Value &v) {
+            int *tied = a.pressure.tied;
+            if (v.is("xyz")) tied[0] = tied[1] = tied[2] = 0;
+            if (v.is("xy")) tied[1] = 0;
+            if (v.is("yz")) tied[2] = 1;
+            if (v.is("xz")) tied[2] = 0;
+          }).word({"none", "xyz", "xy", "yz", "xz"}),
+  Keyword("pchain", PHYSICS, "how many variables the thermostat of the box has",
+          [](Arguments &a, const Value &v) { a.pressure.length = v.integer; })
+      .integer({{0, Chain::LONGEST, 3}}),
+  Keyword("ptemp", PHYSICS, "the temperature by which the box has its mass, without temp",
+          [](Arguments &a, const Value &v) { a.pressure.temperature = v.number; })
+      .number().cannot_go_with({"temp", "", "the mass of the box is that of the temperature of temp"}),
+  Keyword("fixedpoint", PHYSICS, "the point of the box that does not move",
+          [](Arguments &a, const Value &v) { a.pressure.fixed = v.numbers; })
+      .numbers({"x", "y", "z"}, 3),
   Keyword("report", OUTPUT, "what the log says about the scene",
           [](Arguments &a, const Value &v) {
             a.report = v.is("no") ? Arguments::Report::NO

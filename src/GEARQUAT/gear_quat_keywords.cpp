@@ -22,8 +22,8 @@ using namespace GearQuat;
    words of the rigid fixes
 ------------------------------------------------------------------------- */
 
-static constexpr char BAROSTAT[] =
-    "there is no barostat, the box does not change; use fix rigid/npt/small for that";
+static constexpr char SCALED_TILT[] =
+    "a tilt changes by the factor of its length, as with scalexy yes; leave it out";
 
 /// doc/howto/from_rigid.md has the same table.
 static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {
@@ -31,9 +31,16 @@ static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGI
      "define fix langevin on the same group, and use corrector gear with values 6 at most "
      "(formulation first: 4)"},
     {{"tparam"}, "a thermostat is integrated with the bodies, without iterations; leave it out"},
-    {{"iso", "aniso", "tri", "x", "y", "z", "xy", "yz", "xz", "couple", "pparam", "pchain",
-      "dilate", "fixedpoint", "scalexy", "scalexz", "scaleyz"},
-     BAROSTAT},
+    {{"pparam"}, "a barostat is integrated with the bodies, without iterations; leave it out"},
+    {{"scalexy", "scalexz", "scaleyz"}, SCALED_TILT},
+    {{"dilate"}, "all atoms have to be in bodies, and centers of mass follow the box; leave it out"},
+    {{"tri", "xy", "xz", "yz", "flip"},
+     "shear components of the pressure cannot be controlled yet; use iso, aniso, x, y or z"},
+    {{"drag"}, "the motion of the box is that of its equations; use a longer Pdamp instead"},
+    {{"mtk"}, "its terms always belong to the equations of motion; leave it out"},
+    {{"nreset"}, "pressures are those of the present box, not of a reference cell; leave it out"},
+    {{"tloop", "ploop"}, "chains choose their own sub-steps; leave it out"},
+    {{"update"}, "rotations are always integrated; leave it out"},
     {{"gravity"},
      "keep fix gravity, on a group with the bodies, and leave out its keyword disable"},
     {{"bodyforces"}, "forces are always summed late, in the end of the step"},
@@ -51,8 +58,10 @@ int GearQuat::modify_like_rigid(LAMMPS *lmp, int narg, char **arg)
 {
   const std::string word = arg[0];
   if (word == "temp" || word == "press")
-    lmp->error->all(FLERR, "Fix gear/quat has no fix_modify {}: it computes no {}", word,
-                    word == "temp" ? "temperature" : "pressure");
+    lmp->error->all(FLERR,
+                    "Fix gear/quat has no fix_modify {}: it uses the {} of the bodies, which its "
+                    "vector shows",
+                    word, word == "temp" ? "temperatures" : "molecular pressure");
   if (word != "bodyforces") return 0;
   if (narg < 2) utils::missing_cmd_args(FLERR, "fix_modify bodyforces", lmp->error);
   const std::string when = arg[1];
@@ -135,11 +144,16 @@ bool GearQuat::read_integer(const std::string &text, int &integer)
   return true;
 }
 
-/// Whether a word is a positive number, and which.
+/// Whether a word is a number, and which.
+static bool read_number(const std::string &text, double &number)
+{
+  number = utils::is_double(text) ? std::strtod(text.c_str(), nullptr) : HUGE_VAL;
+  return std::isfinite(number);
+}
+
 static bool read_positive(const std::string &text, double &number)
 {
-  number = utils::is_double(text) ? std::strtod(text.c_str(), nullptr) : 0.0;
-  return number > 0.0 && std::isfinite(number);
+  return read_number(text, number) && number > 0.0;
 }
 
 int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
@@ -172,9 +186,10 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
   if (kind == NUMBERS) {
     value.numbers.resize(count);
     for (int k = 0; k < count; ++k)
-      if (!read_positive(arg[1 + k], value.numbers[k]))
-        error->all(FLERR, "Fix gear/quat {}: {} {} is not a positive number", name, words[k],
-                   arg[1 + k]);
+      if (k < any_sign ? !read_number(arg[1 + k], value.numbers[k])
+                       : !read_positive(arg[1 + k], value.numbers[k]))
+        error->all(FLERR, "Fix gear/quat {}: {} {} is not a {}number", name, words[k], arg[1 + k],
+                   k < any_sign ? "" : "positive ");
   }
   if (kind == MASK) {
     value.mask = {std::string("torque") == name, value.text, {}};

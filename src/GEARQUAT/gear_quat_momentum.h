@@ -63,6 +63,8 @@ class TotalMomentum : protected Pointers {
   bool judge();
   /// P^2/M in the directions in which P is constant.
   double twice_energy() const;
+  /// M V_a V_b of the common motion in these directions.
+  double twice_energy(int a, int b) const { return mass[a] * common[a] * common[b]; }
   /// Velocity of the common motion in these directions, and its acceleration less the one that rows
   /// are predicted with, if these were added.
   void move_along(Friction &friction) const

@@ -123,7 +123,8 @@ void Motion::take_velocities(bigint of_step, bool end)
       step.coupling->follow_velocities(step.length());
   }
   for (const int ibody : changed)
-    step.present_integrator()->set_velocities(bodies.rigid_of(ibody), bodies.state_of(ibody),
+    step.present_integrator()->set_velocities(bodies.rigid_of(ibody),
+                                              scaled_of(bodies, step.coupling.get(), ibody),
                                               step.acting(ibody), bodies.history(ibody));
 }
 
@@ -139,7 +140,7 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
     Motion &motion = *one.motion;
     motion.take_velocities(motion.update->ntimestep - 1, true);
     motion.ownership.spread_states();
-    motion.sites.gather_loads(f, torque);
+    motion.step.gather(f, torque);
   }
   for (const auto &one : fleet.members) {
     Step &step = one.motion->step;
@@ -284,6 +285,7 @@ Starter Motion::starter(bool needed)
 {
   for (int ibody = 0; ibody < bodies.nmoved() && step.scheme().any_norm(); ++ibody)
     project_norm(bodies.change_state(ibody).q);
+  if (needed && step.coupling) step.coupling->refer_to_box(step.length());
   std::function<Scheme(const MotionSums &)> choose;
   if (args.automatic_values)
     choose = [this](const MotionSums &here) {
@@ -358,6 +360,8 @@ std::string Motion::read(const Sections &file)
   const bool both = file.has("thermostat", 1) && mine.has("thermostat", 1);
   compare(both ? "thermostat" : "temp", "thermostat", 0);
   if (both) compare("tchain", "thermostat", 1);
+  compare("iso, aniso, x, y, z or couple", "barostat", 0);
+  compare("pchain", "barostat", 1);
   const bool same = others.empty(), had_started = file.number("motion", 0) != 0.0;
   step.started = resumed = had_started && same;
 

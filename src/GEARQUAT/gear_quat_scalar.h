@@ -38,6 +38,13 @@ class ScalarHistory {
 
   /// To the end of the step, where y' = rate.
   void advance(const Integrator &integrator, double rate) { integrator.advance(rows.data(), rate); }
+  /// With the coefficients of a first-order equation.
+  void advance(const double *coefficients, int values, double h, double rate)
+  {
+    Nordsieck<1>::predict(rows.data(), values);
+    const double residual = h * rate - rows[1];
+    Nordsieck<1>::correct<1>(rows.data(), values, coefficients, 0, &residual);
+  }
 
   /// For restart files.
   const Rows &record() const { return rows; }

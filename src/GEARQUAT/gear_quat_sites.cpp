@@ -346,6 +346,23 @@ void Sites::gather_impulses()
       nullptr);
 }
 
+void Sites::add_arm_virial(double **f, double *sum) const
+{
+  sum_over_sites(
+      [](int) {
+        return 0;
+      },
+      [&](int, const Site &site, const double *arm) {
+        if (!arm) return;
+        const double *force = f[site.atom];
+        for (int k = 0; k < 3; ++k) sum[k] += force[k] * arm[k];
+        sum[3] += force[1] * arm[2];
+        sum[4] += force[0] * arm[2];
+        sum[5] += force[0] * arm[1];
+      },
+      [](int, int) {});
+}
+
 /// Mean of the arms of all sites of each body, owned and ghost, in `force`.  Collective.
 std::vector<Load> Sites::centroids()
 {

@@ -46,14 +46,14 @@ void Starter::seed_local(int terms, double h)
     coupling->seed_local(h, terms);
   }
   for (int ibody = 0; ibody < bodies->nmoved(); ++ibody)
-    seed_body(*bodies, ibody, acting(ibody), scheme, h, terms);
+    seed_body(*bodies, ibody, scaled(ibody), acting(ibody), scheme, h, terms);
 }
 
-void GearQuat::seed_body(Bodies &bodies, int ibody, const Load &acting, const Scheme &scheme,
-                         double h, int terms)
+void GearQuat::seed_body(Bodies &bodies, int ibody, const BodyState &state, const Load &acting,
+                         const Scheme &scheme, double h, int terms)
 {
   const RigidBody &rigid = bodies.rigid_of(ibody);
-  auto series = local_series(rigid, bodies.state_of(ibody), acting, h);
+  auto series = local_series(rigid, state, acting, h);
   series.terms = terms;
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
@@ -163,6 +163,7 @@ struct Start::Search {
     for (size_t p = 0; p < our.starters.size(); ++p) {
       our.starters[p].bodies->put_back_states(snapshots[p]);
       our.starters[p].bodies->put_back_loads(snapshots[p]);
+      if (our.starters[p].coupling) our.starters[p].coupling->leave_nodes();
     }
   }
 
@@ -182,7 +183,7 @@ struct Start::Search {
       }
       one.work.resize(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-        our.collocation.begin(local_series(bodies.rigid_of(ibody), bodies.state_of(ibody),
+        our.collocation.begin(local_series(bodies.rigid_of(ibody), one.scaled(ibody),
                                            one.acting(ibody), spacing),
                               one.work[ibody]);
     }
@@ -220,15 +221,22 @@ struct Start::Search {
       Bodies &bodies = *one.bodies;
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         bodies.change_state(ibody) = our.collocation.state_at(node, one.work[ibody], spacing);
+      if (one.coupling) one.coupling->enter_node(nodes(), node);
       one.ownership->spread_states();
       one.sites->place(true);
     }
     if (forces.largest_displacement() > 0.5 * skin) return false;
-    forces.evaluate();
+    int vflag = 0;
+    for (auto &one : our.starters)
+      if (one.coupling) vflag |= one.coupling->vflag();
+    forces.evaluate(0, vflag);
     ++our.evaluations;
     for (auto &one : our.starters) one.sites->gather_loads(our.atom->f, our.atom->torque);
-    for (auto &one : our.starters)
-      if (one.coupling) one.coupling->visit_node(nodes(), node);
+    for (auto &one : our.starters) {
+      if (!one.coupling) continue;
+      one.coupling->meet_virial(our.atom->f);
+      one.coupling->visit_node(nodes(), node);
+    }
     for (auto &one : our.starters)
       for (int ibody = 0; ibody < one.bodies->nmoved(); ++ibody) {
         const Body &body = one.bodies->body_at(ibody);

@@ -40,6 +40,7 @@ struct Starter {
   std::vector<Collocation::Workspace> work = {};
 
   Load acting(int ibody) const { return acting_on(*bodies, coupling, ibody); }
+  BodyState scaled(int ibody) const { return scaled_of(*bodies, coupling, ibody); }
   /// Histories of all bodies from what states and loads determine.  terms: 2 for the paper's start,
   /// in which every second and higher derivative is zero, or 3 with the loads.  Collective.
   void seed_local(int terms, double h);
@@ -47,10 +48,10 @@ struct Starter {
   void choose_by_loads();
 };
 
-/// History of one body from what its state and the load that acts on it determine.  terms: 2, or 3
-/// for the load too.
-void seed_body(Bodies &bodies, int ibody, const Load &acting, const Scheme &scheme, double h,
-               int terms);
+/// History of one body from what its state, with a scaled center, and the load that acts on it
+/// determine.  terms: 2, or 3 for the load too.
+void seed_body(Bodies &bodies, int ibody, const BodyState &state, const Load &acting,
+               const Scheme &scheme, double h, int terms);
 
 class Start : protected Pointers {
  public:

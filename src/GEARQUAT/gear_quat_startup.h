@@ -281,6 +281,17 @@ class Collocation {
     }
   }
 
+  /// The same of any functions: their values, first and second derivatives.
+  template <int WIDTH>
+  void begin(const double *value, const double *first, const double *second,
+             Nodes<WIDTH, 2> &w) const
+  {
+    w.pairs = 0;
+    std::copy_n(value, WIDTH, w.start[0]);
+    std::copy_n(first, WIDTH, w.start[1]);
+    std::copy_n(second, WIDTH, w.rate[half]);
+  }
+
   /// No pair is known yet: a constant rate.
   void begin(double start, double rate, Scalar &s) const
   {
@@ -304,12 +315,12 @@ class Collocation {
     w.pairs = next;
   }
 
-  /// State of the body at a known node by the present polynomial; spacing: time between nodes.
-  BodyState state_at(int node, const Workspace &w, double spacing) const
+  /// Functions and their first derivatives at a known node by the present polynomial.
+  template <int WIDTH>
+  void values_at(int node, const Nodes<WIDTH, 2> &w, double *value, double *rate) const
   {
     const Polynomial &present = polynomial[w.pairs];
-    double value[7], rate[7];
-    for (int i = 0; i < 7; ++i) {
+    for (int i = 0; i < WIDTH; ++i) {
       value[i] = w.start[0][i] + node * w.start[1][i];
       rate[i] = w.start[1][i];
       for (int l = -w.pairs; l <= w.pairs; ++l) {
@@ -317,6 +328,13 @@ class Collocation {
         rate[i] += present.rate[column_of(node)][column_of(l)] * w.rate[half + l][i];
       }
     }
+  }
+
+  /// State of the body at a known node by the present polynomial; spacing: time between nodes.
+  BodyState state_at(int node, const Workspace &w, double spacing) const
+  {
+    double value[7], rate[7];
+    values_at(node, w, value, rate);
     BodyState state;
     for (int i = 0; i < 3; ++i) {
       state.center[i] = value[i];
@@ -347,7 +365,13 @@ class Collocation {
   }
 
   /// The same of a scalar.
-  void set_rate(int node, double rate, Scalar &s) const { s.met[node > 0][0] = rate; }
+  void set_rate(int node, double rate, Scalar &s) const { set_rates(node, &rate, s); }
+  /// And of any functions.
+  template <int WIDTH, int ORDER>
+  void set_rates(int node, const double *rates, Nodes<WIDTH, ORDER> &w) const
+  {
+    std::copy_n(rates, WIDTH, w.met[node > 0]);
+  }
 
   /// The rate at the start; before and behind it in memory are those at the other nodes.
   const double *rate_at_start(const Scalar &s) const { return s.rate[half]; }
@@ -365,18 +389,24 @@ class Collocation {
   /// The polynomial through the innermost `pairs` as a series in units of the node spacing.
   TaylorSeries series(const Workspace &w, int pairs) const
   {
-    const int nodes = 2 * pairs + 1;
     TaylorSeries series;
-    series.terms = nodes + 2;
+    series.terms = terms_of(pairs);
     static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
-    for (int i = 0; i < 7; ++i) {
-      series.c[0][i] = w.start[0][i];
-      series.c[1][i] = w.start[1][i];
-      for (int j = 0; j < nodes; ++j)
-        series.c[j + 2][i] = double(coefficient(j, i, w, pairs) / ((j + 1) * (j + 2)));
-    }
+    expand(w, pairs, series.c[0]);
     return series;
   }
+  /// The same of any functions: c[WIDTH * j + i] for term j of function i.
+  template <int WIDTH> void expand(const Nodes<WIDTH, 2> &w, int pairs, double *c) const
+  {
+    for (int i = 0; i < WIDTH; ++i) {
+      c[i] = w.start[0][i];
+      c[WIDTH + i] = w.start[1][i];
+      for (int j = 0; j + 2 < terms_of(pairs); ++j)
+        c[WIDTH * (j + 2) + i] = double(coefficient(j, i, w, pairs) / ((j + 1) * (j + 2)));
+    }
+  }
+  /// Terms of a function with known second derivatives.
+  static int terms_of(int pairs) { return 2 * pairs + 3; }
   TaylorSeries series(const Workspace &w) const { return series(w, w.pairs); }
 
   /// The same of a scalar whose rates are per unit of time, with `spacing` between nodes: its terms

@@ -5,9 +5,9 @@
 
 #include "gear_quat_step.h"
 
+#include "gear_quat_barostat.h"
 #include "gear_quat_isokinetic.h"
 #include "gear_quat_start.h"
-#include "gear_quat_thermostat.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -26,8 +26,11 @@ using namespace GearQuat;
 
 /// Keywords exclude two couplings, and one with a changing step where it cannot follow.
 static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                               Bodies &bodies)
+                                               Bodies &bodies, const Sites &sites)
 {
+  if (args.pressure.any())
+    return std::make_unique<Barostat>(lmp, fix, bodies, sites, args.thermostat, args.pressure,
+                                      args.scheme);
   if (args.isokinetic != Isokinetic::NONE)
     return std::make_unique<IsokineticConstraint>(lmp, bodies, args.scheme, args.isokinetic,
                                                   args.rescale);
@@ -40,7 +43,7 @@ Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &flee
            Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally) :
     Pointers(lmp),
     time_step(lmp), blowup(lmp, bodies, ownership, sites, present, args.control.shortest),
-    coupling(make_coupling(lmp, fix, args, bodies)), args(args), present(args.scheme),
+    coupling(make_coupling(lmp, fix, args, bodies, sites)), args(args), present(args.scheme),
     bodies(bodies), ownership(ownership), sites(sites), others(others), tally(std::move(tally))
 {
   blowup.coupling = coupling.get();
@@ -67,8 +70,9 @@ void Step::end(double **f, double **torque)
 {
   others.check_places();
   for (;;) {
-    sites.gather_loads(f, torque);
-    tally(vflag_of_step, f);    // here: the atoms are those that forces belong to
+    gather(f, torque);
+    // here: the atoms are those that forces belong to
+    if (!coupling || coupling->others_ask_for_virial()) tally(vflag_of_step, f);
     correct(f);
     if (is_accepted()) break;
     shorten();
@@ -81,6 +85,12 @@ void Step::end(double **f, double **torque)
   sites.place(true);
   others.note_velocity();
   if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where the forces were taken
+}
+
+void Step::gather(double **f, double **torque)
+{
+  sites.gather_loads(f, torque);
+  if (coupling) coupling->meet_virial(f);
 }
 
 void Step::choose_next()
@@ -128,6 +138,7 @@ void Step::predict(double **f)
                            bodies.change_frame(ibody));
     check(ibody);
   }
+  if (coupling) coupling->predict(*integrator);
 }
 
 void Step::place_prediction()
@@ -221,7 +232,8 @@ void Step::begin_fresh(double **f)
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
     blowup.check_load(ibody, integrator->step(), f);
-    seed_body(bodies, ibody, acting(ibody), scheme(), integrator->step(), known);
+    seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(),
+              integrator->step(), known);
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
   if (coupling) coupling->follow_changes(integrator->step());

@@ -47,6 +47,9 @@ class Step : protected Pointers {
   /// With keyword tolerance only.  Collective.
   void choose_next();
 
+  /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.  Collective.
+  void gather(double **f, double **torque);
+
   // before a run
 
   /// Whether anything reads velocities between begin() and end().

@@ -37,7 +37,8 @@ static constexpr double STRONG = 1.0e-3;
 Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
                        const Scheme &scheme) :
     Coupling(lmp, bodies),
-    fix(fix), words(words), chains(words.separate ? 2 : 1, Chain(words.length)),
+    fix(fix), words(words),
+    chains(words.length == 0 ? 0 : words.separate ? 2 : 1, Chain(words.length)),
     total(lmp, bodies, words.damp)
 {
   set_scheme(scheme);
@@ -251,6 +252,7 @@ void Thermostat::note_step(double h)
 
 void Thermostat::watch_cold(double h)
 {
+  if (!acts()) return;
   for (const Part part : {TRANSLATION, ROTATION}) {
     const bool is_cold = twice[part] < COLD * freedoms[part] * line.kt;
     cold[part] = is_cold ? cold[part] + std::fabs(h) : 0.0;
@@ -305,9 +307,9 @@ double Thermostat::element(int n)
     case TARGET:
       return degree * line.kt;
     case XI_TRANSLATION:
-      return chains.front().friction();
+      return friction[TRANSLATION];
     default:
-      return chains.back().friction();
+      return friction[words.separate ? ROTATION : TRANSLATION];
   }
 }
 
@@ -333,7 +335,7 @@ std::string Thermostat::read(const Sections &file)
 {
   const auto &saved = file.get("thermostat"), &variables = file.get("chains"),
              &sums = file.get("sums of chains");
-  if (saved.size() < 8 || variables.size() < chains.size() * chains[0].size())
+  if (saved.size() < 8 || variables.size() < chains.size() * (words.length + 1))
     return "the friction of temp";
   counted = (bigint) saved[2];
   line = {saved[3], saved[4]};
@@ -354,6 +356,6 @@ std::string Thermostat::read(const Sections &file)
     chain.restore(record);
   }
   note_friction();
-  if (!sums.empty()) return "";
+  if (!sums.empty() || !acts()) return "";
   return "the kinetic energies of past steps that temp needs (its friction and energy are kept)";
 }

@@ -98,7 +98,7 @@ class Thermostat : public Coupling {
   /// Of as many chains of as many variables.
   std::string read(const Sections &file) override;
 
- private:
+ protected:
   friend class Coupling;    // calls what correct_by_passes() asks for
 
   const Fix *fix;
@@ -138,6 +138,8 @@ class Thermostat : public Coupling {
   std::vector<bool> held;                             ///< chains that do not move in the start
 
   int mode() const { return words.separate ? 2 : 1; }
+  /// False without keyword temp: the object only knows degrees of freedom and kinetic energies.
+  bool acts() const { return !chains.empty(); }
   Line line_of_step(bigint step) const;
   ChainTarget target_of(int chain, double steps_ahead, double h) const;
   double twice_of(int chain) const;
@@ -162,6 +164,8 @@ class Thermostat : public Coupling {
   void sum_present();
   void note_friction();
   void share_friction();
+  /// 2K about the start, in units of the node spacing.
+  static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice);
   void watch_cold(double h);
   void watch_friction(double h);
   double part_of_limit(double h) const;

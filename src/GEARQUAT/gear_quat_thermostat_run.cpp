@@ -82,6 +82,7 @@ void Thermostat::judge(double constant)
 
 void Thermostat::tell_freedoms(const std::string &why)
 {
+  if (!acts()) return;
   const std::array<double, 3> now = {freedoms[TRANSLATION], freedoms[ROTATION], total.record()};
   if (told == now) return;
   told = now;
@@ -139,7 +140,7 @@ void Thermostat::begin_run(bool begins, double h)
   refuse_friction(h);
   // a single pass meets the friction of the prediction only
   const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
-  if (words.damp < fewest * std::fabs(update->dt) && comm->me == 0)
+  if (acts() && words.damp < fewest * std::fabs(update->dt) && comm->me == 0)
     error->warning(
         FLERR,
         "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "
@@ -194,7 +195,7 @@ void Thermostat::refuse_masks() const
 /// Friction warms nothing that stands still.
 void Thermostat::refuse_nothing(bool meets_all) const
 {
-  if (words.may_wait && counted == 0) return;
+  if (!acts() || (words.may_wait && counted == 0)) return;
   if (!total.any() && freedoms[ROTATION] == 0.0)
     error->all(FLERR,
                "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
@@ -261,6 +262,7 @@ double Thermostat::friction_ahead(double h) const
 /// The longest step that the friction, and the damping time, permit.
 double Thermostat::longest_step() const
 {
+  if (!acts()) return std::numeric_limits<double>::infinity();
   const double longest = words.damp / FEWEST_STEPS, strongest = strongest_friction();
   return strongest > 0.0 ? std::min(longest, SAFE * most_friction / strongest) : longest;
 }
@@ -333,8 +335,7 @@ void Thermostat::foretell(const StartNodes &nodes)
   for (auto &twice : twice_at_nodes) nodes.collocation.foretell(twice);
 }
 
-/// 2K about the start, in units of the node spacing.
-static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice)
+ChainDrive Thermostat::drive_of(const Collocation &collocation, const Collocation::Scalar &twice)
 {
   double at[ChainDrive::MOST];
   const int points = 2 * twice.pairs + 1;

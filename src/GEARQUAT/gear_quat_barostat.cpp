@@ -1,0 +1,367 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_barostat.h"
+
+#include "gear_quat_ranks.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/// Without temp a thermostat that does not act, with the temperature of the box's mass.
+static ThermostatWords words_of(const ThermostatWords &words, const PressureWords &pressure)
+{
+  if (words.damp > 0.0) return words;
+  ThermostatWords idle = words;
+  idle.start = idle.stop = pressure.temperature;
+  idle.length = 0;
+  for (int k = 0; k < PressureWords::COMPONENTS; ++k)
+    if (pressure.on[k]) idle.damp = std::max(idle.damp, pressure.period[k]);
+  return idle;
+}
+
+/// A scalar has first-order coefficients in both formulations.
+void Barostat::set_heat(const Scheme &scheme)
+{
+  Scheme of_heat;
+  of_heat.formulation = Formulation::FIRST;
+  of_heat.rows = values_of_heat = std::min(scheme.values(), FIRST_MOST);
+  heat_coefficients = CorrectorCoefficients(of_heat).driven;
+}
+
+Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
+                   const ThermostatWords &words, const PressureWords &pressure,
+                   const Scheme &scheme) :
+    Thermostat(lmp, fix, bodies, words_of(words, pressure), scheme),
+    asked(pressure), virial(lmp, fix, sites), box(lmp, pressure.fixed), cell(scheme),
+    chain(std::max(1, pressure.length)), matrix(Upper::one()), inverse(Upper::one())
+{
+  set_heat(scheme);
+  cell.begin(Upper(), 1.0);
+}
+
+void Barostat::set_scheme(const Scheme &scheme)
+{
+  Thermostat::set_scheme(scheme);
+  cell.set_scheme(scheme);
+  set_heat(scheme);
+}
+
+/* ----------------------------------------------------------------------
+   the box's equation of motion
+------------------------------------------------------------------------- */
+
+double Barostat::dimensions() const
+{
+  return domain->dimension;
+}
+
+double Barostat::volume() const
+{
+  return box.volume(matrix);
+}
+
+/// W of a component; Pdamp of coupled ones is the same.
+double Barostat::mass_of(int component) const
+{
+  const double d = dimensions(), period = asked.period[component];
+  return (freedoms[TRANSLATION] + d) * line.kt * period * period / d;
+}
+
+double Barostat::twice_kinetic_of_box() const
+{
+  double sum = 0.0;
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) sum += mass_of(k) * rate[k] * rate[k];
+  return sum;
+}
+
+/// Coupled directions have one degree of freedom.
+int Barostat::free_components() const
+{
+  int count = 0;
+  for (int k = 0; k < Upper::SIZE; ++k) count += asked.on[k] && (k >= 3 || asked.tied[k] == k);
+  return count;
+}
+
+ChainTarget Barostat::target_of_box(double steps_ahead, double h) const
+{
+  ChainTarget of_box;
+  of_box.kt = line.kt + line.kt_step * steps_ahead;
+  of_box.kt_rate = h == 0.0 ? 0.0 : line.kt_step / h;
+  of_box.freedoms = free_components();
+  of_box.period = HUGE_VAL;
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) of_box.period = std::min(of_box.period, asked.period[k]);
+  return of_box;
+}
+
+double Barostat::mean_target(const Upper &pressures) const
+{
+  double sum = 0.0, directions = 0.0;
+  for (int k = 0; k < 3; ++k)
+    if (asked.on[k]) {
+      sum += pressures[k];
+      ++directions;
+    }
+  return directions > 0.0 ? sum / directions : 0.0;
+}
+
+/// As LAMMPS' barostats: linear in the number of the step.
+void Barostat::find_target(bigint step, double h)
+{
+  const bigint steps = update->endstep - update->beginstep;
+  const double part = steps > 0 ? double(step - update->beginstep) / steps : 0.0;
+  const double unit = 1.0 / (force->nktv2p * force->mvv2e);
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    target[k] = unit * (asked.start[k] + part * (asked.stop[k] - asked.start[k]));
+    target_rate[k] =
+        steps > 0 && h != 0.0 ? unit * (asked.stop[k] - asked.start[k]) / (steps * h) : 0.0;
+  }
+}
+
+/// G' without the friction of the box.
+Upper Barostat::drive() const
+{
+  Upper found;
+  const double v = volume(), trace = kinetic.trace() / freedoms[TRANSLATION];
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    if (!asked.on[k]) continue;
+    double push = kinetic[k] + virial.value()[k] - target[k] * v;
+    if (k < 3) push += trace;
+    found[k] = push / mass_of(k);
+  }
+  for (int first = 0; first < 3; ++first) {
+    double sum = 0.0, count = 0.0;
+    for (int k = first; k < 3; ++k)
+      if (asked.on[k] && asked.tied[k] == first) {
+        sum += found[k];
+        ++count;
+      }
+    for (int k = first; k < 3; ++k)
+      if (asked.on[k] && asked.tied[k] == first) found[k] = sum / count;
+  }
+  return found;
+}
+
+/// S' of Eq. P7.
+double Barostat::rate_of_heat() const
+{
+  double sum = 0.0;
+  const double mean = mean_target(target), v = volume();
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) sum += v * (target[k] - (k < 3 ? mean : 0.0)) * rate[k];
+  // directions that do not move have no part in the mean
+  sum -= v * mean_target(target_rate);
+  const double kt_rate = width != 0.0 ? line.kt_step / width : 0.0;
+  return sum - 0.5 * kt_rate / line.kt * twice_kinetic_of_box();
+}
+
+/* ----------------------------------------------------------------------
+   sums over bodies
+------------------------------------------------------------------------- */
+
+void Barostat::add_momenta(int ibody, const double *velocity, Tensor &sums) const
+{
+  static constexpr int A[] = {0, 1, 2, 1, 0, 0}, B[] = {0, 1, 2, 2, 2, 1};
+  const double mass = bodies.rigid_of(ibody).mass;
+  for (int k = 0; k < Upper::SIZE; ++k) sums[k].add(mass * velocity[A[k]] * velocity[B[k]], unit);
+}
+
+void Barostat::sum_momenta(const Tensor &sums)
+{
+  static constexpr int A[] = {0, 1, 2, 1, 0, 0}, B[] = {0, 1, 2, 2, 2, 1};
+  bigint limbs[2 * Upper::SIZE];
+  for (int k = 0; k < Upper::SIZE; ++k) std::copy_n(sums[k].limbs, 2, limbs + 2 * k);
+  const auto all = over_ranks(MPI_SUM, limbs, world);
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    ExactSum sum;
+    std::copy_n(all.begin() + 2 * k, 2, sum.limbs);
+    kinetic[k] = sum.value(unit) - total.twice_energy(A[k], B[k]);
+  }
+  if (domain->dimension == 2) kinetic[2] = kinetic[3] = kinetic[4] = 0.0;
+}
+
+void Barostat::sum_present_momenta()
+{
+  Tensor sums;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    add_momenta(ibody, bodies.state_of(ibody).velocity, sums);
+  sum_momenta(sums);
+}
+
+/// Everything that follows from M and G.
+void Barostat::note_box()
+{
+  const double part = 1.0 / freedoms[TRANSLATION];
+  const double weights[3] = {part, part, domain->dimension == 3 ? part : 0.0};
+  inverse = matrix.inverse();
+  of_all = CellFriction(Thermostat::of_all, matrix, rate, weights);
+}
+
+void Barostat::measure()
+{
+  Thermostat::measure();
+  sum_present_momenta();
+  matrix = cell.matrix();
+  if (width != 0.0) rate = cell.rate(width);
+  friction_of_box = friction_now();
+  note_box();
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+void Barostat::predict(const Integrator &integrator)
+{
+  cell.predict();
+  matrix = cell.matrix();
+  rate = cell.rate(integrator.step());
+  box.set(matrix);
+  box.show(true);
+  for_moved([this](int ibody) {
+    box.to_space(bodies.change_state(ibody));
+  });
+}
+
+bool Barostat::others_ask_for_virial() const
+{
+  return virial.others_ask(update->ntimestep);
+}
+
+void Barostat::correct(const Integrator &integrator, int passes)
+{
+  correct_by_passes(*this, integrator, passes);
+  box.show(false);
+  virial.request(update->ntimestep + 1);
+}
+
+void Barostat::begin_passes(const Integrator &integrator)
+{
+  Thermostat::begin_passes(integrator);
+  width = integrator.step();
+  find_target(update->ntimestep, width);
+  for (auto &sum : tensor) sum = ExactSum();
+}
+
+void Barostat::add_prediction(const Integrator &integrator, int ibody,
+                              const Integrator::Pending &pending)
+{
+  Thermostat::add_prediction(integrator, ibody, pending);
+  add_momenta(ibody, bodies.state_of(ibody).velocity, tensor);
+}
+
+void Barostat::find_friction(const Integrator &integrator, int pass)
+{
+  const double h = integrator.step();
+  Thermostat::find_friction(integrator, pass);
+  sum_momenta(tensor);
+  for (auto &sum : tensor) sum = ExactSum();
+  if (chain_acts()) advance_box(h, integrator.values());
+  friction_of_box = friction_now();
+  cell.pass(drive(), friction_of_box, h);
+  matrix = cell.matrix();
+  rate = cell.rate(h);
+  note_box();
+}
+
+void Barostat::advance_box(double h, int values)
+{
+  const double twice = twice_kinetic_of_box();
+  if (!std::isfinite(twice) || chain.advance(target_of_box(-1.0, h), twice, h, values)) return;
+  error->all(FLERR,
+             "Fix gear/quat: in step {} the box moves so fast that its thermostat cannot follow; "
+             "begin nearer to the target pressure, or use a longer Pdamp",
+             update->ntimestep);
+}
+
+/// scaled_velocity: M^-1 v
+void Barostat::add(int ibody, const double *scaled_velocity, const double *omega_body,
+                   const Integrator::Pending &)
+{
+  double velocity[3];
+  matrix.times(scaled_velocity, velocity);
+  add_kinetic(ibody, velocity, omega_body, here);
+  add_momenta(ibody, velocity, tensor);
+}
+
+void Barostat::end_passes(const Integrator &integrator)
+{
+  Thermostat::end_passes(integrator);
+  if (chain_acts()) chain.conclude();
+  correction = cell.correction() * inverse;
+  cell.finish();
+  matrix = cell.matrix();
+  rate = cell.rate(width);
+  box.set(matrix);
+  heat.advance(heat_coefficients.data(), values_of_heat, width, rate_of_heat());
+}
+
+void Barostat::place(int ibody, const Integrator::Pending &pending, BodyState &state,
+                     Correction &last) const
+{
+  double scaled_way[3], way[3];
+  for (int k = 0; k < 3; ++k) scaled_way[k] = state.center[k] - pending.x[k];
+  matrix.times(scaled_way, way);
+  const double *force = bodies.load_of(ibody).force;
+  last.work += dot3(force, way) - dot3(force, scaled_way);
+  box.to_space(state);
+}
+
+/// The mass of the box changes with the degrees of freedom.
+void Barostat::follow_changes(double h)
+{
+  const double before = twice_kinetic_of_box();
+  Thermostat::follow_changes(h);
+  heat.add(0.5 * (before - twice_kinetic_of_box()));
+}
+
+void Barostat::rescale(double ratio)
+{
+  cell.rescale(ratio);
+  heat.rescale(ratio, values_of_heat);
+  width *= ratio;
+}
+
+/* ----------------------------------------------------------------------
+   outputs
+------------------------------------------------------------------------- */
+
+double Barostat::energy() const
+{
+  double sum = mean_target(target) * volume() + heat.value() + 0.5 * twice_kinetic_of_box() -
+      virial.value().contracted(correction);
+  if (chain_acts()) sum += chain.energy(target_of_box(0.0, 0.0));
+  return Thermostat::energy() + sum * force->mvv2e;
+}
+
+double Barostat::element(int n)
+{
+  if (n < Thermostat::ELEMENTS) return Thermostat::element(n);
+  static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};    // of xx yy zz xy xz yz
+  const double to_pressure = force->nktv2p * force->mvv2e;
+  if (n < P_TARGET) {
+    sum_present();
+    sum_present_momenta();
+    const double unit_of_pressure = to_pressure / volume();
+    const Upper found = (kinetic + virial.value()).scaled(unit_of_pressure);
+    return n == PRESSURE ? found.trace() / dimensions() : found[PLACES[n - P_COMPONENT]];
+  }
+  if (n == P_TARGET) return to_pressure * mean_target(target);
+  if (n < E_BOX) return rate[n - STRAIN_RATE];
+  if (n == E_BOX) return 0.5 * twice_kinetic_of_box() * force->mvv2e;
+  return friction_now();
+}

@@ -1,0 +1,164 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keywords iso, aniso, x, y and z: a box that holds components of the molecular pressure, with
+   keyword temp (NPT) or without (NPH); doc/theory.md, Eqs. P1 to P9.
+
+     W G_ab' = sum m v_a v_b + delta_ab b_a sum m v^2 + W_ab - P_ab V delta_ab - W xi G_ab        (P2)
+
+   for the components that are free, with v relative to a constant common motion, the molecular
+   virial W_ab (gear_quat_virial.h), b = 1/N_f with the degrees of freedom N_f of translation, and
+   the mass W = (N_f + d) kT Pdamp^2/d.  Coupled components have the mean of their right sides.  xi
+   is the friction of a chain of the box.  The energy
+
+     U + K + sum W G_ab^2/2 + P V + S + energies of the chains,                                 (P7)
+     S' = V sum (P_ab - P delta_ab) G_ab - V P' - sum (W'/2) G_ab^2,   P = sum P_aa/d
+
+   is constant.  The box (gear_quat_box.h) moves as the bodies do: it is predicted, LAMMPS evaluates
+   the forces in it, and every pass of the corrector corrects it. */
+
+#ifndef LMP_GEAR_QUAT_BAROSTAT_H
+#define LMP_GEAR_QUAT_BAROSTAT_H
+
+#include "gear_quat_box.h"
+#include "gear_quat_scalar.h"
+#include "gear_quat_thermostat.h"
+#include "gear_quat_virial.h"
+
+namespace LAMMPS_NS::GearQuat {
+
+class Barostat : public Thermostat {
+ public:
+  /// Elements of the fix's vector behind those of Thermostat.
+  enum {
+    PRESSURE = Thermostat::ELEMENTS,
+    P_COMPONENT,    ///< xx yy zz xy xz yz
+    P_TARGET = P_COMPONENT + 6,
+    STRAIN_RATE,    ///< xx yy zz
+    E_BOX = STRAIN_RATE + 3,
+    XI_BOX,
+    ELEMENTS
+  };
+
+  Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
+           const ThermostatWords &words, const PressureWords &pressure, const Scheme &scheme);
+
+  void begin_run(bool anew, double h) override;
+  void set_scheme(const Scheme &scheme) override;
+  const char *reason_to_start_anew() const override;
+
+  void predict(const Integrator &integrator) override;
+  void meet_virial(double **f) override { virial.measure(f); }
+  BodyState scaled(const BodyState &s) const override
+  {
+    BodyState found = s;
+    box.to_scaled(found);
+    return found;
+  }
+  bool others_ask_for_virial() const override;
+  void measure() override;
+  Load acting(int ibody) const override
+  {
+    return damped_load(bodies.rigid_of(ibody), scaled(bodies.state_of(ibody)), met(ibody), of_all);
+  }
+  void correct(const Integrator &integrator, int passes) override;
+  void follow_changes(double h) override;
+  void rescale(double ratio) override;
+
+  void refer_to_box(double h) override;
+  void begin_start(const StartNodes &nodes) override;
+  void foretell(const StartNodes &nodes) override;
+  void enter_node(const StartNodes &nodes, int node) override;
+  void visit_node(const StartNodes &nodes, int node) override;
+  void settle(const StartNodes &nodes, int pair) override;
+  void leave_nodes() override;
+  void seed(const StartNodes &nodes, int pairs, int values) override;
+  void seed_local(double h, int terms) override;
+  int vflag() const override { return virial.flag(); }
+
+  int elements() const override { return ELEMENTS; }
+  double element(int n) override;
+  bool extensive(int n) const override { return n == E_BOX || Thermostat::extensive(n); }
+  double energy() const override;
+
+  void write(Sections &file) const override;
+  std::string read(const Sections &file) override;
+
+ private:
+  friend class Coupling;    // calls what correct_by_passes() asks for
+
+  PressureWords asked;
+  MolecularVirial virial;
+  Box box;
+  CellHistory cell;
+  Chain chain;             ///< of the box
+  ScalarHistory heat;      ///< S
+  int values_of_heat = 0;
+  CorrectorCoefficients::Array heat_coefficients;    ///< of a first-order equation
+  double width = 0.0;                                ///< the step of the histories
+  Upper target;            ///< pressures of the present step
+  Upper target_rate;       ///< and their change with time
+  Upper made_target, made_rate;    ///< of the last step before this run
+
+  Upper matrix, rate;      ///< M and G in the present pass, or at a node
+  Upper kinetic;           ///< sum m v_a v_b, as of the last sum
+  Upper correction;        ///< of M M^-1 by the corrector, in the last step
+  double friction_of_box = 0.0;
+  CellFriction of_all;
+  Upper inverse;           ///< of M
+
+  using Tensor = ExactSum[Upper::SIZE];
+  Tensor tensor;           ///< of owned bodies, in a pass
+
+  // the start
+
+  Collocation::Nodes<Upper::SIZE, 2> cell_at_nodes = {};
+  Collocation::Scalar twice_box_at_nodes = {}, heat_at_nodes = {};
+  bool held_box = false;
+
+  double dimensions() const;
+  double mass_of(int component) const;
+  double twice_kinetic_of_box() const;
+  ChainTarget target_of_box(double steps_ahead, double h) const;
+  int free_components() const;
+  double volume() const;
+  double mean_target(const Upper &pressures) const;
+  void find_target(bigint step, double h);
+  void refuse_scene() const;
+  void find_temperature();
+  void set_heat(const Scheme &scheme);
+  void advance_box(double h, int values);
+  double mode_of_box() const;
+  Upper drive() const;
+  double rate_of_heat() const;
+  void add_momenta(int ibody, const double *velocity, Tensor &sums) const;
+  void sum_momenta(const Tensor &sums);
+  void sum_present_momenta();
+  void note_box();
+  double friction_now() const { return chain_acts() ? chain.friction() : 0.0; }
+  bool chain_acts() const { return asked.length > 0; }
+
+  // the passes of a step
+
+  Load met(int ibody) const
+  {
+    Load scaled_load = bodies.load_of(ibody);
+    inverse.times(bodies.load_of(ibody).force, scaled_load.force);
+    return scaled_load;
+  }
+  CellFriction friction_of(int /*ibody*/) const { return of_all; }
+  void begin_passes(const Integrator &integrator);
+  void add_prediction(const Integrator &integrator, int ibody, const Integrator::Pending &pending);
+  void find_friction(const Integrator &integrator, int pass);
+  void add(int ibody, const double *scaled_velocity, const double *omega_body,
+           const Integrator::Pending &pending);
+  void end_passes(const Integrator &integrator);
+  void place(int ibody, const Integrator::Pending &pending, BodyState &state,
+             Correction &last) const;
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

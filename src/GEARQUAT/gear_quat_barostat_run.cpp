@@ -1,0 +1,291 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Keywords of constant pressure, before a run: what is refused, the temperature of the box's mass,
+   and the start, in which every node has a box of its own.  And restart files. */
+
+#include "gear_quat_barostat.h"
+
+#include "gear_quat_known_styles.h"
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "kspace.h"
+#include "modify.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+/// What has a force without a virial, or places that do not follow the box.
+void Barostat::refuse_scene() const
+{
+  bigint here = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
+  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
+  if (others > 0)
+    error->all(FLERR,
+               "Fix gear/quat: constant pressure requires all atoms to be in bodies of this fix, "
+               "and {} are not: their places would not follow the box",
+               others);
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix gear/quat: constant pressure cannot be used with run_style respa; use "
+                      "run_style verlet");
+  if (force->kspace && force->kspace->scalar_pressure_flag)
+    error->all(FLERR, "Fix gear/quat: constant pressure requires kspace_modify pressure/scalar no");
+  constexpr int ON_FORCES = FixConst::POST_FORCE | FixConst::PRE_REVERSE;
+  for (auto *other : modify->get_fix_list()) {
+    if (other == fix || !(modify->get_fix_mask(other) & ON_FORCES)) continue;
+    if (known(FixFact::THREADS, other) || known(FixFact::NO_FORCE, other)) continue;
+    error->all(FLERR,
+               "Fix gear/quat: constant pressure cannot be used with fix {} ({}), which may change "
+               "forces: what they add to the pressure is not known",
+               other->id, other->style);
+  }
+}
+
+/// Without temp and ptemp: that of the bodies where the box begins to move.
+void Barostat::find_temperature()
+{
+  if (acts() || words.start > 0.0) return;
+  double here[2] = {0.0, 0.0};
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const BodyState &s = bodies.state_of(ibody);
+    here[0] += 2.0 * translational_energy(rigid, s.velocity) +
+        2.0 * rotational_energy(rigid, s.omega_body);
+    here[1] += domain->dimension == 2 ? 2 + (rigid.inertia[2] > 0.0)
+                                      : 3 + rigid.rotational_freedoms();
+  }
+  const auto all = over_ranks(MPI_SUM, here, world);
+  if (!(all[0] > 0.0))
+    error->all(FLERR,
+               "Fix gear/quat: the mass of the box is that of a temperature, and the bodies have "
+               "none; give them velocities first, or add keyword ptemp");
+  words.start = words.stop = all[0] / all[1] * force->mvv2e / force->boltz;
+}
+
+void Barostat::begin_run(bool begins, double h)
+{
+  refuse_scene();
+  if (begins) find_temperature();
+  Thermostat::begin_run(begins, h);
+  if (freedoms[TRANSLATION] < 1.0)
+    error->all(FLERR, "Fix gear/quat: constant pressure requires more than one body");
+  made_target = target;
+  made_rate = target_rate;
+  if (update->nsteps > 0 || begins) find_target(update->ntimestep, h);
+  if (begins) refer_to_box(h);
+  virial.request(update->ntimestep + 1);
+}
+
+const char *Barostat::reason_to_start_anew() const
+{
+  const char *reason = Thermostat::reason_to_start_anew();
+  if (reason) return reason;
+  constexpr double ROUNDING = 1.0e-12;
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    const double size = std::fabs(target[k]) + std::fabs(made_target[k]);
+    if (std::fabs(target[k] - made_target[k]) > ROUNDING * size ||
+        std::fabs(target_rate[k] - made_rate[k]) > ROUNDING * (std::fabs(target_rate[k]) + std::fabs(made_rate[k])))
+      return "the barostat has another target than in the last steps";
+  }
+  return nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   the start
+------------------------------------------------------------------------- */
+
+/// The box keeps its rate.
+void Barostat::refer_to_box(double h)
+{
+  const Upper before = width != 0.0 ? cell.rate(width) : Upper();
+  width = h;
+  box.refer();
+  cell.begin(before, h);
+  matrix = Upper::one();
+  rate = before;
+}
+
+void Barostat::begin_start(const StartNodes &nodes)
+{
+  Thermostat::begin_start(nodes);
+  const double s = nodes.spacing;
+  if (chain_acts()) {
+    const double twice = twice_kinetic_of_box();
+    chain.begin_settled(target_of_box(0.0, nodes.h), twice, nodes.h);
+    held_box = chain.is_stiff(target_of_box(0.0, nodes.h), twice, nodes.h, nodes.collocation.pairs());
+  }
+  friction_of_box = friction_now();
+  const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
+  nodes.collocation.begin<Upper::SIZE>(matrix.m.data(), (rate * matrix).scaled(s).m.data(),
+                                       second.scaled(s * s).m.data(), cell_at_nodes);
+  nodes.collocation.begin(0.0, twice_kinetic_of_box(), twice_box_at_nodes);
+  nodes.collocation.begin(heat.value(), rate_of_heat(), heat_at_nodes);
+  note_box();
+}
+
+void Barostat::foretell(const StartNodes &nodes)
+{
+  Thermostat::foretell(nodes);
+  nodes.collocation.foretell(cell_at_nodes);
+  nodes.collocation.foretell(twice_box_at_nodes);
+  nodes.collocation.foretell(heat_at_nodes);
+}
+
+void Barostat::enter_node(const StartNodes &nodes, int node)
+{
+  Upper value, first;
+  nodes.collocation.values_at(node, cell_at_nodes, value.m.data(), first.m.data());
+  matrix = value;
+  rate = first.scaled(1.0 / nodes.spacing) * value.inverse();
+  box.set(matrix);
+  box.show(true);
+  for_moved([this](int ibody) {
+    box.to_space(bodies.change_state(ibody));
+  });
+}
+
+void Barostat::visit_node(const StartNodes &nodes, int node)
+{
+  Thermostat::visit_node(nodes, node);
+  sum_present_momenta();
+  if (chain_acts() && !held_box) {
+    const ChainDrive of_box = drive_of(nodes.collocation, twice_box_at_nodes);
+    friction_of_box =
+        chain.flow(target_of_box(0.0, nodes.h), of_box, nodes.spacing, node).y[0];
+  }
+  const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
+  nodes.collocation.set_rates(node, second.scaled(nodes.spacing * nodes.spacing).m.data(),
+                              cell_at_nodes);
+  nodes.collocation.set_rate(node, twice_kinetic_of_box(), twice_box_at_nodes);
+  nodes.collocation.set_rate(node, rate_of_heat(), heat_at_nodes);
+  note_box();
+}
+
+void Barostat::settle(const StartNodes &nodes, int pair)
+{
+  Thermostat::settle(nodes, pair);
+  nodes.collocation.settle(pair, cell_at_nodes);
+  nodes.collocation.settle(pair, twice_box_at_nodes);
+  nodes.collocation.settle(pair, heat_at_nodes);
+}
+
+void Barostat::leave_nodes()
+{
+  matrix = cell.matrix();
+  rate = cell.rate(width);
+  box.set(matrix);
+  box.show(true);
+}
+
+void Barostat::seed(const StartNodes &nodes, int pairs, int values)
+{
+  Thermostat::seed(nodes, pairs, values);
+  double of_cell[Upper::SIZE * TaylorSeries::MAX_TERMS], of_heat[Collocation::MAX_NODES + 1];
+  nodes.collocation.expand(cell_at_nodes, pairs, of_cell);
+  cell.seed(of_cell, Collocation::terms_of(pairs), nodes.spacing, nodes.h);
+  const int terms = nodes.collocation.series(heat_at_nodes, pairs, nodes.spacing, of_heat);
+  heat.seed(of_heat, terms, nodes.spacing, nodes.h, values_of_heat);
+  chain.seed(nodes.collocation.rate_at_start(twice_box_at_nodes), pairs, nodes.spacing, values + 1);
+}
+
+void Barostat::seed_local(double h, int terms)
+{
+  Thermostat::seed_local(h, terms);
+  if (chain_acts()) chain.begin_settled(target_of_box(0.0, h), twice_kinetic_of_box(), h);
+  friction_of_box = friction_now();
+  const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
+  Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
+  cell.seed(series[0].m.data(), terms, h, h);
+  const double of_heat[2] = {heat.value(), h * rate_of_heat()};
+  heat.seed(of_heat, 2, h, h, values_of_heat);
+  const double twice = twice_kinetic_of_box();
+  chain.seed(&twice, 0, 0.0, 1);
+}
+
+/* ----------------------------------------------------------------------
+   restart
+------------------------------------------------------------------------- */
+
+/// Which components are free, and which directions change alike.
+double Barostat::mode_of_box() const
+{
+  int mode = 0;
+  for (int k = 0; k < Upper::SIZE; ++k) mode |= (int) asked.on[k] << k;
+  for (int k = 0; k < 3; ++k) mode |= asked.tied[k] << (Upper::SIZE + 2 * k);
+  return mode;
+}
+
+void Barostat::write(Sections &file) const
+{
+  Thermostat::write(file);
+  Sections::Numbers numbers = {mode_of_box(), (double) asked.length, words.start, width};
+  for (const auto *part : {&target, &target_rate, &correction, &virial.value()})
+    numbers.insert(numbers.end(), part->m.begin(), part->m.end());
+  file.put("barostat", numbers);
+  const Box::Record of_box = box.record();
+  file.put("box", {of_box.begin(), of_box.end()});
+  file.put("cell", {cell.record().begin(), cell.record().end()});
+  file.put("heat of box", {heat.record().begin(), heat.record().end()});
+  const Chain::Record of_chain = chain.record();
+  Sections::Numbers chained(of_chain.y.begin(), of_chain.y.end());
+  chained.push_back(of_chain.known);
+  for (int i = 0; i < (int) of_chain.known; ++i)
+    chained.insert(chained.end(), {of_chain.sums[i], of_chain.ages[i]});
+  file.put("chain of box", chained);
+}
+
+std::string Barostat::read(const Sections &file)
+{
+  const std::string missing = Thermostat::read(file);
+  const auto &numbers = file.get("barostat"), &of_box = file.get("box"), &rows = file.get("cell"),
+             &of_heat = file.get("heat of box"), &chained = file.get("chain of box");
+  Chain::Record of_chain = {};
+  const size_t variables = of_chain.y.size();
+  if (numbers.size() < 4 + 4 * Upper::SIZE || of_box.size() < Box::NUMBERS || rows.empty() ||
+      of_heat.empty() || chained.size() <= variables)
+    return "the motion of the box";
+  if (!acts() && asked.temperature == 0.0) words.start = words.stop = numbers[2];
+  width = numbers[3];
+  auto from = numbers.begin() + 4;
+  Upper of_virial;
+  for (auto *part : {&target, &target_rate, &correction, &of_virial}) {
+    std::copy_n(from, Upper::SIZE, part->m.begin());
+    from += Upper::SIZE;
+  }
+  virial.restore(of_virial);
+  CellHistory::Rows of_cell = {};
+  std::copy_n(rows.begin(), std::min(rows.size(), of_cell.size()), of_cell.begin());
+  cell.restore(of_cell);
+  box.restore(of_box.data(), cell.matrix());
+  matrix = cell.matrix();
+  if (width != 0.0) rate = cell.rate(width);
+  ScalarHistory::Rows saved_heat = {};
+  std::copy_n(of_heat.begin(), std::min(of_heat.size(), saved_heat.size()), saved_heat.begin());
+  heat.restore(saved_heat);
+  std::copy_n(chained.begin(), variables, of_chain.y.begin());
+  of_chain.known = std::min((double) Chain::MOST_SUMS, chained[variables]);
+  for (size_t i = 0; i < (size_t) of_chain.known && variables + 2 + 2 * i < chained.size(); ++i) {
+    of_chain.sums[i] = chained[variables + 1 + 2 * i];
+    of_chain.ages[i] = chained[variables + 2 + 2 * i];
+  }
+  chain.restore(of_chain);
+  return missing;
+}

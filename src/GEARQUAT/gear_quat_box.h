@@ -1,0 +1,83 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* LAMMPS' box at any time of a start or a step, as the deformation M of a reference box:
+   R = o + M (X - o), where R is a position and X the scaled one that histories hold, and o is a
+   fixed point.  With M = 1 positions, velocities and the box have the same bits as without. */
+
+#ifndef LMP_GEAR_QUAT_BOX_H
+#define LMP_GEAR_QUAT_BOX_H
+
+#include "gear_quat_cell.h"
+#include "pointers.h"
+
+#include <array>
+#include <vector>
+
+namespace LAMMPS_NS::GearQuat {
+
+class Box : protected Pointers {
+ public:
+  /// fixed: coordinates of the fixed point; empty: the center of the box.
+  Box(LAMMPS *lmp, const std::vector<double> &fixed) : Pointers(lmp), fixed(fixed) {}
+
+  /// The present box of LAMMPS is the reference from now on: M = 1.
+  void refer();
+  /// M of the states that are mapped from now on.
+  void set(const Upper &deformation);
+  const Upper &matrix() const { return m; }
+  double volume(const Upper &deformation) const
+  {
+    return reference_volume * deformation.determinant();
+  }
+
+  /// LAMMPS' box becomes that of M, with all that LAMMPS derives from it.  forces: some are going to
+  /// be evaluated in it.
+  void show(bool forces);
+
+  // scaled centers and their velocities, and those in space
+
+  void to_space(BodyState &s) const
+  {
+    double way[3], velocity[3];
+    for (int k = 0; k < 3; ++k) {
+      way[k] = s.center[k] - origin[k];
+      velocity[k] = s.velocity[k];
+    }
+    for (int k = 0; k < 3; ++k) s.center[k] += change.row_times(k, way);
+    m.times(velocity, s.velocity);
+  }
+  void to_scaled(BodyState &s) const
+  {
+    double way[3], velocity[3];
+    for (int k = 0; k < 3; ++k) {
+      way[k] = s.center[k] - origin[k];
+      velocity[k] = s.velocity[k];
+    }
+    for (int k = 0; k < 3; ++k) s.center[k] += inverse_change.row_times(k, way);
+    inverse.times(velocity, s.velocity);
+  }
+
+  /// For restart files: the reference, and the fixed point.
+  static constexpr int NUMBERS = 15;
+  using Record = std::array<double, NUMBERS>;
+  Record record() const;
+  void restore(const double *saved, const Upper &deformation);
+
+ private:
+  std::vector<double> fixed;
+  /// As Domain::h, and behind it boxlo and boxhi.
+  std::array<double, 12> reference = {};
+  double origin[3] = {};
+  double reference_volume = 0.0;
+  Upper m = Upper::one(), inverse = Upper::one();
+  Upper change, inverse_change;    ///< M - 1 and M^-1 - 1
+
+  void derive();
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

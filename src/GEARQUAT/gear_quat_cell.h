@@ -1,0 +1,259 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* A periodic cell that moves with the bodies in it (doc/theory.md, Eqs. P1 to P8).
+
+   Let h be the cell of LAMMPS, an upper triangular matrix, and M = h h_ref^-1 its deformation since a
+   reference.  Histories hold scaled centers of mass X, with R = o + M (X - o), so that neither the
+   fixed point o nor the acceleration of the cell appears in the equation of motion:
+
+     X'' = M^-1 [F/m - (2 G + b.G + xi) v],   v = M X',   G = M' M^-1,   b.G = sum_a b_a G_aa     (P3)
+     M'' = (G' + G^2) M                                                                           (P4)
+
+   The host knows G' without its friction, the drive.  The cell is integrated by the second-order
+   form in both formulations of the bodies; formulation first has the momentum m X'.
+
+   Sources: G. J. Martyna, D. J. Tobias, M. L. Klein, J. Chem. Phys. 101, 4177 (1994), section II;
+   for an upper triangular cell the weights b are those with which the flow has the divergence of
+   the measure V^(1-d) dh. */
+
+#ifndef GEAR_QUAT_CELL_H
+#define GEAR_QUAT_CELL_H
+
+#include "gear_quat_integrator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace LAMMPS_NS::GearQuat {
+
+/// An upper triangular matrix, in the order of LAMMPS' Domain::h.
+struct Upper {
+  enum { XX, YY, ZZ, YZ, XZ, XY, SIZE };
+  std::array<double, SIZE> m = {};
+
+  static Upper one() { return {{1.0, 1.0, 1.0, 0.0, 0.0, 0.0}}; }
+
+  double &operator[](int k) { return m[k]; }
+  double operator[](int k) const { return m[k]; }
+
+  double determinant() const { return m[XX] * m[YY] * m[ZZ]; }
+  double trace() const { return m[XX] + m[YY] + m[ZZ]; }
+
+  /// this * v
+  void times(const double *v, double *product) const
+  {
+    product[0] = m[XX] * v[0] + m[XY] * v[1] + m[XZ] * v[2];
+    product[1] = m[YY] * v[1] + m[YZ] * v[2];
+    product[2] = m[ZZ] * v[2];
+  }
+  /// The transposed matrix * v
+  void transposed_times(const double *v, double *product) const
+  {
+    product[2] = m[XZ] * v[0] + m[YZ] * v[1] + m[ZZ] * v[2];
+    product[1] = m[XY] * v[0] + m[YY] * v[1];
+    product[0] = m[XX] * v[0];
+  }
+  /// Row i of this * v
+  double row_times(int i, const double *v) const
+  {
+    switch (i) {
+      case 0:
+        return m[XX] * v[0] + m[XY] * v[1] + m[XZ] * v[2];
+      case 1:
+        return m[YY] * v[1] + m[YZ] * v[2];
+      default:
+        return m[ZZ] * v[2];
+    }
+  }
+
+  Upper operator*(const Upper &o) const
+  {
+    return {{m[XX] * o[XX], m[YY] * o[YY], m[ZZ] * o[ZZ], m[YY] * o[YZ] + m[YZ] * o[ZZ],
+             m[XX] * o[XZ] + m[XY] * o[YZ] + m[XZ] * o[ZZ], m[XX] * o[XY] + m[XY] * o[YY]}};
+  }
+  Upper operator+(const Upper &o) const
+  {
+    Upper sum;
+    for (int k = 0; k < SIZE; ++k) sum[k] = m[k] + o[k];
+    return sum;
+  }
+  Upper operator-(const Upper &o) const
+  {
+    Upper difference;
+    for (int k = 0; k < SIZE; ++k) difference[k] = m[k] - o[k];
+    return difference;
+  }
+  Upper scaled(double factor) const
+  {
+    Upper product;
+    for (int k = 0; k < SIZE; ++k) product[k] = factor * m[k];
+    return product;
+  }
+  Upper inverse() const
+  {
+    const double x = 1.0 / m[XX], y = 1.0 / m[YY], z = 1.0 / m[ZZ];
+    return {{x, y, z, -m[YZ] * y * z, (m[XY] * m[YZ] * y - m[XZ]) * x * z, -m[XY] * x * y}};
+  }
+  /// sum_ab this_ab o_ab
+  double contracted(const Upper &o) const
+  {
+    double sum = 0.0;
+    for (int k = 0; k < SIZE; ++k) sum += m[k] * o[k];
+    return sum;
+  }
+};
+
+/* ---------------------------------------------------------------------- */
+
+/// What takes the place of Friction in a moving cell: the terms of Eq. P3 that depend on velocities,
+/// for the scaled momentum p = m X'.  A motion of all bodies together with a constant velocity
+/// V = M c has no part in b.G and in xi:
+///   p' = M^-1 F - damping (p - m c) - drag m c
+struct CellFriction {
+  Upper damping;    ///< M^-1 (2 G + b.G + xi) M
+  Upper drag;       ///< M^-1 G M
+  double common[3] = {0.0, 0.0, 0.0}, unforeseen[3] = {0.0, 0.0, 0.0};    ///< as in Friction
+  double rotation = 0.0;
+  bool implicit = false;
+
+  CellFriction() = default;
+  /// alpha: of the thermostat, along all axes the same.  weights: b.
+  CellFriction(const Friction &alpha, const Upper &matrix, const Upper &rate,
+               const double (&weights)[3]) :
+      rotation(alpha.rotation), implicit(alpha.implicit)
+  {
+    const Upper inverse = matrix.inverse();
+    double trace = alpha.translation[0];
+    for (int k = 0; k < 3; ++k) trace += weights[k] * rate[k];
+    drag = inverse * rate * matrix;
+    damping = drag.scaled(2.0) + Upper::one().scaled(trace);
+    inverse.times(alpha.common, common);
+    for (int k = 0; k < 3; ++k) unforeseen[k] = alpha.unforeseen[k] - drag.row_times(k, common);
+  }
+
+  double force(int i, double met, const double *p, double mass) const
+  {
+    double own[3];
+    for (int k = 0; k < 3; ++k) own[k] = p[k] - mass * common[k];
+    return met - damping.row_times(i, own) - mass * drag.row_times(i, common);
+  }
+  double torque(double met, double l) const { return met - rotation * l; }
+
+  /// See Friction::solve(); the equations of x, y and z are solved backwards.
+  void solve(double share, double unit, double *residual) const
+  {
+    double own[3] = {0.0, 0.0, 0.0};
+    for (int i = 2; i >= 0; --i) {
+      const double of_others = share * damping.row_times(i, own);
+      own[i] = (residual[i] - unit * unforeseen[i] - of_others) / (1.0 + share * damping[i]);
+      residual[i] = own[i] + unit * unforeseen[i];
+    }
+  }
+  double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
+};
+
+/* ---------------------------------------------------------------------- */
+
+/// The history of M, with as many values as those of the bodies.
+class CellHistory {
+ public:
+  static constexpr int WIDTH = Upper::SIZE;
+  using Rows = std::array<double, WIDTH * MAX_VALUES>;
+
+  explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
+
+  /// of_bodies: formulation first has Gear's coefficients here.
+  void set_scheme(const Scheme &of_bodies)
+  {
+    Scheme scheme = of_bodies;
+    if (scheme.first()) {
+      scheme.rows = std::max(scheme.values(), SECOND_FEWEST);
+      scheme.tuned = false;
+    }
+    scheme.formulation = Formulation::SECOND;
+    n = scheme.values();
+    c = CorrectorCoefficients(scheme).driven;
+  }
+
+  /// M = 1 with this rate; higher derivatives are not known.
+  void begin(const Upper &rate, double h)
+  {
+    rows = {};
+    put(0, Upper::one());
+    put(1, rate.scaled(h));
+    total = Upper();
+  }
+
+  // in the present pass; before the first pass, and in a step that is complete, of the rows
+
+  Upper matrix() const { return row(0) + total.scaled(c[0]); }
+  /// M'
+  Upper velocity(double h) const { return (row(1) + total.scaled(c[1])).scaled(1.0 / h); }
+  /// G
+  Upper rate(double h) const { return velocity(h) * matrix().inverse(); }
+
+  /// M'' from the drive, by Eq. P4.
+  static Upper acceleration(const Upper &matrix, const Upper &rate, const Upper &drive,
+                            double friction)
+  {
+    return (drive - rate.scaled(friction) + rate * rate) * matrix;
+  }
+
+  void predict() { Nordsieck<WIDTH>::predict(rows.data(), n); }
+
+  /// One pass in a step of h: the friction, which may be strong, is solved for.
+  void pass(const Upper &drive, double friction, double h)
+  {
+    const Upper now = matrix(), rate = this->rate(h);
+    const Upper without = (drive + rate * rate) * now;
+    const double half_h2 = 0.5 * h * h, divisor = 1.0 / (1.0 + 0.5 * h * friction * c[1]);
+    const Upper first = row(1), second = row(2);
+    for (int k = 0; k < WIDTH; ++k)
+      total[k] = divisor * (half_h2 * without[k] - 0.5 * h * friction * first[k] - second[k]);
+  }
+  /// The step is complete.
+  void finish()
+  {
+    Nordsieck<WIDTH>::correct<WIDTH>(rows.data(), n, c.data(), 0, total.m.data());
+    total = Upper();
+  }
+  /// Of the prediction: M and G of the present pass less these.
+  Upper correction() const { return total.scaled(c[0]); }
+
+  void rescale(double ratio) { Nordsieck<WIDTH>::rescale(rows.data(), n, ratio); }
+
+  /// All rows from `terms` terms of a series, series[6 j + k], in units of series_step.
+  void seed(const double *series, int terms, double series_step, double h)
+  {
+    double power = 1.0;
+    rows = {};
+    for (int j = 0; j < n && j < terms; ++j, power *= h / series_step)
+      for (int k = 0; k < WIDTH; ++k) rows[WIDTH * j + k] = power * series[WIDTH * j + k];
+    total = Upper();
+  }
+
+  const Rows &record() const { return rows; }
+  void restore(const Rows &saved) { rows = saved; }
+
+ private:
+  int n = 0;
+  CorrectorCoefficients::Array c = {};
+  Rows rows = {};
+  Upper total;    ///< the residual after the present pass
+
+  Upper row(int j) const
+  {
+    Upper found;
+    std::copy_n(&rows[(size_t) WIDTH * j], WIDTH, found.m.begin());
+    return found;
+  }
+  void put(int j, const Upper &value) { std::copy_n(value.m.begin(), WIDTH, &rows[(size_t) WIDTH * j]); }
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

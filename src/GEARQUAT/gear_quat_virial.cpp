@@ -1,0 +1,99 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_virial.h"
+
+#include "gear_quat_ranks.h"
+
+#include "angle.h"
+#include "atom.h"
+#include "bond.h"
+#include "compute.h"
+#include "dihedral.h"
+#include "domain.h"
+#include "fix.h"
+#include "force.h"
+#include "improper.h"
+#include "kspace.h"
+#include "modify.h"
+#include "pair.h"
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// bits of vflag in LAMMPS: each pair is tallied, or forces on owned and ghost atoms
+
+static constexpr int PAIR_BY_PAIR = 1, BY_FORCES = 2;
+
+// LAMMPS' order of a virial is xx yy zz xy xz yz
+
+static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};
+
+/* ---------------------------------------------------------------------- */
+
+MolecularVirial::MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites) :
+    Pointers(lmp), id(std::string(fix->id) + "_press"), sites(sites)
+{
+  modify->add_compute(id + " all pressure NULL pair bond angle dihedral improper kspace");
+}
+
+MolecularVirial::~MolecularVirial()
+{
+  if (own()) modify->delete_compute(id);
+}
+
+Compute *MolecularVirial::own() const
+{
+  return modify->get_compute_by_id(id);
+}
+
+void MolecularVirial::request(bigint step) const
+{
+  own()->addstep(step);
+}
+
+bool MolecularVirial::others_ask(bigint step) const
+{
+  for (auto *one : modify->get_compute_list())
+    if ((one->pressflag || one->pressatomflag) && id != one->id && one->matchstep(step)) return true;
+  return false;
+}
+
+int MolecularVirial::flag() const
+{
+  return force->newton_pair ? BY_FORCES : PAIR_BY_PAIR;
+}
+
+template <class Style> static void add_virial(const Style *style, double (&sum)[6])
+{
+  if (!style) return;
+  for (int k = 0; k < 6; ++k) sum[k] += style->virial[k];
+}
+
+void MolecularVirial::measure(double **f)
+{
+  double styles[6] = {};
+  add_virial(force->pair, styles);
+  if (atom->molecular != Atom::ATOMIC) {
+    add_virial(force->bond, styles);
+    add_virial(force->angle, styles);
+    add_virial(force->dihedral, styles);
+    add_virial(force->improper, styles);
+  }
+  double here[6] = {};
+  sites.add_arm_virial(f, here);
+  for (int k = 0; k < 6; ++k) here[k] = styles[PLACES[k]] - here[k];
+  const auto all = over_ranks(MPI_SUM, here, world);
+  for (int k = 0; k < 6; ++k) {
+    virial[k] = all[k];
+    if (force->kspace) virial[k] += force->kspace->virial[PLACES[k]];    // that of all ranks
+    virial[k] /= force->mvv2e;
+  }
+  if (!force->pair || !force->pair->tail_flag) return;
+  const double *edges = domain->prd;
+  const double volume = edges[0] * edges[1] * (domain->dimension == 3 ? edges[2] : 1.0);
+  for (int k = 0; k < domain->dimension; ++k)
+    virial[k] += force->pair->ptail / (volume * force->mvv2e);
+}
