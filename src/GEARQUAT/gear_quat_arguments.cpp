@@ -222,15 +222,18 @@ void Arguments::check_pressure()
   if (!p.any()) {
     for (const char *keyword : {"couple", "pchain", "ptemp", "fixedpoint"})
       if (given.count(keyword) && is_on(keyword, ""))
-        error->all(FLERR, "Fix gear/quat keyword {} requires keyword iso, aniso, x, y or z", keyword);
+        error->all(FLERR, "Fix gear/quat keyword {} requires keyword iso, aniso, x, y or z",
+                   keyword);
     return;
   }
   std::string whole;
   for (const char *keyword : {"iso", "aniso", "x", "y", "z"}) {
     if (!given.count(keyword)) continue;
     if (!whole.empty())
-      error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}: it is about all edges of "
-                 "the box", whole, keyword);
+      error->all(FLERR,
+                 "Fix gear/quat keyword {} cannot be used with {}: it is about all edges of "
+                 "the box",
+                 whole, keyword);
     if (keyword[1] != '\0') whole = keyword;
   }
   if (whole == "iso" && is_on("couple", ""))
@@ -242,10 +245,11 @@ void Arguments::check_pressure()
   }
   for (int k = 0; k < 3; ++k) {
     if (p.on[k] && !domain->periodicity[k])
-      error->all(FLERR,
-                 "Fix gear/quat: the box is not periodic along {0}, so there is no constant pressure "
-                 "along {0}; use boundary p for {0}, or keywords for the other directions",
-                 std::string(1, NAMES[k]));
+      error->all(
+          FLERR,
+          "Fix gear/quat: the box is not periodic along {0}, so there is no constant pressure "
+          "along {0}; use boundary p for {0}, or keywords for the other directions",
+          std::string(1, NAMES[k]));
     const int first = p.tied[k];
     if (first == k || (domain->dimension == 2 && k == 2)) continue;
     if (p.on[k] != p.on[first] || p.start[k] != p.start[first] || p.stop[k] != p.stop[first] ||

@@ -77,7 +77,7 @@ double Barostat::volume() const
 double Barostat::mass_of(int component) const
 {
   const double d = dimensions(), period = asked.period[component];
-  return (freedoms[TRANSLATION] + d) * line.kt * period * period / d;
+  return (freedoms[TRANSLATION] + d) * kt * period * period / d;
 }
 
 double Barostat::twice_kinetic_of_box() const
@@ -125,11 +125,19 @@ void Barostat::find_target(bigint step, double h)
   const bigint steps = update->endstep - update->beginstep;
   const double part = steps > 0 ? double(step - update->beginstep) / steps : 0.0;
   const double unit = 1.0 / (force->nktv2p * force->mvv2e);
+  kt = line.kt;
   for (int k = 0; k < Upper::SIZE; ++k) {
     target[k] = unit * (asked.start[k] + part * (asked.stop[k] - asked.start[k]));
-    target_rate[k] =
-        steps > 0 && h != 0.0 ? unit * (asked.stop[k] - asked.start[k]) / (steps * h) : 0.0;
+    target_rate[k] = steps > 0 && h != 0.0 ? unit * (asked.stop[k] - asked.start[k]) / (steps * h)
+                                           : 0.0;
   }
+}
+
+/// From the start to another time.
+void Barostat::move_target(double time)
+{
+  target = target_at_start + target_rate.scaled(time);
+  kt = line.kt + (width != 0.0 ? time / width * line.kt_step : 0.0);
 }
 
 /// G' without the friction of the box.
@@ -166,7 +174,7 @@ double Barostat::rate_of_heat() const
   // directions that do not move have no part in the mean
   sum -= v * mean_target(target_rate);
   const double kt_rate = width != 0.0 ? line.kt_step / width : 0.0;
-  return sum - 0.5 * kt_rate / line.kt * twice_kinetic_of_box();
+  return sum - 0.5 * kt_rate / kt * twice_kinetic_of_box();
 }
 
 /* ----------------------------------------------------------------------

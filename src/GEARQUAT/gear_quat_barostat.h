@@ -93,30 +93,32 @@ class Barostat : public Thermostat {
   MolecularVirial virial;
   Box box;
   CellHistory cell;
-  Chain chain;             ///< of the box
-  ScalarHistory heat;      ///< S
+  Chain chain;           ///< of the box
+  ScalarHistory heat;    ///< S
   int values_of_heat = 0;
   CorrectorCoefficients::Array heat_coefficients;    ///< of a first-order equation
   double width = 0.0;                                ///< the step of the histories
-  Upper target;            ///< pressures of the present step
-  Upper target_rate;       ///< and their change with time
+  Upper target;                    ///< pressures of the present step, or at a node
+  Upper target_rate;               ///< and their change with time
+  double kt = 0.0;                 ///< of the mass of the box, then
   Upper made_target, made_rate;    ///< of the last step before this run
 
-  Upper matrix, rate;      ///< M and G in the present pass, or at a node
-  Upper kinetic;           ///< sum m v_a v_b, as of the last sum
-  Upper correction;        ///< of M M^-1 by the corrector, in the last step
+  Upper matrix, rate;    ///< M and G in the present pass, or at a node
+  Upper kinetic;         ///< sum m v_a v_b, as of the last sum
+  Upper correction;      ///< of M M^-1 by the corrector, in the last step
   double friction_of_box = 0.0;
   CellFriction of_all;
-  Upper inverse;           ///< of M
+  Upper inverse;    ///< of M
 
   using Tensor = ExactSum[Upper::SIZE];
-  Tensor tensor;           ///< of owned bodies, in a pass
+  Tensor tensor;    ///< of owned bodies, in a pass
 
   // the start
 
   Collocation::Nodes<Upper::SIZE, 2> cell_at_nodes = {};
   Collocation::Scalar twice_box_at_nodes = {}, heat_at_nodes = {};
   bool held_box = false;
+  Upper target_at_start;
 
   double dimensions() const;
   double mass_of(int component) const;
@@ -126,6 +128,7 @@ class Barostat : public Thermostat {
   double volume() const;
   double mean_target(const Upper &pressures) const;
   void find_target(bigint step, double h);
+  void move_target(double time);
   void refuse_scene() const;
   void find_temperature();
   void set_heat(const Scheme &scheme);

@@ -44,8 +44,9 @@ void Barostat::refuse_scene() const
                "and {} are not: their places would not follow the box",
                others);
   if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix gear/quat: constant pressure cannot be used with run_style respa; use "
-                      "run_style verlet");
+    error->all(FLERR,
+               "Fix gear/quat: constant pressure cannot be used with run_style respa; use "
+               "run_style verlet");
   if (force->kspace && force->kspace->scalar_pressure_flag)
     error->all(FLERR, "Fix gear/quat: constant pressure requires kspace_modify pressure/scalar no");
   constexpr int ON_FORCES = FixConst::POST_FORCE | FixConst::PRE_REVERSE;
@@ -102,7 +103,8 @@ const char *Barostat::reason_to_start_anew() const
   for (int k = 0; k < Upper::SIZE; ++k) {
     const double size = std::fabs(target[k]) + std::fabs(made_target[k]);
     if (std::fabs(target[k] - made_target[k]) > ROUNDING * size ||
-        std::fabs(target_rate[k] - made_rate[k]) > ROUNDING * (std::fabs(target_rate[k]) + std::fabs(made_rate[k])))
+        std::fabs(target_rate[k] - made_rate[k]) >
+            ROUNDING * (std::fabs(target_rate[k]) + std::fabs(made_rate[k])))
       return "the barostat has another target than in the last steps";
   }
   return nullptr;
@@ -117,6 +119,7 @@ void Barostat::refer_to_box(double h)
 {
   const Upper before = width != 0.0 ? cell.rate(width) : Upper();
   width = h;
+  target_at_start = target;
   box.refer();
   cell.begin(before, h);
   matrix = Upper::one();
@@ -130,7 +133,8 @@ void Barostat::begin_start(const StartNodes &nodes)
   if (chain_acts()) {
     const double twice = twice_kinetic_of_box();
     chain.begin_settled(target_of_box(0.0, nodes.h), twice, nodes.h);
-    held_box = chain.is_stiff(target_of_box(0.0, nodes.h), twice, nodes.h, nodes.collocation.pairs());
+    held_box =
+        chain.is_stiff(target_of_box(0.0, nodes.h), twice, nodes.h, nodes.collocation.pairs());
   }
   friction_of_box = friction_now();
   const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
@@ -155,6 +159,7 @@ void Barostat::enter_node(const StartNodes &nodes, int node)
   nodes.collocation.values_at(node, cell_at_nodes, value.m.data(), first.m.data());
   matrix = value;
   rate = first.scaled(1.0 / nodes.spacing) * value.inverse();
+  move_target(node * nodes.spacing);
   box.set(matrix);
   box.show(true);
   for_moved([this](int ibody) {
@@ -168,8 +173,7 @@ void Barostat::visit_node(const StartNodes &nodes, int node)
   sum_present_momenta();
   if (chain_acts() && !held_box) {
     const ChainDrive of_box = drive_of(nodes.collocation, twice_box_at_nodes);
-    friction_of_box =
-        chain.flow(target_of_box(0.0, nodes.h), of_box, nodes.spacing, node).y[0];
+    friction_of_box = chain.flow(target_of_box(0.0, nodes.h), of_box, nodes.spacing, node).y[0];
   }
   const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
   nodes.collocation.set_rates(node, second.scaled(nodes.spacing * nodes.spacing).m.data(),
@@ -189,6 +193,7 @@ void Barostat::settle(const StartNodes &nodes, int pair)
 
 void Barostat::leave_nodes()
 {
+  move_target(0.0);
   matrix = cell.matrix();
   rate = cell.rate(width);
   box.set(matrix);

@@ -124,7 +124,8 @@ struct CellFriction {
   /// alpha: of the thermostat, along all axes the same.  weights: b.
   CellFriction(const Friction &alpha, const Upper &matrix, const Upper &rate,
                const double (&weights)[3]) :
-      rotation(alpha.rotation), implicit(alpha.implicit)
+      rotation(alpha.rotation),
+      implicit(alpha.implicit)
   {
     const Upper inverse = matrix.inverse();
     double trace = alpha.translation[0];
@@ -251,7 +252,10 @@ class CellHistory {
     std::copy_n(&rows[(size_t) WIDTH * j], WIDTH, found.m.begin());
     return found;
   }
-  void put(int j, const Upper &value) { std::copy_n(value.m.begin(), WIDTH, &rows[(size_t) WIDTH * j]); }
+  void put(int j, const Upper &value)
+  {
+    std::copy_n(value.m.begin(), WIDTH, &rows[(size_t) WIDTH * j]);
+  }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -183,9 +183,9 @@ struct Start::Search {
       }
       one.work.resize(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-        our.collocation.begin(local_series(bodies.rigid_of(ibody), one.scaled(ibody),
-                                           one.acting(ibody), spacing),
-                              one.work[ibody]);
+        our.collocation.begin(
+            local_series(bodies.rigid_of(ibody), one.scaled(ibody), one.acting(ibody), spacing),
+            one.work[ibody]);
     }
   }
 

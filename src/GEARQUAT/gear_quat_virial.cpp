@@ -57,7 +57,8 @@ void MolecularVirial::request(bigint step) const
 bool MolecularVirial::others_ask(bigint step) const
 {
   for (auto *one : modify->get_compute_list())
-    if ((one->pressflag || one->pressatomflag) && id != one->id && one->matchstep(step)) return true;
+    if ((one->pressflag || one->pressatomflag) && id != one->id && one->matchstep(step))
+      return true;
   return false;
 }
 
