@@ -50,7 +50,7 @@ class Barostat : public Thermostat {
   const char *reason_to_start_anew() const override;
 
   void predict(const Integrator &integrator) override;
-  void meet_virial(double **f) override { virial.measure(f); }
+  void meet_virial(double **f) override { virial.measure(f, scale()); }
   BodyState scaled(const BodyState &s) const override
   {
     BodyState found = s;

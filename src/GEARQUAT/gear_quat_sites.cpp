@@ -346,21 +346,24 @@ void Sites::gather_impulses()
       nullptr);
 }
 
-void Sites::add_arm_virial(double **f, double *sum) const
+void Sites::add_arm_virial(double **f, ExactSum *sums, double scale) const
 {
+  using Products = std::array<double, 6>;
   sum_over_sites(
       [](int) {
-        return 0;
+        return Products{};
       },
-      [&](int, const Site &site, const double *arm) {
+      [f](Products &sum, const Site &site, const double *arm) {
         if (!arm) return;
-        const double *force = f[site.atom];
-        for (int k = 0; k < 3; ++k) sum[k] += force[k] * arm[k];
-        sum[3] += force[1] * arm[2];
-        sum[4] += force[0] * arm[2];
-        sum[5] += force[0] * arm[1];
+        const double *on_site = f[site.atom];
+        for (int k = 0; k < 3; ++k) sum[k] += on_site[k] * arm[k];
+        sum[3] += on_site[1] * arm[2];
+        sum[4] += on_site[0] * arm[2];
+        sum[5] += on_site[0] * arm[1];
       },
-      [](int, int) {});
+      [sums, scale](int, const Products &sum) {
+        for (int k = 0; k < 6; ++k) sums[k].add(sum[k], scale);
+      });
 }
 
 /// Mean of the arms of all sites of each body, owned and ghost, in `force`.  Collective.

@@ -17,6 +17,7 @@
 #ifndef LMP_GEAR_QUAT_SITES_H
 #define LMP_GEAR_QUAT_SITES_H
 
+#include "gear_quat_exact_sum.h"
 #include "gear_quat_ownership.h"
 
 #include <functional>
@@ -84,8 +85,9 @@ class Sites : protected Pointers {
   /// The same of the momenta by which velocities of atoms differ from those of their bodies.
   void gather_impulses();
 
-  /// Adds the products of forces on owned sites and their arms, f_a d_b for xx yy zz yz xz xy.
-  void add_arm_virial(double **f, double *sum) const;
+  /// Adds the products of forces on owned sites and their arms, f_a d_b for xx yy zz yz xz xy: as
+  /// exact sums of this scale over the bodies.
+  void add_arm_virial(double **f, ExactSum *sums, double scale) const;
 
   /// Constraint force m a - f of a site under the present loads, its arm from the center of mass,
   /// its virial (xx yy zz xy xz yz), and the mean place of the body's sites.

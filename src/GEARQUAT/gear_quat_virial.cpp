@@ -20,12 +20,18 @@
 #include "modify.h"
 #include "pair.h"
 
+#include <algorithm>
+
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 // bits of vflag in LAMMPS: each pair is tallied, or forces on owned and ghost atoms
 
 static constexpr int PAIR_BY_PAIR = 1, BY_FORCES = 2;
+
+// exact sums hold terms up to 2^20 units: overlaps have large forces
+
+static constexpr double LARGE = 1048576.0;    // 2^20
 
 // LAMMPS' order of a virial is xx yy zz xy xz yz
 
@@ -73,7 +79,7 @@ template <class Style> static void add_virial(const Style *style, double (&sum)[
   for (int k = 0; k < 6; ++k) sum[k] += style->virial[k];
 }
 
-void MolecularVirial::measure(double **f)
+void MolecularVirial::measure(double **f, double energy)
 {
   double styles[6] = {};
   add_virial(force->pair, styles);
@@ -83,12 +89,16 @@ void MolecularVirial::measure(double **f)
     add_virial(force->dihedral, styles);
     add_virial(force->improper, styles);
   }
-  double here[6] = {};
-  sites.add_arm_virial(f, here);
-  for (int k = 0; k < 6; ++k) here[k] = styles[PLACES[k]] - here[k];
-  const auto all = over_ranks(MPI_SUM, here, world);
+  ExactSum of_arms[6];
+  const double scale = LARGE * ExactSum::scale_of(energy);
+  sites.add_arm_virial(f, of_arms, scale);
+  bigint limbs[12];
+  for (int k = 0; k < 6; ++k) std::copy_n(of_arms[k].limbs, 2, limbs + 2 * k);
+  const auto all_arms = over_ranks(MPI_SUM, limbs, world);
+  const auto all_styles = over_ranks(MPI_SUM, styles, world);
   for (int k = 0; k < 6; ++k) {
-    virial[k] = all[k];
+    std::copy_n(all_arms.begin() + 2 * k, 2, of_arms[k].limbs);
+    virial[k] = all_styles[PLACES[k]] - of_arms[k].value(scale);
     if (force->kspace) virial[k] += force->kspace->virial[PLACES[k]];    // that of all ranks
     virial[k] /= force->mvv2e;
   }

@@ -33,8 +33,9 @@ class MolecularVirial : protected Pointers {
 
   /// LAMMPS computes V in that step.
   void request(bigint step) const;
-  /// Of the forces f on atoms that were evaluated last, with V.  Collective.
-  void measure(double **f);
+  /// Of the forces f on atoms that were evaluated last, with V.  energy: of all bodies, roughly.
+  /// Collective.
+  void measure(double **f, double energy);
   /// In units of mass times velocity squared.
   const Upper &value() const { return virial; }
   void restore(const Upper &saved) { virial = saved; }
