@@ -60,9 +60,12 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   args.reset(new Arguments(lmp, narg, arg));
   add_citations(lmp, *args);
   ecouple_flag = args->thermostat.damp > 0.0 || args->pressure.any();
-  constexpr int EDGES[] = {BOX_CHANGE_X, BOX_CHANGE_Y, BOX_CHANGE_Z};
-  for (int k = 0; k < 3; ++k)
-    if (args->pressure.on[k]) box_change |= EDGES[k];
+  constexpr int CHANGES[] = {BOX_CHANGE_X,  BOX_CHANGE_Y,  BOX_CHANGE_Z,
+                             BOX_CHANGE_YZ, BOX_CHANGE_XZ, BOX_CHANGE_XY};
+  for (int k = 0; k < PressureWords::COMPONENTS; ++k)
+    if (args->pressure.on[k]) box_change |= CHANGES[k];
+  if (args->pressure.any()) no_change_box = 1;
+  if (args->pressure.shears()) force_reneighbor = 1, next_reneighbor = -1;
   fleet.reset(new Fleet);
   bodies.reset(new Bodies(args->scheme));
   ownership.reset(new Ownership(lmp, this, *bodies, args->scheme));
@@ -216,6 +219,11 @@ void FixGearQuat::show_bodies()
   size_local_rows = bodies->nowned();
 }
 
+void FixGearQuat::pre_exchange()
+{
+  if (step->coupling) step->coupling->flip_box();
+}
+
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
@@ -259,6 +267,7 @@ void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
   if (step->shows_local_data()) show_bodies();
+  if (step->coupling && step->coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
 }
 
 /// LAMMPS calls this with keyword tolerance only, when all fixes have finished the step.

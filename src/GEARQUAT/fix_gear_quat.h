@@ -52,6 +52,7 @@ class FixGearQuat : public Fix {
   void setup_pre_exchange() override;
   void setup_pre_neighbor() override;
   void setup(int) override;
+  void pre_exchange() override;
   void pre_neighbor() override;
   void initial_integrate(int) override;
   void final_integrate() override;

@@ -214,42 +214,78 @@ void Arguments::check_control()
         thermostat.start, thermostat.stop);
 }
 
-/// Coupled directions need the same numbers, and directions without a period have no pressure.
+/// Directions without a period have no pressure, and tilts are free all together only.
 void Arguments::check_pressure()
 {
-  static constexpr char NAMES[] = "xyz";
   PressureWords &p = pressure;
   if (!p.any()) {
-    for (const char *keyword : {"couple", "pchain", "ptemp", "fixedpoint"})
+    for (const char *keyword : {"couple", "pchain", "ptemp", "fixedpoint", "flip"})
       if (given.count(keyword) && is_on(keyword, ""))
-        error->all(FLERR, "Fix gear/quat keyword {} requires keyword iso, aniso, x, y or z",
+        error->all(FLERR,
+                   "Fix gear/quat keyword {} requires a keyword of constant pressure, such as iso, "
+                   "aniso, tri, x, y or z",
                    keyword);
     return;
   }
   std::string whole;
-  for (const char *keyword : {"iso", "aniso", "x", "y", "z"}) {
+  for (const char *keyword : {"iso", "aniso", "tri", "x", "y", "z", "xy", "xz", "yz"}) {
     if (!given.count(keyword)) continue;
     if (!whole.empty())
-      error->all(FLERR,
-                 "Fix gear/quat keyword {} cannot be used with {}: it is about all edges of "
-                 "the box",
+      error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}: it sets all directions",
                  whole, keyword);
-    if (keyword[1] != '\0') whole = keyword;
+    if (std::string(keyword).size() > 2) whole = keyword;
   }
   if (whole == "iso" && is_on("couple", ""))
     error->all(FLERR, "Fix gear/quat keyword iso cannot be used with couple: it couples all edges");
-  if (domain->dimension == 2) {
-    if (whole.empty() && p.on[2])
-      error->all(FLERR, "Fix gear/quat z: there is no pressure along z in two dimensions");
-    p.on[2] = false;
-  }
-  for (int k = 0; k < 3; ++k) {
+  if (domain->dimension == 2)
+    for (const int along_z : {2, 3, 4}) {
+      if (whole.empty() && p.on[along_z])
+        error->all(FLERR,
+                   "Fix gear/quat: in two dimensions there is no pressure component z, xz or "
+                   "yz");
+      p.on[along_z] = false;
+    }
+  check_directions();
+  check_coupling();
+  if (thermostat.damp == 0.0 && !given.count("pchain")) p.length = 0;
+}
+
+static std::string name_of_direction(int k)
+{
+  return {"xyz"[k]};
+}
+
+void Arguments::check_directions() const
+{
+  const PressureWords &p = pressure;
+  for (int k = 0; k < 3; ++k)
     if (p.on[k] && !domain->periodicity[k])
       error->all(
           FLERR,
           "Fix gear/quat: the box is not periodic along {0}, so there is no constant pressure "
           "along {0}; use boundary p for {0}, or keywords for the other directions",
-          std::string(1, NAMES[k]));
+          name_of_direction(k));
+  if (!p.shears()) return;
+  if (!domain->triclinic)
+    error->all(FLERR,
+               "Fix gear/quat: keywords tri, xy, xz and yz require a triclinic box; write "
+               "change_box all triclinic before this fix");
+  const bool flat = domain->dimension == 2;
+  for (int k = 0; k < PressureWords::COMPONENTS; ++k)
+    if (!p.on[k] && !(flat && k >= 2 && k <= 4))
+      error->all(FLERR,
+                 "Fix gear/quat: tilts of the box are free only if all components of the pressure "
+                 "are given, which are {}; use keyword tri, or add those that are missing",
+                 flat ? "x, y and xy" : "x, y, z, xy, xz and yz");
+  if (is_on("couple", ""))
+    error->all(FLERR, "Fix gear/quat: keyword couple cannot be used with tri, xy, xz and yz");
+}
+
+/// Coupled directions need the same numbers.
+void Arguments::check_coupling() const
+{
+  const PressureWords &p = pressure;
+  for (int k = 1; k < 3; ++k) {
     const int first = p.tied[k];
     if (first == k || (domain->dimension == 2 && k == 2)) continue;
     if (p.on[k] != p.on[first] || p.start[k] != p.start[first] || p.stop[k] != p.stop[first] ||
@@ -257,9 +293,8 @@ void Arguments::check_pressure()
       error->all(FLERR,
                  "Fix gear/quat couple: directions {} and {} need keywords with the same Pstart, "
                  "Pstop and Pdamp",
-                 std::string(1, NAMES[first]), std::string(1, NAMES[k]));
+                 name_of_direction(first), name_of_direction(k));
   }
-  if (thermostat.damp == 0.0 && !given.count("pchain")) p.length = 0;
 }
 
 std::string Arguments::words_of_control() const

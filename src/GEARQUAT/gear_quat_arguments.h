@@ -49,8 +49,10 @@ struct PressureWords {
   int length = 0;             ///< of the chain of the box; 0: none
   double temperature = 0.0;
   std::vector<double> fixed;    ///< point; empty: the center of the box
+  bool flip = true;
 
   bool any() const { return std::count(on, on + COMPONENTS, true) > 0; }
+  bool shears() const { return on[3] || on[4] || on[5]; }
   void set(int component, const std::vector<double> &numbers)
   {
     on[component] = true;
@@ -277,6 +279,8 @@ struct Arguments : protected Pointers {
   void check_ranges();
   void check_control();
   void check_pressure();
+  void check_directions() const;
+  void check_coupling() const;
   std::vector<tagint> molecule_ids(int groupbit) const;
   std::vector<tagint> group_ids(int groupbit) const;
   std::vector<tagint> custom_ids(int groupbit) const;

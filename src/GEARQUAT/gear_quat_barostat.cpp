@@ -68,6 +68,14 @@ double Barostat::dimensions() const
   return domain->dimension;
 }
 
+/// b of the trace term.
+double Barostat::weight_of(int direction) const
+{
+  const int d = domain->dimension;
+  if (direction >= d) return 0.0;
+  return (asked.shears() ? d - 2.0 * direction : 1.0) / freedoms[TRANSLATION];
+}
+
 double Barostat::volume() const
 {
   return box.volume(matrix);
@@ -144,11 +152,11 @@ void Barostat::move_target(double time)
 Upper Barostat::drive() const
 {
   Upper found;
-  const double v = volume(), trace = kinetic.trace() / freedoms[TRANSLATION];
+  const double v = volume(), trace = kinetic.trace();
   for (int k = 0; k < Upper::SIZE; ++k) {
     if (!asked.on[k]) continue;
     double push = kinetic[k] + virial.value()[k] - target[k] * v;
-    if (k < 3) push += trace;
+    if (k < 3) push += weight_of(k) * trace;
     found[k] = push / mass_of(k);
   }
   for (int first = 0; first < 3; ++first) {
@@ -213,8 +221,7 @@ void Barostat::sum_present_momenta()
 /// Everything that follows from M and G.
 void Barostat::note_box()
 {
-  const double part = 1.0 / freedoms[TRANSLATION];
-  const double weights[3] = {part, part, domain->dimension == 3 ? part : 0.0};
+  const double weights[3] = {weight_of(0), weight_of(1), weight_of(2)};
   inverse = matrix.inverse();
   of_all = CellFriction(Thermostat::of_all, matrix, rate, weights);
 }
@@ -255,6 +262,16 @@ void Barostat::correct(const Integrator &integrator, int passes)
   correct_by_passes(*this, integrator, passes);
   box.show(false);
   virial.request(update->ntimestep + 1);
+}
+
+bool Barostat::is_tilted() const
+{
+  return asked.shears() && asked.flip && box.is_tilted();
+}
+
+void Barostat::flip_box()
+{
+  if (is_tilted()) box.flip();
 }
 
 void Barostat::begin_passes(const Integrator &integrator)

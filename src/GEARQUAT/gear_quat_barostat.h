@@ -64,6 +64,8 @@ class Barostat : public Thermostat {
     return damped_load(bodies.rigid_of(ibody), scaled(bodies.state_of(ibody)), met(ibody), of_all);
   }
   void correct(const Integrator &integrator, int passes) override;
+  bool is_tilted() const override;
+  void flip_box() override;
   void follow_changes(double h) override;
   void rescale(double ratio) override;
 
@@ -121,6 +123,7 @@ class Barostat : public Thermostat {
   Upper target_at_start;
 
   double dimensions() const;
+  double weight_of(int direction) const;
   double mass_of(int component) const;
   double twice_kinetic_of_box() const;
   ChainTarget target_of_box(double steps_ahead, double h) const;

@@ -49,6 +49,10 @@ void Barostat::refuse_scene() const
                "run_style verlet");
   if (force->kspace && force->kspace->scalar_pressure_flag)
     error->all(FLERR, "Fix gear/quat: constant pressure requires kspace_modify pressure/scalar no");
+  if (asked.shears() && virial.has_torques())
+    error->all(FLERR,
+               "Fix gear/quat: shear components of the pressure require atoms that are "
+               "points: torques on atoms make the virial of LAMMPS unsymmetric");
   constexpr int ON_FORCES = FixConst::POST_FORCE | FixConst::PRE_REVERSE;
   for (auto *other : modify->get_fix_list()) {
     if (other == fix || !(modify->get_fix_mask(other) & ON_FORCES)) continue;

@@ -5,11 +5,18 @@
 
 #include "gear_quat_box.h"
 
+#include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "force.h"
 #include "kspace.h"
 
+#if __has_include("irregular.h")
+#include "irregular.h"
+#endif
+
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -64,6 +71,59 @@ void Box::show(bool forces)
   domain->set_global_box();
   domain->set_local_box();
   if (forces && force->kspace) force->kspace->setup();
+}
+
+// ---------------------------------------------------------------------------------------------
+// flips
+// ---------------------------------------------------------------------------------------------
+
+// by so much of a period a tilt exceeds half of it, so that it is not flipped back at once
+
+static constexpr double BEYOND = 0.1;
+
+// LAMMPS' class that moves atoms to any rank; its header is missing beside some of its libraries
+
+#if __has_include("irregular.h")
+static constexpr bool MIGRATES = true;
+static void migrate_atoms(LAMMPS *lmp)
+{
+  Irregular(lmp).migrate_atoms();
+}
+#else
+static constexpr bool MIGRATES = false;
+static void migrate_atoms(LAMMPS *) {}
+#endif
+
+/// So many periods bring a tilt back to less than half of one.
+static int periods_of(double tilt, double period)
+{
+  if (std::fabs(tilt) < (0.5 + BEYOND) * period) return 0;
+  return -(int) std::lround(tilt / period);
+}
+
+bool Box::is_tilted() const
+{
+  if (!MIGRATES && comm->nprocs > 1) return false;
+  return (domain->yperiodic && periods_of(domain->yz, domain->yprd) != 0) ||
+      (domain->xperiodic &&
+       (periods_of(domain->xz, domain->xprd) != 0 || periods_of(domain->xy, domain->xprd) != 0));
+}
+
+void Box::flip()
+{
+  const double *h = domain->h;
+  const int p = domain->yperiodic ? periods_of(h[3], h[1]) : 0;
+  const int n = domain->xperiodic ? periods_of(h[4] + p * h[5], h[0]) : 0;
+  const int m_xy = domain->xperiodic ? periods_of(h[5], h[0]) : 0;
+  reference[3] += p * reference[1];
+  reference[4] += p * reference[5] + n * reference[0];
+  reference[5] += m_xy * reference[0];
+  show(true);
+  domain->image_flip(m_xy, n, p);
+  for (int i = 0; i < atom->nlocal; ++i) domain->remap(atom->x[i], atom->image[i]);
+  domain->x2lamda(atom->nlocal);
+  migrate_atoms(lmp);
+  domain->lamda2x(atom->nlocal);
 }
 
 Box::Record Box::record() const

@@ -37,6 +37,12 @@ class Box : protected Pointers {
   /// be evaluated in it.
   void show(bool forces);
 
+  /// True if a tilt exceeds half of the period that it is a part of.
+  bool is_tilted() const;
+  /// The box becomes the least tilted cell of the same lattice, and atoms get their images in it.  M
+  /// stays, and so do histories.  To be called before atoms are exchanged.
+  void flip();
+
   // scaled centers and their velocities, and those in space
 
   void to_space(BodyState &s) const

@@ -78,6 +78,10 @@ class Coupling : protected Pointers {
   virtual void meet_virial(double ** /*f*/) {}
   /// A state with the scaled center and velocity that a history has.  Local.
   virtual BodyState scaled(const BodyState &s) const { return s; }
+  /// True if the box is tilted so much that another cell of the same lattice is to replace it.
+  virtual bool is_tilted() const { return false; }
+  /// Before atoms are exchanged: replaces the box where it is tilted.
+  virtual void flip_box() {}
   /// False if LAMMPS needs the virial of the constraint forces for nothing but this coupling, in
   /// the present step.  Local.
   virtual bool others_ask_for_virial() const { return true; }

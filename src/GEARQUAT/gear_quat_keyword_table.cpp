@@ -150,12 +150,23 @@ static const std::vector<Keyword> TABLE = {
            }),
   pressure("aniso", "the pressure along each edge of the box, which change one by one",
            [](Arguments &a, const Value &v) { a.pressure.set_all(v.numbers); }),
+  pressure("tri", "the pressure along each edge of a triclinic box, without shear stress",
+           [](Arguments &a, const Value &v) {
+             a.pressure.set_all(v.numbers);
+             for (int k = 3; k < 6; ++k) a.pressure.set(k, {0.0, 0.0, v.numbers[2]});
+           }),
   pressure("x", "the pressure along x, by which that edge of the box changes",
            [](Arguments &a, const Value &v) { a.pressure.set(0, v.numbers); }),
   pressure("y", "the pressure along y, by which that edge of the box changes",
            [](Arguments &a, const Value &v) { a.pressure.set(1, v.numbers); }),
   pressure("z", "the pressure along z, by which that edge of the box changes",
            [](Arguments &a, const Value &v) { a.pressure.set(2, v.numbers); }),
+  pressure("xy", "the shear component xy of the pressure, by which that tilt changes",
+           [](Arguments &a, const Value &v) { a.pressure.set(5, v.numbers); }),
+  pressure("xz", "the shear component xz of the pressure, by which that tilt changes",
+           [](Arguments &a, const Value &v) { a.pressure.set(4, v.numbers); }),
+  pressure("yz", "the shear component yz of the pressure, by which that tilt changes",
+           [](Arguments &a, const Value &v) { a.pressure.set(3, v.numbers); }),
   Keyword("couple", PHYSICS, "which edges of the box change alike, by their mean pressure",
           [](Arguments &a, const Value &v) {
             int *tied = a.pressure.tied;
@@ -170,6 +181,8 @@ static const std::vector<Keyword> TABLE = {
   Keyword("ptemp", PHYSICS, "the temperature by which the box has its mass, without temp",
           [](Arguments &a, const Value &v) { a.pressure.temperature = v.number; })
       .number().cannot_go_with({"temp", "", "the mass of the box is that of the temperature of temp"}),
+  Keyword("flip", PHYSICS, "whether a box that is tilted by more than half a period is replaced",
+          [](Arguments &a, const Value &v) { a.pressure.flip = v.is("yes"); }).word({"yes", "no"}),
   Keyword("fixedpoint", PHYSICS, "the point of the box that does not move",
           [](Arguments &a, const Value &v) { a.pressure.fixed = v.numbers; })
       .numbers({"x", "y", "z"}, 3),

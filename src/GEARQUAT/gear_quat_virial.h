@@ -39,6 +39,8 @@ class MolecularVirial : protected Pointers {
   /// In units of mass times velocity squared.
   const Upper &value() const { return virial; }
   void restore(const Upper &saved) { virial = saved; }
+  /// True if some atoms have torques of their own, which V does not know.  Collective.
+  bool has_torques() const;
   /// True if a compute other than that of this class asks for a virial in this step.
   bool others_ask(bigint step) const;
   /// What vflag has to be when forces are evaluated.
