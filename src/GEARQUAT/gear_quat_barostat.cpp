@@ -5,6 +5,7 @@
 
 #include "gear_quat_barostat.h"
 
+#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"
@@ -49,6 +50,7 @@ Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sit
     chain(std::max(1, pressure.length)), matrix(Upper::one()), inverse(Upper::one())
 {
   set_heat(scheme);
+  fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
   cell.begin(Upper(), 1.0);
 }
 
@@ -56,6 +58,7 @@ void Barostat::set_scheme(const Scheme &scheme)
 {
   Thermostat::set_scheme(scheme);
   cell.set_scheme(scheme);
+  fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
   set_heat(scheme);
 }
 
@@ -110,10 +113,17 @@ ChainTarget Barostat::target_of_box(double steps_ahead, double h) const
   of_box.kt = line.kt + line.kt_step * steps_ahead;
   of_box.kt_rate = h == 0.0 ? 0.0 : line.kt_step / h;
   of_box.freedoms = free_components();
-  of_box.period = HUGE_VAL;
-  for (int k = 0; k < Upper::SIZE; ++k)
-    if (asked.on[k]) of_box.period = std::min(of_box.period, asked.period[k]);
+  of_box.period = period();
   return of_box;
+}
+
+/// The shortest damping time.
+double Barostat::period() const
+{
+  double shortest = HUGE_VAL;
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) shortest = std::min(shortest, asked.period[k]);
+  return shortest;
 }
 
 double Barostat::mean_target(const Upper &pressures) const
@@ -245,6 +255,7 @@ void Barostat::predict(const Integrator &integrator)
   cell.predict();
   matrix = cell.matrix();
   rate = cell.rate(integrator.step());
+  refuse_box();
   box.set(matrix);
   box.show(true);
   for_moved([this](int ibody) {
@@ -344,6 +355,12 @@ void Barostat::place(int ibody, const Integrator::Pending &pending, BodyState &s
   const double *force = bodies.load_of(ibody).force;
   last.work += dot3(force, way) - dot3(force, scaled_way);
   box.to_space(state);
+}
+
+void Barostat::note_step(double h)
+{
+  Thermostat::note_step(h);
+  watch_box(h);
 }
 
 /// The mass of the box changes with the degrees of freedom.

@@ -66,6 +66,8 @@ class Barostat : public Thermostat {
   void correct(const Integrator &integrator, int passes) override;
   bool is_tilted() const override;
   void flip_box() override;
+  void note_step(double h) override;
+  Cause instability(double h) const override;
   void follow_changes(double h) override;
   void rescale(double ratio) override;
 
@@ -76,6 +78,9 @@ class Barostat : public Thermostat {
   void visit_node(const StartNodes &nodes, int node) override;
   void settle(const StartNodes &nodes, int pair) override;
   void leave_nodes() override;
+  bool probes() const override { return true; }
+  void enter_probe(int side) override;
+  void leave_probe(int side) override;
   void seed(const StartNodes &nodes, int pairs, int values) override;
   void seed_local(double h, int terms) override;
   int vflag() const override { return virial.flag(); }
@@ -115,6 +120,17 @@ class Barostat : public Thermostat {
   using Tensor = ExactSum[Upper::SIZE];
   Tensor tensor;    ///< of owned bodies, in a pass
 
+  // how fast the box oscillates: it moves by the pressure, and the pressure by the box
+
+  double fastest;                       ///< radians in a step that the method follows
+  Upper driven;                         ///< the drive of the last step
+  double against = 0.0, along = 0.0;    ///< fading sums of -W drive'.G and W G.G
+  double probed = 0.0;                  ///< angular frequency at the start
+  double since = 0.0;                   ///< time of this run
+  bool warned_box = false;
+  Upper drive_of_smaller;
+  Upper begun_box;    ///< the box of LAMMPS where the run began
+
   // the start
 
   Collocation::Nodes<Upper::SIZE, 2> cell_at_nodes = {};
@@ -134,6 +150,11 @@ class Barostat : public Thermostat {
   void move_target(double time);
   void refuse_scene() const;
   void find_temperature();
+  double frequency() const;
+  double period() const;
+  double probing_strain() const;
+  void watch_box(double h);
+  void refuse_box() const;
   void set_heat(const Scheme &scheme);
   void advance_box(double h, int values);
   double mode_of_box() const;

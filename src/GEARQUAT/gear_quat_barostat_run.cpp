@@ -19,6 +19,7 @@
 #include "force.h"
 #include "kspace.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 
@@ -96,6 +97,8 @@ void Barostat::begin_run(bool begins, double h)
   made_rate = target_rate;
   if (update->nsteps > 0 || begins) find_target(update->ntimestep, h);
   if (begins) refer_to_box(h);
+  std::copy_n(domain->prd, 3, begun_box.m.begin());
+  since = 0.0;
   virial.request(update->ntimestep + 1);
 }
 
@@ -227,6 +230,147 @@ void Barostat::seed_local(double h, int terms)
   heat.seed(of_heat, 2, h, h, values_of_heat);
   const double twice = twice_kinetic_of_box();
   chain.seed(&twice, 0, 0.0, 1);
+}
+
+/* ----------------------------------------------------------------------
+   how fast the box oscillates: one evaluation of the forces in a step permits no more than an
+   oscillation of the bodies
+------------------------------------------------------------------------- */
+
+// parts of the fastest oscillation that the method follows: from one on a warning, from the other an
+// error
+
+static constexpr double WARNED = 0.6, REFUSED = 0.95;
+
+// a box that changes by more in a step, or so much in shape under unequal targets, is lost
+
+static constexpr double IN_A_STEP = 0.1, IN_SHAPE = 4.0;
+
+/// Of the pressure's dependence on the box at constant scaled centers: its positions move by less
+/// than a tenth of the neighbor skin.
+double Barostat::probing_strain() const
+{
+  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
+  return std::min(1.0e-3, 0.1 * neighbor->skin / longest);
+}
+
+void Barostat::enter_probe(int side)
+{
+  for (int k = 0; k < 3; ++k)
+    if (asked.on[k]) matrix[k] = 1.0 + side * probing_strain();
+  box.set(matrix);
+  box.show(true);
+  for_moved([this](int ibody) {
+    box.to_space(bodies.change_state(ibody));
+  });
+}
+
+void Barostat::leave_probe(int side)
+{
+  if (side < 0) {
+    drive_of_smaller = drive();
+    return;
+  }
+  const Upper change = drive() - drive_of_smaller;
+  double stiffest = 0.0;
+  for (int k = 0; k < 3; ++k)
+    if (asked.on[k]) stiffest = std::max(stiffest, -change[k] / (2.0 * probing_strain()));
+  probed = std::sqrt(stiffest);
+  against = along = 0.0;
+  driven = Upper();
+  const double part = probed * std::fabs(width) / fastest;
+  if (part < WARNED) return;
+  const double needed = 1.05 * period() * part / WARNED;
+  if (part > REFUSED)
+    error->all(FLERR,
+               "Fix gear/quat: the box would oscillate by {:.2g} radians in a step, and the method "
+               "follows {:.2g}; use a Pdamp of {:.2g} or longer",
+               part * fastest, fastest, needed);
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat: the box oscillates by {:.2g} radians in a step, {:.0f} % of what "
+        "the method follows; use a Pdamp of {:.2g} or longer",
+        part * fastest, 100.0 * part, needed);
+  warned_box = true;
+}
+
+/// In equilibrium the mean of -drive'.G over that of G.G is the mean square frequency.
+double Barostat::frequency() const
+{
+  return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : probed;
+}
+
+void Barostat::watch_box(double h)
+{
+  constexpr double MEMORY = 2.0;    // damping times
+  const Upper now = drive();
+  const double fades = std::exp(-std::fabs(h) / (MEMORY * period()));
+  const bool known = driven.contracted(driven) > 0.0;
+  against *= fades;
+  along *= fades;
+  for (int k = 0; known && k < Upper::SIZE; ++k) {
+    if (!asked.on[k]) continue;
+    against -= mass_of(k) * (now[k] - driven[k]) / h * rate[k];
+    along += mass_of(k) * rate[k] * rate[k];
+  }
+  driven = now;
+  since += std::fabs(h);
+  if (warned_box || since < MEMORY * period()) return;
+  const double part = frequency() * std::fabs(h) / fastest;
+  if (part < WARNED) return;
+  warned_box = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: in step {} the box oscillates by {:.2g} radians in a step, "
+                   "{:.0f} % of what the method follows; use a Pdamp of {:.2g} or longer",
+                   update->ntimestep, part * fastest, 100.0 * part,
+                   1.05 * period() * part / WARNED);
+}
+
+Cause Barostat::instability(double h) const
+{
+  const double part = frequency() * std::fabs(h) / fastest;
+  if (part < 1.0) return Thermostat::instability(h);
+  return {fmt::format("The box became unstable first: it oscillates by {:.2g} radians in a step of "
+                      "{:g}, and the method follows {:.2g}",
+                      part * fastest, h, fastest),
+          fmt::format("Use a Pdamp of {:.2g} or longer", 1.05 * period() * part / WARNED)};
+}
+
+/// The box is predicted and not yet shown.
+void Barostat::refuse_box() const
+{
+  const Upper &before = box.matrix();
+  for (int k = 0; k < 3; ++k) {
+    const double ratio = matrix[k] / before[k];
+    if (!(std::fabs(ratio - 1.0) < IN_A_STEP))
+      error->all(
+          FLERR,
+          "Fix gear/quat: in step {} the box would change its length along {} from {:.4g} by "
+          "the factor {:.3g}; begin nearer to the target pressure, or use a longer Pdamp "
+          "than {:g}",
+          update->ntimestep, "xyz"[k], domain -> prd[k], ratio, period());
+  }
+  double deviates = 0.0;
+  const double mean = mean_target(target);
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) deviates = std::max(deviates, std::fabs(target[k] - (k < 3 ? mean : 0.0)));
+  if (deviates <= 1.0e-12 * std::fabs(mean)) return;
+  double stretch[2] = {HUGE_VAL, 0.0};
+  for (int k = 0; k < domain->dimension; ++k) {
+    const double now = domain->prd[k] / begun_box[k];
+    stretch[0] = std::min(stretch[0], now);
+    stretch[1] = std::max(stretch[1], now);
+  }
+  if (stretch[1] < IN_SHAPE * stretch[0]) return;
+  error->all(
+      FLERR,
+      "Fix gear/quat: in step {} the box has edges of {:.4g}, {:.4g} and {:.4g}, and their "
+      "ratio has changed by a factor of {:g} in this run, because the targets of the pressure "
+      "are unequal or have shear components, which a liquid does not bear; use iso, or aniso "
+      "with equal targets, unless the system is solid",
+      update->ntimestep, domain->prd[0], domain->prd[1], domain->prd[2], IN_SHAPE);
 }
 
 /* ----------------------------------------------------------------------

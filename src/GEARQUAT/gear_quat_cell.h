@@ -167,15 +167,20 @@ class CellHistory {
 
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
-  /// of_bodies: formulation first has Gear's coefficients here.
-  void set_scheme(const Scheme &of_bodies)
+  /// Formulation first has Gear's coefficients here.
+  static Scheme scheme_of(const Scheme &bodies)
   {
-    Scheme scheme = of_bodies;
+    Scheme scheme = bodies;
     if (scheme.first()) {
       scheme.rows = std::max(scheme.values(), SECOND_FEWEST);
       scheme.tuned = false;
     }
     scheme.formulation = Formulation::SECOND;
+    return scheme;
+  }
+  void set_scheme(const Scheme &of_bodies)
+  {
+    const Scheme scheme = scheme_of(of_bodies);
     n = scheme.values();
     c = CorrectorCoefficients(scheme).driven;
   }

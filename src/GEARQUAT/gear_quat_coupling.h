@@ -131,6 +131,12 @@ class Coupling : protected Pointers {
   virtual void refer_to_box(double /*h*/) {}
   virtual void enter_node(const StartNodes & /*nodes*/, int /*node*/) {}
   virtual void leave_nodes() {}
+  // After the start, with a moving box: forces are evaluated in a box that is a little smaller (side
+  // -1), and a little larger (1), with the scaled centers of the start; states are those again.
+  virtual bool probes() const { return false; }
+  virtual void enter_probe(int /*side*/) {}
+  /// Ends the run if the box would oscillate too fast for the step.
+  virtual void leave_probe(int /*side*/) {}
   /// The virial that forces at nodes are evaluated with, as LAMMPS' vflag.  Local.
   virtual int vflag() const { return 0; }
 

@@ -213,6 +213,29 @@ struct Start::Search {
     return true;
   }
 
+  /// Forces in boxes around that of the start.
+  void probe()
+  {
+    for (const int side : {-1, 1}) {
+      put_back();
+      int vflag = 0;
+      for (auto &one : our.starters) {
+        if (one.coupling) one.coupling->enter_probe(side);
+        if (one.coupling) vflag |= one.coupling->vflag();
+        one.ownership->spread_states();
+        one.sites->place(true);
+      }
+      forces.evaluate(0, vflag);
+      ++our.evaluations;
+      for (auto &one : our.starters) {
+        one.sites->gather_loads(our.atom->f, our.atom->torque);
+        if (!one.coupling) continue;
+        one.coupling->meet_virial(our.atom->f);
+        one.coupling->leave_probe(side);
+      }
+    }
+  }
+
   /// Forces at one node; change: grows to what they change.  False, with nothing evaluated, if a
   /// site would leave the skin.
   bool visit_node(int node, double &change)
@@ -266,6 +289,10 @@ StartFound Start::search(Forces &forces)
       reason = fmt::format(", because forces vary in jumps, by {:.1g} of the motion in a step",
                            start.change);
     seed_all(start);
+    if (std::any_of(starters.begin(), starters.end(), [](const Starter &one) {
+          return one.coupling && one.coupling->probes();
+        }))
+      all.probe();
   }
   forces.restore();
   all.put_back();
