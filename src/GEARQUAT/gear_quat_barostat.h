@@ -127,7 +127,7 @@ class Barostat : public Thermostat {
   double against = 0.0, along = 0.0;    ///< fading sums of -W drive'.G and W G.G
   double probed = 0.0;                  ///< angular frequency at the start
   double since = 0.0;                   ///< time of this run
-  bool warned_box = false;
+  bool warned_box = false, warned_mesh = false;
   Upper drive_of_smaller;
   Upper begun_box;    ///< the box of LAMMPS where the run began
 
@@ -154,6 +154,7 @@ class Barostat : public Thermostat {
   double period() const;
   double probing_strain() const;
   void watch_box(double h);
+  void watch_mesh();
   void refuse_box() const;
   void set_heat(const Scheme &scheme);
   void advance_box(double h, int values);

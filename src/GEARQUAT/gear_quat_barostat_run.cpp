@@ -99,6 +99,7 @@ void Barostat::begin_run(bool begins, double h)
   if (begins) refer_to_box(h);
   std::copy_n(domain->prd, 3, begun_box.m.begin());
   since = 0.0;
+  warned_mesh = false;
   virial.request(update->ntimestep + 1);
 }
 
@@ -242,9 +243,13 @@ void Barostat::seed_local(double h, int terms)
 
 static constexpr double WARNED = 0.6, REFUSED = 0.95;
 
+// a mesh for long-range forces is made for edges that differ by less
+
+static constexpr double OF_MESH = 0.15;
+
 // a box that changes by more in a step, or so much in shape under unequal targets, is lost
 
-static constexpr double IN_A_STEP = 0.1, IN_SHAPE = 4.0;
+static constexpr double IN_A_STEP = 0.03, IN_SHAPE = 4.0;
 
 /// Of the pressure's dependence on the box at constant scaled centers: its positions move by less
 /// than a tenth of the neighbor skin.
@@ -316,6 +321,7 @@ void Barostat::watch_box(double h)
   }
   driven = now;
   since += std::fabs(h);
+  watch_mesh();
   if (warned_box || since < MEMORY * period()) return;
   const double part = frequency() * std::fabs(h) / fastest;
   if (part < WARNED) return;
@@ -326,6 +332,24 @@ void Barostat::watch_box(double h)
                    "{:.0f} % of what the method follows; use a Pdamp of {:.2g} or longer",
                    update->ntimestep, part * fastest, 100.0 * part,
                    1.05 * period() * part / WARNED);
+}
+
+/// LAMMPS chooses the mesh before a run.
+void Barostat::watch_mesh()
+{
+  if (!force->kspace || warned_mesh) return;
+  for (int k = 0; k < domain->dimension; ++k) {
+    const double ratio = domain->prd[k] / begun_box[k];
+    if (std::fabs(ratio - 1.0) < OF_MESH) continue;
+    warned_mesh = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat: in step {} the box is {:.2g} times as long along {} as at the "
+                     "beginning of the run, for which the mesh of kspace style {} was chosen; begin "
+                     "another run",
+                     update->ntimestep, ratio, "xyz"[k], force->kspace_style);
+    return;
+  }
 }
 
 Cause Barostat::instability(double h) const
