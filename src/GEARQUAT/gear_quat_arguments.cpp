@@ -212,6 +212,13 @@ void Arguments::check_control()
         "tolerance: the target changes with the number of the step, and steps have no common "
         "length; use several runs with a target each",
         thermostat.start, thermostat.stop);
+  for (int k = 0; k < PressureWords::COMPONENTS; ++k)
+    if (pressure.on[k] && pressure.start[k] != pressure.stop[k])
+      error->all(FLERR,
+                 "Fix gear/quat: Pstart {} and Pstop {} differ, which cannot be used with "
+                 "tolerance: the target changes with the number of the step, and steps have no "
+                 "common length; use several runs with a target each",
+                 pressure.start[k], pressure.stop[k]);
 }
 
 /// Directions without a period have no pressure, and tilts are free all together only.

@@ -38,7 +38,7 @@ void Barostat::set_heat(const Scheme &scheme)
 {
   Scheme of_heat;
   of_heat.formulation = Formulation::FIRST;
-  of_heat.rows = values_of_heat = std::min(scheme.values(), FIRST_MOST);
+  of_heat.rows = values_of_heat = std::min(CellHistory::scheme_of(scheme).values(), FIRST_MOST);
   heat_coefficients = CorrectorCoefficients(of_heat).driven;
 }
 
@@ -47,7 +47,8 @@ Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sit
                    const Scheme &scheme) :
     Thermostat(lmp, fix, bodies, words_of(words, pressure), scheme),
     asked(pressure), virial(lmp, fix, sites), box(lmp, pressure.fixed), cell(scheme),
-    chain(std::max(1, pressure.length)), matrix(Upper::one()), inverse(Upper::one())
+    chain(std::max(1, pressure.length)), matrix(Upper::one()), changing_step(scheme.trial),
+    inverse(Upper::one())
 {
   set_heat(scheme);
   fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
@@ -339,6 +340,7 @@ void Barostat::end_passes(const Integrator &integrator)
   Thermostat::end_passes(integrator);
   if (chain_acts()) chain.conclude();
   correction = cell.correction() * inverse;
+  local_error = cell.local_error() * inverse;
   cell.finish();
   matrix = cell.matrix();
   rate = cell.rate(width);
@@ -355,6 +357,42 @@ void Barostat::place(int ibody, const Integrator::Pending &pending, BodyState &s
   const double *force = bodies.load_of(ibody).force;
   last.work += dot3(force, way) - dot3(force, scaled_way);
   box.to_space(state);
+}
+
+void Barostat::keep()
+{
+  Thermostat::keep();
+  kept = std::make_unique<Moving>(Moving{cell, chain, heat, matrix, rate, correction});
+}
+
+void Barostat::put_back()
+{
+  Thermostat::put_back();
+  cell = kept->cell;
+  chain = kept->chain;
+  heat = kept->heat;
+  matrix = kept->matrix;
+  rate = kept->rate;
+  correction = kept->correction;
+  box.set(matrix);
+}
+
+/// As a length, what it moves at the faces of the box; as an energy, its work.
+void Barostat::errors(const VariableOrder &order, double h, int values,
+                      const Include &include) const
+{
+  Thermostat::errors(order, h, values, include);
+  double length = 0.0, energy = 0.0;
+  const Upper push = drive();
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    const double strain = std::fabs(local_error[k]);
+    length = std::max(length, 0.5 * domain->prd[k < 3 ? k : k == 3 ? 1 : 0] * strain);
+    if (asked.on[k]) energy += mass_of(k) * strain * (std::fabs(push[k]) + std::fabs(rate[k] / h));
+  }
+  StepMeasures found;
+  found.length = {length, length, length};
+  found.energy = {energy, energy, energy};
+  include(found);
 }
 
 void Barostat::note_step(double h)

@@ -27,6 +27,8 @@
 #include "gear_quat_thermostat.h"
 #include "gear_quat_virial.h"
 
+#include <memory>
+
 namespace LAMMPS_NS::GearQuat {
 
 class Barostat : public Thermostat {
@@ -67,6 +69,11 @@ class Barostat : public Thermostat {
   bool is_tilted() const override;
   void flip_box() override;
   void note_step(double h) override;
+  void keep() override;
+  void put_back() override;
+  double longest_step() const override;
+  void errors(const VariableOrder &order, double h, int values,
+              const Include &include) const override;
   Cause instability(double h) const override;
   void follow_changes(double h) override;
   void rescale(double ratio) override;
@@ -111,6 +118,15 @@ class Barostat : public Thermostat {
   Upper made_target, made_rate;    ///< of the last step before this run
 
   Upper matrix, rate;    ///< M and G in the present pass, or at a node
+  struct Moving {        ///< what a step changes
+    CellHistory cell;
+    Chain chain;
+    ScalarHistory heat;
+    Upper matrix, rate, correction;
+  };
+  std::unique_ptr<Moving> kept;
+  bool changing_step;    ///< keyword tolerance
+  Upper local_error;     ///< of M M^-1, of the last step
   Upper kinetic;         ///< sum m v_a v_b, as of the last sum
   Upper correction;      ///< of M M^-1 by the corrector, in the last step
   double friction_of_box = 0.0;

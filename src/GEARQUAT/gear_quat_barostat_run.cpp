@@ -284,7 +284,7 @@ void Barostat::leave_probe(int side)
   against = along = 0.0;
   driven = Upper();
   const double part = probed * std::fabs(width) / fastest;
-  if (part < WARNED) return;
+  if (part < WARNED || changing_step) return;
   const double needed = 1.05 * period() * part / WARNED;
   if (part > REFUSED)
     error->all(FLERR,
@@ -298,6 +298,12 @@ void Barostat::leave_probe(int side)
         "the method follows; use a Pdamp of {:.2g} or longer",
         part * fastest, 100.0 * part, needed);
   warned_box = true;
+}
+
+double Barostat::longest_step() const
+{
+  const double by_temperature = Thermostat::longest_step(), omega = frequency();
+  return omega > 0.0 ? std::min(by_temperature, 0.5 * WARNED * fastest / omega) : by_temperature;
 }
 
 /// In equilibrium the mean of -drive'.G over that of G.G is the mean square frequency.
@@ -322,7 +328,7 @@ void Barostat::watch_box(double h)
   driven = now;
   since += std::fabs(h);
   watch_mesh();
-  if (warned_box || since < MEMORY * period()) return;
+  if (warned_box || changing_step || since < MEMORY * period()) return;
   const double part = frequency() * std::fabs(h) / fastest;
   if (part < WARNED) return;
   warned_box = true;
@@ -343,11 +349,12 @@ void Barostat::watch_mesh()
     if (std::fabs(ratio - 1.0) < OF_MESH) continue;
     warned_mesh = true;
     if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix gear/quat: in step {} the box is {:.2g} times as long along {} as at the "
-                     "beginning of the run, for which the mesh of kspace style {} was chosen; begin "
-                     "another run",
-                     update->ntimestep, ratio, "xyz"[k], force->kspace_style);
+      error->warning(
+          FLERR,
+          "Fix gear/quat: in step {} the box is {:.2g} times as long along {} as at the "
+          "beginning of the run, for which the mesh of kspace style {} was chosen; begin "
+          "another run",
+          update->ntimestep, ratio, "xyz"[k], force -> kspace_style);
     return;
   }
 }

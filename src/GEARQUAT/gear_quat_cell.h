@@ -167,10 +167,13 @@ class CellHistory {
 
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
-  /// Formulation first has Gear's coefficients here.
+  /// Formulation first has Gear's coefficients here.  A changing step, whose number of values
+  /// changes, too, has a fixed number here.
+  static constexpr int VALUES_OF_CHANGING_STEP = 6;
   static Scheme scheme_of(const Scheme &bodies)
   {
     Scheme scheme = bodies;
+    if (scheme.trial) scheme.rows = std::min(scheme.values(), VALUES_OF_CHANGING_STEP);
     if (scheme.first()) {
       scheme.rows = std::max(scheme.values(), SECOND_FEWEST);
       scheme.tuned = false;
@@ -181,8 +184,10 @@ class CellHistory {
   void set_scheme(const Scheme &of_bodies)
   {
     const Scheme scheme = scheme_of(of_bodies);
+    const CorrectorCoefficients all(scheme);
     n = scheme.values();
-    c = CorrectorCoefficients(scheme).driven;
+    c = all.driven;
+    weight = std::sqrt(all.weight2);
   }
 
   /// M = 1 with this rate; higher derivatives are not known.
@@ -227,8 +232,10 @@ class CellHistory {
     Nordsieck<WIDTH>::correct<WIDTH>(rows.data(), n, c.data(), 0, total.m.data());
     total = Upper();
   }
-  /// Of the prediction: M and G of the present pass less these.
+  /// M of the present pass less that of the prediction.
   Upper correction() const { return total.scaled(c[0]); }
+  /// The local error of M in the present step.
+  Upper local_error() const { return total.scaled(weight); }
 
   void rescale(double ratio) { Nordsieck<WIDTH>::rescale(rows.data(), n, ratio); }
 
@@ -248,6 +255,7 @@ class CellHistory {
  private:
   int n = 0;
   CorrectorCoefficients::Array c = {};
+  double weight = 0.0;
   Rows rows = {};
   Upper total;    ///< the residual after the present pass
 
