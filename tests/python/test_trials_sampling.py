@@ -140,6 +140,16 @@ def test_what_the_script_has_already_is_not_tried_again(monkeypatch):
     assert {run.keywords for run in found.runs} == {None, "", LONGEST}
 
 
+@pytest.mark.parametrize(
+    ("rate", "error", "hopeless"),
+    [(-0.233, 0.083, True), (0.12, 0.01, True), (-0.09, 0.02, True), (0.05, 0.02, False), (0.05, 0.3, False), (0.15, 0.1, False)],
+)
+def test_a_long_run_is_made_where_it_may_show_that_a_step_holds(rate, error, hopeless):
+    """4 fs in SPC/E, which drifts by -0.23, once took the time that 3 fs needed."""
+    search = sampling.Search(types.SimpleNamespace(deck=MadeUpLiquid(steep)), None)
+    assert search.hopeless(Drift(rate, error)) == hopeless and not search.hopeless(Drift())
+
+
 def test_where_nothing_holds_that_is_said_with_the_smallest_drift(monkeypatch):
     found = answer_of(monkeypatch, MadeUpLiquid(lambda keywords, dt: 0.7 + 0.1 * dt + (keywords != "")))
     assert found.recommended is None and found.choice is None
@@ -243,11 +253,21 @@ def test_a_friction_is_the_drift_that_it_is_in_all_units(make_deck, units):
     assert found.rate != pytest.approx(-0.0101 * ns, rel=2e-3)
 
 
+PERIODIC = {"boundary f f f": "boundary p p f"}
+
+
+def test_bodies_that_keep_their_angular_momentum_are_in_no_equilibrium_of_temperatures(make_deck):
+    """Eight molecules that do not turn as a whole have 18 freedoms of translation and not 21."""
+    for changes, known in ((PERIODIC, True), ({"boundary f f f": "boundary f f p"}, False), ({}, False)):
+        with Deck(make_deck(**FOR_GEAR, **changes), [("style", "gear/quat")]) as deck:
+            assert (deck.freedoms is not None) == known
+
+
 @pytest.mark.parametrize("style", ["rigid", "gear/quat"])
 def test_translation_and_rotation_are_those_of_the_bodies(make_deck, style):
     """Their sum is the kinetic energy without that of all bodies together; three bodies of three sites have 6 and 9 freedoms."""
     push = "velocity all set 0.3 0.0 0.0 sum yes units box"
-    with Deck(make_deck(push, **FOR_GEAR), [("style", style)]) as deck:
+    with Deck(make_deck(push, **FOR_GEAR, **PERIODIC), [("style", style)]) as deck:
         assert deck.freedoms == (6, 9) and deck.scene.ranges == ["1:9"]
         trial = deck.run(None, [2] * 20, 1e-3, energies=True)
         path = deck.run(None, [1, 1, 1], 1e-4)

@@ -195,9 +195,10 @@ class Search:
         first = [keywords for keywords in (None, DEFAULT) if prices.get(keywords, math.inf) <= WORTHWHILE * least]
         return (first or [min(prices, key=prices.get)])[0]
 
-    def close_to_bound(self, found):
+    def hopeless(self, found):
         """Whether a longer run could hardly show that this drift is within its bound."""
-        return found.known and found.error < 0.25 * found.bound and abs(found.rate) + found.error > found.bound
+        beyond = abs(found.rate) - found.bound
+        return found.known and (beyond > found.error or found.error < 0.25 * found.bound and beyond > -found.error)
 
     def long_runs(self, steps):
         """Lengthen runs of the cheapest steps until one is known to hold: (keywords, step), or None."""
@@ -209,13 +210,13 @@ class Search:
             if budget.left() < self.study.overhead + FEWEST * self.seconds_per_step(keywords):
                 return None
             found = self.run(keywords, dt, min(whole, FIRST_TRY * budget.left()))
-            if found.known and not found.refused and not self.close_to_bound(found):
+            if found.known and not found.refused and not self.hopeless(found):
                 found = self.run(keywords, dt, min(whole, SHARE_LONG * budget.left()))
                 if found.holds:
                     return keywords, dt
             steps[keywords] = shorter(dt)
             # a run that says nothing says no more with a shorter step
-            silent = not found.refused and not self.close_to_bound(found)
+            silent = not found.refused and not self.hopeless(found)
             if silent or steps[keywords] < self.shortest:
                 del steps[keywords]
         return None
