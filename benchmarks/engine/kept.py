@@ -1,7 +1,7 @@
 """Runs that need not be made again: what they left is there, and their input is the same.
 
 The input of a run is its deck with the other files of the deck's folder and of ``examples/common``, its
-variables, the files that these name, the LAMMPS program and the plugin.
+variables, the files that these name, the LAMMPS program and the plugin if the run uses it.
 """
 
 import hashlib
@@ -20,7 +20,8 @@ def fingerprint(job, lmp):
     shared = [*job.deck.parent.iterdir(), *(EXAMPLES / "common").iterdir()]
     files = [file for file in shared if file.is_file() and file.suffix not in (".py", ".pyc")]
     files += [Path(str(value)) for value in job.variables.values()]
-    files += [Path(lammps_gearquat.plugin_folder()) / "gearquat.so"]
+    if job.plugin:
+        files += [Path(lammps_gearquat.plugin_folder()) / "gearquat.so"]
     digest = hashlib.sha256(repr((job.deck.name, job.variables, job.ranks)).encode())
     for file in sorted(files):
         if os.path.isabs(file) and file.is_file():

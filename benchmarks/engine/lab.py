@@ -19,13 +19,15 @@ from .sites import read_sites
 class Job:
     """One run of the ``deck`` at a path, with ``variables`` (name -> value) on so many ``ranks``.
 
-    ``steps`` orders the jobs and weighs them in the progress bar.
+    ``steps`` orders the jobs and weighs them in the progress bar.  ``plugin``: whether it uses fix gear/quat, so that
+    what is kept of it is of one build of the plugin.
     """
 
     deck: Path
     variables: dict
     steps: int = 1
     ranks: int = 1
+    plugin: bool = True
 
 
 @dataclass(frozen=True)

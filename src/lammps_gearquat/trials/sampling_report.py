@@ -72,6 +72,7 @@ def _explained(answer):
 def _advice(deck, answer):
     """What to put into the script, or that nothing holds the bound."""
     choice, unit = answer.choice, _drift_unit(deck)
+    longer = _longer(deck, answer)
     if choice:
         found = choice.drift
         lines = map_lines(deck) if choice.keywords is not None else ["# keep your fix: no other is faster"]
@@ -79,6 +80,7 @@ def _advice(deck, answer):
             f"For runs such as this one, measured over {_quantity(found.time, deck.time_unit)}"
             f" (drift {with_error(found.rate, found.error, unit)}):",
             *(f"    {line}" for line in [*lines, *deck.fix_lines(choice.keywords), f"timestep {choice.dt:g}"]),
+            *longer,
         ]
     lines = [f"Nothing is recommended: no step is known to hold the bound of {answer.bound:g} {unit} (--drift)."]
     least = answer.least
@@ -92,7 +94,15 @@ def _advice(deck, answer):
             "Forces that jump at a cut-off and those that are no gradient of a potential, such as friction, change the energy",
             "at every step.",
         ]
-    return [*lines, "A longer --budget measures it more closely."]
+    return [*lines, *longer]
+
+
+def _longer(deck, answer):
+    """What a longer budget is needed for, if one helps."""
+    if math.isnan(answer.enough):
+        return []
+    what = f"A run of {_quantity(drift.longest(deck), deck.time_unit)}" if answer.choice else "A run that is long enough to tell"
+    return [f"{what} needs --budget {rounded(answer.enough, 2)} or more, as far as trials show."]
 
 
 def _failures(answer):

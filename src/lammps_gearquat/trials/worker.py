@@ -44,7 +44,7 @@ class Situation:
     ``start``, a Start; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
     by ID; ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
     ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``flat``, whether all is in two
-    dimensions; ``continued``, the sites ``test_steps`` steps later.
+    dimensions; ``periodic``, in how many directions the box is; ``continued``, the sites ``test_steps`` steps later.
     """
 
     start: object
@@ -56,6 +56,7 @@ class Situation:
     masses: object
     rotating: bool
     flat: bool = False
+    periodic: int = 3
     test_steps: int = 0
     continued: Sites = None
 
