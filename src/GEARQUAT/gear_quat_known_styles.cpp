@@ -135,6 +135,7 @@ static constexpr StyleFact<FixFact> FIXES[] = {
     {FixFact::BODY_OF_ATOMS, "^rigid", "FixRigid::extract() gives its array body"},
     {FixFact::FIRST_RIGID, "^wall/gran",
      "FixWallGran::init() stops its search at the first fix with rigid_flag"},
+    {FixFact::NO_FORCE, "^enforce2d", "sets components along z to 0, where nothing is held"},
     {FixFact::NO_FORCE, "^store/force", "copies forces"},
     {FixFact::NO_FORCE, "^INTEL", "adds up what threads have computed"},
     {FixFact::NO_FORCE, "^GPU", "receives what a device has computed"},

@@ -50,7 +50,7 @@ struct Host {
     power = s.power();
     const Multipliers alpha = start_knows ? multipliers(mode, s) : Multipliers();
     for (size_t b = 0; b < bodies.size(); ++b)
-      loads[b] = damped_load(bodies[b], states[b], loads[b], alpha);
+      loads[b] = damped_load(bodies[b], states[b], loads[b], Friction(alpha));
     return loads;
   }
 
@@ -146,7 +146,7 @@ struct Host {
     for (int pass = 0; pass < scheme.passes; ++pass) {
       const Multipliers alpha = multipliers(mode, pending_sums(loads, pending));
       for (size_t b = 0; b < bodies.size(); ++b)
-        integrator.correct_pass(bodies[b], loads[b], alpha, rows[b].data(), pending[b]);
+        integrator.correct_pass(bodies[b], loads[b], Friction(alpha), rows[b].data(), pending[b]);
     }
     const KineticSums found = pending_sums(loads, pending);
     heat.advance(integrator, found.power());
@@ -276,7 +276,7 @@ TEST(Isokinetic, TheConstraintTakesWhatTheLoadsDo)
     alpha.translation *= 1.01;
     KineticSums wrong;
     for (int b = 0; b < 2; ++b)
-      wrong.add(host.bodies[b], damped_load(host.bodies[b], host.states[b], met[b], alpha),
+      wrong.add(host.bodies[b], damped_load(host.bodies[b], host.states[b], met[b], Friction(alpha)),
                 host.states[b]);
     EXPECT_GT(std::fabs(wrong.power()), 1.0e-4);
   }
@@ -356,14 +356,14 @@ TEST(Isokinetic, AnAxisWithoutInertiaIsLeftAlone)
   const Multipliers alpha = {-0.2, -0.2}, grown = {1.05, 1.05};
   const Integrator integrator(scheme, h);
   vector<double> rows(scheme.size());
-  seed(scheme, rod, local_series(rod, state, damped_load(rod, state, Load{}, alpha), h), h, h,
+  seed(scheme, rod, local_series(rod, state, damped_load(rod, state, Load{}, Friction(alpha)), h), h, h,
        rows.data());
   const double axis = rows[Scheme::OMEGA + 2], across = rows[Scheme::OMEGA];
   for (int n = 0; n < 1000; ++n) {
     integrator.predict(rows.data());
     auto pending = integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
     for (int pass = 0; pass < scheme.passes; ++pass)
-      integrator.correct_pass(rod, Load{}, alpha, rows.data(), pending);
+      integrator.correct_pass(rod, Load{}, Friction(alpha), rows.data(), pending);
     integrator.finish(Load{}, rows.data(), pending);
   }
   integrator.scale_momenta(rod, grown, rows.data());

@@ -62,9 +62,9 @@ struct Host {
     vector<Load> acting(double friction) const
     {
       vector<Load> loads = our.loads_of(our.states);
+      const Friction alpha = Multipliers{friction, friction};
       for (size_t b = 0; b < loads.size(); ++b)
-        loads[b] =
-            damped_load(our.bodies[b], our.states[b], loads[b], Multipliers{friction, friction});
+        loads[b] = damped_load(our.bodies[b], our.states[b], loads[b], alpha);
       return loads;
     }
     double friction_at(int node) const

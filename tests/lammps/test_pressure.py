@@ -1,0 +1,348 @@
+"""Constant pressure: orders, the molecular virial, edges of the box, ensembles.
+
+What is refused is in test_bad_input.py, restarts and ranks in test_pressure_runs.py.
+"""
+
+import numpy as np
+import pytest
+from pressed import GAUSS, ends, frame, largest_change, pressed, trimers
+from scenes import water_data
+
+EDGES = ("Lx", "Ly", "Lz")
+#: elements of the fix's vector: molecular pressures xx yy zz, target, rates of the box, its kinetic energy
+KE, PRESSURES, TARGET, RATES, BOX_KE = 1, (16, 17, 18), 22, (23, 24, 25), 26
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path):
+    return trimers(tmp_path / "data.trimers")
+
+
+# --- the equations ------------------------------------------------------------------------------
+
+MODES = {
+    "iso NPH": "iso 0.3 0.3 1.0",
+    "iso": "iso 0.3 0.3 1.0 temp 0.7 0.7 0.8",
+    "aniso ramps": "aniso 0.3 0.9 1.0 temp 0.6 0.9 0.8 thermostat separate",
+    "unequal ramps": "x 0.3 0.5 1.0 y -0.2 0.1 1.5 z 0.8 0.6 0.7 pchain 2 ptemp 0.8",
+    "separate": "x 0.3 0.5 1.0 z 0.8 0.6 1.0 temp 0.6 0.7 0.8 thermostat separate",
+}
+SCHEMES = {
+    "values 5": 5,
+    "values 7": 7,
+    "values 9": 9,
+    "values 6 corrector gear": 6,
+    "formulation first values 8": 8,
+    "formulation first values 7 corrector gear": 7,
+}
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_orders_of_velocities_edges_and_energy(lmp_tree, mode):
+    """By slope, beside a run with more values and shorter steps."""
+    time, steps = 0.4, (0.02, 0.01, 0.005)
+    decks = [pressed(f"values 9 {MODES[mode]}", 0.0025, round(time / 0.0025))]
+    decks += [pressed(f"{s} {MODES[mode]}", dt, round(time / dt)) for s in SCHEMES for dt in steps]
+    decks += [pressed(f"values 7 {MODES[mode]}".replace("0.3", "0.303"), 0.005, 80)]
+    result, frames = ends(lmp_tree, decks)
+    tables = result.thermo
+
+    def errors(k):
+        edges = max(np.abs(np.subtract(tables[k][c], tables[0][c])).max() for c in EDGES)
+        return np.abs(frames[k] - frames[0])[:, 3:6].max(), edges, largest_change(tables[k])
+
+    found = np.array([errors(k) for k in range(1, 1 + len(SCHEMES) * len(steps))])
+    for values, of in zip(SCHEMES.values(), found.reshape(len(SCHEMES), len(steps), 3)):
+        slopes = np.log2(of[0] / of[-1]) / (len(steps) - 1)
+        # velocities act on forces: n - 1
+        assert (slopes > values - 1.6).all(), (values, slopes)
+    # a pressure 1 % off is another motion
+    assert errors(len(decks) - 1)[0] > 1e4 * found[5][0]
+
+
+def test_the_columns_belong_together(lmp_tree):
+    deck = pressed("values 7 x 0.3 0.5 1.0 y -0.2 0.1 1.0 z 0.8 0.6 1.0 temp 0.7 0.7 0.8", run="run 100")
+    result, _ = ends(lmp_tree, [deck])
+    t = {name: np.array(column) for name, column in result.thermo[0].items()}
+    f = lambda n: t[f"f_move[{n}]"]
+    ramps = np.linspace(0, 1, 11)
+    target = ((0.3 + 0.2 * ramps) + (-0.2 + 0.3 * ramps) + (0.8 - 0.2 * ramps)) / 3
+    assert f(TARGET) == pytest.approx(target, rel=1e-12)
+    assert sum(f(k) for k in PRESSURES) / 3 == pytest.approx(f(PRESSURES[0] - 1), rel=1e-12)
+    # (N_f + d) kT Pdamp^2/d with the total momentum conserved
+    mass = (21 + 3) * 0.7 / 3
+    assert f(BOX_KE) == pytest.approx(0.5 * mass * sum(f(k) ** 2 for k in RATES), rel=1e-12)
+    assert np.abs(t["Econserve"] - t["TotEng"] - t["Ecouple"]).max() < 1e-12
+    rate = np.array([np.gradient(np.log(t[c]), 0.05)[1:-1] for c in EDGES])
+    assert rate == pytest.approx(np.array([f(k)[1:-1] for k in RATES]), abs=0.02)
+
+
+# --- the virial ---------------------------------------------------------------------------------
+
+WATER = """
+units real
+atom_style full
+atom_modify map array
+read_data {data}
+{force}
+neigh_modify every 1 delay 0
+neigh_modify exclude molecule/intra all
+velocity all set 0 0 0
+fix move all gear/quat molecule iso 0 0 100 ptemp 300
+thermo_style custom step pe vol press f_move[16] f_move[17] f_move[18] f_move[19] f_move[20] f_move[21]
+thermo_modify norm no format float %.17g
+run 0
+"""
+SMOOTH = """pair_style lj/gromacs/coul/gromacs 3.5 4.6
+pair_coeff * * 0.0 1.0
+pair_coeff 1 1 0.1553 3.166
+"""
+LONG = """pair_style hybrid/overlay lj/gromacs 3.5 4.6 {style}
+pair_coeff * * lj/gromacs 0.0 1.0
+pair_coeff 1 1 lj/gromacs 0.1553 3.166
+pair_coeff * * {word}
+pair_modify table 0
+kspace_style {kspace} 1e-9
+kspace_modify gewald 0.9 {mesh}
+"""
+COUL = dict(style="coul/long 4.6", word="coul/long")
+TIP4P = """bond_style zero
+bond_coeff 1 1.0
+angle_style zero
+angle_coeff 1 109.47
+"""
+OF_TIP4P = dict(style="tip4p/long 1 2 1 1 0.15 4.6", word="tip4p/long")
+MESH = "order 7 mesh 48 48 48"
+# Mesh and g are those of the first box, as in a run: sites of a molecule are not in the list, so g
+# counts.  LAMMPS' erfc has seven digits, which its forces are not derivatives of.
+FORCES = {
+    "smooth": (SMOOTH, 1e-8),
+    "ewald": (LONG.format(kspace="ewald", mesh="kmax/ewald 16 16 16", **COUL), 2e-5),
+    "pppm": (LONG.format(kspace="pppm", mesh=MESH, **COUL), 2e-5),
+    "tip4p": (TIP4P + LONG.format(kspace="pppm/tip4p", mesh=MESH, **OF_TIP4P), 2e-5),
+}
+NKTV2P = 68568.415
+
+
+def scaled_water(path, factors):
+    """The water of scenes.py with centers and edges times these factors."""
+    water_data(path, spacing=3.3, shift=1.65)
+    text = path.read_text()
+    head, _, rest = text.partition("Atoms # full\n")
+    rows, _, tail = rest.strip("\n").partition("\n\nVelocities")
+    atoms = np.array([row.split() for row in rows.splitlines()], float)
+    masses = np.where(atoms[:, 2] == 1, 15.9994, 1.008)
+    for molecule in np.unique(atoms[:, 1]):
+        of = atoms[:, 1] == molecule
+        center = masses[of] @ atoms[of, 4:7] / masses[of].sum()
+        atoms[of, 4:7] += (np.array(factors) - 1.0) * center
+    lines = []
+    for line in head.splitlines():
+        words = line.split()
+        if len(words) == 4 and words[2].endswith("lo"):
+            k = "xyz".index(words[2][0])
+            line = f"{float(words[0]) * factors[k]:.17g} {float(words[1]) * factors[k]:.17g} {words[2]} {words[3]}"
+        lines.append(line)
+    head = "\n".join(lines).replace("2 atom types", "2 atom types\n54 bonds\n1 bond types\n27 angles\n1 angle types")
+    bonds = [f"{2 * m + h - 1} 1 {3 * m + 1} {3 * m + h + 1}" for m in range(27) for h in (1, 2)]
+    angles = [f"{m + 1} 1 {3 * m + 2} {3 * m + 1} {3 * m + 3}" for m in range(27)]
+    tail += "\nBonds\n\n" + "\n".join(bonds) + "\n\nAngles\n\n" + "\n".join(angles)
+    whole = ["%d %d %d" % tuple(row[:3]) + "".join(f" {w:.17g}" for w in row[3:7]) +
+             "".join(" %d" % w for w in row[7:]) for row in atoms]
+    path.write_text(head + "\n\nAtoms # full\n\n" + "\n".join(whole) + "\n\nVelocities" + tail + "\n")
+    return path
+
+
+@pytest.mark.parametrize("name", FORCES)
+def test_virial_is_the_change_of_energy_with_the_box(lmp_tree, name):
+    """Centers are scaled and molecules are not: differences of fourth order."""
+    force, tolerance = FORCES[name]
+    decks, d = [], 2e-4
+    for k, axis in enumerate([None, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]):
+        factors = np.ones(3)
+        if axis is not None:
+            factors[axis] = np.exp(d * (-2, -1, 1, 2)[(k - 1) % 4])
+        scaled_water(lmp_tree.folder / f"data.{k}", factors)
+        decks.append(WATER.format(data=f"data.{k}", force=force))
+    result = lmp_tree.succeed("\nclear\n".join(decks))
+    tables = result.thermo
+    virial = np.array([tables[0][f"f_move[{k}]"][0] for k in PRESSURES]) * tables[0]["Volume"][0] / NKTV2P
+    energy = np.array([t["PotEng"][0] for t in tables[1:]]).reshape(3, 4)
+    change = -(energy @ np.array([1, -8, 8, -1])) / (12 * d)
+    scale = np.abs(virial).max()
+    assert np.abs(virial - change).max() < tolerance * scale
+    assert np.abs(1.01 * virial - change).max() > tolerance * scale
+
+
+def test_tail_corrections_are_those_of_thermo(lmp_tree):
+    force = "pair_style lj/cut 4.5\npair_coeff * * 0.0 1.0\npair_coeff 1 1 0.1553 3.166\npair_modify tail {}\n"
+    water_data(lmp_tree.folder / "data.0", shift=1.65)
+    decks = [WATER.format(data="data.0", force=force.format(tail)) for tail in ("no", "yes")]
+    without, with_tail = lmp_tree.succeed("\nclear\n".join(decks)).thermo
+    of_thermo = with_tail["Press"][0] - without["Press"][0]
+    assert abs(of_thermo) > 1.0
+    for k in PRESSURES:
+        assert with_tail[f"f_move[{k}]"][0] - without[f"f_move[{k}]"][0] == pytest.approx(of_thermo, rel=1e-9)
+
+
+# --- edges --------------------------------------------------------------------------------------
+
+COUPLES = {"xyz": (0, 1, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
+
+
+@pytest.mark.parametrize("couple", ["none", *COUPLES])
+def test_coupled_edges_are_the_same(lmp_tree, couple):
+    """To the last digits, whatever the corner of the box; others differ."""
+    result, _ = ends(lmp_tree, [pressed(f"aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8 couple {couple}", run="run 200")])
+    edges = np.array([result.thermo[0][c] for c in EDGES])
+    assert largest_change(result.thermo[0]) < 1e-6
+    tied = COUPLES.get(couple, (0,))
+    for k in range(3):
+        apart = np.abs(edges[k] - edges[tied[0]]).max()
+        assert apart < 1e-14 * edges.max() if k in tied else apart > 1e-5, k
+
+
+def test_an_edge_without_a_keyword_stays(lmp_tree):
+    result, _ = ends(lmp_tree, [pressed("y 0.5 0.5 1.0 temp 0.7 0.7 0.8", run="run 200")])
+    table = result.thermo[0]
+    assert set(table["Lx"]) == set(table["Lz"]) == {4.0} and largest_change(table, "Ly") > 1e-3
+    assert largest_change(table) < 1e-6
+
+
+def test_the_fixed_point_stays(lmp_tree):
+    """The place where the center of the box is by default, and another."""
+    columns = "thermo_style custom step xlo xhi ylo yhi zlo zhi econserve\nthermo_modify format float %.17g"
+    decks = [
+        pressed(f"iso 0.5 0.5 1.0 {point}", run=columns + "\nrun 100")
+        for point in ("", "fixedpoint 2 2 2", "fixedpoint 0 1 -3")
+    ]
+    result, frames = ends(lmp_tree, decks)
+    for table, (x, y, z) in zip(result.thermo, [(2, 2, 2), (2, 2, 2), (0, 1, -3)]):
+        edge = np.array(table["Xhi"]) - np.array(table["Xlo"])
+        for name, at in (("X", x), ("Y", y), ("Z", z)):
+            part = (at - np.array(table[f"{name}lo"])) / edge
+            assert np.ptp(part) < 1e-14 and np.ptp(edge) > 1e-4
+    assert np.abs(frames[0] - frames[1]).max() == 0.0
+    # where the box is changes nothing but places
+    assert np.abs(frames[0] - frames[2])[:, 3:6].max() < 1e-12
+
+
+def test_in_two_dimensions(lmp_tree):
+    """The box keeps its height; orders as in three."""
+    trimers(lmp_tree.folder / "data.flat", n=3, flat=True)
+    flat = dict(dimension=2, data="data.flat", pair=GAUSS, after="fix flat all enforce2d")
+    steps = (0.02, 0.01)
+    decks = [pressed("values 7 aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8", dt, round(0.4 / dt), **flat) for dt in steps]
+    result, frames = ends(lmp_tree, decks)
+    changes = [largest_change(table) for table in result.thermo]
+    assert changes[1] < 1e-6 and np.log2(changes[0] / changes[1]) > 5.4
+    for table, rows in zip(result.thermo, frames):
+        assert set(table["Lz"]) == {1.0} and largest_change(table, "Lx") > 1e-4
+        assert np.abs(rows[:, [2, 5]]).max() == 0.0
+        mean = np.add(table["f_move[16]"], table["f_move[17]"]) / 2
+        assert mean == pytest.approx(np.array(table["f_move[15]"]), rel=1e-12)
+
+
+# --- invariants ---------------------------------------------------------------------------------
+
+
+def distances(rows, box):
+    """Of the sites of each trimer."""
+    places = rows[:, :3] + rows[:, 6:9] * box
+    sites = places.reshape(-1, 3, 3)
+    return np.linalg.norm(sites - np.roll(sites, 1, axis=1), axis=2)
+
+
+def test_lengths_within_a_molecule_do_not_change(lmp_tree, data):
+    """Over many steps, and in 400 runs of 10 steps."""
+    words = "aniso 0.3 0.6 1.0 temp 0.7 0.9 0.8"
+    many = "label loop\nvariable i loop 400\nrun 10 start 0 stop 4000\nnext i\njump SELF loop"
+    settings = dict(thermo=1000, box="read_data data.trimers")
+    begin = pressed(words, 1e-9, run="run 0", **settings)
+    decks = [begin, pressed(words, 0.005, run="run 20000", **settings)]
+    result, frames = ends(lmp_tree, decks)
+    lmp_tree.succeed(pressed(words, 0.005, run=many, end="parts.dump", **settings))
+    frames.append(frame(lmp_tree.folder / "parts.dump"))
+    boxes = [[table[c][-1] for c in EDGES] for table in result.thermo]
+    text = (lmp_tree.folder / "parts.dump").read_text().splitlines()
+    boxes.append([float(hi) - float(lo) for lo, hi in (line.split() for line in text[5:8])])
+    before, *after = (distances(rows, np.array(box)) for rows, box in zip(frames, boxes))
+    assert abs(np.subtract(boxes[1:], 4.0)).max() > 0.01
+    for found in after:
+        assert np.abs(found / before - 1.0).max() < 1e-12
+
+
+def test_the_total_momentum_stays_zero(lmp_tree):
+    """In a long run with chains, whose friction would let rounding grow; and a drift stays what it is."""
+    momentum = "\n".join(f"variable p{c} equal mass(all)*vcm(all,{c})" for c in "xyz")
+    columns = momentum + "\nthermo_style custom step econserve v_px v_py v_pz\nthermo_modify format float %.17g\n"
+    drift = "velocity all set 0.3 -0.2 0.1 sum yes"
+    words = "iso 0.3 0.3 1.0 temp 0.7 0.7 0.8"
+    decks = [pressed(words, 0.01, run=columns + "run 20000", before=b) for b in ("", drift)]
+    result, _ = ends(lmp_tree, decks)
+    for table, exact in zip(result.thermo, (np.zeros(3), 24.0 * np.array([0.3, -0.2, 0.1]))):
+        found = np.array([table[f"v_p{c}"] for c in "xyz"])
+        assert np.abs(found - exact[:, None]).max() < 1e-10
+        assert largest_change(table) < 1e-3
+
+
+def test_a_crystal_bears_a_negative_pressure(lmp_tree):
+    """Each component is the one that is asked for, averaged over a run; unequal ones too."""
+    pair = "pair_style morse 2.5\npair_coeff * * 0.0 2.0 1.0 2.5\npair_coeff 1 1 2.0 4.0 1.0 2.5\npair_modify shift yes"
+    crystal = """lattice fcc 1.4
+region box block 0 3 0 3 0 3
+create_box 3 box
+create_atoms 1 box
+mass 1 1.0
+mass 2*3 1.0
+variable own atom id
+set group all mol v_own
+velocity all create 0.1 87287"""
+    targets = (-0.6, -0.2, -0.4)
+    words = "temp 0.05 0.05 0.5 " + " ".join(f"{c} {p} {p} 1.0" for c, p in zip("xyz", targets))
+    run = """run 2000
+reset_timestep 0
+variable gx equal f_move[23]^2
+variable gy equal f_move[24]^2
+variable gz equal f_move[25]^2
+fix mean all ave/time 1 4000 4000 f_move[16] f_move[17] f_move[18] v_gx v_gy v_gz file mean.dat
+run 40000"""
+    deck = pressed(words, 0.01, box=crystal, pair=pair, run=run, thermo=1000)
+    deck = deck.replace("exclude molecule/intra all", "")
+    result = lmp_tree.succeed(deck)
+    rows = np.loadtxt(lmp_tree.folder / "mean.dat")[:, 1:]
+    mean, error = rows.mean(axis=0), rows.std(axis=0) / np.sqrt(len(rows))
+    print(mean, error)
+    assert (np.abs(mean[:3] - targets) < 4 * error[:3]).all() and error[:3].max() < 0.02
+    # what their mean would be
+    assert np.abs(mean[:3] + 0.4).max() > 10 * error[:3].max()
+    mass = (3 * 107 + 3) * 0.05 / 3
+    assert (np.abs(mass * mean[3:] - 0.05) < 4 * mass * error[3:]).all()
+    assert mass * error[3:].max() < 0.05 * 0.05
+    # of 2000: the potential is cut off
+    assert largest_change(result.thermo[1]) < 0.05
+    assert abs(result.thermo[1]["Lx"][-1] / result.thermo[1]["Ly"][-1] - 1.0) > 1e-4
+
+
+# --- ensembles ----------------------------------------------------------------------------------
+
+
+def test_pressure_times_volume_and_the_energy_of_the_box(lmp_tree):
+    """<(P - P0) V> = -kT and three times W <G^2> = kT: what wrong weights of the trace fail."""
+    target, kt, damp = 1.0, 1.5, 0.5
+    run = f"""variable work equal (f_move[15]-{target})*vol
+variable rate equal f_move[23]^2
+run 5000
+reset_timestep 0
+fix mean all ave/time 1 5000 5000 v_work v_rate file mean.dat
+run 200000"""
+    words = f"values 5 iso {target} {target} {damp} temp {kt} {kt} 0.5 thermostat separate"
+    lmp_tree.succeed(pressed(words, 0.01, run=run, thermo=20000), timeout=500)
+    rows = np.loadtxt(lmp_tree.folder / "mean.dat")[:, 1:]
+    mean, error = rows.mean(axis=0), rows.std(axis=0) / np.sqrt(len(rows))
+    print(mean, error)
+    mass = (21 + 3) * kt * damp**2
+    assert abs(mean[0] + kt) < 4 * error[0] and error[0] < 0.03
+    # all momenta in N_f: (1 - 1/N) kT
+    assert abs(mean[0] + kt * 7 / 8) > 5 * error[0]
+    assert abs(mass * mean[1] - kt) < 4 * mass * error[1] and mass * error[1] < 0.02 * kt

@@ -1,0 +1,369 @@
+/* Bodies in a moving cell: `Host` takes the place of gear_quat_barostat and of the start. */
+
+#pragma once
+
+#include "checks.h"
+#include "drive.h"
+
+#include "gear_quat_cell.h"
+#include "gear_quat_chain.h"
+#include "gear_quat_scalar.h"
+
+namespace InACell {
+
+using namespace Drive;
+using std::vector;
+
+/// Rows and columns of the components of Upper.
+constexpr int ROW[] = {0, 1, 2, 1, 0, 0}, COLUMN[] = {0, 1, 2, 2, 2, 1};
+
+/// Forces on centers and torques in space, the virial sum F_a R_b about the fixed point 0, energy.
+struct Met {
+  vector<Load> loads;
+  Upper virial;
+  double energy;
+};
+using MetIn = std::function<Met(const vector<BodyState> &states, const Upper &matrix)>;
+
+/// What moves the cell (doc/theory.md, Eqs. P1 to P9), in the components that are on.
+struct Law {
+  std::array<bool, Upper::SIZE> on = {true, true, true, false, false, false};
+  bool alike = false;    ///< the diagonal has the mean of its right-hand sides
+  double b[3] = {};
+  double mass = 1.0;    ///< W, at the time 0
+  Upper pressure, pressure_rate;
+  double volume = 1.0;    ///< with M = 1
+  double kt = 1.0, kt_rate = 0.0;
+  int chain = 0, box_chain = 0;    ///< lengths; 0: none
+  double freedoms = 1.0, period = 1.0, box_period = 1.0;
+
+  Upper pressures(double t) const { return pressure + pressure_rate.scaled(t); }
+  double mass_at(double t) const { return mass * (1.0 + t * kt_rate / kt); }
+  double free_components() const
+  {
+    return alike ? 1.0 : std::count(on.begin(), on.end(), true);
+  }
+  static double mean(const Upper &p) { return p.trace() / 3.0; }
+
+  /// G' without friction of the cell.  kinetic: sum m v_a v_b
+  Upper drive(double t, const Upper &matrix, const Upper &kinetic, const Upper &virial) const
+  {
+    Upper found;
+    const double v = volume * matrix.determinant();
+    const Upper p = pressures(t);
+    for (int k = 0; k < Upper::SIZE; ++k) {
+      if (!on[k]) continue;
+      found[k] = kinetic[k] + virial[k] - v * p[k];
+      if (k < 3) found[k] += b[k] * kinetic.trace();
+      found[k] /= mass_at(t);
+    }
+    if (alike) found[0] = found[1] = found[2] = found.trace() / 3.0;
+    return found;
+  }
+  double twice_box(double t, const Upper &rate) const
+  {
+    return mass_at(t) * rate.contracted(rate);
+  }
+  /// S' of Eq. P7
+  double heat_rate(double t, const Upper &matrix, const Upper &rate) const
+  {
+    const Upper p = pressures(t);
+    const double v = volume * matrix.determinant();
+    return v * (p.contracted(rate) - mean(p) * rate.trace() - mean(pressure_rate)) -
+        0.5 * kt_rate / kt * mass * rate.contracted(rate);
+  }
+  ChainTarget target(double t) const { return {kt + kt_rate * t, kt_rate, freedoms, period}; }
+  ChainTarget box_target(double t) const
+  {
+    return {kt + kt_rate * t, kt_rate, free_components(), box_period};
+  }
+};
+
+struct Host {
+  vector<RigidBody> bodies;
+  vector<BodyState> scaled;    ///< what histories hold
+  MetIn met_in;
+  Law law;
+  Scheme scheme;
+  double h;
+  Upper rate = {};    ///< G
+
+  Integrator integrator{scheme, h};
+  CellHistory cell{scheme};
+  Chain chain{std::max(law.chain, 1)}, box_chain{std::max(law.box_chain, 1)};
+  ScalarHistory heat{};
+  vector<vector<double>> rows{};
+  vector<Integrator::Pending> pending{};
+  Upper matrix = Upper::one();
+  Met met{};
+  long steps = 0;
+  /// Mutants: nodes of a start in the first cell; and b is that of the start alone.
+  bool frozen_nodes = false;
+
+  double time() const { return steps * h; }
+
+  vector<BodyState> states() const
+  {
+    vector<BodyState> found = scaled;
+    for (size_t b = 0; b < scaled.size(); ++b) {
+      matrix.times(scaled[b].center, found[b].center);
+      matrix.times(scaled[b].velocity, found[b].velocity);
+    }
+    return found;
+  }
+  Upper kinetic() const
+  {
+    Upper sum;
+    double v[3];
+    for (size_t b = 0; b < scaled.size(); ++b) {
+      matrix.times(scaled[b].velocity, v);
+      for (int k = 0; k < Upper::SIZE; ++k) sum[k] += bodies[b].mass * v[ROW[k]] * v[COLUMN[k]];
+    }
+    return sum;
+  }
+  double twice_kinetic() const
+  {
+    double sum = kinetic().trace();
+    for (size_t b = 0; b < scaled.size(); ++b)
+      sum += 2.0 * rotational_energy(bodies[b], scaled[b].omega_body);
+    return sum;
+  }
+  double volume() const { return law.volume * matrix.determinant(); }
+
+  /// H'
+  double conserved() const
+  {
+    const double t = time();
+    double sum = met_in(states(), matrix).energy + 0.5 * twice_kinetic() +
+        0.5 * law.twice_box(t, rate) + Law::mean(law.pressures(t)) * volume() + heat.value();
+    if (law.chain) sum += chain.energy(law.target(t));
+    if (law.box_chain) sum += box_chain.energy(law.box_target(t));
+    return sum;
+  }
+
+  Load scaled_load(const Load &load) const
+  {
+    Load found = load;
+    matrix.inverse().times(load.force, found.force);
+    return found;
+  }
+  CellFriction friction(double xi) const
+  {
+    Friction alpha = Multipliers{xi, xi};
+    alpha.implicit = std::fabs(h * xi) > 1.0e-3;
+    return CellFriction(alpha, matrix, rate, law.b);
+  }
+
+  // the start: `pairs` of nodes, each in its own cell
+
+  struct Search {
+    Host &our;
+    Collocation collocation;
+    vector<BodyState> at_start;
+    vector<Collocation::Workspace> work;
+    Collocation::Nodes<Upper::SIZE, 2> cell = {};
+    Collocation::Scalar twice = {}, twice_box = {}, heat = {};
+
+    Search(Host &our) :
+        our(our), collocation(our.scheme.start_values()), at_start(our.scaled),
+        work(our.bodies.size())
+    {
+    }
+    ChainDrive drive_of(const Collocation::Scalar &sums) const
+    {
+      vector<double> at;
+      for (int k = -sums.pairs; k <= sums.pairs; ++k) at.push_back(k);
+      return ChainDrive::through(at.size(), at.data(),
+                                 collocation.rate_at_start(sums) - sums.pairs);
+    }
+    /// Loads with friction, and the acceleration of the cell.
+    Upper meet(double xi, double box_xi, double t, vector<Load> &loads)
+    {
+      our.met = our.met_in(our.states(), our.matrix);
+      loads.clear();
+      for (size_t b = 0; b < our.bodies.size(); ++b)
+        loads.push_back(damped_load(our.bodies[b], our.scaled[b], our.scaled_load(our.met.loads[b]),
+                                    our.friction(xi)));
+      const Upper drive = our.law.drive(t, our.matrix, our.kinetic(), our.met.virial);
+      return CellHistory::acceleration(our.matrix, our.rate, drive, box_xi).scaled(our.h * our.h);
+    }
+    void begin()
+    {
+      vector<Load> loads;
+      const Upper second = meet(our.chain.friction(), our.box_chain.friction(), 0.0, loads);
+      for (size_t b = 0; b < work.size(); ++b)
+        collocation.begin(local_series(our.bodies[b], our.scaled[b], loads[b], our.h), work[b]);
+      collocation.begin<Upper::SIZE>(our.matrix.m.data(),
+                                     (our.rate * our.matrix).scaled(our.h).m.data(),
+                                     second.m.data(), cell);
+      collocation.begin(0.0, our.twice_kinetic(), twice);
+      collocation.begin(0.0, our.law.twice_box(0.0, our.rate), twice_box);
+      collocation.begin(0.0, our.law.heat_rate(0.0, our.matrix, our.rate), heat);
+    }
+    void foretell()
+    {
+      for (auto &w : work) collocation.foretell(w);
+      collocation.foretell(cell);
+      collocation.foretell(twice);
+      collocation.foretell(twice_box);
+      collocation.foretell(heat);
+    }
+    void visit(int node)
+    {
+      const double h = our.h, t = node * h;
+      for (size_t b = 0; b < work.size(); ++b)
+        our.scaled[b] = collocation.state_at(node, work[b], h);
+      Upper value, first;
+      collocation.values_at(node, cell, value.m.data(), first.m.data());
+      if (!our.frozen_nodes) our.matrix = value;
+      our.rate = first.scaled(1.0 / h) * value.inverse();
+      const double xi =
+          our.law.chain ? our.chain.flow(our.law.target(0.0), drive_of(twice), h, node).y[0] : 0.0;
+      const double box_xi = our.law.box_chain
+          ? our.box_chain.flow(our.law.box_target(0.0), drive_of(twice_box), h, node).y[0]
+          : 0.0;
+      vector<Load> loads;
+      const Upper second = meet(xi, box_xi, t, loads);
+      for (size_t b = 0; b < work.size(); ++b)
+        collocation.set_load(node, our.bodies[b], our.scaled[b], loads[b], h, 1.0, work[b]);
+      collocation.set_rates(node, second.m.data(), cell);
+      collocation.set_rate(node, our.twice_kinetic(), twice);
+      collocation.set_rate(node, our.law.twice_box(t, our.rate), twice_box);
+      collocation.set_rate(node, our.law.heat_rate(t, our.matrix, our.rate), heat);
+    }
+    void settle(int pair)
+    {
+      for (auto &w : work) collocation.settle(pair, w);
+      collocation.settle(pair, cell);
+      collocation.settle(pair, twice);
+      collocation.settle(pair, twice_box);
+      collocation.settle(pair, heat);
+    }
+    void seed_all(int pairs)
+    {
+      const double h = our.h;
+      const int n = our.scheme.values();
+      for (size_t b = 0; b < work.size(); ++b)
+        Drive::seed(our.scheme, our.bodies[b], collocation.series(work[b], pairs), h, h,
+                    our.rows[b].data());
+      double of_cell[Upper::SIZE * TaylorSeries::MAX_TERMS];
+      collocation.expand(cell, pairs, of_cell);
+      our.cell.seed(of_cell, Collocation::terms_of(pairs), h, h);
+      our.chain.seed(collocation.rate_at_start(twice), pairs, h, n + 1);
+      our.box_chain.seed(collocation.rate_at_start(twice_box), pairs, h, n + 1);
+      double of_heat[Collocation::MAX_NODES + 1];
+      const int terms = collocation.series(heat, pairs, h, of_heat);
+      our.heat.seed(of_heat, terms, h, h, our.heat_scheme().values());
+    }
+  };
+
+  Scheme heat_scheme() const
+  {
+    Scheme found = scheme_of(FIRST, std::min(scheme.values(), FIRST_MOST));
+    return found;
+  }
+
+  /// pairs 0: as many as the order needs.
+  void start(int pairs = 0)
+  {
+    Search search(*this);
+    const Upper first_rate = rate;
+    if (pairs == 0) pairs = search.collocation.pairs();
+    search.begin();
+    for (int outer = 1; outer <= pairs; ++outer) {
+      search.foretell();
+      for (int round = 0; round < 6; ++round)
+        for (int pair = 1; pair <= outer; ++pair) {
+          for (const int node : {-pair, pair}) search.visit(node);
+          search.settle(pair);
+        }
+    }
+    rows.assign(bodies.size(), vector<double>(scheme.size()));
+    pending.resize(bodies.size());
+    search.seed_all(pairs);
+    scaled = search.at_start;
+    matrix = Upper::one();
+    rate = first_rate;
+  }
+
+  void step()
+  {
+    ++steps;
+    cell.predict();
+    matrix = cell.matrix();
+    rate = cell.rate(h);
+    for (size_t b = 0; b < bodies.size(); ++b) {
+      integrator.predict(rows[b].data());
+      scaled[b] = integrator.body_state(bodies[b], rows[b].data());
+    }
+    met = met_in(states(), matrix);
+    for (size_t b = 0; b < bodies.size(); ++b)
+      pending[b] =
+          integrator.begin(met.loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data());
+    for (int pass = 0; pass < scheme.passes; ++pass) correct();
+    finish();
+  }
+  void correct()
+  {
+    const int n = scheme.values();
+    const double before = time() - h;
+    if (law.chain) { ASSERT_TRUE(chain.advance(law.target(before), twice_kinetic(), h, n)); }
+    if (law.box_chain) {
+      ASSERT_TRUE(
+          box_chain.advance(law.box_target(before), law.twice_box(time(), rate), h, n));
+    }
+    cell.pass(law.drive(time(), matrix, kinetic(), met.virial),
+              law.box_chain ? box_chain.friction() : 0.0, h);
+    matrix = cell.matrix();
+    rate = cell.rate(h);
+    const CellFriction now = friction(law.chain ? chain.friction() : 0.0);
+    for (size_t b = 0; b < bodies.size(); ++b) {
+      integrator.correct_pass(bodies[b], scaled_load(met.loads[b]), now, rows[b].data(),
+                              pending[b]);
+      integrator.velocities_of_pass(bodies[b], rows[b].data(), pending[b], scaled[b].velocity,
+                                    scaled[b].omega_body);
+    }
+  }
+  void finish()
+  {
+    if (law.chain) chain.conclude();
+    if (law.box_chain) box_chain.conclude();
+    cell.finish();
+    matrix = cell.matrix();
+    rate = cell.rate(h);
+    for (size_t b = 0; b < bodies.size(); ++b) {
+      integrator.finish(met.loads[b], rows[b].data(), pending[b]);
+      scaled[b] = integrator.body_state(bodies[b], rows[b].data());
+    }
+    const Scheme of_heat = heat_scheme();
+    heat.advance(CorrectorCoefficients(of_heat).driven.data(), of_heat.values(), h,
+                 law.heat_rate(time(), matrix, rate));
+  }
+
+  /// The common motion of scaled centers: rounding, which an unlucky history lets grow.
+  void rest()
+  {
+    const int n = scheme.values();
+    double all = 0.0;
+    for (const auto &body : bodies) all += body.mass;
+    for (int j = 1; j < n; ++j)
+      for (int k = 0; k < 3; ++k) {
+        double sum = 0.0;
+        for (size_t b = 0; b < bodies.size(); ++b)
+          sum += bodies[b].mass * rows[b][j * scheme.width() + k];
+        for (auto &one : rows) one[j * scheme.width() + k] -= sum / all;
+      }
+  }
+
+  /// Calls what watches after each step.
+  template <class Watch> void run(double until, Watch watch, int pairs = 0)
+  {
+    start(pairs);
+    for (long n = std::lround(until / h); n > 0; --n) {
+      step();
+      watch();
+    }
+  }
+};
+
+}    // namespace InACell
