@@ -166,6 +166,8 @@ void FixGearQuat::setup_pre_exchange()
 {
   if (ownership->follow_box())
     motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
+  if (step->coupling && !step->coupling->knows_box())
+    motion->forget("Fix gear/quat: the box was changed since the last run, histories start anew");
 }
 
 /// Bodies keep their state between runs, and take over what the user has changed in the atoms.

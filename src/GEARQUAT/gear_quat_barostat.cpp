@@ -436,6 +436,7 @@ double Barostat::element(int n)
   if (n < P_TARGET) {
     sum_present();
     sum_present_momenta();
+    if (!(volume() > 0.0)) return 0.0;    // there was no run
     const double unit_of_pressure = to_pressure / volume();
     const Upper found = (kinetic + virial.value()).scaled(unit_of_pressure);
     return n == PRESSURE ? found.trace() / dimensions() : found[PLACES[n - P_COMPONENT]];

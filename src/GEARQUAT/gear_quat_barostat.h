@@ -66,6 +66,7 @@ class Barostat : public Thermostat {
     return damped_load(bodies.rigid_of(ibody), scaled(bodies.state_of(ibody)), met(ibody), of_all);
   }
   void correct(const Integrator &integrator, int passes) override;
+  bool knows_box() const override { return box.is_shown(); }
   bool is_tilted() const override;
   void flip_box() override;
   void note_step(double h) override;

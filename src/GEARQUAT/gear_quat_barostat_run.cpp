@@ -97,6 +97,7 @@ void Barostat::begin_run(bool begins, double h)
   made_rate = target_rate;
   if (update->nsteps > 0 || begins) find_target(update->ntimestep, h);
   if (begins) refer_to_box(h);
+  correction = Upper();    // forces are those of the corrected box
   std::copy_n(domain->prd, 3, begun_box.m.begin());
   since = 0.0;
   warned_mesh = false;

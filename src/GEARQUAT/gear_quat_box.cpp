@@ -33,6 +33,20 @@ void Box::refer()
   for (int k = 0; k < 3; ++k) origin[k] = fixed.empty() ? corner[k] + half[k] : fixed[k];
   derive();
   set(Upper::one());
+  note_shown();
+}
+
+void Box::note_shown()
+{
+  std::copy_n(domain->h, 6, shown.begin());
+  std::copy_n(domain->boxlo, 3, shown.begin() + 6);
+}
+
+bool Box::is_shown() const
+{
+  return reference_volume == 0.0 ||
+      (std::equal(domain->h, domain->h + 6, shown.begin()) &&
+       std::equal(domain->boxlo, domain->boxlo + 3, shown.begin() + 6));
 }
 
 void Box::derive()
@@ -70,6 +84,7 @@ void Box::show(bool forces)
   }
   domain->set_global_box();
   domain->set_local_box();
+  note_shown();
   if (forces && force->kspace) force->kspace->setup();
 }
 
@@ -140,4 +155,5 @@ void Box::restore(const double *saved, const Upper &deformation)
   std::copy_n(saved + 12, 3, origin);
   derive();
   set(deformation);
+  note_shown();    // LAMMPS has read it from the same file
 }

@@ -37,6 +37,8 @@ class Box : protected Pointers {
   /// be evaluated in it.
   void show(bool forces);
 
+  /// False if another command has changed LAMMPS' box since show().
+  bool is_shown() const;
   /// True if a tilt exceeds half of the period that it is a part of.
   bool is_tilted() const;
   /// The box becomes the least tilted cell of the same lattice, and atoms get their images in it.  M
@@ -77,11 +79,13 @@ class Box : protected Pointers {
   /// As Domain::h, and behind it boxlo and boxhi.
   std::array<double, 12> reference = {};
   double origin[3] = {};
+  std::array<double, 9> shown = {};    ///< as Domain::h, and behind it boxlo
   double reference_volume = 0.0;
   Upper m = Upper::one(), inverse = Upper::one();
   Upper change, inverse_change;    ///< M - 1 and M^-1 - 1
 
   void derive();
+  void note_shown();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -78,6 +78,8 @@ class Coupling : protected Pointers {
   virtual void meet_virial(double ** /*f*/) {}
   /// A state with the scaled center and velocity that a history has.  Local.
   virtual BodyState scaled(const BodyState &s) const { return s; }
+  /// False if another command has changed the box since the last run.  Local.
+  virtual bool knows_box() const { return true; }
   /// True if the box is tilted so much that another cell of the same lattice is to replace it.
   virtual bool is_tilted() const { return false; }
   /// Before atoms are exchanged: replaces the box where it is tilted.

@@ -40,7 +40,7 @@ static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};
 /* ---------------------------------------------------------------------- */
 
 MolecularVirial::MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites) :
-    Pointers(lmp), id(std::string(fix->id) + "_press"), sites(sites)
+    Pointers(lmp), id(std::string(fix->id) + "_virial"), sites(sites)
 {
   modify->add_compute(id + " all pressure NULL pair bond angle dihedral improper kspace");
 }

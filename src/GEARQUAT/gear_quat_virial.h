@@ -27,7 +27,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class MolecularVirial : protected Pointers {
  public:
-  /// Adds compute ID_press, by which LAMMPS knows the steps that need a virial.
+  /// Adds compute ID_virial, by which LAMMPS knows the steps that need a virial.
   MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites);
   ~MolecularVirial() override;
 
