@@ -95,6 +95,7 @@ def find(results):
         measurements += found
     names = {"starts": "STARTS", "seed": "SEED", "coarse": "COARSE", "above": "ABOVE_FLOOR"}
     context["held_out"] = {key: getattr(heldout, name) for key, name in names.items()}
+    context |= {"choice_target": tables.power(choice.TARGET), "choice_most": choice.MOST}
     # the fix reports as zero what is rounding
     context["norm"], context["tangency"] = (max(x, 1e-15) for x in tables.constraints(results))
     shown["runs"] = tables.of_runs(results)
