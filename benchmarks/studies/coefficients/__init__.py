@@ -109,6 +109,8 @@ def table(columns, rows):
 def tables(results):
     """All tables by name."""
     linear, motions = results.linear, results.motions
+    # seven and nine values have the same coefficients with and without a projection
+    linear = {key: own for key, own in linear.items() if key[2] != FREE or key[1] in spectral.VALUES}
     shown = [key for key in linear if key[:2] in [place[:2] for place in SHOWN]]
     at = f"at {properties.AT:g}"
     heads = {
