@@ -95,10 +95,10 @@ def test_recorded_spectra_are_read_as_they_were_written(tmp_path):
 
 def test_spectra_of_six_liquids_are_there():
     spectra = prediction.recorded()
-    assert list(spectra) == [liquid.key for liquid in LIQUIDS]
+    assert list(spectra) == [liquid.title for liquid in LIQUIDS]
     for liquid in LIQUIDS:
-        assert spectra[liquid.key].axes == liquid.axes
-        for part in (spectra[liquid.key].translation, spectra[liquid.key].rotation):
+        assert spectra[liquid.title].axes == liquid.axes
+        for part in (spectra[liquid.title].translation, spectra[liquid.title].rotation):
             assert part.sum() == pytest.approx(1.0, rel=1e-3)
 
 

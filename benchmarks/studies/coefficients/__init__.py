@@ -41,7 +41,7 @@ BAND, FEMTOSECONDS = (600, 850), 2.5
 class Results:
     """(formulation, values, TUNED, GEAR or FREE) -> ``linear``: Linear, ``motions``: Motions, ``moved``:
     Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py.  ``drifts``: (number of
-    values, key of liquid) -> drift at STEPS, in kT/ns/dof."""
+    values, name of liquid) -> drift at STEPS, in kT/ns/dof."""
 
     linear: dict
     motions: dict

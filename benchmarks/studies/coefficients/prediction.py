@@ -115,23 +115,23 @@ FASTEST = 0.95
 
 
 def table(spectra):
-    """Header and rows of the table of ``spectra``, key of liquid -> Spectrum with the same omega."""
+    """Header and rows of the table of ``spectra``, name of liquid -> Spectrum with the same omega."""
     header, columns = ["omega, 1/fs"], []
-    for key, own in spectra.items():
+    for name, own in spectra.items():
         columns = columns or [own.omega]
-        header += [f"{key}, translation", f"{key}, rotation about {own.axes} axes"]
+        header += [f"{name}, translation", f"{name}, rotation about {own.axes} axes"]
         columns += [own.translation, own.rotation]
     kept = np.transpose(columns)[columns[0] < FASTEST]
     return header, [[f"{x:.6g}" if k == 0 else f"{x:.3e}" for k, x in enumerate(row)] for row in kept]
 
 
 def recorded(path=RECORDED):
-    """Key of liquid -> Spectrum, of such a table."""
+    """Name of liquid -> Spectrum, of such a table."""
     with path.open(encoding="utf-8", newline="") as file:
         header, *rows = csv.reader(file)
     omega, *columns = np.array(rows, dtype=float).T
     spectra = {}
     for k in range(0, len(columns), 2):
-        key, axes = header[k + 1].split(",")[0], int(header[k + 2].split()[-2])
-        spectra[key] = Spectrum(omega, *columns[k : k + 2], axes)
+        name, axes = header[k + 1].split(",")[0], int(header[k + 2].split()[-2])
+        spectra[name] = Spectrum(omega, *columns[k : k + 2], axes)
     return spectra
