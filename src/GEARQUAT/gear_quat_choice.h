@@ -109,11 +109,11 @@ struct ChoiceOfValues {
   bool exact = false;    ///< known from derivatives
   double turn = 0.0;     ///< radians in a step of the body that turns fastest
   Noise noise = Noise::NONE;
-  bool damped = false;        ///< forces depend on velocities
+  double damping = 0.0;       ///< part of a momentum that forces take in a step
   double friction = 0.0;      ///< of a coupling, times the step
   bool may_be_gear = true;    ///< the corrector is free, too
 
-  enum class Reason { FORMULATION, MOTION, NOISE, FRICTION };
+  enum class Reason { FORMULATION, MOTION, NOISE, DAMPING, FRICTION };
   struct Choice {
     Scheme scheme;
     Reason reason;
@@ -127,8 +127,10 @@ struct ChoiceOfValues {
   static constexpr double LONGEST_EDGE = 0.6, LONGEST_TURN = 0.5;
   static constexpr double ADVISED_EDGE = 0.5, ADVISED_TURN = 0.4;
   static constexpr double BAND = 1.3;
-  /// A part of a momentum that forces may take in a step.
-  static constexpr double DAMPING = 0.2;
+
+  /// Error of the friction of forces up to which a choice is made, of a motion that random forces
+  /// make and of another; beyond the second it is told.  The band is that of motion.
+  static constexpr double RANDOM_ERROR = 0.02, LARGEST_ERROR = 0.05;
 
   /// scheme: with the number of values that smooth motion has.  present: the number so far, 0 for
   /// none.
@@ -136,11 +138,23 @@ struct ChoiceOfValues {
   {
     Choice choice = {scheme, Reason::FORMULATION};
     if (!scheme.first() && scheme.tuned) choice = {by_motion(scheme, present), Reason::MOTION};
-    if (permits(choice.scheme)) return choice;
-    const Reason why = suits_noise(choice.scheme, noise) ? Reason::FRICTION : Reason::NOISE;
-    for (const Scheme &other : others(scheme)) {
-      choice = {other, why};
-      if (permits(other)) break;
+    const auto follows = [&](const Scheme &one) {
+      const double error = friction_error(one, damping) / (one.values() == present ? BAND : 1.0);
+      return error <= (noise == Noise::NONE ? LARGEST_ERROR : RANDOM_ERROR);
+    };
+    if (permits(choice.scheme) && follows(choice.scheme)) return choice;
+    choice.reason = !suits_noise(choice.scheme, noise) ? Reason::NOISE
+        : permits(choice.scheme)                       ? Reason::DAMPING
+                                                       : Reason::FRICTION;
+    const std::vector<Scheme> list = others(scheme);
+    choice.scheme = list.back();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Scheme &other : list) {
+      if (!permits(other)) continue;
+      const double error = friction_error(other, damping);
+      if (error < least || follows(other)) choice.scheme = other;
+      if (follows(other)) break;
+      least = std::min(least, error);
     }
     return choice;
   }
@@ -158,6 +172,20 @@ struct ChoiceOfValues {
                     turn > LONGEST_TURN ? ADVISED_TURN / turn : 1.0);
   }
 
+  /// Whether the friction of forces is too strong for this scheme.
+  bool too_damped(const Scheme &scheme) const
+  {
+    return friction_error(scheme, damping) > LARGEST_ERROR;
+  }
+  /// The largest part of a momentum that some of the schemes that a choice has may lose in a step.
+  double largest_damping(const Scheme &scheme) const
+  {
+    double most = largest_friction(scheme, LARGEST_ERROR);
+    for (const Scheme &other : others(scheme))
+      if (permits(other)) most = std::max(most, largest_friction(other, LARGEST_ERROR));
+    return most;
+  }
+
  private:
   /// Random forces make no vibrations.
   bool shakes() const { return exact && noise == Noise::NONE && edge > LONGEST_EDGE; }
@@ -171,8 +199,7 @@ struct ChoiceOfValues {
 
   bool permits(const Scheme &scheme) const
   {
-    return suits_noise(scheme, noise) && (!damped || largest_friction(scheme) >= DAMPING) &&
-        (friction == 0.0 || friction <= FrictionLimit::of(scheme));
+    return suits_noise(scheme, noise) && (friction == 0.0 || friction <= FrictionLimit::of(scheme));
   }
 
   /// What may take the place of a scheme, the best first and in the end what permits most.

@@ -6,7 +6,6 @@
 #include "gear_quat_fixes.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_choice.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
@@ -47,11 +46,10 @@ void OtherFixes::init()
   taken.clear();
   watched.clear();
   warned_change = false;
-  tell_friction();
+  tell_noise();
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
     refuse_thermostat(other);
-    tell_noise(other);
     const ActOnAtoms *row = act_on_atoms(other);
     if (!row) continue;
     const tagint atom = shared_atom(other);
@@ -86,50 +84,31 @@ void OtherFixes::refuse_thermostat(const Fix *other) const
                other->id, other->style);
 }
 
-/// Random forces have no derivatives, and forces of collisions last a single step only.
-void OtherFixes::tell_noise(const Fix *other)
+/// Random forces have no derivatives, forces of collisions last a single step, and those of contacts
+/// set in at once.
+void OtherFixes::tell_noise()
 {
-  const bool collides = known(FixFact::COLLISIONS, other);
-  if (warned_noise || (!collides && !known(FixFact::RANDOM, other))) return;
-  ChoiceOfValues scene;
-  scene.noise = collides ? Noise::COLLISIONS : Noise::RANDOM;
-  scene.may_be_gear = !args.states("corrector");
-  const Scheme scheme = args.automatic_values ? scene.choose(args.scheme).scheme : args.scheme;
-  const std::string remedy = remedy_for_noise(scheme, scene.noise);
-  if (remedy.empty() || (!collides && !shared_atom(other))) return;
+  constexpr char RANDOM[] = "are random", AT_ONCE[] = "set in at once where particles touch";
+  if (known(PairFact::CONTACTS, force))
+    tell_noise(fmt::format("pair style {} {}", force->pair_style, AT_ONCE), Noise::RANDOM);
+  for (const auto *other : modify->get_fix_list()) {
+    const bool collides = known(FixFact::COLLISIONS, other);
+    const bool touches = known(FixFact::CONTACTS, other);
+    if (!collides && !((touches || known(FixFact::RANDOM, other)) && shared_atom(other))) continue;
+    tell_noise(name_of(other) + " " + (touches ? AT_ONCE : RANDOM),
+               collides ? Noise::COLLISIONS : Noise::RANDOM);
+  }
+}
+
+void OtherFixes::tell_noise(const std::string &forces, Noise noise)
+{
+  if (warned_noise || args.automatic_values) return;
+  const std::string remedy = remedy_for_noise(args.scheme, noise);
+  if (remedy.empty()) return;
   warned_noise = true;
   if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: forces of fix {} ({}) are random, and {} values make heat of "
-                   "them; use {}",
-                   other->id, other->style, scheme.values(), remedy);
-}
-
-std::string OtherFixes::source_of_friction() const
-{
-  std::string source;
-  if (known(PairFact::FRICTION, force)) source = fmt::format("pair style {}", force->pair_style);
-  for (const auto *other : modify->get_fix_list())
-    if (known(FixFact::FRICTION, other) && shared_atom(other))
-      source = fmt::format("fix {} ({})", other->id, other->style);
-  return source;
-}
-
-/// Forces see predicted velocities, which limits the friction that a step can take.
-void OtherFixes::tell_friction()
-{
-  if (warned_friction || args.automatic_values) return;
-  const std::string source = source_of_friction();
-  if (source.empty()) return;
-  warned_friction = true;
-  const double most = largest_friction(args.scheme);
-  if (most < ChoiceOfValues::DAMPING && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat {}: forces of {} depend on velocities, and {} values gain energy "
-                   "if they take more than {} of a momentum in a step; use {}, or a shorter step",
-                   fix->id, source, args.scheme.values(), most,
-                   args.scheme.first() || !args.scheme.tuned ? "fewer values"
-                                                             : "formulation first or values 4");
+    error->warning(FLERR, "Fix gear/quat: forces of {}, and {} values make heat of them; use {}",
+                   forces, args.scheme.values(), remedy);
 }
 
 tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other)

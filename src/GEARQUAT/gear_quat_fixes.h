@@ -14,6 +14,7 @@
 #ifndef LMP_GEAR_QUAT_FIXES_H
 #define LMP_GEAR_QUAT_FIXES_H
 
+#include "gear_quat_limits.h"
 #include "gear_quat_sites.h"
 
 #include <string>
@@ -38,8 +39,6 @@ class OtherFixes : protected Pointers {
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
-  /// What makes forces on bodies that depend on velocities, empty for nothing.  Collective.
-  std::string source_of_friction() const;
   /// True if some fix may change velocities, and bodies take that over.
   bool any_taken() const { return !taken.empty(); }
 
@@ -73,12 +72,11 @@ class OtherFixes : protected Pointers {
   std::vector<const Fix *> watched;    ///< that may move single atoms
   int sample = 0;                      ///< the site that is looked at next
   double noted[3];                     ///< its velocity or place
-  bool warned_noise = false;           ///< of random forces
-  bool warned_friction = false;        ///< of forces that depend on velocities
+  bool warned_noise = false;           ///< of random forces and the like
   bool warned_change = false;          ///< of a change by something unknown in this run
 
-  void tell_noise(const Fix *other);
-  void tell_friction();
+  void tell_noise();
+  void tell_noise(const std::string &forces, Noise noise);
   tagint shared_atom(const Fix *other) const
   {
     return GearQuat::shared_atom(lmp, ownership, other);

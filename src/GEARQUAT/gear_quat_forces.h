@@ -64,11 +64,19 @@ Noise noise_of_forces(const LAMMPS *lmp, const std::function<bool(int)> &in_body
 
 class Forces : protected Pointers {
  public:
+  enum class Which {
+    ALL,               ///< at any positions
+    WITHOUT_RANDOM,    ///< those of fixes whose forces are random are left out
+    OF_VELOCITIES      ///< at present positions, and only those that may depend on velocities
+  };
   /// Looks at the scene.  owners: the fixes that ask, themselves not evaluated.  Collective.
-  Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners);
+  Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners, Which which = Which::ALL);
 
   /// Empty if forces can be followed, else what stands in the way.
   const std::string &reason() const { return why; }
+
+  /// False if nothing is there to be evaluated.
+  bool any() const { return styles || !post_force.empty(); }
 
   /// Keep all data of all atoms, ghosts too, whatever the atom style has: positions, velocities,
   /// forces, and what pair styles sum up or overwrite besides, such as rates of energies.
@@ -83,7 +91,9 @@ class Forces : protected Pointers {
   void evaluate(int eflag = 0, int vflag = 0);
 
  private:
+  const Which which;
   std::string why;
+  bool styles = true;    ///< pairs and what else LAMMPS evaluates before fixes
   std::vector<Fix *> pre_force, post_force;
   bool all_after = true;    ///< no fix of post_force acts before the forces of the styles instead
   struct Copy {

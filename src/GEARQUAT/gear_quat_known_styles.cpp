@@ -61,8 +61,7 @@ static constexpr StyleFact<PairFact> PAIRS[] = {
     {PairFact::RANDOM, "dpd", "a random force on every pair"},
     {PairFact::RANDOM, "brownian", "a random force on every atom"},
     {PairFact::RANDOM, "^dsmc", "random collisions"},
-    {PairFact::FRICTION, "^gran",
-     "contacts are damped by the relative velocity, as far as gamma is not 0"},
+    {PairFact::CONTACTS, "^gran", "forces set in, and are damped, where particles touch"},
     {PairFact::READS_VARIABLES, "^hybrid/scaled", "factors of its styles are numbers or variables"},
 };
 
@@ -123,8 +122,7 @@ static constexpr StyleFact<FixFact> FIXES[] = {
     {FixFact::RANDOM, "^gld", "random forces with memory, and it integrates itself"},
     {FixFact::RANDOM, "^ttm", "random forces by the temperature of electrons"},
     {FixFact::COLLISIONS, "^srd", "collisions with its particles, each a force of one step"},
-    {FixFact::FRICTION, "^viscous", "minus a constant times the velocity"},
-    {FixFact::FRICTION, "^wall/gran", "contacts are damped by the relative velocity"},
+    {FixFact::CONTACTS, "^wall/gran", "forces set in, and are damped, where particles touch it"},
     {FixFact::THERMOSTAT, "^temp/", "scales velocities, or mixes them with random ones"},
     {FixFact::THERMOSTAT, "^langevin", "friction and random forces"},
     {FixFact::THERMOSTAT, "^gle$", "friction with memory and random forces"},

@@ -30,7 +30,7 @@ std::string name_of(const Fix *fix);
 enum class PairFact {
   UNREPEATABLE,       ///< its forces are others when they are evaluated again, or so they may be
   RANDOM,             ///< its forces are random
-  FRICTION,           ///< its forces are friction of contacts
+  CONTACTS,           ///< its forces are those of contacts, with friction
   READS_VARIABLES,    ///< it may evaluate variables of the script
 };
 
@@ -42,7 +42,7 @@ enum class FixFact {
   WITHOUT_VARIABLES,    ///< of REPEATABLE: evaluates no variables of the script
   RANDOM,               ///< its forces or changes of velocities are random
   COLLISIONS,           ///< its forces are collisions, each of which lasts one step
-  FRICTION,             ///< its force is a friction
+  CONTACTS,             ///< its forces are those of contacts, with friction
   THERMOSTAT,           ///< it holds a temperature, by forces or by velocities
   TIME_STEP,            ///< it changes the time step
   BODY_OF_ATOMS,        ///< after init() extract("body") gives the body of each atom, or -1

@@ -15,10 +15,14 @@
    units of h F/m.  Forces that are independent from step to step change the velocity in a step by
    sum d_k^2 times the right mean square.
 
-   A step of h turns the rows of a free body under the constant friction xi into others: predict,
-   then add c_j times the residual that Integrator::correct_pass() finds.  This map is linear and
-   depends on h xi alone.  While its spectral radius is 1 or less, the method is stable.  Far from
-   its target a chain has a friction of several times 1/tau. */
+   Forces of friction are those of predicted velocities.  How a method follows them is told by the
+   mean square of a momentum that random kicks make, which the friction determines.
+
+   The friction of a coupling is another: a step of h turns the rows of a free body under the
+   constant friction xi into others: predict, then add c_j times the residual that
+   Integrator::correct_pass() finds.  This map is linear and depends on h xi alone.  While its
+   spectral radius is 1 or less, the method is stable.  Far from its target a chain has a friction
+   of several times 1/tau. */
 
 #ifndef GEAR_QUAT_LIMITS_H
 #define GEAR_QUAT_LIMITS_H
@@ -192,28 +196,81 @@ inline std::string remedy_for_noise(const Scheme &scheme, Noise noise)
   return "corrector gear and values " + std::to_string(most) + " at most";
 }
 
-/// Whether the momentum of a free body fades under a friction that takes this part of it in a step.
-/// The force is that of the predicted velocity, as in a step of the fix.
-inline bool friction_fades(const Scheme &scheme, double part)
+using RowMap = std::array<std::array<double, MAX_VALUES>, MAX_VALUES>;
+
+inline RowMap product(const RowMap &a, const RowMap &b, int n)
 {
-  constexpr int STEPS = 2000;
+  RowMap ab = {};
+  for (int i = 0; i < n; ++i)
+    for (int l = 0; l < n; ++l)
+      for (int j = 0; j < n; ++j) ab[i][j] += a[i][l] * b[l][j];
+  return ab;
+}
+
+inline double largest_of(const RowMap &a, int n)
+{
+  double largest = 0.0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) largest = std::max(largest, std::fabs(a[i][j]));
+  return std::isfinite(largest) ? largest : std::numeric_limits<double>::infinity();
+}
+
+/// What a step makes of the rows of a momentum, the first of which is row order - 1 of a history,
+/// under a friction that takes this part of the predicted momentum.
+inline RowMap map_of_friction(const Scheme &scheme, double part)
+{
   const CorrectorCoefficients c(scheme);
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
-  double rows[MAX_VALUES] = {};
-  rows[order - 1] = 1.0;
-  for (int step = 0; step < STEPS; ++step) {
+  RowMap map = {};
+  for (int column = order - 1; column < n; ++column) {
+    double rows[MAX_VALUES] = {};
+    rows[column] = 1.0;
     Nordsieck<1>::predict(rows, n);
     const double residual = -part / order * rows[order - 1] - rows[order];
     Nordsieck<1>::correct<1>(rows, n, c.driven.data(), 0, &residual);
+    for (int j = order - 1; j < n; ++j) map[j + 1 - order][column + 1 - order] = rows[j];
   }
-  return std::fabs(rows[order - 1]) < 1.0;
+  return map;
 }
 
-/// The largest part of a momentum, in hundredths, that friction may take in a step.
-inline double largest_friction(const Scheme &scheme)
+/// The mean square of the momentum that random kicks make under such a friction, by what it should
+/// be: 1 if the friction is followed, and what bodies have of the temperature of random forces.
+/// Infinite if momenta grow.  The sum over all steps doubles its number of steps in each turn.
+inline double friction_response(const Scheme &scheme, double part)
+{
+  constexpr int DOUBLINGS = 40;
+  constexpr double LOST = 1.0e6, FADED = 1.0e-10, MOST = 1.0e30;    // rows grow before they fade
+  const CorrectorCoefficients c(scheme);
+  const int order = scheme.first() ? 1 : 2, n = scheme.values() + 1 - order;
+  RowMap map = map_of_friction(scheme, part), sum = {};
+  for (int i = 0; i < n; ++i)    // rows after the kick
+    for (int j = 0; j < n; ++j)
+      sum[i][j] = c.driven[i + order - 1] * c.driven[j + order - 1] / (order * order);
+  for (int k = 0; k < DOUBLINGS && largest_of(map, n) > FADED; ++k) {
+    RowMap turned = {};
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) turned[i][j] = map[j][i];
+    const RowMap later = product(product(map, sum, n), turned, n);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) sum[i][j] += later[i][j];
+    map = product(map, map, n);
+    if (!(part * sum[0][0] < LOST) || !(largest_of(map, n) < MOST))
+      return std::numeric_limits<double>::infinity();
+  }
+  return 2.0 * part * sum[0][0];
+}
+
+/// How far the friction is from being followed.
+inline double friction_error(const Scheme &scheme, double part)
+{
+  return part > 0.0 ? std::fabs(friction_response(scheme, part) - 1.0) : 0.0;
+}
+
+/// The largest part of a momentum, in hundredths, that friction may take in a step within this error.
+inline double largest_friction(const Scheme &scheme, double error)
 {
   int hundredths = 0;
-  while (hundredths < 100 && friction_fades(scheme, 0.01 * (hundredths + 1))) ++hundredths;
+  while (hundredths < 100 && friction_error(scheme, 0.01 * (hundredths + 1)) <= error) ++hundredths;
   return 0.01 * hundredths;
 }
 
@@ -248,8 +305,6 @@ class FrictionLimit {
   static constexpr int SQUARINGS = 16;
   static constexpr double TRANSIENT = 1.0e6;
 
-  using Matrix = std::array<std::array<double, MAX_VALUES>, MAX_VALUES>;
-
   const bool first;
   const int n;    ///< rows of momenta, or of velocities
   CorrectorCoefficients c;
@@ -261,9 +316,9 @@ class FrictionLimit {
 
   /// The rows of a velocity v of the second formulation are (j + 1) times those of a position behind
   /// the first one, divided by h.
-  Matrix map(double friction) const
+  RowMap map(double friction) const
   {
-    Matrix a = {};
+    RowMap a = {};
     const double share = friction * (first ? c.driven[0] : 0.5 * c.driven[1]);
     for (int column = 0; column < n; ++column) {
       double predicted[MAX_VALUES];
@@ -286,16 +341,10 @@ class FrictionLimit {
 
   bool grows(double friction) const
   {
-    Matrix a = map(friction);
+    RowMap a = map(friction);
     for (int k = 0; k < SQUARINGS; ++k) {
-      Matrix square = {};
-      for (int i = 0; i < n; ++i)
-        for (int l = 0; l < n; ++l)
-          for (int j = 0; j < n; ++j) square[i][j] += a[i][l] * a[l][j];
-      a = square;
-      double largest = 0.0;
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) largest = std::max(largest, std::fabs(a[i][j]));
+      a = product(a, a, n);
+      const double largest = largest_of(a, n);
       if (largest > TRANSIENT) return true;
       if (largest < 1.0e-3) return false;
     }

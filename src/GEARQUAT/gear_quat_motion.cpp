@@ -160,6 +160,12 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
       if (motion->step.tolerance) motion->step.tolerance->shorten_first_step(false);
     }
   }
+  start_together(full, needed);
+  for (const auto &one : fleet.members) one.motion->tell_friction();
+}
+
+void Motion::start_together(const std::vector<Motion *> &full, const std::vector<bool> &needed)
+{
   if (!std::count(needed.begin(), needed.end(), true)) return;
 
   // Histories that could continue start anew too if this gives the others a start of full order.
@@ -270,6 +276,7 @@ double Motion::last_error() const
 bool Motion::has_to_start(double **f)
 {
   if (step.coupling) step.coupling->meet_forces();
+  measure_friction(f);
   const char *reason = step.started ? reason_to_start_anew(f) : nullptr;
   if (reason && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);

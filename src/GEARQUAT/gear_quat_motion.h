@@ -90,6 +90,10 @@ class Motion : protected Pointers {
   double longest_step() const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
   double edge_rate = 0.0;    ///< fast edge by time, when the number was chosen
+  double damping = 0.0;      ///< part of a momentum that forces take in a step
+  void measure_friction(double **f);
+  bool warned_friction = false;
+  void tell_friction();
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   const char *another_scheme_suits();
@@ -97,6 +101,7 @@ class Motion : protected Pointers {
   /// True if a start finds all derivatives, as far as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
   bool has_to_start(double **f);
+  static void start_together(const std::vector<Motion *> &full, const std::vector<bool> &needed);
   Starter starter(bool needed);
   void begin(bool full);
   const char *reason_to_start_anew(double **f);

@@ -5,6 +5,7 @@
 
 #include "gear_quat_motion.h"
 
+#include "gear_quat_friction.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"
@@ -36,7 +37,7 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
   scene.noise = noise_of_forces(lmp, [this](int i) {
     return ownership.in_body(i);
   });
-  scene.damped = !others.source_of_friction().empty();
+  scene.damping = damping;
   scene.may_be_gear = !args.states("corrector");
   return scene;
 }
@@ -60,13 +61,11 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   std::string why;
   if (choice.reason == Reason::NOISE)
     why = scene.noise == Noise::RANDOM ? "because forces are random"
-                                       : "because forces of collisions act in a single step";
+                                       : "because forces of collisions or contacts set in at once";
+  else if (choice.reason == Reason::DAMPING)
+    why = fmt::format("because forces take {:.2g} of a momentum in a step", scene.damping);
   else if (choice.reason == Reason::FRICTION)
-    why = scene.damped
-        ? fmt::format(
-              "because forces depend on velocities, which may take {:g} of a momentum in a step",
-              largest_friction(choice.scheme))
-        : "because the thermostat has a strong friction";
+    why = "because the thermostat has a strong friction";
   else if (choice.reason == Reason::FORMULATION)
     why = choice.scheme.tuned ? "as always with formulation first"
                               : "as always with corrector gear";
@@ -89,6 +88,36 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
         rounded_down(std::fabs(step.length()) * scene.advised_part()));
 }
 
+/// What forces take of a momentum in a step.  f: the forces of all fixes.  Collective.
+void Motion::measure_friction(double **f)
+{
+  if (!step.tolerance)
+    damping = FrictionOfForces(lmp, fix, bodies, ownership, sites).part(f, step.length());
+}
+
+/// Rank 0 warns once if the histories cannot follow that.  Collective.
+void Motion::tell_friction()
+{
+  const ChoiceOfValues scene = scene_of(MotionSums());
+  const Scheme &scheme = step.scheme();
+  if (step.tolerance || warned_friction || !scene.too_damped(scheme)) return;
+  warned_friction = true;
+  if (comm->me != 0) return;
+  const double part = friction_error(scheme, damping);
+  const std::string effect = std::isfinite(part)
+      ? fmt::format("which {} values follow with an error of {:.2g} %", scheme.values(), 100 * part)
+      : fmt::format("with which bodies of {} values gain energy", scheme.values());
+  const bool automatic = args.automatic_values;
+  const double most = automatic ? scene.largest_damping(args.scheme)
+                                : largest_friction(scheme, ChoiceOfValues::LARGEST_ERROR);
+  error->warning(
+      FLERR,
+      "Fix gear/quat {}: forces take {:.2g} of a momentum in a step, {}; use a time step "
+      "of {:g} or shorter{}",
+      fix->id, damping, effect, rounded_down(std::fabs(step.length()) * most / damping),
+      automatic ? "" : ", or values auto");
+}
+
 /// Returns why histories should begin anew with another number of values, null if they should not:
 /// the step, a rotation or forces have changed.  Vibrations count as in the last start, which alone
 /// measures them.  Collective.
@@ -105,7 +134,7 @@ const char *Motion::another_scheme_suits()
   const ChoiceOfValues::Choice choice = scene.choose(args.scheme, present.values());
   if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
     return nullptr;
-  if (choice.reason == Reason::NOISE || choice.reason == Reason::FRICTION)
+  if (choice.reason != Reason::MOTION && choice.reason != Reason::FORMULATION)
     return "forces suit another number of values";
   return can_start_anew() ? "the motion suits another number of values" : nullptr;
 }

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import last_frame, placed, restarted, water
+from scenes import FORMULATIONS, last_frame, placed, restarted, water
 
 CHOSEN = re.compile(r"Fix gear/quat move: (\d+) values( and corrector gear)?, (.*)")
 SHORT, LONG = 0.5, 2.5  # fs, on either side of the limit in these boxes of water
@@ -66,10 +66,46 @@ def test_random_forces(lmp_tree, data, words, expected):
 
 
 def test_forces_that_depend_on_velocities(lmp_tree, data):
-    result = run(lmp_tree, data, after="fix v all viscous 0.01", dt=SHORT)
-    (n, gear, why), = chosen(result)
-    assert n in (4, 5, 7) and not gear and "depend on velocities" in why
-    assert "gain energy" not in result.stdout
+    """fix viscous takes gamma/mass, of a hydrogen atom as of an oxygen one, from the momentum of a site."""
+
+    def with_friction(gamma):
+        return chosen(run(lmp_tree, data, after=f"fix v all viscous {gamma}", dt=SHORT))[0]
+
+    assert with_friction(1e-3)[0] == 9
+    n, gear, why = with_friction(300.0)
+    assert n in (4, 5, 7) and re.match(r"because forces take 0\.\d+ of a momentum in a step", why)
+
+
+def gas(lmp, words, part, dt=0.005, steps=2000):
+    """Mean temperature by that of fix langevin of free triangles, of which it takes ``part`` in a step; result."""
+    triangle = np.array([[0.0, 0.0, 0.0], [0.9, 0.0, 0.0], [0.1, 0.8, 0.2]])
+    places = 2.0 * np.stack(np.meshgrid(*3 * [np.arange(4)], indexing="ij"), axis=-1).reshape(-1, 3)
+    langevin = f"velocity all create 1.2 4712 loop geom\nfix l all langevin 1.2 1.2 {dt / part} 4711"
+    settings = dict(before=langevin, dt=dt, steps=steps, thermo=5, box="-4 8 -4 8 -4 8", boundary="p p p")
+    text = placed([triangle + place for place in places], fix=f"gear/quat molecule {words}", **settings)
+    result = lmp.succeed(text.replace("neigh_modify every 1 delay 0 check yes", "neigh_modify every 20 check no"))
+    kinetic = result.thermo[-1]["KinEng"][steps // 20 :]
+    return np.mean(kinetic) / (3 * len(places)) / 1.2, result
+
+
+@pytest.mark.parametrize("part", [1 / 50, 1 / 10, 1 / 6, 1 / 4])
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_bodies_have_the_temperature_of_random_forces(lmp_tree, part, formulation):
+    """Also where their friction is strong; at the weakest, 2 % is three standard errors."""
+    found, result = gas(lmp_tree, f"formulation {formulation}", part)
+    assert found == pytest.approx(1.0, abs=0.07 if part > 0.2 else 0.04)
+    assert found != pytest.approx(1.12, abs=0.07)
+    assert "heat" not in result.stdout
+
+
+@pytest.mark.parametrize("words, part, told", [("", 1 / 3, True), ("", 1 / 6, False), ("values 4", 1 / 4, True)])
+def test_random_forces_that_no_number_follows_are_warned_of(lmp_tree, words, part, told):
+    """The part is that of fix langevin, from the size of its forces."""
+    found, result = gas(lmp_tree, words, part, steps=400)
+    warning = re.search(r"forces take ([\d.]+) of a momentum in a step", result.words)
+    assert (warning is not None) == told
+    if told:
+        assert float(warning[1]) == pytest.approx(part, rel=0.12)
 
 
 def test_a_stated_number_that_heats_is_warned_of(lmp_tree, data):

@@ -7,6 +7,7 @@ be a third of that.
 """
 
 import math
+import re
 
 import pytest
 
@@ -125,9 +126,34 @@ def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
     ],
 )
 @pytest.mark.parametrize("words, many", [("values 9", True), ("values 4", False), ("", False)])
-def test_contacts_that_a_step_cannot_damp_are_warned_of(lmp_wheel, style, wall, source, words, many):
+def test_contacts_suit_few_values(lmp_wheel, style, wall, source, words, many):
     fix = f"fix move all gear/quat group 2 low high {words}"
     result = lmp_wheel.succeed(deck(fix, 1e-5, wall=wall, style=style, steps=1))
-    told = f"forces of {source} depend on velocities, and 9 values gain energy"
+    told = f"forces of {source} set in at once where particles touch, and 9 values make heat of them; use values 4"
     assert (told in result.words) == (many and source is not None)
-    assert ("depend on velocities, and" in result.words) == (many and source is not None)
+    chosen = "4 values and corrector gear, because forces of collisions or contacts set in at once"
+    assert (chosen in result.words) == (words == "" and source is not None)
+
+
+@pytest.mark.parametrize("wall", [True, False])
+def test_contacts_of_few_steps_make_no_energy(lmp_wheel, wall):
+    """With what the fix chooses, and as many values as it would have in smooth motion."""
+    dt = 4e-3  # 8 in a contact, and a friction of 0.3 in each
+    speeds = []
+    for words in ("", "values 9"):
+        fix = "single" if wall else "group 2 low high"
+        text = deck(f"fix move all gear/quat {fix} {words}", dt, wall, low=not wall, steps=30)
+        last = lmp_wheel.succeed(text).thermo[-1]
+        speeds.append(abs(last["c_speed"][-1] - (0.0 if wall else last["c_lows"][-1])))
+    assert speeds[0] < 0.45 < 1.0 < speeds[1]
+
+
+@pytest.mark.parametrize("style, wall", [("gran/hooke", False), ("granular", False), ("zero", True)])
+def test_friction_of_a_contact_is_felt(lmp_wheel, style, wall):
+    """At the beginning of a run the clumps touch; a stated number is told what they lose in a step."""
+    dt = 2e-3
+    text = deck("fix move all gear/quat group 2 low high values 9", dt, wall, style=style, steps=6)
+    result = lmp_wheel.succeed(text + "run 1\n")
+    found = re.search(r"forces take ([\d.]+) of a momentum in a step", result.words)
+    # three contacts, each with a damping of the reduced mass of the bodies
+    assert float(found[1]) == pytest.approx(3 * DAMPING * dt, rel=0.1)

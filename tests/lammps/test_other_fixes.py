@@ -1,5 +1,6 @@
 """Fixes beside ours that change velocities, places or masses of the atoms of bodies: one table."""
 
+import math
 import re
 
 import numpy as np
@@ -288,22 +289,33 @@ def test_log_and_warning_agree_on_random_forces(lmp_wheel, words, most):
     assert "heat" not in lmp_wheel.succeed(two_molecules(f"molecule {mended}", after=after)).words
 
 
-@pytest.mark.parametrize(
-    "words, warned",
-    [
-        ("values 9", True),
-        ("corrector gear values 8", True),
-        ("", False),
-        ("corrector gear", False),
-        ("values 4", False),
-        ("formulation first", False),
-    ],
-)
-def test_friction_that_a_step_cannot_take_is_warned_of(lmp_wheel, words, warned):
-    deck = two_molecules(f"molecule {words}", after="fix drag all viscous 0.01\nrun 1")
-    told = "forces of fix drag (viscous) depend on velocities, and {} values gain energy"
-    values = 8 if "gear" in words else 9
-    assert (told.format(values) in lmp_wheel.succeed(deck).words) == warned
+FRICTION = re.compile(r"forces take ([\d.]+) of a momentum in a step.*?use a time step of ([\d.e-]+) or shorter")
+
+
+@pytest.mark.parametrize("words", ["", "corrector gear", "values 9", "formulation first", "formulation first values 4"])
+def test_friction_that_a_step_cannot_take_is_warned_of(lmp_wheel, words):
+    """With the part that it takes, and a step that holds."""
+
+    def told(part, dt=0.01):
+        after = f"timestep {dt}\nfix drag all viscous {part / 0.01}\nrun 1"
+        return FRICTION.search(lmp_wheel.succeed(two_molecules(f"molecule {words}", after=after)).words)
+
+    assert told(0.0) is None and told(0.001) is None
+    assert (told(0.2) is None) == ("values" not in words)
+    found = told(0.7)
+    assert float(found[1]) == pytest.approx(0.7, rel=0.02)
+    assert 0.0 < float(found[2]) < 0.01
+    assert told(0.7, float(found[2])) is None
+
+
+def test_velocities_fade_as_the_friction_says(lmp_wheel):
+    """From the weakest to one that takes a fifth of a momentum in a step."""
+    for part in (0.001, 0.03, 0.1, 0.2):
+        after = f"fix drag all viscous {part / 0.01}\nthermo 10\nthermo_style custom step temp\nrun 10"
+        after += "\nthermo_modify format float %.17g"
+        ours = lmp_wheel.succeed(two_molecules(after=after)).thermo[-1]["Temp"]
+        assert ours[-1] / ours[0] == pytest.approx(math.exp(-20 * part), rel=0.005)
+        assert ours[-1] / ours[0] != pytest.approx(1.01 * math.exp(-20 * part), rel=0.005)
 
 
 SRD = """

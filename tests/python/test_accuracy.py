@@ -17,7 +17,7 @@ from benchmarks.reference import stability
 from benchmarks.reference.lammps_forces import deck_problem
 from benchmarks.reference.paper import SITE_MASSES
 from benchmarks.studies import accuracy as study
-from benchmarks.studies.accuracy import evaluate, heldout, peers, plan, runs, strongest, tables
+from benchmarks.studies.accuracy import choice, evaluate, heldout, peers, plan, runs, strongest, tables
 from benchmarks.studies.accuracy.evaluate import Cost, cost_of, fitted_order
 from benchmarks.studies.cases.accuracy import reference
 from benchmarks.studies.coefficients import kernel
@@ -206,7 +206,9 @@ def points(scene, method, order):
 START = session.Outcome(0.0, 0.0, 0, *[np.zeros(0)] * 5, {})
 
 
-def made_up(order=7.0, scenes=("case1",), slope=1.0, rounding=1e-12, modify=3e-7, gain=30.0):
+def made_up(
+    order=7.0, scenes=("case1",), slope=1.0, rounding=1e-12, modify=3e-7, gain=30.0, chosen=1.0
+):
     """Results in which every error is a power of the step."""
     results = runs.Results(False)
     for key in scenes:
@@ -232,6 +234,10 @@ def made_up(order=7.0, scenes=("case1",), slope=1.0, rounding=1e-12, modify=3e-7
         for scene in ("start 1", "free top"):
             rows = [(n, max(factor * 1e12 * n**-7.0, 2e-13)) for n in costs]
             results.heldout[scene, method.key] = rows
+    for values in (choice.AUTO, *choice.VALUES):
+        cost = chosen if values == choice.AUTO else 1.0 + 0.1 * abs(values - 9)
+        rows = [(n, choice.TARGET * (200 * cost / n) ** 9, 9) for n in 50.0 * 1.2 ** np.arange(20)]
+        results.choice["ring", values] = rows
     return results
 
 
@@ -319,12 +325,23 @@ def test_starts_are_seeded_and_their_files_exact(tmp_path):
     assert len({np.asarray(start, float).tobytes() for start in again}) == heldout.STARTS
 
 
+def test_scenes_of_the_choice_are_what_they_say():
+    scenes = choice.scenes()
+    assert len(scenes) == 10 and {name: scene.text for name, scene in scenes.items()} == {
+        name: scene.text for name, scene in choice.scenes().items()
+    }
+    rows = made_up().choice
+    assert choice.price(rows["ring", choice.AUTO]) == pytest.approx(200.0, rel=1e-9)
+    assert choice.price([(n, np.inf, 9) for n in (10, 20)]) is None
+
+
 @pytest.mark.parametrize(
     "words, change, count",
     [
         ("order", {"slope": 0.9}, 11),
         ("sums", {"rounding": 1.01e-12}, 2),
         ("inside", {"modify": 4.04e-7}, 1),
+        ("values auto", {"chosen": 1.01 * choice.MOST}, 1),
     ],
 )
 def test_slopes_floors_and_times_are_bounded(words, change, count):

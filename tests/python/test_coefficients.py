@@ -16,7 +16,7 @@ from benchmarks.engine.lab import Lab
 from benchmarks.engine.page import render
 from benchmarks.reference.correctors import completed, decimals, placed
 from benchmarks.studies import coefficients as study
-from benchmarks.studies.coefficients import kernel, properties
+from benchmarks.studies.coefficients import kernel, prediction, properties, spectral
 from benchmarks.studies.coefficients.kernel import Corrector, gear
 from benchmarks.studies.coefficients.properties import Linear
 from benchmarks.studies.coefficients.search import LONG_STEPS, Search, spectrum
@@ -83,7 +83,7 @@ def test_coefficients_have_the_roots_and_the_order_that_were_asked_for(formulati
     corrector = made(formulation)
     for roots, c in zip(ROOTS[formulation], corrector.sets):
         assert has_order(c, corrector.order)
-        step = properties.open_loop(np.array(c, dtype=float), corrector.order)
+        step = prediction.open_loop(np.array(c, dtype=float), corrector.order)
         found = np.linalg.eigvals(step[corrector.order :, corrector.order :])
         assert np.poly(found) == pytest.approx(np.poly([0.0, *roots]).real, abs=1e-6)
     refused = []
@@ -117,6 +117,30 @@ def test_a_short_search_finds_better_coefficients_of_exact_order(formulation, va
         assert has_order(c, corrector.order) != search.free_c0
     again, _ = search.run(seed=1, iterations=8)
     assert again == corrector
+
+
+@pytest.mark.parametrize("values", spectral.VALUES)
+def test_the_search_by_spectra_finds_the_set_of_the_kernel(values):
+    own, wanted = kernel.tuned("second", values, any_norm=True), spectral.SpectralSearch(values=values)
+    found, cost = wanted.run(seed=1, iterations=60)
+    assert wanted.cost(own) == pytest.approx(cost, rel=1e-3) and max(wanted.excess(own)) < 1e-6
+    np.testing.assert_allclose(found.floats, own.floats, rtol=1e-3)
+    assert has_order(own.sets[0], 2, free_c0=True)
+    # roots and c_0 have all been moved as far as constraints and drift permit
+    c0, root = own.floats[0][0], np.linalg.eigvals(own.step(0.0))
+    root = root[np.argmax(root.imag)]
+    angle = np.angle(root) / np.pi
+    inner = spectral.INNER
+    others = (0.97, 1, 1), (inner, 0.98, 1), (inner, 1.02, 1), (inner, 1, 0.95), (inner, 1, 1.05)
+    for modulus, turned, moved in others:
+        assert wanted.cost(wanted.corrector([modulus, turned * angle, moved * c0])) > 1.005 * cost
+
+
+def test_a_symmetric_method_has_no_drift_but_remembers_noise():
+    c = (Fraction(0), Fraction(17, 24), Fraction(1), Fraction(7, 12), Fraction(7, 24))
+    symmetric, wanted = Corrector("second", (c, c)), spectral.SpectralSearch()
+    assert np.abs(prediction.response(symmetric, [0.2, 0.5, 1.0]).imag).max() < 1e-12
+    assert wanted.excess(symmetric)[0] > 10
 
 
 ODD = [n for n in kernel.VALUES["second"] if n % 2]
@@ -159,7 +183,7 @@ def test_the_command_prints_lines_of_the_table():
     assert f"tuned: cost {Search('second', 5).cost(found):.3f}\n" in done.output
     assert "Gear's: cost" in done.output
     done = CliRunner().invoke(command.main, "coefficients --search second 13".split())
-    assert done.exit_code == 2 and "4 to 12 of second" in done.output
+    assert done.exit_code == 2 and "4 to 12 of second, 5 of spectral" in done.output
 
 
 # --- linear properties ------------------------------------------------------------------------------
@@ -217,7 +241,7 @@ def test_noise_of_the_kernel_is_that_of_its_rows(formulation):
     rows = np.zeros(corrector.values)
     c = corrector.floats[0]
     for step in range(300):
-        new = properties.open_loop(c, corrector.order) @ rows + (step == 0) * c / corrector.order
+        new = prediction.open_loop(c, corrector.order) @ rows + (step == 0) * c / corrector.order
         changes.append(new[corrector.order - 1] - rows[corrector.order - 1])
         rows = new
     assert sum(changes) == pytest.approx(1.0, rel=1e-9)
@@ -229,9 +253,9 @@ def test_an_oscillation_is_a_response_to_its_own_force(formulation):
     corrector, z = made(formulation), 0.5
     roots = np.linalg.eigvals(corrector.step(z))
     y = -1j * np.log(roots[np.argmin(abs(roots - np.exp(1j * z)))])
-    assert y**2 == pytest.approx(z**2 * properties.response(corrector, y), rel=1e-9)
+    assert y**2 == pytest.approx(z**2 * prediction.response(corrector, [y])[0], rel=1e-9)
     wrong = next(one_percent_off(corrector))
-    assert y**2 != pytest.approx(z**2 * properties.response(wrong, y), rel=1e-9)
+    assert y**2 != pytest.approx(z**2 * prediction.response(wrong, [y])[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("formulation", ROOTS)
@@ -248,7 +272,7 @@ def test_model_equations_have_their_order(formulation):
 def test_rows_that_are_rescaled_grow_as_their_roots_say():
     corrector, ratio = made("second"), 1.25
     scaled = float(ratio) ** np.arange(corrector.values)
-    step = properties.open_loop(corrector.floats[0], 2)
+    step = prediction.open_loop(corrector.floats[0], 2)
     rows = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
     sizes = []
     for _ in range(400):
@@ -281,7 +305,7 @@ def test_changes_of_energy_fall_with_the_order(formulation):
 # --- the page ---------------------------------------------------------------------------------------
 def test_a_page_of_few_sets(tmp_path, monkeypatch):
     monkeypatch.setattr(study, "VALUES", {"second": (6,), "first": (6,)})
-    monkeypatch.setattr(study, "tuned", lambda formulation, values: made(formulation))
+    monkeypatch.setattr(study, "tuned", lambda formulation, values, **more: made(formulation))
     monkeypatch.setattr(study, "RANGE", np.array([0.2, 0.4]))
     monkeypatch.setattr(study, "SHOWN", (("second", 6, "second"), ("first", 6, "first")))
     finding = study.find(study.measure(Lab(tmp_path, advance=lambda part: None)))

@@ -11,7 +11,8 @@ from benchmarks.engine.methods import DEFAULT_VALUES
 from benchmarks.engine.page import render
 from benchmarks.engine.sites import read_sites
 from benchmarks.studies import liquids as study
-from benchmarks.studies.liquids import heavier, judging, plan, prediction, quantities, runs
+from benchmarks.studies.coefficients import prediction
+from benchmarks.studies.liquids import heavier, judging, plan, quantities, runs
 from benchmarks.studies.liquids.plan import CO2, DEFAULT, HEAVY, MAIN, NVE_SMALL, SCENES, SPCE, VALUES
 
 TIME = 60.0 * np.arange(334)

@@ -171,13 +171,32 @@ TEST(Choice, WithRandomForcesAndCollisionsNothingHeats)
 
 TEST(Choice, FrictionIsFollowed)
 {
-  ChoiceOfValues damped = scene(0.0);
-  damped.damped = true;
+  using Choice = ChoiceOfValues;
   for (const Formulation formulation : {FIRST, SECOND})
-    for (const bool is_tuned : {false, true}) {
-      const auto choice = damped.choose(automatic(formulation, is_tuned));
-      EXPECT_GE(largest_friction(choice.scheme), ChoiceOfValues::DAMPING);
-    }
+    for (const bool is_tuned : {false, true})
+      for (const double part : {0.001, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25})
+        for (const Noise noise : {Noise::NONE, Noise::RANDOM}) {
+          Choice damped = scene(0.0);
+          damped.damping = part;
+          damped.noise = noise;
+          const Scheme wanted = automatic(formulation, is_tuned);
+          const Scheme chosen = damped.choose(wanted).scheme;
+          EXPECT_LE(friction_error(chosen, part), Choice::LARGEST_ERROR) << chosen << ' ' << part;
+          EXPECT_FALSE(damped.too_damped(chosen));
+          EXPECT_GE(damped.largest_damping(wanted), 0.25);
+          if (part == 0.001 && noise == Noise::NONE) EXPECT_EQ(chosen.values(), wanted.values());
+        }
+  // too strong for all of them: what is least off, and it is told
+  Choice strong = scene(0.0);
+  strong.damping = 0.7;
+  EXPECT_TRUE(strong.too_damped(strong.choose(automatic(SECOND)).scheme));
+  EXPECT_FALSE(strong.choose(automatic(SECOND)).scheme.tuned);
+  // a present choice stays a little longer
+  Choice close = scene(0.0);
+  while (friction_error(automatic(SECOND), close.damping) <= Choice::LARGEST_ERROR)
+    close.damping += 0.0005;
+  EXPECT_NE(close.choose(automatic(SECOND)).scheme.values(), 9);
+  EXPECT_EQ(close.choose(automatic(SECOND), 9).scheme.values(), 9);
   // of a thermostat: the first number that follows it
   for (const double edge : {0.0, 0.5})
     for (const double friction : {0.0, 0.1, 0.2, 0.4}) {

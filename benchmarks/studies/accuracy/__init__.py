@@ -4,6 +4,7 @@ plan.py      what is run: scenes, methods, steps
 runs.py      references, errors of runs, and everything that is run, in order
 peers.py     other methods: SciPy's, splittings, compositions
 heldout.py   scenes that no coefficient was chosen on
+choice.py    scenes that the rule of `values auto` was not made with
 evaluate.py  fitted orders, costs of given errors; arrays in, numbers out
 tables.py    tables and measurements
 strongest.py evaluations beside those of the strongest of the other methods
@@ -13,12 +14,13 @@ figures.py   the pictures
 from benchmarks.engine import Finding, Study
 from benchmarks.engine.session import Session
 
-from . import evaluate, figures, heldout, plan, runs, strongest, tables
+from . import choice, evaluate, figures, heldout, plan, runs, strongest, tables
 
 #: errors the sentences speak of
 SAMPLE, FINE = 1e-6, 1e-8
-#: the part of the study that runs the scenes of heldout.py
-HELD_OUT = "heldout"
+#: the parts of the study that run the scenes of heldout.py and choice.py, and their share of the work
+HELD_OUT, CHOICE = "heldout", "choice"
+SHARE = 0.05
 
 
 def _milliseconds(cost):
@@ -56,13 +58,17 @@ def _of_case1(results):
 
 def measure(lab):
     """Results of the parts that were asked for."""
-    others, results = set(lab.parts) - {HELD_OUT}, runs.Results(lab.quick)
+    apart, results = {HELD_OUT, CHOICE}, runs.Results(lab.quick)
+    asked = {part for part in apart if part in lab.parts or not lab.parts}
     with Session(lab.out / "logs") as session:
-        if others or not lab.parts:
-            with lab.share(0.95 if HELD_OUT in lab.parts or not lab.parts else 1.0):
+        if set(lab.parts) - apart or not lab.parts:
+            with lab.share(1 - SHARE * len(asked)):
                 results = runs.measure(lab, session)
-        if HELD_OUT in lab.parts or not lab.parts:
-            results.heldout = heldout.measure(lab, session)
+        if HELD_OUT in asked:
+            with lab.share(SHARE if len(lab.parts) != 1 else 1.0):
+                results.heldout = heldout.measure(lab, session)
+    if CHOICE in asked:
+        results.choice = choice.measure(lab)
     return results
 
 
@@ -84,8 +90,12 @@ def find(results):
     if results.heldout:
         shown["heldout"], found = heldout.find(results.heldout)
         measurements += found
+    if results.choice:
+        shown["choice"], found = choice.find(results.choice)
+        measurements += found
     names = {"starts": "STARTS", "seed": "SEED", "coarse": "COARSE", "above": "ABOVE_FLOOR"}
     context["held_out"] = {key: getattr(heldout, name) for key, name in names.items()}
+    context |= {"choice_target": tables.power(choice.TARGET), "choice_most": choice.MOST}
     # the fix reports as zero what is rounding
     context["norm"], context["tangency"] = (max(x, 1e-15) for x in tables.constraints(results))
     shown["runs"] = tables.of_runs(results)
@@ -100,7 +110,7 @@ STUDY = Study(
     measure,
     find,
     page="accuracy_cost",
-    parts=(*plan.scenes(False), HELD_OUT),
+    parts=(*plan.scenes(False), HELD_OUT, CHOICE),
     blocks={
         "README.md": "accuracy_cost.readme.md.j2",
         "paper/paper.md": "accuracy_cost.paper.md.j2",

@@ -30,17 +30,21 @@ STEPS = 50, 2400, 2**0.5
 
 
 # --- scenes ---------------------------------------------------------------------------------------
+def turned_start(base, random, away, name):
+    """The Problem ``base`` near its start, up to ``away`` along each axis, turned at random."""
+    length = np.linalg.norm(base.start.omega_body.astype(float))
+    center = base.start.center + random.uniform(-away, away, (1, 3))
+    directions = random.normal(size=(2, 1, 3))
+    velocity, omega = directions / np.linalg.norm(directions, axis=2, keepdims=True)
+    q = qt.normalised(random.normal(size=(1, 4)).astype(base.dtype))
+    start = State(center, 0.2 * velocity, q, length * omega).astype(base.dtype)
+    return Problem(name, base.bodies, base.field, start)
+
+
 def random_starts():
     """Problems of the consistent body in the cage, near test case 1 and turned at random."""
     base, random = paper_problem(1), np.random.default_rng(SEED)
-    length = np.linalg.norm(base.start.omega_body.astype(float))
-    for number in range(STARTS):
-        center = base.start.center + random.uniform(-AWAY, AWAY, (1, 3))
-        directions = random.normal(size=(2, 1, 3))
-        velocity, omega = directions / np.linalg.norm(directions, axis=2, keepdims=True)
-        q = qt.normalised(random.normal(size=(1, 4)).astype(base.dtype))
-        start = State(center, 0.2 * velocity, q, length * omega).astype(base.dtype)
-        yield Problem(f"start {number + 1}", base.bodies, base.field, start)
+    return [turned_start(base, random, AWAY, f"start {n}") for n in range(1, STARTS + 1)]
 
 
 def data_text(problem):

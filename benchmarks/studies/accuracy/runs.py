@@ -75,6 +75,7 @@ class Results:
     ``orders``: (formulation, N) and ``rounding``: (formulation, whether compensated) -> list of (step,
     error of position) in test case 1.  ``modify``: method -> Timing of a step inside the fix.
     ``heldout``: (scene, method) -> list of (evaluations, error) of the scenes of heldout.py.
+    ``choice``: scene -> costs of the scenes of choice.py.
     """
 
     quick: bool
@@ -85,6 +86,7 @@ class Results:
     rounding: dict = field(default_factory=dict)
     modify: dict = field(default_factory=dict)
     heldout: dict = field(default_factory=dict)
+    choice: dict = field(default_factory=dict)
 
     @property
     def scenes(self):

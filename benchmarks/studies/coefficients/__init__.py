@@ -1,8 +1,8 @@
 """Coefficients of the corrector: the search for them, and what they do, Gear's beside them.
 
-search.py (parameters and what is minimized), kernel.cpp and kernel.py (motions with the kernel itself
-and any coefficients), properties.py (model equations and motions).  Coefficients are those of
-src/GEARQUAT/gear_quat_tuned.h.
+search.py and spectral.py (parameters and what is minimized), kernel.cpp and kernel.py (motions with the
+kernel itself and any coefficients), properties.py (model equations and motions), prediction.py (the drift in
+liquids, from spectra).  Coefficients are those of src/GEARQUAT/gear_quat_tuned.h.
 """
 
 from dataclasses import dataclass
@@ -16,11 +16,15 @@ from benchmarks.engine.methods import DEFAULT_VALUES
 from benchmarks.engine.page import markdown_table
 from benchmarks.engine.panels import draw, floor
 
-from . import properties, search
-from .kernel import LOST, VALUES, gear, tuned
+from . import prediction, properties, search, spectral
+from .kernel import LOST, NO_PROJECTION, VALUES, gear, tuned
 from .properties import Flights, Linear, Motions
 
-TUNED, GEAR = "tuned", "Gear's"
+TUNED, GEAR, FREE = "tuned", "Gear's", "tuned, no projection"
+#: by how many times errors of free tops and librations have to be smaller without a projection
+LEAST_GAIN = 5.0
+#: steps in fs at which drifts are predicted
+STEPS = (2.0, 2.5, 3.0, 4.0)
 #: omega h, and radians a step, of the picture
 RANGE = np.arange(0.06, 1.2001, 0.02)
 #: (formulation, values, color) of the picture: the defaults, and one number more
@@ -35,17 +39,19 @@ BAND, FEMTOSECONDS = (600, 850), 2.5
 
 @dataclass(frozen=True)
 class Results:
-    """(formulation, values, TUNED or GEAR) -> ``linear``: Linear, ``motions``: Motions, ``moved``:
-    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py."""
+    """(formulation, values, TUNED, GEAR or FREE) -> ``linear``: Linear, ``motions``: Motions, ``moved``:
+    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py.  ``drifts``: (number of
+    values, name of liquid) -> drift at STEPS, in kT/ns/dof."""
 
     linear: dict
     motions: dict
     moved: dict
     curves: dict
+    drifts: dict
 
 
 def correctors():
-    """(formulation, values, TUNED or GEAR) -> Corrector, of numbers that have both."""
+    """(formulation, values, TUNED, GEAR or FREE) -> Corrector, of numbers that have the first two."""
     every = {}
     for formulation, numbers in VALUES.items():
         for values in numbers:
@@ -53,6 +59,8 @@ def correctors():
             if ours:
                 every[formulation, values, GEAR] = gear(formulation, values)
                 every[formulation, values, TUNED] = ours
+                if formulation == "second" and values in NO_PROJECTION:
+                    every[formulation, values, FREE] = tuned(formulation, values, any_norm=True)
     return every
 
 
@@ -65,12 +73,15 @@ def add(results, key, corrector, flights):
 
 def measure(lab):
     """Results of all sets."""
-    results, every, flights = Results({}, {}, {}, {}), correctors(), Flights()
+    results, every, flights = Results({}, {}, {}, {}, {}), correctors(), Flights()
     shown = [(formulation, values) for formulation, values, _ in SHOWN]
     for key, corrector in every.items():
         add(results, key, corrector, flights)
         if key[:2] in shown:
             results.curves[key] = properties.curves(corrector, RANGE)
+        if corrector.any_norm:
+            for liquid, own in prediction.recorded().items():
+                results.drifts[key[1], liquid] = [own.drift(corrector, dt) for dt in STEPS]
         lab.advance(1 / len(every))
     return results
 
@@ -98,6 +109,8 @@ def table(columns, rows):
 def tables(results):
     """All tables by name."""
     linear, motions = results.linear, results.motions
+    # seven and nine values have the same coefficients with and without a projection
+    linear = {key: own for key, own in linear.items() if key[2] != FREE or key[1] in spectral.VALUES}
     shown = [key for key in linear if key[:2] in [place[:2] for place in SHOWN]]
     at = f"at {properties.AT:g}"
     heads = {
@@ -133,7 +146,28 @@ def tables(results):
         },
     }
     every = {name: table(head, rows[name]) for name, head in heads.items()}
+    every["drifts"] = Table(
+        ("values", "liquid", *(f"{dt:g} fs" for dt in STEPS)),
+        [(*key, *(f"{x:+.4f}" for x in row)) for key, row in results.drifts.items()],
+    )
+    words = [f"free top, {h:g}" for h in properties.TOPS]
+    words += [f"libration, {h:g}" for h in properties.LIBRATIONS]
+    every["free"] = Table(
+        ("values", *words),
+        [(n, *(f"{x:.2g}" for x in row)) for n, row in free_gains(motions).items()],
+    )
     return every | {"gains": motion_gains(motions)}
+
+
+def free_gains(motions):
+    """Number of values -> by how many times errors are smaller without a projection, at TOPS and LIBRATIONS."""
+    found = {}
+    for key, own in motions.items():
+        if key[2] == FREE:
+            before = motions[(*key[:2], TUNED)]
+            pairs = zip((*before.tops, *before.librations), (*own.tops, *own.librations))
+            found[key[1]] = [abs(theirs / ours) for theirs, ours in pairs]
+    return found
 
 
 def gains(linear):
@@ -216,6 +250,15 @@ def find(results):
         Measurement(f"{formulation}, N = {values}: gain in the error constant", gain, spec=".1f")
         for (formulation, values), gain in gains(results.linear).items()
     ]
+    measurements += [
+        Measurement(
+            f"second, N = {n}: least gain in free tops and librations without a projection",
+            min(row),
+            spec=".1f",
+            least=LEAST_GAIN if n in spectral.VALUES else None,
+        )
+        for n, row in free_gains(results.motions).items()
+    ]
     radians = 2 * np.pi * 100 * speed_of_light * FEMTOSECONDS * 1e-15  # per step and 1/cm
     context = {
         "odd": mean_gain(results.linear, "second", 1),
@@ -223,6 +266,8 @@ def find(results):
         "first": mean_gain(results.linear, "first"),
         "search": search,
         "properties": properties,
+        "spectral": spectral,
+        "sets": {n: tuned("second", n, any_norm=True).floats[0] for n in spectral.VALUES},
         "band": BAND,
         "femtoseconds": FEMTOSECONDS,
         "librations": [radians * wave for wave in BAND],
@@ -234,25 +279,33 @@ def find(results):
 # --- search ---------------------------------------------------------------------------------------
 def written(corrector, free_c0):
     """Lines of the table of src/GEARQUAT/gear_quat_tuned.h."""
+    more = ", true" if corrector.any_norm else ""
     order = corrector.order
     for columns, own in zip(("DRIVEN", "INTEGRATED")[: 3 - order], corrector.sets):
         tail = ", ".join(f"{float(x):.9g}L" for x in own[order + 1 :])
         c0 = f", {float(own[0]):.9g}L" if free_c0 else ""
-        yield f"{{{corrector.formulation.upper()}, {columns}, {{{tail}}}{c0}}},"
+        yield f"{{{corrector.formulation.upper()}, {columns}, {{{tail}}}{c0}{more}}},"
 
 
 def searched(formulation, values, seed, iterations):
-    """What --search prints.  Raises ValueError where there is nothing to search for."""
-    if values not in VALUES.get(formulation, ()):
-        known = " and ".join(f"{n.start} to {n.stop - 1} of {f}" for f, n in VALUES.items())
-        raise ValueError(f"there are no {values} values of {formulation}; there are {known}")
-    wanted = search.Search(formulation, values)
+    """What --search prints.  Raises ValueError where there is nothing to search for.
+
+    ``formulation``: first, second, or "spectral" for the coefficients of the second without a projection.
+    """
+    if formulation == "spectral" and values in spectral.VALUES:
+        wanted = spectral.SpectralSearch(values=values)
+    elif values in VALUES.get(formulation, ()):
+        wanted = search.Search(formulation, values)
+    else:
+        known = [f"{n.start} to {n.stop - 1} of {f}" for f, n in VALUES.items()]
+        known += [f"{n} of spectral" for n in spectral.VALUES]
+        raise ValueError(f"there are no {values} values of {formulation}; there are {', '.join(known)}")
     corrector, _ = wanted.run(seed, iterations)
-    results, flights = Results({}, {}, {}, {}), Flights()
+    results, flights = Results({}, {}, {}, {}, {}), Flights()
     lines = [*written(corrector, wanted.free_c0), ""]
-    for name, own in ((TUNED, corrector), (GEAR, gear(formulation, values))):
+    for name, own in ((TUNED, corrector), (GEAR, gear(wanted.formulation, values))):
         lines.append(f"{name}: cost {wanted.cost(own):.3f}")
-        add(results, (formulation, values, name), own, flights)
+        add(results, (wanted.formulation, values, name), own, flights)
     shown = tables(results)
     for name in ("linear", "motions"):
         lines += ["", markdown_table(shown[name].header, shown[name].rows)]

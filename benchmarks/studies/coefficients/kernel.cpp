@@ -18,16 +18,19 @@ namespace {
 constexpr double LOST = 1e3;
 
 /// Coefficients c_0 ... c_(values-1) of rows that forces drive, and of those that integrate these, which
-/// only the first formulation has.
+/// only the first formulation has.  any_norm: without a projection.
 struct Corrector {
-  int second, values, passes, compensate;
+  int second, values, passes, compensate, any_norm;
   double sets[2][MAX_VALUES];
 };
 
 Scheme scheme_for(const Corrector &corrector)
 {
-  return scheme_of(corrector.second ? SECOND : FIRST, corrector.values, corrector.passes,
-                   corrector.compensate);
+  Scheme scheme = scheme_of(corrector.second ? SECOND : FIRST, corrector.values, corrector.passes,
+                            corrector.compensate);
+  scheme.tuned = corrector.any_norm;
+  scheme.projection = corrector.any_norm ? Projection::AUTO : Projection::YES;
+  return scheme;
 }
 
 CorrectorCoefficients coefficients_of(const Corrector &corrector)
@@ -173,10 +176,10 @@ double noise(const Corrector *corrector)
 
 /// The tail of a tuned set, and its c_0 (NaN if it is solved for).  which: 0 or 1, as in Corrector.
 /// Returns the length of the tail, 0 if there is no such set.
-int tuned_tail(int second, int values, int which, double *tail, double *c0)
+int tuned_tail(int second, int values, int which, int any_norm, double *tail, double *c0)
 {
   const Columns kind = which && !second ? Columns::INTEGRATED : Columns::DRIVEN;
-  const TunedSet *set = tuned_set(second ? SECOND : FIRST, values, kind);
+  const TunedSet *set = tuned_set(second ? SECOND : FIRST, values, kind, any_norm);
   if (!set) return 0;
   std::copy(set->tail.begin(), set->tail.end(), tail);
   *c0 = double(set->c0);

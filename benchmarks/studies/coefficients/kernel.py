@@ -22,11 +22,13 @@ from benchmarks.reference.stability import (
 LOST = 1e3
 MOST = 12
 VALUES = {"first": range(3, 9), "second": range(4, 13)}
+#: numbers of values of the second formulation that do without a projection
+NO_PROJECTION = (5, 7, 9)
 _ROWS = ctypes.c_double * MOST
 
 
 class _Corrector(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_int) for name in ("second", "values", "passes", "compensate")]
+    _fields_ = [(name, ctypes.c_int) for name in ("second", "values", "passes", "compensate", "any_norm")]
     _fields_ += [("sets", _ROWS * 2)]
 
 
@@ -40,7 +42,7 @@ def library():
     loaded.free_top.argtypes = [corrector, real, real]
     loaded.cage.argtypes = [corrector, real, whole, real, numbers]
     loaded.noise.argtypes = [corrector]
-    loaded.tuned_tail.argtypes = [whole, whole, whole, numbers, numbers]
+    loaded.tuned_tail.argtypes = [whole, whole, whole, whole, numbers, numbers]
     for function in (loaded.libration, loaded.free_top, loaded.noise):
         function.restype = real
     return loaded
@@ -52,12 +54,14 @@ class Corrector:
 
     The first is of rows that forces drive, the second of rows that integrate these; in the second
     formulation both are the same.  The motions return LOST where they do not stay finite; the rotation is
-    corrected in so many ``passes``.
+    corrected in so many ``passes``, 0 for as many as converge.  ``any_norm``: without a projection, for which
+    the second formulation has 5, 7 or 9 values.
     """
 
     formulation: str
     sets: tuple
     passes: int = 2
+    any_norm: bool = False
 
     @property
     def values(self):
@@ -87,7 +91,8 @@ class Corrector:
 
     def _passed(self, compensate=False):
         sets = (_ROWS * 2)(*(_ROWS(*c) for c in self.floats))
-        return ctypes.byref(_Corrector(self.order == 2, self.values, self.passes, compensate, sets))
+        words = self.order == 2, self.values, self.passes, compensate, self.any_norm
+        return ctypes.byref(_Corrector(*words, sets))
 
     def libration(self, h, frequency, amplitude, steps):
         """Change of the energy of a body in wells, by its kinetic energy at the start."""
@@ -117,16 +122,16 @@ def gear(formulation, values):
     return Corrector(formulation, (tuple(made(values)),) * 2)
 
 
-def tuned(formulation, values):
-    """The Corrector of src/GEARQUAT/gear_quat_tuned.h, None if it has none."""
+def tuned(formulation, values, any_norm=False):
+    """The Corrector of src/GEARQUAT/gear_quat_tuned.h, None if it has none; ``any_norm``: see Corrector."""
     order, sets = 2 if formulation == "second" else 1, []
     for which in (0, 1):
         tail, c0 = _ROWS(), ctypes.c_double()
-        length = library().tuned_tail(order == 2, values, which, tail, ctypes.byref(c0))
+        length = library().tuned_tail(order == 2, values, which, any_norm, tail, ctypes.byref(c0))
         if not length:
             return None
         # the shortest decimal of a number is the one in the header
         c = completed(order, [Fraction(1), *(Fraction(repr(x)) for x in tail[:length])])
         c[0] = c[0] if math.isnan(c0.value) else Fraction(repr(c0.value))
         sets.append(tuple(c))
-    return Corrector(formulation, tuple(sets))
+    return Corrector(formulation, tuple(sets), 0 if any_norm else 2, any_norm)

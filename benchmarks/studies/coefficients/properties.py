@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import mpmath
 import numpy as np
-from scipy.linalg import pascal
 
 from benchmarks.reference.stability import linear_limit
 
 from .kernel import LOST, gear
+from .prediction import open_loop, response
 from .search import Search, spectrum
 
 #: omega h at which single numbers are given, and decimal digits of the principal root
@@ -40,26 +40,6 @@ def principal(corrector, omega_h):
         return float(abs(found) - 1), float(mpmath.arg(found) - z)
 
 
-def open_loop(c, order):
-    """Step (N, N) of rows whose right side is zero."""
-    predict = pascal(len(c), "upper").astype(float)
-    return predict - np.outer(c, predict[order])
-
-
-def response(corrector, y):
-    """H: predicted position over the exact one for the force exp(i y t/h), complex.
-
-    An oscillation has the root exp(i y) with y^2 = (omega h)^2 H(y), so that its damping is about
-    - y/2 Im H: a motion that makes such forces is drained where Im H > 0, and heated where it is below.
-    """
-    root, unit, order = np.exp(1j * y), np.eye(corrector.values), corrector.order
-    one, other = corrector.floats
-    rows = np.linalg.solve(root * unit - open_loop(one, order), root * one / order)
-    if order == 1:
-        rows = np.linalg.solve(root * unit - open_loop(other, 1), root * other * rows[0])
-    return -(y**2) * rows.sum() / root  # a prediction is the sum of all rows
-
-
 def radius(corrector, ratio):
     """Largest spurious root without forces if each step is ``ratio`` times the one before."""
     scaled, q = float(ratio) ** np.arange(corrector.values), corrector.order
@@ -76,7 +56,7 @@ def models(corrector, z=AT):
     decay = np.exp(z * (-DAMPED + 1j * np.sqrt(1 - DAMPED**2)))
     damped = np.linalg.eigvals(corrector.step(z, -2 * DAMPED * z, passes=2))
     spinning = np.linalg.eigvals(corrector.step(0.0, 1j * z, passes=2))
-    of_force = response(corrector, DRIVEN * z)
+    of_force = response(corrector, [DRIVEN * z])[0]
     steady = of_force * (DRIVEN**2 - 1) / (DRIVEN**2 - of_force) - 1
     return abs(damped - decay).min(), abs(steady), abs(spinning - np.exp(1j * z)).min()
 
@@ -111,7 +91,7 @@ class Linear:
             corrector.noise,
             tuple(float(radius(corrector, ratio)) for ratio in RATIOS),
             tuple(map(float, models(corrector))),
-            tuple(float(response(corrector, y).imag) for y in RESPONSES),
+            tuple(map(float, response(corrector, RESPONSES).imag)),
         )
 
 
@@ -119,7 +99,7 @@ def curves(corrector, z):
     """Arrays (n,) at each omega h: damping, phase error / (omega h)^N, largest spurious root, and the
     imaginary part of the response at as many radians a step."""
     damping, phase = np.array([principal(corrector, x) for x in z]).T
-    of_force = np.array([response(corrector, y).imag for y in z])
+    of_force = response(corrector, z).imag
     return damping, phase / z**corrector.values, spectrum(corrector, z)[:, 2], of_force
 
 

@@ -5,7 +5,7 @@ coefficients follow from order, but for c_0 in the second formulation with an od
 is the one for which an oscillation keeps its energy.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -80,15 +80,19 @@ class Search:
         one = [(0, INNER), (0, 1)] * (count // 2) + [(-INNER, INNER)] * (count % 2)
         return one * (3 - self.order)
 
-    def corrector(self, x):
-        """Corrector of the parameters ``x``, with decimals where they are written so."""
+    def placed(self, x):
+        """Corrector of all order with the spurious roots ``x``."""
         count, sets = self.values - self.order - 1, []
         for part in np.reshape(x, (3 - self.order, count)):
             pairs = part[: count - count % 2].reshape(-1, 2)
             roots = pairs[:, 0] * np.exp(1j * np.pi * pairs[:, 1])
             roots = np.concatenate([roots, roots.conj(), part[len(part) - count % 2 :]])
             sets.append(tuple(completed(self.order, [1.0, *placed(self.order, roots)[1:]])))
-        corrector = Corrector(self.formulation, (sets[0], sets[-1]))
+        return Corrector(self.formulation, (sets[0], sets[-1]))
+
+    def corrector(self, x):
+        """Corrector of the parameters ``x``."""
+        corrector = self.placed(x)
         return self.balanced(corrector) if self.free_c0 else corrector
 
     def balanced(self, corrector):
@@ -117,7 +121,7 @@ class Search:
             exact = completed(self.order, decimals(c[self.order :]))
             exact[0] = decimals(c[:1])[0] if self.free_c0 else exact[0]
             sets.append(tuple(exact))
-        return Corrector(self.formulation, tuple(sets))
+        return replace(corrector, sets=tuple(sets))
 
     @cached_property
     def _grids(self):

@@ -1,8 +1,8 @@
 """Real liquids: energy, temperatures and pressure against the step, and what in the forces limits them.
 
 plan.py (what is run), runs.py (LAMMPS' runs), heavier.py (bodies with larger inertia), quantities.py (what
-follows from runs), prediction.py (the drift from a spectrum), judging.py (measurements and bounds), and here
-the tables and panels.
+follows from runs), judging.py (measurements and bounds), and here the tables and panels.  The drift from a
+spectrum is coefficients/prediction.py.
 """
 
 import math
@@ -14,6 +14,7 @@ from benchmarks.engine.methods import looks
 from benchmarks.engine.panels import Curve, Panel, draw
 from benchmarks.engine.statistics import with_error
 from benchmarks.engine.study import Finding, Study, Table
+from benchmarks.studies.coefficients import prediction
 
 from . import judging
 from . import quantities as of
@@ -83,6 +84,12 @@ def prediction_table(results):
                 cells.append(f"{predicted(results, scene, values, dt):+.3f}; {show_drift(runs, scene.liquid)}")
             rows.append([scene.liquid.title, values, *cells])
     return Table(("liquid", "values", *(f"{dt:g} fs" for dt in FORESEEN)), rows)
+
+
+def spectra_table(results):
+    """Spectra of the liquids, of which coefficients/spectra.csv is a copy."""
+    spectra = {scene.liquid.title: results.spectra[scene.liquid.key] for scene in SCENES}
+    return Table(*prediction.table(spectra))
 
 
 def chosen_table(results):
@@ -263,6 +270,7 @@ def find(results):
         "prediction": prediction_table(results),
         "chosen": chosen_table(results),
         "heavy": heavy_table(results),
+        "spectra": spectra_table(results),
     }
     for scene in SCENES:
         tables |= scene_tables(results, scene)

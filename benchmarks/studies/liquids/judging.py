@@ -40,7 +40,7 @@ def drift_of(results, scene, method, dt):
 
 def predicted(results, scene, values, dt):
     """Drift that the spectrum of a liquid predicts with so many values."""
-    return results.spectra[scene.liquid.key].drift(tuned("second", values), dt)
+    return results.spectra[scene.liquid.key].drift(tuned("second", values, any_norm=True), dt)
 
 
 def drifts(results):

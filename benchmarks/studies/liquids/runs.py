@@ -10,8 +10,8 @@ from benchmarks.engine import EXAMPLES, Job
 from benchmarks.engine.methods import DEFAULT_VALUES
 from benchmarks.engine.sites import read_sites
 from benchmarks.studies import drift
+from benchmarks.studies.coefficients import prediction
 
-from . import prediction
 from .heavier import write_bodies
 from .plan import DEFAULT, FLOOR_INTERVAL, FLOOR_STEP, FLOORS, FULL, HEAVY, INTERVAL, LIQUIDS
 from .plan import QUICK, SCENES, SPCE, Plan

@@ -12,29 +12,44 @@ With forces, no quantity is fitted.  The equations are linear in it: it knows no
 projections, of passes and of rough forces.
 """
 
+import csv
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from scipy.linalg import pascal
 from scipy.signal import welch
 
-from .quantities import FEMTOSECONDS
-
+#: of a nanosecond
+FEMTOSECONDS = 1e6
 #: samples of a window; its side lobes are far below what long steps make of high frequencies
 SEGMENT, WINDOW = 1024, "blackmanharris"
 #: an axis with less than this part of the power of all is one without a moment of inertia
 AT_REST = 1e-9
 
 
-def response(corrector, omega_h):
-    """H at each omega h (n,): predicted by true value of an oscillation, complex (n,).
+def open_loop(c, order):
+    """Step (N, N) of rows whose right side is zero."""
+    predict = pascal(len(c), "upper").astype(float)
+    return predict - np.outer(c, predict[order])
 
-    ``corrector``: a Corrector of the second formulation (coefficients/kernel.py).
+
+def response(corrector, omega_h):
+    """H at each omega h (n,): predicted by true value for the force exp(i omega t), complex (n,).
+
+    An oscillation has the root exp(i y) with y^2 = (omega h)^2 H(y).
     """
-    c, free, z = corrector.floats[0], corrector.step(0.0), np.asarray(omega_h, dtype=float)
-    turns = np.exp(1j * z)[:, None, None] * np.eye(len(c))
-    # the predicted value is the sum of the history of the step before, which y_2 = -z^2/2 e^(i z n) drives
-    histories = np.linalg.solve(turns - free, c[:, None])[..., 0]
-    return -(z**2) / 2 * histories.sum(axis=1)
+    y, q, (one, other) = np.asarray(omega_h), corrector.order, corrector.floats
+    roots = np.exp(1j * y)[:, None]
+
+    def histories(c):
+        free = roots[..., None] * np.eye(len(c)) - open_loop(c, q)
+        return np.linalg.solve(free, c[:, None])[..., 0]
+
+    rows = histories(one) * roots / q
+    if q == 1:
+        rows = histories(other) * roots * rows[:, :1]
+    return -(y**2) * (rows / roots).sum(axis=1)  # a prediction is the sum of all rows
 
 
 @dataclass(frozen=True)
@@ -60,13 +75,17 @@ class Spectrum:
         _, rotation = _power(rotations, dt)
         return cls(omega, translation.mean(axis=1), rotation.mean(axis=1), rotation.shape[1])
 
+    @property
+    def density(self):
+        """Mean spectrum of a degree of freedom (n,)."""
+        return np.average([self.translation, self.rotation], axis=0, weights=(3, self.axes))
+
     def drift(self, corrector, dt):
         """Drift of the energy with a step ``dt`` in fs, kT per ns and degree of freedom."""
         slow = self.omega * dt < np.pi
         omega = self.omega[slow]
         gain = -omega * response(corrector, omega * dt).imag
-        parts = [gain @ rho[slow] for rho in (self.translation, self.rotation)]
-        return FEMTOSECONDS * np.average(parts, weights=(3, self.axes))
+        return FEMTOSECONDS * float(gain @ self.density[slow])
 
 
 def _power(series, dt):
@@ -86,3 +105,33 @@ def read(path, dt):
     numbers = np.fromstring(" ".join([*first, *lines]), sep=" ")
     frames = numbers.reshape(-1, 2 + rows * columns)[:, 2:].reshape(-1, rows, columns)
     return Spectrum.of(frames[..., 1:4], frames[..., 4:7], dt)
+
+
+# --- the spectra that searches use ----------------------------------------------------------------
+#: table of the study liquids
+RECORDED = Path(__file__).with_name("spectra.csv")
+#: of spectra that are recorded, 1/fs; beyond it there is nothing that a step of 2 fs or more would feel
+FASTEST = 0.95
+
+
+def table(spectra):
+    """Header and rows of the table of ``spectra``, name of liquid -> Spectrum with the same omega."""
+    header, columns = ["omega, 1/fs"], []
+    for name, own in spectra.items():
+        columns = columns or [own.omega]
+        header += [f"{name}, translation", f"{name}, rotation about {own.axes} axes"]
+        columns += [own.translation, own.rotation]
+    kept = np.transpose(columns)[columns[0] < FASTEST]
+    return header, [[f"{x:.6g}" if k == 0 else f"{x:.3e}" for k, x in enumerate(row)] for row in kept]
+
+
+def recorded(path=RECORDED):
+    """Name of liquid -> Spectrum, of such a table."""
+    with path.open(encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    omega, *columns = np.array(rows, dtype=float).T
+    spectra = {}
+    for k in range(0, len(columns), 2):
+        name, axes = header[k + 1].split(",")[0], int(header[k + 2].split()[-2])
+        spectra[name] = Spectrum(omega, *columns[k : k + 2], axes)
+    return spectra
