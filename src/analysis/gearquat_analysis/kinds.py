@@ -62,7 +62,7 @@ def of_kind(poses, kind):
     """What averages and correlations need of finished ``poses``, for the bodies of one Kind."""
     if not kind.name:
         return poses
-    results = _Results(time=poses.results.time)
+    results = _Results(time=poses.results.time, cell=poses.results.cell)
     for name in ("center", "q", "velocity", "omega_space"):
         if name in poses.results:
             results[name] = Part(poses.results[name], kind.bodies)
