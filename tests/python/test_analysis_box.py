@@ -45,7 +45,7 @@ def walk():
 
 
 def own(poses):
-    return mapped.columns(mapped.own_motion(poses.results.center, poses.results.cell), slice(0, BODIES))
+    return mapped.columns(mapped.own_motion(poses.results), slice(0, BODIES))
 
 
 def displaced(walk):

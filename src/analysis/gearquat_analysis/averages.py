@@ -168,7 +168,7 @@ def of_box(poses):
     The density is that of all atoms of the trajectory, if all of them are in bodies.
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
-    if not poses.periodic.all() or mapped.own_motion(results.center, results.cell) is results.center:
+    if mapped.own_motion(results) is results.center or not poses.periodic.all():
         return {}
     volume = np.abs(np.linalg.det(results.cell[:, 1:]))
     if bodies is None or len(bodies.masses) < len(poses.atoms.universe.atoms):
@@ -314,7 +314,7 @@ def averages(poses):
 def _of_motion(poses, of, dimensions):
     """Averages of functions of time, of bodies of one kind, which ``of`` names."""
     results, name = poses.results, "diffusion coefficient"
-    value, error, why = diffusion(results.time, mapped.own_motion(results.center, results.cell), dimensions)
+    value, error, why = diffusion(results.time, mapped.own_motion(results), dimensions)
     found = [Average(f"{name}{of}", value, error, poses.unit(name), why)]
     q, _, axes = correlations.turning(poses)
     for group, axis in axes.items():

@@ -62,10 +62,12 @@ def of_kind(poses, kind):
     """What averages and correlations need of finished ``poses``, for the bodies of one Kind."""
     if not kind.name:
         return poses
-    results = _Results(time=poses.results.time, cell=poses.results.cell)
+    results = _Results(time=poses.results.time)
     for name in ("center", "q", "velocity", "omega_space"):
         if name in poses.results:
             results[name] = Part(poses.results[name], kind.bodies)
+    if "cell" in poses.results:
+        results["cell"] = poses.results.cell
     names = ("mass", "moments", "axes", "point", "linear")
     bodies = SimpleNamespace(**{name: getattr(poses.bodies, name)[kind.bodies] for name in names})
     return SimpleNamespace(results=results, bodies=bodies, unit=poses.unit)

@@ -71,10 +71,11 @@ class OwnMotion:
         return self.shape[0]
 
 
-def own_motion(center, cell):
-    """Centers (F, B, 3), or OwnMotion of them if the box changes; ``cell`` (F, 4, 3), NaN without a box."""
-    edges = cell[:, 1:]
-    return center if not edges.size or np.allclose(edges, edges[0], rtol=1e-6, equal_nan=True) else OwnMotion(center, cell)
+def own_motion(results):
+    """Centers (F, B, 3), or OwnMotion of them if the box changes, of results with ``cell`` (F, 4, 3) or without."""
+    center, cell = results.center, results.cell if "cell" in results else None
+    same = cell is None or np.allclose(cell[:, 1:], cell[0, 1:], rtol=1e-6, equal_nan=True)
+    return center if same else OwnMotion(center, cell)
 
 
 def columns(array, own):
