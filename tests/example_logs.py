@@ -31,6 +31,7 @@ FOLDERS = (
     "isokinetic",
     "top",
     "water",
+    "water_npt",
     "water_nvt",
 )
 #: writes data of its folder, for minutes, or is run by benchmarks alone

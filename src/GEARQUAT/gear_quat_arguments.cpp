@@ -316,6 +316,18 @@ std::string Arguments::words_of_control() const
   return text;
 }
 
+std::string Arguments::words_of_pressure() const
+{
+  std::string text;
+  for (const char *keyword : {"iso", "aniso", "x", "y", "z"}) {
+    if (!given.count(keyword)) continue;
+    const auto &numbers = given.at(keyword).numbers;
+    text += fmt::format("{} {:g} {:g} {:g}, ", keyword, numbers[0], numbers[1], numbers[2]);
+  }
+  if (is_on("couple", "")) text += "couple " + given.at("couple").text + ", ";
+  return text + fmt::format("pchain {}", pressure.length);
+}
+
 /* ----------------------------------------------------------------------
    atoms to bodies
 ------------------------------------------------------------------------- */

@@ -260,6 +260,8 @@ struct Arguments : protected Pointers {
 
   /// Keyword tolerance and those that bound its steps, as in the command; empty without it.
   std::string words_of_control() const;
+  /// Keywords of the pressure, as in the command.
+  std::string words_of_pressure() const;
 
   /// Body of every owned atom, 0 for atoms in none; faults name the atom.  Collective.
   std::vector<tagint> body_ids(int groupbit) const;

@@ -113,10 +113,11 @@ class Barostat : public Thermostat {
   int values_of_heat = 0;
   CorrectorCoefficients::Array heat_coefficients;    ///< of a first-order equation
   double width = 0.0;                                ///< the step of the histories
-  Upper target;                    ///< pressures of the present step, or at a node
-  Upper target_rate;               ///< and their change with time
-  double kt = 0.0;                 ///< of the mass of the box, then
-  Upper made_target, made_rate;    ///< of the last step before this run
+  Upper target;                              ///< pressures of the present step, or at a node
+  Upper target_rate;                         ///< and their change with time
+  double kt = 0.0;                           ///< of the mass of the box, then
+  Upper made_target, made_rate;              ///< of the last step before this run
+  std::array<double, 2> told_of_box = {};    ///< what the log has: freedoms and total momentum
 
   Upper matrix, rate;    ///< M and G in the present pass, or at a node
   struct Moving {        ///< what a step changes
@@ -166,6 +167,7 @@ class Barostat : public Thermostat {
   void find_target(bigint step, double h);
   void move_target(double time);
   void refuse_scene() const;
+  void tell_freedoms(const std::string &why) override;
   void find_temperature();
   double frequency() const;
   double period() const;

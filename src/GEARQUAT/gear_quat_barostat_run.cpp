@@ -86,6 +86,26 @@ void Barostat::find_temperature()
   words.start = words.stop = all[0] / all[1] * force->mvv2e / force->boltz;
 }
 
+void Barostat::tell_freedoms(const std::string &why)
+{
+  Thermostat::tell_freedoms(why);
+  const std::array<double, 2> now = {freedoms[TRANSLATION], total.record()};
+  if (told_of_box == now) return;
+  told_of_box = now;
+  if (comm->me != 0) return;
+  std::vector<std::string> masses;
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    if (!asked.on[k]) continue;
+    const std::string mass = fmt::format("{:.4g}", mass_of(k) * force->mvv2e);
+    if (!std::count(masses.begin(), masses.end(), mass)) masses.push_back(mass);
+  }
+  utils::logmesg(lmp,
+                 "Fix gear/quat {}: barostat for {:.0f} degrees of freedom of translation{} and {} "
+                 "of the box, whose mass is {} at a temperature of {:.4g}\n",
+                 fix->id, freedoms[TRANSLATION], total.description(), free_components(),
+                 utils::join_words(masses, " and "), kt * force->mvv2e / force->boltz);
+}
+
 void Barostat::begin_run(bool begins, double h)
 {
   refuse_scene();

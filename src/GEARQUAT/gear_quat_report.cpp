@@ -105,6 +105,17 @@ static const char cite_chains[] =
     " pages = {2635--2643}\n"
     "}\n\n";
 
+static const char cite_pressure[] =
+    "fix gear/quat iso, aniso, x, y and z: constant pressure: https://doi.org/10.1063/1.467468\n\n"
+    "@Article{Martyna1994,\n"
+    " author = {Glenn J. Martyna and Douglas J. Tobias and Michael L. Klein},\n"
+    " title = {Constant Pressure Molecular Dynamics Algorithms},\n"
+    " journal = {Journal of Chemical Physics},\n"
+    " year = 1994,\n"
+    " volume = 101,\n"
+    " pages = {4177--4189}\n"
+    "}\n\n";
+
 static const char cite_gear[] =
     "fix gear/quat corrector gear and tolerance: coefficients, and control of step and order\n\n"
     "@Book{Gear1971,\n"
@@ -121,6 +132,7 @@ void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
   if (!args.scheme.tuned) lmp->citeme->add(cite_gear);
   if (args.isokinetic != Isokinetic::NONE) lmp->citeme->add(cite_isokinetic);
   if (args.thermostat.damp > 0.0) lmp->citeme->add(cite_chains);
+  if (args.pressure.any()) lmp->citeme->add(cite_pressure);
 }
 
 /* ----------------------------------------------------------------------
@@ -254,6 +266,13 @@ static Effect temperature(const Arguments &args)
           NOTHING};
 }
 
+static Effect barostat(const Arguments &args)
+{
+  return {"barostat", args.pressure.any(),
+          args.pressure.any() ? args.words_of_pressure() : "no keyword iso, aniso, x, y or z",
+          NOTHING};
+}
+
 /// The rows of the report.
 static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                    const Scene &scene)
@@ -271,6 +290,7 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
       ghost_bodies(scene, lmp->comm->nprocs),
       {"masks", masks, masks ? "keywords force and torque" : "no keyword force or torque", NOTHING},
       temperature(args),
+      barostat(args),
       {"virial", fix->thermo_virial != 0,
        fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no",
        "pressure and stress of the forces of constraint; of the trajectory nothing"},

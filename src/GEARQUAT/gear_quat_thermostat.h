@@ -172,7 +172,7 @@ class Thermostat : public Coupling {
   Chain::LeftOut left_out(double h, int values) const;
   /// Rank 0 tells the degrees of freedom if they are not those that it has told last.  why: what
   /// comes before.
-  void tell_freedoms(const std::string &why = "");
+  virtual void tell_freedoms(const std::string &why = "");
 
   // the passes of a step
 

@@ -78,14 +78,6 @@ def test_without_image_flags_bodies_are_made_whole_and_followed(write):
     assert poses.results.residual.max() < 1e-12
 
 
-def test_a_box_that_changes_needs_unwrapped_positions(write, tmp_path):
-    columns = "id mol type mass x y z vx vy vz"
-    path = write(MOTION, TIMES, wrapped, box=BOX, columns=columns)
-    path.write_text("-11 11".join(path.read_text().rsplit(BOX, 1)))
-    with pytest.raises(ValueError, match="box changes, at frame 2"):
-        Poses(open_dump(path).atoms).run()
-
-
 @pytest.mark.parametrize("unwrapped", [True, False])
 def test_scaled_positions_in_a_triclinic_box(tmp_path, unwrapped):
     """Edges (20, 0, 0), (4, 20, 0), (-6, 3, 20); LAMMPS writes the bounds of the box around it."""

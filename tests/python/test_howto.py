@@ -243,7 +243,7 @@ def test_overlaps_relax_to_a_liquid(lmp_wheel, seed):
     changes = on_a_lattice() if seed == "lattice" else {f"random {FEWER} 4711": f"random {FEWER} {seed}"}
     result = passes(lmp_wheel, liquid_script(**changes))
     assert result.output.count("WARNING") == result.output.count("WARNING: Neighbor exclusions")
-    relaxing, liquid = ({name: np.array(values) for name, values in part.items()} for part in result.thermo[-2:])
+    relaxing, liquid, at_1_atm = ({name: np.array(values) for name, values in part.items()} for part in result.thermo[-3:])
     thermal = 6 * FEWER * 0.0019872067 * 300.0  # kT times the degrees of freedom
     assert relaxing["Dt"][0] == 0.001 and relaxing["Dt"][-1] == 1.0
     assert np.ptp(relaxing["PotEng"]) > 2 * thermal
@@ -251,3 +251,5 @@ def test_overlaps_relax_to_a_liquid(lmp_wheel, seed):
     for table, columns in ((relaxing, (20, 21)), (liquid, (10, 11))):
         last = np.mean([table[f"f_move[{column}]"][-5:] for column in columns], axis=1)
         assert last == pytest.approx(300.0, rel=0.25)
+    assert np.ptp(at_1_atm["Econserve"]) < 0.002 * thermal
+    assert at_1_atm["Density"][-1] == pytest.approx(1.0, abs=0.15) and np.ptp(at_1_atm["Density"]) > 1e-3

@@ -117,7 +117,15 @@ def test_translation(line, translated):
             "fix 1 a rigid/nvt/small/omp single tparam 4 2 3 temp 1 2 3",
             "gear/quat single temp 1 2 3 tchain 4 thermostat separate$",
         ),
-        ("fix 1 a rigid/npt/small molecule temp 1 1 1 iso 0 0 1", "rigid/npt/small.*no barostat"),
+        (
+            "fix 1 a rigid/npt/small molecule temp 1 1 1 iso 0 0 1",
+            "other equations than keyword iso .*\n  fix 1 a gear/quat molecule temp 1 1 1 iso 0 0 1 tchain 10 thermostat separate pchain 10$",
+        ),
+        (
+            "fix 1 a rigid/nph molecule y -1 0 9 x -1 0 9 couple xy pchain 4 dilate all",
+            "\n  fix 1 a gear/quat molecule y -1 0 9 x -1 0 9 couple xy pchain 4$",
+        ),
+        ("fix 1 a rigid/meso molecule", "no such motion"),
         ("fix 1 a rigid molecule langevin 1 1 1 48", "langevin.*random"),
         ("fix 1 a rigid molecule temp 1 1 1", "keyword temp: this fix has no thermostat"),
         ("fix 1 a rigid/small molecule gravity g", "disable of fix gravity"),

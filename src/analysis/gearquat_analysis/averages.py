@@ -1,4 +1,4 @@
-"""Averages over a run with standard errors: temperatures, diffusion, rotational correlation times.
+"""Averages over a run with standard errors: temperatures, the volume, diffusion, rotational correlation times.
 
 Each error has assumptions, which are checked: samples in independent blocks for temperatures, a linear range of the
 mean-square displacement for diffusion, an exponential tail for correlation times.  Where one does not hold, there is
@@ -162,6 +162,20 @@ def temperatures(poses):
     return found
 
 
+def of_box(poses):
+    """Volume and density of all frames, name -> (F,), in units of LAMMPS; empty if the box does not change or is not periodic.
+
+    The density is that of all atoms of the trajectory, if all of them are in bodies.
+    """
+    results, bodies = poses.results, getattr(poses, "bodies", None)
+    if mapped.own_motion(results) is results.center or not poses.periodic.all():
+        return {}
+    volume = np.abs(np.linalg.det(results.cell[:, 1:]))
+    if bodies is None or len(bodies.masses) < len(poses.atoms.universe.atoms):
+        return {"volume": volume}
+    return {"volume": volume, "density": UNITS[poses.units or "lj"].density * bodies.mass.sum() / volume}
+
+
 def _long_blocks(frames):
     """Slices of the blocks in which functions of time are found; empty if these would be too short."""
     length = frames // LONG_BLOCKS
@@ -270,7 +284,8 @@ def _with_error(find, lag, whole, blocks, without, *more):
 def averages(poses):
     """The Averages that finished ``Poses`` or ``TablePoses`` have the data for.
 
-    A frame counts for the time it stands for (``weights_of``).  Of frames that are not evenly spaced in time there are
+    A frame counts for the time it stands for (``weights_of``).  If the box changes, its volume and the density are averages,
+    and diffusion is that of the motion of bodies relative to the box.  Of frames that are not evenly spaced in time there are
     only temperatures, with a warning.  Diffusion and correlation times of a mixture are those of each of its ``kinds``.
     """
     results = poses.results
@@ -280,6 +295,9 @@ def averages(poses):
     for name, series in temperatures(poses).items():
         value, error, why = of_series(series, weights)
         found.append(Average(f"temperature of {name}", value, error, poses.unit("temperature"), why))
+    for name, series in of_box(poses).items():
+        value, error, why = of_series(series, weights)
+        found.append(Average(name, value, error, poses.unit(name), why))
     try:
         correlations.lags(times)
     except ValueError as error:
@@ -296,7 +314,7 @@ def averages(poses):
 def _of_motion(poses, of, dimensions):
     """Averages of functions of time, of bodies of one kind, which ``of`` names."""
     results, name = poses.results, "diffusion coefficient"
-    value, error, why = diffusion(results.time, results.center, dimensions)
+    value, error, why = diffusion(results.time, mapped.own_motion(results), dimensions)
     found = [Average(f"{name}{of}", value, error, poses.unit(name), why)]
     q, _, axes = correlations.turning(poses)
     for group, axis in axes.items():

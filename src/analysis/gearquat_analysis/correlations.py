@@ -232,7 +232,7 @@ def all_correlations(poses, progress=iter):
 def _tasks(poses):
     """Name, function and its arguments, of every function of bodies of one kind."""
     results, bodies = poses.results, getattr(poses, "bodies", None)
-    tasks = [("mean_square_displacement", mean_square_displacement, (results.center,))]
+    tasks = [("mean_square_displacement", mean_square_displacement, (mapped.own_motion(results),))]
     if "velocity" in results:
         tasks.append(("velocity_autocorrelation", autocorrelation, (results.velocity,)))
     q, some, axes = turning(poses)

@@ -66,6 +66,8 @@ def of_kind(poses, kind):
     for name in ("center", "q", "velocity", "omega_space"):
         if name in poses.results:
             results[name] = Part(poses.results[name], kind.bodies)
+    if "cell" in poses.results:
+        results["cell"] = poses.results.cell
     names = ("mass", "moments", "axes", "point", "linear")
     bodies = SimpleNamespace(**{name: getattr(poses.bodies, name)[kind.bodies] for name in names})
     return SimpleNamespace(results=results, bodies=bodies, unit=poses.unit)

@@ -47,8 +47,44 @@ class Part:
         return Part(self.array[frames], self.own)
 
 
+def carried(x, before, after):
+    """Positions x (..., 3) when the box of ``before`` (4, 3), its origin and its edges, becomes that of ``after``."""
+    return after[0] + (x - before[0]) @ (np.linalg.inv(before[1:]) @ after[1:])
+
+
+class OwnMotion:
+    """Centers (F, B, 3), an array or a Part, less what a changing box has carried them since the first frame.
+
+    ``cell`` (F, 4, 3): its origins and edges.  Read by ``columns`` as a Part is.
+
+    >>> import numpy as np
+    >>> from gearquat_analysis.mapped import OwnMotion, columns
+    >>> cell = np.array([np.vstack([np.zeros(3), size * np.eye(3)]) for size in (1.0, 1.1)])
+    >>> bool(np.allclose(columns(OwnMotion(np.array([[[5.0] * 3], [[5.6] * 3]]), cell), slice(0, 1))[1], 5.1))
+    True
+    """
+
+    def __init__(self, array, cell):
+        self.array, self.cell, self.shape = array, cell, array.shape
+
+    def __len__(self):
+        return self.shape[0]
+
+
+def own_motion(results):
+    """Centers (F, B, 3), or OwnMotion of them if the box changes, of results with ``cell`` (F, 4, 3) or without."""
+    center, cell = results.center, results.cell if "cell" in results else None
+    same = cell is None or np.allclose(cell[:, 1:], cell[0, 1:], rtol=1e-6, equal_nan=True)
+    return center if same else OwnMotion(center, cell)
+
+
 def columns(array, own):
-    """Columns ``own`` (a slice) of all rows of an array (F, B, ...) or a Part of one, in memory, as floats."""
+    """Columns ``own`` (a slice) of all rows of an array (F, B, ...), a Part or OwnMotion, in memory, as floats."""
+    if isinstance(array, OwnMotion):
+        held = columns(array.array, own)
+        moved = [x - carried(last, *cells) for x, last, *cells in zip(held[1:], held, array.cell, array.cell[1:])]
+        held[1:] = held[0] + np.cumsum(moved, axis=0)
+        return held
     if isinstance(array, Part):
         own, array = array.own[own], array.array
     number = len(own) if isinstance(own, np.ndarray) else own.stop - own.start

@@ -73,6 +73,7 @@ class _FrameTable(AnalysisBase):
         super().__init__(trajectory, **kwargs)
         self.results = _NoResults()
         self.atoms, self.ids = atoms, ids
+        self.periodic = np.asarray(trajectory[0].data.get("periodic", np.ones(3)), dtype=bool)
         self._counted = getattr(trajectory, "counted", False)
         self._energy = UNITS[self.units or "lj"].energy
         self._dtype = np.dtype([(name, *kind) for name, kind in fields.items()])
@@ -96,11 +97,13 @@ class _FrameTable(AnalysisBase):
     def _prepare(self):
         self.results = Results()
         self.results.step = np.zeros(self.n_frames, dtype=np.int64)
+        self.results.cell = np.full((self.n_frames, 4, 3), np.nan)
         if not self._out:
             self.results.table = np.zeros((self.n_frames, len(self.ids)), self._dtype)
 
     def _single_frame(self):
         self.results.step[self._frame_index] = self._step()
+        self.results.cell[self._frame_index] = self._cell()
         if self._out:
             # opened anew: no process holds more than the pages of its frame
             table, row = np.load(self._out, mmap_mode="r+"), self._row[self._ts.frame]
@@ -112,6 +115,16 @@ class _FrameTable(AnalysisBase):
     def _frame(self):
         """Fields of the frame at hand: name -> (B, ...)."""
         raise NotImplementedError
+
+    def _cell(self):
+        """Origin and edges (4, 3) of the box: of a unit box along directions that are not periodic, NaN without one."""
+        data, free = self._ts.data, ~self.periodic
+        box = data.get("box", self._ts.triclinic_dimensions)
+        if box is None:
+            return np.full((4, 3), np.nan)
+        cell = np.vstack([data.get("origin", np.zeros(3)), box]).astype(float)
+        cell[0, free], cell[1:][free] = 0.0, np.eye(3)[free]
+        return cell
 
     def _step(self):
         return self._ts.data.get("step", self._ts.frame)
@@ -126,7 +139,7 @@ class _FrameTable(AnalysisBase):
             )
 
     def _get_aggregator(self):
-        return ResultsGroup({"step": np.concatenate, "table": np.concatenate})
+        return ResultsGroup(dict.fromkeys(("step", "cell", "table"), np.concatenate))
 
     def _conclude(self):
         results = self.results
@@ -139,18 +152,17 @@ class _FrameTable(AnalysisBase):
 
     def _join(self):
         """Signs of quaternions that do not jump; centers likewise, where only images are known."""
-        q, center = self.results.table["q"], self.results.table["center"]
-        images = self._images()
+        q, center, cell = self.results.table["q"], self.results.table["center"], self.results.cell
+        periodic = self._images()
         for k in mapped.rows(q, 1):
             turned = np.einsum("bi,bi->b", q[k], q[k - 1]) < 0.0
             q[k, turned] *= -1.0
-            if images is not None:
-                box, periodic = images
-                gone = np.round((center[k] - center[k - 1]) @ np.linalg.inv(box)) * periodic
-                center[k] -= gone @ box
+            if periodic is not None:
+                moved = center[k] - mapped.carried(center[k - 1], *cell[k - 1 : k + 1])
+                center[k] -= np.round(moved @ np.linalg.inv(cell[k, 1:])) * periodic @ cell[k, 1:]
 
     def _images(self):
-        """(box, periodic) if centers are to be joined from frame to frame, else None."""
+        """Which directions (3,) are periodic, if centers are to be joined from frame to frame, else None."""
         return None
 
     # --- what is done with the table ------------------------------------------------------------
@@ -273,7 +285,8 @@ class Poses(_FrameTable):
 
     Results after ``run``, of F frames of B bodies, in units of the run; ``results.table`` has all as one array:
 
-    * ``step``, ``time`` (F,); ``ids`` (B,)
+    * ``step``, ``time`` (F,); ``ids`` (B,); ``cell`` (F, 4, 3): origin and edges of the box, those of a unit box
+      where it is not periodic
     * ``center`` (F, B, 3): center of mass, unwrapped
     * ``q`` (F, B, 4): quaternion, scalar first, body -> space; its sign is that of the frame before
     * ``residual`` (F, B): largest distance of a site from where the rigid reference would have it
@@ -321,7 +334,7 @@ class Poses(_FrameTable):
         has_velocities = "v" in first.data or first.has_velocities
         fields = POSE | (MOTION if has_velocities else {}) | (POTENTIAL if potential else {})
         super().__init__(atoms, self.bodies.ids, fields, units, out, **kwargs)
-        self._box = None
+        self._wrapped = False
         self._set_reference(reference)
 
     def _set_reference(self, reference):
@@ -355,20 +368,12 @@ class Poses(_FrameTable):
             if values is not None:
                 self._require_finite(f"a site's {name}", values, self.ids[self.bodies.of])
         if not whole:
-            self._check_box(box)
-            x = self.bodies.whole(x, box, ts.data.get("periodic", np.ones(3)))
+            self._wrapped = True
+            x = self.bodies.whole(x, box, self.periodic)
         return x, v
 
-    def _check_box(self, box):
-        if self._box is None:
-            self._box = np.array(box, dtype=float), self._ts.data.get("periodic", np.ones(3))
-        if not np.allclose(box, self._box[0], rtol=1e-6):
-            raise ValueError(
-                f"the box changes, at frame {self._ts.frame}: unwrapped positions (xu yu zu) are required"
-            )
-
     def _images(self):
-        return self._box
+        return self.periodic if self._wrapped else None
 
     def _conclude(self):
         super()._conclude()

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 class Units(NamedTuple):
     """Names of the units of time and length; what they are in ps and Å; mass x velocity^2 in the unit
-    of energy, and Boltzmann's constant (mvv2e and boltz in LAMMPS' update.cpp); names of the units of mass and energy.
+    of energy, and Boltzmann's constant (mvv2e and boltz in LAMMPS' update.cpp); names of the units of mass and energy;
+    the name of that of density, and mass / length^3 in it, if it is another one (mv2d).
     """
 
     time: str
@@ -16,13 +17,15 @@ class Units(NamedTuple):
     boltzmann: float
     mass_name: str
     energy_name: str
+    density_name: str = ""
+    density: float = 1.0
 
 
 #: units lj have no ps and Å: one unit becomes one of them
 UNITS = {
     "lj": Units("", "", 1.0, 1.0, 1.0, 1.0, "m", "ε"),
-    "real": Units("fs", "Å", 1e-3, 1.0, 48.88821291**2, 0.0019872067, "g/mol", "kcal/mol"),
-    "metal": Units("ps", "Å", 1.0, 1.0, 1.0364269e-4, 8.617343e-5, "g/mol", "eV"),
+    "real": Units("fs", "Å", 1e-3, 1.0, 48.88821291**2, 0.0019872067, "g/mol", "kcal/mol", "g/cm³", 1.0 / 0.602214129),
+    "metal": Units("ps", "Å", 1.0, 1.0, 1.0364269e-4, 8.617343e-5, "g/mol", "eV", "g/cm³", 1.0 / 0.602214129),
     "si": Units("s", "m", 1e12, 1e10, 1.0, 1.3806504e-23, "kg", "J"),
     "cgs": Units("s", "cm", 1e12, 1e8, 1.0, 1.3806504e-16, "g", "erg"),
     "electron": Units("fs", "bohr", 1e-3, 0.529177210544, 1.06657236, 3.16681534e-6, "u", "Hartree"),
@@ -51,6 +54,8 @@ OF_RESULTS = {
     "temperature": "K",
     "diffusion coefficient": "L²/t",
     "correlation time": "t",
+    "volume": "L³",
+    "density": "D",
 }
 
 
@@ -90,5 +95,6 @@ def unit_of(result, style, time=None):
         return time or "" if kind == "t" else ""
     units = UNITS[style]
     names = {"M": units.mass_name, "L": units.length or "σ", "T": units.time or "τ", "t": time or units.time or "τ"}
+    names["D"] = units.density_name or f"{names['M']}/{names['L']}³"
     names |= {"E": units.energy_name, "K": "ε/k" if style == "lj" else "K"}
     return "".join(names.get(letter, letter) for letter in kind)

@@ -107,17 +107,19 @@ def run_steps(words, now=0):
 
 # --- the fix that moves the bodies --------------------------------------------------------------
 RIGID = ("rigid", "rigid/nve", "rigid/small", "rigid/nve/small")
-#: those with a thermostat and no barostat
-RIGID_NVT = ("rigid/nvt", "rigid/nvt/small")
-#: length of their chains if tparam does not say it
-_TCHAIN = 10
+#: those with a thermostat, a barostat or both
+RIGID_NH = tuple(f"rigid/{ensemble}{small}" for ensemble in ("nvt", "npt", "nph") for small in ("", "/small"))
+#: length of their chains if tparam or pchain does not say it
+_CHAIN = "10"
+#: keywords that hold a pressure
+PRESSURES = ("iso", "aniso", "x", "y", "z")
 _SUFFIX = re.compile(r"/(omp|opt|intel|gpu|kk)$")
 #: keywords that may be given many times, and how many words follow each
 MASKS = ("force", "torque")
 _MASK_WORDS = 4
 #: keywords of the rigid fixes and how many words follow each
 RIGID_KEYWORDS = dict.fromkeys(MASKS, _MASK_WORDS) | {"langevin": 4}
-RIGID_KEYWORDS |= dict.fromkeys(("temp", "iso", "aniso", "x", "y", "z", "tparam"), 3)
+RIGID_KEYWORDS |= dict.fromkeys(("temp", *PRESSURES, "tparam"), 3)
 RIGID_KEYWORDS |= dict.fromkeys(("couple", "pchain", "dilate", "infile", "reinit", "mol"), 1)
 RIGID_KEYWORDS |= {"gravity": 1}
 #: what the keywords of fix gear/quat are about that say what moves, and how it does by nature
@@ -172,8 +174,8 @@ class FixLine:
 
     @property
     def has_chains(self):
-        """Whether variables of a thermostat move with the bodies of this line, of fix gear/quat."""
-        return "temp" in dict(self.keywords)
+        """Whether a thermostat or a box moves with the bodies of this line, of fix gear/quat."""
+        return bool({"temp", *PRESSURES} & set(dict(self.keywords)))
 
     @property
     def isokinetic(self):
@@ -306,14 +308,17 @@ def for_trials(line):
     ]
 
 
-def thermostatted(line):
-    """The line of fix gear/quat that comes closest to one of RIGID_NVT: the same bodies, target and chains."""
-    heat = {key: values for key, values in line.keywords if key in ("temp", "tparam")}
-    rest = tuple((key, values) for key, values in line.keywords if key not in heat)
-    chain, *_ = heat.pop("tparam", (str(_TCHAIN),))
-    own = (*heat.items(), ("tchain", (chain,)), ("thermostat", ("separate",)))
+def closest(line):
+    """The line of fix gear/quat that comes closest to one of RIGID_NH: the same bodies, targets and chains."""
+    held = {key: values for key, values in line.keywords if key in ("temp", "tparam", *PRESSURES, "couple", "pchain")}
+    rest = tuple((key, values) for key, values in line.keywords if key not in held)
+    chain, *_ = held.pop("tparam", (_CHAIN,))
+    if "temp" in held:
+        held |= {"tchain": (chain,), "thermostat": ("separate",)}
+    if set(PRESSURES) & set(held):
+        held.setdefault("pchain", (_CHAIN,))
     moved, _ = translate(replace(line, style="rigid", keywords=rest))
-    return replace(moved, keywords=moved.keywords + own)
+    return replace(moved, keywords=moved.keywords + tuple(held.items()))
 
 
 def translate(line):
@@ -324,15 +329,17 @@ def translate(line):
     if line.style == "gear/quat":
         return line.only(*_PHYSICAL), []
     style, who, notes = base_style(line.style), f"fix {line.id} {line.style}", []
-    if style in RIGID_NVT:
+    if style in RIGID_NH:
+        of_box = set(PRESSURES) & set(dict(line.keywords))
+        why = "its barostat has other equations" if of_box else "its thermostat counts other degrees of freedom"
         raise DeckError(
-            f"{who}: its thermostat counts other degrees of freedom than keyword temp of fix gear/quat, so"
+            f"{who}: {why} than keyword {min(of_box, default='temp')} of fix gear/quat, so"
             " the two move the bodies differently, and the difference is no error. Steps and orders at"
-            f" constant temperature can be compared in a deck with\n  {thermostatted(line).text()}"
+            f" constant {'pressure' if of_box else 'temperature'} can be compared in a deck with\n  {closest(line).text()}"
         )
     if style not in RIGID:
         raise DeckError(
-            f"{who}: fix gear/quat has no barostat, and no other motion to compare with; the deck has to"
+            f"{who}: fix gear/quat has no such motion to compare with; the deck has to"
             f" use fix gear/quat or one of {', '.join(RIGID)}"
         )
     kept, stated = [], "infile" in dict(line.keywords)
@@ -358,7 +365,7 @@ def translate(line):
 _RANDOM = "its forces are random, so the motion has no exact solution"
 _ATOMS = "it adds, removes or swaps atoms, so the motion has no exact solution"
 _STEPS = "it acts once in so many steps, so the motion changes with the time step"
-_BOX = "it changes the box, which fix gear/quat does not allow"
+_BOX = "it changes the box, which fix gear/quat allows no other fix"
 _UNUSABLE = (
     (r"langevin.*|.*/langevin|brownian.*|bd/.*|gld|gle|temp/cs.*|srd|lb/.*|ttm.*|tfmc", _RANDOM),
     (r"shardlow|.*/dpd|dpd/.*|qtb|qbmsst|pimd.*|propel/self/.*|addtorque/random", _RANDOM),
