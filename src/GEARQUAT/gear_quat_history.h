@@ -60,12 +60,13 @@ struct Scheme {
     return projection == Projection::AUTO && !first() && tuned && (n == 5 || n == 7 || n == 9);
   }
   /// Passes of the method as a whole.  If passes is 0, a rotation with any_norm() is corrected until
-  /// it converges.  With a coupling all bodies have the same number, which at few values and long
-  /// steps is what velocities need to converge; more would make fast rotation less stable.
+  /// it converges.  With a coupling all bodies have the same number: with five values, which are
+  /// for long steps, what velocities need to converge.  With more values, whose fast bodies are
+  /// projected, that might make fast rotation less stable.
   int fixed_passes() const
   {
     if (passes) return passes;
-    return any_norm() && values() < 9 ? CONVERGING_PASSES : AUTOMATIC_PASSES;
+    return any_norm() && values() == 5 ? CONVERGING_PASSES : AUTOMATIC_PASSES;
   }
   static constexpr int AUTOMATIC_PASSES = 2, CONVERGING_PASSES = 4;
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
