@@ -7,7 +7,17 @@ import re
 
 import numpy as np
 import pytest
-from scenes import BEFORE, FORMULATIONS, MOLECULES, last_frame, one_after_the_other, placed
+from scenes import (
+    BEFORE,
+    FORMULATIONS,
+    MOLECULES,
+    difference,
+    last_frame,
+    one_after_the_other,
+    placed,
+    water,
+    water_data,
+)
 
 KINDS = ["total", "separate"]
 
@@ -307,3 +317,15 @@ def test_a_damping_time_that_is_too_short(lmp_tree):
     for damp, warned in ((0.03, True), (0.05, False)):
         result = run(lmp_tree, [cluster(f"temp 0.5 0.5 {damp}", run="run 1")])
         assert ("is less than 10 time steps" in result.output + result.log) == warned
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_passes_are_as_many_as_velocities_need_to_converge(lmp_tree, tmp_path, kind):
+    """With two of them SPC/E water drifted at 3 fs by 0.5 kT/ns/dof, separate by 1.5, which four passes do not."""
+    data, decks, words = water_data(tmp_path / "data.water"), [], f"values 5 temp 300 300 100 thermostat {kind}"
+    for name, passes in (("auto", ""), ("two", "passes 2"), ("eight", "passes 8")):
+        text = water(data, fix=f"gear/quat molecule {words} {passes}", dt=2.0, run=f"run 25\n{END.format(name)}")
+        decks.append(text.replace("fix_modify move energy yes", ""))
+    lmp_tree.succeed(one_after_the_other(decks))
+    auto, two, eight = (last_frame(lmp_tree.folder / f"{name}.end") for name in ("auto", "two", "eight"))
+    assert difference(auto, eight) < 0.1 * difference(two, eight)

@@ -18,6 +18,8 @@ SHARE = 0.15
 SAMPLES, MEANS = 400, 100
 #: longest run, in ns
 LONGEST = 0.1
+#: a run that does not tell is made again longer by this factor, if that takes no more than this part of the time there is
+MORE, SHARE_MORE = 4.0, 0.7
 #: standard errors that a drift has to be away from the bound to be judged
 SURE = 2.0
 #: the part of the time left that the first, shorter try of a step takes
@@ -132,7 +134,7 @@ def run(study, keywords, dt, steps, timeout, bound=BOUND, balance=False):
 
 
 def of_step(study, keywords, dt, end, seconds, bound=BOUND):
-    """Drift at a step, from a run that takes so many seconds at most, up to ``longest``.
+    """Drift at a step, from a run that takes so many seconds at most, up to ``longest``, or longer if that does not tell.
 
     Where that ends with an error a run to ``end``, for which the step is recommended, is made as well.
     """
@@ -146,4 +148,9 @@ def of_step(study, keywords, dt, end, seconds, bound=BOUND):
             found = replace(latest, failure=latest.failure or found.failure, gone=latest.gone or found.gone)
         if latest.known or latest.fails:
             break
+    while found.known and not (found.holds or found.refused) and MORE * found.time / dt < SHARE_MORE * affordable:
+        longer = run(study, keywords, dt, MORE * found.time / dt, max(min(2.0 * seconds, study.budget.left()), 0.0), bound)
+        if not longer.known:
+            break
+        found = longer
     return found
