@@ -55,15 +55,15 @@ def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
         for name, mode in MODES.items():
             words, at = f"formulation {formulation} {mode}", f"{formulation}.{name}"
             decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}"))
-            decks.append(continued(pressed(words, run=f"run 50 {SPAN}".replace("run 50", "run 50")), f"{at}.on.50"))
+            decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.on.50"))
             halves = f"run 50 {SPAN}\nwrite_restart {at}.half\nrun 50 {SPAN}"
             decks.append(pressed(words, run=halves))
             decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half"))
             lost.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half").replace("move", "other"))
-    result, found = run(lmp_tree, decks, ranks)
-    for k in range(0, len(decks), 4):
-        assert found[k] == found[k + 1], decks[k + 1]
-        assert found[k + 2] == found[k + 3], decks[k + 3]
+    result, found = ends(lmp_tree, decks, ranks)
+    for k in range(0, len(decks), 2):
+        # an atom at a face may have another image flag
+        assert apart(found[k], found[k + 1]) == 0.0, decks[k + 1]
     tables = result.thermo
     assert len(tables) == 5 * len(MODES) * len(FORMULATIONS)
     for k in range(0, len(tables), 5):
@@ -73,8 +73,8 @@ def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
     if ranks > 1:
         return
     # without its histories and the rate of the box it is another motion
-    _, without = run(lmp_tree, lost)
-    assert all(a != b for a, b in zip(without, found[3::4]))
+    _, without = ends(lmp_tree, lost)
+    assert all(apart(a, b) > 1e-10 for a, b in zip(without, found[3::4]))
 
 
 def test_what_a_restart_file_does_not_fit(lmp_tree):
@@ -105,6 +105,7 @@ def test_ranks_agree(lmp_tree, ranks):
 
 
 def test_molecules_hundreds_of_periods_off(lmp_tree):
+    """LAMMPS' image flags hold 511 periods."""
     trimers(lmp_tree.folder / "data.off", n=3, images=(500, -400, 300))
     decks = [pressed(f"formulation {f} {mode}", **more) for f in FORMULATIONS for mode in MODES.values()
              for more in ({}, dict(box="read_data data.off"))]
@@ -112,7 +113,8 @@ def test_molecules_hundreds_of_periods_off(lmp_tree):
     for here, off in zip(frames[::2], frames[1::2]):
         flags = off[:, 6:9] - here[:, 6:9]
         assert np.abs(flags).max() == 500 and len(np.unique(flags)) > 3
-        assert apart(here, off) < 1e-12
+        # positions in space have one digit less
+        assert apart(here, off) < 1e-11
 
 
 # --- commands -----------------------------------------------------------------------------------
