@@ -268,6 +268,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
+  if (box_change != NO_BOX_CHANGE) ownership->note_box();
   if (step->shows_local_data()) show_bodies();
   if (step->coupling && step->coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
 }

@@ -39,7 +39,7 @@ GAUSS = "pair_style gauss 2.2\npair_coeff * * -4.0 8.0"
 def trimers(path: Path, n: int = 2, spacing: float = 2.0, flat: bool = False, images=(0, 0, 0)) -> Path:
     """A data file of n^3 (flat: n^2) turned trimers without total momentum, all in the first image of the box.
 
-    ``images``: flags that each molecule has in turn, times its number.
+    ``images``: flags of molecules, times -1, 0 or 1 in turn.
     """
     rng = np.random.default_rng(20261124)
     length = n * spacing
@@ -58,7 +58,7 @@ def trimers(path: Path, n: int = 2, spacing: float = 2.0, flat: bool = False, im
             angle = rng.uniform(0, 2 * np.pi)
             turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
         for kind, arm in enumerate(arms @ turn.T, 1):
-            atoms.append((k + 1, kind, *(center + arm), *(int(m) * (k - 3) for m in images)))
+            atoms.append((k + 1, kind, *(center + arm), *(m * (k % 3 - 1) for m in images)))
             moving.append(velocities[k] + np.cross(spins[k], arm))
     across = "-0.5 0.5" if flat else f"0 {length}"
     lines = ["trimers", "", f"{len(atoms)} atoms", "3 atom types", ""]
@@ -94,3 +94,9 @@ def ends(lmp, decks: list[str], ranks: int = 1):
 def largest_change(table, column: str = "Econserve") -> float:
     values = np.array(table[column])
     return np.abs(values - values[0]).max()
+
+
+def distances(rows: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Of the sites of each trimer in a frame, with these edges of the box."""
+    sites = (rows[:, :3] + rows[:, 6:9] * box).reshape(-1, 3, 3)
+    return np.linalg.norm(sites - np.roll(sites, 1, axis=1), axis=2)

@@ -9,7 +9,7 @@ ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
 
 KEYWORDS = """
 formulation values corrector passes compensate start c0 omega momentum project reinit tolerance
-infile
+infile iso aniso x y z tri xy xz yz couple pchain ptemp fixedpoint flip
 """
 ARGUMENTS = {
     **{f"molecule {key}": f"{key}: the value is missing; required: " for key in KEYWORDS.split()},
@@ -124,6 +124,48 @@ ARGUMENTS = {
     "molecule formulation first isokinetic total temp 1 1 0.1": "keyword temp cannot be used with isokinetic: both hold",
     "molecule temp 1 2 0.1 tolerance 1e-8": "temp: Tstart 1 and Tstop 2 differ, which cannot be used with tolerance",
     "molecule tparam 3 2 3": "no keyword tparam of the rigid fixes: a thermostat is integrated",
+    "molecule iso": "iso: Pstart is missing; required: Pstart Pstop Pdamp",
+    "molecule iso 1 1": "iso: Pdamp is missing; required: Pstart Pstop Pdamp",
+    "molecule iso one 1 1": "iso: Pstart one is not a number",
+    "molecule iso 1 nan 1": "iso: Pstop nan is not a number",
+    "molecule aniso 1 1 0": "aniso: Pdamp 0 is not a positive number",
+    "molecule x 1 1 -1": "x: Pdamp -1 is not a positive number",
+    "molecule xy 0 0 inf": "xy: Pdamp inf is not a positive number",
+    "molecule iso 1 1 1 iso 1 1 1": "keyword iso is given twice",
+    "molecule iso 1 1 1 aniso 1 1 1": "keyword iso cannot be used with aniso: it sets all directions",
+    "molecule aniso 1 1 1 z 1 1 1": "keyword aniso cannot be used with z: it sets all directions",
+    "molecule tri 1 1 1 xy 0 0 1": "keyword tri cannot be used with xy: it sets all directions",
+    "molecule tri 1 1 1": "keywords tri, xy, xz and yz require a triclinic box; write change_box all triclinic",
+    "molecule x 1 1 1 y 1 1 1 xy 0 0 1": "require a triclinic box",
+    "molecule iso 1 1 1 couple xyz": "keyword iso cannot be used with couple: it couples all edges",
+    "molecule aniso 1 1 1 couple all": "couple: unknown value all (none, xyz, xy, yz or xz)",
+    "molecule x 1 1 1 y 1 1 2 couple xy": "couple: directions x and y need keywords with the same Pstart, Pstop and Pdamp",
+    "molecule x 1 1 1 y 1 2 1 couple xy": "couple: directions x and y need keywords with the same",
+    "molecule y 1 1 1 couple yz": "couple: directions y and z need keywords with the same",
+    "molecule couple xy": "keyword couple requires a keyword of constant pressure",
+    "molecule pchain 3": "keyword pchain requires a keyword of constant pressure, such as iso",
+    "molecule ptemp 1.0": "keyword ptemp requires a keyword of constant pressure",
+    "molecule temp 1 1 0.1 flip no": "keyword flip requires a keyword of constant pressure",
+    "molecule fixedpoint 0 0 0": "keyword fixedpoint requires a keyword of constant pressure",
+    "molecule iso 1 1 1 fixedpoint 0 0": "fixedpoint: z is missing; required: x y z",
+    "molecule iso 1 1 1 fixedpoint 0 0 up": "fixedpoint: z up is not a number",
+    "molecule iso 1 1 1 pchain 11": "pchain: 11 is not from 0 to 10",
+    "molecule iso 1 1 1 pchain -1": "pchain: -1 is not from 0 to 10",
+    "molecule iso 1 1 1 flip maybe": "flip: unknown value maybe (yes or no)",
+    "molecule iso 1 1 1 ptemp 0": "ptemp: 0 is not a positive number",
+    "molecule iso 1 1 1 temp 1 1 0.1 ptemp 1": "keyword ptemp cannot be used with temp: the mass of the box",
+    "molecule iso 1 1 1 force * on on off": "keyword iso cannot be used with force: with a moving box",
+    "molecule aniso 1 1 1 torque 1 off off off": "keyword aniso cannot be used with torque",
+    "molecule iso 1 1 1 mol some": "keyword iso cannot be used with mol: with a moving box",
+    "molecule iso 1 2 1 tolerance 1e-8": "Pstart 1 and Pstop 2 differ, which cannot be used with tolerance",
+    "molecule formulation first isokinetic total z 1 1 1": "keyword z cannot be used with isokinetic: constant kinetic energy",
+    "molecule iso 1 1 1 dilate all": "no keyword dilate of the rigid fixes: all atoms have to be in bodies",
+    "molecule iso 1 1 1 scalexy no": "no keyword scalexy of the rigid fixes: a tilt changes",
+    "molecule iso 1 1 1 drag 0.1": "no keyword drag of the rigid fixes: the motion of the box",
+    "molecule iso 1 1 1 mtk yes": "no keyword mtk of the rigid fixes: its terms always belong",
+    "molecule iso 1 1 1 nreset 100": "no keyword nreset of the rigid fixes: pressures are those of the present box",
+    "molecule iso 1 1 1 ploop 2": "no keyword ploop of the rigid fixes: chains choose",
+    "molecule iso 1 1 1 pparam 2": "no keyword pparam of the rigid fixes: a barostat is integrated",
     "single mol some": "keyword mol requires bodystyle molecule",
     "molecule formulation first isokinetic total mol some": "keyword mol cannot be used with isokinetic: bodies that come",
     "molecule formulation first isokinetic total force 1 on on off": "keyword force cannot be used",
@@ -263,6 +305,72 @@ def test_thermostats(lmp_tree, name, ranks):
     words, before, after, message = THERMOSTATS[name]
     deck = two_molecules(f"molecule temp 1 1 0.1 {words}", before=before, after=f"{after}\nrun 1")
     lmp_tree.refuse(deck, message, ranks=ranks)
+
+
+# fix and its keywords, before the fix, after it, message
+PRESSURES = {
+    "other atoms": ("group 1 one iso 1 1 1", "group one molecule 1", "", "requires all atoms to be in bodies of this fix, and 3 are not"),
+    "two fixes": (
+        "group 1 one iso 1 1 1",
+        "group one molecule 1\ngroup two molecule 2",
+        "fix second two gear/quat group 1 two",
+        "requires all atoms to be in bodies of this fix, and 3 are not",
+    ),
+    "respa": ("molecule iso 1 1 1", "", "run_style respa 2 1 pair 1", "cannot be used with run_style respa; use run_style verlet"),
+    "a field": ("molecule iso 1 1 1", "", "fix a all addforce 0 0 1", "cannot be used with fix a (addforce), which may change forces"),
+    "at rest": ("molecule iso 1 1 1", "velocity all set 0 0 0", "", "give them velocities first, or add keyword ptemp"),
+    "one body": ("single iso 1 1 1", "", "", "constant pressure requires more than one body"),
+    "extended": (
+        "molecule tri 1 1 1000",
+        "change_box all triclinic",
+        "",
+        "",
+    ),
+    "some tilts": (
+        "molecule x 1 1 1 y 1 1 1 xy 0 0 1",
+        "change_box all triclinic",
+        "",
+        "are given, which are x, y, z, xy, xz and yz; use keyword tri",
+    ),
+    "coupled tilts": (
+        "molecule x 1 1 1 y 1 1 1 z 1 1 1 xy 0 0 1 xz 0 0 1 yz 0 0 1 couple xy",
+        "change_box all triclinic",
+        "",
+        "keyword couple cannot be used with tri, xy, xz and yz",
+    ),
+    "a deforming box": ("molecule iso 1 1 1", "", "fix d all deform 1 x scale 0.9", "a box that does not change size or shape"),
+    "fix nph": ("molecule iso 1 1 1", "", "fix d all nph iso 1 1 1", "is also moved by fix d (nph)"),
+    "press/berendsen": ("molecule iso 1 1 1", "", "fix d all press/berendsen iso 1 1 1", "a box that does not change size or shape"),
+    "fast": ("molecule iso 1 1 0.001", "", "", "Pdamp"),
+    "far": ("molecule iso 1e9 1e9 1000", "", "", "begin nearer to the target pressure, or use a longer Pdamp"),
+    "fix_modify press": ("molecule iso 1 1 1", "", "fix_modify move press thermo_press", "has no fix_modify press: it uses the molecular pressure"),
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("name", PRESSURES)
+def test_pressures(lmp_tree, name, ranks):
+    words, before, after, message = PRESSURES[name]
+    deck = two_molecules(words, before=before, after=f"{after}\nrun 1")
+    lmp_tree.refuse(deck, message, ranks=ranks) if message else lmp_tree.succeed(deck, ranks=ranks)
+
+
+@pytest.mark.parametrize("axis", "xyz")
+def test_a_pressure_along_a_direction_that_is_not_periodic(lmp_tree, axis):
+    boundary = " ".join("f" if c == axis else "p" for c in "xyz")
+    for words in ("iso 1 1 1", f"{axis} 1 1 1"):
+        message = f"the box is not periodic along {axis}, so there is no constant pressure along {axis}"
+        lmp_tree.refuse(two_molecules(f"molecule {words}", boundary=boundary), message, ranks=2)
+    others = " ".join(f"{c} 1 1 10 " for c in "xyz" if c != axis)
+    lmp_tree.succeed(two_molecules(f"molecule {others}", boundary=boundary))
+
+
+@pytest.mark.parametrize("words", ["z 1 1 1", "x 1 1 1 xz 0 0 1", "x 1 1 1 yz 0 0 1"])
+def test_a_pressure_out_of_the_plane(lmp_tree, words):
+    deck = two_molecules(f"molecule {words}").replace("boundary", "dimension 2\nboundary", 1)
+    deck = deck.replace("-10 10\ncreate_box", "-0.5 0.5\ncreate_box")
+    deck = re.sub(r"(single \S+ \S+) \S+", r"\1 0.0", deck)
+    lmp_tree.refuse(deck, "in two dimensions there is no pressure component z, xz or yz", ranks=2)
 
 
 def test_one_part_alone_has_a_temperature(lmp_tree):

@@ -5,7 +5,7 @@ What is refused is in test_bad_input.py, restarts and ranks in test_pressure_run
 
 import numpy as np
 import pytest
-from pressed import GAUSS, ends, frame, largest_change, pressed, trimers
+from pressed import GAUSS, distances, ends, frame, largest_change, pressed, trimers
 from scenes import water_data
 
 EDGES = ("Lx", "Ly", "Lz")
@@ -244,13 +244,6 @@ def test_in_two_dimensions(lmp_tree):
 
 
 # --- invariants ---------------------------------------------------------------------------------
-
-
-def distances(rows, box):
-    """Of the sites of each trimer."""
-    places = rows[:, :3] + rows[:, 6:9] * box
-    sites = places.reshape(-1, 3, 3)
-    return np.linalg.norm(sites - np.roll(sites, 1, axis=1), axis=2)
 
 
 def test_lengths_within_a_molecule_do_not_change(lmp_tree, data):

@@ -36,13 +36,11 @@ struct Law {
   double kt = 1.0, kt_rate = 0.0;
   int chain = 0, box_chain = 0;    ///< lengths; 0: none
   double freedoms = 1.0, period = 1.0, box_period = 1.0;
+  double turning = 0.0;    ///< freedoms of rotation, if it has a chain of its own
 
   Upper pressures(double t) const { return pressure + pressure_rate.scaled(t); }
   double mass_at(double t) const { return mass * (1.0 + t * kt_rate / kt); }
-  double free_components() const
-  {
-    return alike ? 1.0 : std::count(on.begin(), on.end(), true);
-  }
+  double free_components() const { return alike ? 1.0 : std::count(on.begin(), on.end(), true); }
   static double mean(const Upper &p) { return p.trace() / 3.0; }
 
   /// G' without friction of the cell.  kinetic: sum m v_a v_b
@@ -60,10 +58,7 @@ struct Law {
     if (alike) found[0] = found[1] = found[2] = found.trace() / 3.0;
     return found;
   }
-  double twice_box(double t, const Upper &rate) const
-  {
-    return mass_at(t) * rate.contracted(rate);
-  }
+  double twice_box(double t, const Upper &rate) const { return mass_at(t) * rate.contracted(rate); }
   /// S' of Eq. P7
   double heat_rate(double t, const Upper &matrix, const Upper &rate) const
   {
@@ -73,6 +68,10 @@ struct Law {
         0.5 * kt_rate / kt * mass * rate.contracted(rate);
   }
   ChainTarget target(double t) const { return {kt + kt_rate * t, kt_rate, freedoms, period}; }
+  ChainTarget turning_target(double t) const
+  {
+    return {kt + kt_rate * t, kt_rate, turning, period};
+  }
   ChainTarget box_target(double t) const
   {
     return {kt + kt_rate * t, kt_rate, free_components(), box_period};
@@ -90,14 +89,15 @@ struct Host {
 
   Integrator integrator{scheme, h};
   CellHistory cell{scheme};
-  Chain chain{std::max(law.chain, 1)}, box_chain{std::max(law.box_chain, 1)};
+  Chain chain{std::max(law.chain, 1)}, turning{std::max(law.chain, 1)},
+      box_chain{std::max(law.box_chain, 1)};
   ScalarHistory heat{};
   vector<vector<double>> rows{};
   vector<Integrator::Pending> pending{};
   Upper matrix = Upper::one();
   Met met{};
   long steps = 0;
-  /// Mutants: nodes of a start in the first cell; and b is that of the start alone.
+  /// A mutant: all nodes of a start in the first cell.
   bool frozen_nodes = false;
 
   double time() const { return steps * h; }
@@ -121,13 +121,14 @@ struct Host {
     }
     return sum;
   }
-  double twice_kinetic() const
+  double twice_turning() const
   {
-    double sum = kinetic().trace();
+    double sum = 0.0;
     for (size_t b = 0; b < scaled.size(); ++b)
       sum += 2.0 * rotational_energy(bodies[b], scaled[b].omega_body);
     return sum;
   }
+  double twice_kinetic() const { return kinetic().trace() + twice_turning(); }
   double volume() const { return law.volume * matrix.determinant(); }
 
   /// H'
@@ -147,9 +148,10 @@ struct Host {
     matrix.inverse().times(load.force, found.force);
     return found;
   }
-  CellFriction friction(double xi) const
+  CellFriction friction(double xi) const { return friction(xi, xi); }
+  CellFriction friction(double xi, double of_turning) const
   {
-    Friction alpha = Multipliers{xi, xi};
+    Friction alpha = Multipliers{xi, of_turning};
     alpha.implicit = std::fabs(h * xi) > 1.0e-3;
     return CellFriction(alpha, matrix, rate, law.b);
   }
@@ -307,16 +309,20 @@ struct Host {
   {
     const int n = scheme.values();
     const double before = time() - h;
-    if (law.chain) { ASSERT_TRUE(chain.advance(law.target(before), twice_kinetic(), h, n)); }
+    const double twice = law.turning > 0.0 ? kinetic().trace() : twice_kinetic();
+    if (law.chain) { ASSERT_TRUE(chain.advance(law.target(before), twice, h, n)); }
+    if (law.turning > 0.0) {
+      ASSERT_TRUE(turning.advance(law.turning_target(before), twice_turning(), h, n));
+    }
     if (law.box_chain) {
-      ASSERT_TRUE(
-          box_chain.advance(law.box_target(before), law.twice_box(time(), rate), h, n));
+      ASSERT_TRUE(box_chain.advance(law.box_target(before), law.twice_box(time(), rate), h, n));
     }
     cell.pass(law.drive(time(), matrix, kinetic(), met.virial),
               law.box_chain ? box_chain.friction() : 0.0, h);
     matrix = cell.matrix();
     rate = cell.rate(h);
-    const CellFriction now = friction(law.chain ? chain.friction() : 0.0);
+    const double xi = law.chain ? chain.friction() : 0.0;
+    const CellFriction now = friction(xi, law.turning > 0.0 ? turning.friction() : xi);
     for (size_t b = 0; b < bodies.size(); ++b) {
       integrator.correct_pass(bodies[b], scaled_load(met.loads[b]), now, rows[b].data(),
                               pending[b]);
@@ -327,6 +333,7 @@ struct Host {
   void finish()
   {
     if (law.chain) chain.conclude();
+    if (law.turning > 0.0) turning.conclude();
     if (law.box_chain) box_chain.conclude();
     cell.finish();
     matrix = cell.matrix();

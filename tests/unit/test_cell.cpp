@@ -148,8 +148,7 @@ Acting acting(const Vector &y)
       site[b][k] = of[k] + found.arm[b][k];
       found.rotation += body.inertia[k] * of[15 + k] * of[15 + k];
     }
-    for (int k = 0; k < 6; ++k)
-      found.kinetic[k] += body.mass * of[3 + ROW[k]] * of[3 + COLUMN[k]];
+    for (int k = 0; k < 6; ++k) found.kinetic[k] += body.mass * of[3 + ROW[k]] * of[3 + COLUMN[k]];
   }
   for (size_t b = 0; b < 2; ++b) {
     for (int k = 0; k < 3; ++k) {
@@ -157,8 +156,7 @@ Acting acting(const Vector &y)
       found.force[b][k] = (b == 0 ? apart : -apart) - site[b][k];
       found.energy += 0.5L * site[b][k] * site[b][k] + 0.25L * apart * apart;
     }
-    for (int k = 0; k < 6; ++k)
-      found.virial[k] += found.force[b][ROW[k]] * y[BODY * b + COLUMN[k]];
+    for (int k = 0; k < 6; ++k) found.virial[k] += found.force[b][ROW[k]] * y[BODY * b + COLUMN[k]];
   }
   return found;
 }
@@ -205,15 +203,20 @@ Vector flow(const Law &law, Real t, const Vector &y)
           xi * w[i];
     }
   }
-  const Real gm[6] = {g[0] * m[0], g[1] * m[1], g[2] * m[2], g[1] * m[3] + g[3] * m[2],
-                      g[0] * m[4] + g[5] * m[3] + g[4] * m[2], g[0] * m[5] + g[5] * m[1]};
+  const Real gm[6] = {g[0] * m[0],
+                      g[1] * m[1],
+                      g[2] * m[2],
+                      g[1] * m[3] + g[3] * m[2],
+                      g[0] * m[4] + g[5] * m[3] + g[4] * m[2],
+                      g[0] * m[5] + g[5] * m[1]};
   const Real volume = law.volume * m[0] * m[1] * m[2];
   const Real box_xi = law.box_chain ? y[BOX0] : 0.0L;
   Real push[6], pressure[6], twice_box = 0.0L, mean = 0.0L;
   for (int k = 0; k < 6; ++k) {
     pressure[k] = law.pressure[k] + t * law.pressure_rate[k];
     if (k < 3) mean += pressure[k] / 3.0L;
-    push[k] = now.kinetic[k] + now.virial[k] - volume * pressure[k] + (k < 3 ? law.b[k] * twice : 0);
+    push[k] =
+        now.kinetic[k] + now.virial[k] - volume * pressure[k] + (k < 3 ? law.b[k] * twice : 0);
   }
   if (law.alike) push[0] = push[1] = push[2] = (push[0] + push[1] + push[2]) / 3.0L;
   Real &heat = rate[HEAT];
@@ -362,8 +365,8 @@ TEST(CellFriction, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
     }
     for (int i = 0; i < 3; ++i) {
       // the drag of the common motion has no part in what is solved for
-      const double drag = mass * (friction.drag.row_times(i, then.common) -
-                                  friction.drag.row_times(i, friction.common));
+      const double drag = mass *
+          (friction.drag.row_times(i, then.common) - friction.drag.row_times(i, friction.common));
       residual[i] = then.force(i, met[i], momentum, mass) + drag;
     }
   }
@@ -499,9 +502,12 @@ TEST(Cell, OrdersOfPositionBoxAndEnergyAreThoseOfTheScheme)
             const Errors last = errors(scheme, law, narrow, exact);
             const double halvings = std::log2(wide / narrow);
             // forces that depend on velocities leave n - 1
-            EXPECT_GT(std::log2(first.end / last.end) / halvings, n - 1.5) << scheme << mode << chains;
-            EXPECT_GT(std::log2(first.cell / last.cell) / halvings, n - 1.8) << scheme << mode << chains;
-            EXPECT_GT(std::log2(first.energy / last.energy) / halvings, n - 1.65) << scheme << mode << chains;
+            EXPECT_GT(std::log2(first.end / last.end) / halvings, n - 1.5)
+                << scheme << mode << chains;
+            EXPECT_GT(std::log2(first.cell / last.cell) / halvings, n - 1.8)
+                << scheme << mode << chains;
+            EXPECT_GT(std::log2(first.energy / last.energy) / halvings, n - 1.65)
+                << scheme << mode << chains;
           }
     }
 }

@@ -276,7 +276,8 @@ TEST(Isokinetic, TheConstraintTakesWhatTheLoadsDo)
     alpha.translation *= 1.01;
     KineticSums wrong;
     for (int b = 0; b < 2; ++b)
-      wrong.add(host.bodies[b], damped_load(host.bodies[b], host.states[b], met[b], Friction(alpha)),
+      wrong.add(host.bodies[b],
+                damped_load(host.bodies[b], host.states[b], met[b], Friction(alpha)),
                 host.states[b]);
     EXPECT_GT(std::fabs(wrong.power()), 1.0e-4);
   }
@@ -356,8 +357,8 @@ TEST(Isokinetic, AnAxisWithoutInertiaIsLeftAlone)
   const Multipliers alpha = {-0.2, -0.2}, grown = {1.05, 1.05};
   const Integrator integrator(scheme, h);
   vector<double> rows(scheme.size());
-  seed(scheme, rod, local_series(rod, state, damped_load(rod, state, Load{}, Friction(alpha)), h), h, h,
-       rows.data());
+  seed(scheme, rod, local_series(rod, state, damped_load(rod, state, Load{}, Friction(alpha)), h),
+       h, h, rows.data());
   const double axis = rows[Scheme::OMEGA + 2], across = rows[Scheme::OMEGA];
   for (int n = 0; n < 1000; ++n) {
     integrator.predict(rows.data());

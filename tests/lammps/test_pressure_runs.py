@@ -1,0 +1,238 @@
+"""Constant pressure from run to run: restarts, ranks, images, ramps, changes between runs."""
+
+import numpy as np
+import pytest
+from pressed import distances, ends, frame, largest_change, pressed, trimers
+from scenes import FORMULATIONS, one_after_the_other
+
+MODES = {
+    "NPH": "iso 0.3 0.3 1.0",
+    "NPT": "aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8 thermostat separate",
+    "ramps": "x 0.3 0.9 1.0 y 0.5 -0.2 1.0 temp 0.6 0.9 0.8 pchain 2",
+}
+SPAN = "start 0 stop 100"
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path):
+    return trimers(tmp_path / "data.trimers", n=3)
+
+
+def whole(folder, name):
+    """A written dump with its box, as text."""
+    return (folder / name).read_text()
+
+
+def run(lmp, decks, ranks=1):
+    """Runs decks that leave end0.dump, end1.dump, ...; the result and their texts."""
+    decks = [deck.replace("end.dump", f"end{k}.dump") for k, deck in enumerate(decks)]
+    result = lmp.succeed(one_after_the_other(decks), ranks=ranks)
+    return result, [whole(lmp.folder, f"end{k}.dump") for k in range(len(decks))]
+
+
+def apart(one, other):
+    """Largest difference of places and velocities; an atom may be at either face of the box."""
+    changed = np.abs(one - other)[:, :6]
+    wrapped = changed[:, :3] > 1.0
+    assert wrapped.sum() < 4
+    changed[:, :3][wrapped] = 0.0
+    return changed.max()
+
+
+def continued(deck, file):
+    """A deck that reads a restart file instead of the data."""
+    return deck.replace("read_data data.trimers", f"read_restart {file}")
+
+
+# --- restarts -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
+    """Bit for bit: what a file of command restart, written on the way, and one of write_restart go on with."""
+    decks, lost = [], []
+    for formulation in FORMULATIONS:
+        for name, mode in MODES.items():
+            words, at = f"formulation {formulation} {mode}", f"{formulation}.{name}"
+            decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}"))
+            decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.on.50"))
+            halves = f"run 50 {SPAN}\nwrite_restart {at}.half\nrun 50 {SPAN}"
+            decks.append(pressed(words, run=halves))
+            decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half"))
+            lost.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half").replace("move", "other"))
+    result, found = ends(lmp_tree, decks, ranks)
+    for k in range(0, len(decks), 2):
+        # an atom at a face may have another image flag
+        assert apart(found[k], found[k + 1]) == 0.0, decks[k + 1]
+    tables = result.thermo
+    assert len(tables) == 5 * len(MODES) * len(FORMULATIONS)
+    for k in range(0, len(tables), 5):
+        before, after = tables[k], tables[k + 1]
+        for column in ("Econserve", "f_move[9]", "f_move[15]", "f_move[22]", "f_move[26]", "f_move[27]"):
+            assert before[column][5:] == pytest.approx(after[column][-6:], rel=1e-12, abs=1e-13), column
+    if ranks > 1:
+        return
+    # without its histories and the rate of the box it is another motion
+    _, without = ends(lmp_tree, lost)
+    assert all(apart(a, b) > 1e-10 for a, b in zip(without, found[3::4]))
+
+
+def test_what_a_restart_file_does_not_fit(lmp_tree):
+    """Other components or another chain begin anew, and a message says which keyword."""
+    decks = [pressed(MODES["NPT"], run="run 20\nwrite_restart half\nrun 20")]
+    for words in ("iso 0.3 0.3 1.0 temp 0.7 0.7 0.8 thermostat separate", MODES["NPT"] + " pchain 1"):
+        decks.append(continued(pressed(words, run="run 20"), "half"))
+    result, _ = run(lmp_tree, decks)
+    for said in ("iso, aniso, x, y, z or couple", "pchain"):
+        assert said in result.words
+    assert all(largest_change(table) < 1e-6 for table in result.thermo)
+
+
+# --- ranks and images ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_ranks_agree(lmp_tree, ranks):
+    """To 1e-10 over 100 steps, with edges and conserved energy."""
+    decks = [pressed(f"formulation {f} {mode}") for f in FORMULATIONS for mode in MODES.values()]
+    alone, one = ends(lmp_tree, decks)
+    result, many = ends(lmp_tree, decks, ranks)
+    for a, b in zip(one, many):
+        assert apart(a, b) < 1e-10
+    for a, b in zip(alone.thermo, result.thermo):
+        for column in ("Lx", "Ly", "Volume", "Econserve", "f_move[15]"):
+            assert a[column] == pytest.approx(b[column], rel=1e-10, abs=1e-10), column
+
+
+def test_molecules_hundreds_of_periods_off(lmp_tree):
+    """LAMMPS' image flags hold 511 periods."""
+    trimers(lmp_tree.folder / "data.off", n=3, images=(500, -400, 300))
+    decks = [pressed(f"formulation {f} {mode}", **more) for f in FORMULATIONS for mode in MODES.values()
+             for more in ({}, dict(box="read_data data.off"))]
+    _, frames = ends(lmp_tree, decks)
+    for here, off in zip(frames[::2], frames[1::2]):
+        flags = off[:, 6:9] - here[:, 6:9]
+        assert np.abs(flags).max() == 500 and len(np.unique(flags)) > 3
+        # positions in space have one digit less
+        assert apart(here, off) < 1e-11
+
+
+# --- commands -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mode", ["NPH", "NPT", "ramps"])
+def test_ways_to_run_the_same_steps(lmp_tree, mode):
+    """In parts, with `every`, `pre no`, `run 0` in between, on the way of a ramp too."""
+    parts = {
+        "one": f"run 100 {SPAN}",
+        "two": f"run 40 {SPAN}\nrun 60 {SPAN}",
+        "looks": f"run 0 {SPAN}\nrun 40 {SPAN}\nrun 0\nrun 0 {SPAN}\nrun 60 {SPAN}",
+        "pre": f"run 40 {SPAN}\nrun 60 pre no {SPAN}",
+        "every": f'run 100 {SPAN} every 20 "print x"',
+        "upto": f"run 40 upto {SPAN}\nrun 0\nrun 100 upto {SPAN}",
+    }
+    for formulation in FORMULATIONS:
+        decks = [pressed(f"formulation {formulation} {MODES[mode]}", run=text) for text in parts.values()]
+        result, found = ends(lmp_tree, decks)
+        assert "another target" not in result.log
+        for name, rows in zip(parts, found):
+            assert apart(rows, found[0]) < 1e-12, name
+        values = np.concatenate([table["Econserve"] for table in result.thermo])
+        assert np.ptp(values) < 1e-5
+
+
+def test_a_run_of_zero_steps_changes_no_bit(lmp_tree):
+    for mode in MODES.values():
+        runs = [f"run 40 {SPAN}\n{look}run 60 {SPAN}" for look in ("", "run 0\n", f"run 0 {SPAN}\nrun 0\n")]
+        _, found = run(lmp_tree, [pressed(mode, run=text) for text in runs])
+        assert found[0] == found[1] == found[2]
+
+
+def test_other_targets_and_steps_between_runs(lmp_tree):
+    """The conserved energy is constant in each run; the box goes on from its rate."""
+    words = MODES["NPT"]
+    other = words.replace("0.3 0.3", "0.8 0.8")
+    again = f"unfix move\nfix move all gear/quat molecule {other}"
+    decks = [
+        pressed(words, run=f"run 50\n{again}\nrun 50"),
+        pressed(words, run="run 50\ntimestep 0.01\nrun 50\ntimestep 0.0025\nrun 50"),
+        pressed("iso 0.3 0.9 1.0", run="run 50\nrun 50"),
+    ]
+    result, _ = ends(lmp_tree, decks)
+    assert result.log.count("the barostat has another target") >= 1
+    for table in result.thermo:
+        assert largest_change(table) < 1e-6
+    one, two = result.thermo[2:4]
+    assert two["f_move[23]"][0] == pytest.approx(one["f_move[23]"][-1], rel=1e-9)
+    assert two["Econserve"][0] == pytest.approx(one["Econserve"][-1], rel=1e-9)
+
+
+def test_another_step_keeps_the_motion(lmp_tree):
+    """Beside a run whose steps are all short; a rate of the box that is lost is seen."""
+    words = "values 7 " + MODES["NPT"]
+    decks = [
+        pressed(words, 0.0025, run="run 160"),
+        pressed(words, 0.005, run="run 40\ntimestep 0.0025\nrun 80"),
+    ]
+    result, (exact, found) = ends(lmp_tree, decks)
+    assert apart(exact, found) < 1e-7
+    assert result.thermo[2]["Lx"][-1] == pytest.approx(result.thermo[0]["Lx"][-1], abs=1e-9)
+
+
+def test_change_box_between_runs(lmp_tree):
+    """Remapped, the box has another volume and goes on from its rate; molecules keep their shape."""
+    change = "change_box all x scale 1.02 y scale 0.99 remap"
+    decks = [pressed(MODES["NPT"], run=f"run 50\n{change}\nrun 50")]
+    decks.append(pressed(MODES["NPT"], run="run 50"))
+    result, frames = ends(lmp_tree, decks)
+    before, after, alone = result.thermo
+    assert after["Lx"][0] == pytest.approx(1.02 * before["Lx"][-1], rel=1e-12)
+    assert after["Ly"][0] == pytest.approx(0.99 * before["Ly"][-1], rel=1e-12)
+    for table in (before, after):
+        assert largest_change(table) < 1e-6
+    assert after["f_move[23]"][0] == pytest.approx(before["f_move[23]"][-1], rel=1e-6)
+    boxes = [[table[c][-1] for c in ("Lx", "Ly", "Lz")] for table in (after, alone)]
+    lengths = [distances(rows, np.array(box)) for rows, box in zip(frames, boxes)]
+    assert np.abs(lengths[0] / lengths[1] - 1.0).max() < 1e-12
+
+
+def test_a_fix_that_comes_again_has_lost_its_rate(lmp_tree):
+    """Without unfix the box keeps moving; a new fix begins with a box at rest."""
+    fix = f"unfix move\nfix move all gear/quat molecule {MODES['NPT']}\n"
+    result, _ = ends(lmp_tree, [pressed(MODES["NPT"], run=f"run 50\n{fix}run 50")])
+    before, after = result.thermo
+    assert abs(before["f_move[23]"][-1]) > 1e-3 and after["f_move[23]"][0] == 0.0
+    assert largest_change(after) < 1e-6
+
+
+def test_forces_that_reach_far(lmp_tree):
+    """Water with PPPM and a tail: the conserved energy has an order in each formulation."""
+    from test_pressure import scaled_water
+
+    scaled_water(lmp_tree.folder / "data.water", (1.0, 1.0, 1.0))
+    deck = """
+units real
+atom_style full
+atom_modify map array
+read_data data.water
+pair_style hybrid/overlay lj/gromacs 3.5 4.6 coul/long 4.6
+pair_coeff * * lj/gromacs 0.0 1.0
+pair_coeff 1 1 lj/gromacs 0.1553 3.166
+pair_coeff * * coul/long
+pair_modify table 0
+kspace_style pppm 1e-7
+kspace_modify order 7
+neigh_modify every 1 delay 0 exclude molecule/intra all
+timestep {dt}
+fix move all gear/quat molecule {words} iso 1000 1000 300 temp 300 300 100
+thermo_style custom step pe ke ecouple econserve vol
+thermo_modify norm no format float %.17g
+thermo 1
+run {steps}
+"""
+    decks = [deck.format(dt=dt, steps=round(40 / dt), words=words)
+             for words in ("values 5", "formulation first values 6") for dt in (4.0, 2.0)]
+    result = lmp_tree.succeed(one_after_the_other(decks))
+    changes = [largest_change(table) for table in result.thermo]
+    assert np.log2(changes[0] / changes[1]) > 3.4 and np.log2(changes[2] / changes[3]) > 4.4, changes
+    assert largest_change(result.thermo[0], "Volume") > 1.0
