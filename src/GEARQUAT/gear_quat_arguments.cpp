@@ -319,7 +319,7 @@ std::string Arguments::words_of_control() const
 std::string Arguments::words_of_pressure() const
 {
   std::string text;
-  for (const char *keyword : {"iso", "aniso", "x", "y", "z"}) {
+  for (const char *keyword : {"iso", "aniso", "tri", "x", "y", "z", "xy", "xz", "yz"}) {
     if (!given.count(keyword)) continue;
     const auto &numbers = given.at(keyword).numbers;
     text += fmt::format("{} {:g} {:g} {:g}, ", keyword, numbers[0], numbers[1], numbers[2]);

@@ -269,7 +269,7 @@ static Effect temperature(const Arguments &args)
 static Effect barostat(const Arguments &args)
 {
   return {"barostat", args.pressure.any(),
-          args.pressure.any() ? args.words_of_pressure() : "no keyword iso, aniso, x, y or z",
+          args.pressure.any() ? args.words_of_pressure() : "the box does not move",
           NOTHING};
 }
 

@@ -29,9 +29,19 @@ TELLS = 0.05
 #: why a deck is refused: message of the fix, name, and where the manual says so
 REASONS = (
     (
-        r"keyword (?:iso|aniso|x|y|z|couple|pchain|dilate) of the rigid fixes: there is no barostat",
-        "barostat",
-        r"There are no keywords [^.]*\*iso\*",
+        r"keyword dilate of the rigid fixes",
+        "keyword dilate",
+        r"There are no keywords [^.]*\*dilate\*",
+    ),
+    (
+        r"constant pressure requires all atoms to be in bodies",
+        "pressure beside atoms in no body",
+        r"require all atoms to be in bodies of this fix",
+    ),
+    (
+        r"constant pressure cannot be used with (?:fix|run_style)",
+        "pressure beside other forces or r-RESPA",
+        r"Other fixes that may change forces",
     ),
     (
         r"keyword langevin of the rigid fixes",
@@ -43,7 +53,7 @@ REASONS = (
     (
         r"does not change size or shape",
         "box that changes",
-        r"No fix may change the size or shape of the box",
+        r"No other fix may change the size or shape of the box",
     ),
     (
         r"is in (?:both )?groups?|in two groups|more than one",

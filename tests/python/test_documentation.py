@@ -115,7 +115,7 @@ SCENE = """
 units lj
 atom_style molecular
 atom_modify map array
-region box block -10 10 -10 10 -10 10
+region box prism -10 10 -10 10 -10 10 0 0 0
 create_box 1 box
 create_atoms 1 single 0.0 0.0 0.0
 create_atoms 1 single 1.0 0.0 0.0

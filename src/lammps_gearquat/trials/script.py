@@ -175,7 +175,7 @@ class FixLine:
     @property
     def has_chains(self):
         """Whether a thermostat or a box moves with the bodies of this line, of fix gear/quat."""
-        return bool({"temp", *PRESSURES} & set(dict(self.keywords)))
+        return bool({"temp", *PRESSURES, "tri", "xy", "xz", "yz"} & set(dict(self.keywords)))
 
     @property
     def isokinetic(self):

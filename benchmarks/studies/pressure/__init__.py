@@ -1,0 +1,198 @@
+"""Constant pressure: a box with a history beside fix rigid/npt/small and fix shake with fix npt.
+
+Water with PPPM (``examples/water_npt``) shows how the conserved energy drifts, whether the box has its share of the
+energy, which density comes out, and what a step costs.  A crystal of dumbbells under a different pressure along each axis
+(``in.crystal``) shows whether each component is the one that was asked for.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.engine import EXAMPLES, Finding, Job, Measurement, Study, Table
+from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope, with_error
+
+OURS, RIGID, SHAKE = "gear", "rigid", "shake"
+METHODS = {OURS: "`fix gear/quat`", RIGID: "`fix rigid/npt/small`", SHAKE: "`fix shake` and `fix npt`"}
+WATER, CRYSTAL = EXAMPLES / "water_npt" / "in.water_npt", Path(__file__).parent / "in.crystal"
+MOLECULES, TEMPERATURE, BOLTZMANN = 216, 300.0, 0.0019872067
+FREEDOMS = 6 * MOLECULES - 3
+#: SPC/E at 298 K and 1 atm, g/mL
+PUBLISHED = 0.998
+DUMBBELLS_KT, TARGETS = 0.5, (0.5, 0.5, 1.5)
+#: kT/ns per degree of freedom
+DRIFT = 0.05
+COMPONENTS = ("xx", "yy", "zz")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Sizes of all runs.  Times of water in fs; ``density``: lengths of the runs for the density, 0 for none."""
+
+    dts: tuple = (1.0, 2.0)
+    time: float = 5_000.0
+    equilibrate: float = 500.0
+    sample: float = 20.0
+    seeds: tuple = (1, 2)
+    crystal: int = 20_000
+    settle: int = 3_000
+    density: float = 0.0
+    settle_density: float = 20_000.0
+    blocks: int = 8
+    timed_steps: int = 100
+    rounds: int = 3
+
+
+QUICK = Plan((2.0,), 1_000.0, 200.0, seeds=(1,), crystal=2_000, settle=1_000, blocks=4, timed_steps=20, rounds=1)
+#: hours of computing
+FULL = Plan(time=30_000.0, seeds=(1, 2, 3, 4), crystal=200_000, density=2_000_000.0, blocks=20, timed_steps=500)
+
+
+@dataclass(frozen=True)
+class Results:
+    """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns; ``density``: method ->
+    columns; ``seconds``: method -> of a step, by round."""
+
+    plan: Plan
+    water: dict
+    crystal: dict
+    density: dict
+    seconds: dict
+
+    def drift(self, method, dt):
+        """Drift of the conserved energy in kT/ns/dof: mean over seeds, and its standard error."""
+        unit = 1e6 / (BOLTZMANN * TEMPERATURE * FREEDOMS)
+        runs = [self.water[method, dt, seed] for seed in self.plan.seeds]
+        rates, errors = zip(*(slope(run["Time"], run["v_conserved"]) for run in runs))
+        return unit * np.mean(rates), unit * math.hypot(*errors) / len(errors)
+
+    def share_of_box(self):
+        """Twice the kinetic energy of the box in the crystal over kT, for its three degrees of freedom: 3."""
+        return mean_of_series([2.0 * self.crystal[OURS]["f_move[26]"] / DUMBBELLS_KT], self.plan.blocks)
+
+    def work(self):
+        """Mean of (P_aa - P_a) V over kT in the crystal, (3,): -1 each."""
+        run = self.crystal[OURS]
+        series = [(run[f"f_move[{16 + k}]"] - TARGETS[k]) * run["Volume"] / DUMBBELLS_KT for k in range(3)]
+        means = [mean_of_series([one], self.plan.blocks) for one in series]
+        return Mean(*(np.array([getattr(m, name) for m in means]) for name in ("value", "error")), means[0].freedoms)
+
+    def pressures(self, method):
+        """Components of the pressure in the crystal, (3,)."""
+        run = self.crystal[method]
+        means = [mean_of_series([run[name]], self.plan.blocks) for name in ("Pxx", "Pyy", "Pzz")]
+        return Mean(*(np.array([getattr(m, name) for m in means]) for name in ("value", "error")), means[0].freedoms)
+
+    def expected(self):
+        """What these are (3,): the targets less kT/V, by which a box that moves alone differs."""
+        return np.array(TARGETS) - DUMBBELLS_KT / self.crystal[OURS]["Volume"].mean()
+
+
+def keep(finished):
+    """Columns of the last run: name -> (n,)."""
+    return {name: np.array(values) for name, values in finished.thermo.items()}
+
+
+def measure(lab, plan=None):
+    """Results."""
+    plan = plan or (QUICK if lab.quick else FULL if lab.full else Plan())
+
+    def sizes(variables):
+        dt = variables["dt"]
+        rounded = {"steps": plan.time, "equilibrate": plan.equilibrate, "every": plan.sample}
+        return {name: round(time / dt) for name, time in rounded.items()}
+
+    axes = {"method": tuple(METHODS), "dt": plan.dts, "seed": plan.seeds}
+    with lab.share(0.6 if not plan.density else 0.1):
+        water = lab.sweep("water", WATER, axes, keep, sizes, keep=True)
+    settings = {"steps": plan.crystal, "equilibrate": plan.settle}
+    with lab.share(0.3 if not plan.density else 0.1):
+        crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings, keep=True)
+    dt, density = plan.dts[-1], {}
+    if plan.density:
+        settings = {"steps": round(plan.density / dt), "equilibrate": round(plan.settle_density / dt)}
+        settings |= {"dt": dt, "every": round(5 * plan.sample / dt), "temperature": 298.0}
+        with lab.share(0.75):
+            density = lab.sweep("density", WATER, {"method": (OURS, SHAKE)}, keep, settings, keep=True)
+    # the start is not timed
+    sizes = {"dt": dt, "copies": 2, "equilibrate": 10, "steps": plan.timed_steps}
+    jobs = {f"timed_{method}": Job(WATER, {"method": method} | sizes, plan.timed_steps) for method in METHODS}
+    with lab.share(0.1 if not plan.density else 0.05):
+        timed = lab.in_turn(jobs, plan.rounds)
+    seconds = {m: [run.log.seconds / plan.timed_steps for run in timed[f"timed_{m}"]] for m in METHODS}
+    return Results(plan, water, crystal, density, seconds)
+
+
+# --- judging ------------------------------------------------------------------------------------
+def largest(mean, right):
+    """Largest deviation of a Mean (n,) from what is right, in standard errors, and how large it may be."""
+    return float(np.abs((mean.value - right) / mean.error).max()), allowed(np.size(mean.value), mean.freedoms)
+
+
+def measurements(results):
+    """Measurements with their bounds."""
+    plan, rows, errors = results.plan, [], {"spec": ".1f", "unit": "standard errors"}
+    for dt in plan.dts:
+        for method, words in METHODS.items():
+            drift, error = results.drift(method, dt)
+            # for sure: beyond two standard errors
+            most = {"most": DRIFT + 2.0 * error, "least": -DRIFT - 2.0 * error} if method == OURS else {}
+            what = f"drift of the conserved energy of water at {dt:g} fs, {words}"
+            rows.append(Measurement(what, drift, error, ".2g", "kT/ns/dof", **most))
+    shift, most = largest(results.pressures(OURS), results.expected())
+    rows.append(Measurement("crystal, largest deviation of a component of the pressure: ours", shift, most=most, **errors))
+    shift, most = largest(results.pressures(RIGID), results.expected())
+    rows.append(Measurement("the same: `rigid/npt/small`", shift, least=most, **errors))
+    shift, most = largest(results.work(), -1.0)
+    rows.append(Measurement("crystal, largest deviation of a mean (P − P₀) V from −kT", shift, most=most, **errors))
+    shift, most = largest(results.share_of_box(), 3.0)
+    rows.append(Measurement("crystal, deviation of the box's kinetic energy from 3 kT/2", shift, most=most, **errors))
+    for method, mean in densities(results).items():
+        rows.append(Measurement(f"density of SPC/E, {METHODS[method]}", mean.value, mean.error, ".4f", "g/mL"))
+    for method in (RIGID, SHAKE):
+        ratio = min(results.seconds[OURS]) / min(results.seconds[method])
+        rows.append(Measurement(f"time of a step over that of {METHODS[method]}", ratio, spec=".2f"))
+    return rows
+
+
+def densities(results):
+    """Method -> Mean of the density in g/mL."""
+    return {method: mean_of_series([run["Density"]], results.plan.blocks) for method, run in results.density.items()}
+
+
+def water_table(results):
+    """A row for each step and method."""
+    rows = [
+        [f"{dt:g}", METHODS[method], with_error(*results.drift(method, dt), sign="+")]
+        for dt, method in itertools.product(results.plan.dts, METHODS)
+    ]
+    return Table(("step, fs", "method", "drift, kT/ns/dof"), rows)
+
+
+def crystal_table(results):
+    """A row for each component."""
+    rows, work, expected = [], results.work(), results.expected()
+    ours, rigid = (results.pressures(method) for method in (OURS, RIGID))
+    for k, name in enumerate(COMPONENTS):
+        cells = [with_error(mean.value[k], mean.error[k]) for mean in (ours, rigid, work)]
+        rows.append([name, f"{TARGETS[k]:g}", f"{expected[k]:.4f}", *cells])
+    header = ("component", "target", "mean that belongs to it", METHODS[OURS], METHODS[RIGID], "(P − P₀) V/kT")
+    return Table(header, rows)
+
+
+def find(results):
+    """Finding of Results."""
+    tables = {"water": water_table(results), "crystal": crystal_table(results)}
+    context = {"plan": results.plan, "molecules": MOLECULES, "share": results.share_of_box(), "published": PUBLISHED}
+    context["densities"] = {
+        METHODS[method]: with_error(float(mean.value), float(mean.error)) for method, mean in densities(results).items()
+    }
+    context["ratios"] = {METHODS[m]: min(results.seconds[OURS]) / min(results.seconds[m]) for m in (RIGID, SHAKE)}
+    context["with_error"] = with_error
+    return Finding(measurements(results), tables, context=context)
+
+
+STUDY = Study("pressure", "Constant pressure", 400.0, measure, find)
