@@ -103,7 +103,7 @@ TEST(FastEdge, ByLoadsIsOfTheMeanSquareFrequency)
   s.omega_body[1] = 0.5;
   const double torque[3] = {0.0, 0.7 * 0.5 * 4.0, 0.0};    // omega' = 4 omega
   sums.add(BALL, s, torque);
-  EXPECT_NEAR(sums.fast_edge(0.1), 1.75 * 0.4, 1e-12);
+  EXPECT_NEAR(sums.fast_edge(0.1), 3.0 * 0.4, 1e-12);
   s.omega_body[1] = 0.0;
   MotionSums at_rest, nothing;
   at_rest.add(BALL, s, torque);
