@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from pressed import distances, ends, frame, largest_change, pressed, trimers
+import pressed as scene
+from pressed import REPULSIVE, distances, ends, largest_change, trimers
 from scenes import FORMULATIONS, one_after_the_other
 
 MODES = {
@@ -16,6 +17,10 @@ SPAN = "start 0 stop 100"
 @pytest.fixture(autouse=True)
 def data(tmp_path):
     return trimers(tmp_path / "data.trimers", n=3)
+
+
+def pressed(words, dt=0.005, **settings):
+    return scene.pressed(words, dt, pair=REPULSIVE, **settings)
 
 
 def whole(folder, name):
@@ -51,15 +56,19 @@ def continued(deck, file):
 def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
     """Bit for bit: what a file of command restart, written on the way, and one of write_restart go on with."""
     decks, lost = [], []
+    # the grid of ranks that LAMMPS chooses depends on the edges
+    ordered = {"processors": "1 1 *"}
     for formulation in FORMULATIONS:
         for name, mode in MODES.items():
             words, at = f"formulation {formulation} {mode}", f"{formulation}.{name}"
-            decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}"))
-            decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.on.50"))
+            decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}", **ordered))
+            # which also says when neighbor lists are built
+            rest = f"restart 50 {at}.then.*\nrun 50 {SPAN}"
+            decks.append(continued(pressed(words, run=rest, **ordered), f"{at}.on.50"))
             halves = f"run 50 {SPAN}\nwrite_restart {at}.half\nrun 50 {SPAN}"
-            decks.append(pressed(words, run=halves))
-            decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half"))
-            lost.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half").replace("move", "other"))
+            decks.append(pressed(words, run=halves, **ordered))
+            decks.append(continued(pressed(words, run=f"run 50 {SPAN}", **ordered), f"{at}.half"))
+            lost.append(continued(pressed(words, run=f"run 50 {SPAN}", **ordered), f"{at}.half").replace("move", "other"))
     result, found = ends(lmp_tree, decks, ranks)
     for k in range(0, len(decks), 2):
         # an atom at a face may have another image flag
@@ -215,10 +224,9 @@ units real
 atom_style full
 atom_modify map array
 read_data data.water
-pair_style hybrid/overlay lj/gromacs 3.5 4.6 coul/long 4.6
-pair_coeff * * lj/gromacs 0.0 1.0
-pair_coeff 1 1 lj/gromacs 0.1553 3.166
-pair_coeff * * coul/long
+pair_style lj/charmm/coul/long 3.5 4.6
+pair_coeff * * 0.0 1.0
+pair_coeff 1 1 0.1553 3.166
 pair_modify table 0
 kspace_style pppm 1e-7
 kspace_modify order 7
