@@ -9,7 +9,7 @@ ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
 
 KEYWORDS = """
 formulation values corrector passes compensate start c0 omega momentum project reinit tolerance
-infile iso aniso x y z tri xy xz yz couple pchain ptemp fixedpoint flip
+infile couple pchain ptemp flip
 """
 ARGUMENTS = {
     **{f"molecule {key}": f"{key}: the value is missing; required: " for key in KEYWORDS.split()},
@@ -314,7 +314,7 @@ PRESSURES = {
         "group 1 one iso 1 1 1",
         "group one molecule 1\ngroup two molecule 2",
         "fix second two gear/quat group 1 two",
-        "requires all atoms to be in bodies of this fix, and 3 are not",
+        "a box that does not change size or shape, and fix move (gear/quat) changes it",
     ),
     "respa": ("molecule iso 1 1 1", "", "run_style respa 2 1 pair 1", "cannot be used with run_style respa; use run_style verlet"),
     "a field": ("molecule iso 1 1 1", "", "fix a all addforce 0 0 1", "cannot be used with fix a (addforce), which may change forces"),
@@ -338,9 +338,9 @@ PRESSURES = {
         "",
         "keyword couple cannot be used with tri, xy, xz and yz",
     ),
-    "a deforming box": ("molecule iso 1 1 1", "", "fix d all deform 1 x scale 0.9", "a box that does not change size or shape"),
-    "fix nph": ("molecule iso 1 1 1", "", "fix d all nph iso 1 1 1", "is also moved by fix d (nph)"),
-    "press/berendsen": ("molecule iso 1 1 1", "", "fix d all press/berendsen iso 1 1 1", "a box that does not change size or shape"),
+    "a deforming box": ("molecule iso 1 1 1", "", "fix d all deform 1 x scale 0.9", "Must not have multiple fixes change box parameter x"),
+    "fix nph": ("molecule iso 1 1 1", "", "fix d all nph iso 1 1 1", "Must not have multiple fixes change box parameter x"),
+    "press/berendsen": ("molecule iso 1 1 1", "", "fix d all press/berendsen iso 1 1 1", "Must not have multiple fixes change box parameter x"),
     "fast": ("molecule iso 1 1 0.001", "", "", "Pdamp"),
     "far": ("molecule iso 1e9 1e9 1000", "", "", "begin nearer to the target pressure, or use a longer Pdamp"),
     "fix_modify press": ("molecule iso 1 1 1", "", "fix_modify move press thermo_press", "has no fix_modify press: it uses the molecular pressure"),

@@ -51,15 +51,19 @@ def continued(deck, file):
 def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
     """Bit for bit: what a file of command restart, written on the way, and one of write_restart go on with."""
     decks, lost = [], []
+    # the grid of ranks that LAMMPS chooses depends on the edges
+    ordered = {"processors": "1 1 *"}
     for formulation in FORMULATIONS:
         for name, mode in MODES.items():
             words, at = f"formulation {formulation} {mode}", f"{formulation}.{name}"
-            decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}"))
-            decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.on.50"))
+            decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}", **ordered))
+            # which also says when neighbor lists are built
+            rest = f"restart 50 {at}.then.*\nrun 50 {SPAN}"
+            decks.append(continued(pressed(words, run=rest, **ordered), f"{at}.on.50"))
             halves = f"run 50 {SPAN}\nwrite_restart {at}.half\nrun 50 {SPAN}"
-            decks.append(pressed(words, run=halves))
-            decks.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half"))
-            lost.append(continued(pressed(words, run=f"run 50 {SPAN}"), f"{at}.half").replace("move", "other"))
+            decks.append(pressed(words, run=halves, **ordered))
+            decks.append(continued(pressed(words, run=f"run 50 {SPAN}", **ordered), f"{at}.half"))
+            lost.append(continued(pressed(words, run=f"run 50 {SPAN}", **ordered), f"{at}.half").replace("move", "other"))
     result, found = ends(lmp_tree, decks, ranks)
     for k in range(0, len(decks), 2):
         # an atom at a face may have another image flag
