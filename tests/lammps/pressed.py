@@ -36,9 +36,12 @@ write_dump all custom {end} id x y z vx vy vz ix iy iz modify sort id format flo
 GAUSS = "pair_style gauss 2.2\npair_coeff * * -4.0 8.0"
 
 
-def trimers(path: Path, n: int = 2, spacing: float = 2.0, flat: bool = False, images=(0, 0, 0)) -> Path:
+def trimers(
+    path: Path, n: int = 2, spacing: float = 2.0, flat: bool = False, images=(0, 0, 0), change=None
+) -> Path:
     """A data file of n^3 (flat: n^2) turned trimers without total momentum, all in the first image of the box.
 
+    ``change``: an upper triangular matrix that deforms box and centers, not molecules; the box is triclinic then.
     ``images``: flags of molecules, times -1, 0 or 1 in turn.
     """
     rng = np.random.default_rng(20261124)
@@ -53,6 +56,7 @@ def trimers(path: Path, n: int = 2, spacing: float = 2.0, flat: bool = False, im
     for k, cell in enumerate(cells):
         center = (np.array(cell) + 0.5 + rng.normal(size=3) * 0.06) * spacing
         turn = random_rotation(rng)
+        center = center if change is None else change @ center
         if flat:
             center[2] = velocities[k, 2] = spins[k, 0] = spins[k, 1] = 0.0
             angle = rng.uniform(0, 2 * np.pi)
@@ -62,7 +66,12 @@ def trimers(path: Path, n: int = 2, spacing: float = 2.0, flat: bool = False, im
             moving.append(velocities[k] + np.cross(spins[k], arm))
     across = "-0.5 0.5" if flat else f"0 {length}"
     lines = ["trimers", "", f"{len(atoms)} atoms", "3 atom types", ""]
-    lines += [f"0 {length} xlo xhi", f"0 {length} ylo yhi", f"{across} zlo zhi", "", "Masses", ""]
+    edges = [f"0 {length} xlo xhi", f"0 {length} ylo yhi", f"{across} zlo zhi"]
+    if change is not None:
+        h = length * np.array(change)
+        edges = [f"0 {h[k, k]:.17g} {c}lo {c}hi" for k, c in enumerate("xyz")]
+        edges.append(f"{h[0, 1]:.17g} {h[0, 2]:.17g} {h[1, 2]:.17g} xy xz yz")
+    lines += [*edges, "", "Masses", ""]
     lines += [f"{k} {mass}" for k, mass in enumerate(MASSES, 1)]
     for name, rows in (("Atoms # molecular", atoms), ("Velocities", moving)):
         lines += ["", name, ""] + [" ".join(f"{w:.17g}" for w in (k, *row)) for k, row in enumerate(rows, 1)]

@@ -211,7 +211,7 @@ def test_an_edge_without_a_keyword_stays(lmp_tree):
 
 def test_the_fixed_point_stays(lmp_tree):
     """The place where the center of the box is by default, and another."""
-    columns = "thermo_style custom step xlo xhi ylo yhi zlo zhi econserve\nthermo_modify format float %.17g"
+    columns = "thermo_style custom step xlo xhi ylo yhi zlo zhi econserve\nthermo_modify norm no format float %.17g"
     decks = [
         pressed(f"iso 0.5 0.5 1.0 {point}", run=columns + "\nrun 100")
         for point in ("", "fixedpoint 2 2 2", "fixedpoint 0 1 -3")
@@ -268,7 +268,7 @@ def test_lengths_within_a_molecule_do_not_change(lmp_tree, data):
 def test_the_total_momentum_stays_zero(lmp_tree):
     """In a long run with chains, whose friction would let rounding grow; and a drift stays what it is."""
     momentum = "\n".join(f"variable p{c} equal mass(all)*vcm(all,{c})" for c in "xyz")
-    columns = momentum + "\nthermo_style custom step econserve v_px v_py v_pz\nthermo_modify format float %.17g\n"
+    columns = momentum + "\nthermo_style custom step econserve v_px v_py v_pz\nthermo_modify norm no format float %.17g\n"
     drift = "velocity all set 0.3 -0.2 0.1 sum yes"
     words = "iso 0.3 0.3 1.0 temp 0.7 0.7 0.8"
     decks = [pressed(words, 0.01, run=columns + "run 20000", before=b) for b in ("", drift)]

@@ -1,0 +1,110 @@
+"""Constant pressure in triclinic boxes: orders, the virial's components, flips, restarts and ranks."""
+
+import numpy as np
+import pytest
+from pressed import ends, largest_change, pressed, trimers
+
+TILTS = ("Xy", "Xz", "Yz")
+SHAPE = np.array([[1.0, 0.2, -0.1], [0.0, 1.05, 0.15], [0.0, 0.0, 0.97]])
+COLUMNS = "thermo_style custom step pe ecouple econserve lx ly lz xy xz yz vol f_move[*]\nthermo_modify norm no format float %.17g\n"
+MODES = {
+    "tri": "tri 0.3 0.3 1.0 temp 0.7 0.7 0.8",
+    "shear ramps": "x 0.3 0.5 2.0 y -0.2 0.1 2.0 z 0.6 0.5 2.5 xy 0.1 0.2 2.2 xz -0.1 0.0 2.0 yz 0.2 0.2 2.0 ptemp 0.7",
+    "tilted and iso": "iso 0.3 0.3 1.0 temp 0.7 0.7 0.8 pchain 2",
+    "tilted and unequal": "x 0.3 0.5 1.0 z 0.2 0.1 1.0 temp 0.7 0.7 0.8",
+}
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path):
+    return trimers(tmp_path / "data.trimers", change=SHAPE)
+
+
+def tilted(words, dt=0.005, steps=100, **settings):
+    settings["run"] = COLUMNS + settings.get("run", f"run {steps}")
+    return pressed(words, dt, steps, **settings)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_orders(lmp_tree, mode):
+    time, steps = 0.4, (0.02, 0.01, 0.005)
+    schemes = {"values 5": 5, "values 7": 7, "formulation first values 8": 8}
+    decks = [tilted(f"values 9 {MODES[mode]}", 0.0025, 160)]
+    decks += [tilted(f"{s} {MODES[mode]}", dt, round(time / dt)) for s in schemes for dt in steps]
+    result, frames = ends(lmp_tree, decks)
+    tables = result.thermo
+
+    def errors(k):
+        box = max(np.abs(np.subtract(tables[k][c], tables[0][c])).max() for c in ("Lx", "Ly", "Lz", *TILTS))
+        return np.abs(frames[k] - frames[0])[:, 3:6].max(), box, largest_change(tables[k])
+
+    found = np.array([errors(k) for k in range(1, len(decks))]).reshape(len(schemes), len(steps), 3)
+    for values, of in zip(schemes.values(), found):
+        slopes = np.log2(of[0] / of[-1]) / (len(steps) - 1)
+        assert (slopes > values - 1.6).all(), (values, slopes)
+    assert largest_change(tables[0], "Xy") > 1e-3
+
+
+def test_a_tilt_follows_its_edge(lmp_tree):
+    """Without shear components the tilts change by the factor of their length, as with scalexy yes."""
+    result, _ = ends(lmp_tree, [tilted(MODES["tilted and iso"]), tilted(MODES["tilted and unequal"])])
+    for table in result.thermo:
+        t = {name: np.array(column) for name, column in table.items()}
+        for tilt, edge in (("Xy", "Ly"), ("Xz", "Lz"), ("Yz", "Lz")):
+            # M is diagonal: row times column of h
+            row = {"X": "Lx", "Y": "Ly"}[tilt[0]]
+            assert t[tilt] / t[row] == pytest.approx(t[tilt][0] / t[row][0], rel=1e-13), edge
+
+
+def test_virial_is_the_change_of_energy_with_the_box(lmp_tree):
+    """All six components, of which those below the diagonal are not needed."""
+    places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    d = 1e-3
+    changes = [np.eye(3)]
+    for a, b in places:
+        for by in (-2, -1, 1, 2):
+            changes.append(np.eye(3))
+            changes[-1][a, b] += d * by
+    decks = []
+    for k, change in enumerate(changes):
+        trimers(lmp_tree.folder / f"data.{k}", change=change @ SHAPE)
+        rest = dict(box=f"read_data data.{k}", before="velocity all set 0 0 0", run=COLUMNS + "run 0")
+        decks.append(pressed("tri 0 0 100 ptemp 1", **rest))
+    result, _ = ends(lmp_tree, decks)
+    tables = result.thermo
+    virial = np.array([tables[0][f"f_move[{k}]"][0] for k in range(16, 22)]) * tables[0]["Volume"][0]
+    energy = np.array([t["PotEng"][0] for t in tables[1:]]).reshape(6, 4)
+    found = -(energy @ np.array([1, -8, 8, -1])) / (12 * d)
+    scale = np.abs(virial).max()
+    assert np.abs(virial - found).max() < 1e-7 * scale and np.abs(virial[3:]).min() > 1e-4 * scale
+    assert (np.abs(1.01 * virial - found) > 1e-7 * scale).all()
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_flip_changes_nothing_but_the_box(lmp_tree, ranks):
+    """A shear stress tilts the box by more than half a period; velocities are those without a flip."""
+    strained = np.array([[1.0, 0.585, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    trimers(lmp_tree.folder / "data.strained", change=strained)
+    words = "x 0.3 0.3 1.0 y 0.3 0.3 1.0 z 0.3 0.3 1.0 xy -2.0 -2.0 1.0 xz 0 0 1.0 yz 0 0 1.0 temp 0.7 0.7 0.8 flip {}"
+    settings = dict(box="box tilt large\nread_data data.strained", processors="1 1 *")
+    decks = [tilted(words.format(flip), **settings) for flip in ("yes", "no")]
+    result, (flipped, as_before) = ends(lmp_tree, decks, ranks)
+    with_flip, without = result.thermo
+    assert max(without["Xy"]) > 2.45 and min(with_flip["Xy"]) < -1.0
+    for column in ("Lx", "Econserve", "f_move[15]"):
+        assert with_flip[column] == pytest.approx(without[column], rel=1e-10)
+    assert np.abs(flipped - as_before)[:, 3:6].max() < 1e-10
+    assert largest_change(with_flip) < 1e-4
+
+
+def test_restart_and_ranks(lmp_tree):
+    words = MODES["shear ramps"]
+    span = "start 0 stop 100"
+    decks = [
+        tilted(words, run=f"run 50 {span}\nwrite_restart half\nrun 50 {span}"),
+        tilted(words, run=f"run 50 {span}", box="read_restart half"),
+    ]
+    _, (one, again) = ends(lmp_tree, decks)
+    assert (one == again).all()
+    _, (many,) = ends(lmp_tree, decks[:1], 2)
+    assert np.abs(many - one)[:, 3:6].max() < 1e-10
