@@ -32,8 +32,9 @@ thermo {thermo}
 {run}
 write_dump all custom {end} id x y z vx vy vz ix iy iz modify sort id format float %.17g
 """
-#: repulsive and smooth to rounding at the cutoff
+#: repulsive, and at the cutoff rounding; the first is not in the tree
 GAUSS = "pair_style gauss 2.2\npair_coeff * * -4.0 8.0"
+REPULSIVE = "pair_style buck 2.6\npair_coeff * * 60.0 0.08 0.0"
 
 
 def trimers(

@@ -24,7 +24,7 @@ MODES = {
     "iso NPH": "iso 0.3 0.3 1.0",
     "iso": "iso 0.3 0.3 1.0 temp 0.7 0.7 0.8",
     "aniso ramps": "aniso 0.3 0.9 1.0 temp 0.6 0.9 0.8 thermostat separate",
-    "unequal ramps": "x 0.3 0.5 1.0 y -0.2 0.1 1.5 z 0.8 0.6 0.7 pchain 2 ptemp 0.8",
+    "unequal ramps": "x 0.3 0.5 1.0 y -0.2 0.1 1.5 z 0.8 0.6 1.1 pchain 2 ptemp 0.8",
     "separate": "x 0.3 0.5 1.0 z 0.8 0.6 1.0 temp 0.6 0.7 0.8 thermostat separate",
 }
 SCHEMES = {
@@ -38,13 +38,13 @@ SCHEMES = {
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_orders_of_velocities_edges_and_energy(lmp_tree, mode):
+def test_orders_of_velocities_edges_and_energy(lmp_wheel, mode):
     """By slope, beside a run with more values and shorter steps."""
     time, steps = 0.4, (0.02, 0.01, 0.005)
     decks = [pressed(f"values 9 {MODES[mode]}", 0.0025, round(time / 0.0025))]
     decks += [pressed(f"{s} {MODES[mode]}", dt, round(time / dt)) for s in SCHEMES for dt in steps]
     decks += [pressed(f"values 7 {MODES[mode]}".replace("0.3", "0.303"), 0.005, 80)]
-    result, frames = ends(lmp_tree, decks)
+    result, frames = ends(lmp_wheel, decks)
     tables = result.thermo
 
     def errors(k):
@@ -55,14 +55,15 @@ def test_orders_of_velocities_edges_and_energy(lmp_tree, mode):
     for values, of in zip(SCHEMES.values(), found.reshape(len(SCHEMES), len(steps), 3)):
         slopes = np.log2(of[0] / of[-1]) / (len(steps) - 1)
         # velocities act on forces: n - 1
-        assert (slopes > values - 1.6).all(), (values, slopes)
+        # the energy's error is a difference of two, whose signs differ at some steps
+        assert (slopes > values - np.array([1.6, 1.6, 1.9])).all(), (values, slopes)
     # a pressure 1 % off is another motion
     assert errors(len(decks) - 1)[0] > 1e4 * found[5][0]
 
 
-def test_the_columns_belong_together(lmp_tree):
+def test_the_columns_belong_together(lmp_wheel):
     deck = pressed("values 7 x 0.3 0.5 1.0 y -0.2 0.1 1.0 z 0.8 0.6 1.0 temp 0.7 0.7 0.8", run="run 100")
-    result, _ = ends(lmp_tree, [deck])
+    result, _ = ends(lmp_wheel, [deck])
     t = {name: np.array(column) for name, column in result.thermo[0].items()}
     f = lambda n: t[f"f_move[{n}]"]
     ramps = np.linspace(0, 1, 11)
@@ -154,7 +155,7 @@ def scaled_water(path, factors):
 
 
 @pytest.mark.parametrize("name", FORCES)
-def test_virial_is_the_change_of_energy_with_the_box(lmp_tree, name):
+def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel, name):
     """Centers are scaled and molecules are not: differences of fourth order."""
     force, tolerance = FORCES[name]
     decks, d = [], 2e-4
@@ -162,9 +163,9 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_tree, name):
         factors = np.ones(3)
         if axis is not None:
             factors[axis] = np.exp(d * (-2, -1, 1, 2)[(k - 1) % 4])
-        scaled_water(lmp_tree.folder / f"data.{k}", factors)
+        scaled_water(lmp_wheel.folder / f"data.{k}", factors)
         decks.append(WATER.format(data=f"data.{k}", force=force))
-    result = lmp_tree.succeed("\nclear\n".join(decks))
+    result = lmp_wheel.succeed("\nclear\n".join(decks))
     tables = result.thermo
     virial = np.array([tables[0][f"f_move[{k}]"][0] for k in PRESSURES]) * tables[0]["Volume"][0] / NKTV2P
     energy = np.array([t["PotEng"][0] for t in tables[1:]]).reshape(3, 4)
@@ -174,11 +175,11 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_tree, name):
     assert np.abs(1.01 * virial - change).max() > tolerance * scale
 
 
-def test_tail_corrections_are_those_of_thermo(lmp_tree):
+def test_tail_corrections_are_those_of_thermo(lmp_wheel):
     force = "pair_style lj/cut 4.5\npair_coeff * * 0.0 1.0\npair_coeff 1 1 0.1553 3.166\npair_modify tail {}\n"
-    water_data(lmp_tree.folder / "data.0", shift=1.65)
+    water_data(lmp_wheel.folder / "data.0", shift=1.65)
     decks = [WATER.format(data="data.0", force=force.format(tail)) for tail in ("no", "yes")]
-    without, with_tail = lmp_tree.succeed("\nclear\n".join(decks)).thermo
+    without, with_tail = lmp_wheel.succeed("\nclear\n".join(decks)).thermo
     of_thermo = with_tail["Press"][0] - without["Press"][0]
     assert abs(of_thermo) > 1.0
     for k in PRESSURES:
@@ -191,9 +192,9 @@ COUPLES = {"xyz": (0, 1, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 
 
 @pytest.mark.parametrize("couple", ["none", *COUPLES])
-def test_coupled_edges_are_the_same(lmp_tree, couple):
+def test_coupled_edges_are_the_same(lmp_wheel, couple):
     """To the last digits, whatever the corner of the box; others differ."""
-    result, _ = ends(lmp_tree, [pressed(f"aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8 couple {couple}", run="run 200")])
+    result, _ = ends(lmp_wheel, [pressed(f"aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8 couple {couple}", run="run 200")])
     edges = np.array([result.thermo[0][c] for c in EDGES])
     assert largest_change(result.thermo[0]) < 1e-6
     tied = COUPLES.get(couple, (0,))
@@ -202,21 +203,21 @@ def test_coupled_edges_are_the_same(lmp_tree, couple):
         assert apart < 1e-14 * edges.max() if k in tied else apart > 1e-5, k
 
 
-def test_an_edge_without_a_keyword_stays(lmp_tree):
-    result, _ = ends(lmp_tree, [pressed("y 0.5 0.5 1.0 temp 0.7 0.7 0.8", run="run 200")])
+def test_an_edge_without_a_keyword_stays(lmp_wheel):
+    result, _ = ends(lmp_wheel, [pressed("y 0.5 0.5 1.0 temp 0.7 0.7 0.8", run="run 200")])
     table = result.thermo[0]
     assert set(table["Lx"]) == set(table["Lz"]) == {4.0} and largest_change(table, "Ly") > 1e-3
     assert largest_change(table) < 1e-6
 
 
-def test_the_fixed_point_stays(lmp_tree):
+def test_the_fixed_point_stays(lmp_wheel):
     """The place where the center of the box is by default, and another."""
     columns = "thermo_style custom step xlo xhi ylo yhi zlo zhi econserve\nthermo_modify norm no format float %.17g"
     decks = [
         pressed(f"iso 0.5 0.5 1.0 {point}", run=columns + "\nrun 100")
         for point in ("", "fixedpoint 2 2 2", "fixedpoint 0 1 -3")
     ]
-    result, frames = ends(lmp_tree, decks)
+    result, frames = ends(lmp_wheel, decks)
     for table, (x, y, z) in zip(result.thermo, [(2, 2, 2), (2, 2, 2), (0, 1, -3)]):
         edge = np.array(table["Xhi"]) - np.array(table["Xlo"])
         for name, at in (("X", x), ("Y", y), ("Z", z)):
@@ -227,13 +228,13 @@ def test_the_fixed_point_stays(lmp_tree):
     assert np.abs(frames[0] - frames[2])[:, 3:6].max() < 1e-12
 
 
-def test_in_two_dimensions(lmp_tree):
+def test_in_two_dimensions(lmp_wheel):
     """The box keeps its height; orders as in three."""
-    trimers(lmp_tree.folder / "data.flat", n=3, flat=True)
+    trimers(lmp_wheel.folder / "data.flat", n=3, flat=True)
     flat = dict(dimension=2, data="data.flat", pair=GAUSS, after="fix flat all enforce2d")
     steps = (0.02, 0.01)
     decks = [pressed("values 7 aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8", dt, round(0.4 / dt), **flat) for dt in steps]
-    result, frames = ends(lmp_tree, decks)
+    result, frames = ends(lmp_wheel, decks)
     changes = [largest_change(table) for table in result.thermo]
     assert changes[1] < 1e-6 and np.log2(changes[0] / changes[1]) > 5.4
     for table, rows in zip(result.thermo, frames):
@@ -246,18 +247,18 @@ def test_in_two_dimensions(lmp_tree):
 # --- invariants ---------------------------------------------------------------------------------
 
 
-def test_lengths_within_a_molecule_do_not_change(lmp_tree, data):
+def test_lengths_within_a_molecule_do_not_change(lmp_wheel, data):
     """Over many steps, and in 400 runs of 10 steps."""
     words = "aniso 0.3 0.6 1.0 temp 0.7 0.9 0.8"
     many = "label loop\nvariable i loop 400\nrun 10 start 0 stop 4000\nnext i\njump SELF loop"
     settings = dict(thermo=1000, box="read_data data.trimers")
     begin = pressed(words, 1e-9, run="run 0", **settings)
     decks = [begin, pressed(words, 0.005, run="run 20000", **settings)]
-    result, frames = ends(lmp_tree, decks)
-    lmp_tree.succeed(pressed(words, 0.005, run=many, end="parts.dump", **settings))
-    frames.append(frame(lmp_tree.folder / "parts.dump"))
+    result, frames = ends(lmp_wheel, decks)
+    lmp_wheel.succeed(pressed(words, 0.005, run=many, end="parts.dump", **settings))
+    frames.append(frame(lmp_wheel.folder / "parts.dump"))
     boxes = [[table[c][-1] for c in EDGES] for table in result.thermo]
-    text = (lmp_tree.folder / "parts.dump").read_text().splitlines()
+    text = (lmp_wheel.folder / "parts.dump").read_text().splitlines()
     boxes.append([float(hi) - float(lo) for lo, hi in (line.split() for line in text[5:8])])
     before, *after = (distances(rows, np.array(box)) for rows, box in zip(frames, boxes))
     assert abs(np.subtract(boxes[1:], 4.0)).max() > 0.01
@@ -265,21 +266,22 @@ def test_lengths_within_a_molecule_do_not_change(lmp_tree, data):
         assert np.abs(found / before - 1.0).max() < 1e-12
 
 
-def test_the_total_momentum_stays_zero(lmp_tree):
+def test_the_total_momentum_stays_zero(lmp_wheel):
     """In a long run with chains, whose friction would let rounding grow; and a drift stays what it is."""
     momentum = "\n".join(f"variable p{c} equal mass(all)*vcm(all,{c})" for c in "xyz")
     columns = momentum + "\nthermo_style custom step econserve v_px v_py v_pz\nthermo_modify norm no format float %.17g\n"
     drift = "velocity all set 0.3 -0.2 0.1 sum yes"
     words = "iso 0.3 0.3 1.0 temp 0.7 0.7 0.8"
     decks = [pressed(words, 0.01, run=columns + "run 20000", before=b) for b in ("", drift)]
-    result, _ = ends(lmp_tree, decks)
-    for table, exact in zip(result.thermo, (np.zeros(3), 24.0 * np.array([0.3, -0.2, 0.1]))):
+    result, _ = ends(lmp_wheel, decks)
+    drifts = ((np.zeros(3), 1e-12), (24.0 * np.array([0.3, -0.2, 0.1]), 1e-8))
+    for table, (exact, most) in zip(result.thermo, drifts):
         found = np.array([table[f"v_p{c}"] for c in "xyz"])
-        assert np.abs(found - exact[:, None]).max() < 1e-10
+        assert np.abs(found - exact[:, None]).max() < most
         assert largest_change(table) < 1e-3
 
 
-def test_a_crystal_bears_a_negative_pressure(lmp_tree):
+def test_a_crystal_bears_a_negative_pressure(lmp_wheel):
     """Each component is the one that is asked for, averaged over a run; unequal ones too."""
     pair = "pair_style morse 2.5\npair_coeff * * 0.0 2.0 1.0 2.5\npair_coeff 1 1 2.0 4.0 1.0 2.5\npair_modify shift yes"
     crystal = """lattice fcc 1.4
@@ -292,7 +294,7 @@ variable own atom id
 set group all mol v_own
 velocity all create 0.1 87287"""
     targets = (-0.6, -0.2, -0.4)
-    words = "temp 0.05 0.05 0.5 " + " ".join(f"{c} {p} {p} 1.0" for c, p in zip("xyz", targets))
+    words = "temp 0.05 0.05 0.5 " + " ".join(f"{c} {p} {p} 5.0" for c, p in zip("xyz", targets))
     run = """run 2000
 reset_timestep 0
 variable gx equal f_move[23]^2
@@ -302,14 +304,14 @@ fix mean all ave/time 1 4000 4000 f_move[16] f_move[17] f_move[18] v_gx v_gy v_g
 run 40000"""
     deck = pressed(words, 0.01, box=crystal, pair=pair, run=run, thermo=1000)
     deck = deck.replace("exclude molecule/intra all", "")
-    result = lmp_tree.succeed(deck)
-    rows = np.loadtxt(lmp_tree.folder / "mean.dat")[:, 1:]
+    result = lmp_wheel.succeed(deck)
+    rows = np.loadtxt(lmp_wheel.folder / "mean.dat")[:, 1:]
     mean, error = rows.mean(axis=0), rows.std(axis=0) / np.sqrt(len(rows))
     print(mean, error)
     assert (np.abs(mean[:3] - targets) < 4 * error[:3]).all() and error[:3].max() < 0.02
     # what their mean would be
     assert np.abs(mean[:3] + 0.4).max() > 10 * error[:3].max()
-    mass = (3 * 107 + 3) * 0.05 / 3
+    mass = (3 * 107 + 3) * 0.05 * 25 / 3
     assert (np.abs(mass * mean[3:] - 0.05) < 4 * mass * error[3:]).all()
     assert mass * error[3:].max() < 0.05 * 0.05
     # of 2000: the potential is cut off
@@ -320,7 +322,7 @@ run 40000"""
 # --- ensembles ----------------------------------------------------------------------------------
 
 
-def test_pressure_times_volume_and_the_energy_of_the_box(lmp_tree):
+def test_pressure_times_volume_and_the_energy_of_the_box(lmp_wheel):
     """<(P - P0) V> = -kT and three times W <G^2> = kT: what wrong weights of the trace fail."""
     target, kt, damp = 1.0, 1.5, 0.5
     run = f"""variable work equal (f_move[15]-{target})*vol
@@ -330,8 +332,8 @@ reset_timestep 0
 fix mean all ave/time 1 5000 5000 v_work v_rate file mean.dat
 run 200000"""
     words = f"values 5 iso {target} {target} {damp} temp {kt} {kt} 0.5 thermostat separate"
-    lmp_tree.succeed(pressed(words, 0.01, run=run, thermo=20000), timeout=500)
-    rows = np.loadtxt(lmp_tree.folder / "mean.dat")[:, 1:]
+    lmp_wheel.succeed(pressed(words, 0.01, run=run, thermo=20000), timeout=500)
+    rows = np.loadtxt(lmp_wheel.folder / "mean.dat")[:, 1:]
     mean, error = rows.mean(axis=0), rows.std(axis=0) / np.sqrt(len(rows))
     print(mean, error)
     mass = (21 + 3) * kt * damp**2

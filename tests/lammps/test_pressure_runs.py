@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from pressed import distances, ends, frame, largest_change, pressed, trimers
+import pressed as scene
+from pressed import REPULSIVE, distances, ends, largest_change, trimers
 from scenes import FORMULATIONS, one_after_the_other
 
 MODES = {
@@ -16,6 +17,10 @@ SPAN = "start 0 stop 100"
 @pytest.fixture(autouse=True)
 def data(tmp_path):
     return trimers(tmp_path / "data.trimers", n=3)
+
+
+def pressed(words, dt=0.005, **settings):
+    return scene.pressed(words, dt, pair=REPULSIVE, **settings)
 
 
 def whole(folder, name):
@@ -219,10 +224,9 @@ units real
 atom_style full
 atom_modify map array
 read_data data.water
-pair_style hybrid/overlay lj/gromacs 3.5 4.6 coul/long 4.6
-pair_coeff * * lj/gromacs 0.0 1.0
-pair_coeff 1 1 lj/gromacs 0.1553 3.166
-pair_coeff * * coul/long
+pair_style lj/charmm/coul/long 3.5 4.6
+pair_coeff * * 0.0 1.0
+pair_coeff 1 1 0.1553 3.166
 pair_modify table 0
 kspace_style pppm 1e-7
 kspace_modify order 7

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from pressed import ends, largest_change, pressed, trimers
+from pressed import REPULSIVE, ends, largest_change, pressed, trimers
 
 TILTS = ("Xy", "Xz", "Yz")
 SHAPE = np.array([[1.0, 0.2, -0.1], [0.0, 1.05, 0.15], [0.0, 0.0, 0.97]])
@@ -26,12 +26,12 @@ def tilted(words, dt=0.005, steps=100, **settings):
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_orders(lmp_tree, mode):
+def test_orders(lmp_wheel, mode):
     time, steps = 0.4, (0.02, 0.01, 0.005)
     schemes = {"values 5": 5, "values 7": 7, "formulation first values 8": 8}
     decks = [tilted(f"values 9 {MODES[mode]}", 0.0025, 160)]
     decks += [tilted(f"{s} {MODES[mode]}", dt, round(time / dt)) for s in schemes for dt in steps]
-    result, frames = ends(lmp_tree, decks)
+    result, frames = ends(lmp_wheel, decks)
     tables = result.thermo
 
     def errors(k):
@@ -41,13 +41,13 @@ def test_orders(lmp_tree, mode):
     found = np.array([errors(k) for k in range(1, len(decks))]).reshape(len(schemes), len(steps), 3)
     for values, of in zip(schemes.values(), found):
         slopes = np.log2(of[0] / of[-1]) / (len(steps) - 1)
-        assert (slopes > values - 1.6).all(), (values, slopes)
+        assert (slopes > values - np.array([1.6, 1.6, 1.9])).all(), (values, slopes)
     assert largest_change(tables[0], "Xy") > 1e-3
 
 
-def test_a_tilt_follows_its_edge(lmp_tree):
+def test_a_tilt_follows_its_edge(lmp_wheel):
     """Without shear components the tilts change by the factor of their length, as with scalexy yes."""
-    result, _ = ends(lmp_tree, [tilted(MODES["tilted and iso"]), tilted(MODES["tilted and unequal"])])
+    result, _ = ends(lmp_wheel, [tilted(MODES["tilted and iso"]), tilted(MODES["tilted and unequal"])])
     for table in result.thermo:
         t = {name: np.array(column) for name, column in table.items()}
         for tilt, edge in (("Xy", "Ly"), ("Xz", "Lz"), ("Yz", "Lz")):
@@ -56,7 +56,7 @@ def test_a_tilt_follows_its_edge(lmp_tree):
             assert t[tilt] / t[row] == pytest.approx(t[tilt][0] / t[row][0], rel=1e-13), edge
 
 
-def test_virial_is_the_change_of_energy_with_the_box(lmp_tree):
+def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel):
     """All six components, of which those below the diagonal are not needed."""
     places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     d = 1e-3
@@ -67,10 +67,10 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_tree):
             changes[-1][a, b] += d * by
     decks = []
     for k, change in enumerate(changes):
-        trimers(lmp_tree.folder / f"data.{k}", change=change @ SHAPE)
+        trimers(lmp_wheel.folder / f"data.{k}", change=change @ SHAPE)
         rest = dict(box=f"read_data data.{k}", before="velocity all set 0 0 0", run=COLUMNS + "run 0")
         decks.append(pressed("tri 0 0 100 ptemp 1", **rest))
-    result, _ = ends(lmp_tree, decks)
+    result, _ = ends(lmp_wheel, decks)
     tables = result.thermo
     virial = np.array([tables[0][f"f_move[{k}]"][0] for k in range(16, 22)]) * tables[0]["Volume"][0]
     energy = np.array([t["PotEng"][0] for t in tables[1:]]).reshape(6, 4)
@@ -86,7 +86,7 @@ def test_a_flip_changes_nothing_but_the_box(lmp_tree, ranks):
     strained = np.array([[1.0, 0.585, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     trimers(lmp_tree.folder / "data.strained", change=strained)
     words = "x 0.3 0.3 1.0 y 0.3 0.3 1.0 z 0.3 0.3 1.0 xy -2.0 -2.0 1.0 xz 0 0 1.0 yz 0 0 1.0 temp 0.7 0.7 0.8 flip {}"
-    settings = dict(box="box tilt large\nread_data data.strained", processors="1 1 *")
+    settings = dict(pair=REPULSIVE, box="box tilt large\nread_data data.strained", processors="1 1 *")
     decks = [tilted(words.format(flip), **settings) for flip in ("yes", "no")]
     result, (flipped, as_before) = ends(lmp_tree, decks, ranks)
     with_flip, without = result.thermo
@@ -101,8 +101,8 @@ def test_restart_and_ranks(lmp_tree):
     words = MODES["shear ramps"]
     span = "start 0 stop 100"
     decks = [
-        tilted(words, run=f"run 50 {span}\nwrite_restart half\nrun 50 {span}"),
-        tilted(words, run=f"run 50 {span}", box="read_restart half"),
+        tilted(words, run=f"run 50 {span}\nwrite_restart half\nrun 50 {span}", pair=REPULSIVE),
+        tilted(words, run=f"run 50 {span}", box="read_restart half", pair=REPULSIVE),
     ]
     _, (one, again) = ends(lmp_tree, decks)
     assert (one == again).all()
