@@ -295,7 +295,11 @@ set group all mol v_own
 velocity all create 0.1 87287"""
     targets = (-0.6, -0.2, -0.4)
     words = "temp 0.05 0.05 0.5 " + " ".join(f"{c} {p} {p} 5.0" for c, p in zip("xyz", targets))
-    run = """run 2000
+    # far from the targets the box needs a longer Pdamp
+    run = f"""run 2000
+unfix move
+fix move all gear/quat molecule {words.replace("5.0", "1.0")}
+run 2000
 reset_timestep 0
 variable gx equal f_move[23]^2
 variable gy equal f_move[24]^2
@@ -311,12 +315,12 @@ run 40000"""
     assert (np.abs(mean[:3] - targets) < 4 * error[:3]).all() and error[:3].max() < 0.02
     # what their mean would be
     assert np.abs(mean[:3] + 0.4).max() > 10 * error[:3].max()
-    mass = (3 * 107 + 3) * 0.05 * 25 / 3
+    mass = (3 * 107 + 3) * 0.05 / 3
     assert (np.abs(mass * mean[3:] - 0.05) < 4 * mass * error[3:]).all()
-    assert mass * error[3:].max() < 0.05 * 0.05
+    assert mass * error[3:].max() < 0.1 * 0.05
     # of 2000: the potential is cut off
-    assert largest_change(result.thermo[1]) < 0.05
-    assert abs(result.thermo[1]["Lx"][-1] / result.thermo[1]["Ly"][-1] - 1.0) > 1e-4
+    assert largest_change(result.thermo[2]) < 0.05
+    assert abs(result.thermo[2]["Lx"][-1] / result.thermo[2]["Ly"][-1] - 1.0) > 1e-4
 
 
 # --- ensembles ----------------------------------------------------------------------------------
