@@ -266,13 +266,6 @@ static Effect temperature(const Arguments &args)
           NOTHING};
 }
 
-static Effect barostat(const Arguments &args)
-{
-  return {"barostat", args.pressure.any(),
-          args.pressure.any() ? args.words_of_pressure() : "the box does not move",
-          NOTHING};
-}
-
 /// The rows of the report.
 static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                    const Scene &scene)
@@ -280,7 +273,7 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
   const std::string reader = reader_of_predicted_velocities(lmp, fix);
   const bigint extended = scene.count[Scene::EXTENDED_SITES];
   const bool masks = !args.masks.empty();
-  return {
+  std::vector<Effect> rows = {
       rotation(scene),
       torques(scene, makes_forces(lmp, fix)),
       {"finite size", extended > 0,
@@ -290,7 +283,6 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
       ghost_bodies(scene, lmp->comm->nprocs),
       {"masks", masks, masks ? "keywords force and torque" : "no keyword force or torque", NOTHING},
       temperature(args),
-      barostat(args),
       {"virial", fix->thermo_virial != 0,
        fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no",
        "pressure and stress of the forces of constraint; of the trajectory nothing"},
@@ -301,6 +293,8 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
        args.control.eps > 0.0 ? args.words_of_control() : "no tolerance",
        "control of the error of a step: it is what the time step makes it"},
   };
+  if (args.pressure.any()) rows.push_back({"barostat", true, args.words_of_pressure(), ""});
+  return rows;
 }
 
 /// How the bodies are integrated.
