@@ -35,8 +35,7 @@ static Keyword pressure(const char *name, const char *meaning, Keyword::Store st
   Keyword row(name, PHYSICS, meaning, store);
   row.numbers({"Pstart", "Pstop", "Pdamp"}, 2)
       .cannot_go_with({"isokinetic", "", "constant kinetic energy needs a constant box"});
-  for (const char *other : {"mol", "force", "torque"})
-    row.cannot_go_with({other, "", MOVING_BOX});
+  for (const char *other : {"mol", "force", "torque"}) row.cannot_go_with({other, "", MOVING_BOX});
   return row;
 }
 

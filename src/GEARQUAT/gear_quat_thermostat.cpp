@@ -37,8 +37,10 @@ static constexpr double STRONG = 1.0e-3;
 Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
                        const Scheme &scheme) :
     Coupling(lmp, bodies),
-    fix(fix), words(words),
-    chains(words.length == 0 ? 0 : words.separate ? 2 : 1, Chain(words.length)),
+    fix(fix), words(words), chains(words.length == 0    ? 0
+                                       : words.separate ? 2
+                                                        : 1,
+                                   Chain(words.length)),
     total(lmp, bodies, words.damp)
 {
   set_scheme(scheme);

@@ -61,7 +61,7 @@ FILES = {
 
 #: groups of bodies whose energies are measured before, a word of every refusal, errors that may follow, by words of the
 #: first hundred letters, after which some releases of LAMMPS cut what Python gets
-ALONE, NAMED, PARDONED = {}, "ERROR", ("turns off some components", "have no degrees of freedom", "blow-up in step")
+ALONE, NAMED, PARDONED = {}, "ERROR", ("turns off some components", "have no degrees of freedom", "blow-up in step", "constant pressure", "the box")
 
 GROUPS = {"all": {1, 2, 3, 4, 5, 6}, "left": {1, 2, 3}, "right": {4, 5, 6}, "most": {1, 2, 3, 4}}
 GROUPS["nobody"] = set()
@@ -79,6 +79,8 @@ INTEGERS = [key for key, row in TABLE.items() if row.kind == "integer"]
 NUMBERS = [key for key, row in TABLE.items() if row.kind == "number"]
 SEVERAL = [key for key, row in TABLE.items() if row.kind == "numbers"]
 MASKS = [key for key, row in TABLE.items() if row.kind == "mask"]  # any number of times
+PRESSURES = ("iso", "aniso", "tri", "x", "y", "z", "xy", "xz", "yz")
+PRESSED = (*PRESSURES, "couple", "pchain", "ptemp", "fixedpoint", "flip")
 POOL = (
     *TABLE,
     *("on", "off", "*", "1*", "*2", "1*2", "2*1", "3", "1e-10", "1e-3", "0.1", "0"),
@@ -213,8 +215,27 @@ def allowed(key, words):
         eps, unit = (positive(word) for word in (words[0], words[2] if len(words) == 3 else "1"))
         return None not in (eps, unit) and sys.float_info.min <= eps * unit < math.inf
     if key in SEVERAL:
-        return all(positive(word) is not None for word in words)
+        free = 3 if key == "fixedpoint" else 2 if key in PRESSURES else 0  # of any sign
+        return all(tokens.real(as_read(word)) is not None for word in words[:free]) and all(
+            positive(word) is not None for word in words[free:]
+        )
     return words[0] in {"infile": INFILES, "mol": TEMPLATES}[key]
+
+
+def is_pressed(pairs):
+    """Whether the keywords of constant pressure agree with each other, in this scene: an orthogonal periodic box."""
+    given = {key: behind for key, behind in pairs if key in PRESSED}
+    used = [key for key in PRESSURES if key in given]
+    coupled = given.get("couple", ["none"])[0]
+    if not used:
+        return coupled == "none" and not set(given) - {"couple"}
+    whole = [key for key in used if len(key) > 2]
+    if (whole and len(used) > 1) or {"tri", "xy", "xz", "yz"} & set(used):
+        return False
+    if coupled == "none" or whole == ["aniso"]:
+        return True
+    numbers = [[as_read(word) for word in given.get(axis, ())] for axis in coupled]
+    return not whole and all([float(n) for n in one] == [float(n) for n in numbers[0]] for one in numbers)
 
 
 def is_valid(words):
@@ -234,14 +255,15 @@ def is_valid(words):
         return False
     if not all(allowed(key, behind) for key, behind in single if key not in INTEGERS):
         return False
-    if not all(is_count(key, given) for key in INTEGERS if key in given):
+    if not all(is_count(key, given) for key in INTEGERS if key in given) or not is_pressed(single):
         return False
     if not has_coefficients(given):
         return False
     if {"dtmin", "dtmax"} <= set(given) and positive(given["dtmin"]) > positive(given["dtmax"]):
         return False
-    ends = [{positive(word) for word in behind[:2]} for key, behind in single if key == "temp"]
-    if ends and len(ends[0]) == 2 and "tolerance" in given:  # a ramp
+    ramped = ("temp", *PRESSURES)
+    ends = [{tokens.real(as_read(word)) for word in behind[:2]} for key, behind in single if key in ramped]
+    if any(len(one) == 2 for one in ends) and "tolerance" in given:
         return False
     if not all(is_mask(behind, bodies) for key, behind in pairs if key in MASKS):
         return False
@@ -271,6 +293,10 @@ def valid(rng):
     choices["dtmin"], choices["every/time"] = "1e-5", rng.choice(("0.05", "1"))
     choices["temp"], choices["tchain"] = "1.5 1.5 1.5", str(rng.randint(*bounds("tchain", {})))
     given = {key: value for key, value in choices.items() if rng.random() < 0.35}
+    pressed = rng.random() < 0.15
+    if not pressed:
+        given = {key: value for key, value in given.items() if key not in PRESSED}
+    given |= {"iso": "1 -2 1", "couple": "none"} if pressed else {}
     given["formulation"] = choices["formulation"]
     given |= {key: "*" for key in MASKS if rng.random() < 0.2}
     given["bodystyle"] = words[0]

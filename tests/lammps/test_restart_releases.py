@@ -134,7 +134,7 @@ def test_what_a_later_release_adds_is_passed_over(lmp_tree, release, name):
     def add(sections):
         for numbers in sections.values():
             numbers.append(4711.0)
-        sections["barostat"] = [1.0, 2.0]
+        sections["a later one"] = [1.0, 2.0]
 
     file = changed(FOLDER / release / f"{name}.restart", lmp_tree.folder, add)
     output, result = go_on(lmp_tree, name, file)
