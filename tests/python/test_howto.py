@@ -66,7 +66,7 @@ def rigid_script(diffs):
 
 
 def test_one_line_changes(lmp_wheel):
-    one, more = blocks("from_rigid", "diff")
+    one, more, *_ = blocks("from_rigid", "diff")
     before = rigid_script([one, more])
     assert "rigid" in before and "gear" not in before and "f_move" not in before
     rigid = table(passes(lmp_wheel, before))
@@ -79,7 +79,7 @@ def test_one_line_changes(lmp_wheel):
 
 def test_is_it_worth_it(pasted, lmp_wheel):
     """Of a script with fix rigid; the lines that are printed make an error of the size that was asked for."""
-    one, more = blocks("from_rigid", "diff")
+    one, more, *_ = blocks("from_rigid", "diff")
     (lmp_wheel.folder / "in.mine").write_text(rigid_script([one, more]))
     said = pasted("from_rigid")
     assert "fix move all rigid/nve/small molecule" in said
