@@ -3,13 +3,15 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keywords iso, aniso, x, y and z: a box that holds components of the molecular pressure, with
-   keyword temp (NPT) or without (NPH); doc/theory.md, Eqs. P1 to P9.
+/* Keywords iso, aniso, tri, x, y, z, xy, xz and yz: the box moves so that components of the
+   molecular pressure have their targets, with keyword temp (NPT) or without (NPH); doc/theory.md,
+   Eqs. P1 to P9.
 
      W G_ab' = sum m v_a v_b + delta_ab b_a sum m v^2 + W_ab - P_ab V delta_ab - W xi G_ab        (P2)
 
    for the components that are free, with v relative to a constant common motion, the molecular
-   virial W_ab (gear_quat_virial.h), b = 1/N_f with the degrees of freedom N_f of translation, and
+   virial W_ab (gear_quat_virial.h), b = 1/N_f with the degrees of freedom N_f of translation, or
+   (3, 1, -1)/N_f if the box shears, and
    the mass W = (N_f + d) kT Pdamp^2/d.  Coupled components have the mean of their right sides.  xi
    is the friction of a chain of the box.  The energy
 
