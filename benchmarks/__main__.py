@@ -76,6 +76,7 @@ def report(finding, check):
 @click.option("--jobs", type=click.IntRange(min=1), default=2)
 @click.option("--quick", is_flag=True)
 @click.option("--full", is_flag=True)
+@click.option("--hours", type=click.FloatRange(min=0), default=1.0)
 @click.option("--lmp")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path))
 @click.option("--search", "wanted", type=(str, int), metavar="FORMULATION VALUES")
@@ -111,7 +112,7 @@ examples = click.Command(
     params=[
         option
         for option in main.params
-        if option.name not in ("names", "wanted", "seed", "iterations")
+        if option.name not in ("names", "wanted", "seed", "iterations", "hours")
     ],
     context_settings=main.context_settings,
 )

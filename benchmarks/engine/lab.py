@@ -60,12 +60,14 @@ class Lab:
     """Runs jobs; ``out`` is the folder that gets ``logs`` and ``dumps``.
 
     ``jobs``: how many runs go on at once.  ``quick`` and ``full``: whether the study should do less, or
-    also what takes very long.  ``parts``: the parts of the study that were asked for, all if empty.
+    also what takes very long.  ``hours``: how long a study that never ends by itself goes on.  ``parts``: the
+    parts of the study that were asked for, all if empty.
     ``advance(part)`` is told the part of the study's work that has been done since its last call.
     """
 
-    def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, parts=(), advance=None):
-        self.out, self.jobs, self.quick, self.full, self.parts = Path(out), jobs, quick, full, parts
+    def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, hours=1.0, parts=(), advance=None):
+        self.out, self.jobs, self.parts = Path(out), jobs, parts
+        self.quick, self.full, self.hours = quick, full, hours
         self._lmp, self._lock = lmp, threading.Lock()
         self._weight = self._left = 1.0
         self._advance = advance or (lambda part: None)

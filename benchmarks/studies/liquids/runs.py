@@ -85,14 +85,17 @@ def template(liquid):
     return own if own.is_file() else EXAMPLES / "water" / name
 
 
-def equilibrate(lab, plan, liquids=LIQUIDS):
-    """(key of liquid, number of start) -> path of its data file; beside it a dump, with suffix .start."""
+def equilibrate(lab, plan, liquids=LIQUIDS, numbers=None):
+    """(key of liquid, number of start) -> path of its data file; beside it a dump, with suffix .start.
+
+    ``numbers``: of the starts, by default all that the Plan has.
+    """
     jobs, data = {}, {}
     names = "types", "edge", "density", "mass", "temperature", "pair", "kspace"
     for liquid in liquids:
         own = {"liquid": liquid.key} | {name: getattr(liquid, name) for name in names}
         own |= {"template": template(liquid), "steps": plan.equilibration}
-        for start in range(plan.starts):
+        for start in numbers or range(plan.starts):
             name = f"equilibrate_{liquid.key}_{start}"
             jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration, plugin=False)
             data[liquid.key, start] = lab.dump(name).with_suffix(".data").resolve()

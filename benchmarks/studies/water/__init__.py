@@ -1,0 +1,138 @@
+"""Water at constant pressure: density, temperatures and compressibility, and how they depend on the time step.
+
+plan.py (what is run), runs.py (LAMMPS' runs and the samples that are kept), and here what follows from samples.
+"""
+
+import math
+
+import numpy as np
+
+from benchmarks.engine import Finding, Measurement, Study, Table
+from benchmarks.engine.statistics import mean_of_blocks, with_error
+
+from .plan import COMPRESSED, LONG, METHODS, MODELS, PUBLISHED, ROUND, SHORT, TEMPERATURE
+from .runs import BOLTZMANN, measure
+
+#: 1/atm in 1/GPa, and kcal/mol/A^3 in atm
+PER_GPA, ATMOSPHERES = 1.0 / 1.01325e-4, 68568.415
+#: how far densities and compressibilities may differ, in standard errors
+WITHIN = 3.0
+
+
+def of_series(samples):
+    """Series -> list of its samples, in the order of the plan."""
+    return {series: [sample for sample in samples if sample.series == series] for series in ROUND}
+
+
+def mean(samples, read):
+    """(mean, standard error) of ``read(sample)``; no error with fewer than three samples."""
+    values = np.array([read(sample) for sample in samples])
+    if len(values) < 3:
+        return float(values.mean()), math.nan
+    found = mean_of_blocks(values)
+    return float(found.value), float(found.error)
+
+
+def text(found, sign=""):
+    """A (value, error) as a cell."""
+    value, error = found
+    return with_error(value, error, sign) if error > 0 else f"{value:{sign}.4f}"
+
+
+def jackknife(samples, read):
+    """(value, error) of ``read(list of samples)`` from all samples and from all but each."""
+    n, value = len(samples), read(samples)
+    if n < 3:
+        return value, math.nan
+    others = np.array([read(samples[:k] + samples[k + 1 :]) for k in range(n)])
+    return value, float(np.sqrt((n - 1) / n * np.sum((others - others.mean()) ** 2)))
+
+
+def fluctuating(samples):
+    """Isothermal compressibility from the variance of the volume, 1/GPa."""
+    volume, square = (np.mean([getattr(s, name) for s in samples]) for name in ("volume", "volume2"))
+    return PER_GPA * (square - volume**2) / (volume * BOLTZMANN * TEMPERATURE * ATMOSPHERES)
+
+
+def by_two_pressures(low, high):
+    """(value, error) of the same from the densities at two pressures."""
+    (small, e_small), (large, e_large) = (mean(samples, lambda s: s.density) for samples in (low, high))
+    apart = high[0].pressure - low[0].pressure
+    return PER_GPA * math.log(large / small) / apart, PER_GPA * math.hypot(e_small / small, e_large / large) / apart
+
+
+def difference(one, other):
+    """(value, error) of the difference of two (value, error)."""
+    return one[0] - other[0], math.hypot(one[1], other[1])
+
+
+def warmer(sample):
+    """Temperature of translation less that of rotation."""
+    return sample.translation - sample.rotation
+
+
+def table(found):
+    """A row for each series at 1 atm."""
+    rows = []
+    for series, samples in found.items():
+        if series.pressure != 1.0 or not samples:
+            continue
+        cells = [f"{sum(s.ps for s in samples) / 1000:.2f}", text(mean(samples, lambda s: s.density))]
+        cells += [text(mean(samples, lambda s: s.energy)), text(mean(samples, warmer), "+")]
+        cells.append(text(jackknife(samples, fluctuating)))
+        rows.append([MODELS[series.model].title, series.text, *cells])
+    header = ["model", "method and step", "ns", "density, g/mL", "potential energy, kcal/mol", "T translation − T rotation, K"]
+    return Table((*header, "compressibility, 1/GPa"), rows)
+
+
+def measurements(found):
+    """Measurements with their bounds."""
+    rows = []
+    for model, series in LONG.items():
+        density = mean(found[series], lambda s: s.density)
+        most = 0.002 + 2 * density[1]
+        remark = f"published: {PUBLISHED[model]}"
+        rows.append(
+            Measurement(
+                f"density of {MODELS[model].title}, {series.text}",
+                *density,
+                ".5f",
+                "g/mL",
+                remark,
+                least=PUBLISHED[model] - most,
+                most=PUBLISHED[model] + most,
+            )
+        )
+    for what, read, unit in (("density", lambda s: s.density, "g/mL"), ("energy", lambda s: s.energy, "kcal/mol")):
+        apart = difference(*(mean(found[series], read) for series in (LONG["tip4p"], SHORT)))
+        most = WITHIN * apart[1]
+        words = f"{what} of {MODELS['tip4p'].title}, {LONG['tip4p'].text}, less that of {SHORT.text}"
+        rows.append(Measurement(words, *apart, ".5f", unit, least=-most, most=most))
+    both = by_two_pressures(*(found[series] for series in COMPRESSED))
+    apart = difference(jackknife(found[LONG["spce"]], fluctuating), both)
+    most = WITHIN * apart[1]
+    words = "compressibility of SPC/E water from fluctuations less that from two pressures"
+    rows.append(Measurement(words, *apart, ".3f", "1/GPa", f"the latter: {text(both)}", least=-most, most=most))
+    for series, samples in found.items():
+        value, error = mean(samples, warmer)
+        bounds = {"least": -2 * error, "most": 2 * error} if series.method == "gear" and series.pressure == 1 else {}
+        words = f"T translation − T rotation, {MODELS[series.model].title}, {series.text}, {series.pressure:g} atm"
+        rows.append(Measurement(words, value, error, ".2f", "K", **bounds))
+    return rows
+
+
+def find(samples):
+    """Finding of the samples."""
+    found = of_series(samples)
+    context = {"samples": len(samples), "ps": samples[0].ps, "methods": METHODS, "temperature": TEMPERATURE}
+    context |= {"molecules": MODELS["tip4p"].molecules, "ns": sum(s.ps for s in samples) / 1000}
+    context["compressibility"] = [
+        text(jackknife(found[LONG["spce"]], fluctuating)),
+        text(by_two_pressures(*(found[series] for series in COMPRESSED))),
+    ]
+    context["pressures"] = [series.pressure for series in COMPRESSED]
+    context["commits"] = sorted({s.commit for s in samples})
+    return Finding(measurements(found), {"water": table(found)}, context=context)
+
+
+STUDY = Study("water", "Water at constant pressure", 3600.0, measure, find)

@@ -1,0 +1,75 @@
+"""What is run: models of water, methods, steps and pressures."""
+
+from dataclasses import dataclass, replace
+
+from benchmarks.studies.liquids.plan import SPCE, WATER4
+from benchmarks.studies.liquids.plan import Plan as Starts
+
+#: 216 molecules each
+MODELS = {liquid.key: liquid for liquid in (replace(WATER4, edge=6), SPCE)}
+TEMPERATURE = 298.0
+#: g/mL at this temperature and 1 atm, published: Abascal and Vega (2005); Berendsen et al. (1987), with Ewald sums
+PUBLISHED = {"tip4p": 0.9979, "spce": 0.998}
+
+OURS, SHAKE = "gear", "shake"
+METHODS = {OURS: "`fix gear/quat`", SHAKE: "`fix shake` and `fix npt`"}
+
+
+@dataclass(frozen=True)
+class Series:
+    """Samples of one model with one method, time step in fs and pressure in atm."""
+
+    model: str
+    method: str
+    dt: float
+    pressure: float = 1.0
+
+    @property
+    def name(self):
+        """In names of files."""
+        return f"{self.model}_{self.method}_{self.dt:g}fs_{self.pressure:g}atm"
+
+    @property
+    def text(self):
+        """In tables."""
+        return f"{METHODS[self.method]}, {self.dt:g} fs"
+
+
+#: pressures whose densities give the compressibility at 1 atm
+APART = 500.0
+COMPRESSED = tuple(Series("spce", OURS, 2.0, pressure) for pressure in (1.0 - APART, 1.0 + APART))
+#: what is compared: the long step, and the short one of a peer whose bias is small
+LONG = {model: Series(model, OURS, 2.0) for model in MODELS}
+SHORT = Series("tip4p", SHAKE, 0.5)
+#: Series -> how many samples each round adds
+ROUND = {
+    LONG["tip4p"]: 2,
+    LONG["spce"]: 2,
+    SHORT: 1,
+    COMPRESSED[0]: 1,
+    COMPRESSED[1]: 1,
+    Series("tip4p", OURS, 3.0): 2,
+    Series("tip4p", SHAKE, 2.0): 2,
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Durations in ps of a sample: ``settle`` before it, ``duration``, and ``every`` between its rows.
+
+    ``hours``: after so many no further round begins.  ``equilibration``: of a start, in steps.
+    """
+
+    hours: float = 1.0
+    settle: float = 20.0
+    duration: float = 100.0
+    every: float = 0.024
+    equilibration: int = 3000
+
+    @property
+    def lengths(self):
+        """Variable of the deck -> picoseconds."""
+        return {"settle": self.settle, "steps": self.duration}
+
+
+QUICK = Plan(0.0, 0.4, 2.4, 0.024, 300)

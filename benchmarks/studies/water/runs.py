@@ -1,0 +1,139 @@
+"""Runs of water, and the samples that they leave.
+
+A sample is one run from a start of its own.  What a sample has is kept in ``samples.csv`` of this folder, so that later
+calls add to it.  Samples of another trajectory are not mixed in: each has the energy after a few steps of a fixed
+scene, which changes if the motion does.
+"""
+
+import csv
+import math
+import time
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.engine import EXAMPLES, Job, provenance
+from benchmarks.studies.liquids.runs import equilibrate
+from benchmarks.studies.liquids.plan import Plan as Starts
+
+from .plan import MODELS, OURS, QUICK, ROUND, SHAKE, TEMPERATURE, Plan, Series
+
+FOLDER = Path(__file__).parent
+SAMPLES = FOLDER / "samples.csv"
+BOLTZMANN = 0.0019872067  # kcal/mol/K
+#: 1 atm A^3 in kcal/mol
+PRESSURE_VOLUME = 1.0 / 68568.415
+#: steps of the scene that tells trajectories apart
+TOLD_AFTER = 20
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Means over one run.
+
+    ``start``: the number of its start.  ``trajectory``: see the head of this file.  ``ps``: its duration.
+    ``rows``: how many were averaged.  ``density`` in g/mL, ``volume`` in A^3 and ``volume2``, its square;
+    ``energy``: potential energy in kcal/mol of a molecule; temperatures in kelvin; ``drift`` of the
+    conserved energy in kcal/mol/ps.
+    """
+
+    model: str
+    method: str
+    dt: float
+    pressure: float
+    start: int
+    commit: str
+    trajectory: str
+    ps: float
+    rows: int
+    density: float
+    volume: float
+    volume2: float
+    energy: float
+    translation: float
+    rotation: float
+    drift: float
+
+    @property
+    def series(self):
+        """The Series it belongs to."""
+        return Series(self.model, self.method, self.dt, self.pressure)
+
+
+def read_samples(path=SAMPLES):
+    """List of Sample in a file; empty if there is none."""
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))[1:]
+    types = [field.type for field in fields(Sample)]
+    return [Sample(*(kind(cell) for kind, cell in zip(types, row))) for row in rows]
+
+
+def write_samples(samples, path=SAMPLES):
+    """Leave a list of Sample."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([field.name for field in fields(Sample)])
+        writer.writerows([f"{x:.10g}" if isinstance(x, float) else x for x in astuple(one)] for one in samples)
+
+
+def job(series, data, number, plan):
+    """Job of one sample."""
+    liquid, every = MODELS[series.model], round(1000 * plan.every / series.dt)
+    steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in plan.lengths.items()}
+    variables = {"liquid": liquid.key, "data": data, "pair": liquid.pair, "kspace": liquid.kspace}
+    variables |= {"temperature": TEMPERATURE, "pressure": series.pressure, "method": series.method}
+    variables |= {"dt": series.dt, "every": every, "seed": number, **steps}
+    return Job(FOLDER / "in.water", variables, sum(steps.values()), plugin=series.method == OURS)
+
+
+def read(finished, series, number, origin):
+    """Sample of a finished run; ``origin``: commit, and what tells its trajectory."""
+    thermo = {name: np.array(column)[1:] for name, column in finished.thermo.items()}
+    molecules = MODELS[series.model].molecules
+    turn = thermo["c_rotation"]
+    moving = 2 * thermo["KinEng"] / BOLTZMANN - 3 * molecules * turn
+    ps = (thermo["Time"][-1] - thermo["Time"][0]) / 1000
+    slope = np.polyfit(thermo["Time"] / 1000, thermo["Econserve"], 1)[0]
+    means = [thermo["Density"], thermo["Volume"], thermo["Volume"] ** 2, thermo["PotEng"] / molecules]
+    means += [moving / (3 * molecules - 3), turn]
+    numbers = [float(np.mean(values)) for values in means]
+    return Sample(*astuple(series), number, *origin, float(ps), len(turn), *numbers, float(slope))
+
+
+def trajectory(lab, method):
+    """What tells a method's trajectories from others: a potential energy after a few steps.
+
+    It has as many digits as machines agree on.
+    """
+    variables = {"method": method, "dt": 2.0, "steps": TOLD_AFTER, "every": TOLD_AFTER}
+    found = lab.many({f"told_{method}": Job(EXAMPLES / "water_npt" / "in.water_npt", variables, TOLD_AFTER)})
+    return f"{found[f'told_{method}'].thermo['PotEng'][-1]:.6f}"
+
+
+def measure(lab, plan=None):
+    """List of all samples that belong together, those of earlier calls first."""
+    plan = plan or (QUICK if lab.quick else Plan(hours=lab.hours))
+    kept = [] if lab.quick else read_samples()
+    told = {method: trajectory(lab, method) for method in (OURS, SHAKE)}
+    samples = [sample for sample in kept if sample.trajectory == told[sample.method]]
+    commit, begun = provenance.commit("src", "benchmarks/studies/water"), time.monotonic()
+    first = 1 + max((sample.start for sample in samples), default=0)
+    while True:
+        numbers, data = range(first, first + max(ROUND.values())), {}
+        for series, count in ROUND.items():
+            enough = time.monotonic() - begun > 3600 * plan.hours
+            if enough and {sample.series for sample in samples} == set(ROUND):
+                return samples
+            if not data:
+                data = equilibrate(lab, Starts(equilibration=plan.equilibration), MODELS.values(), numbers)
+            jobs = {n: job(series, data[series.model, n], n, plan) for n in numbers[:count]}
+            named = {f"{series.name}_{n}": made for n, made in jobs.items()}
+            finished = lab.many(named, keep=True)
+            origin = commit, told[series.method]
+            samples += [read(finished[f"{series.name}_{n}"], series, n, origin) for n in jobs]
+            if not lab.quick:
+                write_samples(samples)
+        first = numbers[-1] + 1
