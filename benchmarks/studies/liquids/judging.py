@@ -83,7 +83,7 @@ def equipartition(results):
 def beside_the_best(results):
     """In the other liquids, the drift of no keyword less that of the best number of values."""
     others = [scene for scene in SCENES if scene.liquid not in WATERS]
-    freedoms = results.plan.starts + results.plan.few - 2
+    freedoms = 2 * results.plan.few - 2
     most = allowed(len(others) * len(FORESEEN), freedoms) if several(results) else None
     for scene in others:
         excess = []

@@ -164,7 +164,7 @@ NORMAL_STEP = 2.0
 
 
 def _scene(liquid):
-    methods = {DEFAULT: Extent(), NVE_SMALL: Extent(many=liquid is SPCE)}
+    methods = {DEFAULT: Extent(many=liquid in WATERS), NVE_SMALL: Extent(many=liquid is SPCE)}
     methods |= {method: Extent(FORESEEN, many=False) for method in VALUES.values()}
     pairs = (NORMAL_STEP,) if liquid is SPCE else ()
     return Scene(liquid.key, liquid, {method: methods[method] for method in METHODS}, pairs=pairs)
