@@ -6,8 +6,9 @@ import pytest
 from benchmarks.engine.lab import Lab
 from benchmarks.engine.page import render
 from benchmarks.studies import pressure as runs
+from benchmarks.studies.pressure.instructions import Instructions
 
-PLAN = runs.Plan(time=10_000.0, seeds=(1, 2), blocks=5, density=1.0)
+PLAN = runs.Plan(time=10_000.0, seeds=(1, 2), blocks=5)
 N, VOLUME = 4001, 300.0
 
 
@@ -29,9 +30,9 @@ def made_up(drift=0.01, of_box=3.0, shift=0.0, work=-1.0, rigid=5.0 / 6.0):
             columns[f"f_move[{16 + k}]"] = runs.TARGETS[k] + work * kt / VOLUME + 0.002 * rng.normal(size=N)
         columns["f_move[26]"] = 0.5 * kt * of_box * rng.chisquare(3, N) / 3
         crystal[method] = columns
-    density = {m: {"Density": 0.998 + 0.01 * rng.normal(size=N)} for m in (runs.OURS, runs.SHAKE)}
-    seconds = {runs.OURS: [0.03, 0.02], runs.RIGID: [0.025], runs.SHAKE: [0.04]}
-    return runs.Results(PLAN, water, crystal, density, seconds)
+    fixes, steps = (8000.0, 5000.0, 4000.0), (100_000.0, 80_000.0, 50_000.0)
+    counted = {m: Instructions(f, 23_000.0, s) for m, f, s in zip(runs.METHODS, fixes, steps)}
+    return runs.Results(PLAN, water, crystal, counted)
 
 
 def broken(results):
@@ -57,24 +58,22 @@ def test_what_is_wrong_is_refused(fault, number, what):
     assert what in found and len(found) == number
 
 
-def test_drift_density_and_times():
+def test_drift_and_instructions():
     results = made_up(drift=0.2)
     drift, error = results.drift(runs.OURS, 1.0)
     assert drift == pytest.approx(0.2, abs=4 * error) and error < 0.02
-    mean = runs.densities(results)[runs.OURS]
-    assert mean.value == pytest.approx(0.998, abs=5 * mean.error) and mean.error < 0.002
-    ratios = runs.find(results).context["ratios"]
-    assert list(ratios.values()) == pytest.approx([0.8, 0.5])
+    ratios = {m.what: m.value for m in runs.find(results).measurements if m.what.startswith("instructions")}
+    assert list(ratios.values()) == pytest.approx([1.25, 1.6, 2.0, 2.0])
 
 
 def test_the_page_shows_what_was_found():
     text = render("pressure.md.j2", runs.STUDY, runs.find(made_up()), "Somewhere.")
     assert "| 2 | `fix rigid/npt/small` | +20.0" in text and "| zz | 1.5 | 1.4983 |" in text
-    assert "0.80 of the time" in text and "was published" in text
+    assert "| `fix rigid/npt/small` | 5000 | 23000 | 80000 |" in text
 
 
 def test_a_small_run(lmp_wheel, tmp_path):
-    plan = runs.Plan((2.0,), 80.0, 20.0, 2.0, (1,), 400, 100, 80.0, 20.0, 4, 5, 1)
+    plan = runs.Plan((2.0,), 80.0, 20.0, 2.0, (1,), 400, 100, 4, 1, 2)
     done = []
     results = runs.measure(Lab(tmp_path, str(lmp_wheel.executable), 1, advance=done.append), plan)
     assert sum(done) == pytest.approx(1.0)
@@ -83,3 +82,7 @@ def test_a_small_run(lmp_wheel, tmp_path):
     assert change[runs.OURS] < 0.2 * change[runs.RIGID]
     assert results.pressures(runs.OURS).value == pytest.approx(runs.TARGETS, abs=0.6)
     assert len(runs.find(results).tables["crystal"].rows) == 3
+    # all make the same mesh, and forces take most of a step
+    meshes = [counted.mesh for counted in results.counted.values()]
+    assert meshes == pytest.approx([meshes[0]] * 3, rel=0.01) and meshes[0] > 1000
+    assert all(counted.fixes < 0.2 * counted.step for counted in results.counted.values())

@@ -90,19 +90,47 @@ def find_valgrind():
     return program
 
 
-def command_line(lmp, deck):
-    """What counts the instructions of a deck."""
+def command_line(lmp, deck, folder, variables=None, parts=True):
+    """What counts the instructions of a deck into ``folder``; ``parts``: apart for each set-up of fix gear/quat."""
+    settings = [word for name, value in (variables or {}).items() for word in ("-var", name, str(value))]
     return [
         find_valgrind(),
         "--tool=callgrind",
         "--trace-children=yes",
         "--toggle-collect=LAMMPS_NS::Verlet::run(int)",
-        "--dump-before=LAMMPS_NS::FixGearQuat::setup(int)",
+        *(["--dump-before=LAMMPS_NS::FixGearQuat::setup(int)"] if parts else []),
         "--compress-strings=no",
         "--compress-pos=no",
-        "--callgrind-out-file=callgrind.%p",
-        *(lmp, "-in", deck.name, "-log", "log.count", "-nocite"),
+        f"--callgrind-out-file={folder.resolve()}/callgrind.%p",
+        *(lmp, "-in", deck.name, "-log", str(folder.resolve() / "log.count"), "-nocite", *settings),
     ]
+
+
+def valgrind(command, folder):
+    """Run a command_line() in the folder of its deck; raise LammpsError if it fails."""
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        errors="replace",
+    )
+    if done.returncode != 0:
+        tail = "\n".join((done.stdout + done.stderr).splitlines()[-15:])
+        raise LammpsError(f"counting instructions: exit code {done.returncode}\n{tail}")
+
+
+def whole(folder, deck, variables, lmp):
+    """Profile of all steps of a deck, with any fix.  ``folder``, which is made, gets log and profile."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("callgrind.*"):
+        old.unlink()
+    valgrind(command_line(lmp, deck, folder, variables, parts=False), deck.parent)
+    profiles = [parse(file.read_text(encoding="utf-8")) for file in folder.glob("callgrind.*")]
+    return max(profiles, key=lambda profile: profile.own.total())
 
 
 def _parts(folder):
@@ -130,18 +158,7 @@ def count(folder, scenes, sides, steps, lmp):
     deck = folder / "in.count"
     text = "clear\n".join(scene.deck(side, steps) for scene, side in keys)
     deck.write_text(text, encoding="utf-8")
-    done = subprocess.run(
-        command_line(lmp, deck),
-        cwd=folder,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        errors="replace",
-    )
-    if done.returncode != 0:
-        tail = "\n".join((done.stdout + done.stderr).splitlines()[-15:])
-        raise LammpsError(f"counting instructions: exit code {done.returncode}\n{tail}")
+    valgrind(command_line(lmp, deck, folder), folder)
     parts = _parts(folder)
     if len(parts) != 2 * len(keys) + 1:
         raise LammpsError(f"{len(parts)} parts of the profile for {len(keys)} scenes; see {folder}")

@@ -1,7 +1,6 @@
 """Constant pressure: a box with a history beside fix rigid/npt/small and fix shake with fix npt.
 
-Water with PPPM (``examples/water_npt``) shows how the conserved energy drifts, whether the box has its share of the
-energy, which density comes out, and what a step costs.  A crystal of dumbbells under a different pressure along each axis
+Water with PPPM (``examples/water_npt``) shows how the conserved energy drifts and what a step costs.  A crystal of dumbbells under a different pressure along each axis
 (``in.crystal``) shows whether each component is the one that was asked for.
 """
 
@@ -12,16 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.engine import EXAMPLES, Finding, Job, Measurement, Study, Table
+from benchmarks.engine import EXAMPLES, Finding, Measurement, Study, Table
 from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope, with_error
+
+from . import instructions
 
 OURS, RIGID, SHAKE = "gear", "rigid", "shake"
 METHODS = {OURS: "`fix gear/quat`", RIGID: "`fix rigid/npt/small`", SHAKE: "`fix shake` and `fix npt`"}
 WATER, CRYSTAL = EXAMPLES / "water_npt" / "in.water_npt", Path(__file__).parent / "in.crystal"
 MOLECULES, TEMPERATURE, BOLTZMANN = 216, 300.0, 0.0019872067
 FREEDOMS = 6 * MOLECULES - 3
-#: SPC/E at 298 K and 1 atm, g/mL
-PUBLISHED = 0.998
 DUMBBELLS_KT, TARGETS = 0.5, (0.5, 0.5, 1.5)
 #: kT/ns per degree of freedom
 DRIFT = 0.05
@@ -30,7 +29,7 @@ COMPONENTS = ("xx", "yy", "zz")
 
 @dataclass(frozen=True)
 class Plan:
-    """Sizes of all runs.  Times of water in fs; ``density``: lengths of the runs for the density, 0 for none."""
+    """Sizes of all runs.  Times of water in fs; ``copies`` along each edge and steps of what is counted."""
 
     dts: tuple = (1.0, 2.0)
     time: float = 5_000.0
@@ -39,28 +38,25 @@ class Plan:
     seeds: tuple = (1, 2)
     crystal: int = 20_000
     settle: int = 3_000
-    density: float = 0.0
-    settle_density: float = 20_000.0
     blocks: int = 8
-    timed_steps: int = 100
-    rounds: int = 3
+    copies: int = 2
+    counted_steps: int = 20
 
 
-QUICK = Plan((2.0,), 1_000.0, 200.0, seeds=(1,), crystal=2_000, settle=1_000, blocks=4, timed_steps=20, rounds=1)
+QUICK = Plan((2.0,), 1_000.0, 200.0, seeds=(1,), crystal=2_000, settle=1_000, blocks=4, copies=1, counted_steps=4)
 #: hours of computing
-FULL = Plan(time=30_000.0, seeds=(1, 2, 3, 4), crystal=200_000, density=2_000_000.0, blocks=20, timed_steps=500)
+FULL = Plan(time=30_000.0, seeds=(1, 2, 3, 4), crystal=200_000, blocks=20)
 
 
 @dataclass(frozen=True)
 class Results:
-    """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns; ``density``: method ->
-    columns; ``seconds``: method -> of a step, by round."""
+    """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns; ``counted``: method ->
+    Instructions."""
 
     plan: Plan
     water: dict
     crystal: dict
-    density: dict
-    seconds: dict
+    counted: dict
 
     def drift(self, method, dt):
         """Drift of the conserved energy in kT/ns/dof: mean over seeds, and its standard error."""
@@ -106,24 +102,15 @@ def measure(lab, plan=None):
         return {name: round(time / dt) for name, time in rounded.items()}
 
     axes = {"method": tuple(METHODS), "dt": plan.dts, "seed": plan.seeds}
-    with lab.share(0.6 if not plan.density else 0.1):
+    with lab.share(0.6):
         water = lab.sweep("water", WATER, axes, keep, sizes, keep=True)
     settings = {"steps": plan.crystal, "equilibrate": plan.settle}
-    with lab.share(0.3 if not plan.density else 0.1):
+    with lab.share(0.3):
         crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings, keep=True)
-    dt, density = plan.dts[-1], {}
-    if plan.density:
-        settings = {"steps": round(plan.density / dt), "equilibrate": round(plan.settle_density / dt)}
-        settings |= {"dt": dt, "every": round(5 * plan.sample / dt), "temperature": 298.0}
-        with lab.share(0.75):
-            density = lab.sweep("density", WATER, {"method": (OURS, SHAKE)}, keep, settings, keep=True)
-    # the start is not timed
-    sizes = {"dt": dt, "copies": 2, "equilibrate": 10, "steps": plan.timed_steps}
-    jobs = {f"timed_{method}": Job(WATER, {"method": method} | sizes, plan.timed_steps) for method in METHODS}
-    with lab.share(0.1 if not plan.density else 0.05):
-        timed = lab.in_turn(jobs, plan.rounds)
-    seconds = {m: [run.log.seconds / plan.timed_steps for run in timed[f"timed_{m}"]] for m in METHODS}
-    return Results(plan, water, crystal, density, seconds)
+    settings = {"dt": plan.dts[-1], "copies": plan.copies}
+    with lab.share(0.1):
+        counted = instructions.measure(lab, WATER, settings, METHODS, MOLECULES * plan.copies**3, plan.counted_steps)
+    return Results(plan, water, crystal, counted)
 
 
 # --- judging ------------------------------------------------------------------------------------
@@ -150,17 +137,19 @@ def measurements(results):
     rows.append(Measurement("crystal, largest deviation of a mean (P − P₀) V from −kT", shift, most=most, **errors))
     shift, most = largest(results.share_of_box(), 3.0)
     rows.append(Measurement("crystal, deviation of the box's kinetic energy from 3 kT/2", shift, most=most, **errors))
-    for method, mean in densities(results).items():
-        rows.append(Measurement(f"density of SPC/E, {METHODS[method]}", mean.value, mean.error, ".4f", "g/mL"))
+    ours = results.counted[OURS]
     for method in (RIGID, SHAKE):
-        ratio = min(results.seconds[OURS]) / min(results.seconds[method])
-        rows.append(Measurement(f"time of a step over that of {METHODS[method]}", ratio, spec=".2f"))
+        theirs, words = results.counted[method], METHODS[method]
+        rows.append(Measurement(f"instructions of a step over those with {words}", ours.step / theirs.step, spec=".3f"))
+        what = f"instructions in the fix over those in {words}, without the mesh"
+        rows.append(Measurement(what, ours.fixes / theirs.fixes, spec=".2f"))
     return rows
 
 
-def densities(results):
-    """Method -> Mean of the density in g/mL."""
-    return {method: mean_of_series([run["Density"]], results.plan.blocks) for method, run in results.density.items()}
+def cost_table(results):
+    """A row for each method: instructions per molecule and step."""
+    rows = [[METHODS[m], *(f"{n:.0f}" for n in (c.fixes, c.mesh, c.step))] for m, c in results.counted.items()]
+    return Table(("method", "in the fixes", "mesh of the new box", "whole step"), rows)
 
 
 def water_table(results):
@@ -185,14 +174,10 @@ def crystal_table(results):
 
 def find(results):
     """Finding of Results."""
-    tables = {"water": water_table(results), "crystal": crystal_table(results)}
-    context = {"plan": results.plan, "molecules": MOLECULES, "share": results.share_of_box(), "published": PUBLISHED}
-    context["densities"] = {
-        METHODS[method]: with_error(float(mean.value), float(mean.error)) for method, mean in densities(results).items()
-    }
-    context["ratios"] = {METHODS[m]: min(results.seconds[OURS]) / min(results.seconds[m]) for m in (RIGID, SHAKE)}
+    tables = {"water": water_table(results), "cost": cost_table(results), "crystal": crystal_table(results)}
+    context = {"plan": results.plan, "molecules": MOLECULES, "share": results.share_of_box()}
     context["with_error"] = with_error
     return Finding(measurements(results), tables, context=context)
 
 
-STUDY = Study("pressure", "Constant pressure", 400.0, measure, find)
+STUDY = Study("pressure", "Constant pressure", 600.0, measure, find)
