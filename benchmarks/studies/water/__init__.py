@@ -8,15 +8,20 @@ import math
 import numpy as np
 
 from benchmarks.engine import Finding, Measurement, Study, Table
-from benchmarks.engine.statistics import mean_of_blocks, with_error
+from benchmarks.engine.statistics import allowed, mean_of_blocks, with_error
 
-from .plan import COMPRESSED, LONG, METHODS, MODELS, PUBLISHED, ROUND, SHORT, TEMPERATURE
+from .plan import COMPRESSED, LONG, METHODS, MODELS, OURS, PUBLISHED, ROUND, SHORT, TEMPERATURE
 from .runs import BOLTZMANN, measure
 
 #: 1/atm in 1/GPa, and kcal/mol/A^3 in atm
 PER_GPA, ATMOSPHERES = 1.0 / 1.01325e-4, 68568.415
-#: how far densities and compressibilities may differ, in standard errors
-WITHIN = 3.0
+#: energy that is constant because molecules are rigid, which the scene of SPC/E leaves in, kcal/mol: two O-H of 1 A and one H-H
+WITHIN_MOLECULE = {
+    "spce": 332.06371 * 0.4238**2 * (1 / (2 * math.sin(math.radians(109.47) / 2)) - 4),
+    "tip4p": 0.0,
+}
+#: how many values are compared with what they should be, which decides how far off the worst may be
+COMPARED = 6
 
 
 def of_series(samples):
@@ -56,7 +61,7 @@ def fluctuating(samples):
 
 def by_two_pressures(low, high):
     """(value, error) of the same from the densities at two pressures."""
-    (small, e_small), (large, e_large) = (mean(samples, lambda s: s.density) for samples in (low, high))
+    (small, e_small), (large, e_large) = (mean(samples, density) for samples in (low, high))
     apart = high[0].pressure - low[0].pressure
     return PER_GPA * math.log(large / small) / apart, PER_GPA * math.hypot(e_small / small, e_large / large) / apart
 
@@ -64,6 +69,22 @@ def by_two_pressures(low, high):
 def difference(one, other):
     """(value, error) of the difference of two (value, error)."""
     return one[0] - other[0], math.hypot(one[1], other[1])
+
+
+def widest(error, *groups):
+    """How far from what it should be a value with this standard error may be, from so many groups of samples."""
+    freedoms = sum(len(samples) - 1 for samples in groups)
+    return error * allowed(COMPARED, freedoms) if freedoms > 1 else math.nan
+
+
+def density(sample):
+    """In g/mL."""
+    return sample.density
+
+
+def energy(sample):
+    """Potential energy of a molecule among the others, kcal/mol."""
+    return sample.energy - WITHIN_MOLECULE[sample.model]
 
 
 def warmer(sample):
@@ -77,8 +98,8 @@ def table(found):
     for series, samples in found.items():
         if series.pressure != 1.0 or not samples:
             continue
-        cells = [f"{sum(s.ps for s in samples) / 1000:.2f}", text(mean(samples, lambda s: s.density))]
-        cells += [text(mean(samples, lambda s: s.energy)), text(mean(samples, warmer), "+")]
+        cells = [f"{sum(s.ps for s in samples) / 1000:.2f}", text(mean(samples, density))]
+        cells += [text(mean(samples, energy)), text(mean(samples, warmer), "+")]
         cells.append(text(jackknife(samples, fluctuating)))
         rows.append([MODELS[series.model].title, series.text, *cells])
     header = ["model", "method and step", "ns", "density, g/mL", "potential energy, kcal/mol", "T translation − T rotation, K"]
@@ -89,33 +110,26 @@ def measurements(found):
     """Measurements with their bounds."""
     rows = []
     for model, series in LONG.items():
-        density = mean(found[series], lambda s: s.density)
-        most = 0.002 + 2 * density[1]
-        remark = f"published: {PUBLISHED[model]}"
-        rows.append(
-            Measurement(
-                f"density of {MODELS[model].title}, {series.text}",
-                *density,
-                ".5f",
-                "g/mL",
-                remark,
-                least=PUBLISHED[model] - most,
-                most=PUBLISHED[model] + most,
-            )
-        )
-    for what, read, unit in (("density", lambda s: s.density, "g/mL"), ("energy", lambda s: s.energy, "kcal/mol")):
-        apart = difference(*(mean(found[series], read) for series in (LONG["tip4p"], SHORT)))
-        most = WITHIN * apart[1]
+        value, error = mean(found[series], density)
+        most, right = 0.002 + 2 * error, PUBLISHED[model]
+        bounds = {"remark": f"published: {right}", "least": right - most, "most": right + most}
+        what = f"density of {MODELS[model].title}, {series.text}"
+        rows.append(Measurement(what, value, error, ".5f", "g/mL", **bounds))
+    for what, read, unit in (("density", density, "g/mL"), ("energy", energy, "kcal/mol")):
+        both = [found[series] for series in (LONG["tip4p"], SHORT)]
+        apart = difference(*(mean(samples, read) for samples in both))
+        most = widest(apart[1], *both)
         words = f"{what} of {MODELS['tip4p'].title}, {LONG['tip4p'].text}, less that of {SHORT.text}"
         rows.append(Measurement(words, *apart, ".5f", unit, least=-most, most=most))
-    both = by_two_pressures(*(found[series] for series in COMPRESSED))
-    apart = difference(jackknife(found[LONG["spce"]], fluctuating), both)
-    most = WITHIN * apart[1]
+    squeezed = [found[series] for series in COMPRESSED]
+    apart = difference(jackknife(found[LONG["spce"]], fluctuating), by_two_pressures(*squeezed))
+    most, remark = widest(apart[1], *squeezed), f"the latter: {text(by_two_pressures(*squeezed))}"
     words = "compressibility of SPC/E water from fluctuations less that from two pressures"
-    rows.append(Measurement(words, *apart, ".3f", "1/GPa", f"the latter: {text(both)}", least=-most, most=most))
+    rows.append(Measurement(words, *apart, ".3f", "1/GPa", remark, least=-most, most=most))
     for series, samples in found.items():
         value, error = mean(samples, warmer)
-        bounds = {"least": -2 * error, "most": 2 * error} if series.method == "gear" and series.pressure == 1 else {}
+        most = widest(error, samples)
+        bounds = {"least": -most, "most": most} if series.method == OURS and series.pressure == 1 else {}
         words = f"T translation − T rotation, {MODELS[series.model].title}, {series.text}, {series.pressure:g} atm"
         rows.append(Measurement(words, value, error, ".2f", "K", **bounds))
     return rows

@@ -61,7 +61,7 @@ class Sample:
         return Series(self.model, self.method, self.dt, self.pressure)
 
 
-def read_samples(path=SAMPLES):
+def read_samples(path):
     """List of Sample in a file; empty if there is none."""
     if not path.is_file():
         return []
@@ -71,7 +71,7 @@ def read_samples(path=SAMPLES):
     return [Sample(*(kind(cell) for kind, cell in zip(types, row))) for row in rows]
 
 
-def write_samples(samples, path=SAMPLES):
+def write_samples(samples, path):
     """Leave a list of Sample."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -116,7 +116,7 @@ def trajectory(lab, method):
 def measure(lab, plan=None):
     """List of all samples that belong together, those of earlier calls first."""
     plan = plan or (QUICK if lab.quick else Plan(hours=lab.hours))
-    kept = [] if lab.quick else read_samples()
+    kept = [] if lab.quick else read_samples(SAMPLES)
     told = {method: trajectory(lab, method) for method in (OURS, SHAKE)}
     samples = [sample for sample in kept if sample.trajectory == told[sample.method]]
     commit, begun = provenance.commit("src", "benchmarks/studies/water"), time.monotonic()
@@ -135,5 +135,5 @@ def measure(lab, plan=None):
             origin = commit, told[series.method]
             samples += [read(finished[f"{series.name}_{n}"], series, n, origin) for n in jobs]
             if not lab.quick:
-                write_samples(samples)
+                write_samples(samples, SAMPLES)
         first = numbers[-1] + 1
