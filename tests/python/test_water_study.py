@@ -24,7 +24,7 @@ def made_up(density=0.0, warmer=0.0, volume2=1.0, compressed=1.0):
         for start in range(1, COUNT + 1):
             mean = VOLUME + 0.05 * np.sqrt(spread) * rng.normal()
             sample = runs.Sample(
-                *(series.model, series.method, series.dt, series.pressure, start, "abc", "-1.5", 100.0, 4000),
+                *(series.model, series.method, series.dt, series.pressure, start, 0, "abc", "-1.5", 100.0, 4000),
                 density=plan.PUBLISHED[series.model] * np.exp(change) + ours * density + 2e-4 * rng.normal(),
                 volume=mean,
                 volume2=mean**2 + spread * volume2,
@@ -95,10 +95,10 @@ def test_a_small_run(lmp_wheel, tmp_path, monkeypatch):
     ours, theirs = plan.Series("spce", plan.OURS, 2.0), plan.Series("tip4p", plan.SHAKE, 1.0)
     monkeypatch.setattr(runs, "ROUND", {ours: 1, theirs: 1})
     lab = Lab(tmp_path, str(lmp_wheel.executable), 1)
-    made = plan.Plan(0.0, 0.05, 0.24, 0.024, 50)
+    made = plan.Plan(0.0, 0.05, 0.24, 0.024, 50, 2)
     samples = runs.measure(lab, made)
-    assert [sample.series for sample in samples] == [ours, theirs]
-    assert [sample.rows for sample in samples] == [10, 10]
+    assert [sample.series for sample in samples] == [ours, ours, theirs, theirs]
+    assert [(sample.rows, sample.block) for sample in samples] == [(5, 0), (5, 1)] * 2
     for sample in samples:
         # molecules are counted once, and both temperatures are those of as many degrees of freedom
         assert 200 < sample.translation < 400 and 200 < sample.rotation < 400
@@ -106,7 +106,7 @@ def test_a_small_run(lmp_wheel, tmp_path, monkeypatch):
         assert sample.density * sample.volume == pytest.approx(27 * 18.0154 / 0.602214076, rel=1e-3)
     # they are kept, and those of another trajectory are not
     kept = runs.read_samples(path)
-    assert [sample.start for sample in runs.measure(lab, made)] == [1, 1]
-    runs.write_samples([replace(kept[0], trajectory="-1.0"), kept[1]], path)
+    assert [sample.start for sample in runs.measure(lab, made)] == [1] * 4
+    runs.write_samples([*(replace(one, trajectory="-1.0") for one in kept[:2]), *kept[2:]], path)
     again = runs.measure(lab, made)
     assert sorted(sample.trajectory for sample in again) == sorted(sample.trajectory for sample in samples)

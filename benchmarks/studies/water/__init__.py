@@ -138,7 +138,7 @@ def measurements(found):
 def find(samples):
     """Finding of the samples."""
     found = of_series(samples)
-    context = {"samples": len(samples), "ps": samples[0].ps, "methods": METHODS, "temperature": TEMPERATURE}
+    context = {"samples": len(samples), "ps": samples[0].ps, "runs": len({(s.series, s.start) for s in samples}), "methods": METHODS, "temperature": TEMPERATURE}
     context |= {"molecules": MODELS["tip4p"].molecules, "ns": sum(s.ps for s in samples) / 1000}
     context["compressibility"] = [
         text(jackknife(found[LONG["spce"]], fluctuating)),

@@ -41,21 +41,21 @@ COMPRESSED = tuple(Series("spce", OURS, 2.0, pressure) for pressure in (1.0 - AP
 #: what is compared: the long step, and the short one of a peer whose bias is small
 LONG = {model: Series(model, OURS, 2.0) for model in MODELS}
 SHORT = Series("tip4p", SHAKE, 0.5)
-#: Series -> how many samples each round adds
+#: Series -> how many runs each round adds
 ROUND = {
     LONG["tip4p"]: 2,
     LONG["spce"]: 2,
-    SHORT: 1,
     COMPRESSED[0]: 1,
     COMPRESSED[1]: 1,
-    Series("tip4p", OURS, 3.0): 2,
-    Series("tip4p", SHAKE, 2.0): 2,
+    Series("tip4p", OURS, 3.0): 1,
+    Series("tip4p", SHAKE, 2.0): 1,
+    SHORT: 1,
 }
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Durations in ps of a sample: ``settle`` before it, ``duration``, and ``every`` between its rows.
+    """Durations in ps of a run: ``settle`` before samples, ``duration`` of ``blocks`` samples, ``every`` between rows.
 
     ``hours``: after so many no further round begins.  ``equilibration``: of a start, in steps.
     """
@@ -65,6 +65,7 @@ class Plan:
     duration: float = 100.0
     every: float = 0.024
     equilibration: int = 3000
+    blocks: int = 5
 
     @property
     def lengths(self):

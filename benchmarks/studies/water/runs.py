@@ -1,7 +1,7 @@
 """Runs of water, and the samples that they leave.
 
-A sample is one run from a start of its own.  What a sample has is kept in ``samples.csv`` of this folder, so that later
-calls add to it.  Samples of another trajectory are not mixed in: each has the energy after a few steps of a fixed
+A sample is a part of a run from a start of its own, much longer than anything in water remembers.  Samples are kept in
+``samples.csv`` of this folder, so that later calls add to them.  Samples of another trajectory are not mixed in: each has the energy after a few steps of a fixed
 scene, which changes if the motion does.
 """
 
@@ -30,9 +30,9 @@ TOLD_AFTER = 20
 
 @dataclass(frozen=True)
 class Sample:
-    """Means over one run.
+    """Means over a part of a run.
 
-    ``start``: the number of its start.  ``trajectory``: see the head of this file.  ``ps``: its duration.
+    ``start``: the number of its start; ``block``: which part, from 0.  ``trajectory``: see the head of this file.  ``ps``: its duration.
     ``rows``: how many were averaged.  ``density`` in g/mL, ``volume`` in A^3 and ``volume2``, its square;
     ``energy``: potential energy in kcal/mol of a molecule; temperatures in kelvin; ``drift`` of the
     conserved energy in kcal/mol/ps.
@@ -43,6 +43,7 @@ class Sample:
     dt: float
     pressure: float
     start: int
+    block: int
     commit: str
     trajectory: str
     ps: float
@@ -89,18 +90,22 @@ def job(series, data, number, plan):
     return Job(FOLDER / "in.water", variables, sum(steps.values()), plugin=series.method == OURS)
 
 
-def read(finished, series, number, origin):
-    """Sample of a finished run; ``origin``: commit, and what tells its trajectory."""
+def read(finished, series, number, origin, blocks):
+    """List of the Samples of a finished run; ``origin``: commit, and what tells its trajectory."""
     thermo = {name: np.array(column)[1:] for name, column in finished.thermo.items()}
-    molecules = MODELS[series.model].molecules
-    turn = thermo["c_rotation"]
+    length = len(thermo["Time"]) // blocks
+    parts = [{name: column[k * length :][:length] for name, column in thermo.items()} for k in range(blocks)]
+    return [_sample(part, series, (number, k, *origin)) for k, part in enumerate(parts)]
+
+
+def _sample(thermo, series, origin):
+    molecules, turn, time = MODELS[series.model].molecules, thermo["c_rotation"], thermo["Time"] / 1000
     moving = 2 * thermo["KinEng"] / BOLTZMANN - 3 * molecules * turn
-    ps = (thermo["Time"][-1] - thermo["Time"][0]) / 1000
-    slope = np.polyfit(thermo["Time"] / 1000, thermo["Econserve"], 1)[0]
     means = [thermo["Density"], thermo["Volume"], thermo["Volume"] ** 2, thermo["PotEng"] / molecules]
     means += [moving / (3 * molecules - 3), turn]
     numbers = [float(np.mean(values)) for values in means]
-    return Sample(*astuple(series), number, *origin, float(ps), len(turn), *numbers, float(slope))
+    ps = len(time) * float(time[1] - time[0])
+    return Sample(*astuple(series), *origin, ps, len(turn), *numbers, float(np.polyfit(time, thermo["Econserve"], 1)[0]))
 
 
 def trajectory(lab, method):
@@ -133,7 +138,8 @@ def measure(lab, plan=None):
             named = {f"{series.name}_{n}": made for n, made in jobs.items()}
             finished = lab.many(named, keep=True)
             origin = commit, told[series.method]
-            samples += [read(finished[f"{series.name}_{n}"], series, n, origin) for n in jobs]
+            for n in jobs:
+                samples += read(finished[f"{series.name}_{n}"], series, n, origin, plan.blocks)
             if not lab.quick:
                 write_samples(samples, SAMPLES)
         first = numbers[-1] + 1
