@@ -102,6 +102,7 @@ class Integrator : public Kinematics {
   struct Pending {
     double x[3], q[4], torque_body[3];
     Residual total;
+    bool converged;    ///< a pass has repeated the rotation until it no longer changed
   };
 
   Pending begin(const Load &load, const double *axes, const double *rows) const
@@ -111,6 +112,7 @@ class Integrator : public Kinematics {
     copy(rows + scheme.quaternion(), 4, pending.q);
     to_body(axes, load.torque_space, pending.torque_body);
     pending.total = Residual();
+    pending.converged = false;
     return pending;
   }
 
@@ -428,7 +430,12 @@ class Integrator : public Kinematics {
       rotation_residual(body, per_inertia, pending.torque_body, friction, part, rows, total);
     };
     if (!friction.implicit) {
-      any_norm.converges(part) ? AnyNorm::repeat(part, total, turn) : turn();
+      // a friction that changes by little in the next passes needs no more than one
+      if (!pending.converged && any_norm.converges(part))
+        AnyNorm::repeat(part, total, turn);
+      else
+        turn();
+      pending.converged = true;
       return;
     }
     friction.solve(share, 0.5 * h * h, pending.total.x);
