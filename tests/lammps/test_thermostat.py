@@ -321,7 +321,7 @@ def test_a_damping_time_that_is_too_short(lmp_tree):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_passes_are_as_many_as_velocities_need_to_converge(lmp_tree, tmp_path, kind):
-    """With two of them SPC/E water drifted at 3 fs by 0.5 kT/ns/dof, separate by 1.5, which four passes do not."""
+    """With two of them SPC/E water drifted at 3 fs by 0.5 kT/ns/dof, separate by 1.5, which three passes do not."""
     data, decks, words = water_data(tmp_path / "data.water"), [], f"values 5 temp 300 300 100 thermostat {kind}"
     for name, passes in (("auto", ""), ("two", "passes 2"), ("eight", "passes 8")):
         text = water(data, fix=f"gear/quat molecule {words} {passes}", dt=2.0, run=f"run 25\n{END.format(name)}")
