@@ -177,7 +177,14 @@ def find(results):
     tables = {"water": water_table(results), "cost": cost_table(results), "crystal": crystal_table(results)}
     context = {"plan": results.plan, "molecules": MOLECULES, "share": results.share_of_box()}
     context["with_error"] = with_error
+    # for README
+    drifts = {
+        words: [with_error(*results.drift(m, dt), sign="+") for dt in results.plan.dts] for m, words in METHODS.items()
+    }
+    context |= {"steps": results.plan.dts, "drifts": drifts, "targets": TARGETS}
+    for name, method in (("ours", OURS), ("rigid", RIGID)):
+        context[name] = [f"{p:.3f}" for p in results.pressures(method).value]
     return Finding(measurements(results), tables, context=context)
 
 
-STUDY = Study("pressure", "Constant pressure", 600.0, measure, find)
+STUDY = Study("pressure", "Constant pressure", 600.0, measure, find, blocks={"README.md": "pressure.readme.md.j2"})
