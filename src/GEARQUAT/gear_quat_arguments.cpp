@@ -226,7 +226,7 @@ void Arguments::check_pressure()
 {
   PressureWords &p = pressure;
   if (!p.any()) {
-    for (const char *keyword : {"couple", "pchain", "ptemp", "fixedpoint", "flip"})
+    for (const char *keyword : {"couple", "pchain", "ptemp", "fixedpoint", "flip", "dilate"})
       if (given.count(keyword) && is_on(keyword, ""))
         error->all(FLERR,
                    "Fix gear/quat keyword {} requires a keyword of constant pressure, such as iso, "

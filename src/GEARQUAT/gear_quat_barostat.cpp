@@ -200,11 +200,12 @@ double Barostat::rate_of_heat() const
    sums over bodies
 ------------------------------------------------------------------------- */
 
-void Barostat::add_momenta(int ibody, const double *velocity, Tensor &sums) const
+/// The first `count` components.
+void Barostat::add_momenta(int ibody, const double *velocity, Tensor &sums, int count) const
 {
   static constexpr int A[] = {0, 1, 2, 1, 0, 0}, B[] = {0, 1, 2, 2, 2, 1};
   const double mass = bodies.rigid_of(ibody).mass;
-  for (int k = 0; k < Upper::SIZE; ++k) sums[k].add(mass * velocity[A[k]] * velocity[B[k]], unit);
+  for (int k = 0; k < count; ++k) sums[k].add(mass * velocity[A[k]] * velocity[B[k]], unit);
 }
 
 void Barostat::sum_momenta(const Tensor &sums)
@@ -225,7 +226,7 @@ void Barostat::sum_present_momenta()
 {
   Tensor sums;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    add_momenta(ibody, bodies.state_of(ibody).velocity, sums);
+    add_momenta(ibody, bodies.state_of(ibody).velocity, sums, Upper::SIZE);
   sum_momenta(sums);
 }
 
@@ -298,7 +299,7 @@ void Barostat::add_prediction(const Integrator &integrator, int ibody,
                               const Integrator::Pending &pending)
 {
   Thermostat::add_prediction(integrator, ibody, pending);
-  add_momenta(ibody, bodies.state_of(ibody).velocity, tensor);
+  add_momenta(ibody, bodies.state_of(ibody).velocity, tensor, moving_components());
 }
 
 void Barostat::find_friction(const Integrator &integrator, int pass)
@@ -332,7 +333,7 @@ void Barostat::add(int ibody, const double *scaled_velocity, const double *omega
   double velocity[3];
   matrix.times(scaled_velocity, velocity);
   add_kinetic(ibody, velocity, omega_body, here);
-  add_momenta(ibody, velocity, tensor);
+  add_momenta(ibody, velocity, tensor, moving_components());
 }
 
 void Barostat::end_passes(const Integrator &integrator)

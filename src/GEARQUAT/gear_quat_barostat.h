@@ -182,7 +182,9 @@ class Barostat : public Thermostat {
   double mode_of_box() const;
   Upper drive() const;
   double rate_of_heat() const;
-  void add_momenta(int ibody, const double *velocity, Tensor &sums) const;
+  /// Those of Upper that the box may have: tilts are the last ones.
+  int moving_components() const { return asked.shears() ? Upper::SIZE : 3; }
+  void add_momenta(int ibody, const double *velocity, Tensor &sums, int count) const;
   void sum_momenta(const Tensor &sums);
   void sum_present_momenta();
   void note_box();

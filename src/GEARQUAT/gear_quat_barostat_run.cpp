@@ -63,6 +63,11 @@ void Barostat::refuse_scene() const
                "forces: what they add to the pressure is not known",
                other->id, other->style);
   }
+  if (asked.shears() && asked.flip && !box.can_flip() && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: this build replaces no tilted box on several ranks (keyword "
+                   "flip), because its LAMMPS comes without irregular.h; with a tilt of much more "
+                   "than half a period steps take longer");
 }
 
 /// Without temp and ptemp: that of the bodies where the box begins to move.

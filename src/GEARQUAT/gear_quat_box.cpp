@@ -116,9 +116,14 @@ static int periods_of(double tilt, double period)
   return -(int) std::lround(tilt / period);
 }
 
+bool Box::can_flip() const
+{
+  return MIGRATES || comm->nprocs == 1;
+}
+
 bool Box::is_tilted() const
 {
-  if (!MIGRATES && comm->nprocs > 1) return false;
+  if (!can_flip()) return false;
   return (domain->yperiodic && periods_of(domain->yz, domain->yprd) != 0) ||
       (domain->xperiodic &&
        (periods_of(domain->xz, domain->xprd) != 0 || periods_of(domain->xy, domain->xprd) != 0));

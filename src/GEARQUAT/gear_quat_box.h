@@ -39,6 +39,8 @@ class Box : protected Pointers {
 
   /// False if another command has changed LAMMPS' box since show().
   bool is_shown() const;
+  /// Whether flip() is possible on so many ranks.
+  bool can_flip() const;
   /// True if a tilt exceeds half of the period that it is a part of.
   bool is_tilted() const;
   /// The box becomes the least tilted cell of the same lattice, and atoms get their images in it.  M

@@ -182,6 +182,8 @@ static const std::vector<Keyword> TABLE = {
       .number().cannot_go_with({"temp", "", "the mass of the box is that of the temperature of temp"}),
   Keyword("flip", PHYSICS, "whether a box that is tilted by more than half a period is replaced",
           [](Arguments &a, const Value &v) { a.pressure.flip = v.is("yes"); }).word({"yes", "no"}),
+  Keyword("dilate", PHYSICS, "the atoms that follow the box: all, because all are in bodies",
+          [](Arguments &, const Value &) {}).word({"all"}),
   Keyword("fixedpoint", PHYSICS, "the point of the box that does not move",
           [](Arguments &a, const Value &v) { a.pressure.fixed = v.numbers; })
       .numbers({"x", "y", "z"}, 3),

@@ -29,11 +29,6 @@ TELLS = 0.05
 #: why a deck is refused: message of the fix, name, and where the manual says so
 REASONS = (
     (
-        r"keyword dilate of the rigid fixes",
-        "keyword dilate",
-        r"There are no keywords [^.]*\*dilate\*",
-    ),
-    (
         r"constant pressure requires all atoms to be in bodies",
         "pressure beside atoms in no body",
         r"require all atoms to be in bodies of this fix",
