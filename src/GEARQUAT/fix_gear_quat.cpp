@@ -260,7 +260,8 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
   if (motion_acts) {
     motion->take_velocities(update->ntimestep - 1, true);
     if (motion->begins_steps()) Motion::begin_steps(*fleet, f, torque);
-    motion_acts = other_fixes->any_taken();
+    motion->look_at_contacts(f);
+    motion_acts = other_fixes->any_taken() || motion->watches_contacts();
   }
   step->begin(vflag, f);
 }

@@ -110,7 +110,7 @@ class FixGearQuat : public Fix {
 
   bool met_atoms = false;     // bodies were compared with the atoms in a run before
   bool reported = false;      // the scene, once
-  bool motion_acts = true;    // before the next step: on velocities of other fixes, or a start
+  bool motion_acts = true;    // before the next step: velocities of other fixes, contacts, a start
 
   void create_bodies();
   void update_bodies();

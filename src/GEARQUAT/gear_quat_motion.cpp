@@ -161,7 +161,10 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
     }
   }
   start_together(full, needed);
-  for (const auto &one : fleet.members) one.motion->tell_friction();
+  for (const auto &one : fleet.members) {
+    one.motion->tell_friction();
+    one.motion->next_look = 0;
+  }
 }
 
 void Motion::start_together(const std::vector<Motion *> &full, const std::vector<bool> &needed)

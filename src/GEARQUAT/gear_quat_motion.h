@@ -49,6 +49,10 @@ class Motion : protected Pointers {
   /// torques of all fixes, unless there are some that agree with them.  Those that need a start make
   /// all others begin anew with them, where a full start is possible.  Collective.
   static void begin_steps(const Fleet &fleet, double **f, double **torque);
+  /// Whether contacts may close in the steps that follow, whose friction nobody has been told.
+  bool watches_contacts() const { return watches; }
+  /// Before a step, now and then: their friction is measured.  f: as begin_steps().  Collective.
+  void look_at_contacts(double **f);
   /// The largest error of a body here in the last step, as a length.
   double last_error() const;
 
@@ -92,7 +96,8 @@ class Motion : protected Pointers {
   double edge_rate = 0.0;    ///< fast edge by time, when the number was chosen
   double damping = 0.0;      ///< part of a momentum that forces take in a step
   void measure_friction(double **f);
-  bool warned_friction = false;
+  bool warned_friction = false, watches = false;
+  bigint next_look = 0;    ///< step before which the friction of contacts is measured again
   void tell_friction();
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;

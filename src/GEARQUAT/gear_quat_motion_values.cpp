@@ -6,11 +6,14 @@
 #include "gear_quat_motion.h"
 
 #include "gear_quat_friction.h"
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
+#include "force.h"
+#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -75,6 +78,8 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   else
     why = bodies.number() > 0 ? "because the motion is not known before it begins"
                               : "because there are no bodies yet";
+  if (choice.reason == Reason::NOISE && known(PairFact::RANDOM, force))
+    why += fmt::format("; the friction of pair style {} is not measured", force->pair_style);
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
                  other_corrector ? " and corrector gear" : "", why);
@@ -95,12 +100,29 @@ void Motion::measure_friction(double **f)
     damping = FrictionOfForces(lmp, fix, bodies, ownership, sites).part(f, step.length());
 }
 
+/// A measurement evaluates forces five times: after steps that are an eighth longer each time.
+void Motion::look_at_contacts(double **f)
+{
+  constexpr bigint FIRST = 10, PART = 8;
+  if (!watches || update->ntimestep < next_look) return;
+  const bigint done = update->ntimestep - update->firststep;
+  if (done >= FIRST) {
+    measure_friction(f);
+    tell_friction();
+  }
+  next_look = update->ntimestep + std::max(FIRST, done / PART);
+}
+
 /// Rank 0 warns once if the histories cannot follow that.  Collective.
 void Motion::tell_friction()
 {
   const ChoiceOfValues scene = scene_of(MotionSums());
   const Scheme &scheme = step.scheme();
-  if (step.tolerance || warned_friction || !scene.too_damped(scheme)) return;
+  watches = false;
+  if (step.tolerance || warned_friction) return;
+  watches = scene.noise == Noise::COLLISIONS;
+  if (!scene.too_damped(scheme)) return;
+  watches = false;
   warned_friction = true;
   if (comm->me != 0) return;
   const double part = friction_error(scheme, damping);

@@ -108,6 +108,16 @@ def test_random_forces_that_no_number_follows_are_warned_of(lmp_tree, words, par
         assert float(warning[1]) == pytest.approx(part, rel=0.12)
 
 
+@pytest.mark.parametrize("style, told", [("dpd 1.0 2.0 4711", True), ("lj/cut 2.0", False)])
+def test_friction_that_is_not_measured_is_told(lmp_wheel, style, told):
+    pair = f"pair_style {style}\npair_coeff * * 1.0 1.0\nfix l all langevin 1.0 1.0 1.0 4711"
+    bodies = [[(0, 0, 0), (1, 0, 0)], [(0, 1.5, 0), (1, 1.5, 0.1)]]
+    settings = dict(before=pair, dt=0.005, run="run 1")
+    text = placed(bodies, np.full((4, 3), 0.1), [1] * 4, fix="gear/quat molecule", **settings)
+    ((_, _, why),) = chosen(lmp_wheel.succeed("comm_modify vel yes\n" + text))
+    assert why == "because forces are random" + told * "; the friction of pair style dpd is not measured"
+
+
 def test_a_stated_number_that_heats_is_warned_of(lmp_tree, data):
     after = "fix l all langevin 300 300 100 4711"
     assert "make heat of" in run(lmp_tree, data, "values 9", after=after, dt=SHORT).stdout

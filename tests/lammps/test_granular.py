@@ -68,11 +68,11 @@ def expected(mass):
     return math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
 
 
-def deck(fixes, dt, wall, low=True, style="gran/hooke", ranks=1, newton="off", steps=None):
+def deck(fixes, dt, wall, low=True, style="gran/hooke", ranks=1, newton="off", steps=None, gap=0.002):
     """Clump high comes down, on a wall or on clump low if there are."""
     pair, coeff = STYLES[style]
     return DECK.format(
-        atoms=CLUMP.format(kind=2, z=1.002) + (CLUMP.format(kind=1, z=0.0) if low else ""),
+        atoms=CLUMP.format(kind=2, z=1.0 + gap) + (CLUMP.format(kind=1, z=0.0) if low else ""),
         newton=newton,
         grid="* * *" if ranks == 1 else "2 1 1",
         density=6 / math.pi,  # a mass of 1
@@ -157,3 +157,22 @@ def test_friction_of_a_contact_is_felt(lmp_wheel, style, wall):
     found = re.search(r"forces take ([\d.]+) of a momentum in a step", result.words)
     # three contacts, each with a damping of the reduced mass of the bodies
     assert float(found[1]) == pytest.approx(3 * DAMPING * dt, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "gap, words, told",
+    [(0.015, "values 9", True), (0.4, "values 9", False), (0.015, "", False)],
+)
+@pytest.mark.parametrize("wall", [True, False])
+def test_friction_of_a_contact_that_closes_later(lmp_wheel, wall, gap, words, told):
+    """After eight steps or never in this run; a look at it changes no bit of the motion."""
+    dt = 2e-3
+    fix = "single" if wall else "group 2 low high"
+    text = deck(f"fix move all gear/quat {fix} {words}", dt, wall, low=not wall, steps=20, gap=gap)
+    result = lmp_wheel.succeed(text)
+    found = re.findall(r"forces take ([\d.]+) of a momentum in a step", result.words)
+    assert len(found) == told
+    if told:
+        assert 0.8 < float(found[0]) / (3 * DAMPING * dt) < 1.02  # four changes of velocities: at most the rate
+        pieces = lmp_wheel.succeed(text.replace("run 20", "run 9\nrun 11 pre no")).thermo[-1]
+        assert pieces["c_speed"][-1] == result.thermo[-1]["c_speed"][-1]
