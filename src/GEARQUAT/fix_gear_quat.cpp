@@ -14,6 +14,7 @@
 #include "fix_gear_quat.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_driven_box.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_fleet.h"
 #include "gear_quat_motion.h"
@@ -77,6 +78,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   step.reset(new Step(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes, tally));
   motion.reset(
       new Motion(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes, *step));
+  driven_box.reset(
+      new DrivenBox(lmp, this, *args, *bodies, *ownership, *sites, *other_fixes, *step));
   restarts.reset(new Restart(lmp, this, *bodies, *ownership, *motion));
   respa.reset(new RespaForces(lmp));
   table.reset(new BodyTable(lmp, *bodies, *sites));
@@ -143,6 +146,7 @@ void FixGearQuat::init()
 {
   meet_fleet();
   refuse_scene(lmp, this, *fleet, *ownership);
+  driven_box->init();
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
@@ -162,12 +166,19 @@ void FixGearQuat::reset_dt()
   step->follow_length();
 }
 
+/// Other fixes call this around a remap of atoms with the box.
+void FixGearQuat::deform(int flag)
+{
+  flag == 0 ? driven_box->begin_remap() : driven_box->end_remap();
+}
+
 void FixGearQuat::setup_pre_exchange()
 {
   if (ownership->follow_box())
     motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
   if (step->coupling && !step->coupling->knows_box())
     motion->forget("Fix gear/quat: the box was changed since the last run, histories start anew");
+  if (met_atoms) driven_box->pass_faces_before_run();
 }
 
 /// Bodies keep their state between runs, and take over what the user has changed in the atoms.
@@ -208,7 +219,7 @@ void FixGearQuat::setup(int vflag)
   reported = true;
 }
 
-/// The array never becomes shorter, because output goes on asking for the rows of removed bodies.
+/// Output goes on asking for the rows of removed bodies.
 void FixGearQuat::count_rows()
 {
   size_array_rows = std::max(size_array_rows, (int) bodies->number());
@@ -224,12 +235,14 @@ void FixGearQuat::show_bodies()
 void FixGearQuat::pre_exchange()
 {
   if (step->coupling) step->coupling->flip_box();
+  driven_box->meet_faces();
 }
 
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
   update_bodies();
+  if (driven_box->any()) ownership->note_box();    // fix deform may have flipped it
   count_rows();
 }
 
@@ -263,6 +276,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
     motion->look_at_contacts(f);
     motion_acts = other_fixes->any_taken() || motion->watches_contacts();
   }
+  driven_box->follow();
   step->begin(vflag, f);
 }
 
@@ -280,11 +294,11 @@ void FixGearQuat::end_of_step()
   step->choose_next();
 }
 
-/// However the run has ended.
 void FixGearQuat::post_run()
 {
   meet_forces();
   motion->end_run();
+  driven_box->end_run();
 }
 
 /// Virial of the constraint forces, at the pose where the forces were taken.

@@ -28,6 +28,7 @@ namespace LAMMPS_NS {
 namespace GearQuat {
   class Bodies;
   class BodyTable;
+  class DrivenBox;
   class Extract;
   class Motion;
   class OtherFixes;
@@ -61,6 +62,7 @@ class FixGearQuat : public Fix {
   void end_of_step() override;
   void post_run() override;
   void reset_dt() override;
+  void deform(int) override;
 
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -100,6 +102,7 @@ class FixGearQuat : public Fix {
   std::unique_ptr<GearQuat::OtherFixes> other_fixes;
   std::unique_ptr<GearQuat::Step> step;
   std::unique_ptr<GearQuat::Motion> motion;
+  std::unique_ptr<GearQuat::DrivenBox> driven_box;
   std::unique_ptr<GearQuat::Restart> restarts;
   std::unique_ptr<GearQuat::RespaForces> respa;
   std::unique_ptr<GearQuat::BodyTable> table;

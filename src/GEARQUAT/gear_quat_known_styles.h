@@ -47,6 +47,7 @@ enum class FixFact {
   TIME_STEP,            ///< it changes the time step
   BODY_OF_ATOMS,        ///< after init() extract("body") gives the body of each atom, or -1
   FIRST_RIGID,          ///< it takes the masses of bodies from the first rigid fix alone
+  CARRIES_BODIES,       ///< it calls deform() of rigid fixes where it remaps atoms with the box
   NO_FORCE,             ///< it acts around the forces, but changes none
   NO_LOCAL_DATA,        ///< it acts at the end of a step, but reads no local data of a fix itself
 };

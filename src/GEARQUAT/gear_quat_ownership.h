@@ -59,6 +59,8 @@ class Ownership : protected Pointers {
   int body_of(int atom) const { return atom < (int) index.size() ? index[atom] : -1; }
   /// The index of the body that an owned atom is the owner of, -1 for none.
   int owned_by(int atom) const { return owned[atom]; }
+  /// The local index of the owner atom of an owned body.
+  int owner_of(int ibody) const { return owner_atom[ibody]; }
   /// For each atom the atom ID of the owner of its body, 0 for none; owned atoms come first.
   const std::vector<tagint> &owner_tags() const { return owner_tag; }
   /// From the center of mass of its body, along the principal axes.

@@ -46,17 +46,6 @@ static void refuse_respa_with_steps(LAMMPS *lmp)
                       level + 1, steps[0], steps[level]);
 }
 
-/// A box that follows its atoms moves none of them, but a fix that changes the box does.
-static void refuse_box_changes(LAMMPS *lmp, const Fix *fix)
-{
-  for (const auto *other : lmp->modify->get_fix_list())
-    if (other != fix && other->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE))
-      lmp->error->all(FLERR,
-                      "Fix gear/quat requires a box that does not change size or shape, and fix {} "
-                      "({}) changes it",
-                      other->id, other->style);
-}
-
 static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
                                      const Ownership &ownership)
 {
@@ -107,7 +96,6 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
   if (lmp->update->dt == 0.0 || !std::isfinite(lmp->update->dt))
     lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}",
                     lmp->update->dt);
-  refuse_box_changes(lmp, fix);
   ownership.refuse_atoms();
   refuse_respa_with_steps(lmp);
   refuse_other_integrators(lmp, fix, fleet, ownership);

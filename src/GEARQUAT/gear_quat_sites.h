@@ -75,6 +75,9 @@ class Sites : protected Pointers {
   bool is_there(const Site &site) const;
   bool is_as_fast(const Site &site) const;
 
+  /// Periods that the unwrapped position of an atom of a body is away.
+  std::array<int, 3> image_of(const Site &site) const;
+
   // sums over sites
 
   /// any: something in the scene may make a force; otherwise no loads are gathered.
@@ -117,7 +120,6 @@ class Sites : protected Pointers {
   int nplacements = 0;
 
   void sort();
-  std::array<int, 3> image_of(const Site &site) const;
   void wrap(const Site &site, double *away) const;
   void find_ways();
   template <bool POSITIONS, bool VELOCITIES> void place_points();

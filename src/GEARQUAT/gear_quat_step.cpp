@@ -64,11 +64,13 @@ void Step::begin(int vflag, double **f)
   if (tolerance && coupling) coupling->keep();
   predict(f);
   place_prediction();
+  within = true;
 }
 
 void Step::end(double **f, double **torque)
 {
   others.check_places();
+  within = false;
   for (;;) {
     gather(f, torque);
     // here: the atoms are those that forces belong to

@@ -70,6 +70,9 @@ class Step : protected Pointers {
   /// True if something may read local data at the end of this step.
   bool shows_local_data() const;
 
+  /// True between begin() and end().
+  bool is_within() const { return within; }
+
   /// True once bodies have histories of the present length.
   bool started = false;
 
@@ -97,6 +100,7 @@ class Step : protected Pointers {
   int vflag_of_step = 0;          ///< what LAMMPS asked of the virial when the step began
   bool velocities_read = true;    ///< between prediction and correction, by others
   bool compared = false;
+  bool within = false;
   Readers readers;
 
   void check_other_fixes();

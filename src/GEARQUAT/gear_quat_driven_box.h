@@ -1,0 +1,92 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* A box that another command changes during a run (doc/theory.md, Boxes that other commands change).
+
+   A fix that remaps atoms with the box tells the rigid fixes before and after (Fix::deform()).  Then
+   the centers of mass are remapped, and bodies keep their shapes, orientations and velocities.
+
+   Where the box changes without a remap, atoms stay where they are.  The center of mass of a body,
+   which is unwrapped, stays beside its owner atom, and the other images of the body move with the
+   box.  With fix deform remap v a body that passes a face of the box gets the velocity of the image
+   beyond it, as LAMMPS' atoms do. */
+
+#ifndef LMP_GEAR_QUAT_DRIVEN_BOX_H
+#define LMP_GEAR_QUAT_DRIVEN_BOX_H
+
+#include "gear_quat_sites.h"
+
+#include <array>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Fix;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class OtherFixes;
+class Step;
+struct Arguments;
+
+class DrivenBox : protected Pointers {
+ public:
+  DrivenBox(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies,
+            Ownership &ownership, Sites &sites, OtherFixes &others, Step &step) :
+      Pointers(lmp),
+      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites), others(others),
+      step(step)
+  {
+  }
+
+  /// Ends the run if another fix changes the box in a way that bodies cannot follow.  Before a run.
+  void init();
+  /// True if another fix changes the box in this run.
+  bool any() const { return driven; }
+
+  /// Before and after another fix remaps atoms with the box.  Collective.
+  void begin_remap() { ownership.note_box(); }
+  void end_remap();
+  /// Before a step: the box may have changed without a remap.  Collective.
+  void follow();
+  /// Before atoms are wrapped and exchanged in a step: fix deform remap v.  Collective.
+  void meet_faces() { pass_faces(); }
+  /// Before that in LAMMPS' setup, where atoms get the velocities of bodies again.  Collective.
+  void pass_faces_before_run();
+  /// Sites are placed in the last box.  Collective.
+  void end_run();
+
+ private:
+  const Fix *fix;
+  const Arguments &args;
+  Bodies &bodies;
+  Ownership &ownership;
+  Sites &sites;
+  OtherFixes &others;
+  Step &step;
+  bool driven = false;
+
+  using Vector = std::array<double, 3>;
+  std::vector<Vector> images;    ///< periods of the owner atoms of moved bodies, in follow()
+
+  /// A velocity that a body gets beyond a face.
+  struct Passage {
+    tagint owner;    ///< atom ID
+    double velocity[3];
+    bool operator<(const Passage &other) const { return owner < other.owner; }
+  };
+
+  std::vector<Vector> present_images();
+  std::vector<Vector> passed_faces();
+  std::vector<Passage> pass_faces();
+  void add_velocity(int ibody, const double *velocity);
+  void share(std::vector<Vector> &of_moved) const;
+  void move_center(int ibody, const double *way);
+  void place_sites();
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif
