@@ -46,9 +46,9 @@ REASONS = (
     (r"keyword gravity of the rigid fixes", "keyword gravity", r"no keywords [^.]*\*gravity\*"),
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
     (
-        r"does not change size or shape",
-        "box that changes",
-        r"No other fix may change the size or shape of the box",
+        r"changes the box, and does not tell other fixes",
+        "box that changes untold",
+        r"unless they tell no other fix of it",
     ),
     (
         r"is in (?:both )?groups?|in two groups|more than one",

@@ -225,10 +225,15 @@ SCENES = {
         "run_style respa 2 2 pair 1\nrun 1",
         "requires run_style respa to have the same step at all levels",
     ),
-    "box changes": (
-        "fix press all deform 1 x scale 0.9",
-        "run 1",
-        "a box that does not change size or shape",
+    "flow and temp": (
+        "change_box all triclinic",
+        "unfix move\nfix move all gear/quat molecule temp 1 1 1\nfix d all deform 1 xy erate 0.1 remap v\nrun 1",
+        "the velocities of bodies have the flow of fix deform remap v",
+    ),
+    "box and tolerance": (
+        "",
+        "unfix move\nfix move all gear/quat molecule tolerance 1e-6\nfix d all deform 1 x scale 0.9\nrun 1",
+        "tolerance cannot be used with fix d (deform), whose box is a function of the number of the step",
     ),
     "part of a body": (
         "",
@@ -315,7 +320,7 @@ PRESSURES = {
         "group 1 one iso 1 1 1",
         "group one molecule 1\ngroup two molecule 2",
         "fix second two gear/quat group 1 two",
-        "a box that does not change size or shape, and fix move (gear/quat) changes it",
+        "fix move (gear/quat) changes the box, and does not tell other fixes",
     ),
     "respa": ("molecule iso 1 1 1", "", "run_style respa 2 1 pair 1", "cannot be used with run_style respa; use run_style verlet"),
     "a field": ("molecule iso 1 1 1", "", "fix a all addforce 0 0 1", "cannot be used with fix a (addforce), which may change forces"),

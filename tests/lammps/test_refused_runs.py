@@ -44,7 +44,6 @@ REFUSED = {
     "step": ("timestep 400.0", "timestep 0.5", "turns with an angular velocity of"),
     "zero step": ("timestep 0.0", "timestep 0.5", "requires a time step that is not zero"),
     "mover": ("fix too all nve", "unfix too", "is also moved by fix too"),
-    "box": ("fix too all deform 1 x scale 1.1", "unfix too", "requires a box that does not change"),
 }
 
 
