@@ -97,7 +97,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   count_rows();
   size_array_rows_variable = !args->mol.empty();    // rows may be asked for before they are there
 
-  // This comes last because LAMMPS would call back a fix whose constructor has failed.
+  // last, because LAMMPS would call back a fix whose constructor has failed
   extlist = new int[size_vector]{1, 1};
   for (int n = 0; n < motion->elements(); ++n) extlist[Sums::ELEMENTS + n] = motion->extensive(n);
   atom->add_callback(Atom::GROW);
@@ -219,7 +219,6 @@ void FixGearQuat::setup(int vflag)
   reported = true;
 }
 
-/// Output goes on asking for the rows of removed bodies.
 void FixGearQuat::count_rows()
 {
   size_array_rows = std::max(size_array_rows, (int) bodies->number());
@@ -283,12 +282,13 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
+  driven_box->end_step();
   if (box_change != NO_BOX_CHANGE) ownership->note_box();
   if (step->shows_local_data()) show_bodies();
   if (step->coupling && step->coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
 }
 
-/// LAMMPS calls this with keyword tolerance only, when all fixes have finished the step.
+/// With keyword tolerance only, when all fixes have finished the step.
 void FixGearQuat::end_of_step()
 {
   step->choose_next();

@@ -121,9 +121,9 @@ struct CellFriction {
   bool implicit = false;
 
   CellFriction() = default;
-  /// alpha: of the thermostat, along all axes the same.  weights: b.
+  /// alpha: of the thermostat, along all axes the same.  weights: b.  times: of G in the damping.
   CellFriction(const Friction &alpha, const Upper &matrix, const Upper &rate,
-               const double (&weights)[3]) :
+               const double (&weights)[3], double times = 2.0) :
       rotation(alpha.rotation),
       implicit(alpha.implicit)
   {
@@ -131,7 +131,7 @@ struct CellFriction {
     double trace = alpha.translation[0];
     for (int k = 0; k < 3; ++k) trace += weights[k] * rate[k];
     drag = inverse * rate * matrix;
-    damping = drag.scaled(2.0) + Upper::one().scaled(trace);
+    damping = drag.scaled(times) + Upper::one().scaled(trace);
     inverse.times(alpha.common, common);
     for (int k = 0; k < 3; ++k) unforeseen[k] = alpha.unforeseen[k] - drag.row_times(k, common);
   }

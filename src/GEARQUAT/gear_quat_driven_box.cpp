@@ -6,6 +6,7 @@
 #include "gear_quat_driven_box.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_driven_cell.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_images.h"
 #include "gear_quat_known_styles.h"
@@ -17,6 +18,8 @@
 #include "error.h"
 #include "fix.h"
 #include "modify.h"
+#include "update.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,13 +60,71 @@ void DrivenBox::init()
     error->all(FLERR,
                "Fix gear/quat: the velocities of bodies have the flow of fix deform remap v, which "
                "is no temperature; leave out keywords temp and isokinetic, or use remap x");
+  drive(smooth_driver());
+}
+
+/// The fix whose motion of the box is followed with the order of the method, null for none: other
+/// atoms move by a method of second order, and a box that jumps has no derivatives.
+Fix *DrivenBox::smooth_driver() const
+{
+  Fix *driver = nullptr;
+  for (auto *other : modify->get_fix_list()) {
+    if (!(other->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE))) continue;
+    if (driver || !utils::strmatch(other->style, "^deform$")) return nullptr;
+    driver = other;
+  }
+  const bool alone = ownership.number_of_atoms() == atom->natoms && args.masks.empty() &&
+      args.isokinetic == Isokinetic::NONE && utils::strmatch(update->integrate_style, "^verlet");
+  return driver && driver->nevery == 1 && !domain->deform_vremap && alone ? driver : nullptr;
+}
+
+/// What the thermostat has kept goes on.
+void DrivenBox::drive(Fix *deform)
+{
+  if (!deform && !cell) return;
+  if (!deform == !!cell) {
+    Sections kept;
+    if (step.coupling) step.coupling->write(kept);
+    auto made = deform
+        ? std::make_unique<DrivenCell>(lmp, fix, bodies, args.thermostat, step.scheme())
+        : nullptr;
+    cell = made.get();
+    step.set_coupling(made ? std::move(made) : make_coupling(lmp, fix, args, bodies, sites));
+    if (step.coupling && kept.has("chains", 1)) step.coupling->read(kept);
+  }
+  if (cell) cell->obey(deform);
 }
 
 /* ----------------------------------------------------------------------
    atoms are remapped with the box
 ------------------------------------------------------------------------- */
 
+void DrivenBox::begin_remap()
+{
+  if (!cell) ownership.note_box();    // otherwise bodies are in that of the end of the step
+}
+
+void DrivenBox::end_step()
+{
+  if (!cell) return;
+  ownership.note_box();
+  cell->put_back_box();
+}
+
 void DrivenBox::end_remap()
+{
+  if (cell && cell->is_asking()) {
+    cell->note_remap();
+    return;
+  }
+  if (cell)
+    cell->remap(ownership.box(), step.started);
+  else
+    remap_centers();
+  place_sites();
+}
+
+void DrivenBox::remap_centers()
 {
   const double *before = ownership.box().data();
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
@@ -73,7 +134,6 @@ void DrivenBox::end_remap()
     for (int k = 0; k < 3; ++k) way[k] = moved[k] - center[k];
     move_center(ibody, way);
   }
-  place_sites();
 }
 
 /// Of the state and of the history.

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A box that another command changes during a run (doc/theory.md, Boxes that other commands change).
+/* A box that another fix changes during a run (doc/theory.md, Boxes that other commands change).
 
    A fix that remaps atoms with the box tells the rigid fixes before and after (Fix::deform()).  Then
    the centers of mass are remapped, and bodies keep their shapes, orientations and velocities.
@@ -27,6 +27,7 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
+class DrivenCell;
 class OtherFixes;
 class Step;
 struct Arguments;
@@ -47,8 +48,10 @@ class DrivenBox : protected Pointers {
   bool any() const { return driven; }
 
   /// Before and after another fix remaps atoms with the box.  Collective.
-  void begin_remap() { ownership.note_box(); }
+  void begin_remap();
   void end_remap();
+  /// A step has ended, and sites are placed.
+  void end_step();
   /// Before a step: the box may have changed without a remap.  Collective.
   void follow();
   /// Before atoms are wrapped and exchanged in a step: fix deform remap v.  Collective.
@@ -67,6 +70,10 @@ class DrivenBox : protected Pointers {
   OtherFixes &others;
   Step &step;
   bool driven = false;
+  DrivenCell *cell = nullptr;    ///< the coupling of the step, if the motion of the box is followed
+
+  Fix *smooth_driver() const;
+  void drive(Fix *deform);
 
   using Vector = std::array<double, 3>;
   std::vector<Vector> images;    ///< periods of the owner atoms of moved bodies, in follow()
@@ -83,6 +90,7 @@ class DrivenBox : protected Pointers {
   std::vector<Passage> pass_faces();
   void add_velocity(int ibody, const double *velocity);
   void share(std::vector<Vector> &of_moved) const;
+  void remap_centers();
   void move_center(int ibody, const double *way);
   void place_sites();
 };

@@ -25,8 +25,9 @@ using namespace GearQuat;
 /* ---------------------------------------------------------------------- */
 
 /// Keywords exclude two couplings, and one with a changing step where it cannot follow.
-static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                               Bodies &bodies, const Sites &sites)
+std::unique_ptr<Coupling> GearQuat::make_coupling(LAMMPS *lmp, const Fix *fix,
+                                                  const Arguments &args, Bodies &bodies,
+                                                  const Sites &sites)
 {
   if (args.pressure.any())
     return std::make_unique<Barostat>(lmp, fix, bodies, sites, args.thermostat, args.pressure,
@@ -288,6 +289,12 @@ bool Step::is_due(const std::vector<int> &periods) const
 void Step::make_integrator()
 {
   integrator = std::make_unique<Integrator>(scheme(), length());
+}
+
+void Step::set_coupling(std::unique_ptr<Coupling> other)
+{
+  coupling = std::move(other);
+  blowup.coupling = coupling.get();
 }
 
 void Step::set_scheme(const Scheme &scheme)

