@@ -64,6 +64,20 @@ def test_own_motion(walk, tmp_path, names, backend):
     assert np.abs(carried - displaced(walk)).max() > (0.1 if names == "x y z" else 1.0)
 
 
+def test_a_flip_carries_nothing():
+    """Edges of the same lattice, some of them with a deformation of 2 %; a large deformation is not a flip."""
+    cell = np.array([[1.0, 2.0, 3.0], [10.0, 0.0, 0.0], [5.5, 9.0, 0.0], [-5.6, 4.8, 8.0]])
+    x = np.random.default_rng(1).uniform(-300.0, 300.0, (20, 3))
+    for k, l, m in [(-1, 0, 0), (0, 1, 0), (0, 0, -1), (-1, 1, -1)]:
+        flip = np.array([[1, 0, 0], [k, 1, 0], [l, m, 1]])
+        for strain in (0.0, 0.02):
+            change = np.eye(3) + strain * np.array([[1.0, 0.0, 0.0], [0.7, -1.0, 0.0], [0.2, 0.5, 0.6]])
+            after = np.vstack([cell[0], flip @ cell[1:] @ change])
+            assert np.abs(mapped.carried(x, cell, after) - cell[0] - (x - cell[0]) @ change).max() < 1e-11
+    doubled = np.vstack([cell[0], 2.0 * cell[1:]])
+    assert np.allclose(mapped.carried(x, cell, doubled), cell[0] + 2.0 * (x - cell[0]))
+
+
 def test_diffusion(walk, tmp_path):
     poses = Poses(open_dump(walk.dump(tmp_path / "a.dump")).atoms).run()
     (found,) = (row for row in averages.averages(poses) if row.name == "diffusion coefficient")

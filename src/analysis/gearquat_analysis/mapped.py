@@ -48,8 +48,14 @@ class Part:
 
 
 def carried(x, before, after):
-    """Positions x (..., 3) when the box of ``before`` (4, 3), its origin and its edges, becomes that of ``after``."""
-    return after[0] + (x - before[0]) @ (np.linalg.inv(before[1:]) @ after[1:])
+    """Positions x (..., 3) when the box of ``before`` (4, 3), its origin and its edges, becomes that of ``after``.
+
+    LAMMPS may flip a tilted box, to other edges of the same lattice.  Those edges of that lattice count that are nearest
+    to the ones before.
+    """
+    nearest = np.rint(before[1:] @ np.linalg.inv(after[1:]))
+    edges = nearest @ after[1:] if np.isclose(abs(np.linalg.det(nearest)), 1.0) else after[1:]
+    return after[0] + (x - before[0]) @ (np.linalg.inv(before[1:]) @ edges)
 
 
 class OwnMotion:
