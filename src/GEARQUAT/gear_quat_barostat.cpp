@@ -203,21 +203,20 @@ double Barostat::rate_of_heat() const
 /// The first `count` components.
 void Barostat::add_momenta(int ibody, const double *velocity, Tensor &sums, int count) const
 {
-  static constexpr int A[] = {0, 1, 2, 1, 0, 0}, B[] = {0, 1, 2, 2, 2, 1};
   const double mass = bodies.rigid_of(ibody).mass;
-  for (int k = 0; k < count; ++k) sums[k].add(mass * velocity[A[k]] * velocity[B[k]], unit);
+  for (int k = 0; k < count; ++k)
+    sums[k].add(mass * velocity[Upper::ROW[k]] * velocity[Upper::COLUMN[k]], unit);
 }
 
 void Barostat::sum_momenta(const Tensor &sums)
 {
-  static constexpr int A[] = {0, 1, 2, 1, 0, 0}, B[] = {0, 1, 2, 2, 2, 1};
   bigint limbs[2 * Upper::SIZE];
   for (int k = 0; k < Upper::SIZE; ++k) std::copy_n(sums[k].limbs, 2, limbs + 2 * k);
   const auto all = over_ranks(MPI_SUM, limbs, world);
   for (int k = 0; k < Upper::SIZE; ++k) {
     ExactSum sum;
     std::copy_n(all.begin() + 2 * k, 2, sum.limbs);
-    kinetic[k] = sum.value(unit) - total.twice_energy(A[k], B[k]);
+    kinetic[k] = sum.value(unit) - total.twice_energy(Upper::ROW[k], Upper::COLUMN[k]);
   }
   if (domain->dimension == 2) kinetic[2] = kinetic[3] = kinetic[4] = 0.0;
 }

@@ -456,9 +456,7 @@ void Barostat::write(Sections &file) const
   file.put("heat of box", {heat.record().begin(), heat.record().end()});
   const Chain::Record of_chain = chain.record();
   Sections::Numbers chained(of_chain.y.begin(), of_chain.y.end());
-  chained.push_back(of_chain.known);
-  for (int i = 0; i < (int) of_chain.known; ++i)
-    chained.insert(chained.end(), {of_chain.sums[i], of_chain.ages[i]});
+  of_chain.append_sums(chained);
   file.put("chain of box", chained);
 }
 
@@ -491,11 +489,8 @@ std::string Barostat::read(const Sections &file)
   std::copy_n(of_heat.begin(), std::min(of_heat.size(), saved_heat.size()), saved_heat.begin());
   heat.restore(saved_heat);
   std::copy_n(chained.begin(), variables, of_chain.y.begin());
-  of_chain.known = std::min((double) Chain::MOST_SUMS, chained[variables]);
-  for (size_t i = 0; i < (size_t) of_chain.known && variables + 2 + 2 * i < chained.size(); ++i) {
-    of_chain.sums[i] = chained[variables + 1 + 2 * i];
-    of_chain.ages[i] = chained[variables + 2 + 2 * i];
-  }
+  size_t at = variables;
+  of_chain.take_sums(chained, at);
   chain.restore(of_chain);
   return missing;
 }

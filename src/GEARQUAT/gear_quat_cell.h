@@ -33,6 +33,7 @@ namespace LAMMPS_NS::GearQuat {
 /// An upper triangular matrix, in the order of LAMMPS' Domain::h.
 struct Upper {
   enum { XX, YY, ZZ, YZ, XZ, XY, SIZE };
+  static constexpr int ROW[] = {0, 1, 2, 1, 0, 0}, COLUMN[] = {0, 1, 2, 2, 2, 1};
   std::array<double, SIZE> m = {};
 
   static Upper one() { return {{1.0, 1.0, 1.0, 0.0, 0.0, 0.0}}; }

@@ -41,6 +41,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -261,6 +262,21 @@ class Chain {
     Variables y;
     double known;
     std::array<double, MOST_SUMS> sums, ages;
+
+    /// As numbers of a file: how many are known, and each sum with its age.
+    void append_sums(std::vector<double> &numbers) const
+    {
+      numbers.push_back(known);
+      for (int i = 0; i < (int) known; ++i) numbers.insert(numbers.end(), {sums[i], ages[i]});
+    }
+    /// From these, beginning at a place, which moves on; none where the numbers end.
+    void take_sums(const std::vector<double> &numbers, size_t &at)
+    {
+      const int count = at < numbers.size() ? (int) numbers[at++] : 0;
+      known = std::min(count, (int) MOST_SUMS);
+      for (int i = 0; i < count && at + 1 < numbers.size(); ++i, at += 2)
+        if (i < MOST_SUMS) sums[i] = numbers[at], ages[i] = numbers[at + 1];
+    }
   };
   Record record() const { return {now, (double) known, sums, ages}; }
   void restore(const Record &all)

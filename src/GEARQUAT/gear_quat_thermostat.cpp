@@ -325,9 +325,7 @@ void Thermostat::write(Sections &file) const
   for (const auto &chain : chains) {
     const Chain::Record record = chain.record();
     variables.insert(variables.end(), record.y.begin(), record.y.begin() + chain.size());
-    sums.push_back(record.known);
-    for (int i = 0; i < (int) record.known; ++i)
-      sums.insert(sums.end(), {record.sums[i], record.ages[i]});
+    record.append_sums(sums);
   }
   file.put("chains", variables);
   file.put("sums of chains", sums);
@@ -351,10 +349,7 @@ std::string Thermostat::read(const Sections &file)
     Chain::Record record = {};
     std::copy_n(from, chain.size(), record.y.begin());
     from += chain.size();
-    const int count = at < sums.size() ? (int) sums[at++] : 0;
-    record.known = std::min(count, Chain::MOST_SUMS);
-    for (int i = 0; i < count && at + 1 < sums.size(); ++i, at += 2)
-      if (i < Chain::MOST_SUMS) record.sums[i] = sums[at], record.ages[i] = sums[at + 1];
+    record.take_sums(sums, at);
     chain.restore(record);
   }
   note_friction();
