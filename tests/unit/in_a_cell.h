@@ -17,6 +17,21 @@ using std::vector;
 /// Rows and columns of the components of Upper.
 constexpr int ROW[] = {0, 1, 2, 1, 0, 0}, COLUMN[] = {0, 1, 2, 2, 2, 1};
 
+/// All nine components, row by row.
+inline vector<double> full(const Upper &u)
+{
+  vector<double> all(9, 0.0);
+  for (int k = 0; k < Upper::SIZE; ++k) all[3 * ROW[k] + COLUMN[k]] = u[k];
+  return all;
+}
+
+inline Scheme with(Formulation formulation, int values, bool tuned)
+{
+  Scheme scheme = scheme_of(formulation, values, 2);
+  scheme.tuned = tuned;
+  return scheme;
+}
+
 /// Forces on centers and torques in space, the virial sum F_a R_b about the fixed point 0, energy.
 struct Met {
   vector<Load> loads;

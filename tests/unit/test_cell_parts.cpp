@@ -1,0 +1,158 @@
+/* The parts of a moving cell: its matrices, friction and history. */
+
+#include "in_a_cell.h"
+
+using namespace InACell;
+
+namespace {
+
+Upper some_matrix()
+{
+  return {{1.1, 0.9, 1.3, 0.2, -0.15, 0.3}};
+}
+Upper some_rate()
+{
+  return {{0.3, -0.2, 0.15, 0.1, -0.25, 0.35}};
+}
+
+vector<double> product(const vector<double> &a, const vector<double> &b)
+{
+  vector<double> all(9, 0.0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) all[3 * i + j] += a[3 * i + k] * b[3 * k + j];
+  return all;
+}
+
+}    // namespace
+
+TEST(Upper, IsTheAlgebraOfMatrices)
+{
+  const Upper a = some_matrix(), b = some_rate();
+  const double v[3] = {0.7, -1.1, 0.4};
+  Check::holds_and_refuses_one_percent(full(a * b), [&](const vector<double> &all) {
+    return Check::largest_difference(all, product(full(a), full(b))) < 1e-15;
+  });
+  EXPECT_LT(Check::largest_difference(full(a * a.inverse()), full(Upper::one())), 1e-15);
+  EXPECT_LT(Check::largest_difference(full(a + b - a), full(b)), 1e-15);
+  EXPECT_LT(Check::largest_difference(full(a.scaled(2.0)), full(a + a)), 1e-15);
+  double forward[3], rows[3], back[3], sum = 0.0, trace = 0.0;
+  a.times(v, forward);
+  a.transposed_times(v, back);
+  const vector<double> all = full(a);
+  for (int i = 0; i < 3; ++i) {
+    rows[i] = a.row_times(i, v);
+    double expected = 0.0, across = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      expected += all[3 * i + k] * v[k];
+      across += all[3 * k + i] * v[k];
+      sum += all[3 * i + k] * full(b)[3 * i + k];
+    }
+    trace += all[4 * i];
+    EXPECT_NEAR(forward[i], expected, 1e-15);
+    EXPECT_NEAR(rows[i], expected, 1e-15);
+    EXPECT_NEAR(back[i], across, 1e-15);
+  }
+  EXPECT_NEAR(a.contracted(b), sum, 1e-15);
+  EXPECT_NEAR(a.trace(), trace, 1e-15);
+  EXPECT_NEAR(a.determinant(), 1.1 * 0.9 * 1.3, 1e-15);
+}
+
+TEST(CellFriction, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
+{
+  Friction alpha = Multipliers{0.8, 0.5};
+  for (int k = 0; k < 3; ++k) {
+    alpha.common[k] = 0.2 * (k - 1.3);
+    alpha.unforeseen[k] = 0.3 - 0.2 * k;
+  }
+  const double b[3] = {0.5, 0.1, -0.2}, mass = 1.7, share = 0.4, unit = 0.4 * mass;
+  CellFriction friction(alpha, some_matrix(), some_rate(), b);
+  const double predicted[3] = {0.9, -0.6, 0.35}, met[3] = {0.3, 0.8, -1.1};
+  // the common motion changes by share * unforeseen per mass, whatever the residual
+  double momentum[3], residual[3] = {}, solved[3];
+  CellFriction then = friction;
+  for (int round = 0; round < 200; ++round) {
+    for (int i = 0; i < 3; ++i) {
+      momentum[i] = predicted[i] + share * residual[i];
+      then.common[i] = friction.common[i] + share * friction.unforeseen[i] * unit / mass;
+    }
+    for (int i = 0; i < 3; ++i) {
+      // the drag of the common motion has no part in what is solved for
+      const double drag = mass *
+          (friction.drag.row_times(i, then.common) - friction.drag.row_times(i, friction.common));
+      residual[i] = then.force(i, met[i], momentum, mass) + drag;
+    }
+  }
+  for (int i = 0; i < 3; ++i) solved[i] = friction.force(i, met[i], predicted, mass);
+  friction.solve(share, unit, solved);
+  Check::holds_and_refuses_one_percent({solved, solved + 3}, [&](const vector<double> &all) {
+    return Check::largest_difference(all.data(), residual, 3) < 1e-13;
+  });
+  EXPECT_EQ(friction.implicit_torque(0.4), 1.0 / (1.0 + 0.4 * 0.5));
+  EXPECT_EQ(friction.torque(0.3, 0.7), 0.3 - 0.5 * 0.7);
+}
+
+TEST(CellFriction, ACommonMotionIsConstantInSpace)
+{
+  // V = M c with a constant V: c' = -M^-1 G M c, whatever friction and b are
+  Friction alpha = Multipliers{0.8, 0.5};
+  const double velocity[3] = {0.4, -0.7, 0.9}, b[3] = {0.5, 0.1, -0.2}, mass = 1.7;
+  std::copy_n(velocity, 3, alpha.common);
+  const CellFriction friction(alpha, some_matrix(), some_rate(), b);
+  double c[3], p[3], rate[3], change[3], drift[3];
+  some_matrix().inverse().times(velocity, c);
+  for (int k = 0; k < 3; ++k) p[k] = mass * c[k];
+  for (int k = 0; k < 3; ++k) rate[k] = friction.force(k, 0.0, p, mass) / mass;
+  some_matrix().times(rate, change);    // (M c)' = M c' + G M c
+  some_rate().times(velocity, drift);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(change[k] + drift[k], 0.0, 1e-15);
+  for (int k = 0; k < 3; ++k) p[k] *= 1.01;
+  double slowed = 0.0;
+  for (int k = 0; k < 3; ++k) slowed += std::fabs(friction.force(k, 0.0, p, mass) / mass - rate[k]);
+  EXPECT_GT(slowed, 1e-3);
+}
+
+TEST(CellHistory, FollowsAFlowWithAConstantRate)
+{
+  // M = exp(G t) with a nilpotent and a diagonal part; friction is solved for
+  for (const double friction : {0.0, 0.7, 20.0}) {
+    vector<double> off;
+    for (const double h : {0.02, 0.01}) {
+      CellHistory cell(with(SECOND, 6, false));
+      const Upper rate = {{0.5, 0.0, -0.3, 0.0, 0.0, 0.0}};
+      const auto exact = [&](double t) {
+        // G' = -friction G
+        const double way = friction == 0.0 ? t : (1.0 - std::exp(-friction * t)) / friction;
+        return Upper{{std::exp(0.5 * way), 1.0, std::exp(-0.3 * way), 0.0, 0.0, 0.0}};
+      };
+      cell.begin(rate, h);
+      if (friction < 1.0) {
+        const Upper first = rate, second = (rate * rate - rate.scaled(friction));
+        double series[18];
+        for (int k = 0; k < 6; ++k) {
+          series[k] = Upper::one()[k];
+          series[6 + k] = h * first[k];
+          series[12 + k] = 0.5 * h * h * second[k];
+        }
+        cell.seed(series, 3, h, h);
+      }
+      for (int step = 0; step < std::lround(1.0 / h); ++step) {
+        cell.predict();
+        for (int pass = 0; pass < 3; ++pass) cell.pass(Upper(), friction, h);
+        cell.finish();
+      }
+      off.push_back(Check::largest_difference(full(cell.matrix()), full(exact(1.0))));
+      EXPECT_EQ(cell.matrix()[Upper::YY], 1.0);
+    }
+    EXPECT_LT(off[1], friction > 1.0 ? 1e-2 : 1e-5) << friction;
+  }
+}
+
+TEST(CellHistory, ANewStepKeepsTheMotion)
+{
+  CellHistory cell(with(SECOND, 5, true));
+  cell.begin(some_rate(), 0.1);
+  cell.rescale(0.5);
+  EXPECT_LT(Check::largest_difference(full(cell.rate(0.05)), full(some_rate())), 1e-15);
+  EXPECT_LT(Check::largest_difference(full(cell.matrix()), full(Upper::one())), 1e-15);
+}
