@@ -178,7 +178,7 @@ void FixGearQuat::setup_pre_exchange()
     motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
   if (step->coupling && !step->coupling->knows_box())
     motion->forget("Fix gear/quat: the box was changed since the last run, histories start anew");
-  if (met_atoms) driven_box->pass_faces_before_run();
+  if (reported) driven_box->pass_faces_before_run();    // there was a run
 }
 
 /// Bodies keep their state between runs, and take over what the user has changed in the atoms.
