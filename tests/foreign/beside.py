@@ -191,7 +191,7 @@ class Run(NamedTuple):
 def variants(n, a_try, ranks):
     """The runs of scene ``n`` that have to agree; the first is what others are compared with."""
     found, several = [Run(n), Run(n, "before")], [number for number in ranks if number > 1]
-    if a_try.kind in (INTEGRATES, BOX, RIGID_ONLY):
+    if a_try.kind in (INTEGRATES, BOX, RIGID_ONLY) or not a_try.restarts:
         return found + [Run(n, ranks=number) for number in several]
     found += [Run(n, restart=True), Run(n, "before", restart=True)]
     for number in several:

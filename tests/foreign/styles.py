@@ -44,6 +44,8 @@ class Try:
     behind: bool = False
     #: what the difference from the reference may be in any case, where forces jump
     floor: float = 1e-7
+    #: whether a run from a restart file is compared
+    restarts: bool = True
     #: per-atom values have a meaning in their sum only
     sums: bool = False
 
@@ -225,10 +227,10 @@ FIXES = {
     "nvt/sphere": integrates("temp 1 1 1", atoms=SPHERES),
     "poems": integrates("molecule", group="bodies"),
     "tfmc": integrates("0.1 1.0 1234"),
-    # --- changes the box ---
-    "box/relax": box("iso 0.0"),
-    "deform": box("1 x erate 0.01"),
-    "deform/pressure": box("1 x erate 0.01"),
+    # --- changes the box; those that integrate time are refused on atoms of bodies ---
+    "box/relax": passive("iso 0.0", behind=True),
+    "deform": count("1 x erate 0.01", behind=True),
+    "deform/pressure": count("1 x erate 0.01", behind=True),
     "msst": box("z 1.0 q 1 mu 1"),
     "nph": box("iso 1 1 1"),
     "npt": box("temp 1 1 1 iso 1 1 1"),
@@ -237,8 +239,9 @@ FIXES = {
     "nphug": box("temp 1 1 1 iso 1 1 1"),
     "append/atoms": box("zhi freq 10", once=("change_box all boundary p p m", "lattice sc 1.0")),
     "nvt/sllod": integrates("temp 1 1 1"),
-    "press/berendsen": box("iso 1 1 1"),
-    "press/langevin": box("iso 1 1 1 temp 1 1 1234"),
+    "press/berendsen": force("iso 1 1 1", behind=True),
+    # neither its random numbers nor the velocity of its box are in restart files
+    "press/langevin": chance("iso 1 1 1 temp 1 1 1234", behind=True, restarts=False),
     # --- rigid fixes ---
     **{
         f"rigid{name}{small}": found
