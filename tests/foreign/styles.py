@@ -229,8 +229,8 @@ FIXES = {
     "tfmc": integrates("0.1 1.0 1234"),
     # --- changes the box; those that integrate time are refused on atoms of bodies ---
     "box/relax": passive("iso 0.0", behind=True),
-    "deform": count("1 x erate 0.01", behind=True),
-    "deform/pressure": count("1 x erate 0.01", behind=True),
+    "deform": force("1 x erate 0.01", behind=True),
+    "deform/pressure": force("1 x erate 0.01", behind=True),
     "msst": box("z 1.0 q 1 mu 1"),
     "nph": box("iso 1 1 1"),
     "npt": box("temp 1 1 1 iso 1 1 1"),
