@@ -12,8 +12,9 @@ PLAN = runs.Plan(time=10_000.0, seeds=(1, 2), blocks=5)
 N, VOLUME = 4001, 300.0
 
 
-def made_up(drift=0.01, of_box=3.0, shift=0.0, work=-1.0, rigid=5.0 / 6.0):
-    """``drift`` of ours; ``shift`` of Pxx in standard errors; ``rigid``: what its pressures all are."""
+def made_up(drift=0.01, of_box=3.0, shift=0.0, work=-1.0, rigid=5.0 / 6.0, share=1.0, shear=runs.SHEAR):
+    """``drift`` of ours; ``shift`` of Pxx in standard errors; ``rigid``: what its pressures all are; ``share`` of zz in
+    the energy of the box; ``shear``: the mean of Pxy."""
     water, unit = {}, runs.BOLTZMANN * runs.TEMPERATURE * runs.FREEDOMS * 1e-6
     for k, (method, dt, seed) in enumerate((m, dt, s) for m in runs.METHODS for dt in PLAN.dts for s in PLAN.seeds):
         time = np.linspace(0.0, PLAN.time, N)
@@ -30,6 +31,12 @@ def made_up(drift=0.01, of_box=3.0, shift=0.0, work=-1.0, rigid=5.0 / 6.0):
             columns[f"f_move[{16 + k}]"] = runs.TARGETS[k] + work * kt / VOLUME + 0.002 * rng.normal(size=N)
         columns["f_move[26]"] = 0.5 * kt * of_box * rng.chisquare(3, N) / 3
         crystal[method] = columns
+    means = (*runs.TARGETS, shear, 0.0, 0.0) - kt / VOLUME * np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0])
+    crystal[runs.SHEARED] = {f"f_move[{16 + k}]": mean + 0.3 * rng.normal(size=N) for k, mean in enumerate(means)}
+    crystal[runs.SHEARED]["Volume"] = np.full(N, VOLUME)
+    per_mass = 1.0 / (4 * runs.FEW**3 * runs.PDAMP**2)
+    rates = [np.sqrt(per_mass * (share if k == 2 else 1.0)) * rng.normal(size=N) for k in range(3)]
+    crystal[runs.SMALL] = {f"f_move[{23 + k}]": rate for k, rate in enumerate(rates)}
     fixes, steps = (8000.0, 5000.0, 4000.0), (100_000.0, 80_000.0, 50_000.0)
     counted = {m: Instructions(f, 23_000.0, s) for m, f, s in zip(runs.METHODS, fixes, steps)}
     return runs.Results(PLAN, water, crystal, counted)
@@ -51,6 +58,8 @@ def test_what_is_right_is_within_the_bounds():
         (dict(shift=12.0), 1, "crystal, largest deviation of a component of the pressure: ours"),
         (dict(work=-0.7), 1, "crystal, largest deviation of a mean (P − P₀) V from −kT"),
         (dict(of_box=2.7), 1, "crystal, deviation of the box's kinetic energy from 3 kT/2"),
+        (dict(share=1.5), 1, "small crystal, largest deviation of a share of the box from kT/2"),
+        (dict(shear=0.35), 1, "crystal under a shear stress, largest deviation of one of six components of the pressure"),
     ],
 )
 def test_what_is_wrong_is_refused(fault, number, what):
@@ -73,7 +82,7 @@ def test_the_page_shows_what_was_found():
 
 
 def test_a_small_run(lmp_wheel, tmp_path):
-    plan = runs.Plan((2.0,), 80.0, 20.0, 2.0, (1,), 400, 100, 4, 1, 2)
+    plan = runs.Plan((2.0,), 80.0, 20.0, 2.0, (1,), 400, 100, 400, 4, 1, 2)
     done = []
     results = runs.measure(Lab(tmp_path, str(lmp_wheel.executable), 1, advance=done.append), plan)
     assert sum(done) == pytest.approx(1.0)

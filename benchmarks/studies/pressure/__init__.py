@@ -17,14 +17,17 @@ from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope, w
 from . import instructions
 
 OURS, RIGID, SHAKE = "gear", "rigid", "shake"
+SHEARED, SMALL = "sheared", "small"
 METHODS = {OURS: "`fix gear/quat`", RIGID: "`fix rigid/npt/small`", SHAKE: "`fix shake` and `fix npt`"}
 WATER, CRYSTAL = EXAMPLES / "water_npt" / "in.water_npt", Path(__file__).parent / "in.crystal"
 MOLECULES, TEMPERATURE, BOLTZMANN = 216, 300.0, 0.0019872067
 FREEDOMS = 6 * MOLECULES - 3
 DUMBBELLS_KT, TARGETS = 0.5, (0.5, 0.5, 1.5)
+#: target of xy in a crystal that shears; in that of a few dumbbells for the energies of the box, cells along an edge and Pdamp
+SHEAR, FEW, PDAMP = 0.3, 2, 2.0
 #: kT/ns per degree of freedom
 DRIFT = 0.05
-COMPONENTS = ("xx", "yy", "zz")
+COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 
 
 @dataclass(frozen=True)
@@ -38,20 +41,21 @@ class Plan:
     seeds: tuple = (1, 2)
     crystal: int = 20_000
     settle: int = 3_000
+    long: int = 400_000
     blocks: int = 8
     copies: int = 2
     counted_steps: int = 20
 
 
-QUICK = Plan((2.0,), 1_000.0, 200.0, seeds=(1,), crystal=2_000, settle=1_000, blocks=4, copies=1, counted_steps=4)
+QUICK = Plan((2.0,), 1_000.0, 200.0, seeds=(1,), crystal=2_000, settle=1_000, long=4_000, blocks=4, copies=1, counted_steps=4)
 #: hours of computing
 FULL = Plan(time=30_000.0, seeds=(1, 2, 3, 4), crystal=200_000, blocks=20)
 
 
 @dataclass(frozen=True)
 class Results:
-    """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns; ``counted``: method ->
-    Instructions."""
+    """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns, of a crystal that
+    may shear, too, for SHEARED, and of few dumbbells for SMALL; ``counted``: method -> Instructions."""
 
     plan: Plan
     water: dict
@@ -65,6 +69,24 @@ class Results:
         rates, errors = zip(*(slope(run["Time"], run["v_conserved"]) for run in runs))
         return unit * np.mean(rates), unit * math.hypot(*errors) / len(errors)
 
+    def shares(self):
+        """W times the mean square of each strain rate over kT, in the crystal of few dumbbells, (3,): 1 each."""
+        run, dumbbells = self.crystal[SMALL], 4 * FEW**3
+        mass = 3 * dumbbells * DUMBBELLS_KT * PDAMP**2 / 3
+        means = [mean_of_series([mass * run[f"f_move[{23 + k}]"] ** 2 / DUMBBELLS_KT], self.plan.blocks) for k in range(3)]
+        return gathered(means)
+
+    def sheared(self):
+        """All six components of the molecular pressure in the crystal that shears."""
+        run = self.crystal[SHEARED]
+        return gathered([mean_of_series([run[f"f_move[{16 + k}]"]], self.plan.blocks) for k in range(6)])
+
+    def expected_sheared(self):
+        """What these are: a stretch along x changes three elements of the box, along y two, along z one, of a
+        measure with the volume to the power -2."""
+        per_volume = DUMBBELLS_KT / self.crystal[SHEARED]["Volume"].mean()
+        return np.array([*TARGETS, SHEAR, 0.0, 0.0]) - per_volume * np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0])
+
     def share_of_box(self):
         """Twice the kinetic energy of the box in the crystal over kT, for its three degrees of freedom: 3."""
         return mean_of_series([2.0 * self.crystal[OURS]["f_move[26]"] / DUMBBELLS_KT], self.plan.blocks)
@@ -74,17 +96,21 @@ class Results:
         run = self.crystal[OURS]
         series = [(run[f"f_move[{16 + k}]"] - TARGETS[k]) * run["Volume"] / DUMBBELLS_KT for k in range(3)]
         means = [mean_of_series([one], self.plan.blocks) for one in series]
-        return Mean(*(np.array([getattr(m, name) for m in means]) for name in ("value", "error")), means[0].freedoms)
+        return gathered(means)
 
     def pressures(self, method):
         """Components of the pressure in the crystal, (3,)."""
         run = self.crystal[method]
-        means = [mean_of_series([run[name]], self.plan.blocks) for name in ("Pxx", "Pyy", "Pzz")]
-        return Mean(*(np.array([getattr(m, name) for m in means]) for name in ("value", "error")), means[0].freedoms)
+        return gathered([mean_of_series([run[name]], self.plan.blocks) for name in ("Pxx", "Pyy", "Pzz")])
 
     def expected(self):
         """What these are (3,): the targets less kT/V, by which a box that moves alone differs."""
         return np.array(TARGETS) - DUMBBELLS_KT / self.crystal[OURS]["Volume"].mean()
+
+
+def gathered(means):
+    """A Mean of arrays from some Means of numbers."""
+    return Mean(*(np.array([getattr(m, name) for m in means]) for name in ("value", "error")), means[0].freedoms)
 
 
 def keep(finished):
@@ -107,6 +133,9 @@ def measure(lab, plan=None):
     settings = {"steps": plan.crystal, "equilibrate": plan.settle}
     with lab.share(0.3):
         crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings, keep=True)
+        further = {SHEARED: settings | {"pxy": SHEAR}, SMALL: settings | {"cells": FEW, "steps": plan.long, "pdamp": PDAMP}}
+        for name, words in further.items():
+            crystal[name] = lab.sweep(name, CRYSTAL, {"method": (OURS,)}, keep, words, keep=True)[OURS]
     settings = {"dt": plan.dts[-1], "copies": plan.copies}
     with lab.share(0.1):
         counted = instructions.measure(lab, WATER, settings, METHODS, MOLECULES * plan.copies**3, plan.counted_steps)
@@ -137,6 +166,14 @@ def measurements(results):
     rows.append(Measurement("crystal, largest deviation of a mean (P − P₀) V from −kT", shift, most=most, **errors))
     shift, most = largest(results.share_of_box(), 3.0)
     rows.append(Measurement("crystal, deviation of the box's kinetic energy from 3 kT/2", shift, most=most, **errors))
+    shares = results.shares()
+    shift, most = largest(shares, 1.0)
+    rows.append(Measurement("small crystal, largest deviation of a share of the box from kT/2", shift, most=most, **errors))
+    what = "the same as a part of kT/2"
+    rows.append(Measurement(what, float(np.abs(shares.value - 1.0).max()), float(shares.error.max()), ".3f"))
+    shift, most = largest(results.sheared(), results.expected_sheared())
+    what = "crystal under a shear stress, largest deviation of one of six components of the pressure"
+    rows.append(Measurement(what, shift, most=most, **errors))
     ours = results.counted[OURS]
     for method in (RIGID, SHAKE):
         theirs, words = results.counted[method], METHODS[method]
@@ -165,17 +202,29 @@ def crystal_table(results):
     """A row for each component."""
     rows, work, expected = [], results.work(), results.expected()
     ours, rigid = (results.pressures(method) for method in (OURS, RIGID))
-    for k, name in enumerate(COMPONENTS):
+    for k, name in enumerate(COMPONENTS[:3]):
         cells = [with_error(mean.value[k], mean.error[k]) for mean in (ours, rigid, work)]
         rows.append([name, f"{TARGETS[k]:g}", f"{expected[k]:.4f}", *cells])
     header = ("component", "target", "mean that belongs to it", METHODS[OURS], METHODS[RIGID], "(P − P₀) V/kT")
     return Table(header, rows)
 
 
+def shear_table(results):
+    """A row for each of six components."""
+    found, right = results.sheared(), results.expected_sheared()
+    targets = (*TARGETS, SHEAR, 0.0, 0.0)
+    rows = [
+        [name, f"{targets[k]:g}", f"{right[k]:.4f}", with_error(found.value[k], found.error[k])]
+        for k, name in enumerate(COMPONENTS)
+    ]
+    return Table(("component", "target", "mean that belongs to it", "molecular pressure"), rows)
+
+
 def find(results):
     """Finding of Results."""
-    tables = {"water": water_table(results), "cost": cost_table(results), "crystal": crystal_table(results)}
+    tables = {"water": water_table(results), "cost": cost_table(results), "crystal": crystal_table(results), "shear": shear_table(results)}
     context = {"plan": results.plan, "molecules": MOLECULES, "share": results.share_of_box()}
+    context |= {"shares": results.shares(), "few": 4 * FEW**3}
     context["with_error"] = with_error
     # for README
     drifts = {
