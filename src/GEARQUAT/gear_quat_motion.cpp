@@ -296,11 +296,15 @@ Starter Motion::starter(bool needed)
   for (int ibody = 0; ibody < bodies.nmoved() && step.scheme().any_norm(); ++ibody)
     project_norm(bodies.change_state(ibody).q);
   if (needed && step.coupling) step.coupling->refer_to_box(step.length());
-  std::function<Scheme(const MotionSums &)> choose;
-  if (args.automatic_values)
+  std::function<Scheme(const MotionSums &)> choose, foresee;
+  if (args.automatic_values) {
     choose = [this](const MotionSums &here) {
       return choose_scheme(here);
     };
+    foresee = [this](const MotionSums &here) {
+      return foresee_scheme(here);
+    };
+  }
   return {fix,
           &bodies,
           &ownership,
@@ -308,7 +312,8 @@ Starter Motion::starter(bool needed)
           step.coupling.get(),
           step.tolerance ? step.tolerance->scheme_of_start() : step.scheme(),
           needed,
-          choose};
+          choose,
+          foresee};
 }
 
 /// Histories have started.  full: all their rows are known.

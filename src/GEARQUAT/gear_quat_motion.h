@@ -93,12 +93,14 @@ class Motion : protected Pointers {
   int of_coupling() const { return step.coupling ? step.coupling->elements() : 0; }
   double longest_step() const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
+  ChoiceOfValues scene_of_start(const MotionSums &here) const;
   double edge_rate = 0.0;    ///< fast edge by time, when the number was chosen
   double damping = 0.0;      ///< part of a momentum that forces take in a step
   void measure_friction(double **f);
   bool warned_friction = false, watches = false;
   bigint next_look = 0;    ///< step before which the friction of contacts is measured again
   void tell_friction();
+  Scheme foresee_scheme(const MotionSums &here) const;
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   const char *another_scheme_suits();

@@ -45,11 +45,24 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
   return scene;
 }
 
-/// Histories have this scheme after the call.
-Scheme Motion::choose_scheme(const MotionSums &here)
+/// With the friction of a coupling whose run has begun.
+ChoiceOfValues Motion::scene_of_start(const MotionSums &here) const
 {
   ChoiceOfValues scene = scene_of(here);
   if (step.coupling) scene.friction = step.coupling->friction_ahead(step.length());
+  return scene;
+}
+
+/// As if histories had the largest number now, which stays in case of doubt.
+Scheme Motion::foresee_scheme(const MotionSums &here) const
+{
+  return scene_of_start(here).choose(args.scheme, args.scheme.values()).scheme;
+}
+
+/// Histories have this scheme after the call.
+Scheme Motion::choose_scheme(const MotionSums &here)
+{
+  const ChoiceOfValues scene = scene_of_start(here);
   const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
   edge_rate = scene.edge / std::fabs(step.length());
   tell_choice(scene, choice);

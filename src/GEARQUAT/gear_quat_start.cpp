@@ -213,6 +213,21 @@ struct Start::Search {
     return true;
   }
 
+  /// By the derivatives that two pairs tell.
+  int values_that_do(int values) const
+  {
+    if (std::any_of(our.starters.begin(), our.starters.end(), [](const Starter &one) {
+          return !one.foresee;
+        }))
+      return values;
+    int most = 0;
+    for (size_t p = 0; p < our.starters.size(); ++p) {
+      const MotionSums here = our.sums_of(our.starters[p], snapshots[p], 2, spacing);
+      most = std::max(most, our.starters[p].foresee(here).start_values());
+    }
+    return std::min(values, most);
+  }
+
   /// Forces in boxes around that of the start.
   void probe()
   {
@@ -320,17 +335,22 @@ double Start::first_spacing() const
   return way > reach ? h * reach / way : h;
 }
 
-/// By the derivatives that were found, with the states of the start.
+/// By the derivatives that so many pairs tell, with the states of the start.
+MotionSums Start::sums_of(const Starter &one, const Bodies::Snapshot &snapshot, int pairs,
+                          double spacing) const
+{
+  MotionSums here;
+  for (int ibody = 0; ibody < one.bodies->nowned(); ++ibody)
+    here.add(one.bodies->rigid_of(ibody), snapshot.states[ibody],
+             collocation.series(one.work[ibody], pairs), spacing);
+  return here;
+}
+
 void Start::choose(const StartFound &start, const std::vector<Bodies::Snapshot> &snapshots)
 {
   for (size_t p = 0; p < starters.size(); ++p) {
     Starter &one = starters[p];
-    if (!one.choose) continue;
-    MotionSums here;
-    for (int ibody = 0; ibody < one.bodies->nowned(); ++ibody)
-      here.add(one.bodies->rigid_of(ibody), snapshots[p].states[ibody],
-               collocation.series(one.work[ibody], start.pairs), start.spacing);
-    one.scheme = one.choose(here);
+    if (one.choose) one.scheme = one.choose(sums_of(one, snapshots[p], start.pairs, start.spacing));
   }
 }
 

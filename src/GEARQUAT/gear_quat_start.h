@@ -36,6 +36,8 @@ struct Starter {
   /// The scheme for this motion, which histories have after the call; null where it is given.
   /// Collective.
   std::function<Scheme(const MotionSums &)> choose;
+  /// What would be chosen, with more values in case of doubt; null where it is given.  Collective.
+  std::function<Scheme(const MotionSums &)> foresee;
 
   std::vector<Collocation::Workspace> work = {};
 
@@ -77,6 +79,8 @@ class Start : protected Pointers {
   std::string orders(const StartFound &start) const;
   double first_spacing() const;
   StartFound search(Forces &forces);
+  MotionSums sums_of(const Starter &one, const Bodies::Snapshot &snapshot, int pairs,
+                     double spacing) const;
   void choose(const StartFound &start, const std::vector<Bodies::Snapshot> &snapshots);
   void seed_all(const StartFound &start);
 };

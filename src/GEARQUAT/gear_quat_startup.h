@@ -21,9 +21,10 @@
    nodes of a pair state_at(), [forces at that state], set_load(), and then settle(); at the end
    series() and seed().
 
-   find_start() decides which pair of nodes is evaluated next, and when enough is known.  Where the polynomial through 1..m-1 foretells the accelerations at
-   pair m, it errs by e_m, which falls by about z^2 from pair to pair if forces are smooth, with z
-   the angle that the fastest motion turns in a spacing.  Before a pair is added, those inside are
+   find_start() decides which pair of nodes is evaluated next, and when enough is known.  After two
+   pairs the host may say that fewer values do.  Where the polynomial through 1..m-1 foretells the
+   accelerations at pair m, it errs by e_m, which falls by about z^2 from pair to pair if forces are
+   smooth, with z the angle that the fastest motion turns in a spacing.  Before a pair is added, those inside are
    evaluated once more with the polynomial that has become better:
 
      1 | 1 2 | 1 2 3 | 1 2 3 4
@@ -58,6 +59,13 @@ class StartPlan {
   static int pairs_for(int values) { return (values + 1) / 2; }
 
   explicit StartPlan(int values) : odd(values % 2), most(pairs_for(values)) {}
+
+  /// No more pairs than these values need.
+  void limit(int values)
+  {
+    odd = values % 2;
+    most = std::min(most, pairs_for(values));
+  }
 
   /// The pair to be evaluated next, 1..pairs_for(values).
   int pair() const { return present; }
@@ -102,8 +110,8 @@ class StartPlan {
   // errors inside, as they are extrapolated, as a part of what the last new pair was missed by
   static constexpr double CLEAR = 0.5;
 
-  const bool odd;    ///< number of values: one pair more than the order needs
-  const int most;
+  bool odd;    ///< number of values: one pair more than the order needs
+  int most;
   int present = 1;             ///< pair that is evaluated
   int known = 0;               ///< pairs evaluated at least once
   int round = 0;               ///< last pair of a round that evaluates all pairs anew
@@ -157,6 +165,7 @@ struct StartFound {
 ///   void foretell()                        one pair more, for all bodies
 ///   bool visit(int pair, double &change)   forces at both nodes of the pair; false if they cannot
 ///                                          be evaluated there
+///   int values_that_do(int values)         at most `values`; after the first visit of pair 2
 template <class Host> StartFound find_start(int values, double spacing, Host &host)
 {
   using Verdict = StartPlan::Verdict;
@@ -167,8 +176,9 @@ template <class Host> StartFound find_start(int values, double spacing, Host &ho
     found.spacing = spacing;
     do {
       if (plan.is_new()) host.foretell();
-      found.verdict = host.visit(plan.pair(), found.change) ? plan.take(found.change)
-                                                            : Verdict::SHORTER_SPACING;
+      const bool visited = host.visit(plan.pair(), found.change);
+      if (visited && plan.is_new() && plan.pair() == 2) plan.limit(host.values_that_do(values));
+      found.verdict = visited ? plan.take(found.change) : Verdict::SHORTER_SPACING;
     } while (found.verdict == Verdict::GOES_ON);
     found.pairs = plan.pairs();
     if (found.verdict != Verdict::SHORTER_SPACING) break;

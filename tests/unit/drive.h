@@ -97,6 +97,7 @@ struct StartHost {
                       work);
   }
   void foretell() { collocation.foretell(work); }
+  int values_that_do(int values) const { return values; }
   bool visit(int pair, double &change)
   {
     change = 0.0;

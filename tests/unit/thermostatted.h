@@ -93,6 +93,7 @@ struct Host {
       for (auto &w : work) collocation.foretell(w);
       collocation.foretell(twice);
     }
+    int values_that_do(int values) const { return values; }
     bool visit(int pair, double &change)
     {
       change = 0.0;
