@@ -53,10 +53,9 @@ ChoiceOfValues Motion::scene_of_start(const MotionSums &here) const
   return scene;
 }
 
-/// As if histories had the largest number now, which stays in case of doubt.
 Scheme Motion::foresee_scheme(const MotionSums &here) const
 {
-  return scene_of_start(here).choose(args.scheme, args.scheme.values()).scheme;
+  return scene_of_start(here).choose(args.scheme).scheme;
 }
 
 /// Histories have this scheme after the call.

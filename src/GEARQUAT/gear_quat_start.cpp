@@ -143,6 +143,9 @@ std::string Start::orders(const StartFound &start) const
 
 /* ---------------------------------------------------------------------- */
 
+/// The number of values is chosen by the derivatives that so many pairs of nodes tell.
+static constexpr int PAIRS_THAT_TELL = 2;
+
 /// What find_start() asks of LAMMPS.
 struct Start::Search {
   Start &our;
@@ -213,7 +216,7 @@ struct Start::Search {
     return true;
   }
 
-  /// By the derivatives that two pairs tell.
+  /// As choose() will find.
   int values_that_do(int values) const
   {
     if (std::any_of(our.starters.begin(), our.starters.end(), [](const Starter &one) {
@@ -222,7 +225,7 @@ struct Start::Search {
       return values;
     int most = 0;
     for (size_t p = 0; p < our.starters.size(); ++p) {
-      const MotionSums here = our.sums_of(our.starters[p], snapshots[p], 2, spacing);
+      const MotionSums here = our.sums_of(our.starters[p], snapshots[p], PAIRS_THAT_TELL, spacing);
       most = std::max(most, our.starters[p].foresee(here).start_values());
     }
     return std::min(values, most);
@@ -350,7 +353,9 @@ void Start::choose(const StartFound &start, const std::vector<Bodies::Snapshot> 
 {
   for (size_t p = 0; p < starters.size(); ++p) {
     Starter &one = starters[p];
-    if (one.choose) one.scheme = one.choose(sums_of(one, snapshots[p], start.pairs, start.spacing));
+    if (!one.choose) continue;
+    const int pairs = std::min(start.pairs, PAIRS_THAT_TELL);
+    one.scheme = one.choose(sums_of(one, snapshots[p], pairs, start.spacing));
   }
 }
 

@@ -36,7 +36,7 @@ struct Starter {
   /// The scheme for this motion, which histories have after the call; null where it is given.
   /// Collective.
   std::function<Scheme(const MotionSums &)> choose;
-  /// What would be chosen, with more values in case of doubt; null where it is given.  Collective.
+  /// What would be chosen; null where it is given.  Collective.
   std::function<Scheme(const MotionSums &)> foresee;
 
   std::vector<Collocation::Workspace> work = {};
