@@ -166,7 +166,6 @@ void FixGearQuat::reset_dt()
   step->follow_length();
 }
 
-/// Other fixes call this around a remap of atoms with the box.
 void FixGearQuat::deform(int flag)
 {
   flag == 0 ? driven_box->begin_remap() : driven_box->end_remap();
@@ -209,6 +208,7 @@ void FixGearQuat::setup(int vflag)
   ownership->spread_states();
   if (!reported) other_fixes->check_gravity();
   step->gather(atom->f, atom->torque);
+  driven_box->follow();
   motion->begin_run();
   sites->place_velocities();
   bodies->forget_work();    // positions are the corrected ones
@@ -224,7 +224,7 @@ void FixGearQuat::count_rows()
   size_array_rows = std::max(size_array_rows, (int) bodies->number());
 }
 
-/// LAMMPS does not ask for local data, so they are made before anything may read them.
+/// LAMMPS does not ask for local data.
 void FixGearQuat::show_bodies()
 {
   array_local = table->local();
@@ -275,7 +275,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
     motion->look_at_contacts(f);
     motion_acts = other_fixes->any_taken() || motion->watches_contacts();
   }
-  driven_box->follow();
+  driven_box->begin_step();
   step->begin(vflag, f);
 }
 
@@ -404,7 +404,7 @@ void FixGearQuat::set_arrays(int i)
   if (atom->mask[i] & groupbit) ownership->note_outside_atom(1);
 }
 
-/// Another fix has inserted a molecule of the template, on all ranks together.
+/// Another fix has inserted a molecule of the template.
 void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *center,
                                double *velocity, double *quat)
 {
@@ -458,7 +458,6 @@ void FixGearQuat::write_restart(FILE *fp)
   if (comm->me == 0) restarts->write(fp);
 }
 
-/// Writes all bodies in the format of keyword infile beside the binary restart file.
 void FixGearQuat::write_restart_file(const char *file)
 {
   if (!met_atoms) return;    // the atoms may still be changed by the user

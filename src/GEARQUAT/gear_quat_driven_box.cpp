@@ -75,7 +75,7 @@ Fix *DrivenBox::smooth_driver() const
   }
   const bool alone = ownership.number_of_atoms() == atom->natoms && args.masks.empty() &&
       args.isokinetic == Isokinetic::NONE && utils::strmatch(update->integrate_style, "^verlet");
-  return driver && driver->nevery == 1 && !domain->deform_vremap && alone ? driver : nullptr;
+  return driver && driver->nevery == 1 && alone ? driver : nullptr;
 }
 
 /// What the thermostat has kept goes on.
@@ -86,7 +86,7 @@ void DrivenBox::drive(Fix *deform)
     Sections kept;
     if (step.coupling) step.coupling->write(kept);
     auto made = deform
-        ? std::make_unique<DrivenCell>(lmp, fix, bodies, args.thermostat, step.scheme())
+        ? std::make_unique<DrivenCell>(lmp, fix, bodies, args.thermostat, step.scheme(), images)
         : nullptr;
     cell = made.get();
     step.set_coupling(made ? std::move(made) : make_coupling(lmp, fix, args, bodies, sites));
@@ -190,20 +190,37 @@ std::vector<DrivenBox::Vector> DrivenBox::present_images()
   return found;
 }
 
+/// At the beginning of a run or at its end, or where a box has jumped.
 void DrivenBox::follow()
 {
+  if (driven) follow(domain->h, domain->boxlo);
+}
+
+void DrivenBox::begin_step()
+{
   if (!driven) return;
+  if (!cell) {
+    follow();
+    return;
+  }
+  const auto &then = cell->foretell();
+  if (!cell->remaps_atoms()) follow(then.h.data(), then.h.data() + 6);
+}
+
+/// To the box h with this corner.
+void DrivenBox::follow(const double *h, const double *corner)
+{
   const auto &box = ownership.box();
-  const bool changed = !std::equal(domain->h, domain->h + 6, box.begin());
-  if (changed || domain->deform_vremap) images = present_images();
+  const bool changed = !std::equal(h, h + 6, box.begin());
+  if (changed || domain->deform_vremap || cell) images = present_images();
   if (!changed) return;
   double change[6], way[3];
-  for (int k = 0; k < 6; ++k) change[k] = domain->h[k] - box[k];
+  for (int k = 0; k < 6; ++k) change[k] = h[k] - box[k];
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     through(change, images[ibody].data(), way);
     move_center(ibody, way);
   }
-  ownership.note_box();
+  ownership.note_box(h, corner);
 }
 
 /// LAMMPS is going to wrap this place by so many periods, by its own comparisons.
@@ -249,9 +266,10 @@ std::vector<DrivenBox::Passage> DrivenBox::pass_faces()
   std::vector<Passage> passages;
   if (!driven || !domain->deform_vremap) return passages;
   const auto passed = passed_faces();
+  const double *rate = cell && step.is_within() ? cell->rate_of_faces().m.data() : domain->h_rate;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     Passage one = {};
-    through(domain->h_rate, passed[ibody].data(), one.velocity);
+    through(rate, passed[ibody].data(), one.velocity);
     if (dot3(one.velocity, one.velocity) == 0.0) continue;
     for (double &component : one.velocity) component = -component;
     add_velocity(ibody, one.velocity);

@@ -52,8 +52,10 @@ class DrivenBox : protected Pointers {
   void end_remap();
   /// A step has ended, and sites are placed.
   void end_step();
-  /// Before a step: the box may have changed without a remap.  Collective.
+  /// The box may have changed without a remap.  Collective.
   void follow();
+  /// The same before a step.
+  void begin_step();
   /// Before atoms are wrapped and exchanged in a step: fix deform remap v.  Collective.
   void meet_faces() { pass_faces(); }
   /// Before that in LAMMPS' setup, where atoms get the velocities of bodies again.  Collective.
@@ -73,6 +75,7 @@ class DrivenBox : protected Pointers {
   DrivenCell *cell = nullptr;    ///< the coupling of the step, if the motion of the box is followed
 
   Fix *smooth_driver() const;
+  void follow(const double *h, const double *corner);
   void drive(Fix *deform);
 
   using Vector = std::array<double, 3>;

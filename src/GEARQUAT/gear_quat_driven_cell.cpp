@@ -31,9 +31,9 @@ static ThermostatWords words_of(const ThermostatWords &words)
 }
 
 DrivenCell::DrivenCell(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
-                       const Scheme &scheme) :
+                       const Scheme &scheme, const Images &images) :
     Thermostat(lmp, fix, bodies, words_of(words), scheme),
-    scheme(scheme), matrix(Upper::one()), inverse(Upper::one())
+    scheme(scheme), images(images), matrix(Upper::one()), inverse(Upper::one())
 {
 }
 
@@ -110,8 +110,9 @@ Upper DrivenCell::interpolate(int first, double time, double h, Cell &cell) cons
 void DrivenCell::move_to(const Cell &cell)
 {
   shown = cell;
-  matrix = cell.edges() * reference.edges().inverse();
+  matrix = remaps ? cell.edges() * reference.edges().inverse() : Upper::one();
   inverse = matrix.inverse();
+  if (!remaps) rate = Upper();
 }
 
 void DrivenCell::to_space(const double *scaled, double *space) const
@@ -132,6 +133,7 @@ void DrivenCell::to_space(BodyState &s) const
 BodyState DrivenCell::scaled(const BodyState &s) const
 {
   BodyState found = s;
+  if (!remaps) return found;
   double way[3];
   for (int k = 0; k < 3; ++k) way[k] = s.center[k] - shown.h[6 + k];
   inverse.times(way, found.center);
@@ -194,7 +196,6 @@ void DrivenCell::begin_run(bool begins, double h)
   remaps = false;
   for (int k = -PAST; k <= AHEAD; ++k) cells[PAST + k] = ask(update->ntimestep + k);
   cells[PAST] = reference;
-  if (!remaps) cells.fill(reference);
   no_step = true;
   width = h;
   leave_nodes();
@@ -209,7 +210,16 @@ void DrivenCell::enter_node(const StartNodes &nodes, int node)
   show(there);
   if (force->kspace) force->kspace->setup();
   for_moved([this](int ibody) {
-    to_space(bodies.change_state(ibody));
+    BodyState &state = bodies.change_state(ibody);
+    if (remaps) {
+      to_space(state);
+      return;
+    }
+    const double *periods = images[ibody].data();
+    const Upper change = shown.edges() - reference.edges();
+    double way[3];
+    change.times(periods, way);
+    for (int k = 0; k < 3; ++k) state.center[k] += way[k];
   });
 }
 
@@ -245,18 +255,25 @@ void DrivenCell::measure()
   note_friction_of_cell();
 }
 
+const DrivenCell::Cell &DrivenCell::foretell()
+{
+  if (!no_step) note_box();
+  no_step = false;
+  begun = reference = present();
+  rate = interpolate(-PAST, 1.0, update->dt, then);
+  face_rate = rate * then.edges();
+  ahead = !is_flip_due();
+  if (!ahead) then = begun;
+  return then;
+}
+
 void DrivenCell::predict(const Integrator &integrator)
 {
-  if (remaps && !no_step) note_box();
-  no_step = false;
-  Cell then;
-  begun = reference = present();
   width = integrator.step();
-  rate = interpolate(-PAST, 1.0, width, then);
-  ahead = remaps && !is_flip_due();
-  move_to(ahead ? then : reference);
+  move_to(then);
   if (ahead) show(then);
   if (force->kspace) force->kspace->setup();
+  if (!remaps) return;
   for_moved([this](int ibody) {
     to_space(bodies.change_state(ibody));
   });
@@ -309,6 +326,7 @@ void DrivenCell::refer_to_shown()
 /// The present box is the reference of the history from now on.
 void DrivenCell::rows_to_space(double *rows) const
 {
+  if (!remaps) return;
   const int width = scheme.width(), nrows = scheme.size() / width;
   double now[3];
   to_space(rows + Scheme::POSITION, now);
@@ -327,6 +345,7 @@ void DrivenCell::rows_to_space(double *rows) const
 void DrivenCell::place(int ibody, const Integrator::Pending &pending, BodyState &state,
                        Correction &last) const
 {
+  if (!remaps) return;
   double predicted[3], way[3], scaled_way[3];
   to_space(pending.x, predicted);
   for (int k = 0; k < 3; ++k) way[k] = state.center[k] - predicted[k];

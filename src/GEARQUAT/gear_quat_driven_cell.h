@@ -3,13 +3,15 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A cell whose motion is prescribed: fix deform remap x, in a scene whose atoms are all in bodies of
-   one fix (doc/theory.md, Eq. P10).  Scaled centers obey
+/* A cell whose motion is prescribed: that of fix deform, in a scene whose atoms are all in bodies of
+   one fix (doc/theory.md, Eq. P10).  With remap x scaled centers obey
 
      X'' = M^-1 [F/m - (G + xi) v],   v = M X',   G = M' M^-1
 
    where the reference of M is the box at the beginning of each step, so that between steps histories
    are those of positions and M is 1.
+
+   Without a remap M is 1 at all times, and G is 0.
 
    LAMMPS changes the box at the end of a step.  The forces of a step need the box of its end, which
    a polynomial through the last boxes foretells.  Before a run fix deform itself tells its boxes at
@@ -27,8 +29,22 @@ namespace LAMMPS_NS::GearQuat {
 
 class DrivenCell : public Thermostat {
  public:
+  /// As Domain::h, and behind it boxlo.
+  struct Cell {
+    std::array<double, 9> h = {};
+
+    Upper edges() const
+    {
+      Upper found;
+      std::copy_n(h.begin(), Upper::SIZE, found.m.begin());
+      return found;
+    }
+  };
+
+  using Images = std::vector<std::array<double, 3>>;
+  /// images: periods of the owner atoms of moved bodies, when the start begins.
   DrivenCell(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
-             const Scheme &scheme);
+             const Scheme &scheme, const Images &images);
 
   /// deform: the fix that moves the box in this run.
   void obey(Fix *deform) { driver = deform; }
@@ -37,6 +53,11 @@ class DrivenCell : public Thermostat {
   void note_remap() { remaps = true; }
   /// Fix deform has changed the box, from the one that bodies are in to the next.
   void remap(const std::vector<double> &before, bool histories);
+  bool remaps_atoms() const { return remaps; }
+  /// A step begins: the box that its forces will be evaluated in.
+  const Cell &foretell();
+  /// h' of that box.
+  const Upper &rate_of_faces() const { return face_rate; }
   /// LAMMPS' box is that of the beginning of the step again, if predict() has changed it.
   void put_back_box();
 
@@ -78,21 +99,11 @@ class DrivenCell : public Thermostat {
  private:
   friend class Coupling;    // calls what correct_by_passes() asks for
 
-  /// As Domain::h, and behind it boxlo.
-  struct Cell {
-    std::array<double, 9> h = {};
-
-    Upper edges() const
-    {
-      Upper found;
-      std::copy_n(h.begin(), Upper::SIZE, found.m.begin());
-      return found;
-    }
-  };
   static constexpr int KNOWN = 9;    ///< boxes that a polynomial goes through
   static constexpr int PAST = KNOWN - 1, AHEAD = PAST / 2;
 
   Scheme scheme;
+  const Images &images;
   Fix *driver = nullptr;
   bool asking = false;
   bool remaps = false;                         ///< atoms are remapped with the box
@@ -100,9 +111,11 @@ class DrivenCell : public Thermostat {
   double width = 0.0;                          ///< the step
   std::array<Cell, PAST + 1 + AHEAD> cells;    ///< from step -PAST on, the present one is 0
   Cell begun;                                  ///< LAMMPS' box when the step began
-  Cell reference, shown;                       ///< of M = 1, and of the present M
-  bool ahead = false;                          ///< LAMMPS' box is that of the end of the step
-  Upper matrix, inverse, rate;                 ///< M, M^-1 and G
+  Cell then;                                   ///< at the end of the step
+  Upper face_rate;
+  Cell reference, shown;          ///< of M = 1, and of the present M
+  bool ahead = false;             ///< LAMMPS' box is that of the end of the step
+  Upper matrix, inverse, rate;    ///< M, M^-1 and G
   CellFriction of_all;
 
   Cell present() const;

@@ -118,8 +118,9 @@ class Ownership : protected Pointers {
   bigint number_of_large() const { return nlarge; }
   /// The box that the positions of bodies belong to, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
-  /// The present one.
+  /// The present one, or another one.
   void note_box();
+  void note_box(const double *h, const double *corner);
   /// Before a run, and before atoms are exchanged: where change_box has remapped the atoms of
   /// bodies from box() to the present box, these get back their shapes and orientations, and their
   /// centers are remapped.  True, with a warning, if there are any; warns of bodies that another

@@ -27,12 +27,16 @@ FOLLOWED = {
     "sheared": ("fix d all deform 1 xy erate 0.5 xz erate 0.2", True),
     "sheared back and forth": ("fix d all deform 1 xy wiggle 0.5 1.0 x erate 0.3", True),
 }
-#: the same; whether atoms are remapped
+#: the same, where atoms are not remapped
+UNMAPPED = {
+    "not remapped": ("fix d all deform 1 x erate -0.3 remap none", False),
+    "flow": ("fix d all deform 1 xy erate 0.5 remap v", True),
+    "flow back and forth": ("fix d all deform 1 xy wiggle 0.5 1.0 remap v", True),
+}
+#: others; whether atoms are remapped
 BOXES = {
     "flips": ("fix d all deform 1 xy erate 4.0", True, True),
     "every third": ("fix d all deform 3 x erate 0.3", False, True),
-    "not remapped": ("fix d all deform 1 x erate -0.3 remap none", False, False),
-    "flow": ("fix d all deform 1 xy erate 0.5 remap v", True, False),
     "flow that flips": ("fix d all deform 1 xy erate 4.0 remap v", True, False),
     "press/berendsen": ("fix d all press/berendsen aniso 0.5 0.5 1.0", False, True),
     "press/langevin": ("fix d all press/langevin iso 3 3 1 temp 1 1 4711", False, True),
@@ -57,10 +61,12 @@ SCHEMES = {"values 5": 5, "values 7": 7, "values 9": 9, "values 6 corrector gear
 
 
 @pytest.mark.parametrize("words", THERMOSTATS)
-@pytest.mark.parametrize("name", FOLLOWED)
+@pytest.mark.parametrize("name", [*FOLLOWED, *UNMAPPED])
 def test_orders(lmp_wheel, name, words):
     """By slope, beside a run with more values and shorter steps; velocities act on forces: n - 1."""
-    after, tilted = FOLLOWED[name]
+    after, tilted = {**FOLLOWED, **UNMAPPED}[name]
+    if words and "remap v" in after:
+        pytest.skip("the flow is no temperature")
     time, steps = 0.4, (0.02, 0.01, 0.005)
 
     def deck(scheme, dt, commands=after):
@@ -76,22 +82,22 @@ def test_orders(lmp_wheel, name, words):
         slope = np.log2(of[0] / of[1]) if floor else np.log2(of[0] / of[2]) / 2
         assert slope > values - 1.3, (values, of)
     if "0.3" in after or "0.5" in after:  # 1 % of the rate
-        assert errors[-1] > 1e4 * errors[5]
+        assert errors[-1] > 1e3 * errors[5]
 
 
-@pytest.mark.parametrize("name", ["compressed", "wiggle", "sheared"])
+@pytest.mark.parametrize("name", ["compressed", "wiggle", "sheared", "not remapped", "flow"])
 def test_fix_rigid_tends_to_the_same_motion(lmp_wheel, name):
     """Its box lags by one step, an error of first order: twice the one with half the step, minus the other."""
-    after, tilted = FOLLOWED[name]
+    after, tilted = {**FOLLOWED, **UNMAPPED}[name]
     decks = [driven(after, tilted)]
     decks += [driven(after, tilted, "rigid/small molecule", dt, round(0.4 / dt)) for dt in (0.001, 0.0005)]
     _, (frame, coarse, fine) = ends(lmp_wheel, decks)
     lags = np.abs(fine - frame)[:, 3:6].max()
     assert np.abs(2 * fine - coarse - frame)[:, 3:6].max() < 0.05 * lags
-    assert lags > 1e-5
+    assert lags > 1e-6
 
 
-@pytest.mark.parametrize("name", [name for name in BOXES if name != "flips"])
+@pytest.mark.parametrize("name", [name for name in BOXES if not name.endswith("flips")])
 def test_bodies_follow_as_those_of_fix_rigid(lmp_wheel, name):
     """At a step at which both are accurate; a box whose rate is 1 % off moves bodies elsewhere."""
     after, tilted, _ = BOXES[name]
@@ -121,6 +127,19 @@ def test_flips_are_followed(lmp_wheel):
     assert np.abs(2 * fine - coarse - frames[-1])[:, 3:6].max() < 0.2 * np.abs(fine - coarse)[:, 3:6].max()
 
 
+@pytest.mark.parametrize("deform", ["xy erate 0.5", "xy erate 4.0", "y erate -0.2"])
+def test_bodies_that_pass_faces_move_as_atoms_do(lmp_wheel, deform):
+    """Bodies of one atom in a flow, beside fix nve, which tends to the same motion as fix rigid does above."""
+    after, single = f"fix d all deform 1 {deform} remap v", "variable m atom id\nset group all mol v_m\n"
+    decks = [driven(after, True, before=single, steps=1500), driven(after, True, before=single, steps=1500)]
+    decks[1] = decks[1].replace("remap v", "remap none")
+    decks += [driven(after, True, "nve", dt, round(1.5 / dt), before=single) for dt in (0.0005, 0.00025)]
+    _, (frame, mutant, coarse, fine) = ends(lmp_wheel, decks)
+    lags = np.abs(fine - coarse)[:, 3:6].max()
+    assert np.abs(2 * fine - coarse - frame)[:, 3:6].max() < 0.1 * lags
+    assert np.abs(mutant - frame)[:, 3:6].max() > 10 * lags
+
+
 REMAPPED = {**FOLLOWED, **{name: box[:2] for name, box in BOXES.items() if box[2]}}
 
 
@@ -139,7 +158,7 @@ def test_shapes_stay_exact(lmp_wheel, name):
 
 @pytest.mark.parametrize("name", ["compressed", "sheared", "flips", "not remapped", "flow that flips", "press/berendsen"])
 def test_ranks_agree(lmp_tree, name):
-    after, tilted = ({**FOLLOWED, **BOXES})[name][:2]
+    after, tilted = {**FOLLOWED, **UNMAPPED, **BOXES}[name][:2]
     after += "\npair_style buck 2.6\npair_coeff * * 60.0 0.08 0.0"
     frames = []
     for ranks in (1, 2, 4):
@@ -172,7 +191,7 @@ def test_a_barostat_of_the_solvent_carries_bodies(lmp_wheel, barostat):
 
 @pytest.mark.parametrize("name", ["compressed", "flow"])
 def test_beside_a_solvent(lmp_wheel, name):
-    after, tilted = BOXES[name][:2] if name == "flow" else FOLLOWED[name]
+    after, tilted = {**FOLLOWED, **UNMAPPED}[name]
     others = "fix others solvent nve\n" if name == "compressed" else "fix others solvent nvt/sllod temp 0.8 0.8 0.5\n"
     decks = [
         driven(others + after, tilted, fix, before=SOLVENT).replace("fix move all", "fix move bodies")
