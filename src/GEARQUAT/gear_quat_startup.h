@@ -58,13 +58,15 @@ class StartPlan {
   /// Pairs of nodes that the order of a history of so many rows needs.
   static int pairs_for(int values) { return (values + 1) / 2; }
 
-  explicit StartPlan(int values) : odd(values % 2), most(pairs_for(values)) {}
+  explicit StartPlan(int values) : wanted(values), odd(values % 2), most(pairs_for(values)) {}
 
-  /// No more pairs than these values need.
+  /// As if it were for so many values, if these are fewer.
   void limit(int values)
   {
+    if (values >= wanted) return;
+    wanted = values;
     odd = values % 2;
-    most = std::min(most, pairs_for(values));
+    most = pairs_for(values);
   }
 
   /// The pair to be evaluated next, 1..pairs_for(values).
@@ -110,7 +112,8 @@ class StartPlan {
   // errors inside, as they are extrapolated, as a part of what the last new pair was missed by
   static constexpr double CLEAR = 0.5;
 
-  bool odd;    ///< number of values: one pair more than the order needs
+  int wanted;    ///< number of values
+  bool odd;      ///< it is: one pair more than the order needs
   int most;
   int present = 1;             ///< pair that is evaluated
   int known = 0;               ///< pairs evaluated at least once

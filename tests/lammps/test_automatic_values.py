@@ -34,6 +34,17 @@ def test_the_step_decides(lmp_tree, data):
     assert "values auto, passes auto" in run(lmp_tree, data, "values auto").stdout
 
 
+def test_few_values_need_few_evaluations_of_a_start(lmp_tree, data):
+    """The start learns after two pairs of nodes that five values will do, and ends as theirs does."""
+    starts = [(dt, words) for dt in (SHORT, LONG) for words in ("", "values 9")]
+    counted = re.compile(r"start of order \d+ from (\d+) force evaluations")
+    short, short_nine, long, long_nine = (
+        int(counted.search(run(lmp_tree, data, words, dt=dt).stdout)[1]) for dt, words in starts
+    )
+    five = int(counted.search(run(lmp_tree, data, "values 5", dt=LONG).stdout)[1])
+    assert short == short_nine and long == five <= 12 < long_nine
+
+
 def test_the_edge_is_proportional_to_the_step(lmp_tree, data):
     edges = []
     for dt in (0.25, 0.5):

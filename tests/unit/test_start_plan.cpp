@@ -14,12 +14,14 @@ struct Course {
   Verdict verdict;
   int known;
 };
-Course course(int values, const std::function<double(int pair, bool is_new, int known)> &change)
+Course course(int values, const std::function<double(int pair, bool is_new, int known)> &change,
+              int enough = MAX_VALUES)
 {
   StartPlan plan(values);
   Course course = {"", Verdict::GOES_ON, 0};
   while (course.verdict == Verdict::GOES_ON && course.pairs.size() < 100) {
     course.pairs += std::to_string(plan.pair());
+    if (plan.is_new() && plan.pair() == 2) plan.limit(enough);    // as find_start() does
     course.verdict = plan.take(change(plan.pair(), plan.is_new(), plan.pairs()));
   }
   course.known = plan.pairs();
@@ -27,12 +29,15 @@ Course course(int values, const std::function<double(int pair, bool is_new, int 
 }
 
 /// Smooth forces: new pairs are missed by z^(2 m - 1), and a round shrinks what is left by `contraction`.
-Course smooth(int values, double z, double contraction)
+Course smooth(int values, double z, double contraction, int enough = MAX_VALUES)
 {
   std::vector<double> last(StartPlan::MAX_PAIRS + 1);
-  return course(values, [&](int pair, bool is_new, int) {
-    return last[pair] = is_new ? std::pow(z, 2 * pair - 1) : contraction * last[pair];
-  });
+  return course(
+      values,
+      [&](int pair, bool is_new, int) {
+        return last[pair] = is_new ? std::pow(z, 2 * pair - 1) : contraction * last[pair];
+      },
+      enough);
 }
 
 /// x'' = -x and a step of the force at |t| = 0.13, of this height.
@@ -52,6 +57,19 @@ Found oscillating(const LoadOf &load, double spacing)
 }
 
 }    // namespace
+
+TEST(StartPlan, WhereFewerValuesDoItEndsAsTheirsDoes)
+{
+  for (const double z : {0.1, 0.3, 0.6})
+    for (const int few : {3, 4, 5, 7}) {
+      const Course limited = smooth(9, z, 0.05, few), theirs = smooth(few, z, 0.05);
+      EXPECT_EQ(limited.pairs, theirs.pairs) << few << ' ' << z;
+      EXPECT_EQ(limited.known, theirs.known);
+      EXPECT_LE(limited.pairs.size(), smooth(9, z, 0.05).pairs.size());
+    }
+  EXPECT_LT(smooth(9, 0.3, 0.05, 5).pairs.size(), smooth(9, 0.3, 0.05).pairs.size());
+  EXPECT_EQ(smooth(5, 0.3, 0.05, 8).pairs, smooth(5, 0.3, 0.05).pairs);
+}
 
 TEST(StartPlan, PairsAreEvaluatedAnewBeforeOneIsAdded)
 {
@@ -196,8 +214,7 @@ TEST(StartPlan, NorInFastRotation)
         return motion.state();
       };
       const BodyState best = end(exact, 0.05, 1.0);
-      const Found found =
-          bootstrap(scheme.start_values(), scene.body, scene.start, scene.load, h);
+      const Found found = bootstrap(scheme.start_values(), scene.body, scene.start, scene.load, h);
       const auto differs = [&](double off) {
         return Check::attitude_distance(end(found.series, found.spacing, off).q, best.q);
       };
