@@ -80,7 +80,7 @@ NUMBERS = [key for key, row in TABLE.items() if row.kind == "number"]
 SEVERAL = [key for key, row in TABLE.items() if row.kind == "numbers"]
 MASKS = [key for key, row in TABLE.items() if row.kind == "mask"]  # any number of times
 PRESSURES = ("iso", "aniso", "tri", "x", "y", "z", "xy", "xz", "yz")
-PRESSED = (*PRESSURES, "couple", "pchain", "ptemp", "fixedpoint", "flip")
+PRESSED = (*PRESSURES, "couple", "pchain", "ptemp", "fixedpoint", "flip", "dilate")
 POOL = (
     *TABLE,
     *("on", "off", "*", "1*", "*2", "1*2", "2*1", "3", "1e-10", "1e-3", "0.1", "0"),

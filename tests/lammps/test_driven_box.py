@@ -60,13 +60,19 @@ THERMOSTATS = ["", "temp 0.7 0.9 0.8 thermostat separate"]
 SCHEMES = {"values 5": 5, "values 7": 7, "values 9": 9, "values 6 corrector gear": 6, "formulation first values 8": 8}
 
 
-@pytest.mark.parametrize("words", THERMOSTATS)
-@pytest.mark.parametrize("name", [*FOLLOWED, *UNMAPPED])
+# a flow that velocities contain is no temperature, and temp refuses it
+ORDERED = [
+    (name, words)
+    for name, (after, _) in {**FOLLOWED, **UNMAPPED}.items()
+    for words in THERMOSTATS
+    if not (words and "remap v" in after)
+]
+
+
+@pytest.mark.parametrize("name, words", ORDERED)
 def test_orders(lmp_wheel, name, words):
     """By slope, beside a run with more values and shorter steps; velocities act on forces: n - 1."""
     after, tilted = {**FOLLOWED, **UNMAPPED}[name]
-    if words and "remap v" in after:
-        pytest.skip("the flow is no temperature")
     time, steps = 0.4, (0.02, 0.01, 0.005)
 
     def deck(scheme, dt, commands=after):
