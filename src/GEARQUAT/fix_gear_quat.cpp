@@ -17,6 +17,7 @@
 #include "gear_quat_driven_box.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_fleet.h"
+#include "gear_quat_minimize.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_report.h"
@@ -34,6 +35,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -80,6 +82,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
       new Motion(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes, *step));
   driven_box.reset(
       new DrivenBox(lmp, this, *args, *bodies, *ownership, *sites, *other_fixes, *step));
+  minimization.reset(new Minimization(lmp, *bodies, *ownership, *sites));
   restarts.reset(new Restart(lmp, this, *bodies, *ownership, *motion));
   respa.reset(new RespaForces(lmp));
   table.reset(new BodyTable(lmp, *bodies, *sites));
@@ -125,7 +128,8 @@ int FixGearQuat::setmask()
   resume();
   show_bodies();    // they may be asked for before the first run
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR |
-      INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step->tolerance ? END_OF_STEP : 0);
+      INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step->tolerance ? END_OF_STEP : 0) |
+      MIN_PRE_EXCHANGE | MIN_PRE_NEIGHBOR | MIN_PRE_FORCE | MIN_POST_FORCE | MIN_ENERGY;
 }
 
 /* ----------------------------------------------------------------------
@@ -146,6 +150,13 @@ void FixGearQuat::init()
 {
   meet_fleet();
   refuse_scene(lmp, this, *fleet, *ownership);
+  minimization->end();
+  if (update->whichflag == 2) {
+    driven_box->rest();
+    minimization->init();
+    sites->expect_forces(true);
+    return;
+  }
   driven_box->init();
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
@@ -166,8 +177,10 @@ void FixGearQuat::reset_dt()
   step->follow_length();
 }
 
+/// In a minimization, LAMMPS goes on from the end of the last line search.
 void FixGearQuat::deform(int flag)
 {
+  if (flag == 0 && minimization->is_on()) minimization->put_back();
   flag == 0 ? driven_box->begin_remap() : driven_box->end_remap();
 }
 
@@ -186,7 +199,7 @@ void FixGearQuat::setup_pre_neighbor()
   ownership->check_whole();
   ownership->choose_large();
   update_bodies();
-  if (met_atoms) motion->take_velocities(update->ntimestep, false);
+  if (met_atoms && !minimization->is_on()) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
   if (from_atoms && (args->reinit || !met_atoms) && !sites->match_bodies()) {
     ownership->recreate();
@@ -296,6 +309,10 @@ void FixGearQuat::end_of_step()
 
 void FixGearQuat::post_run()
 {
+  if (minimization->is_on()) {
+    end_minimization();
+    return;
+  }
   meet_forces();
   motion->end_run();
   driven_box->end_run();
@@ -306,11 +323,90 @@ void FixGearQuat::tally_virial(int vflag, double **f)
 {
   v_init(vflag);
   if (!evflag) return;
-  sites->visit_constraint_forces(f, cvflag_atom != 0,
+  const auto motion = minimization->is_on() ? Sites::Turning::NO : Sites::Turning::YES;
+  sites->visit_constraint_forces(f, cvflag_atom != 0, motion,
                                  [this](int i, Sites::ConstraintForce &constraint) {
                                    v_tally(1, &i, 1.0, constraint.virial, constraint.arm,
                                            constraint.force, constraint.centroid);
                                  });
+}
+
+/* ----------------------------------------------------------------------
+   energy minimization
+------------------------------------------------------------------------- */
+
+void FixGearQuat::min_setup(int vflag)
+{
+  motion->forget("Fix gear/quat: minimize moves the bodies, histories start anew");
+  ownership->spread_states();
+  minimization->measure();
+  min_post_force(vflag);
+  minimization->check_loads();
+  minimization->project(atom->f);
+  min_projected = true;
+}
+
+void FixGearQuat::min_pre_exchange()
+{
+  minimization->fit();
+}
+
+void FixGearQuat::min_pre_neighbor()
+{
+  pre_neighbor();
+  minimization->measure();
+}
+
+void FixGearQuat::min_pre_force(int /*vflag*/)
+{
+  minimization->fit_all();
+}
+
+/// Fix box/relax may ask for the pressure next.
+void FixGearQuat::min_post_force(int vflag)
+{
+  sites->gather_loads(atom->f, atom->torque);
+  tally_virial(vflag, atom->f);
+  min_vflag = vflag;
+}
+
+/// When all other fixes have added their forces.  In LAMMPS' setup, thermo output has come first,
+/// and the virial is that of the forces before they were projected.
+double FixGearQuat::min_energy(double *fextra)
+{
+  fextra[0] = 0.0;
+  if (min_projected)
+    sites->gather_loads(atom->f, nullptr);    // with the torques of atoms
+  else
+    min_post_force(min_vflag);
+  min_projected = false;
+  minimization->project(atom->f);
+  return 0.0;
+}
+
+void FixGearQuat::min_store()
+{
+  minimization->store();
+}
+
+/// Bodies need no degrees of freedom beside those of their atoms; with one, which stays 0, LAMMPS
+/// calls min_energy() and min_store().
+int FixGearQuat::min_dof()
+{
+  return 1;
+}
+
+double FixGearQuat::max_alpha(double * /*hextra*/)
+{
+  return HUGE_VAL;
+}
+
+void FixGearQuat::end_minimization()
+{
+  sites->place_velocities();
+  ownership->note_box();
+  show_bodies();
+  minimization->end();
 }
 
 /* ----------------------------------------------------------------------
@@ -381,120 +477,4 @@ double FixGearQuat::memory_usage()
 {
   return ownership->memory_usage() + sites->memory_usage() + table->memory_usage() +
       respa->memory_usage();
-}
-
-/* ----------------------------------------------------------------------
-   per-atom data, forwarded to the ownership of bodies
-------------------------------------------------------------------------- */
-
-void FixGearQuat::grow_arrays(int nmax)
-{
-  ownership->grow_arrays(nmax);
-}
-
-void FixGearQuat::copy_arrays(int i, int j, int delflag)
-{
-  ownership->copy_arrays(i, j, delflag);
-}
-
-/// A new atom is in no body unless set_molecule() follows.
-void FixGearQuat::set_arrays(int i)
-{
-  ownership->set_arrays(i);
-  if (atom->mask[i] & groupbit) ownership->note_outside_atom(1);
-}
-
-/// Another fix has inserted a molecule of the template.
-void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *center,
-                               double *velocity, double *quat)
-{
-  for (int i = first; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) ownership->note_outside_atom(-1);
-  const bool known = which >= 0 && which < (int) stated.size();
-  add_molecule(lmp, *ownership, first, known ? &stated[which] : nullptr, {center, velocity, quat});
-}
-
-void *FixGearQuat::extract(const char *name, int &dim)
-{
-  return extracts->extract(name, dim);
-}
-
-int FixGearQuat::pack_exchange(int i, double *buf)
-{
-  return ownership->pack_exchange(i, buf);
-}
-
-int FixGearQuat::unpack_exchange(int nlocal, double *buf)
-{
-  return ownership->unpack_exchange(nlocal, buf);
-}
-
-int FixGearQuat::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
-{
-  return ownership->pack_forward(n, list, buf);
-}
-
-void FixGearQuat::unpack_forward_comm(int n, int first, double *buf)
-{
-  ownership->unpack_forward(n, first, buf);
-}
-
-int FixGearQuat::pack_reverse_comm(int n, int first, double *buf)
-{
-  return ownership->pack_reverse(n, first, buf);
-}
-
-void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  ownership->unpack_reverse(n, list, buf);
-}
-
-/* ----------------------------------------------------------------------
-   restart
-------------------------------------------------------------------------- */
-
-void FixGearQuat::write_restart(FILE *fp)
-{
-  if (comm->me == 0) restarts->write(fp);
-}
-
-void FixGearQuat::write_restart_file(const char *file)
-{
-  if (!met_atoms) return;    // the atoms may still be changed by the user
-  show_bodies();
-  restarts->write_bodies(fmt::format("{}.{}.gear_quat", file, id), array_local);
-}
-
-void FixGearQuat::restart(char *buf)
-{
-  restarts->read(buf);
-}
-
-/// The bodies of a restart file continue if the command makes the same ones.
-void FixGearQuat::resume()
-{
-  if (!restarts->was_read()) return;
-  const bool others_come = !args->mol.empty();    // also from outside of the group
-  met_atoms = restarts->resume(others_come ? groupbit : 0);
-  if (!met_atoms) create_bodies();
-}
-
-int FixGearQuat::pack_restart(int i, double *buf)
-{
-  return restarts->pack(i, buf);
-}
-
-void FixGearQuat::unpack_restart(int /*nlocal*/, int nth)
-{
-  restarts->note_place(nth);
-}
-
-int FixGearQuat::size_restart(int i)
-{
-  return restarts->size(i);
-}
-
-int FixGearQuat::maxsize_restart()
-{
-  return restarts->max_size();
 }

@@ -30,6 +30,7 @@ namespace GearQuat {
   class BodyTable;
   class DrivenBox;
   class Extract;
+  class Minimization;
   class Motion;
   class OtherFixes;
   class Ownership;
@@ -63,6 +64,16 @@ class FixGearQuat : public Fix {
   void post_run() override;
   void reset_dt() override;
   void deform(int) override;
+
+  void min_setup(int) override;
+  void min_pre_exchange() override;
+  void min_pre_neighbor() override;
+  void min_pre_force(int) override;
+  void min_post_force(int) override;
+  double min_energy(double *) override;
+  void min_store() override;
+  int min_dof() override;
+  double max_alpha(double *) override;
 
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -103,6 +114,7 @@ class FixGearQuat : public Fix {
   std::unique_ptr<GearQuat::Step> step;
   std::unique_ptr<GearQuat::Motion> motion;
   std::unique_ptr<GearQuat::DrivenBox> driven_box;
+  std::unique_ptr<GearQuat::Minimization> minimization;
   std::unique_ptr<GearQuat::Restart> restarts;
   std::unique_ptr<GearQuat::RespaForces> respa;
   std::unique_ptr<GearQuat::BodyTable> table;
@@ -111,8 +123,10 @@ class FixGearQuat : public Fix {
 
   std::vector<GearQuat::StatedMolecule> stated;    // by molecules of the template
 
-  bool met_atoms = false;     // bodies were compared with the atoms in a run before
-  bool reported = false;      // the scene, once
+  bool met_atoms = false;        // bodies were compared with the atoms in a run before
+  bool reported = false;         // the scene, once
+  bool min_projected = false;    // forces, before the first evaluation of a minimization
+  int min_vflag = 0;             // of the present evaluation in a minimization
   bool motion_acts = true;    // before the next step: velocities of other fixes, contacts, a start
 
   void create_bodies();
@@ -122,6 +136,7 @@ class FixGearQuat : public Fix {
   void meet_forces();
   void begin_step(int, double **, double **);
   void end_step(double **, double **);
+  void end_minimization();
   void tally_virial(int, double **);
   void count_rows();
   void show_bodies();

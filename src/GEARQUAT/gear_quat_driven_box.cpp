@@ -63,6 +63,12 @@ void DrivenBox::init()
   drive(smooth_driver());
 }
 
+void DrivenBox::rest()
+{
+  driven = false;
+  drive(nullptr);
+}
+
 /// The fix whose motion of the box is followed with the order of the method, null for none: other
 /// atoms move by a method of second order, and a box that jumps has no derivatives.
 Fix *DrivenBox::smooth_driver() const

@@ -44,6 +44,8 @@ class DrivenBox : protected Pointers {
 
   /// Ends the run if another fix changes the box in a way that bodies cannot follow.  Before a run.
   void init();
+  /// No other fix changes the box: before a minimization.
+  void rest();
   /// True if another fix changes the box in this run.
   bool any() const { return driven; }
 

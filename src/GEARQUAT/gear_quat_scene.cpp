@@ -91,13 +91,12 @@ static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
 void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
                             const Ownership &ownership)
 {
-  if (lmp->update->whichflag == 2)
-    lmp->error->all(FLERR, "Fix gear/quat cannot be used with minimize: unfix it first");
-  if (lmp->update->dt == 0.0 || !std::isfinite(lmp->update->dt))
+  const bool steps = lmp->update->whichflag != 2;
+  if (steps && (lmp->update->dt == 0.0 || !std::isfinite(lmp->update->dt)))
     lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}",
                     lmp->update->dt);
   ownership.refuse_atoms();
-  refuse_respa_with_steps(lmp);
+  if (steps) refuse_respa_with_steps(lmp);
   refuse_other_integrators(lmp, fix, fleet, ownership);
   warn_of_walls(lmp, fix);
 }

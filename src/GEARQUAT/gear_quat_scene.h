@@ -25,8 +25,9 @@ class Ownership;
 struct Arguments;
 struct Fleet;
 
-/// Ends the run on all ranks, naming what is in the way: minimization, a time step of zero, r-RESPA
-/// with different steps, atoms of a kind that cannot be followed, atoms that another fix moves too.  Warns of granular walls that do not know the masses of the bodies.
+/// Ends the run on all ranks, naming what is in the way: a time step of zero, r-RESPA with
+/// different steps, atoms of a kind that cannot be followed, atoms that another fix moves too.
+/// Warns of granular walls that do not know the masses of the bodies.
 void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
 
 /// Rank 0 warns if molecules have atoms in bodies and others that no fix moves: it says how many,

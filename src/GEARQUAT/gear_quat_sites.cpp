@@ -387,7 +387,7 @@ std::vector<Load> Sites::centroids()
   return means;
 }
 
-void Sites::visit_constraint_forces(double **f, bool all,
+void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
                                     const std::function<void(int, ConstraintForce &)> &tally)
 {
   struct Acceleration {
@@ -396,15 +396,16 @@ void Sites::visit_constraint_forces(double **f, bool all,
   ownership.spread(bodies.change_loads());
   const std::vector<Load> means = all ? centroids() : std::vector<Load>();
   sum_over_sites(
-      [this](int ibody) {
+      [this, turning](int ibody) {
         const RigidBody &rigid = bodies.rigid_of(ibody);
         const Load &load = bodies.load_of(ibody);
-        Acceleration acceleration;
+        Acceleration acceleration = {};
+        for (int k = 0; k < 3; ++k) acceleration.linear[k] = load.force[k] / rigid.mass;
+        if (turning == Turning::NO) return acceleration;
         double torque_body[3], alpha_body[3];
         to_body(bodies.axes(ibody), load.torque_space, torque_body);
         angular_acceleration(rigid, torque_body, bodies.state_of(ibody).omega_body, alpha_body);
         to_space(bodies.axes(ibody), alpha_body, acceleration.angular);
-        for (int k = 0; k < 3; ++k) acceleration.linear[k] = load.force[k] / rigid.mass;
         return acceleration;
       },
       [&](const Acceleration &acceleration, const Site &site, const double *arm) {
@@ -413,19 +414,23 @@ void Sites::visit_constraint_forces(double **f, bool all,
         double *lacking = constraint.force[0], *arm_space = constraint.arm[0];
         if (arm) std::copy_n(arm, 3, arm_space);
         if (all) std::copy_n(means[site.body].force, 3, constraint.centroid);
-        const double *omega_space = bodies.frame_of(site.body).omega_space;
-        double tangential[3], spin[3], radial[3];
+        double tangential[3], radial[3] = {0.0, 0.0, 0.0};
         cross3(acceleration.angular, arm_space, tangential);
-        cross3(omega_space, arm_space, spin);
-        cross3(omega_space, spin, radial);
+        if (turning == Turning::YES) {
+          const double *omega_space = bodies.frame_of(site.body).omega_space;
+          double spin[3];
+          cross3(omega_space, arm_space, spin);
+          cross3(omega_space, spin, radial);
+        }
         const double mass = ownership.mass_of(site.atom) / force->ftm2v;
         for (int k = 0; k < 3; ++k)
           lacking[k] =
               mass * (acceleration.linear[k] + tangential[k] + radial[k]) - f[site.atom][k];
         for (int k = 0; k < 3; ++k) constraint.virial[k] = arm_space[k] * lacking[k];
-        constraint.virial[3] = arm_space[0] * lacking[1];
-        constraint.virial[4] = arm_space[0] * lacking[2];
-        constraint.virial[5] = arm_space[1] * lacking[2];
+        // the box shears y into x, and z into both: with a torque, x into y would be another number
+        constraint.virial[3] = arm_space[1] * lacking[0];
+        constraint.virial[4] = arm_space[2] * lacking[0];
+        constraint.virial[5] = arm_space[2] * lacking[1];
         tally(site.atom, constraint);
       },
       [](int, const Acceleration &) {

@@ -97,10 +97,12 @@ class Sites : protected Pointers {
   struct ConstraintForce {
     double force[1][3], arm[1][3], virial[6], centroid[3];
   };
+  /// Whether bodies turn; otherwise the forces on a body act at its center of mass alone.
+  enum class Turning { NO, YES };
   /// tally: of an atom and its constraint force.  Those of a body add up to zero, so any origin
   /// serves for the virial.  all: sites at centers of mass and centroids too, as the centroid form
   /// of the virial needs them, otherwise 0.  Collective.
-  void visit_constraint_forces(double **f, bool all,
+  void visit_constraint_forces(double **f, bool all, Turning turning,
                                const std::function<void(int, ConstraintForce &)> &tally);
 
   double memory_usage() const;

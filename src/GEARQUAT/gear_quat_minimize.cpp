@@ -1,0 +1,182 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_minimize.h"
+
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+void Minimization::init()
+{
+  if (!utils::strmatch(update->minimize_style, "^cg") &&
+      !utils::strmatch(update->minimize_style, "^sd"))
+    error->all(
+        FLERR,
+        "Fix gear/quat cannot be used with min_style {}, which does not let fixes take part; "
+        "use min_style cg or sd",
+        update->minimize_style);
+  on = true;
+  fitted = false;
+}
+
+/// For nearest_twist() and nearest_move(): sum of arms d, and of their products.
+void Minimization::measure()
+{
+  for (auto &column : moments) column.assign(bodies.nhere(), Load());
+  for (const Site &site : sites) {
+    const double *d = site.arm_body;
+    Load &first = moments[0][site.body], &second = moments[1][site.body];
+    add3(d, first.force);
+    for (int k = 0; k < 3; ++k) first.torque_space[k] += d[k] * d[k];
+    second.force[0] += d[1] * d[2];
+    second.force[1] += d[0] * d[2];
+    second.force[2] += d[0] * d[1];
+  }
+  if (!bodies.have_copies()) return;
+  for (auto &column : moments) ownership.sum(column);
+}
+
+Arms Minimization::arms_of(int ibody) const
+{
+  const double *sum = moments[0][ibody].force, *square = moments[0][ibody].torque_space;
+  const double *mixed = moments[1][ibody].force;
+  const Arms along_axes = {(double) bodies.body_at(ibody).natoms,
+                           {sum[0], sum[1], sum[2]},
+                           {square[0], mixed[2], mixed[1], mixed[2], square[1], mixed[0], mixed[1],
+                            mixed[0], square[2]}};
+  return along_axes.in_space(bodies.axes(ibody));
+}
+
+void Minimization::check_loads()
+{
+  tagint bad = 0;
+  bigint idle = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const Load load = bodies.acting(ibody);
+    const double size = length(load.force) + length(load.torque_space);
+    if (!std::isfinite(size)) bad = bodies.body_at(ibody).id;
+    if (ownership.extended().sites.empty()) continue;
+    Mask none = 0;
+    nearest_twist(arms_of(ibody), bodies.body_at(ibody).off, load, &none);
+    idle += none != 0 && length(load.torque_space) > 0.0;
+  }
+  bad = over_ranks(MPI_MAX, bad, world);
+  if (bad)
+    error->all(FLERR,
+               "Fix gear/quat: the force or torque on body {} is not a number, so it cannot be "
+               "minimized; atoms must not be in the same place (see delete_atoms overlap)",
+               bad);
+  idle = over_ranks(MPI_SUM, idle, world);
+  if (idle && !warned && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: minimize does not turn {} bodies about axes on which all of "
+                   "their atoms lie, though their atoms have orientations of their own",
+                   idle);
+  warned = true;
+}
+
+void Minimization::fit()
+{
+  std::vector<Load> sums[2];    // of the way u, of u_x d; of u_y d, of u_z d
+  for (auto &column : sums) column.assign(bodies.nhere(), Load());
+  for (const Site &site : sites) {
+    double found[3], expected[3], arm[3];
+    sites.unwrapped(site, found, expected);
+    to_space(bodies.axes(site.body), site.arm_body, arm);
+    double *const products[] = {sums[0][site.body].torque_space, sums[1][site.body].force,
+                                sums[1][site.body].torque_space};
+    for (int a = 0; a < 3; ++a) {
+      const double way = found[a] - expected[a];
+      sums[0][site.body].force[a] += way;
+      for (int b = 0; b < 3; ++b) products[a][b] += way * arm[b];
+    }
+  }
+  if (bodies.have_copies())
+    for (auto &column : sums) ownership.sum(column);
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const Load &first = sums[0][ibody], &second = sums[1][ibody];
+    double products[9];
+    std::copy_n(first.torque_space, 3, products);
+    std::copy_n(second.force, 3, products + 3);
+    std::copy_n(second.torque_space, 3, products + 6);
+    const Move move =
+        nearest_move(arms_of(ibody), bodies.body_at(ibody).off, first.force, products);
+    BodyState &s = bodies.change_state(ibody);
+    double q[4];
+    w_times(move.rotation, s.q, q);
+    std::copy_n(q, 4, s.q);
+    add3(move.way, s.center);
+    bodies.update_frame(ibody);
+  }
+  if (bodies.have_copies()) ownership.spread_moved();
+  sites.place(false);
+  fitted = true;
+}
+
+void Minimization::fit_all()
+{
+  if (!fitted) {
+    fit();
+    comm->forward_comm();
+  }
+  fitted = false;
+}
+
+void Minimization::project(double **f)
+{
+  std::vector<Load> twists(bodies.nhere());
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    Load load = bodies.load_of(ibody);
+    for (int k = 0; k < 3; ++k) {
+      load.force[k] /= force->ftm2v;
+      load.torque_space[k] /= force->ftm2v;
+    }
+    const Twist twist = nearest_twist(arms_of(ibody), bodies.body_at(ibody).off, load);
+    std::copy_n(twist.way, 3, twists[ibody].force);
+    std::copy_n(twist.turn, 3, twists[ibody].torque_space);
+  }
+  if (bodies.have_copies()) ownership.spread(twists);
+  for (const Site &site : sites) {
+    const Load &of_body = twists[site.body];
+    double arm[3];
+    to_space(bodies.axes(site.body), site.arm_body, arm);
+    cross3(of_body.torque_space, arm, f[site.atom]);
+    add3(of_body.force, f[site.atom]);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   where the minimizer returns to
+------------------------------------------------------------------------- */
+
+void Minimization::store()
+{
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    std::copy_n(s.q, 4, std::copy_n(s.center, 3, stored(ibody)));
+  }
+}
+
+void Minimization::put_back()
+{
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    BodyState &s = bodies.change_state(ibody);
+    std::copy_n(stored(ibody), 3, s.center);
+    std::copy_n(stored(ibody) + 3, 4, s.q);
+    bodies.update_frame(ibody);
+  }
+}
