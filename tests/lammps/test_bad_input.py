@@ -219,7 +219,7 @@ SCENES = {
     "and nve": ("fix other all nve", "run 1", "is also moved by fix other (nve)"),
     "and rigid": ("fix other all rigid/nve/small molecule", "run 1", "is also moved by fix other"),
     "step of zero": ("", "timestep 0.0\nrun 1", "requires a time step that is not zero"),
-    "minimize": ("", "minimize 0 0 10 10", "cannot be used with minimize"),
+    "minimize": ("", "min_style fire\nminimize 0 0 10 10", "use min_style cg or sd"),
     "respa": (
         "",
         "run_style respa 2 2 pair 1\nrun 1",

@@ -45,6 +45,7 @@ TRIED = {
     "pparam": ("", "molecule {word} 2", "", "leave it out"),
     "dilate": ("", "molecule iso 1 1 100 dilate all", "run 1", ""),
     "fix deform": "test_driven_box.py",
+    "minimize": "test_minimize.py",
     "drag": ("", "molecule {word} 1", "", "no keyword"),
     "gravity": ("", "molecule gravity pull", "", "leave out its keyword disable"),
     "fix_modify bodyforces late": modified("bodyforces late"),
