@@ -40,7 +40,7 @@ enum class Projection { AUTO, YES, NO };
 struct Scheme {
   Formulation formulation = Formulation::SECOND;
   int rows = 0;                    ///< values kept; 0: as many as the paper
-  int passes = 1;                  ///< corrections with the same forces; 0: see fixed_passes()
+  int passes = 1;                  ///< corrections with the same forces; 0: automatic
   bool tuned = false;              ///< coefficients of gear_quat_tuned.h, otherwise Gear's
   bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
   bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
@@ -59,15 +59,15 @@ struct Scheme {
     const int n = values();
     return projection == Projection::AUTO && !first() && tuned && (n == 5 || n == 7 || n == 9);
   }
-  /// Passes of the method as a whole.  If passes is 0, a rotation with any_norm() is corrected until
-  /// it converges.  With a coupling it does so in the first pass, and all bodies have the same number
-  /// of passes: with five values, which are for long steps, what the kinetic energy needs to converge
-  /// (two passes heat water by 0.5 kT/ns/dof at 3 fs, three do not).  With more values, whose fast
-  /// bodies are projected, that might make fast rotation less stable.
-  int fixed_passes() const
+  /// Passes of a body.  If passes is 0, a rotation with any_norm() is corrected until it converges.
+  int fixed_passes() const { return passes ? passes : AUTOMATIC_PASSES; }
+  /// Passes of all bodies together, with a coupling.  A rotation with any_norm() converges in the first
+  /// of them.  Three are what the kinetic energy needs to converge: two heat water at 3 fs with five
+  /// values and cool it with seven, by 0.5 kT/ns/dof.  Faster bodies, which are projected, have three
+  /// as well, and are stable in faster rotation than with two.
+  int coupled_passes() const
   {
-    if (passes) return passes;
-    return any_norm() && values() == 5 ? CONVERGING_PASSES : AUTOMATIC_PASSES;
+    return passes == 0 && any_norm() ? CONVERGING_PASSES : fixed_passes();
   }
   static constexpr int AUTOMATIC_PASSES = 2, CONVERGING_PASSES = 3;
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }

@@ -195,7 +195,7 @@ template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ib
 void Step::correct_together()
 {
   if (tolerance) tolerance->note_prediction();
-  coupling->correct(*integrator, scheme().fixed_passes());
+  coupling->correct(*integrator, scheme().coupled_passes());
   if (tolerance) tolerance->note_correction(*integrator, *coupling);
 }
 
