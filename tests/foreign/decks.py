@@ -46,6 +46,11 @@ REASONS = (
     (r"keyword gravity of the rigid fixes", "keyword gravity", r"no keywords [^.]*\*gravity\*"),
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
     (
+        r"has no fix_modify temp",
+        "fix_modify temp",
+        r"`fix_modify temp`, `press` \| not there",
+    ),
+    (
         r"changes the box, and does not tell other fixes",
         "box that changes untold",
         r"unless they tell no other fix of it",
