@@ -1,6 +1,7 @@
 """The how-to pages: their scripts and commands do what is said there."""
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -209,6 +210,57 @@ def blocks_of_columns():
 def test_the_look_at_a_lammps(pasted):
     said = pasted("cluster")
     assert all(word in said for word in ("Large-scale", "MPI v", "SMALLBIG", "PLUGIN"))
+
+
+# --- from fix shake -----------------------------------------------------------------------------------
+def shake_scripts():
+    """The script of the page, and the one after its change."""
+    (script,), (change,) = blocks("from_shake", "LAMMPS"), blocks("from_shake", "diff")
+    taken, added = ("".join(f"{line[1:]}\n" for line in change.splitlines() if line[0] == sign) for sign in "-+")
+    assert taken in script
+    return script, script.replace(taken, added)
+
+
+def test_shake_becomes_rigid_bodies(lmp_wheel):
+    """In the same positions, energy and degrees of freedom are the same; the trajectories begin alike."""
+    shutil.copy(ROOT / "examples/water_npt/data.water", lmp_wheel.folder)
+    before, after = (table(passes(lmp_wheel, script)) for script in shake_scripts())
+    _, temperature, _, density, energy, _ = range(6)
+    assert apart(after[0, energy], before[0, energy]) < 1e-7
+    assert apart(after[1:, temperature], before[1:, temperature]) < 0.05  # fix shake has projected velocities
+    assert apart(after[:, density], before[:, density]) < 5e-3
+    assert apart(after[:3, energy], before[:3, energy]) < 5e-3
+
+
+CARBON_DIOXIDE = """
+units real
+atom_style full
+bond_style zero
+angle_style zero
+region box block 0 20 0 20 0 20
+create_box 2 box bond/types 1 angle/types 1 extra/bond/per/atom 2 extra/angle/per/atom 1 extra/special/per/atom 2
+mass 1 12.011
+mass 2 15.9994
+create_atoms 1 single 10 10 10
+create_atoms 2 single 11.16 10 10
+create_atoms 2 single 8.84 10 10
+set atom 1*3 mol 1
+create_bonds single/bond 1 1 2
+create_bonds single/bond 1 1 3
+create_bonds single/angle 1 2 1 3
+bond_coeff 1 1.16
+angle_coeff 1 180.0
+pair_style zero 5.0
+pair_coeff * *
+velocity all create 300.0 4711
+timestep 2.0
+"""
+
+
+def test_linear_molecules_are_possible_now(lmp_wheel):
+    result = lmp_wheel.run(CARBON_DIOXIDE + "fix rigid all shake 1e-6 100 0 b 1 a 1\nfix move all nve\nrun 10\n")
+    assert "determinant" in result.output or result.returncode
+    passes(lmp_wheel, CARBON_DIOXIDE + "fix move all gear/quat molecule\nrun 10\n")
 
 
 # --- from a lattice or packmol to a liquid ------------------------------------------------------------
