@@ -362,7 +362,7 @@ void Barostat::place(int ibody, const Integrator::Pending &pending, BodyState &s
 void Barostat::keep()
 {
   Thermostat::keep();
-  kept = std::make_unique<Moving>(Moving{cell, chain, heat, matrix, rate, correction});
+  kept = std::make_unique<Moving>(Moving{cell, chain, heat});
 }
 
 void Barostat::put_back()
@@ -371,10 +371,7 @@ void Barostat::put_back()
   cell = kept->cell;
   chain = kept->chain;
   heat = kept->heat;
-  matrix = kept->matrix;
-  rate = kept->rate;
-  correction = kept->correction;
-  box.set(matrix);
+  box.set(cell.matrix());
 }
 
 /// As a length, what it moves at the faces of the box; as an energy, its work.

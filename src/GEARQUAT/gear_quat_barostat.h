@@ -126,7 +126,6 @@ class Barostat : public Thermostat {
     CellHistory cell;
     Chain chain;
     ScalarHistory heat;
-    Upper matrix, rate, correction;
   };
   std::unique_ptr<Moving> kept;
   bool changing_step;    ///< keyword tolerance

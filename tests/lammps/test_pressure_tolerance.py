@@ -1,0 +1,77 @@
+"""Constant pressure with keyword tolerance: errors follow eps, and a step that is made again leaves nothing behind."""
+
+import numpy as np
+import pytest
+from pressed import ends, largest_change, pressed, trimers
+
+TIME, EPS = 2.0, (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+MODES = {
+    "NPH": "iso 0.6 0.6 1.0",
+    "NPT": "iso 0.6 0.6 1.0 temp 0.7 0.7 0.8",
+    "unequal": "x 0.5 0.5 2.0 y 0.7 0.7 2.5 z 0.6 0.6 2.0 temp 0.7 0.7 0.8 thermostat separate pchain 2",
+}
+#: as REPULSIVE, and at the cutoff below the errors
+PAIR = "pair_style buck 3.4\npair_coeff * * 60.0 0.08 0.0"
+REPEATED, LARGEST = "f_move[16]", "f_move[14]"
+COLUMNS = """thermo_style custom step time econserve lx ly lz f_move[*]
+thermo_modify norm no format float %.17g
+"""
+UNTIL = f"""variable now equal time
+fix stop all halt 1 v_now >= {TIME} error continue
+run 100000"""
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path):
+    return trimers(tmp_path / "data.trimers")
+
+
+def controlled(words, eps, measure="length", first=0.005):
+    """A deck until TIME, to the last bit; first: the step that it begins with."""
+    words = f"tolerance {eps:g} {measure} {words} every/time {TIME}"
+    return pressed(words, first, thermo=1, pair=PAIR, run=COLUMNS + UNTIL)
+
+
+def fixed(words, steps=8000):
+    return pressed(f"values 9 {words}", TIME / steps, thermo=steps, pair=PAIR, run=COLUMNS + f"run {steps}")
+
+
+def off(of, reference):
+    """Of velocities, and of edges, at the end; of: table and frame."""
+    edges = max(abs(of[0][c][-1] - reference[0][c][-1]) for c in ("Lx", "Ly", "Lz"))
+    return np.array([np.abs(of[1] - reference[1])[:, 3:6].max(), edges])
+
+
+def judged(result, frames):
+    """Errors of the second run and of later ones beside the first: velocities, edges, conserved energy."""
+    exact, *runs = zip(result.thermo, frames)
+    return np.array([[*off(one, exact), largest_change(one[0])] for one in runs])
+
+
+@pytest.mark.parametrize("measure", ["length", "energy"])
+@pytest.mark.parametrize("mode", MODES)
+def test_errors_follow_the_tolerance(lmp_wheel, mode, measure):
+    """By slope: motion, edges and energy follow a length, and the energy an energy."""
+    words = MODES[mode]
+    decks = [fixed(words), *(controlled(words, eps, measure) for eps in EPS), fixed(words.replace("0.6", "0.606"))]
+    result, frames = ends(lmp_wheel, decks)
+    *found, wrong = judged(result, frames)
+    for eps, table in zip(EPS, result.thermo[1:]):
+        assert table["Time"][-1] == pytest.approx(TIME, abs=1e-12) and table[LARGEST][-1] <= 1.0
+    slopes = np.log(found[0] / found[-1]) / np.log(EPS[0] / EPS[-1])
+    least = [0.6, 0.6, 0.6] if measure == "length" else [0.4, 0.4, 0.7]
+    assert (slopes > least).all() and (slopes < 1.3).all()
+    # a pressure 1 % off is another motion, of which the energy cannot tell
+    assert (wrong[:2] > 100 * found[2][:2]).all()
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_repeated_steps_leave_nothing_behind(lmp_wheel, mode):
+    """Runs that repeat steps, the first of them far too long, end where short ones end without a repeat."""
+    words = MODES[mode]
+    decks = [fixed(words), *(controlled(words, eps, "energy", first=0.1) for eps in EPS)]
+    result, frames = ends(lmp_wheel, decks)
+    repeated = [table[REPEATED][-1] for table in result.thermo[1:]]
+    assert min(repeated) >= 2 and sum(repeated) >= 15
+    for eps, (velocity, edge, energy) in zip(EPS, judged(result, frames)):
+        assert velocity < 100 * eps and edge < 5 * eps and energy < 20 * eps
