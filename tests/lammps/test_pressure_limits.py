@@ -1,0 +1,173 @@
+"""Constant pressure: what the log says about a box that oscillates too fast, and about a mesh for another box."""
+
+import re
+
+import numpy as np
+import pytest
+from pressed import largest_change, pressed
+from scenes import one_after_the_other, water_data
+
+# --- how fast the box oscillates ----------------------------------------------------------------
+
+# A crystal of points, in which a strain of the box moves every atom as a lattice does, so that the volume
+# oscillates with a single frequency.  No shell of neighbors passes the cutoff.
+PAIR = "pair_style morse 1.68\npair_coeff * * 0.0 2.0 1.0 1.68\npair_coeff 1 1 2.0 4.0 1.0 1.68"
+CRYSTAL = """lattice fcc 1.75
+region box block 0 3 0 3 0 3
+create_box 3 box
+create_atoms 1 box
+mass * 1.0
+variable own atom id
+set group all mol v_own
+velocity all create 1e-6 87287"""
+TARGET = 0.3
+#: and the radians in a step that they follow
+SCHEMES = {
+    "values 5": 0.96,
+    "values 7": 0.70,
+    "values 9": 0.60,
+    "formulation first values 7": 0.62,
+    "values 6 corrector gear": 0.42,
+}
+AT_START = re.compile(r"gear/quat: the box (oscillates|would oscillate) by (\S+) radians in a step")
+LATER = re.compile(r"in step (\d+) the box oscillates by (\S+) radians in a step, (\d+) % of what")
+LONGER = re.compile(r"use a Pdamp of (\S+) or longer")
+
+
+def crystal(words, dt, run, pdamp=1.0, last=TARGET, thermo=1000):
+    words = f"{words} iso {TARGET} {last} {pdamp} ptemp 0.05"
+    return pressed(words, dt, run=run, box=CRYSTAL, pair=PAIR, thermo=thermo).replace("exclude molecule/intra all", "")
+
+
+def volume_frequency(lmp):
+    """Of small oscillations, by the zero crossings in a run with short steps."""
+    dt = 0.001
+    table = lmp.succeed(crystal("values 7", dt, "run 2000", thermo=1)).thermo[0]
+    strain = np.log(table["Volume"])
+    strain -= (strain.min() + strain.max()) / 2
+    k = np.flatnonzero(strain[:-1] * strain[1:] < 0)
+    times = dt * (k + strain[k] / (strain[k] - strain[k + 1]))
+    return np.pi * (len(times) - 1) / (times[-1] - times[0])
+
+
+def printed(text, value, tolerance):
+    """Whether a number of two digits is this value, but for its rounding."""
+    unit = 10.0 ** (np.floor(np.log10(value)) - 1)
+    return abs(float(text) - value) < 0.51 * unit + tolerance * value
+
+
+def test_a_box_that_oscillates_too_fast(lmp_wheel):
+    """The number of radians is that of the volume in a run, whatever the method; Pdamp is as long as needed."""
+    omega = volume_frequency(lmp_wheel)
+    for words, fastest in SCHEMES.items():
+        dt = {part: part * fastest / omega for part in (0.58, 0.63, 0.75, 0.9, 0.98, 1.3)}
+        assert "radians" not in lmp_wheel.succeed(crystal(words, dt[0.58], "run 500")).output
+        for part in (0.63, 0.75, 0.9):
+            result = lmp_wheel.succeed(crystal(words, dt[part], "run 500\nrun 500"))
+            ((verb, radians),) = AT_START.findall(result.words)
+            assert verb == "oscillates" and printed(radians, part * fastest, 0.01), (words, part)
+            percent = re.search(r"step, (\d+) % of what the method", result.words)[1]
+            assert float(percent) == pytest.approx(100 * part, abs=1.5)
+            assert not LATER.search(result.words)
+            # the method does follow it
+            assert largest_change(result.thermo[1]) < 0.02
+        for part in (0.98, 1.3):
+            said = f"radians in a step, and the method follows {fastest:g};"
+            result = lmp_wheel.refuse(crystal(words, dt[part], "run 500"), said)
+            ((verb, radians),) = AT_START.findall(result.words)
+            assert verb == "would oscillate" and printed(radians, part * fastest, 0.01)
+            pdamp = LONGER.search(result.words)[1]
+            assert printed(pdamp, 1.05 * part / 0.6, 0.01)
+            assert "radians" not in lmp_wheel.succeed(crystal(words, dt[part], "run 100", pdamp)).output
+            shorter = 0.9 * float(pdamp)
+            assert "oscillates by" in lmp_wheel.succeed(crystal(words, dt[part], "run 100", shorter)).words
+
+
+def test_steps_that_change_follow_the_box(lmp_wheel):
+    """With keyword tolerance a step is short enough instead, however long the first one is."""
+    result = lmp_wheel.succeed(crystal("tolerance 1e-8", 3.0 / volume_frequency(lmp_wheel), "run 500"))
+    assert "radians" not in result.output and largest_change(result.thermo[0]) < 1e-4
+
+
+@pytest.mark.parametrize("words", SCHEMES)
+def test_a_box_that_becomes_too_stiff(lmp_wheel, words):
+    """In a ramp of the pressure: one warning, at the step where a new start would give it."""
+    omega, fastest, steps, ratio = volume_frequency(lmp_wheel), SCHEMES[words], 6000, 1.15
+    dt, last = 0.54 * fastest / omega, 12.0
+    result = lmp_wheel.succeed(crystal(words, dt, f"run {steps}", last=last))
+    ((step, radians, percent),) = LATER.findall(result.words)
+    assert not AT_START.search(result.words) and percent == "60"
+
+    def new_start(step, new_dt):
+        present = TARGET + (last - TARGET) * int(step) / steps
+        fix = f"fix move all gear/quat molecule {words} iso {present} {present} 1.0 ptemp 0.05"
+        again = f"run {step} start 0 stop {steps}\nunfix move\ntimestep {new_dt}\n{fix}\nrun 10"
+        return AT_START.findall(lmp_wheel.succeed(crystal(words, dt, again, last=last)).words)
+
+    ((_, measured),) = new_start(step, ratio * dt)
+    assert float(radians) == pytest.approx(float(measured) / ratio, rel=0.035, abs=0.01)
+    assert float(radians) == pytest.approx(0.6 * fastest, rel=0.02)
+    # half way to this step there was no reason
+    assert not new_start(int(step) // 2, dt)
+    # the pressure does not rise that far
+    half = TARGET + 0.4 * (last - TARGET) * int(step) / steps
+    assert "radians" not in lmp_wheel.succeed(crystal(words, dt, f"run {steps}", last=half)).output
+
+
+# --- the mesh of long-range forces --------------------------------------------------------------
+
+WATER = """
+units real
+atom_style full
+atom_modify map array
+read_data data.water
+pair_style {pair} 4.6
+pair_coeff * * 0.0 1.0
+pair_coeff 1 1 0.1553 3.166
+{kspace}
+neigh_modify every 1 delay 0 exclude molecule/intra all
+timestep 1.0
+fix move all gear/quat molecule {words} ptemp 300
+thermo_style custom step lx ly lz
+thermo_modify norm no format float %.17g
+thermo 1
+run {steps}
+run 5
+"""
+LONG = "lj/cut/coul/long"
+STYLES = {
+    "pppm": (LONG, "kspace_style pppm 1e-4"),
+    "msm": ("lj/cut/coul/msm", "kspace_style msm 1e-3\nkspace_modify pressure/scalar no"),
+    "ewald": (LONG, "kspace_style ewald 1e-4"),
+    "none": ("lj/cut/coul/cut", ""),
+}
+CHANGES = {
+    "shrinks": (3.9, "iso 6000 6000 1000", "Lx"),
+    "grows": (2.7, "iso 1 1 1000", "Lx"),
+    "along y": (3.9, "y 5000 5000 1000", "Ly"),
+    "little": (3.2, "iso 1000 1000 10000", "Lx"),
+}
+
+
+CASES = [("pppm", change) for change in CHANGES] + [("msm", "shrinks"), ("ewald", "shrinks"), ("none", "grows")]
+
+
+@pytest.mark.parametrize("style, change", CASES)
+def test_a_mesh_that_was_made_for_another_box(lmp_wheel, style, change):
+    """One warning for a run, at the first step that is 15 % off; Ewald's wave vectors follow the box."""
+    pair, kspace = STYLES[style]
+    spacing, words, edge = CHANGES[change]
+    water_data(lmp_wheel.folder / "data.water", spacing=spacing, shift=spacing / 2)
+    result = lmp_wheel.succeed(WATER.format(pair=pair, kspace=kspace, words=words, steps=500))
+    ratio = np.array(result.thermo[0][edge]) / result.thermo[0][edge][0]
+    off = np.flatnonzero(np.abs(ratio - 1.0) >= 0.15)
+    sentence = r"in step (\d+) the box is (\S+) times as long along (.) .*? kspace style (\S+) was"
+    said = re.findall(sentence, result.words)
+    assert (len(off) > 0) == (change != "little")
+    if style in ("ewald", "none") or change == "little":
+        assert not said and " mesh " not in result.words
+        return
+    ((step, factor, axis, name),) = said
+    unit = 0.01 if change == "grows" else 0.001
+    assert int(step) == off[0] and float(factor) == pytest.approx(ratio[off[0]], abs=0.51 * unit)
+    assert (axis, name) == (edge[1], style)
