@@ -1,5 +1,7 @@
 """Constant pressure from run to run: restarts, ranks, images, ramps, changes between runs."""
 
+import re
+
 import numpy as np
 import pytest
 import pressed as scene
@@ -12,6 +14,8 @@ MODES = {
     "ramps": "x 0.3 0.9 1.0 y 0.5 -0.2 1.0 temp 0.6 0.9 0.8 pchain 2",
 }
 SPAN = "start 0 stop 100"
+#: relative, of a number
+EPSILON = np.finfo(float).eps
 
 
 @pytest.fixture(autouse=True)
@@ -86,6 +90,18 @@ def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
     assert all(apart(a, b) > 1e-10 for a, b in zip(without, found[3::4]))
 
 
+@pytest.mark.parametrize("processors, same", [("1 1 *", True), ("* * *", False)])
+def test_the_bits_need_the_same_grid_of_ranks(lmp_tree, processors, same):
+    """Without numbers LAMMPS divides the box that is read along its longest edge, which has become another one."""
+    words, settings = "formulation second " + MODES["NPT"], dict(processors=processors)
+    decks = [pressed(words, run=f"run 50 {SPAN}\nwrite_restart half\nrun 50 {SPAN}", **settings)]
+    decks.append(continued(pressed(words, run=f"run 50 {SPAN}", **settings), "half"))
+    result, (whole, again) = ends(lmp_tree, decks, 2)
+    grids = re.findall(r"(\d by \d by \d) MPI processor grid", result.words)
+    assert (grids[0] == grids[1]) == same
+    assert apart(whole, again) == 0.0 if same else 0.0 < apart(whole, again) < 1e-12
+
+
 def test_what_a_restart_file_does_not_fit(lmp_tree):
     """Other components or another chain begin anew, and a message says which keyword."""
     decks = [pressed(MODES["NPT"], run="run 20\nwrite_restart half\nrun 20")]
@@ -113,17 +129,21 @@ def test_ranks_agree(lmp_tree, ranks):
             assert a[column] == pytest.approx(b[column], rel=1e-10, abs=1e-10), column
 
 
-def test_molecules_hundreds_of_periods_off(lmp_tree):
-    """LAMMPS' image flags hold 511 periods."""
-    trimers(lmp_tree.folder / "data.off", n=3, images=(500, -400, 300))
-    decks = [pressed(f"formulation {f} {mode}", **more) for f in FORMULATIONS for mode in MODES.values()
-             for more in ({}, dict(box="read_data data.off"))]
+@pytest.mark.parametrize("mode", ["NVE", *MODES])
+def test_molecules_many_periods_off(lmp_tree, mode):
+    """LAMMPS' image flags hold 511 periods.  Errors are those of a position in space, whether the box moves or not."""
+    periods = (1, 20, 500)
+    for far in periods:
+        trimers(lmp_tree.folder / f"data.{far}", n=3, images=(far, -far * 4 // 5, far * 3 // 5))
+    words = {"NVE": ""} | MODES
+    decks = [pressed(f"formulation {f} {words[mode]}", **more) for f in FORMULATIONS
+             for more in ({}, *(dict(box=f"read_data data.{far}") for far in periods))]
     _, frames = ends(lmp_tree, decks)
-    for here, off in zip(frames[::2], frames[1::2]):
-        flags = off[:, 6:9] - here[:, 6:9]
-        assert np.abs(flags).max() == 500 and len(np.unique(flags)) > 3
-        # positions in space have one digit less
-        assert apart(here, off) < 1e-11
+    for here, *others in (frames[:4], frames[4:]):
+        for far, off in zip(periods, others):
+            flags = off[:, 6:9] - here[:, 6:9]
+            assert np.abs(flags).max() == far and len(np.unique(flags)) > 2
+            assert apart(here, off) < 15 * EPSILON * 6.0 * (far + 1)
 
 
 # --- commands -----------------------------------------------------------------------------------
