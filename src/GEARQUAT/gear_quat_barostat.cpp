@@ -51,7 +51,8 @@ Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sit
     inverse(Upper::one())
 {
   set_heat(scheme);
-  fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
+  frequency.set_period(period());
+  frequency.set_fastest(fastest_oscillation(CellHistory::scheme_of(scheme)));
   cell.begin(Upper(), 1.0);
 }
 
@@ -59,7 +60,7 @@ void Barostat::set_scheme(const Scheme &scheme)
 {
   Thermostat::set_scheme(scheme);
   cell.set_scheme(scheme);
-  fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
+  frequency.set_fastest(fastest_oscillation(CellHistory::scheme_of(scheme)));
   set_heat(scheme);
 }
 
@@ -90,6 +91,15 @@ double Barostat::mass_of(int component) const
 {
   const double d = dimensions(), period = asked.period[component];
   return (freedoms[TRANSLATION] + d) * kt * period * period / d;
+}
+
+/// Of the components that move, 0 for others.
+Upper Barostat::masses() const
+{
+  Upper found;
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) found[k] = mass_of(k);
+  return found;
 }
 
 double Barostat::twice_kinetic_of_box() const

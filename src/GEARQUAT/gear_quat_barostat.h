@@ -25,6 +25,7 @@
 #define LMP_GEAR_QUAT_BAROSTAT_H
 
 #include "gear_quat_box.h"
+#include "gear_quat_box_frequency.h"
 #include "gear_quat_scalar.h"
 #include "gear_quat_thermostat.h"
 #include "gear_quat_virial.h"
@@ -139,16 +140,10 @@ class Barostat : public Thermostat {
   using Tensor = ExactSum[Upper::SIZE];
   Tensor tensor;    ///< of owned bodies, in a pass
 
-  // how fast the box oscillates: it moves by the pressure, and the pressure by the box
-
-  double fastest;                       ///< radians in a step that the method follows
-  Upper driven;                         ///< the drive of the last step
-  double against = 0.0, along = 0.0;    ///< fading sums of -W drive'.G and W G.G
-  double probed = 0.0;                  ///< angular frequency at the start
-  double since = 0.0;                   ///< time of this run
+  BoxFrequency frequency;
   bool warned_box = false, warned_mesh = false;
-  Upper drive_of_smaller;
-  Upper begun_box;    ///< the box of LAMMPS where the run began
+  Upper drive_of_smaller;    ///< in the start, before the box is larger
+  Upper begun_box;           ///< the box of LAMMPS where the run began
 
   // the start
 
@@ -170,10 +165,11 @@ class Barostat : public Thermostat {
   void refuse_scene() const;
   void tell_freedoms(const std::string &why) override;
   void find_temperature();
-  double frequency() const;
+  Upper masses() const;
   double period() const;
   double probing_strain() const;
   void watch_box(double h);
+  void warn_of_box(const std::string &when, double h);
   void watch_mesh();
   void refuse_box() const;
   void set_heat(const Scheme &scheme);

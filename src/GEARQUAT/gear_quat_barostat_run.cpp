@@ -124,7 +124,7 @@ void Barostat::begin_run(bool begins, double h)
   if (begins) refer_to_box(h);
   correction = Upper();    // forces are those of the corrected box
   std::copy_n(domain->prd, 3, begun_box.m.begin());
-  since = 0.0;
+  frequency.begin_run();
   warned_mesh = false;
   virial.request(update->ntimestep + 1);
 }
@@ -264,11 +264,6 @@ void Barostat::seed_local(double h, int terms)
    oscillation of the bodies
 ------------------------------------------------------------------------- */
 
-// parts of the fastest oscillation that the method follows: from one on a warning, from the other an
-// error
-
-static constexpr double WARNED = 0.6, REFUSED = 0.95;
-
 // a mesh for long-range forces is made for edges that differ by less
 
 static constexpr double OF_MESH = 0.15;
@@ -306,64 +301,41 @@ void Barostat::leave_probe(int side)
   double stiffest = 0.0;
   for (int k = 0; k < 3; ++k)
     if (asked.on[k]) stiffest = std::max(stiffest, -change[k] / (2.0 * probing_strain()));
-  probed = std::sqrt(stiffest);
-  against = along = 0.0;
-  driven = Upper();
-  const double part = probed * std::fabs(width) / fastest;
-  if (part < WARNED || changing_step) return;
-  const double needed = 1.05 * period() * part / WARNED;
-  if (part > REFUSED)
+  frequency.begin(std::sqrt(stiffest));
+  const double radians = frequency.radians(width), part = frequency.part(width);
+  if (part < BoxFrequency::WARNED || changing_step) return;
+  if (part > BoxFrequency::REFUSED)
     error->all(FLERR,
                "Fix gear/quat: the box would oscillate by {:.2g} radians in a step, and the method "
                "follows {:.2g}; use a Pdamp of {:.2g} or longer",
-               part * fastest, fastest, needed);
-  if (comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix gear/quat: the box oscillates by {:.2g} radians in a step, {:.0f} % of what "
-        "the method follows; use a Pdamp of {:.2g} or longer",
-        part * fastest, 100.0 * part, needed);
+               radians, frequency.followed(), frequency.needed_period(width));
+  warn_of_box("", width);
+}
+
+/// when: words before "the box".
+void Barostat::warn_of_box(const std::string &when, double h)
+{
   warned_box = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: {}the box oscillates by {:.2g} radians in a step, {:.0f} % of "
+                   "what the method follows; use a Pdamp of {:.2g} or longer",
+                   when, frequency.radians(h), 100.0 * frequency.part(h),
+                   frequency.needed_period(h));
 }
 
 double Barostat::longest_step() const
 {
-  const double by_temperature = Thermostat::longest_step(), omega = frequency();
-  return omega > 0.0 ? std::min(by_temperature, 0.5 * WARNED * fastest / omega) : by_temperature;
-}
-
-/// In equilibrium the mean of -drive'.G over that of G.G is the mean square frequency.
-double Barostat::frequency() const
-{
-  return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : probed;
+  return std::min(Thermostat::longest_step(), frequency.longest_step());
 }
 
 void Barostat::watch_box(double h)
 {
-  constexpr double MEMORY = 2.0;    // damping times
-  const Upper now = drive();
-  const double fades = std::exp(-std::fabs(h) / (MEMORY * period()));
-  const bool known = driven.contracted(driven) > 0.0;
-  against *= fades;
-  along *= fades;
-  for (int k = 0; known && k < Upper::SIZE; ++k) {
-    if (!asked.on[k]) continue;
-    against -= mass_of(k) * (now[k] - driven[k]) / h * rate[k];
-    along += mass_of(k) * rate[k] * rate[k];
-  }
-  driven = now;
-  since += std::fabs(h);
+  frequency.note(drive(), rate, masses(), h);
   watch_mesh();
-  if (warned_box || changing_step || since < MEMORY * period()) return;
-  const double part = frequency() * std::fabs(h) / fastest;
-  if (part < WARNED) return;
-  warned_box = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: in step {} the box oscillates by {:.2g} radians in a step, "
-                   "{:.0f} % of what the method follows; use a Pdamp of {:.2g} or longer",
-                   update->ntimestep, part * fastest, 100.0 * part,
-                   1.05 * period() * part / WARNED);
+  if (warned_box || changing_step || !frequency.is_settled()) return;
+  if (frequency.part(h) >= BoxFrequency::WARNED)
+    warn_of_box(fmt::format("in step {} ", update->ntimestep), h);
 }
 
 /// LAMMPS chooses the mesh before a run, but Ewald's wave vectors in every box.
@@ -388,12 +360,11 @@ void Barostat::watch_mesh()
 
 Cause Barostat::instability(double h) const
 {
-  const double part = frequency() * std::fabs(h) / fastest;
-  if (part < 1.0) return Thermostat::instability(h);
+  if (frequency.part(h) < 1.0) return Thermostat::instability(h);
   return {fmt::format("The box became unstable first: it oscillates by {:.2g} radians in a step of "
                       "{:g}, and the method follows {:.2g}",
-                      part * fastest, h, fastest),
-          fmt::format("Use a Pdamp of {:.2g} or longer", 1.05 * period() * part / WARNED)};
+                      frequency.radians(h), h, frequency.followed()),
+          fmt::format("Use a Pdamp of {:.2g} or longer", frequency.needed_period(h))};
 }
 
 /// The box is predicted and not yet shown.
