@@ -252,6 +252,9 @@ void Arguments::check_pressure()
                    "yz");
       p.on[along_z] = false;
     }
+  if (domain->dimension == 2 && p.tied[2] != 2)
+    error->all(FLERR,
+               "Fix gear/quat couple: in two dimensions there is no edge along z; use couple xy");
   check_directions();
   check_coupling();
   if (thermostat.damp == 0.0 && !given.count("pchain")) p.length = 0;

@@ -142,8 +142,8 @@ class Barostat : public Thermostat {
 
   BoxFrequency frequency;
   bool warned_box = false, warned_mesh = false;
-  Upper drive_of_smaller;    ///< in the start, before the box is larger
-  Upper begun_box;           ///< the box of LAMMPS where the run began
+  Upper drive_of_smaller;           ///< in the start, before the box is larger
+  Upper begun_box, begun_matrix;    ///< the box of LAMMPS, and M, where the run began
 
   // the start
 

@@ -58,10 +58,11 @@ void Barostat::refuse_scene() const
   for (auto *other : modify->get_fix_list()) {
     if (other == fix || !(modify->get_fix_mask(other) & ON_FORCES)) continue;
     if (known(FixFact::THREADS, other) || known(FixFact::NO_FORCE, other)) continue;
-    error->all(FLERR,
-               "Fix gear/quat: constant pressure cannot be used with fix {} ({}), which may change "
-               "forces: what they add to the pressure is not known",
-               other->id, other->style);
+    error->all(
+        FLERR,
+        "Fix gear/quat: constant pressure cannot be used with fix {} ({}), which may change "
+        "forces: what they add to the pressure is not known; leave it out, or keep the volume",
+        other->id, other->style);
   }
   if (asked.shears() && asked.flip && !box.can_flip() && comm->me == 0)
     error->warning(FLERR,
@@ -124,6 +125,7 @@ void Barostat::begin_run(bool begins, double h)
   if (begins) refer_to_box(h);
   correction = Upper();    // forces are those of the corrected box
   std::copy_n(domain->prd, 3, begun_box.m.begin());
+  begun_matrix = matrix;
   frequency.begin_run();
   warned_mesh = false;
   virial.request(update->ntimestep + 1);
@@ -156,7 +158,7 @@ void Barostat::refer_to_box(double h)
   target_at_start = target;
   box.refer();
   cell.begin(before, h);
-  matrix = Upper::one();
+  matrix = begun_matrix = Upper::one();
   rate = before;
 }
 
@@ -270,7 +272,7 @@ static constexpr double OF_MESH = 0.15;
 
 // a box that changes by more in a step, or so much in shape under unequal targets, is lost
 
-static constexpr double IN_A_STEP = 0.03, IN_SHAPE = 4.0;
+static constexpr double IN_A_STEP = 0.03, IN_SHAPE = 4.0, OF_HEIGHT = 2.0;
 
 /// Of the pressure's dependence on the box at constant scaled centers: its positions move by less
 /// than a tenth of the neighbor skin.
@@ -378,7 +380,7 @@ void Barostat::refuse_box() const
           FLERR,
           "Fix gear/quat: in step {} the box would change its length along {} from {:.4g} by "
           "the factor {:.3g}; begin nearer to the target pressure, or use a longer Pdamp "
-          "than {:g}",
+          "than {:g}, unless a fluid tears under a target that is negative or too small",
           update->ntimestep, "xyz"[k], domain -> prd[k], ratio, period());
   }
   double deviates = 0.0;
@@ -386,20 +388,24 @@ void Barostat::refuse_box() const
   for (int k = 0; k < Upper::SIZE; ++k)
     if (asked.on[k]) deviates = std::max(deviates, std::fabs(target[k] - (k < 3 ? mean : 0.0)));
   if (deviates <= 1.0e-12 * std::fabs(mean)) return;
-  double stretch[2] = {HUGE_VAL, 0.0};
+  double stretch[2] = {HUGE_VAL, 0.0}, sheared = 0.0;
   for (int k = 0; k < domain->dimension; ++k) {
     const double now = domain->prd[k] / begun_box[k];
     stretch[0] = std::min(stretch[0], now);
     stretch[1] = std::max(stretch[1], now);
   }
-  if (stretch[1] < IN_SHAPE * stretch[0]) return;
-  error->all(
-      FLERR,
-      "Fix gear/quat: in step {} the box has edges of {:.4g}, {:.4g} and {:.4g}, and their "
-      "ratio has changed by a factor of {:g} in this run, because the targets of the pressure "
-      "are unequal or have shear components, which a liquid does not bear; use iso, or aniso "
-      "with equal targets, unless the system is solid",
-      update->ntimestep, domain->prd[0], domain->prd[1], domain->prd[2], IN_SHAPE);
+  const Upper strain = matrix * begun_matrix.inverse();    // which flips do not change
+  for (int k = 3; k < Upper::SIZE; ++k) sheared = std::max(sheared, std::fabs(strain[k]));
+  if (stretch[1] < IN_SHAPE * stretch[0] && sheared < OF_HEIGHT) return;
+  error->all(FLERR,
+             "Fix gear/quat: in step {} the box has edges of {:.4g}, {:.4g} and {:.4g}, and {} "
+             "in this run, because the targets of the pressure are unequal or have shear "
+             "components, which a liquid does not bear; use iso, or aniso with equal targets, "
+             "unless the system is solid",
+             update->ntimestep, domain->prd[0], domain->prd[1], domain->prd[2],
+             sheared < OF_HEIGHT
+                 ? fmt::format("their ratio has changed by a factor of {:g}", IN_SHAPE)
+                 : fmt::format("it was sheared by {:g} times its height", OF_HEIGHT));
 }
 
 /* ----------------------------------------------------------------------

@@ -281,7 +281,8 @@ Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
     if (!cause.what.empty()) return cause;
   }
   const std::string apart =
-      "Begin with atoms farther apart, as after a run with keywords tolerance and temp. ";
+      "Begin with atoms farther apart, as after minimize or a run with keywords tolerance and "
+      "temp. ";
   const Load &load = bodies.load_of(ibody);
   if (!std::isfinite(length(load.force) + length(load.torque_space)))
     return {"The forces became unstable first", apart + shorter_step(h)};

@@ -22,8 +22,8 @@ using namespace GearQuat;
    words of the rigid fixes
 ------------------------------------------------------------------------- */
 
-static constexpr char SCALED_TILT[] =
-    "a tilt changes by the factor of its length, as with scalexy yes; leave it out";
+static constexpr char SCALED_TILT[] = "the tilts xy and xz change by the factor of the edge along "
+                                      "x, and yz by that of the edge along y; leave it out";
 
 /// doc/howto/from_rigid.md has the same table.
 static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {

@@ -375,7 +375,7 @@ std::string Motion::read(const Sections &file)
   const bool both = file.has("thermostat", 1) && mine.has("thermostat", 1);
   compare(both ? "thermostat" : "temp", "thermostat", 0);
   if (both) compare("tchain", "thermostat", 1);
-  compare("iso, aniso, x, y, z or couple", "barostat", 0);
+  compare("iso, aniso, tri, x, y, z, xy, xz, yz or couple", "barostat", 0);
   compare("pchain", "barostat", 1);
   const bool same = others.empty(), had_started = file.number("motion", 0) != 0.0;
   step.started = resumed = had_started && same;

@@ -108,7 +108,7 @@ def test_what_a_restart_file_does_not_fit(lmp_tree):
     for words in ("iso 0.3 0.3 1.0 temp 0.7 0.7 0.8 thermostat separate", MODES["NPT"] + " pchain 1"):
         decks.append(continued(pressed(words, run="run 20"), "half"))
     result, _ = run(lmp_tree, decks)
-    for said in ("iso, aniso, x, y, z or couple", "pchain"):
+    for said in ("iso, aniso, tri, x, y, z, xy, xz, yz or couple", "pchain"):
         assert said in result.words
     assert all(largest_change(table) < 1e-6 for table in result.thermo)
 

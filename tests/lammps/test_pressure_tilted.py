@@ -46,7 +46,7 @@ def test_orders(lmp_wheel, mode):
 
 
 def test_a_tilt_follows_its_edge(lmp_wheel):
-    """Without shear components the tilts change by the factor of their length, as with scalexy yes."""
+    """Without shear components xy and xz change by the factor of the edge along x, and yz by that along y."""
     result, _ = ends(lmp_wheel, [tilted(MODES["tilted and iso"]), tilted(MODES["tilted and unequal"])])
     for table in result.thermo:
         t = {name: np.array(column) for name, column in table.items()}
@@ -131,3 +131,13 @@ def test_restart_and_ranks(lmp_tree):
     assert (one == again).all()
     _, (many,) = ends(lmp_tree, decks[:1], 2)
     assert np.abs(many - one)[:, 3:6].max() < 1e-10
+
+
+def test_a_liquid_that_flows_under_shear_ends_the_run(lmp_wheel):
+    """Its box is sheared further and further, with flips, and its mean pressure is not the target."""
+    words = "x 1.0 1.0 0.5 y 1.0 1.0 0.5 z 1.0 1.0 0.5 xy 0.4 0.4 0.5 xz 0 0 0.5 yz 0 0 0.5 temp 2.0 2.0 0.2"
+    deck = tilted(words, steps=20000, pair=REPULSIVE)
+    result = lmp_wheel.refuse(deck, "it was sheared by 2 times its height in this run, because the targets")
+    assert "which a liquid does not bear; use iso" in result.errors[0]
+    # without a target of shear the box of a liquid only wanders
+    lmp_wheel.succeed(tilted(words.replace("xy 0.4 0.4", "xy 0 0"), steps=2000, pair=REPULSIVE))
