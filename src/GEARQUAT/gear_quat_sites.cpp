@@ -427,10 +427,13 @@ void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
           lacking[k] =
               mass * (acceleration.linear[k] + tangential[k] + radial[k]) - f[site.atom][k];
         for (int k = 0; k < 3; ++k) constraint.virial[k] = arm_space[k] * lacking[k];
-        // the box shears y into x, and z into both: with a torque, x into y would be another number
-        constraint.virial[3] = arm_space[1] * lacking[0];
-        constraint.virial[4] = arm_space[2] * lacking[0];
-        constraint.virial[5] = arm_space[2] * lacking[1];
+        // where forces act at the center of mass alone, a torque remains, and the virial of a box
+        // that shears y into x and z into both is not that of the opposite shear
+        const bool turns = turning == Turning::YES;
+        const double *to = turns ? arm_space : lacking, *from = turns ? lacking : arm_space;
+        constraint.virial[3] = to[0] * from[1];
+        constraint.virial[4] = to[0] * from[2];
+        constraint.virial[5] = to[1] * from[2];
         tally(site.atom, constraint);
       },
       [](int, const Acceleration &) {
