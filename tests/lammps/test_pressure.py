@@ -316,8 +316,9 @@ run 40000"""
     # what their mean would be
     assert np.abs(mean[:3] + 0.4).max() > 10 * error[:3].max()
     mass = (3 * 107 + 3) * 0.05 / 3
-    assert (np.abs(mass * mean[3:] - 0.05) < 4 * mass * error[3:]).all()
-    assert mass * error[3:].max() < 0.1 * 0.05
+    # ten parts of one component are too few for its own error
+    pooled = mass * np.sqrt((error[3:] ** 2).mean())
+    assert (np.abs(mass * mean[3:] - 0.05) < 4 * pooled).all() and pooled < 0.05 * 0.05
     # of 2000: the potential is cut off
     assert largest_change(result.thermo[2]) < 0.05
     assert abs(result.thermo[2]["Lx"][-1] / result.thermo[2]["Ly"][-1] - 1.0) > 1e-4
