@@ -252,7 +252,7 @@ void Arguments::check_pressure()
                    "yz");
       p.on[along_z] = false;
     }
-  if (domain->dimension == 2 && p.tied[2] != 2)
+  if (domain->dimension == 2 && p.tied[1] == 1 && p.tied[2] != 2)    // xyz is as xy
     error->all(FLERR,
                "Fix gear/quat couple: in two dimensions there is no edge along z; use couple xy");
   check_directions();

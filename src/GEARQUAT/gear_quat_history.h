@@ -62,12 +62,12 @@ struct Scheme {
   /// Passes of a body.  If passes is 0, a rotation with any_norm() is corrected until it converges.
   int fixed_passes() const { return passes ? passes : AUTOMATIC_PASSES; }
   /// Passes of all bodies together, with a coupling.  A rotation with any_norm() converges in the first
-  /// of them.  Three are what the kinetic energy needs to converge: two heat water at 3 fs with five
-  /// values and cool it with seven, by 0.5 kT/ns/dof.  Faster bodies, which are projected, have three
-  /// as well, and are stable in faster rotation than with two.
+  /// of them.  Three are what the kinetic energy needs to converge: with two, water at long steps is
+  /// heated with five values and cooled with seven.  Faster bodies, which are projected, have as many.
+  /// With nine values, which are for short steps, a third pass would lose some of these earlier.
   int coupled_passes() const
   {
-    return passes == 0 && any_norm() ? CONVERGING_PASSES : fixed_passes();
+    return passes == 0 && any_norm() && values() < 9 ? CONVERGING_PASSES : fixed_passes();
   }
   static constexpr int AUTOMATIC_PASSES = 2, CONVERGING_PASSES = 3;
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }

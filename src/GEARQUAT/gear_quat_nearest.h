@@ -38,12 +38,6 @@ struct Arms {
 struct Twist {
   double way[3];     ///< of the center of mass
   double turn[3];    ///< in radians, in space
-
-  void of_site(const double *arm_space, double *out) const
-  {
-    cross3(turn, arm_space, out);
-    add3(way, out);
-  }
 };
 
 /// A rotation about an axis moves no site if the sum of squared distances from it is so small a part

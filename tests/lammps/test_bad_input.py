@@ -160,7 +160,6 @@ ARGUMENTS = {
     "molecule iso 1 2 1 tolerance 1e-8": "Pstart 1 and Pstop 2 differ, which cannot be used with tolerance",
     "molecule formulation first isokinetic total z 1 1 1": "keyword z cannot be used with isokinetic: constant kinetic energy",
     "molecule iso 1 1 1 dilate solvent": "dilate: unknown value solvent (all)",
-    "molecule iso 1 1 1 couple xz": "iso cannot be used with couple",
     "molecule dilate all": "keyword dilate requires a keyword of constant pressure",
     "molecule iso 1 1 1 scalexy no": "no keyword scalexy of the rigid fixes: the tilts xy and xz change",
     "molecule iso 1 1 1 drag 0.1": "no keyword drag of the rigid fixes: the motion of the box",

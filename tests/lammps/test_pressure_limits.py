@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from pressed import largest_change, pressed
+from pressed import largest_change, pressed, trimers
 from scenes import one_after_the_other, water_data
 
 # --- how fast the box oscillates ----------------------------------------------------------------
@@ -171,3 +171,10 @@ def test_a_mesh_that_was_made_for_another_box(lmp_wheel, style, change):
     unit = 0.01 if change == "grows" else 0.001
     assert int(step) == off[0] and float(factor) == pytest.approx(ratio[off[0]], abs=0.51 * unit)
     assert (axis, name) == (edge[1], style)
+
+
+@pytest.mark.parametrize("tied", ["xz", "yz"])
+def test_no_edge_along_z_in_two_dimensions(lmp_wheel, tied):
+    trimers(lmp_wheel.folder / "data.flat", flat=True)
+    deck = pressed(f"x 1 1 1 y 1 1 1 couple {tied}", dimension=2, data="data.flat")
+    lmp_wheel.refuse(deck, "in two dimensions there is no edge along z; use couple xy")

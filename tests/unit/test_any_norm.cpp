@@ -290,6 +290,34 @@ TEST(AnyNorm, FastBodiesMoveAsWithProjection)
   }
 }
 
+/// With a coupling, fast bodies are projected and have as many passes as the others.
+TEST(AnyNorm, ThreePassesOfAllBodiesLoseNoMoreFastOnesThanTwo)
+{
+  EXPECT_EQ(tuned(9).coupled_passes(), 2);
+  EXPECT_EQ(projected(7).coupled_passes(), 2);
+  for (const int n : {5, 7}) {
+    EXPECT_EQ(tuned(n).coupled_passes(), 3);
+    Check::Numbers numbers(41);
+    int lost[4] = {};    // by passes
+    for (int trial = 0; trial < 400; ++trial) {
+      const vector<double> m = numbers.list(3), along = numbers.list(3);
+      BodyState state = top_state(0.0);
+      std::copy_n(numbers.unit_quaternion().data(), 4, state.q);
+      for (int i = 0; i < 3; ++i) state.omega_body[i] = 0.5 * along[i] / length(along.data());
+      // moments of three masses on the axes
+      const double x = m[0] * m[0] + 0.02, y = m[1] * m[1] + 0.02, z = m[2] * m[2] + 0.02;
+      const RigidBody body = {1.0, {y + z, x + z, x + y}};
+      for (int passes = 1; passes < 4; ++passes) {
+        Scheme scheme = projected(n);
+        scheme.passes = passes;
+        lost[passes] += !survives_flight(scheme, body, state, 1.0, 1000);
+      }
+    }
+    EXPECT_LT(lost[3], lost[2]) << n;
+    EXPECT_LT(lost[2], lost[1]) << n;
+  }
+}
+
 TEST(AnyNorm, NoFewerBodiesAreStableThanWithProjection)
 {
   const RigidBody bodies[] = {TOP,

@@ -10,6 +10,13 @@ namespace {
 
 using Vectors = vector<vector<double>>;
 
+/// The way of a site by a twist.
+void way_of_site(const Twist &twist, const vector<double> &arm, double *out)
+{
+  cross3(twist.turn, arm.data(), out);
+  add3(twist.way, out);
+}
+
 /// Any arms, whose mean is not the center of mass.
 Vectors some_arms(Check::Numbers &numbers, int n)
 {
@@ -86,7 +93,7 @@ TEST(NearestTwist, OfARigidMotionIsThatMotion)
   const vector<double> way = numbers.list(3), turn = numbers.list(3);
   Vectors vectors(arms.size(), vector<double>(3));
   const Twist given = {{way[0], way[1], way[2]}, {turn[0], turn[1], turn[2]}};
-  for (size_t n = 0; n < arms.size(); ++n) given.of_site(arms[n].data(), vectors[n].data());
+  for (size_t n = 0; n < arms.size(); ++n) way_of_site(given, arms[n], vectors[n].data());
   const Twist found = nearest_to(arms, vectors);
   const auto is_given = [&](const vector<double> &x) {
     return Check::largest_difference(x.data(), way.data(), 3) < 1e-13 &&
@@ -105,7 +112,7 @@ TEST(NearestTwist, IsAnOrthogonalProjection)
   const Vectors arms = some_arms(numbers, 5), forces = some_arms(numbers, 5);
   const Twist found = nearest_to(arms, forces);
   Vectors projected = forces;
-  for (size_t n = 0; n < arms.size(); ++n) found.of_site(arms[n].data(), projected[n].data());
+  for (size_t n = 0; n < arms.size(); ++n) way_of_site(found, arms[n], projected[n].data());
   const Load all = loads_of(arms, forces), part = loads_of(arms, projected);
   EXPECT_LT(Check::largest_difference(all.force, part.force, 3), 1e-14);
   EXPECT_LT(Check::largest_difference(all.torque_space, part.torque_space, 3), 1e-14);
@@ -125,7 +132,7 @@ TEST(NearestTwist, DoesNotTurnALinearBodyAboutItsAxis)
   const Twist found = nearest_twist(sums_of(arms), 0, loads_of(arms, forces), &idle);
   EXPECT_TRUE(idle == torque_off(1) || idle == torque_off(2));
   Vectors projected = forces;
-  for (size_t n = 0; n < arms.size(); ++n) found.of_site(arms[n].data(), projected[n].data());
+  for (size_t n = 0; n < arms.size(); ++n) way_of_site(found, arms[n], projected[n].data());
   EXPECT_LT(Check::largest_difference(loads_of(arms, projected).torque_space,
                                       loads_of(arms, forces).torque_space, 3),
             1e-14);
@@ -154,7 +161,7 @@ TEST(NearestTwist, HoldsComponents)
   Vectors rest = forces;
   for (size_t n = 0; n < arms.size(); ++n) {
     double one[3];
-    found.of_site(arms[n].data(), one);
+    way_of_site(found, arms[n], one);
     for (int k = 0; k < 3; ++k) rest[n][k] -= one[k];
   }
   const Load left = loads_of(arms, rest);
