@@ -102,6 +102,7 @@ void Arguments::parse_keywords(int narg, char **arg)
     given[row.name] = value;
     before = &row;
   }
+  if (is_on("preset", "paper")) take_preset();
   for (const auto &row : keyword_table())
     if (row.kind == Keyword::WORD && !given.count(row.name))
       row.store(*this, {row.standard_word(is_on("tolerance", ""))});
@@ -111,6 +112,31 @@ void Arguments::parse_keywords(int narg, char **arg)
   check_pressure();
   thermostat.may_wait = !mol.empty();
   if (!infile.empty()) reinit = false;    // what a file states is not computed again from the atoms
+}
+
+/// Keywords of the test cases of the paper, as if they were given, except those that are given and
+/// those that do not fit to these.
+void Arguments::take_preset()
+{
+  using Words = std::vector<std::pair<std::string, std::string>>;
+  const bool first = is_on("formulation", "first");
+  Words words = {{"corrector", "gear"}, {"passes", "1"}, {"start", "zero"}, {"project", "no"}};
+  if (first)
+    words.insert(words.end(), {{"values", "5"}, {"momentum", "predicted"}});
+  else
+    words.insert(words.end(), {{"values", "6"}, {"c0", "velocity"}});
+  for (auto &[name, word] : words) {
+    const Keyword &row = find_keyword(lmp, name);
+    const auto holds = [this](const Keyword::Condition &one) {
+      return is_on(one.keyword, one.value);
+    };
+    if (given.count(name) || !std::all_of(row.needs.begin(), row.needs.end(), holds)) continue;
+    char *pair[] = {name.data(), word.data()};
+    KeywordValue value;
+    row.read(lmp, 2, pair, value);
+    row.store(*this, value);
+    given[name] = value;
+  }
 }
 
 /// True if a keyword has this value, given or by default; with an empty one, if it is in use, that

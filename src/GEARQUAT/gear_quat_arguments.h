@@ -276,6 +276,7 @@ struct Arguments : protected Pointers {
 
   int parse_bodystyle(int narg, char **arg);
   void parse_keywords(int narg, char **arg);
+  void take_preset();
   bool is_on(const std::string &keyword, const std::string &value) const;
   void check_conditions() const;
   void check_ranges();

@@ -65,18 +65,6 @@ static const std::vector<Keyword> TABLE = {
           [](Arguments &a, const Value &v) {
             a.start = v.is("zero") ? Arguments::Start::ZERO : Arguments::Start::BOOTSTRAP;
           }).word({"bootstrap", "zero"}),
-  Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
-          [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })
-      .word({"position", "velocity"}).requires_also({"formulation", "second", ""})
-      .requires_also({"corrector", "gear", "tuned coefficients have a c_0 of their own"}),
-  Keyword("omega", INTEGRATION, "which angular velocity corrects the quaternion",
-          [](Arguments &a, const Value &v) { a.scheme.predicted_omega = v.is("predicted"); })
-      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
-      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
-  Keyword("momentum", INTEGRATION, "which momentum corrects the position",
-          [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
-      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
-      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
   Keyword("project", INTEGRATION, "whether quaternions are projected to unit length",
           [](Arguments &a, const Value &v) {
             a.scheme.projection = v.is("auto") ? Projection::AUTO
@@ -193,6 +181,20 @@ static const std::vector<Keyword> TABLE = {
                 : v.is("long")    ? Arguments::Report::LONG
                                   : Arguments::Report::SHORT;
           }).word({"no", "short", "long"}, "short"),
+  Keyword("preset", INTEGRATION, "whose choices hold for keywords that are not given",
+          [](Arguments &, const Value &) {}).word({"none", "paper"}),
+  Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
+          [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })
+      .word({"position", "velocity"}).requires_also({"formulation", "second", ""})
+      .requires_also({"corrector", "gear", "tuned coefficients have a c_0 of their own"}),
+  Keyword("omega", INTEGRATION, "which angular velocity corrects the quaternion",
+          [](Arguments &a, const Value &v) { a.scheme.predicted_omega = v.is("predicted"); })
+      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
+      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
+  Keyword("momentum", INTEGRATION, "which momentum corrects the position",
+          [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
+      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
+      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
 };
 
 // clang-format on

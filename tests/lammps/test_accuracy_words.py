@@ -46,6 +46,22 @@ def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, fo
     assert result.thermo[-1]["f_move[4]"][-1] < 1e-6  # q stays orthogonal to its rate
 
 
+GEAR = "corrector gear passes 1 start zero project no"
+PRESET = {"second": f"values 6 {GEAR} c0 velocity", "first": f"values 5 {GEAR} momentum predicted"}
+
+
+@pytest.mark.parametrize("formulation", PRESET)
+def test_the_preset_of_the_paper_is_its_keywords(liquid, formulation):
+    """To the last bit, and words that are stated come first, wherever they stand."""
+    fix, words = f"formulation {formulation}", PRESET[formulation]
+    same = {name: liquid(f"{fix} {more}")[1] for name, more in (("preset", "preset paper"), ("words", words))}
+    assert (same["preset"] == same["words"]).all()
+    changed = [liquid(f"{fix} {more}")[1] for more in ("passes 3 preset paper", words.replace("passes 1", "passes 3"))]
+    assert (changed[0] == changed[1]).all() and (changed[0] != same["words"]).any()
+    tuned = [liquid(f"{fix} {more}")[1] for more in (f"preset paper corrector tuned values {n}" for n in (5, 7))]
+    assert (tuned[0] != tuned[1]).any()
+
+
 @pytest.fixture
 def cage(lmp, examples):
     """Estimated errors of one body in the paper's cage at t = 20: cage(step, fix words)."""

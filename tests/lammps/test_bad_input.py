@@ -8,7 +8,7 @@ from scenes import two_molecules
 ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
 
 KEYWORDS = """
-formulation values corrector passes compensate start c0 omega momentum project reinit tolerance
+formulation preset values corrector passes compensate start c0 omega momentum project reinit tolerance
 infile couple pchain ptemp flip
 """
 ARGUMENTS = {
@@ -61,6 +61,8 @@ ARGUMENTS = {
     "molecule formulation first omega both": "omega: unknown value both (corrected or predicted)",
     "molecule formulation second momentum predicted": "predicted requires formulation first and corrector gear",
     "molecule formulation first momentum x": "momentum: unknown value x (corrected or predicted)",
+    "molecule preset article": "preset: unknown value article (none or paper)",
+    "molecule preset paper formulation first c0 velocity": "keyword c0 requires formulation second",
     "molecule project maybe": "project: unknown value maybe (auto, yes or no)",
     "molecule reinit 7": "reinit: unknown value 7 (yes or no)",
     "molecule tolerance small": "tolerance: small is not a positive number",
