@@ -20,6 +20,7 @@ SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
 STYLES = (SOURCES / "gear_quat_known_styles.cpp").read_text()
 MANUAL = (ROOT / "doc" / "src" / "fix_gear_quat.rst").read_text()
+LIMITS = (ROOT / "doc" / "theory.md").read_text().partition("## Limits of stability")[2].partition("\n## ")[0]
 
 
 def section(title, text=MANUAL):
@@ -246,7 +247,7 @@ def test_the_page_is_written_as_the_manual_of_lammps(what):
 
 # --- numbers -------------------------------------------------------------------------------------
 SECOND, FIRST = range(4, 13), range(3, 9)
-#: column of the manual's table -> numbers of values, one step of the test equation
+#: column of the theory's table -> numbers of values, one step of the test equation
 COLUMNS = {
     "second": (SECOND, lambda n, omega_h: kernel.tuned("second", n).step(omega_h)),
     "first": (FIRST, lambda n, omega_h: kernel.tuned("first", n).step(omega_h)),
@@ -273,21 +274,20 @@ DEFAULTS = (
 
 
 def documented_limits():
-    """Column -> {N: limit} of the manual's table."""
-    table = section("Choosing the time step").split("==\n\n")[0].split("==\n")
-    names = re.split(r"\s{2,}", table[1].splitlines()[0])
+    """Column -> {N: limit} of the table in the theory."""
+    table = [[cell.strip() for cell in line.split("|")[1:-1]] for line in LIMITS.splitlines() if line.startswith("| ")]
+    names, rows = table[0], table[1:]
     assert names == ["N", *COLUMNS]
-    rows = [line.split() for line in table[2].splitlines() if not line.startswith("=")]
     assert all(len(row) == len(names) for row in rows)
     return {
-        name: {int(row[0]): float(row[k]) for row in rows if row[k] != r"\-"}
+        name: {int(row[0]): float(row[k]) for row in rows if row[k] != "–"}
         for k, name in enumerate(names)
         if k
     }
 
 
 @pytest.mark.parametrize("name", COLUMNS)
-def test_stability_limits_of_the_manual(name):
+def test_stability_limits_of_the_theory(name):
     values, step = COLUMNS[name]
     limits = documented_limits()[name]
     assert list(limits) == list(values)
@@ -295,8 +295,8 @@ def test_stability_limits_of_the_manual(name):
         assert limits[n] == round(stability.linear_limit(partial(step, n)), 2)
 
 
-def test_growth_of_the_manual():
-    text = " ".join(section("Choosing the time step").split())
+def test_growth_of_the_theory():
+    text = " ".join(LIMITS.split())
     found = [float(x) for x in re.findall(r"\d\.\de-\d+", text)]
     large, small = ([growth(corrector, z) for corrector in DEFAULTS] for z in (0.3, 0.15))
     expected = np.array([*large[:2], *small[:2], *large[2:], *small[2:]])
@@ -306,7 +306,7 @@ def test_growth_of_the_manual():
 
 
 def test_growth_of_stable_steps():
-    text = " ".join(section("Choosing the time step").split())
+    text = " ".join(LIMITS.split())
     words = r"three values, (\d+) % with four, (\d+) % with five or six, and less than (\S+) %"
     bounds = re.search(r"up to (\d+) % with " + words, text).groups()
     changes = [[], [], [], []]
