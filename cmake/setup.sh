@@ -160,7 +160,30 @@ install_repository() {
     do_quietly "installing lammps-gearquat[$extra] into .venv" pip_install_repository "[$extra]"
     printf '%s\n%s\n' "$print" "$extra" >"$stamp"
   fi
+  make_water
   exec 9>&-
+}
+
+# make_water: data.water of the examples, where it is missing
+make_water() {
+  local folder words
+  while read -r folder words; do
+    [ -f "$ROOT/examples/$folder/data.water" ] || do_quietly "making examples/$folder/data.water" \
+      make_data_water "../$folder" $words
+  done <<'EOF'
+water
+isokinetic -var edge 6
+water_npt -var edge 6 -var bonds yes -var forces pppm
+EOF
+}
+
+# make_data_water FOLDER VARIABLES: whole or not at all
+make_data_water() {
+  local folder="$1" part="$1/data.water.part"
+  shift
+  cd "$ROOT/examples/water"
+  env -u LAMMPS_PLUGIN_PATH OMP_NUM_THREADS=1 "$ROOT/.venv/bin/lmp" -in in.equilibrate -log none -nocite -var out "$part" "$@"
+  mv "$part" "$folder/data.water"
 }
 
 # install_listed EXTRA: what pyproject.toml lists under EXTRA, in .venv, without this repository

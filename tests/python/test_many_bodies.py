@@ -238,8 +238,9 @@ def test_small_run(tmp_path):
     for (key, *_), rounds in results.timings.items():
         assert (rounds[0].evaluations or 0) > 0 or key not in {method.key for method in GEAR}
         assert rounds[0].modify < 1e-3 or key != FROZEN.key
-    timed = ("time in the fix", "memory", "linear scaling")
-    assert [what for what in broken(results) if not any(words in what for words in timed)] == []
+    # times, and an average that 24 fs do not have
+    left_out = ("time in the fix", "memory", "linear scaling", "equipartition")
+    assert [what for what in broken(results) if not any(words in what for words in left_out)] == []
     starts = [quantities.instants(results, method)[0, 0] for method in GEAR]
     assert np.ptp(starts) < 1e-8
     assert all(np.ptp(results.pressures[m.key, 2.0]) > 1.0 for m in runs.COMPARED), "they move"
