@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from scenes import one_after_the_other, random_rotation
+from scenes import one_after_the_other, random_rotation, water_data
 
 ARMS = np.array([[0.0, 0.25, 0.0], [0.3, -0.15, 0.05], [-0.2, -0.1, -0.1]])
 MASSES = np.array([1.0, 0.7, 1.3])
@@ -110,3 +110,68 @@ def distances(rows: np.ndarray, box: np.ndarray) -> np.ndarray:
     """Of the sites of each trimer in a frame, with these edges of the box."""
     sites = (rows[:, :3] + rows[:, 6:9] * box).reshape(-1, 3, 3)
     return np.linalg.norm(sites - np.roll(sites, 1, axis=1), axis=2)
+
+
+def scaled_water(path, factors):
+    """The water of scenes.py with centers and edges times these factors."""
+    water_data(path, spacing=3.3, shift=1.65)
+    text = path.read_text()
+    head, _, rest = text.partition("Atoms # full\n")
+    rows, _, tail = rest.strip("\n").partition("\n\nVelocities")
+    atoms = np.array([row.split() for row in rows.splitlines()], float)
+    masses = np.where(atoms[:, 2] == 1, 15.9994, 1.008)
+    for molecule in np.unique(atoms[:, 1]):
+        of = atoms[:, 1] == molecule
+        center = masses[of] @ atoms[of, 4:7] / masses[of].sum()
+        atoms[of, 4:7] += (np.array(factors) - 1.0) * center
+    lines = []
+    for line in head.splitlines():
+        words = line.split()
+        if len(words) == 4 and words[2].endswith("lo"):
+            k = "xyz".index(words[2][0])
+            line = f"{float(words[0]) * factors[k]:.17g} {float(words[1]) * factors[k]:.17g} {words[2]} {words[3]}"
+        lines.append(line)
+    head = "\n".join(lines).replace("2 atom types", "2 atom types\n54 bonds\n1 bond types\n27 angles\n1 angle types")
+    bonds = [f"{2 * m + h - 1} 1 {3 * m + 1} {3 * m + h + 1}" for m in range(27) for h in (1, 2)]
+    angles = [f"{m + 1} 1 {3 * m + 2} {3 * m + 1} {3 * m + 3}" for m in range(27)]
+    tail += "\nBonds\n\n" + "\n".join(bonds) + "\n\nAngles\n\n" + "\n".join(angles)
+    whole = ["%d %d %d" % tuple(row[:3]) + "".join(f" {w:.17g}" for w in row[3:7]) +
+             "".join(" %d" % w for w in row[7:]) for row in atoms]
+    path.write_text(head + "\n\nAtoms # full\n\n" + "\n".join(whole) + "\n\nVelocities" + tail + "\n")
+    return path
+
+
+# The second derivative jumps at the cutoff, which is between two shells of neighbors of small molecules.
+PAIR = "pair_style lj/sf/dipole/sf 2.42\npair_coeff * * 0.3 1.2"
+LENGTH, SIZE, MOMENT, TARGET, TIME = 4.0, 0.3, 0.8, -0.25, 0.2
+
+
+def dipoles(factors=(1.0, 1.0, 1.0), moment=MOMENT, tilt=0.0, motion=True) -> str:
+    """Commands that make eight turned trimers with charges and a dipole each; factors scale box and centers."""
+    rng = np.random.default_rng(20261126)
+    factors, edges = np.array(factors), LENGTH * np.array(factors)
+    sites = SIZE * (ARMS - MASSES @ ARMS / MASSES.sum())
+    box = " ".join(f"0 {edge:.17g}" for edge in edges)
+    shape = f"prism {box} {tilt} 0 0" if tilt else f"block {box}"
+    lines = [f"region box {shape}", "create_box 3 box"]
+    velocities, spins = rng.normal(size=(8, 3)) * 0.2, rng.normal(size=(8, 3)) * 1.5
+    velocities -= velocities.mean(axis=0)
+    for k, cell in enumerate(np.ndindex(2, 2, 2)):
+        center = (np.array(cell) + 0.5 + rng.normal(size=3) * 0.02) * LENGTH / 2 * factors
+        turn = random_rotation(rng)
+        for n, arm in enumerate(sites @ turn.T):
+            i, v = 3 * k + n + 1, velocities[k] + np.cross(spins[k], arm)
+            lines.append("create_atoms {} single {:.17g} {:.17g} {:.17g}".format(n + 1, *(center + arm)))
+            lines.append(f"set atom {i} mol {k + 1} mass {MASSES[n]} diameter 0 charge {(0.4, -0.4, 0.0)[n]}")
+            if motion:
+                lines.append("set atom {} vx {:.17g} vy {:.17g} vz {:.17g}".format(i, *v))
+            if n == 2 and moment:
+                lines.append("set atom {} dipole {:.17g} {:.17g} {:.17g}".format(i, *(moment * turn[:, 0])))
+    return "\n".join(lines)
+
+
+def dipoles_deck(words, dt=0.005, **scene):
+    """A run of TIME, or of no step if the bodies are at rest."""
+    steps = round(TIME / dt) if scene.get("motion", True) else 0
+    text = pressed(words, dt, steps, box=dipoles(**scene), pair=PAIR)
+    return text.replace("atom_style molecular", "atom_style hybrid molecular sphere dipole")

@@ -2,20 +2,9 @@
 
 import numpy as np
 import pytest
-from scenes import (
-    SPCE,
-    WATER_MASSES,
-    frames,
-    last_frame,
-    last_numbers,
-    placed,
-    restarted,
-    two_molecules,
-    water,
-    water_data,
-)
+from scenes import SPCE, WATER_MASSES, frames, last_frame, last_numbers, placed, restarted, two_molecules
+from inserted import INSERT, MOL, N, TEMPLATE, close, evaporating, liquid, poses
 
-N = 27  # molecules of the water box
 BOLTZMANN = 0.0019872067  # kcal/mol/K
 OXYGEN = 5 * 3 - 2  # of molecule 5
 
@@ -34,17 +23,6 @@ def show(every=1, rows=()):
     return SHOW.format(every=every, rows=" ".join(f"f_move[{row}][28]" for row in rows))
 
 
-def liquid(lmp, commands, fix="gear/quat molecule", before="", dt=1.0):
-    """A deck of 27 molecules in a box of 13.5 Angstrom, a femtosecond a step."""
-    (lmp.folder / "molecule.spce").write_text(SPCE)
-    data = water_data(lmp.folder / "data.water", spacing=4.5)
-    return water(data, fix, dt=dt, steps=20, before=before, run=commands)
-
-
-def poses(lmp):
-    return last_frame(lmp.folder / "poses.dump")
-
-
 def ids(lmp):
     """Of the bodies in each frame of the local dump, sorted."""
     return [sorted(frame[:, 0]) for frame in frames(lmp.folder / "bodies.dump").values()]
@@ -60,24 +38,6 @@ def expect_temperature(thermo, row, molecules):
     assert thermo["v_atoms"][row] == 3 * molecules
     assert thermo["Temp"][row] == pytest.approx(temperature(molecules), rel=1e-6)
     assert thermo["Temp"][row] != pytest.approx(temperature(molecules + 1), rel=1e-3)
-
-
-def close(a, b, tolerance):
-    assert a.shape == b.shape
-    assert np.abs(a - b).max() < tolerance
-    assert np.abs(1.01 * a - b).max() > 100 * tolerance
-
-
-# --- removed -------------------------------------------------------------------------------------
-EVAPORATE = """
-group some {members}
-region everywhere block INF INF INF INF INF INF
-fix out some evaporate 5 {number} everywhere 4711 molecule {molecule}
-"""
-
-
-def evaporating(members="molecule 5 17", molecule="yes", number=1):
-    return EVAPORATE.format(members=members, molecule=molecule, number=number)
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
@@ -212,16 +172,6 @@ def test_bodies_go_on_when_atoms_get_other_ids(lmp_tree, ranks):
 def test_all_bodies_may_go(lmp_tree):
     after = "run 2\ndelete_atoms group all compress no\nrun 2"
     lmp_tree.succeed(two_molecules(after=after), ranks=2)
-
-
-# --- inserted ------------------------------------------------------------------------------------
-INSERT = """
-region within block 0 13 0 13 0 13
-fix in all deposit {count} 0 5 4711 region within near 2.0 attempt 2000 mol spce rigid move &
-  vx -0.01 0.01 vy -0.01 0.01 vz -0.01 0.01
-"""
-TEMPLATE = "molecule spce molecule.spce"
-MOL = "gear/quat molecule mol spce"
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])

@@ -3,21 +3,13 @@
 import numpy as np
 import pytest
 from scenes import WATER_MASSES, frames, last_frame, two_molecules, water, water_data
-from test_life_cycle import Case1, end
+from life_cycle import Case1, end
+from life_cycle import bodies_in
 
 BODIES = 27
-COLUMNS = 20
 MASS, CENTER, INERTIA, VELOCITY = slice(1, 2), slice(2, 5), slice(5, 11), slice(11, 14)
 MOMENTUM, IMAGE = slice(14, 17), slice(17, 20)
 BOX = 9.9
-
-
-def bodies_in(path):
-    """Lines of the file as numbers, (bodies, 20); the first line that counts says how many."""
-    lines = [line for line in path.read_text().splitlines() if line.partition("#")[0].strip()]
-    table = np.array([[float(word) for word in line.split()] for line in lines[1:]])
-    assert table.shape == (int(lines[0]), COLUMNS)
-    return table
 
 
 def expect(found, right, tolerance):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from running import processes_of_session
 from scenes import restarted
-from test_infile_out import bodies_in
-from test_life_cycle import Case1, end
+from life_cycle import bodies_in
+from life_cycle import Case1, end
 
 AGAIN = 500  # steps after the restart
 NAMES = ("even", "odd")

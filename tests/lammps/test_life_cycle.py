@@ -2,29 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import restarted, two_molecules, whole_deck
-
-COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot"]
-
-
-class Case1:
-    """The paper's first case with another end of the deck."""
-
-    def __init__(self, lmp, examples, formulation, ranks=1):
-        self.lmp, self.ranks = lmp, ranks
-        self.scene = whole_deck(examples / "case1" / "in.case1")
-        self.variables = dict(formulation=formulation, dt=0.02, every=100, out="none")
-
-    def run(self, ending, restart=None, scene=None, **variables):
-        """With the steps in ``ending``, from the restart file if there is one."""
-        text = (scene or self.scene).replace("run ${steps}", ending)
-        if restart:
-            text = restarted(text, restart)
-        return self.lmp.succeed(text, {**self.variables, **variables}, self.ranks)
-
-
-def end(result, run=-1):
-    return np.array([result.thermo[run][column][-1] for column in COLUMNS])
+from scenes import two_molecules
+from life_cycle import Case1, end
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pressed import ARMS, FLAT_ARMS, GAUSS, MASSES, REPULSIVE, trimers
 from scenes import one_after_the_other
-from test_pressure_torques import deck as dipoles_deck
+from pressed import dipoles_deck
 
 DECK = """
 units lj

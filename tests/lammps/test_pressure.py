@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from pressed import GAUSS, distances, ends, frame, largest_change, pressed, trimers
 from scenes import water_data
+from pressed import scaled_water
 
 EDGES = ("Lx", "Ly", "Lz")
 #: elements of the fix's vector: molecular pressures xx yy zz, target, rates of the box, its kinetic energy
@@ -123,35 +124,6 @@ FORCES = {
     "tip4p": (TIP4P + LONG.format(kspace="pppm/tip4p", mesh=MESH, **OF_TIP4P), 2e-5),
 }
 NKTV2P = 68568.415
-
-
-def scaled_water(path, factors):
-    """The water of scenes.py with centers and edges times these factors."""
-    water_data(path, spacing=3.3, shift=1.65)
-    text = path.read_text()
-    head, _, rest = text.partition("Atoms # full\n")
-    rows, _, tail = rest.strip("\n").partition("\n\nVelocities")
-    atoms = np.array([row.split() for row in rows.splitlines()], float)
-    masses = np.where(atoms[:, 2] == 1, 15.9994, 1.008)
-    for molecule in np.unique(atoms[:, 1]):
-        of = atoms[:, 1] == molecule
-        center = masses[of] @ atoms[of, 4:7] / masses[of].sum()
-        atoms[of, 4:7] += (np.array(factors) - 1.0) * center
-    lines = []
-    for line in head.splitlines():
-        words = line.split()
-        if len(words) == 4 and words[2].endswith("lo"):
-            k = "xyz".index(words[2][0])
-            line = f"{float(words[0]) * factors[k]:.17g} {float(words[1]) * factors[k]:.17g} {words[2]} {words[3]}"
-        lines.append(line)
-    head = "\n".join(lines).replace("2 atom types", "2 atom types\n54 bonds\n1 bond types\n27 angles\n1 angle types")
-    bonds = [f"{2 * m + h - 1} 1 {3 * m + 1} {3 * m + h + 1}" for m in range(27) for h in (1, 2)]
-    angles = [f"{m + 1} 1 {3 * m + 2} {3 * m + 1} {3 * m + 3}" for m in range(27)]
-    tail += "\nBonds\n\n" + "\n".join(bonds) + "\n\nAngles\n\n" + "\n".join(angles)
-    whole = ["%d %d %d" % tuple(row[:3]) + "".join(f" {w:.17g}" for w in row[3:7]) +
-             "".join(" %d" % w for w in row[7:]) for row in atoms]
-    path.write_text(head + "\n\nAtoms # full\n\n" + "\n".join(whole) + "\n\nVelocities" + tail + "\n")
-    return path
 
 
 @pytest.mark.parametrize("name", FORCES)

@@ -236,7 +236,7 @@ def test_a_fix_that_comes_again_has_lost_its_rate(lmp_tree):
 
 def test_forces_that_reach_far(lmp_tree):
     """Water with PPPM and a tail: the conserved energy has an order in each formulation."""
-    from test_pressure import scaled_water
+    from pressed import scaled_water
 
     scaled_water(lmp_tree.folder / "data.water", (1.0, 1.0, 1.0))
     deck = """

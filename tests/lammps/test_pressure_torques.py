@@ -2,51 +2,16 @@
 
 import numpy as np
 import pytest
-from pressed import ARMS, MASSES, ends, largest_change, pressed
-from scenes import random_rotation
-
-# The second derivative jumps at the cutoff, which is between two shells of neighbors of small molecules.
-PAIR = "pair_style lj/sf/dipole/sf 2.42\npair_coeff * * 0.3 1.2"
-LENGTH, SIZE, MOMENT, TARGET, TIME = 4.0, 0.3, 0.8, -0.25, 0.2
-
-
-def dipoles(factors=(1.0, 1.0, 1.0), moment=MOMENT, tilt=0.0, motion=True) -> str:
-    """Commands that make eight turned trimers with charges and a dipole each; factors scale box and centers."""
-    rng = np.random.default_rng(20261126)
-    factors, edges = np.array(factors), LENGTH * np.array(factors)
-    sites = SIZE * (ARMS - MASSES @ ARMS / MASSES.sum())
-    box = " ".join(f"0 {edge:.17g}" for edge in edges)
-    shape = f"prism {box} {tilt} 0 0" if tilt else f"block {box}"
-    lines = [f"region box {shape}", "create_box 3 box"]
-    velocities, spins = rng.normal(size=(8, 3)) * 0.2, rng.normal(size=(8, 3)) * 1.5
-    velocities -= velocities.mean(axis=0)
-    for k, cell in enumerate(np.ndindex(2, 2, 2)):
-        center = (np.array(cell) + 0.5 + rng.normal(size=3) * 0.02) * LENGTH / 2 * factors
-        turn = random_rotation(rng)
-        for n, arm in enumerate(sites @ turn.T):
-            i, v = 3 * k + n + 1, velocities[k] + np.cross(spins[k], arm)
-            lines.append("create_atoms {} single {:.17g} {:.17g} {:.17g}".format(n + 1, *(center + arm)))
-            lines.append(f"set atom {i} mol {k + 1} mass {MASSES[n]} diameter 0 charge {(0.4, -0.4, 0.0)[n]}")
-            if motion:
-                lines.append("set atom {} vx {:.17g} vy {:.17g} vz {:.17g}".format(i, *v))
-            if n == 2 and moment:
-                lines.append("set atom {} dipole {:.17g} {:.17g} {:.17g}".format(i, *(moment * turn[:, 0])))
-    return "\n".join(lines)
-
-
-def deck(words, dt=0.005, **scene):
-    """A run of TIME, or of no step if the bodies are at rest."""
-    steps = round(TIME / dt) if scene.get("motion", True) else 0
-    text = pressed(words, dt, steps, box=dipoles(**scene), pair=PAIR)
-    return text.replace("atom_style molecular", "atom_style hybrid molecular sphere dipole")
+from pressed import ends, largest_change
+from pressed import MOMENT, TARGET, dipoles_deck
 
 
 def test_virial_is_the_change_of_energy_with_the_box(lmp_tree):
     """Centers move, and atoms and dipoles keep their directions."""
     d, words = 1e-3, "aniso 0 0 100 ptemp 1"
     changes = [np.ones(3)] + [1.0 + d * by * np.eye(3)[k] for k in range(3) for by in (-2, -1, 1, 2)]
-    decks = [deck(words, factors=c, motion=False) for c in changes]
-    decks.append(deck(words, moment=0.0, motion=False))
+    decks = [dipoles_deck(words, factors=c, motion=False) for c in changes]
+    decks.append(dipoles_deck(words, moment=0.0, motion=False))
     result, _ = ends(lmp_tree, decks)
     first, *others, without = result.thermo
 
@@ -68,9 +33,9 @@ def test_orders(lmp_tree, mode):
     """Of velocities and conserved energy, beside a run with more values and shorter steps."""
     schemes, steps = {"values 5": 5, "values 7": 7, "formulation first values 6": 6}, (0.02, 0.01)
     words = mode.format(p=f"{TARGET} {TARGET}")
-    decks = [deck(f"values 9 {words}", 0.0025)]
-    decks += [deck(f"{scheme} {words}", dt) for scheme in schemes for dt in steps]
-    decks.append(deck(f"values 9 {words}", 0.0025, moment=1.01 * MOMENT))
+    decks = [dipoles_deck(f"values 9 {words}", 0.0025)]
+    decks += [dipoles_deck(f"{scheme} {words}", dt) for scheme in schemes for dt in steps]
+    decks.append(dipoles_deck(f"values 9 {words}", 0.0025, moment=1.01 * MOMENT))
     result, frames = ends(lmp_tree, decks)
 
     def errors(k):
@@ -86,6 +51,6 @@ def test_shear_is_refused(lmp_tree):
     """But not for points whose atom style knows torques, nor is a tilted box that keeps its angles."""
     words = f"{TARGET} {TARGET} 2.0 ptemp 0.4"
     said = "shear components of the pressure require atoms that are points"
-    lmp_tree.refuse(deck("tri " + words, tilt=0.1), said)
-    result, _ = ends(lmp_tree, [deck("tri " + words, tilt=0.1, moment=0.0), deck("iso " + words, tilt=0.1)])
+    lmp_tree.refuse(dipoles_deck("tri " + words, tilt=0.1), said)
+    result, _ = ends(lmp_tree, [dipoles_deck("tri " + words, tilt=0.1, moment=0.0), dipoles_deck("iso " + words, tilt=0.1)])
     assert all(largest_change(table) < 1e-6 for table in result.thermo)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scenes import one_after_the_other
-from test_thermostat import END, KINDS, TEMP, cluster, continued
+from heated import END, KINDS, TEMP, cluster, continued
 
 RAMP = "temp 0.4 0.8 0.3"
 SPAN = "start 0 stop 100"

@@ -13,9 +13,9 @@ from scenes import (
     water_data,
 )
 from scipy.integrate import solve_ivp
-from test_coming_and_going import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
-from test_thermostat import COMMON, END, KINDS, cluster, continued, largest_change, whole_and_halves
-from test_tolerance import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, agree_on_ranks, tables
+from inserted import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
+from heated import COMMON, END, KINDS, cluster, continued, largest_change, whole_and_halves
+from stepped import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
 TAKEN, XI = "f_move[19]", "f_move[23]"  # with tolerance

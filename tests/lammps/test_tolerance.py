@@ -8,22 +8,10 @@ import re
 import numpy as np
 import pytest
 from running import EXAMPLES
-from scenes import (
-    UNITS,
-    assigned,
-    frames,
-    one_after_the_other,
-    placed,
-    restarted,
-    two_molecules,
-    water,
-    water_data,
-    whole_deck,
-)
+from scenes import UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
+from stepped import ELEMENTS, HELD, INSERTED, LARGEST, MEAN, MEAN_VALUES, NEXT, REPEATED, SMALLEST, VALUES, meeting, off, tables
 
-ELEMENTS = [f"f_move[{k}]" for k in range(9, 19)]
 COLUMNS = " ".join(ELEMENTS)
-NEXT, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST, HELD, REPEATED, LENGTH, ENERGY = ELEMENTS
 
 
 def case1(run="run ${steps}", before="", **settings):
@@ -31,30 +19,6 @@ def case1(run="run ${steps}", before="", **settings):
     known = dict(dt=0.1, every=1, out="none", more=COLUMNS, steps=1000, tolerance=1e-12) | settings
     text = whole_deck(EXAMPLES / "case1" / "in.case1").replace("run ${steps}", run)
     return assigned(known) + text.replace("fix move body", f"{before}\nfix move body")
-
-
-def tables(result):
-    """The thermo table of each run, columns as arrays."""
-    return [{key: np.array(column) for key, column in run.items()} for run in result.thermo]
-
-
-def agree_on_ranks(lmp, deck):
-    """Poses of water at equal times, on 1, 2 and 4 ranks; deck: of scenes.water, with 120 steps."""
-    deck = deck.replace("dump poses all custom 120", "dump poses all custom 1")
-    deck = deck.replace("dump_modify poses", "dump_modify poses every/time 0.5")
-    found = []
-    for ranks in (1, 2, 4):
-        lmp.succeed(deck.replace("poses.dump", f"{ranks}.dump"), ranks=ranks)
-        found.append(list(frames(lmp.folder / f"{ranks}.dump").values()))
-    assert len(found[0]) > 2
-    for other in found[1:]:
-        for frame, same in zip(found[0], other):
-            assert same == pytest.approx(frame, rel=1e-10, abs=1e-10)
-
-
-def off(run, column="v_total"):
-    """Largest deviation from the start."""
-    return np.abs(run[column] - run[column][0]).max()
 
 
 def test_the_energy_error_follows_eps(lmp_tree, formulation):
@@ -240,20 +204,6 @@ def test_case_1_for_long(lmp_tree, eps, formulation):
     assert 0 < sampled < 1e-9 and every_step < 1e-9
 
 
-# Two molecules that meet out of free flight.
-TRIANGLE = np.array([(0, 0, 0), (1, 0, 0), (0, 1.2, 0.1)])
-TWO = [TRIANGLE - [15, 0, 0], TRIANGLE + [15, 0.3, 0.2]]
-TOWARDS = [(2, 0, 0)] * 3 + [(-2, 0, 0)] * 3
-
-
-def meeting(eps, pair, run, bodies=TWO, velocities=TOWARDS, before="", words=""):
-    settings = dict(style="full", boundary="p p p", box="-30 30 -10 10 -10 10")
-    settings |= dict(dt=0.005, thermo=1, columns=f"{NEXT} {VALUES} {LARGEST}", run=run)
-    settings["before"] = f"{before}\npair_style {pair}\npair_coeff * * 1.0 1.0"
-    fix = f"gear/quat molecule tolerance {eps} {words}"
-    return placed(bodies, velocities, fix=fix, **settings)
-
-
 UNTIL = """
 variable now equal time
 fix stop all halt 1 v_now >= 12.5 error continue
@@ -321,14 +271,6 @@ def test_a_time_that_stands_still_is_refused(lmp_tree, bound):
 def test_a_shortest_step_that_is_too_long_is_named(lmp_tree):
     deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", "run 10", words="dtmin 1e6")
     lmp_tree.refuse(deck, "Leave out dtmin, or use one much shorter than 1e+06")
-
-
-INSERTED = """
-run 100
-region in block -5 5 -5 5 -5 5
-fix in all deposit 3 0 200 4711 region in near 2.5 mol two rigid move vx 1 1
-run 700
-"""
 
 
 def test_no_bodies_yet(lmp_tree):

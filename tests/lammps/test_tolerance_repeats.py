@@ -6,23 +6,7 @@ import numpy as np
 import pytest
 from running import EXAMPLES
 from scenes import frames, one_after_the_other, placed, water, water_data
-from test_tolerance import (
-    ENERGY,
-    HELD,
-    INSERTED,
-    LARGEST,
-    LENGTH,
-    MEAN,
-    NEXT,
-    REPEATED,
-    SMALLEST,
-    TWO,
-    VALUES,
-    agree_on_ranks,
-    meeting,
-    off,
-    tables,
-)
+from stepped import ENERGY, HELD, INSERTED, LARGEST, LENGTH, MEAN, NEXT, REPEATED, SMALLEST, TWO, VALUES, agree_on_ranks, meeting, off, tables
 
 SMOOTH = "lj/charmm/coul/charmm 4.0 6.0"
 UNTIL = """

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from running import EXAMPLES
 from scenes import MOLECULES, last_frame, one_after_the_other
-from test_thermostat import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, largest_change
-from test_tolerance import tables
+from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, largest_change
+from stepped import tables
 
 DUMBBELL = """d
 

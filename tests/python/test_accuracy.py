@@ -2,26 +2,21 @@
 
 import math
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine import Lab, LammpsError, methods, session
-from benchmarks.engine.methods import DEFAULTS, GEARS
-from benchmarks.engine.page import render
+from benchmarks.engine import LammpsError, session
+from benchmarks.engine.methods import DEFAULTS
 from benchmarks.engine.sites import pose_errors
-from benchmarks.engine.store import read_data, write_data
 from benchmarks.reference import stability
 from benchmarks.reference.lammps_forces import deck_problem
 from benchmarks.reference.paper import SITE_MASSES
-from benchmarks.studies import accuracy as study
-from benchmarks.studies.accuracy import choice, evaluate, heldout, peers, plan, runs, strongest, tables
+from benchmarks.studies.accuracy import evaluate, heldout, plan, runs, tables
 from benchmarks.studies.accuracy.evaluate import Cost, cost_of, fitted_order
 from benchmarks.studies.cases.accuracy import reference
 from benchmarks.studies.coefficients import kernel
-from lammps_gearquat import keywords
 
 STEPS = 0.5 / 2.0 ** np.arange(0, 8, 0.5)
 
@@ -42,19 +37,6 @@ def test_rounding_and_coarse_steps_do_not_count():
     assert errors[fit.used].min() > evaluate.ABOVE_FLOOR * noise.max()
     assert STEPS[fit.used].max() < STEPS[2] / 1.25
     assert np.polyfit(np.log(STEPS[3:]), np.log(errors[3:]), 1)[0] < 4.9  # the rule matters
-
-
-def test_one_lucky_error_does_not_bend_the_order():
-    errors = STEPS**5
-    errors[-8] *= 1e-2
-    assert fitted_order(STEPS, errors).order == pytest.approx(5.0, rel=0.01)
-    assert evaluate.sign_change(STEPS, errors) == STEPS[-8]
-    assert evaluate.sign_change(STEPS, STEPS**5) is None
-
-
-def test_too_few_points_have_no_order():
-    assert fitted_order(STEPS[:2], STEPS[:2] ** 3) is None
-    assert fitted_order(STEPS, np.full(len(STEPS), 1e-12)) is None
 
 
 def test_expected_orders_are_those_of_the_kernel():
@@ -88,25 +70,6 @@ def test_price_of_an_error(costs, errors, target, price):
     assert cost_of(costs, errors, target) == price
 
 
-def test_extrapolated_price():
-    costs = 100 * 2.0 ** np.arange(10)
-    found = evaluate.extrapolated_cost(costs, 4.0 * costs**-2.0, 4.0 * 1e7**-2.0)
-    assert found == Cost(pytest.approx(1e7, rel=1e-9), "extrapolated")
-
-
-def test_the_cheapest_is_found():
-    found = evaluate.cheapest({"a": None, "b": Cost(2.0), "c": Cost(1.5)})
-    assert found == ("c", Cost(1.5))
-    assert evaluate.cheapest({"a": None}) == (None, None)
-
-
-def test_a_ratio_of_prices_keeps_what_is_known_of_them():
-    measured, any_run = Cost(6.0, error=0.03), Cost(2.0, "at most", 0.04)
-    assert measured.over(any_run) == Cost(3.0, "at least", pytest.approx(0.05))
-    assert any_run.over(measured).kind == "at most"
-    assert Cost(6.0, "extrapolated").over(Cost(2.0)).kind == "extrapolated"
-
-
 # --- errors of a run ------------------------------------------------------------------------------
 def test_pose_errors_are_rms_over_bodies():
     masses, molecules = np.array([1.0, 2, 3, 1, 2, 3, 9]), np.array([1, 1, 1, 2, 2, 2, 0])
@@ -138,11 +101,6 @@ def test_energy_error_and_drift():
 
 
 # --- stability ------------------------------------------------------------------------------------
-def test_coefficients():
-    first, second = "251/720 1 11/12 1/3 1/24", "3/20 251/360 1 11/18 1/6 1/60"
-    assert stability.first_order_coefficients(5) == list(map(Fraction, first.split()))
-    assert stability.second_order_coefficients(6) == list(map(Fraction, second.split()))
-    assert stability.second_order_coefficients(6, "velocity")[0] == Fraction(3, 16)
 
 
 @pytest.mark.parametrize("n", range(4, 13))
@@ -173,142 +131,12 @@ def test_bisection_finds_the_fewest_steps(least):
 
 
 # --- timings --------------------------------------------------------------------------------------
-def test_competitors_take_turns():
-    order = []
-    found = session.time_in_turn("ab", 5, lambda name: order.append(name) or 1.0, 20)
-    assert "".join(order) == "ab" * 5 and found["a"] == session.Timing(5, 1.0, 1.0, 1.0)
-
-
-def test_unsteady_runs_go_on():
-    noise = iter(np.tile([0.01, 0.02], 100))
-    calls = {"steady": 0, "noisy": 0}
-
-    def once(name):
-        calls[name] += 1
-        return 0.01 if name == "steady" else next(noise)
-
-    session.time_in_turn(calls, 5, once, session.MOST_ROUNDS)
-    assert calls == {"steady": 5, "noisy": session.MOST_ROUNDS}
-    assert session.Timing.of([5.0, 1.0, 2.0, 3.0, 4.0]) == session.Timing(5, 2.0, 3.0, 4.0)
 
 
 # --- bounds and page ------------------------------------------------------------------------------
-def points(scene, method, order):
-    """Points of a method whose errors are a power of the step."""
-    p, factor = (order, 0.03) if method.gear else (2.0, 0.1)
-    for steps in 400 * 2 ** np.arange(0, 7 if method.gear else 12):
-        run = plan.Run(scene, method, int(steps))
-        errors = runs.Errors(*[factor * (200.0 / steps) ** p] * 4, 1e-16, 1e-9)
-        timing = session.Timing(5, 0.99e-6 * steps, 1e-6 * steps, 1.01e-6 * steps)
-        yield runs.point_of(run, START, errors, timing)
-
-
-START = session.Outcome(0.0, 0.0, 0, *[np.zeros(0)] * 5, {})
-
-
-def made_up(
-    order=7.0, scenes=("case1",), slope=1.0, rounding=1e-12, modify=3e-7, gain=30.0, chosen=1.0
-):
-    """Results in which every error is a power of the step."""
-    results = runs.Results(False)
-    for key in scenes:
-        scene = plan.scenes(False)[key]
-        for method in scene.methods:
-            results.runs += points(scene, method, order)
-            results.limits[key, method.key] = 0.8
-        for place, name in enumerate(peers.NAMES, 1):
-            counts = 100 * 2.0 ** np.arange(10)
-            results.peers[key, name] = [(n, n, *[1e3 * place**3 * n**-3] * 2) for n in counts]
-    steps = 0.2 / 1.1 ** np.arange(20)
-    for name, numbers in plan.VALUES.items():
-        for n in numbers:
-            p = slope * evaluate.expected_order(name, n)
-            results.orders[name, n] = [(dt, 0.1 * dt**p) for dt in steps]
-        for compensate, error in ((False, 2e-11), (True, rounding)):
-            results.rounding[name, compensate] = [(dt, error) for dt in (0.01, 0.001)]
-    for method in plan.MODIFY:
-        results.modify[method.key] = session.Timing(5, *[modify if method.gear else 4e-7] * 3)
-    for method in (*GEARS.values(), *DEFAULTS.values()):
-        factor = gain if "corrector" in method.variables else 1.0
-        costs = 100 * 2.0 ** np.arange(8)
-        for scene in ("start 1", "free top"):
-            rows = [(n, max(factor * 1e12 * n**-7.0, 2e-13)) for n in costs]
-            results.heldout[scene, method.key] = rows
-    for values in (choice.AUTO, *choice.VALUES):
-        cost = chosen if values == choice.AUTO else 1.0 + 0.1 * abs(values - 9)
-        rows = [(n, choice.TARGET * (200 * cost / n) ** 9, 9) for n in 50.0 * 1.2 ** np.arange(20)]
-        results.choice["ring", values] = rows
-    return results
-
-
-def broken(words, **changes):
-    """Measurements with these words in their names that are out of bounds in made-up results."""
-    measurements = study.find(made_up(**changes)).measurements
-    return [m.what for m in measurements if not m.holds and words in m.what]
-
-
-def test_speedup_is_that_of_the_numbers():
-    table = study.find(made_up()).tables["speedup"]
-    # error 1e-6: our step (1e-6/0.03)^(1/7), theirs (1e-6/0.1)^(1/2)
-    expected = (1e-6 / 0.03) ** (1 / 7) / (1e-6 / 0.1) ** 0.5
-    assert table.rows[1][1].startswith(f"{tables.significant(expected)}× ± ")
-    assert "extrapolated" not in table.rows[2][1] and "extrapolated" in table.rows[3][1]
-
-
-def test_a_low_order_is_not_fast():
-    assert len(broken("fix rigid/nve/small` relative", order=2.0)) == 6
-
-
-def test_evaluations_beside_the_strongest():
-    """Error 1e-6: ours takes 200 (1e-6/0.03)^(-1/7) steps; the peers 1000, 2000, 3000 ... evaluations."""
-    finding = study.find(made_up())
-    rows = {row[0]: row[1:] for row in finding.tables["evaluations"].rows}
-    assert rows["DOP853"][1] == "1 000" and rows["LSODA"][1] == "2 000"
-    assert rows["fix rigid/nve/small"][1] == "63 247"
-    assert rows["`fix gear/quat`, default settings"][1] == "873"
-    name, cost = strongest.strongest(made_up(), 1e-6)
-    assert name == "DOP853" and cost.value == pytest.approx(1000)
-    short = {row[0]: row[1:] for row in finding.tables["readme"].rows}
-    assert short["the strongest of the other methods"][1] == "1 000 (DOP853)"
-    assert short["strongest other method / default settings"][1] == "1.1×"
-
-
-def test_a_weak_peer_is_no_headline():
-    """The factor is that of the method with the fewest evaluations, whoever it is."""
-    results = made_up()
-    results.peers["case1", peers.NAMES[-1]] = [(n, n, n**-4.0, n**-4.0) for n in (25, 50, 400)]
-    name, cost = strongest.strongest(results, 1e-6)
-    assert name == peers.NAMES[-1] and cost.value == pytest.approx(10**1.5)
-    slower = [m for m in study.find(results).measurements if "strongest other" in m.what]
-    assert len(slower) == 8 and not any(m.holds for m in slower)
-
-
-@pytest.mark.parametrize("order, count", [(10.0, 0), (7.0, 6)])
-def test_evaluations_are_bounded(order, count):
-    assert len(broken("force evaluations with", order=order)) == count
-    assert not broken("first formulation, default", order=order)
-    assert broken("first formulation, default", order=4.0)
 
 
 # --- held-out scenes ------------------------------------------------------------------------------
-@pytest.mark.parametrize("gain, count", [(30.0, 0), (24.0, 1), (0.99, 4)])
-def test_gains_in_scenes_held_out_are_bounded(gain, count):
-    assert len(broken("held-out", gain=gain)) == count
-
-
-def test_gains_are_those_at_equal_evaluations():
-    gears = [(n, 1e8 * n**-5.0) for n in (100, 200, 400, 800, 1600)]
-    ours = [(n, 1e7 * n**-5.0) for n in (150, 300, 600, 1200, 2400)]
-    # 100 evaluations: not known; 200: an error above COARSE
-    assert heldout.gains(gears, ours) == pytest.approx([10.0] * 3, rel=1e-9)
-    # ours are lost with 300 and fewer, and 400 is between that and 600
-    lost = [(n, np.inf if n < 500 else e) for n, e in ours]
-    assert heldout.gains(gears, lost) == pytest.approx([0.0, 0.0, 10.0], rel=1e-9)
-    assert heldout.gains(gears, [(n, np.inf) for n, _ in ours]) == [0.0]
-    # runs in which rounding is near do not count
-    floor = [(n, max(e, 1e-11)) for n, e in ours]
-    fine = [(6400, 1e-11), *gears]
-    assert len(heldout.gains(fine, floor)) == 3
 
 
 def test_starts_are_seeded_and_their_files_exact(tmp_path):
@@ -323,51 +151,6 @@ def test_starts_are_seeded_and_their_files_exact(tmp_path):
         momentum = SITE_MASSES @ speeds / sum(SITE_MASSES)
         assert np.abs(momentum - problem.start.velocity[0]).max() < 1e-15
     assert len({np.asarray(start, float).tobytes() for start in again}) == heldout.STARTS
-
-
-def test_scenes_of_the_choice_are_what_they_say():
-    scenes = choice.scenes()
-    assert len(scenes) == 10 and {name: scene.text for name, scene in scenes.items()} == {
-        name: scene.text for name, scene in choice.scenes().items()
-    }
-    rows = made_up().choice
-    assert choice.price(rows["ring", choice.AUTO]) == pytest.approx(200.0, rel=1e-9)
-    assert choice.price([(n, np.inf, 9) for n in (10, 20)]) is None
-
-
-@pytest.mark.parametrize(
-    "words, change, count",
-    [
-        ("order", {"slope": 0.9}, 11),
-        ("sums", {"rounding": 1.01e-12}, 2),
-        ("inside", {"modify": 4.04e-7}, 1),
-        ("values auto", {"chosen": 1.01 * choice.MOST}, 1),
-    ],
-)
-def test_slopes_floors_and_times_are_bounded(words, change, count):
-    assert not broken(words) and len(broken(words, **change)) == count
-
-
-def test_results_survive_their_file(tmp_path):
-    write_data(tmp_path / "data.json", made_up())
-    assert read_data(tmp_path / "data.json") == made_up()
-
-
-def test_page_readme_and_paper():
-    finding = study.find(made_up(scenes=tuple(plan.scenes(False))))
-    text = render("accuracy_cost.md.j2", study.STUDY, finding, "Somewhere.")
-    assert "(accuracy_cost/main.png)" in text and "costs 0.87 ms with" in text
-    for place, folder in (("readme", "doc"), ("paper", "../doc")):
-        block = render(f"accuracy_cost.{place}.md.j2", study.STUDY, finding, "Somewhere.")
-        assert f"({folder}/accuracy_cost/main.png)" in block and block.count("×") == 9
-
-
-def test_one_scene_alone_is_enough(tmp_path):
-    assert "heldout" in study.find(made_up(scenes=())).tables
-    finding = study.find(made_up(scenes=("top",)))
-    assert set(finding.pictures) == {"top"} and "other_speedups" in finding.tables
-    finding.pictures["top"](tmp_path / "top.png")
-    assert (tmp_path / "top.png").stat().st_size > 10_000
 
 
 # --- real LAMMPS ----------------------------------------------------------------------------------
@@ -407,43 +190,3 @@ def test_defaults_are_those_of_the_fix(lammps):
         told = plan.Run(SCENE, method, 320).perform(lammps)
         untold = lammps.run(SCENE.deck, bare, "bare")
         assert np.array_equal(told.after, untold.after), f"{method.label}: not the defaults"
-
-
-def test_methods_know_which_coefficients_there_are():
-    assert methods.TUNED == keywords.table()["values"].tuned
-    for name, numbers in plan.VALUES.items():
-        for n in numbers:
-            asked = plan.setting(name, n).variables.get("corrector")
-            assert asked == (None if n in methods.TUNED[name] else "gear")
-
-
-def test_usable_steps(lammps):
-    method = plan.setting("second", 8)
-    step = runs.largest_step(lammps, SCENE, method)
-    assert 0.3 < step < 2.0
-    assert runs.is_usable(lammps, plan.Run(SCENE, method, round(200 / step)))
-    assert not runs.is_usable(lammps, plan.Run(SCENE, method, 60))
-
-
-def test_a_run_that_hangs_is_ended(lammps, monkeypatch):
-    monkeypatch.setattr(session, "PATIENCE", 1e-3)
-    with pytest.raises(session.RunError, match="not finished"):
-        plan.Run(SCENE, plan.RIGID_NVE, 1_000_000).perform(lammps)
-    monkeypatch.setattr(session, "PATIENCE", 60.0)
-    assert plan.Run(SCENE, plan.RIGID_NVE, 640).perform(lammps).seconds > 0  # it starts anew
-
-
-def test_a_deck_that_fails_is_refused(lammps, tmp_path):
-    (tmp_path / "in.bad").write_text("units nonsense\n")
-    with pytest.raises(LammpsError, match="nonsense"):
-        lammps.run(tmp_path / "in.bad", {"steps": 1}, "bad")
-
-
-def test_a_quick_scene_as_a_whole(tmp_path):
-    done = []
-    results = study.measure(Lab(tmp_path, quick=True, parts=("top",), advance=done.append))
-    assert sum(done) == pytest.approx(1.0)
-    finding = study.find(results)
-    assert min(point.orientation for point in results.runs) < 1e-9
-    assert all(0.02 < step < 5 for step in results.limits.values())
-    assert len(finding.tables["runs"].rows) == len(results.runs)

@@ -12,8 +12,6 @@ from click.testing import CliRunner
 
 from benchmarks import __main__ as command
 from benchmarks.engine.decks import ROOT
-from benchmarks.engine.lab import Lab
-from benchmarks.engine.page import render
 from benchmarks.reference.correctors import completed, decimals, placed
 from benchmarks.studies import coefficients as study
 from benchmarks.studies.coefficients import kernel, prediction, properties, spectral
@@ -303,17 +301,6 @@ def test_changes_of_energy_fall_with_the_order(formulation):
 
 
 # --- the page ---------------------------------------------------------------------------------------
-def test_a_page_of_few_sets(tmp_path, monkeypatch):
-    monkeypatch.setattr(study, "VALUES", {"second": (6,), "first": (6,)})
-    monkeypatch.setattr(study, "tuned", lambda formulation, values, **more: made(formulation))
-    monkeypatch.setattr(study, "RANGE", np.array([0.2, 0.4]))
-    monkeypatch.setattr(study, "SHOWN", (("second", 6, "second"), ("first", 6, "first")))
-    finding = study.find(study.measure(Lab(tmp_path, advance=lambda part: None)))
-    text = render("coefficients.md.j2", study.STUDY, finding, "Somewhere.")
-    own = Linear.of(made("first"))
-    assert f"| first | 6 | tuned | {own.error:.1e} | {own.damping:.1e} |" in text
-    finding.pictures["coefficients"](tmp_path / "coefficients.png")
-    assert (tmp_path / "coefficients.png").stat().st_size > 10_000
 
 
 def test_the_published_page_has_the_coefficients_of_the_kernel():

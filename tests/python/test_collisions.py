@@ -8,9 +8,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from benchmarks.engine.lab import Lab
-from benchmarks.engine.page import render
-from benchmarks.engine.store import read_data, write_data
 from benchmarks.reference import solvers
 from benchmarks.reference.equations import PARTS, State
 from benchmarks.studies import collisions as study
@@ -123,17 +120,6 @@ def test_every_evaluation_of_the_solvers_is_counted(sundae):
     assert np.isnan(study.of_peer(scene, "CVODE BDF", 1e-10)).all()
 
 
-def test_only_adams_gets_a_jacobian_of_zeros(sundae):
-    scene = Scene(0)
-    for name in solvers.CVODE:
-        solvers.solve(scene, scene.time, name, 1e-6)
-    adams, bdf = sundae
-    jacobian = np.ones((26, 26))
-    adams["jacfn"](0.0, None, None, jacobian)
-    assert not jacobian.any() and "jacfn" not in bdf
-    assert (adams["method"], bdf["method"]) == ("Adams", "BDF")
-
-
 # --- ratios -----------------------------------------------------------------------------------------
 def curve(work, order=8, errors=10.0 ** np.arange(-3, -13, -2.0)):
     """Points of a method of an ``order`` that needs ``work`` evaluations for an error of 1."""
@@ -153,51 +139,4 @@ def test_evaluations_are_interpolated_between_the_best_points():
     assert np.isinf(study.evaluations(np.full((4, 2), np.nan))).all()
 
 
-def synthetic(ours=60.0):
-    """Results of three scenes: the solvers need 100 or more, and LSODA 80 in the last scene."""
-    points = {name: np.array([curve(ours)] * 3) for name in study.OURS}
-    for work, name in zip((100.0, 120.0, 150.0), study.PEERS):
-        points[name] = np.array([curve(work)] * 3)
-    points["LSODA"][2] = curve(80.0)
-    return study.Results(points)
-
-
-def test_a_ratio_is_to_the_best_solver_of_the_scene():
-    results = synthetic()
-    name = next(iter(study.OURS))
-    found = study.ratios(study.counted(results), name)
-    assert found == pytest.approx(np.repeat([[0.6], [0.6], [0.75]], len(study.LEVELS), axis=1), rel=1e-12)
-    held = {m.what: m for m in study.find(results).measurements}
-    assert held[f"{name}: median ratio to the best solver"].value == pytest.approx(0.6)
-    assert held[f"{name}: median ratio to the best solver"].holds
-    refused = study.find(synthetic(71.0)).measurements[0]
-    assert refused.value == pytest.approx(0.71) and not refused.holds
-
-
-def test_what_is_lost_counts_against_it():
-    results = synthetic()
-    name = next(iter(study.OURS))
-    results.points[name][0, :, 1] = np.nan
-    results.points[name][1, 0, 1] = 1.5
-    results.points["LSODA"][1:] = results.points["DOP853"][1:] = results.points["CVODE Adams"][1:] = np.nan
-    found = study.ratios(study.counted(results), name)
-    assert np.isinf(found[0]).all() and not found[1:].any()
-    lost = study.find(results).measurements[1]
-    assert lost.what == f"{name}: lost" and lost.value == 6 and not lost.holds
-
-
 # --- the page ---------------------------------------------------------------------------------------
-def test_a_page_without_cvode_says_so(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "sksundae", None)
-    for name, value in {"QUICK": 2, "EPS": (1e-3, 1e-7, 1e-11), "TOLERANCES": (1e-5, 1e-9)}.items():
-        monkeypatch.setattr(study, name, value)
-    monkeypatch.setattr(study, "Scene", lambda which: Scene((0, 7)[which]))
-    results = study.measure(Lab(tmp_path, quick=True))
-    write_data(tmp_path / "data.json", results)
-    finding = study.find(read_data(tmp_path / "data.json"))
-    assert finding.context["missing"] == list(solvers.CVODE)
-    text = render("collisions.md.j2", study.STUDY, finding, "Somewhere.")
-    assert "CVODE Adams and CVODE BDF are missing" in text
-    assert not any(m.value for m in finding.measurements if m.what.endswith("lost"))
-    finding.pictures["collisions"](tmp_path / "collisions.png")
-    assert (tmp_path / "collisions.png").stat().st_size > 10_000

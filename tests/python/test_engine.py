@@ -1,9 +1,5 @@
 """The engine of the benchmarks: measurements, logs, many runs, data kept, pages, publishing, the command."""
 
-import json
-import re
-import shutil
-import subprocess
 import time
 from pathlib import Path
 
@@ -17,7 +13,6 @@ from benchmarks.engine import Study, Table, conduct, provenance, publish, runner
 from benchmarks.engine.logs import Log
 from benchmarks.engine.store import read_data, write_data
 from benchmarks.studies.hard.long import Long
-from running import ROOT
 
 PROGRAM = """#!/bin/sh
 # stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script
@@ -52,10 +47,6 @@ def test_bounds(bounds, within, beyond):
     assert not Measurement("x", beyond, **bounds).holds
     assert not Measurement("x", float("nan"), **bounds).holds
     assert Measurement("x", float("nan")).holds
-
-
-def test_a_value_with_its_uncertainty():
-    assert Measurement("x", 12345.4, 10.2, ",.0f", "K", "here").text == "12 345 ± 10 K (here)"
 
 
 # --- logs ---------------------------------------------------------------------------------------
@@ -109,11 +100,6 @@ def test_error_is_told_with_the_last_lines_and_ends_the_whole_group(fake, tmp_pa
     assert gone(int((tmp_path / "child").read_text()))
 
 
-def test_missing_program_is_named():
-    with pytest.raises(LammpsError, match="/nowhere/lmp"):
-        Lab("out", "/nowhere/lmp").lmp
-
-
 # --- many runs ----------------------------------------------------------------------------------
 def test_a_sweep_runs_every_combination(fake):
     lab, deck, done = fake
@@ -124,20 +110,6 @@ def test_a_sweep_runs_every_combination(fake):
     words = found["b", 0.2]
     assert words[words.index("pose") + 1] == "b" and words[words.index("dt") + 1] == "0.2"
     assert sum(done) == pytest.approx(1.0)
-
-
-def test_progress_of_shares_adds_up(fake):
-    """Also where there is less or more to do than was expected."""
-    lab, deck, done = fake
-    script = deck("in.echo", "echo 5 1 1\n")
-    with lab.share(0.25):
-        lab.many({"one": Job(script, {}, 5), "two": Job(script, {}, 10)})
-    assert sum(done) == pytest.approx(0.25) and len(done) > 2
-    for tenths in (4, 12):
-        with lab.share(0.375):
-            for _ in range(tenths):
-                lab.advance(0.1)
-    assert sum(done) == pytest.approx(1.0) and min(done) >= 0.0
 
 
 def test_an_error_ends_all_runs_unless_it_is_a_result(fake):
@@ -180,15 +152,6 @@ def test_runs_are_kept_while_their_input_is_the_same(fake, tmp_path):
     assert len(counted.read_text().split()) == 5
     with pytest.raises(LammpsError, match="lost atoms"):
         lab.many(job, keep=True)
-
-
-def test_rounds_begin_with_another_job_each(fake, tmp_path):
-    lab, deck, done = fake
-    script = deck("in.order", f'echo "$4" >> {tmp_path}/order\n')
-    found = lab.in_turn({name: Job(script, {}) for name in "abc"}, 2)
-    order = [line.rpartition("log.")[2] for line in (tmp_path / "order").read_text().split()]
-    assert order == ["a.1", "b.1", "c.1", "b.2", "c.2", "a.2"]
-    assert [len(runs) for runs in found.values()] == [2, 2, 2] and sum(done) == pytest.approx(1.0)
 
 
 # --- data, page, publishing -----------------------------------------------------------------------
@@ -234,22 +197,6 @@ def templates(tmp_path, monkeypatch):
     (folder / "block.md.j2").write_text("{{ picture('both', 'Both.', 'doc/made_page') }}\n")
     monkeypatch.setattr("benchmarks.engine.page.TEMPLATES", folder)
     return folder
-
-
-def test_a_study_leaves_its_results_and_is_rendered_again(templates, tmp_path, monkeypatch):
-    monkeypatch.setattr(provenance, "commit", lambda *_: "1a2b3c4")
-    out = tmp_path / "out"
-    conduct.conduct(made_up(), out)
-    text = (out / "made_page.md").read_text()
-    assert "| 1 | x\\|y |" in text and "| an error | 1.0e-13 ± 1.0e-14 |" in text
-    assert "![Both.](made_page/both.png)" in text and "1 234 567" in text
-    assert (out / "made_page" / "both.png").stat().st_size > 5000
-    assert (out / "both.csv").read_text().split() == ["a,b|c", "1,x|y"]
-    assert "at commit 1a2b3c4" in json.loads((out / "origin.json").read_text())["sentence"]
-    conduct.conduct(made_up(value=2e-13), out, render_only=True)
-    assert "2.0e-13" in (out / "made_page.md").read_text()
-    with pytest.raises(FileNotFoundError, match="measure first"):
-        conduct.conduct(made_up(), tmp_path / "empty", render_only=True)
 
 
 def test_publishing_writes_page_pictures_and_blocks(templates, tmp_path, monkeypatch):
@@ -303,48 +250,6 @@ def test_check_refuses_what_is_out_of_bounds(run):
 def test_bad_options(run, words, said):
     done = run(*words)
     assert done.exit_code == 2 and said in done.output
-
-
-def options_of(program):
-    return {option for parameter in program.params for option in parameter.opts if option != "names"}
-
-
-OPTIONS = options_of(command.examples)
-
-
-@pytest.mark.parametrize(
-    "name, options",
-    [
-        ("benchmarks/run", options_of(command.main)),
-        ("examples/run", OPTIONS - {"--list", "--publish"}),
-        ("tests/run", set()),
-    ],
-)
-def test_help_has_every_option_and_installs_nothing(tmp_path, name, options):
-    for script in (name, "cmake/setup.sh", "cmake/lammps-tree.sh", "tests/sanitize.sh"):
-        (tmp_path / script).parent.mkdir(exist_ok=True)
-        shutil.copy(ROOT / script, tmp_path / script)
-    before = sorted(tmp_path.rglob("*"))
-    done = subprocess.run([tmp_path / name, "--help"], capture_output=True, text=True, check=True)
-    assert sorted(tmp_path.rglob("*")) == before and name in done.stdout
-    assert set(re.findall(r"^  (--\w+)", done.stdout, re.M)) == options
-
-
-def test_the_command_of_the_examples(monkeypatch):
-    """Its errors name its script, and it measures one study."""
-    done = CliRunner().invoke(command.examples, ["--nosuch"])
-    assert done.exit_code == 2 and "Usage: examples/run [OPTIONS]\n" in done.output
-    called = []
-    monkeypatch.setattr(command, "conduct", lambda study, *_, **__: called.append(study.key))
-    CliRunner().invoke(command.examples, ["--quick"])
-    assert called == ["cases"]
-
-
-def test_every_study_is_listed_with_its_duration():
-    done = CliRunner().invoke(command.main, ["--list"])
-    assert done.exit_code == 0
-    for study in conduct.all_studies().values():
-        assert study.title in done.output
 
 
 def test_measurements_name_no_commit_where_git_is_not_installed(monkeypatch):

@@ -5,15 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.engine import EXAMPLES, Lab
-from benchmarks.engine.logs import Log
-from benchmarks.engine.methods import DEFAULT_VALUES
-from benchmarks.engine.page import render
+from benchmarks.engine import Lab
 from benchmarks.engine.sites import read_sites
-from benchmarks.studies import liquids as study
 from benchmarks.studies.coefficients import prediction
-from benchmarks.studies.liquids import heavier, judging, plan, quantities, runs
-from benchmarks.studies.liquids.plan import CO2, DEFAULT, HEAVY, MAIN, NVE_SMALL, SCENES, SPCE, VALUES
+from benchmarks.studies.liquids import heavier, plan, quantities, runs
+from benchmarks.studies.liquids.plan import DEFAULT, HEAVY, NVE_SMALL, SPCE
 
 TIME = 60.0 * np.arange(334)
 
@@ -73,114 +69,6 @@ def test_samples_are_those_of_whole_steps():
 DRIFT, LOSS, BEST, WRONG = ": drift", "without loss", "best number", "predicted drift"
 
 
-def spectrum(axes=3):
-    """A Spectrum of which all predicted drifts are small."""
-    omega = np.linspace(0.001, 0.05, 50)
-    return prediction.Spectrum(omega, np.full(50, 0.02), np.full(50, 0.02), axes)
-
-
-def results(rates=(), lost=(), ratio=1.0):
-    """Results of all runs; ``rates``: (scene, method, step) -> drift; ``lost``: keys of one run lost."""
-    rates, seed, found, made = dict(rates), 0, {}, plan.Plan()
-    for scene in (*SCENES, HEAVY):
-        for method, extent in scene.methods.items():
-            for dt in extent.steps:
-                key, count = (scene.key, method.key, dt), made.extent(scene, method, dt)[0]
-                own = rates.get(key, 0.0), scene.liquid, ratio
-                found[key] = [made_up(*own, seed=(seed := seed + 1)) for _ in range(count)]
-                if key in lost:
-                    found[key][-1] = made_up(*own, time=TIME[:4])
-    floors = {
-        (forces.text, method.key): made_up(seed=k)
-        for k, (forces, methods) in enumerate(plan.FLOORS.items())
-        for method in methods
-    }
-    spectra = {liquid.key: spectrum() for liquid in plan.LIQUIDS}
-    bins = np.linspace(0, 9, 90)
-    pairs = np.array([np.stack([bins, k + np.exp(-bins), 2 + bins], axis=1) for k in range(5)])
-    places = {(MAIN.key, dt): pairs for dt in MAIN.pairs}
-    places |= {(HEAVY.key, dt): pairs + [0, 0.1, 0] for dt in HEAVY.pairs}
-    return runs.Results(made, found, floors, spectra, places)
-
-
-def refused(data):
-    """What the measurements that do not hold are about; the noise of made-up temperatures is none of it."""
-    return [m.what for m in judging.measurements(data) if not m.holds and "T trans" not in m.what]
-
-
-@pytest.mark.parametrize("scene", SCENES[:2], ids=lambda scene: scene.key)
-@pytest.mark.parametrize("dt", judging.MOST_DRIFT)
-def test_drifts_of_water_are_bounded(scene, dt):
-    """By the bound and two standard errors, in both directions."""
-    most, key = judging.MOST_DRIFT[dt], (scene.key, DEFAULT.key, dt)
-    keys = [(scene.key, method.key, dt) for method in VALUES.values()]
-    for rate, count in ((0.9, 0), (-0.9, 0), (1.5, 1), (-1.5, 1)):
-        data = results({k: rate * most for k in (key, *keys)})
-        found = [what for what in refused(data) if DRIFT in what and WRONG not in what]
-        assert [what.count(f" {dt:g} fs") for what in found] == [1] * count
-
-
-def test_a_lost_body_is_noticed():
-    key = SCENES[1].key, DEFAULT.key, plan.STEPS[-1]
-    assert [LOSS in what for what in refused(results(lost=[key]))] == [True]
-    lost = (SCENES[1].key, DEFAULT.key, 3.0)
-    assert sum(DRIFT in what for what in refused(results(lost=[lost]))) == 1
-
-
-def test_other_liquids_drift_no_more_than_with_the_best_number():
-    key = CO2.key, DEFAULT.key, 4.0
-    assert refused(results()) == []
-    assert sum(BEST in what for what in refused(results({key: 0.02}))) == 1
-    others = {(CO2.key, method.key, 4.0): 0.02 for method in VALUES.values()}
-    assert sum(BEST in what for what in refused(results({key: -0.02, **others}))) == 0
-
-
-def test_a_wrong_prediction_is_noticed():
-    """What is measured drifts by 0.04 more than what is predicted."""
-    key = CO2.key, DEFAULT.key, 3.0
-    assert sum(WRONG in what for what in refused(results({key: 0.04}))) == 1
-    assert sum(WRONG in what for what in refused(results({key: 0.02}))) == 0
-
-
-def test_cold_rotation_is_noticed():
-    def cold(ratio):
-        found = judging.measurements(results(ratio=ratio))
-        return sum(not m.holds for m in found if "T trans" in m.what)
-
-    assert cold(0.99) == 3 > cold(1.0)
-
-
-def test_error_bars_are_judged_by_what_does_not_drift():
-    ratio = judging.calibration(results()).value
-    assert 0.6 < ratio < 2.0
-    wrong = {
-        (scene.key, NVE_SMALL.key, dt): 0.5 for scene in SCENES for dt in plan.STEPS
-    }
-    assert judging.calibration(results(wrong)).value > 3 * ratio
-
-
-def test_page_and_pictures(tmp_path):
-    key = MAIN.key, VALUES[9].key
-    data = results({(*key, 2.0): -0.27}, [(*key, 3.0)])
-    finding = study.find(data)
-    rows = {row[0]: row[1:] for row in finding.tables["drift_spce"].rows}
-    assert float(rows[plan.NAMES[VALUES[9]]][1].split()[0]) == pytest.approx(-0.27, rel=1e-2)
-    assert rows[plan.NAMES[VALUES[9]]][3] == "1 of 3 lost, after 0.2 ps"
-    assert render("liquids.md.j2", study.STUDY, finding, "Somewhere.").count("1 of 3 lost") == 2
-    heights = [row[-2] for row in finding.tables["heavy"].rows]
-    assert heights[:2] == ["3.00 ± 0.71", "+0.1000 ± 0.0000"]
-    for name in ("drift", "heavy"):
-        picture = finding.pictures[name]
-        path = tmp_path / f"{name}.png"
-        picture(path) if callable(picture) else study.draw(path, picture)
-        assert path.stat().st_size > 10_000
-
-
-def test_error_has_two_digits():
-    assert study.with_error(-0.27123, 0.0123, "+") == "-0.271 ± 0.012"
-    assert study.with_error(312.4, 25.2) == "312 ± 25"
-
-
 # --- LAMMPS ---------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
@@ -203,17 +91,6 @@ def follow(small, name, key, method, forces=None, dt=0.5, duration=60.0, **more)
 
 
 @pytest.mark.parametrize("key", [liquid.key for liquid in plan.LIQUIDS])
-def test_temperature_of_the_start_is_exact(small, key):
-    """Masses, degrees of freedom and units: the data files were scaled to the temperature."""
-    run, liquid = follow(small, f"start_{key}", key, DEFAULT), small[1][key]
-    translation, rotation = quantities.temperatures(run, liquid)
-    freedoms = np.array(liquid.freedoms)
-    mean = freedoms @ [translation[0], rotation[0]] / freedoms.sum()
-    assert mean == pytest.approx(liquid.temperature, rel=1e-7)
-    assert 0.3 < rotation[0] / translation[0] < 3.0
-
-
-@pytest.mark.parametrize("key", [liquid.key for liquid in plan.LIQUIDS])
 def test_methods_agree_at_a_short_step(small, key):
     """Energies and pressure after 60 fs; the massless site of TIP4P/2005 included."""
     own, other = (
@@ -228,24 +105,6 @@ def test_methods_agree_at_a_short_step(small, key):
         np.testing.assert_allclose(run.translation + run.rotation, run.kinetic, rtol=1e-9)
     assert abs(own.pressure[-1] - other.pressure[-1]) < 0.02 * np.ptp(own.pressure) + 10
     assert np.ptp(own.total) < 2e-2 * np.ptp(own.potential)
-
-
-def test_starts_differ_and_samples_tell_the_values(small):
-    lab, liquids, _ = small
-    liquid = liquids["nitrogen"]
-    data = runs.equilibrate(lab, replace(plan.QUICK, starts=2, equilibration=100), [liquid])
-    first, second = (read_sites(path.with_suffix(".start")) for path in data.values())
-    assert np.abs(first.positions - second.positions).max() > 0.1
-    assert follow(small, "seven", "nitrogen", VALUES[7]).values == 7
-    assert follow(small, "none", "nitrogen", NVE_SMALL).values == 0
-
-
-def test_the_number_that_was_chosen_last_counts(tmp_path):
-    path = tmp_path / "log.some"
-    path.write_text("Fix gear/quat move: 9 values, smooth\nFix gear/quat move: 5 values, fast\n", encoding="utf-8")
-    assert runs.values_of(Log(path), DEFAULT) == 5
-    path.write_text("Fix gear/quat move: start of order 8 from 22 force evaluations\n", encoding="utf-8")
-    assert runs.values_of(Log(path), DEFAULT) == DEFAULT_VALUES["second"]
 
 
 def test_heavier_bodies_have_the_same_energies(small):
@@ -264,31 +123,3 @@ def test_heavier_bodies_have_the_same_energies(small):
     energies.append((plain.potential[0], plain.translation[0], plain.rotation[0]))
     np.testing.assert_allclose(energies[0], energies[2], rtol=1e-9)
     np.testing.assert_allclose(energies[1], energies[2], rtol=1e-9)
-
-
-def test_charges_within_a_molecule_change_no_pressure(small):
-    """The deck leaves their pairs out, but not from kspace; the constraint forces balance that."""
-    lab, liquids, data = small
-    forces = plan.Forces(plan.TIP4P, kspace="pppm/tip4p")
-    job = runs.job(liquids["tip4p"], data["tip4p", 0], forces, DEFAULT, 0.5, 60.0)
-    excluded = " exclude molecule/intra all"
-    deck = job.deck.read_text().replace("include liquid", f"include {job.deck.parent}/liquid")
-    deck = deck.replace("../../../examples", str(EXAMPLES))
-    assert excluded in deck
-    found = []
-    for k, other in enumerate((excluded, "\nspecial_bonds lj/coul 0 0 0")):
-        changed = lab.out / f"in.pairs{k}"
-        changed.write_text(deck.replace(excluded, other))
-        finished = lab.many({changed.name: replace(job, deck=changed)})[changed.name]
-        found.append(runs.read(finished, job.steps, 0.5, DEFAULT))
-    np.testing.assert_allclose(found[0].pressure, found[1].pressure, rtol=1e-7)
-    assert abs(found[0].total[0] - found[1].total[0]) > 100
-
-
-def test_shifted_energies_change_no_trajectory(small):
-    plain, shifted = (
-        follow(small, name.split()[1], "spce", DEFAULT, plan.Forces(modify=name))
-        for name in ("shift no", "shift yes")
-    )
-    np.testing.assert_allclose(plain.translation, shifted.translation, rtol=1e-9)
-    assert plain.total[0] != pytest.approx(shifted.total[0], abs=1.0)

@@ -10,20 +10,22 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from benchmarks.engine.panels import RECONSTRUCTED, Curve, Panel, draw, draw_panel
-from benchmarks.studies.pictures.figures import CAGE_RADIUS, PLUS, SPACING, add_cage
-from benchmarks.studies.pictures.view import Camera, Stage
+from benchmarks.reference import Cage
 from gearquat_analysis.style import STYLE
 
 from . import accuracy
 from . import divergence as dv
 from .claims import THRESHOLDS
 from .plan import ACCURACY_END, ACCURACY_STEPS, ACCURATE, AS_PRINTED, FORMULATIONS, ROWS
+from .view import Camera, Stage
 
 AS_PAPER = f"zero start and nothing projected, as the paper ran; {RECONSTRUCTED}"
 
 ENERGIES = {"potential": "potential", "kinetic": "kinetic", "total": "total"}
 KINETIC = {"translation": "translational", "rotation": "rotational", "kinetic": "total kinetic"}
 X = "x of the center of mass"
+PLUS, MINUS, EDGE = "#d55e00", "#0072b2", "#c4c4c4"
+CAGE, SPACING, CAGE_RADIUS = Cage(float), 100.0, 5.0
 #: number in the paper -> (what is shown, axis, test case, formulation, None for both)
 FIGURES = {
     2: ("energies", "energy", 1, "first"),
@@ -39,6 +41,16 @@ FIGURES = {
     12: ("trajectory", "center of mass", 3, "first"),
     13: ("trajectory", "center of mass", 3, "second"),
 }
+
+
+def add_cage(stage, width=1.1):
+    """The 26 fixed spheres, joined along the edges of the cage."""
+    for sign, color in ((1, PLUS), (-1, MINUS)):
+        stage.spheres(CAGE.positions[CAGE.charges == sign], CAGE_RADIUS, color)
+    for k, one in enumerate(CAGE.positions):
+        for other in CAGE.positions[:k]:
+            if np.linalg.norm(one - other) < 1.01 * SPACING:
+                stage.rod(one, other, EDGE, width, (CAGE_RADIUS, CAGE_RADIUS))
 
 
 def curves(what, runs):

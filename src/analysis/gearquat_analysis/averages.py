@@ -17,6 +17,7 @@ from . import correlations, export, mapped
 from .blocks import Estimate, of_series, scatter, widening
 from .bodies import axes_named, axis_groups, equal_moments
 from .diffusion import diffusion
+from .fluctuations import compressibility, dielectric_constant
 from .kinds import kinds, of_kind, too_many
 
 #: blocks of a run, and groups of its bodies, whose scatter is the error of a correlation time
@@ -292,12 +293,21 @@ def averages(poses):
     times = results.time
     weights = weights_of(times)
     found = Averages()
-    for name, series in temperatures(poses).items():
+    warm, box = temperatures(poses), of_box(poses)
+    for name, series in warm.items():
         value, error, why = of_series(series, weights)
         found.append(Average(f"temperature of {name}", value, error, poses.unit("temperature"), why))
-    for name, series in of_box(poses).items():
+    for name, series in box.items():
         value, error, why = of_series(series, weights)
         found.append(Average(name, value, error, poses.unit(name), why))
+    if warm:
+        temperature = float(np.average(warm["translation"], weights=weights))
+        if box:
+            of_volume = compressibility(poses, box["volume"], temperature, weights)
+            found.append(Average("compressibility", *of_volume[:2], poses.unit("compressibility"), of_volume.why))
+        if np.any(getattr(getattr(poses, "atoms", None), "charges", 0.0)):
+            constant = dielectric_constant(poses, temperature, weights)
+            found.append(Average("dielectric constant", *constant[:2], "", constant.why))
     try:
         correlations.lags(times)
     except ValueError as error:

@@ -14,7 +14,7 @@ from .units import UNITS, style_of
 
 #: files of the command beside poses.npy
 LEAVES = ("bodies.csv", "totals.csv", "totals.png", "motion.png", "poses.csv", "correlations.csv", "correlations.png")
-LEAVES += ("averages.csv", "averages.png", "stays.csv", "survival.csv")
+LEAVES += ("averages.csv", "averages.png", "spectra.csv", "rdf.csv", "stays.csv", "survival.csv")
 #: options that decide results, with which a folder is known
 DECIDE = ("data", "atom_style", "body", "select", "reference", "potential", "units", "timestep")
 
@@ -85,6 +85,17 @@ def _telling_warnings():
     constraint=all_or_none,
 )
 @cloup.option_group(
+    "Structure",
+    cloup.option(
+        "--rdf",
+        type=(str, str),
+        multiple=True,
+        metavar="SITES SITES",
+        help="Also radial distribution functions between two selections of sites, such as --rdf 'type 1' 'type 2';"
+        " may be given many times.",
+    ),
+)
+@cloup.option_group(
     "What it takes and leaves",
     out_option("gearquat-analyze", "tables and pictures"),
     cloup.option("--follow", type=int, metavar="ID", help="Also draw the motion of one body, motion.png."),
@@ -100,7 +111,7 @@ def _telling_warnings():
 )
 @failing_clearly(ValueError)
 @_telling_warnings()
-def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **options):
+def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follow, **options):
     """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
@@ -118,7 +129,7 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **
         raise ValueError("--wrap needs --convert, whose trajectory it is about")
     places = near and _points("--near", near)
     asked = {name: options[name] for name in DECIDE} | {"near": near, "radius": radius}
-    asked |= {"frames": [frames.start, frames.stop, frames.step]}
+    asked |= {"frames": [frames.start, frames.stop, frames.step], "rdf": [list(pair) for pair in rdf]}
     folder = Folder(out, dump, asked, LEAVES)
     if converted:
         folder.require_free(written_by(converted))
@@ -134,6 +145,8 @@ def analyze(dump, out, near, radius, frames, converted, wrap, as_csv, follow, **
     if as_csv:
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)
+    if rdf:
+        _distribute(out, poses, rdf, frames)
     if near:
         _stay(out, poses, places, radius)
     if converted:
@@ -257,9 +270,25 @@ def _correlate(out, poses):
     report.write_averages(out / "averages.csv", known)
     if found:
         write_columns(out / "correlations.csv", found.functions)
+        if len(found.functions["lag"]) > 3 and (of_motion := correlations.spectra(found)):
+            write_columns(out / "spectra.csv", of_motion)
         pictures.draw_correlations(found, known, out / "correlations.png")
     pictures.draw_averages(known, out / "averages.png")
     return cloup.echo(report.average_lines(known))
+
+
+def _distribute(out, poses, pairs, frames):
+    """Write rdf.csv: the distance, and g(r) with its standard error for each pair of selections."""
+    from .rdf import radial_distribution
+    from .tables import write_columns
+
+    columns = {}
+    for number, (first, second) in enumerate(_bar("counting pairs", "function")(pairs), 1):
+        r, g, error = radial_distribution(poses.atoms, first, second, frames)
+        columns |= {f"r_{number}": r, f"g_{number}": g, f"error_{number}": error}
+        top = int(g.argmax())
+        cloup.echo(f"g(r) of '{first}' and '{second}' has its largest value, {g[top]:.3g}, at {r[top]:.3g}.")
+    write_columns(out / "rdf.csv", columns)
 
 
 def _stay(out, poses, places, radius):

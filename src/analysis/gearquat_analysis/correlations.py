@@ -229,6 +229,56 @@ def all_correlations(poses, progress=iter):
     return Correlations(functions, units, largest, tuple(kind.name for kind in chosen))
 
 
+def _axes_word(group):
+    """ "axis3" of (2,), "axes23" of (1, 2)."""
+    return ("axis" if len(group) == 1 else "axes") + "".join(str(k + 1) for k in group)
+
+
+def _groups(bodies):
+    """Principal axes about which bodies turn, as tuples of those with equal moments; each alone for a table."""
+    if bodies is None:
+        return [(0,), (1,), (2,)]
+    moments = bodies.moments[~bodies.point]
+    return [group for group in axis_groups(moments) if (moments[:, group] > 0.0).all()]
+
+
+def axis_autocorrelation(omega, q, axes, group):
+    """Mean of w(t) w(t + lag), (F,), of the component w of angular velocities about a principal axis, radians squared / time squared.
+
+    ``omega`` (F, B, 3), in space; ``q`` (F, B, 4); ``axes`` (B, 3, 3) as of Bodies, None for those of the frame; ``group``:
+    numbers of axes with equal moments, whose mean is taken.
+    """
+    frames, number, power = len(omega), omega.shape[1], 0.0
+    for own in portions(q):
+        turn = Rotation.from_quat(mapped.columns(q, own).reshape(-1, 4), scalar_first=True)
+        body = turn.inv().apply(mapped.columns(omega, own).reshape(-1, 3)).reshape(frames, -1, 3)
+        if axes is not None:
+            body = np.einsum("bkj,fbj->fbk", axes[own], body)
+        power = power + _power(body[..., list(group)])
+    return _products(power, frames) / (_origins(frames) * number * len(group))
+
+
+def spectrum(lag, function):
+    """Frequencies (n,) in 1 / time and the spectrum (n,) of an autocorrelation function (F,), function x time.
+
+    It is twice the cosine transform of the first half of the lags in Hann's window, so its integral over positive
+    frequencies is the function at lag 0.
+    """
+    kept = len(lag) // 2
+    window = 0.5 + 0.5 * np.cos(np.pi * np.arange(kept) / kept)
+    even = np.concatenate([function[:kept] * window, [0.0], (function[1:kept] * window[1:])[::-1]])
+    step = lag[1] - lag[0]
+    return fft.rfftfreq(len(even), step), 2.0 * step * fft.rfft(even).real
+
+
+def spectra(found):
+    """Frequency and the spectrum of each autocorrelation of velocities in Correlations, name -> (n,)."""
+    functions, lag = found.functions, found.functions["lag"]
+    named = {name.replace("autocorrelation", "spectrum"): one for name, one in functions.items() if "autocorrelation" in name}
+    both = {name: spectrum(lag, one) for name, one in named.items()}
+    return {"frequency": next(iter(both.values()))[0], **{name: one for name, (_, one) in both.items()}} if both else {}
+
+
 def _tasks(poses):
     """Name, function and its arguments, of every function of bodies of one kind."""
     results, bodies = poses.results, getattr(poses, "bodies", None)
@@ -242,9 +292,11 @@ def _tasks(poses):
             if bodies is not None and bodies.point.any():
                 omega = mapped.Part(omega, np.flatnonzero(~bodies.point))
             tasks.append(("omega_space_autocorrelation", autocorrelation, (omega,)))
+            for group in _groups(bodies):
+                name = f"omega_{_axes_word(group)}_autocorrelation"
+                tasks.append((name, axis_autocorrelation, (omega, q, None if some is None else some.axes, group)))
         tasks.append(("mean_square_rotation", mean_square_rotation, (q, some)))
     for group, axis in axes.items():
-        name = ("axis" if len(group) == 1 else "axes") + "".join(str(k + 1) for k in group)
         for order in (1, 2):
-            tasks.append((f"{name}_order{order}", orientation_correlation, (q, axis, order)))
+            tasks.append((f"{_axes_word(group)}_order{order}", orientation_correlation, (q, axis, order)))
     return tasks

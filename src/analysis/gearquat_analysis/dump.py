@@ -320,7 +320,7 @@ def _names(masses, types):
     return np.array([f"T{kind}" for kind in types], dtype=object), None
 
 
-def _universe(reader, bodies, masses, types):
+def _universe(reader, bodies, masses, types, charges=None):
     """A Universe of what ``reader`` reads, whose residues are the bodies."""
     numbers, residue = np.unique(bodies, return_inverse=True)
     universe = MDAnalysis.Universe.empty(len(residue), len(numbers), atom_resindex=residue)
@@ -333,6 +333,7 @@ def _universe(reader, bodies, masses, types):
         "names": names,
     }
     attributes |= {} if elements is None else {"elements": elements}
+    attributes |= {} if charges is None else {"charges": charges}
     for name, values in attributes.items():
         universe.add_TopologyAttr(name, values)
     universe.trajectory = reader
@@ -406,7 +407,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     columns, local = columns_of(path)
     if local:
         raise DumpError(f"{path}: a dump local of the fix; open it with open_table")
-    extra = [name for name in dict.fromkeys((body, "mass", "type")) if name in columns]
+    extra = [name for name in dict.fromkeys((body, "mass", "type", "q")) if name in columns]
     potentials = [potential] if potential else []
     reader = DumpFrames(str(path), additional_columns=extra + potentials, dt=timestep)
     known = reader.pop_columns(extra)
@@ -425,7 +426,8 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
             " (--body), or give a data file with molecules (--data)"
         )
     bodies = known.get(body, bodies).astype(int)
-    return _universe(reader, bodies, masses, known["type"].astype(int) if "type" in known else types)
+    types = known["type"].astype(int) if "type" in known else types
+    return _universe(reader, bodies, masses, types, known.get("q"))
 
 
 def open_table(path, timestep=None):

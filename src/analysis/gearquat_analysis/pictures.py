@@ -80,8 +80,11 @@ def _panels(functions, units, kind, known):
                 text = label(text, "D", f"diffusion coefficient{of}")
             squares.append((values, {"color": color, "label": text}))
         elif name.endswith("autocorrelation") and values[0] > 0:
-            text = "angular velocity" if "omega" in name else "velocity"
-            velocities.append((values / values[0], {"color": color, "label": text}))
+            text, look = "angular velocity" if "omega" in name else "velocity", {"color": color}
+            if name.startswith("omega_ax"):
+                group = [int(digit) - 1 for digit in name.split("_")[1][4:]]
+                text, look = f"{text}, {axes_named(group)}", {"color": PRINCIPAL_AXES[group[0]], "linestyle": ":"}
+            velocities.append((values / values[0], {"label": text, **look}))
         elif name.startswith(("axis", "axes")):
             group, order = [int(digit) - 1 for digit in name[4:].split("_")[0]], name[-1]
             look = {"color": PRINCIPAL_AXES[group[0]], "linestyle": "-" if order == "1" else "--"}

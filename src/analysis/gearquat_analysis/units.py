@@ -6,7 +6,7 @@ from typing import NamedTuple
 class Units(NamedTuple):
     """Names of the units of time and length; what they are in ps and Å; mass x velocity^2 in the unit
     of energy, and Boltzmann's constant (mvv2e and boltz in LAMMPS' update.cpp); names of the units of mass and energy;
-    the name of that of density, and mass / length^3 in it, if it is another one (mv2d).
+    the name of that of density, and mass / length^3 in it, if it is another one (mv2d); Coulomb's constant (qqrd2e).
     """
 
     time: str
@@ -19,18 +19,19 @@ class Units(NamedTuple):
     energy_name: str
     density_name: str = ""
     density: float = 1.0
+    coulomb: float = 1.0
 
 
 #: units lj have no ps and Å: one unit becomes one of them
 UNITS = {
     "lj": Units("", "", 1.0, 1.0, 1.0, 1.0, "m", "ε"),
-    "real": Units("fs", "Å", 1e-3, 1.0, 48.88821291**2, 0.0019872067, "g/mol", "kcal/mol", "g/cm³", 1.0 / 0.602214129),
-    "metal": Units("ps", "Å", 1.0, 1.0, 1.0364269e-4, 8.617343e-5, "g/mol", "eV", "g/cm³", 1.0 / 0.602214129),
-    "si": Units("s", "m", 1e12, 1e10, 1.0, 1.3806504e-23, "kg", "J"),
+    "real": Units("fs", "Å", 1e-3, 1.0, 48.88821291**2, 0.0019872067, "g/mol", "kcal/mol", "g/cm³", 1.0 / 0.602214129, 332.06371),
+    "metal": Units("ps", "Å", 1.0, 1.0, 1.0364269e-4, 8.617343e-5, "g/mol", "eV", "g/cm³", 1.0 / 0.602214129, 14.399645),
+    "si": Units("s", "m", 1e12, 1e10, 1.0, 1.3806504e-23, "kg", "J", coulomb=8.9876e9),
     "cgs": Units("s", "cm", 1e12, 1e8, 1.0, 1.3806504e-16, "g", "erg"),
     "electron": Units("fs", "bohr", 1e-3, 0.529177210544, 1.06657236, 3.16681534e-6, "u", "Hartree"),
-    "micro": Units("µs", "µm", 1e6, 1e4, 1.0, 1.3806504e-8, "pg", "pg µm²/µs²"),
-    "nano": Units("ns", "nm", 1e3, 10.0, 1.0, 0.013806504, "ag", "ag nm²/ns²"),
+    "micro": Units("µs", "µm", 1e6, 1e4, 1.0, 1.3806504e-8, "pg", "pg µm²/µs²", coulomb=8.987556e6),
+    "nano": Units("ns", "nm", 1e3, 10.0, 1.0, 0.013806504, "ag", "ag nm²/ns²", coulomb=230.7078669),
 }
 #: units of results, from those of mass M, length L, time T, energy E and temperature K; t is the unit of the times of
 #: frames, which are numbers of steps where the dump tells no more, while velocities are always in LAMMPS' units
@@ -56,6 +57,7 @@ OF_RESULTS = {
     "correlation time": "t",
     "volume": "L³",
     "density": "D",
+    "compressibility": "B",
 }
 
 
@@ -90,11 +92,12 @@ def unit_of(result, style, time=None):
 
     ``time``: the unit of the times of frames if it is not that of the style.
     """
-    kind = OF_RESULTS.get(result, "")
+    kind = OF_RESULTS.get("omega_space_autocorrelation" if result.startswith("omega_ax") else result, "")
     if style is None:
         return time or "" if kind == "t" else ""
     units = UNITS[style]
     names = {"M": units.mass_name, "L": units.length or "σ", "T": units.time or "τ", "t": time or units.time or "τ"}
     names["D"] = units.density_name or f"{names['M']}/{names['L']}³"
+    names["B"] = "σ³/ε" if style == "lj" else "1/GPa"
     names |= {"E": units.energy_name, "K": "ε/k" if style == "lj" else "K"}
     return "".join(names.get(letter, letter) for letter in kind)

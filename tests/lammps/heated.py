@@ -1,0 +1,63 @@
+"""Bodies with a thermostat, and what tests compare of them."""
+
+import re
+import numpy as np
+from scenes import BEFORE, FORMULATIONS, MOLECULES, one_after_the_other, placed
+
+KINDS = ["total", "separate"]
+TEMP = "temp 0.5 0.5 0.3"
+END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"
+#: twice the kinetic energy of the motion that all atoms have in common
+COMMON = "variable common equal mass(all)*(vcm(all,x)^2+vcm(all,y)^2+vcm(all,z)^2)\n"
+COLUMNS = "econserve ecouple f_move f_move[9] f_move[10] f_move[11] f_move[12] f_move[13] f_move[14]"
+
+
+def cluster(words, dt=0.004, time=0.8, run=None, every=None, style="", **settings):
+    steps = round(time / dt)
+    settings = dict(box="-9 9 -9 9 -9 9", columns=COLUMNS) | settings
+    fix = f"gear/quat molecule {words}" if "rigid" not in words else words
+    text = placed(
+        settings.pop("bodies", MOLECULES),
+        before=BEFORE + style,
+        fix=fix,
+        dt=dt,
+        thermo=every or max(1, steps // 8),
+        run=run or f"run {steps}",
+        **settings,
+    )
+    return text.replace("fix_modify move energy yes", "")
+
+
+def run(lmp, decks, ranks=1):
+    return lmp.succeed(one_after_the_other(decks), ranks=ranks)
+
+
+def largest_change(table, column):
+    values = np.array(table[column])
+    return np.abs(values - values[0]).max()
+
+
+def continued(deck, file):
+    """The deck with its atoms and potential from a restart file."""
+    rest = re.sub("velocity all create.*", "", deck[deck.index("neigh_") :])
+    return f"units lj\natom_modify sort 0 0.0\nread_restart {file}\n{rest}"
+
+
+def whole_and_halves(deck_of, first, second, span=""):
+    """A run, its two halves, and the second one from a restart file; span: behind the steps of a half.
+
+    ``deck_of(words, kind, commands)`` makes a deck. Returns decks, and a name for every three; the atoms
+    at the end are in NAME-whole.end, NAME-halves.end and NAME-again.end.
+    """
+    decks, names = [], []
+    for formulation in FORMULATIONS:
+        for kind in KINDS:
+            name = f"{formulation}-{kind}"
+            names.append(name)
+            halves = f"run {first} {span}\nwrite_restart {name}.half\nrun {second} {span}"
+            parts = {"whole": f"run {first + second}", "halves": halves, "again": f"run {second} {span}"}
+            for part, commands in parts.items():
+                words = f"formulation {formulation} thermostat {kind}"
+                deck = deck_of(words, kind, f"{commands}\n{END.format(f'{name}-{part}')}")
+                decks.append(continued(deck, f"{name}.half") if part == "again" else deck)
+    return decks, names

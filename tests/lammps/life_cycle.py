@@ -1,0 +1,38 @@
+"""The first case of the paper with other endings of its deck."""
+
+import numpy as np
+from scenes import restarted, whole_deck
+
+COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot"]
+
+
+class Case1:
+    """The paper's first case with another end of the deck."""
+
+    def __init__(self, lmp, examples, formulation, ranks=1):
+        self.lmp, self.ranks = lmp, ranks
+        self.scene = whole_deck(examples / "case1" / "in.case1")
+        self.variables = dict(formulation=formulation, dt=0.02, every=100, out="none")
+
+    def run(self, ending, restart=None, scene=None, **variables):
+        """With the steps in ``ending``, from the restart file if there is one."""
+        text = (scene or self.scene).replace("run ${steps}", ending)
+        if restart:
+            text = restarted(text, restart)
+        return self.lmp.succeed(text, {**self.variables, **variables}, self.ranks)
+
+
+def end(result, run=-1):
+    return np.array([result.thermo[run][column][-1] for column in COLUMNS])
+
+
+#: words of a line of an infile
+WORDS = 20
+
+
+def bodies_in(path):
+    """Lines of the file as numbers, (bodies, 20); the first line that counts says how many."""
+    lines = [line for line in path.read_text().splitlines() if line.partition("#")[0].strip()]
+    table = np.array([[float(word) for word in line.split()] for line in lines[1:]])
+    assert table.shape == (int(lines[0]), WORDS)
+    return table
