@@ -213,7 +213,7 @@ class Plan:
     few: int = 3
     duration: float = 20.0
     temperatures: float = 20.0
-    short: float = 10.0
+    short: float = 5.0
     floor: float = 1.0
     spectrum: float = 4.1
     equilibration: int = 5000
