@@ -1,6 +1,4 @@
-"""Words that break things, ways to break a list of words, and what words are numbers."""
-
-import re
+"""Words that break things, and ways to break a list of words."""
 
 NUMBERS = (
     "0 -0 1 -1 2 3 4 5 6 7 8 9 12 13 100 101 1000 +6 -6 06 6. 6.0 .5 5. 1e1 1E-3 1e+2 1e 1e999 -1e999 1e-999 1e308 "
@@ -59,18 +57,3 @@ def mutated(rng, words, pool):
     else:
         words[at] = cut(rng, words[at])
     return words
-
-
-def integer(word):
-    """The integer that a word is, or one as good as it if it has very many digits; else None."""
-    if not re.fullmatch(r"[+-]?[0-9]+", word):
-        return None
-    digits = word.lstrip("+-").lstrip("0")[:40] or "0"
-    return -int(digits) if word[0] == "-" else int(digits)
-
-
-def real(word):
-    """The finite number that a word is, or None."""
-    if not re.fullmatch(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", word):
-        return None
-    return float(word) if abs(float(word)) < float("inf") else None

@@ -11,8 +11,6 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-import numpy as np
-
 from . import arguments, infile
 
 PATIENCE = 20  # seconds for one input
@@ -26,13 +24,8 @@ class Scene:
     def __init__(self, module):
         for name, text in module.FILES.items():
             Path(name).write_text(text, encoding="utf-8")
-        self.module, self.lmp, self.alone = module, None, {}
+        self.module, self.lmp = module, None
         self.renew()
-        for body, group in module.ALONE.items():
-            self.lmp.command(f"fix move {group} gear/quat molecule")
-            self.lmp.command("run 0 post no")
-            self.alone[body] = self.energies()
-            self.put_back()
 
     def renew(self):
         import lammps
@@ -57,9 +50,6 @@ class Scene:
         self.lmp.command("group extra id 7")
         self.lmp.command("delete_atoms group extra compress no")
 
-    def energies(self):
-        return np.array([self.lmp.extract_fix("move", 0, 1, n, 0) for n in range(2)])
-
     def define(self, command):
         """Defines the fix; returns LAMMPS' words if it refuses, else an empty string."""
         try:
@@ -70,7 +60,7 @@ class Scene:
             return str(error) or "?"
         return ""
 
-    def attempt(self, command, text, right):
+    def attempt(self, command, text):
         """Whether an input is accepted, and what else is wrong."""
         Path("bodies").write_text(text, encoding="utf-8", newline="")
         refusal = self.define(command)
@@ -80,15 +70,10 @@ class Scene:
             return False, "" if named else f"an error without '{self.module.NAMED}': {refusal}"
         wrong = ""
         try:
-            if self.alone and right:
-                self.lmp.command("run 0 post no")
-                found, expected = self.energies(), self.module.energies(text, self.alone)
-                if not np.allclose(found, expected, rtol=1e-6, atol=1e-9):
-                    wrong = f"kinetic energies {found} instead of {expected}"
             self.lmp.command("run 1 post no")
             self.put_back()
         except Exception as error:
-            if not any(words in str(error) for words in self.module.PARDONED):
+            if "Fix gear/quat" not in str(error):
                 wrong = f"accepted, and then: {error}"
             self.renew()
         return True, wrong
@@ -103,13 +88,11 @@ def work(kind, seed, count, last):
         if n and n % FRESH == 0:
             scene.renew()
         signal.alarm(PATIENCE)
-        command, text, right = module.judge(rng)
+        command, text = module.draw(rng)
         shown = f"{command}\n{text}"
         last.write_text(shown, encoding="utf-8", newline="")
-        accepted, wrong = scene.attempt(command, text, right)
-        counts["unsure" if right is None else "accepted" if accepted else "refused"] += 1
-        if right is not None and right != accepted:
-            wrong = wrong or ("accepted wrongly" if accepted else "refused wrongly")
+        accepted, wrong = scene.attempt(command, text)
+        counts["accepted" if accepted else "refused"] += 1
         if wrong and len(faults) < MOST_FAULTS:
             faults.append((shown, wrong))
     signal.alarm(0)

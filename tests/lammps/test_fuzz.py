@@ -10,7 +10,7 @@ INPUTS = int(os.environ.get("GEARQUAT_FUZZ_INPUTS", 500))
 
 
 @pytest.mark.parametrize("kind", ["arguments", "infile"])
-def test_nothing_crashes_hangs_or_is_accepted_wrongly(tmp_path, kind):
+def test_nothing_crashes_hangs_or_is_refused_without_a_message(tmp_path, kind):
     outcome = campaign.run(kind, INPUTS, tmp_path)
     print(
         f"{kind}: {dict(outcome.counts)}, {len(outcome.faults)} faults, {outcome.seconds:.0f} s, "
@@ -20,13 +20,12 @@ def test_nothing_crashes_hangs_or_is_accepted_wrongly(tmp_path, kind):
         f"{text[:600]}\n-> {fault}" for text, fault in outcome.faults
     )
     assert outcome.inputs == INPUTS
-    # inputs of both kinds are there in numbers, and few are left undecided
+    # inputs of both kinds are there in numbers
     assert min(outcome.counts["accepted"], outcome.counts["refused"]) > INPUTS / 10
-    assert outcome.counts["unsure"] < INPUTS / 10
 
 
 @pytest.mark.parametrize("module", [arguments, infile])
 def test_inputs_are_repeatable_and_differ(module):
-    one, again = ([module.judge(random.Random(seed)) for seed in range(50)] for _ in range(2))
+    one, again = ([module.draw(random.Random(seed)) for seed in range(50)] for _ in range(2))
     assert one == again
     assert len(set(map(str, one))) > 40
