@@ -87,12 +87,12 @@ def values_of(rng, row):
     return number + (rng.choice(([], [rng.choice(row.options)])) if row.options else [])
 
 
-def make(rng):
-    """Words behind the style of the fix: a few keywords, which often can be used together, and up to four faults."""
+def make(rng, faults=(0, 0, 1, 2, 4)):
+    """Words behind the style of the fix: a few keywords, which often can be used together, and one of these numbers of faults."""
     words = rng.choice(BODYSTYLES).split()
     for row in rng.sample([*TABLE.values()], rng.choice((0, 1, 1, 2, 4))):
         words += [row.name, *values_of(rng, row)]
-    for _ in range(rng.choice((0, 0, 1, 2, 4))):
+    for _ in range(rng.choice(faults)):
         words = tokens.mutated(rng, words, POOL)
     return words
 
