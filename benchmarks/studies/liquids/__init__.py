@@ -101,20 +101,6 @@ def chosen_table(results):
     return Table(("liquid", *(f"{dt:g} fs" for dt in STEPS)), rows)
 
 
-def readme_table(results):
-    """Drift and difference of the temperatures of MAIN at two steps."""
-    rows = []
-    for method in (DEFAULT, NVE_SMALL):
-        cells = [NAMES[method]]
-        for dt in (2.0, 3.0):
-            runs = results.runs[MAIN.key, method.key, dt]
-            warmer = of.warmer(runs, MAIN.liquid)
-            cells += [show_drift(runs, MAIN.liquid), with_error(warmer.value, warmer.error, "+")]
-        rows.append(cells)
-    columns = [f"{words}, {dt} fs" for dt in (2, 3) for words in (f"drift of the energy in {UNIT}", "T translation − T rotation in K")]
-    return Table((MAIN.liquid.title, *columns), rows)
-
-
 def first_peaks(pairs):
     """Heights of the first maxima (starts, 2) of radial distribution functions (starts, bins, 3)."""
     return np.max(np.asarray(pairs)[:, :, 1:], axis=1)
@@ -285,7 +271,6 @@ def find(results):
         "chosen": chosen_table(results),
         "heavy": heavy_table(results),
         "spectra": spectra_table(results),
-        "readme": readme_table(results),
     }
     for scene in SCENES:
         tables |= scene_tables(results, scene)
@@ -312,4 +297,4 @@ def find(results):
     return Finding(judging.measurements(results), tables, pictures, context)
 
 
-STUDY = Study("liquids", "Real liquids", 4200.0, measure, find, blocks={"README.md": "liquids.readme.md.j2"})
+STUDY = Study("liquids", "Real liquids", 4200.0, measure, find)
