@@ -2,7 +2,6 @@
 
 import re
 
-import numpy as np
 from scenes import BEFORE, FORMULATIONS, MOLECULES, one_after_the_other, placed
 
 KINDS = ["total", "separate"]

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from pressed import pressed, trimers
-from scenes import largest_change, one_after_the_other, water_data
+from scenes import largest_change, water_data
 
 # --- how fast the box oscillates ----------------------------------------------------------------
 

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 from running import EXAMPLES
-from scenes import MOLECULES, largest_change, last_frame, one_after_the_other
+from scenes import largest_change, last_frame, one_after_the_other
 from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued
 from stepped import tables
 
