@@ -1,5 +1,5 @@
-"""Broken input, in process: is what the fix accepts right, and does it survive what it refuses?
+"""Broken input, in process: it makes the fix neither crash nor hang, and what is refused has a message.
 
-`tokens.py` breaks words, `arguments.py` and `infile.py` make inputs and say by a grammar of their own what
-has to become of them, `worker.py` feeds them to LAMMPS, `campaign.py` runs workers and counts.
+`tokens.py` breaks words, `arguments.py` and `infile.py` make inputs, `worker.py` feeds them to LAMMPS,
+`campaign.py` runs workers and counts.
 """

@@ -1,7 +1,7 @@
 """Bodies with a thermostat, and what tests compare of them."""
 
 import re
-import numpy as np
+
 from scenes import BEFORE, FORMULATIONS, MOLECULES, one_after_the_other, placed
 
 KINDS = ["total", "separate"]
@@ -30,11 +30,6 @@ def cluster(words, dt=0.004, time=0.8, run=None, every=None, style="", **setting
 
 def run(lmp, decks, ranks=1):
     return lmp.succeed(one_after_the_other(decks), ranks=ranks)
-
-
-def largest_change(table, column):
-    values = np.array(table[column])
-    return np.abs(values - values[0]).max()
 
 
 def continued(deck, file):

@@ -101,11 +101,6 @@ def ends(lmp, decks: list[str], ranks: int = 1):
     return result, frames
 
 
-def largest_change(table, column: str = "Econserve") -> float:
-    values = np.array(table[column])
-    return np.abs(values - values[0]).max()
-
-
 def distances(rows: np.ndarray, box: np.ndarray) -> np.ndarray:
     """Of the sites of each trimer in a frame, with these edges of the box."""
     sites = (rows[:, :3] + rows[:, 6:9] * box).reshape(-1, 3, 3)

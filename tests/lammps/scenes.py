@@ -360,6 +360,12 @@ def difference(one: np.ndarray, other: np.ndarray) -> float:
     return max(np.abs((one - other)[:, k]).max() / np.abs(one[:, k]).max() for k in parts)
 
 
+def largest_change(table, column: str = "Econserve") -> float:
+    """Of a column of thermo output, from its first value."""
+    values = np.array(table[column])
+    return np.abs(values - values[0]).max()
+
+
 def expect(found: np.ndarray, right: np.ndarray, tolerance: float) -> None:
     """Equal, relative to the largest number, and numbers that are 1 % off would not be."""
     scale = np.abs(right).max()

@@ -30,6 +30,8 @@ def agree_on_ranks(lmp, deck):
 def off(run, column="v_total"):
     """Largest deviation from the start."""
     return np.abs(run[column] - run[column][0]).max()
+
+
 # Two molecules that meet out of free flight.
 TRIANGLE = np.array([(0, 0, 0), (1, 0, 0), (0, 1.2, 0.1)])
 TWO = [TRIANGLE - [15, 0, 0], TRIANGLE + [15, 0.3, 0.2]]
@@ -42,6 +44,8 @@ def meeting(eps, pair, run, bodies=TWO, velocities=TOWARDS, before="", words="")
     settings["before"] = f"{before}\npair_style {pair}\npair_coeff * * 1.0 1.0"
     fix = f"gear/quat molecule tolerance {eps} {words}"
     return placed(bodies, velocities, fix=fix, **settings)
+
+
 INSERTED = """
 run 100
 region in block -5 5 -5 5 -5 5

@@ -2,21 +2,13 @@
 
 import numpy as np
 import pytest
-from scenes import WATER_MASSES, frames, last_frame, two_molecules, water, water_data
-from life_cycle import Case1, end
-from life_cycle import bodies_in
+from scenes import WATER_MASSES, expect, frames, last_frame, two_molecules, water, water_data
+from life_cycle import Case1, bodies_in, end
 
 BODIES = 27
 MASS, CENTER, INERTIA, VELOCITY = slice(1, 2), slice(2, 5), slice(5, 11), slice(11, 14)
 MOMENTUM, IMAGE = slice(14, 17), slice(17, 20)
 BOX = 9.9
-
-
-def expect(found, right, tolerance):
-    """Equal, and numbers that are 1 % off would not be."""
-    scale = np.abs(right).max()
-    assert np.abs(found - right).max() < tolerance * scale
-    assert np.abs(1.01 * found - right).max() > 100 * tolerance * scale
 
 
 # --- what is lost is the history -----------------------------------------------------------------

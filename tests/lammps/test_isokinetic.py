@@ -3,11 +3,10 @@
 That the trajectory is the same on any ranks is tested in test_large_bodies.py.
 """
 
-import re
-
 import numpy as np
 import pytest
-from scenes import BEFORE, MOLECULES, last_frame, one_after_the_other, placed, two_molecules
+from heated import END, continued, run
+from scenes import BEFORE, MOLECULES, largest_change, last_frame, placed, two_molecules
 
 MODES = ["total", "separate"]
 PARTS = ["f_move[1]", "f_move[2]"]  # of translation and rotation
@@ -31,15 +30,6 @@ def cluster(words, dt=0.004, time=0.8, run=None, every=None, style=""):
         thermo=every or steps // 8,
         run=run or f"run {steps}",
     )
-
-
-def run(lmp, decks, ranks=1):
-    return lmp.succeed(one_after_the_other(decks), ranks=ranks)
-
-
-def largest_change(table, column):
-    values = np.array(table[column])
-    return np.abs(values - values[0]).max()
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -99,15 +89,6 @@ def test_points_have_one_multiplier(lmp_tree):
 
 
 # --- runs, restart ---------------------------------------------------------------------
-
-
-END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"
-
-
-def continued(deck, file):
-    """The deck with its atoms and potential from a restart file."""
-    rest = re.sub("velocity all create.*", "", deck[deck.index("neigh_") :])
-    return f"units lj\natom_modify sort 0 0.0\nread_restart {file}\n{rest}"
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

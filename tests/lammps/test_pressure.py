@@ -5,9 +5,8 @@ What is refused is in test_bad_input.py, restarts and ranks in test_pressure_run
 
 import numpy as np
 import pytest
-from pressed import GAUSS, distances, ends, frame, largest_change, pressed, trimers
-from scenes import water_data
-from pressed import scaled_water
+from pressed import GAUSS, distances, ends, frame, pressed, scaled_water, trimers
+from scenes import largest_change, water_data
 
 EDGES = ("Lx", "Ly", "Lz")
 #: elements of the fix's vector: molecular pressures xx yy zz, target, rates of the box, its kinetic energy

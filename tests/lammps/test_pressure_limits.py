@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from pressed import largest_change, pressed, trimers
-from scenes import one_after_the_other, water_data
+from pressed import pressed, trimers
+from scenes import largest_change, water_data
 
 # --- how fast the box oscillates ----------------------------------------------------------------
 

@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 import pressed as scene
-from pressed import REPULSIVE, distances, ends, largest_change, trimers
-from scenes import FORMULATIONS, one_after_the_other
+from pressed import REPULSIVE, distances, ends, trimers
+from scenes import FORMULATIONS, largest_change, one_after_the_other
 
 MODES = {
     "NPH": "iso 0.3 0.3 1.0",

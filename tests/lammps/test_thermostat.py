@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 import pytest
-from scenes import MOLECULES, difference, last_frame, one_after_the_other, water, water_data
-from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, largest_change, run, whole_and_halves
+from scenes import MOLECULES, difference, largest_change, last_frame, one_after_the_other, water, water_data
+from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, run, whole_and_halves
 
 
 def order(steps, errors):

@@ -6,6 +6,7 @@ from scenes import (
     FORMULATIONS,
     MOLECULES,
     difference,
+    largest_change,
     last_frame,
     one_after_the_other,
     placed,
@@ -14,7 +15,7 @@ from scenes import (
 )
 from scipy.integrate import solve_ivp
 from inserted import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
-from heated import COMMON, END, KINDS, cluster, continued, largest_change, whole_and_halves
+from heated import COMMON, END, KINDS, cluster, continued, whole_and_halves
 from stepped import ELEMENTS, LARGEST, NEXT, REPEATED, VALUES, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"

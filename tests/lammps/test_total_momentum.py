@@ -8,8 +8,8 @@ import re
 import numpy as np
 import pytest
 from running import EXAMPLES
-from scenes import MOLECULES, last_frame, one_after_the_other
-from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, largest_change
+from scenes import largest_change, last_frame, one_after_the_other
+from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued
 from stepped import tables
 
 DUMBBELL = """d

@@ -255,8 +255,7 @@ def new_files(tree: Path, author: str, email: str) -> None:
     tests = tree / "unittest" / "force-styles" / "tests"
     tests.mkdir(parents=True)
     for yaml in (ROOT / "tests" / "lammps").glob("fix-timestep-*.yaml"):
-        if "4Feb2025" not in yaml.name:
-            shutil.copy(yaml, tests)
+        shutil.copy(yaml, tests)
 
 
 def git(folder: Path, *words: str) -> str:
