@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from benchmarks.engine import Lab
+from benchmarks.engine.page import render
 from benchmarks.engine.sites import read_sites
+from benchmarks.studies import liquids as study
 from benchmarks.studies.coefficients import prediction
-from benchmarks.studies.liquids import heavier, plan, quantities, runs
-from benchmarks.studies.liquids.plan import DEFAULT, HEAVY, NVE_SMALL, SPCE
+from benchmarks.studies.liquids import heavier, judging, plan, quantities, runs
+from benchmarks.studies.liquids.plan import DEFAULT, HEAVY, MAIN, NVE_SMALL, SCENES, SPCE, VALUES
 
 TIME = 60.0 * np.arange(334)
 
@@ -67,6 +69,77 @@ def test_samples_are_those_of_whole_steps():
 
 # --- what is found --------------------------------------------------------------------------------
 DRIFT, LOSS, BEST, WRONG = ": drift", "without loss", "best number", "predicted drift"
+
+
+def spectrum(axes=3):
+    """A Spectrum of which all predicted drifts are small."""
+    omega = np.linspace(0.001, 0.05, 50)
+    return prediction.Spectrum(omega, np.full(50, 0.02), np.full(50, 0.02), axes)
+
+
+def results(rates=(), lost=(), ratio=1.0):
+    """Results of all runs; ``rates``: (scene, method, step) -> drift; ``lost``: keys of one run lost."""
+    rates, seed, found, made = dict(rates), 0, {}, plan.Plan()
+    for scene in (*SCENES, HEAVY):
+        for method, extent in scene.methods.items():
+            for dt in extent.steps:
+                key, count = (scene.key, method.key, dt), made.extent(scene, method, dt)[0]
+                own = rates.get(key, 0.0), scene.liquid, ratio
+                found[key] = [made_up(*own, seed=(seed := seed + 1)) for _ in range(count)]
+                if key in lost:
+                    found[key][-1] = made_up(*own, time=TIME[:4])
+    floors = {
+        (forces.text, method.key): made_up(seed=k)
+        for k, (forces, methods) in enumerate(plan.FLOORS.items())
+        for method in methods
+    }
+    spectra = {liquid.key: spectrum() for liquid in plan.LIQUIDS}
+    bins = np.linspace(0, 9, 90)
+    pairs = np.array([np.stack([bins, k + np.exp(-bins), 2 + bins], axis=1) for k in range(5)])
+    places = {(MAIN.key, dt): pairs for dt in MAIN.pairs}
+    places |= {(HEAVY.key, dt): pairs + [0, 0.1, 0] for dt in HEAVY.pairs}
+    return runs.Results(made, found, floors, spectra, places)
+
+
+def refused(data):
+    """What the measurements that do not hold are about; the noise of made-up temperatures is none of it."""
+    return [m.what for m in judging.measurements(data) if not m.holds and "T trans" not in m.what]
+
+
+@pytest.mark.parametrize("scene", SCENES[:2], ids=lambda scene: scene.key)
+@pytest.mark.parametrize("dt", judging.MOST_DRIFT)
+def test_drifts_of_water_are_bounded(scene, dt):
+    """By the bound and two standard errors, in both directions."""
+    most, key = judging.MOST_DRIFT[dt], (scene.key, DEFAULT.key, dt)
+    keys = [(scene.key, method.key, dt) for method in VALUES.values()]
+    for rate, count in ((0.9, 0), (-0.9, 0), (1.5, 1), (-1.5, 1)):
+        data = results({k: rate * most for k in (key, *keys)})
+        found = [what for what in refused(data) if DRIFT in what and WRONG not in what]
+        assert [what.count(f" {dt:g} fs") for what in found] == [1] * count
+
+
+def test_a_lost_body_is_noticed():
+    key = SCENES[1].key, DEFAULT.key, plan.STEPS[-1]
+    assert [LOSS in what for what in refused(results(lost=[key]))] == [True]
+    lost = (SCENES[1].key, DEFAULT.key, 3.0)
+    assert sum(DRIFT in what for what in refused(results(lost=[lost]))) == 1
+
+
+def test_page_and_pictures(tmp_path):
+    key = MAIN.key, VALUES[9].key
+    data = results({(*key, 2.0): -0.27}, [(*key, 3.0)])
+    finding = study.find(data)
+    rows = {row[0]: row[1:] for row in finding.tables["drift_spce"].rows}
+    assert float(rows[plan.NAMES[VALUES[9]]][1].split()[0]) == pytest.approx(-0.27, rel=1e-2)
+    assert rows[plan.NAMES[VALUES[9]]][3] == "1 of 3 lost, after 0.2 ps"
+    assert render("liquids.md.j2", study.STUDY, finding, "Somewhere.").count("1 of 3 lost") == 2
+    heights = [row[-2] for row in finding.tables["heavy"].rows]
+    assert heights[:2] == ["3.00 ± 0.71", "+0.1000 ± 0.0000"]
+    for name in ("drift", "heavy"):
+        picture = finding.pictures[name]
+        path = tmp_path / f"{name}.png"
+        picture(path) if callable(picture) else study.draw(path, picture)
+        assert path.stat().st_size > 10_000
 
 
 # --- LAMMPS ---------------------------------------------------------------------------------------

@@ -11,6 +11,8 @@ from benchmarks.engine.store import read_data, write_data
 from running import ROOT
 
 
+#: test_liquids.py makes its page of made-up runs, because real ones take minutes
+STUDIES = [study for key, study in all_studies().items() if key != "liquids"]
 #: where a quick run of all parts takes minutes; there is no page of some parts
 PARTS = {"accuracy": ("top",), "hard": ("poles", "fast"), "scatter": ("conservation",)}
 
@@ -20,7 +22,7 @@ def beyond(bound, sign):
     return bound + sign * (0.01 * abs(bound) or 1e-12)
 
 
-@pytest.mark.parametrize("study", all_studies().values(), ids=lambda study: study.key)
+@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.key)
 def test_from_runs_to_a_page(study, tmp_path):
     parts = PARTS.get(study.key, ())
     write_data(tmp_path / "data.json", study.measure(Lab(tmp_path, quick=True, parts=parts)))
@@ -38,5 +40,4 @@ def test_from_runs_to_a_page(study, tmp_path):
         wrong = [beyond(one.most, 1)] if one.most is not None else []
         wrong += [beyond(one.least, -1)] if one.least is not None else []
         assert not any(replace(one, value=value).holds for value in (*wrong, math.nan)), one.what
-    # studies whose quick runs have no errors have no bounds either
-    assert finding.measurements
+    assert finding.tables or finding.measurements

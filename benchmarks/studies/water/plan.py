@@ -73,4 +73,4 @@ class Plan:
         return {"settle": self.settle, "steps": self.duration}
 
 
-QUICK = Plan(0.0, 0.4, 2.4, 0.024, 300)
+QUICK = Plan(0.0, 0.1, 0.72, 0.024, 200)
