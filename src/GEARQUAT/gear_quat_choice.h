@@ -40,7 +40,7 @@ class MotionSums {
   /// sums of (z/h)^4, torque^2/I and I omega^2, which add up over bodies
   static constexpr int SUMS = 4;
   double sums[SUMS] = {};
-  /// omega|^2 of the body that turns fastest; its maximum is taken over bodies
+  /// |omega|^2 of the body that turns fastest; its maximum is taken over bodies
   double omega2 = 0.0;
 
   /// A body at the beginning of a series with steps of this length.
