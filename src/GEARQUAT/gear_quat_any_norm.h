@@ -11,11 +11,11 @@
    (gear_quat_math.h), a weak spring keeps the length close to 1, and sites use q/|q|.  This
    requires three things:
 
-         - residuals use the pose at which the torque was evaluated, the predicted one;
-         - passes are repeated until the residual converges, unless their number is given;
-         - a body that turns fast is unstable in this equation.  Between two speeds of rotation, in
-      radians per step, Eq. 6 with its projection gradually replaces it; beyond them Eq. 6 is used
-      alone, with its two passes.  Five values are stable without it. */
+     - residuals use the pose at which the torque was evaluated, the predicted one;
+     - passes are repeated until the residual converges, unless their number is given;
+     - a body that turns fast is unstable in this equation.  Between two speeds of rotation, in
+       radians per step, Eq. 6 with its projection gradually replaces it; beyond them Eq. 6 is used
+       alone, with its two passes.  Five values are stable without it. */
 
 #ifndef GEAR_QUAT_ANY_NORM_H
 #define GEAR_QUAT_ANY_NORM_H

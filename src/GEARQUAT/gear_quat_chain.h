@@ -17,11 +17,11 @@
      E = sum_k Q_k xi_k^2/2 + S                                                               (T3)
      S' = kT (g xi_1 + xi_2 + ... + xi_M) - (sum_k Q_k xi_k^2/2) T'/T                         (T4)
 
-   even while the target T changes, and with it the masses.  Sources: G. J. Martyna, M. L. Klein, M.
-   Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II, where p_eta_k = Q_k xi_k; the masses: G.
-   J. Martyna, M. E. Tuckerman, D. J. Tobias, M. L. Klein, Mol. Phys. 87, 1117 (1996), section 2.5.
-   A chain with a single variable: W. G. Hoover, Phys. Rev. A 31, 1695 (1985), after S. Nose, J.
-   Chem. Phys. 81, 511 (1984).
+   even while the target T changes, and with it the masses.
+   Sources: G. J. Martyna, M. L. Klein, M. Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II,
+   where p_eta_k = Q_k xi_k; the masses: G. J. Martyna, M. E. Tuckerman, D. J. Tobias, M. L. Klein,
+   Mol. Phys. 87, 1117 (1996), section 2.5.  A chain with a single variable: W. G. Hoover,
+   Phys. Rev. A 31, 1695 (1985), after S. Nose, J. Chem. Phys. 81, 511 (1984).
 
    Far from the target, or with many degrees of freedom, xi_2 grows as g xi_1^2: the chain is stiff,
    although the bodies move smoothly.  So only K(t) is interpolated over a step of the bodies, by

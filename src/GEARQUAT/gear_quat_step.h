@@ -5,12 +5,12 @@
 
 /* One step of all bodies of a fix:
 
-         begin()            predict, place sites
-         LAMMPS             forces at the predicted sites
-         end()              gather loads, correct, test the error;
-                       if it is too large: undo, shorten, predict, place, evaluate, and repeat
-                       place sites
-         choose_next()      with a changing step, when all fixes have finished this one
+     begin()            predict, place sites
+     LAMMPS             forces at the predicted sites
+     end()              gather loads, correct, test the error;
+                        if it is too large: undo, shorten, predict, place, evaluate, and repeat
+                        place sites
+     choose_next()      with a changing step, when all fixes have finished this one
 
    A Step owns the objects of a step: the length, the integrator, the coupling of all bodies, the
    control of the error, and the limits beyond which a run ends. */
