@@ -107,8 +107,7 @@ struct Keyword {
                                      ///< first is the default; NAME, MASK, NUMBERS: what follows
   std::string standard;              ///< WORD: the default
   std::string with_tolerance;        ///< WORD: the default then, empty: the same
-  std::vector<Range> ranges;         ///< INTEGER: one, or one each for formulations second and
-                                     ///< first
+  std::vector<Range> ranges;         ///< INTEGER: one, or one per formulation, second first
   int any_sign = 0;                  ///< NUMBERS: so many of the first may be negative or zero
   int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
   bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them

@@ -8,7 +8,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// A third pass rarely pays, and a number with too many digits would seem to hang.
+// A third pass rarely pays, and with a number of too many digits the run would seem to hang.
 
 static constexpr int PASSES_MOST = 100;
 
@@ -26,7 +26,7 @@ static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies c
 using Value = KeywordValue;
 
 /* ----------------------------------------------------------------------
-   the table; what decided the defaults is in doc/decisions.md
+   the table; the reasons for the defaults are in doc/decisions.md
 ------------------------------------------------------------------------- */
 
 /// A keyword that makes components of the pressure constant.

@@ -51,7 +51,6 @@ enum class FixFact {
   CARRIES_BODIES,       ///< it calls deform() of rigid fixes where it remaps atoms with the box
   NO_FORCE,             ///< it is called around the forces, but changes none
   NO_LOCAL_DATA,        ///< it is called at the end of a step, but reads no local data of a fix
-                        ///< itself
 };
 
 /// Properties of a compute.
@@ -84,7 +83,7 @@ struct ActOnAtoms {
   const char *pattern;
   enum {
     MOMENTUM,       ///< subtracts a rigid motion from velocities
-    TEMPERATURE,    ///< scales velocities, all by the same factor unless a bias or a region divides
+    TEMPERATURE,    ///< scales velocities, uniformly unless a bias or a region divides them
                     ///< them
     REFLECTION,     ///< mirrors single atoms that reach a position
     IMPULSE,        ///< a force that is inversely proportional to the time step

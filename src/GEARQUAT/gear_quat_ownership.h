@@ -42,8 +42,7 @@ struct Comparison {
   tagint broken = 0;              ///< a body that has lost atoms, or that is given by several IDs
   bigint left = 0, had = 0;       ///< its atoms now and before
   tagint mass_changed = 0;        ///< a body whose atoms have another mass, center or inertia
-  tagint torn = 0;                ///< a body whose atoms are whole periods further apart than
-                                  ///< before
+  tagint torn = 0;                ///< a body whose atoms are now whole periods further apart
   tagint cut = 0;                 ///< a body that another box has torn at the faces of the box
 };
 
