@@ -87,7 +87,7 @@ void Barostat::find_temperature()
   const auto all = over_ranks(MPI_SUM, here, world);
   if (!(all[0] > 0.0))
     error->all(FLERR,
-               "Fix gear/quat: the mass of the box is that of a temperature, and the bodies have "
+               "Fix gear/quat: the mass of the box needs a temperature, and the bodies have "
                "none; give them velocities first, or add keyword ptemp");
   words.start = words.stop = all[0] / all[1] * force->mvv2e / force->boltz;
 }

@@ -185,8 +185,8 @@ void OtherFixes::check_gravity()
                      other->id);
     else if (any[1])
       error->warning(FLERR,
-                     "Fix gear/quat: fix {} (gravity) pulls at the masses of atoms, and these are "
-                     "not those of the bodies; use fix addforce instead",
+                     "Fix gear/quat: fix {} (gravity) acts on the masses of atoms, which differ "
+                     "from the masses of their bodies; use fix addforce instead",
                      other->id);
   }
 }

@@ -33,7 +33,7 @@ static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGI
     {{"tparam"}, "a thermostat is integrated with the bodies, without iterations; leave it out"},
     {{"pparam"}, "a barostat is integrated with the bodies, without iterations; leave it out"},
     {{"scalexy", "scalexz", "scaleyz"}, SCALED_TILT},
-    {{"drag"}, "the motion of the box is that of its equations; use a longer Pdamp instead"},
+    {{"drag"}, "the equations of motion of the box have no drag; use a longer Pdamp instead"},
     {{"mtk"}, "its terms always belong to the equations of motion; leave it out"},
     {{"nreset"}, "pressures are those of the present box, not of a reference cell; leave it out"},
     {{"tloop", "ploop"}, "chains choose their own sub-steps; leave it out"},

@@ -191,15 +191,15 @@ const char *Motion::reason_to_start_anew(double **f)
 {
   const double now = std::fabs(step.length()), last = std::fabs(step.time_step.made());
   if (now < SHORTER * last && can_start_anew())
-    return "the time step is less than half of that of the last steps";
+    return "the time step is less than half of the previous one";
   if (now > LONGER * last && last != 0.0 && can_start_anew())
-    return "the time step is more than twice that of the last steps";
+    return "the time step is more than twice the previous one";
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
   if (const char *other = another_scheme_suits()) return other;
   const char *changed = step.coupling ? step.coupling->reason_to_start_anew() : nullptr;
   if (changed && bootstraps() && forces_can_be_followed()) return changed;
-  return forces_changed(f) ? "forces are not those of the last step" : nullptr;
+  return forces_changed(f) ? "forces have changed since the last step" : nullptr;
 }
 
 /// The other fixes that move atoms: the derivatives of forces depend on that motion.

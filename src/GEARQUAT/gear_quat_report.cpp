@@ -292,7 +292,7 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
       compensation(args, scene),
       {"changing step", args.control.eps > 0.0,
        args.control.eps > 0.0 ? args.words_of_control() : "no tolerance",
-       "control of the error of a step: it is what the time step makes it"},
+       "control of the error of a step: the time step determines it"},
   };
   if (args.pressure.any()) rows.push_back({"barostat", true, args.words_of_pressure(), ""});
   return rows;

@@ -135,8 +135,8 @@ bool Restart::resume(int group)
   if (found == Resumed::NONE) {
     if (comm->me == 0)
       error->warning(FLERR,
-                     "Fix gear/quat: the bodies of this command consist of other atoms than those "
-                     "of the restart file; they begin anew from their atoms");
+                     "Fix gear/quat: the bodies of this command consist of other atoms than in "
+                     "the restart file; they are made again from their atoms");
     return false;
   }
   const std::string missing = motion.read(sections);

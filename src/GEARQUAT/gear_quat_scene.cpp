@@ -82,9 +82,9 @@ static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
   for (const auto *other : lmp->modify->get_fix_list())
     if (known(FixFact::FIRST_RIGID, other))
       lmp->error->warning(FLERR,
-                          "Fix gear/quat: fix {} ({}) knows the bodies of fix {} only and damps "
-                          "contacts of those of fix {} with the masses of atoms; use one fix for "
-                          "all bodies",
+                          "Fix gear/quat: fix {} ({}) uses the bodies of fix {} only and damps "
+                          "contacts of the bodies of fix {} with the masses of atoms; use one fix "
+                          "for all bodies",
                           other->id, other->style, first->id, fix->id);
 }
 

@@ -88,8 +88,8 @@ static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::st
   if (lmp->comm->me == 0)
     utils::logmesg(
         lmp,
-        "Fix gear/quat: molecule template {} states mass, center of mass or inertia other "
-        "than those of its atoms; bodies are as it states (mass {:g}, atoms {:g})\n",
+        "Fix gear/quat: molecule template {} gives a mass, center of mass or inertia "
+        "that differ from its atoms; bodies use the given values (mass {:g}, atoms {:g})\n",
         template_id, stated.mass, summed.mass);
   return stated;
 }

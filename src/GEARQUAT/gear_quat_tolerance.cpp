@@ -57,9 +57,9 @@ void Tolerance::refuse_scene() const
           other->id, other->style);
     if (same && same->tuned)
       error->all(FLERR,
-                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and tuned "
-                 "coefficients forget a change too slowly; give it corrector gear, or let this fix "
-                 "move its bodies",
+                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and with "
+                 "tuned coefficients errors from a change decay too slowly; give it corrector "
+                 "gear, or let this fix move its bodies",
                  other->id, other->style);
     if (same && comm->me == 0)
       error->warning(FLERR,
@@ -235,7 +235,9 @@ void Tolerance::put_back_begun_step()
 void Tolerance::tell_of_step() const
 {
   if (comm->me == 0)
-    utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n",
+    utils::logmesg(lmp,
+                   "Fix gear/quat tolerance: keeping time step {:.3g}; the timestep command "
+                   "({:.3g}) is ignored\n",
                    time_step.length(), update->dt);
 }
 

@@ -334,8 +334,8 @@ void Tolerance::end_run()
   const double more = mean / shortest - 1.0;
   if (n > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
     utils::logmesg(lmp,
-                   "Fix gear/quat tolerance: the step has changed little, and the control does not "
-                   "pay here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
+                   "Fix gear/quat tolerance: the step has changed little, and step control gains "
+                   "little here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
                    "steps with Gear's coefficients, and tuned ones permit longer steps\n",
                    shortest, 100.0 * more);
   settled = Settled();

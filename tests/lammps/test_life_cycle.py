@@ -121,7 +121,7 @@ def test_unfix_and_back(case1):
 
 def test_a_step_shorter_than_half_begins_anew(case1):
     """Not at a half, nor if the step is back before it is used, nor where a start would not be full."""
-    said = "less than half of that of the last steps, histories start anew"
+    said = "less than half of the previous one, histories start anew"
     shorter = case1.run("run 100\ntimestep 0.008\nrun 100")
     assert shorter.stdout.count(said) == 1
     assert shorter.stdout.count("force evaluations") == 2

@@ -278,7 +278,7 @@ def test_ranks_agree(lmp_tree, words):
 def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, "gear/quat molecule tolerance 1e-6", dt=1.0, steps=500)
-    said = "the control does not pay here"
+    said = "step control gains little here"
     assert lmp_tree.succeed(deck).output.count(said) == 1
     halted = deck.replace("run 500", UNTIL.format(300.0))
     assert halted != deck and lmp_tree.succeed(halted).output.count(said) == 1
@@ -357,7 +357,7 @@ def test_216_molecules_of_water(lmp_tree):
         deck = WATER_216.format(data, 0.5, words, REPEATED, 1, every, UNTIL.format(end))
         result = lmp_tree.succeed(deck)
         _, (step, poses), *_ = frames(lmp_tree.folder / "poses.dump").items()
-        return step, poses, re.findall("does not pay here: a fixed time step of (.*?) without", result.words)
+        return step, poses, re.findall("gains little here: a fixed time step of (.*?) without", result.words)
 
     right = fixed(800)
 
