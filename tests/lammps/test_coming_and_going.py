@@ -306,7 +306,7 @@ def test_a_template_that_states_its_mass(lmp_tree, header):
     def move(header, fix=MOL, dt=0.005, steps=200):
         deck = in_field(lmp_tree, dt, steps + 1, force=FALL, header=header, fix=fix)
         result = lmp_tree.succeed(deck)
-        return poses(lmp_tree)[:, 1:], said in result.output
+        return poses(lmp_tree)[:, 1:], said in result.words
 
     mine, told = move(header)
     rigid, _ = move(header, "rigid/nve/small molecule mol spce", 0.0005, 2000)

@@ -209,7 +209,7 @@ def package_readme(author: str, email: str) -> str:
     before, build, after = re.match(r"(.*\nHow to build\n\n)(.*?)(Contents\n.*)", text, re.S).groups()
     assert "STANDARD_PACKAGES" in build
     build = (
-        "The package needs no library and no other package.\n\n"
+        "The package requires neither libraries nor other packages.\n\n"
         "  CMake             -D PKG_GEARQUAT=on\n"
         "  traditional make  make yes-gearquat\n\n"
     )
