@@ -1,4 +1,4 @@
-"""Broken argument lines and files in process: a slice here, all of it with `tests/run fuzz`."""
+"""Malformed argument lines and files in process: a part here, all with `tests/run fuzz`."""
 
 import os
 import random
@@ -20,7 +20,7 @@ def test_nothing_crashes_hangs_or_is_refused_without_a_message(tmp_path, kind):
         f"{text[:600]}\n-> {fault}" for text, fault in outcome.faults
     )
     assert outcome.inputs == INPUTS
-    # inputs of both kinds are there in numbers
+    # there are many inputs of both kinds
     assert min(outcome.counts["accepted"], outcome.counts["refused"]) > INPUTS / 10
 
 

@@ -1,4 +1,4 @@
-"""The fixtures themselves: what a test gets back, and that nothing keeps running after a time-out."""
+"""The fixtures themselves: the results for a test, and the end of all processes after a time-out."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ run 0
 
 
 def processes_that_mention(text: str) -> list[str]:
-    """Command lines, but for processes that end meanwhile."""
+    """Command lines, except of processes that end meanwhile."""
     commands = []
     for path in Path("/proc").glob("[0-9]*/cmdline"):
         with suppress(OSError):
