@@ -66,13 +66,13 @@ struct PressureWords {
   }
 };
 
-/// The words behind a keyword, after they were read.
+/// The words after a keyword, parsed.
 struct KeywordValue {
   std::string text;                    ///< the first word as written
   int integer = 0;                     ///< of an INTEGER
   double number = 0.0;                 ///< of a NUMBER, in units of `unit`
-  std::string measure = {};            ///< of a NUMBER, the word behind it
-  double unit = 1.0;                   ///< of a NUMBER, the number behind that word
+  std::string measure = {};            ///< of a NUMBER, the word after it
+  double unit = 1.0;                   ///< of a NUMBER, the number after that word
   std::vector<double> numbers = {};    ///< of NUMBERS
   MaskWords mask = {};                 ///< of a MASK
 
@@ -91,9 +91,8 @@ struct Keyword {
   /// Another keyword that has to be given, or must not be; value: empty for any but "none".
   struct Condition {
     std::string keyword, value;
-    std::string reason;    ///< ends the error message, may be empty
-    std::string
-        only_for;    ///< what is required: by this value of the keyword alone, empty: by any
+    std::string reason;      ///< ends the error message, may be empty
+    std::string only_for;    ///< required only by this value of the keyword; empty: by any value
   };
   using Store = void (*)(Arguments &, const KeywordValue &);
 
@@ -103,12 +102,12 @@ struct Keyword {
   Store store;
 
   Kind kind = WORD;
-  std::vector<std::string> words;    ///< WORD: the possible ones; NUMBER: those behind it, the
+  std::vector<std::string> words;    ///< WORD: the possible ones; NUMBER: the words after it, the
                                      ///< first is the default; NAME, MASK, NUMBERS: what follows
   std::string standard;              ///< WORD: the default
   std::string with_tolerance;        ///< WORD: the default then, empty: the same
   std::vector<Range> ranges;         ///< INTEGER: one, or one per formulation, second first
-  int any_sign = 0;                  ///< NUMBERS: so many of the first may be negative or zero
+  int any_sign = 0;                  ///< NUMBERS: how many of the first may be negative or zero
   int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
   bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them
   bool may_be_auto = false;          ///< INTEGER: the word auto is possible, and the default

@@ -17,7 +17,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class BoxFrequency {
  public:
-  /// Limits for the fastest oscillation, as a part of what the method follows: beyond the first
+  /// Limits for the fastest oscillation, as a part of the limit of the method: beyond the first
   /// there is a warning, beyond the second an error.
   static constexpr double WARNED = 0.6, REFUSED = 0.95;
 

@@ -197,7 +197,7 @@ class Chain {
   }
 
   /// For the start.  twice: points to 2K at the present time; the values at `pairs` later and
-  /// earlier times of this spacing are behind and before it in memory.  `count` earlier sums are
+  /// earlier times of this spacing are after and before it in memory.  `count` earlier sums are
   /// kept; those without a node are extrapolated by the polynomial through all nodes, whose next
   /// difference is zero.
   void seed(const double *twice, int pairs, double spacing, int count)

@@ -91,7 +91,7 @@ struct ActOnAtoms {
   } act;
   enum {
     GROUP,            ///< its group
-    ANY,              ///< any atoms, whatever its group
+    ANY,              ///< any atoms, for any group
     CONSTRAINED,      ///< atoms of its group whose degrees of freedom it subtracts
     AT_INTEGRATION    ///< its group, if a keyword makes it act in initial_integrate()
   } on;

@@ -119,7 +119,7 @@ class StartPlan {
   int most;
   int present = 1;             ///< pair that is evaluated
   int known = 0;               ///< pairs evaluated at least once
-  int round = 0;               ///< last pair of a round that evaluates all pairs anew
+  int round = 0;               ///< last pair of a round that evaluates all pairs again
   double contraction = 1.0;    ///< of a change when a pair is evaluated once more
   double first[MAX_PAIRS + 1] = {HUGE_VAL}, last[MAX_PAIRS + 1] = {};    ///< changes
 
