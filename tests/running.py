@@ -82,7 +82,7 @@ class Result:
 
 
 def processes_of_session(session: int) -> list[int]:
-    """IDs of the processes started by a run."""
+    """Numbers of the processes that a run has started."""
     members = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -95,7 +95,7 @@ def processes_of_session(session: int) -> list[int]:
 
 
 def end_session(session: int) -> None:
-    """Ends a program and all its children: ``mpirun`` and ``lmp`` leave children in other groups."""
+    """Ends a program and all it started: ``mpirun`` and ``lmp`` leave children in other groups."""
     for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
         for process in processes_of_session(session):
             try:
@@ -158,7 +158,7 @@ class Lammps:
         surroundings = {**own_environment(), **self.environment, **(environment or {})}
         out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
         with out.open("w") as stdout, err.open("w") as stderr:
-            # files, not pipes: a child that outlives its parent must not block us
+            # files, not pipes: a child that outlives its parent cannot keep us waiting
             process = subprocess.Popen(
                 command,
                 cwd=where,

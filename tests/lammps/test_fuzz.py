@@ -20,7 +20,7 @@ def test_nothing_crashes_hangs_or_is_refused_without_a_message(tmp_path, kind):
         f"{text[:600]}\n-> {fault}" for text, fault in outcome.faults
     )
     assert outcome.inputs == INPUTS
-    # there are many inputs of both kinds
+    # inputs of both kinds are there in numbers
     assert min(outcome.counts["accepted"], outcome.counts["refused"]) > INPUTS / 10
 
 

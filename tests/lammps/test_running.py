@@ -25,7 +25,7 @@ run 0
 
 
 def processes_that_mention(text: str) -> list[str]:
-    """Command lines, except of processes that end meanwhile."""
+    """Command lines, but for processes that end meanwhile."""
     commands = []
     for path in Path("/proc").glob("[0-9]*/cmdline"):
         with suppress(OSError):
