@@ -12,11 +12,9 @@
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
    Second-order formulation (Rapaport), 7 components:
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
-   With Scheme::any_norm() the second equation is replaced by the one in gear_quat_any_norm.h.
-   Equation numbers: Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(),
-   body_state(), [forces at that state] and correct(); for a body without moments of inertia it
-   calls the three functions whose names end in center, which do not change the columns of the
-   rotation. */
+   With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.  Equation numbers:
+   Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(), body_state(), [forces] and
+   correct(), or for a body without moments of inertia the functions whose names end in center. */
 
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
@@ -40,8 +38,7 @@ struct Undamped {
 
 class Integrator : public Kinematics {
  public:
-  /// h: the time step, not zero; negative runs backwards.  Throws std::domain_error if the scheme
-  /// requires tuned coefficients that do not exist.
+  /// h: not zero; negative runs backwards.  Throws std::domain_error for a missing tuned set.
   Integrator(const Scheme &scheme, double h) : Integrator(scheme, h, CorrectorCoefficients(scheme))
   {
   }
@@ -93,9 +90,8 @@ class Integrator : public Kinematics {
     return correct(body, load, axes_of(rows).data(), rows);
   }
 
-  // With a friction that depends on all bodies together: the same correction pass by pass, with
-  // begin(), [friction] and correct_pass() for each pass, finish(), and in the first-order form
-  // also scale_momenta().
+  // With a friction that depends on all bodies: begin(), [friction] and correct_pass() for each
+  // pass, finish(), and in the first-order form also scale_momenta().
 
   struct Residual {    ///< summed over the passes
     double x[3], q[4];
@@ -128,8 +124,7 @@ class Integrator : public Kinematics {
     });
   }
 
-  /// The force in the predicted rows.  Its difference from the actual force, times h, is the
-  /// residual of a momentum.
+  /// The force in the predicted rows; h times its error is the residual of a momentum.
   void force_of_rows(const RigidBody &body, const double *rows, double *force) const
   {
     const double *row = scheme.first() ? rows + scheme.width() + Scheme::MOMENTUM
@@ -173,8 +168,7 @@ class Integrator : public Kinematics {
     add_first(rows, Scheme::OMEGA, change);
   }
 
-  /// Advances a scalar y with y' = rate: its n rows to t + h, with the step and coefficients of
-  /// momenta.
+  /// Advances the n rows of y with y' = rate to t + h, with step and coefficients of the momenta.
   void advance(double *rows_of_scalar, double rate) const
   {
     Nordsieck<1>::predict(rows_of_scalar, n);
@@ -364,8 +358,7 @@ class Integrator : public Kinematics {
     project(history, part, rows);
   }
 
-  /// The residual of the quaternion after another pass; total: of the previous passes; part: see
-  /// AnyNorm::projected_part().
+  /// The residual of the quaternion after another pass.  total: earlier; part: projected_part().
   template <class Damper>
   void rotation_residual(const RigidBody &body, const double *per_inertia,
                          const double *torque_body, const Damper &damper, double part,
@@ -388,8 +381,6 @@ class Integrator : public Kinematics {
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[i];
   }
-
-  // meaning of predicted rows and of the residuals of a pass
 
   /// Without projection the pose is the predicted one, at which the torque was evaluated.
   void rotation_of_pass(double part, const double *rows, const double *total, double *q,

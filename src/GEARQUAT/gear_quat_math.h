@@ -100,8 +100,7 @@ inline void quaternion_acceleration(const double *q, const double *qdot,
 
 /// The same for a q of any length r, with s = q.qdot/r^2 = r'/r:
 ///   qddot = 1/2 W(q) (omegadot_body + 2 s omega_body, -1/2 |omega_body|^2 + 2 r''/r),
-///   r''/r = -1/2 stiffness (r^2 - 1), which keeps the length close to 1.
-/// part: of Eq. 6 in a mixture of both equations, 0 to 1.
+///   r''/r = -1/2 stiffness (r^2 - 1), which keeps the length close to 1.  part: of Eq. 6, 0 to 1.
 inline void quaternion_acceleration(const double *q, const double *qdot, const double *omega_body,
                                     const double *omegadot_body, double stiffness, double part,
                                     double *qddot)
@@ -163,8 +162,7 @@ inline void to_space(const double a[9], const double *body, double *space)
   space[2] = a[2] * body[0] + a[5] * body[1] + a[8] * body[2];
 }
 
-/// The unit quaternion of a proper rotation matrix A (space -> body, row-major).  The largest
-/// component is found first, to avoid division by a small one.
+/// The unit quaternion of a rotation matrix A (space -> body, row-major), without small divisors.
 inline void quaternion_from_matrix(const double a[9], double *q)
 {
   const double four[4] = {1.0 + a[0] - a[4] - a[8], 1.0 - a[0] + a[4] - a[8],
@@ -354,9 +352,8 @@ inline double rotational_energy(const RigidBody &body, const double *omega_body)
 }
 
 /// Principal moments and axes of a symmetric tensor (row-major) by cyclic Jacobi rotations.
-/// After the call the rows of `a` are the axes, a rotation matrix space -> body: every Jacobi
-/// rotation is proper, so the axes are right-handed.
-/// Axes are not sorted: an axis that is already principal does not change at all.
+/// After the call the rows of `a` are the axes, a right-handed rotation matrix space -> body.  Axes
+/// are not sorted: an axis that is already principal does not change at all.
 inline void principal_axes(const double tensor[9], double moments[3], double a[9])
 {
   double m[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

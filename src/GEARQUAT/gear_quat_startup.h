@@ -17,9 +17,8 @@
    difference of positions enters a velocity.  Nodes on both sides of the start, treated equally,
    make it symmetric under time reversal.
 
-   The host of find_start() calls, for every body: begin(); foretell() to add a pair; for both nodes
-   of a pair state_at(), [forces at that state], set_load(), and then settle(); at the end series()
-   and seed().
+   The host of find_start() calls, for every body: begin(); foretell() to add a pair; state_at(),
+   [forces], set_load() for both nodes of a pair, then settle(); finally series() and seed().
 
    find_start() decides which pair of nodes is evaluated next, and when to stop.  After two pairs
    the host may reduce the number of values.  The polynomial through the pairs 1..m-1 predicts the
@@ -51,8 +50,7 @@ namespace LAMMPS_NS::GearQuat {
 class StartPlan {
  public:
   static constexpr int MAX_PAIRS = (MAX_VALUES + 1) / 2;
-  static constexpr int MAX_SPACINGS = 8;    ///< number of tries, each with half of the previous
-                                            ///< spacing
+  static constexpr int MAX_SPACINGS = 8;    ///< tries, each with half the spacing
 
   enum class Verdict { GOES_ON, CONVERGED, JUMPS, SHORTER_SPACING };
 
@@ -103,9 +101,8 @@ class StartPlan {
   static constexpr double FALLS = 1.0, CONTRACTS = 0.5;
   // less than the rounding of velocities in a step; and an upper bound for the rounding of forces
   static constexpr double CONVERGED = 1.0e-15, ROUNDING = 1.0e-9;
-  // tolerance for the last changes, relative to the truncation error; it decreases beyond four
-  // pairs, since the highest derivatives multiply the errors of the pairs inside, unless there is a
-  // spare pair
+  // tolerance for the last changes, relative to the truncation error; smaller beyond four pairs,
+  // since the highest derivatives multiply errors of the inner pairs, unless there is a spare pair
   static constexpr double ALLOWED = 0.03;
   double allowed_part() const
   {
@@ -167,10 +164,8 @@ struct StartFound {
 /// The start of all bodies of a host.  The host has
 ///   void begin(double spacing)             all bodies at the start, no pair known
 ///   void foretell()                        adds a pair, for all bodies
-///   bool visit(int pair, double &change)   forces at both nodes of the pair; false if they cannot
-///                                          be evaluated there
-///   int values_that_do(int values)         sufficient values, at most `values`; after the first
-///                                          visit of pair 2
+///   bool visit(int pair, double &change)   forces at both nodes; false if they cannot be evaluated
+///   int values_that_do(int values)         sufficient values, at most `values`; after pair 2
 template <class Host> StartFound find_start(int values, double spacing, Host &host)
 {
   using Verdict = StartPlan::Verdict;
@@ -223,9 +218,8 @@ inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, 
   return series;
 }
 
-/// Fills all rows of a history from a series in units of the step `series_step`.  Rows without a
-/// known term become zero; momenta and angular velocities of the first-order form are derivatives
-/// of the same series.
+/// Fills all rows of a history from a series in units of `series_step`; rows without a known term
+/// are zero.  Momenta and angular velocities of the first-order form are derivatives of the series.
 inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries &series,
                  double series_step, double h, double *rows)
 {
@@ -391,8 +385,7 @@ class Collocation {
   /// The rate at the start; rates at the other nodes are before and after it in memory.
   const double *rate_at_start(const Scalar &s) const { return s.rate[half]; }
 
-  /// Updates the polynomial with both nodes of a pair, treated equally, so the start is symmetric
-  /// under time reversal.
+  /// Updates the polynomial with both nodes of a pair, treated equally, for time reversibility.
   template <int WIDTH, int ORDER> void settle(int pair, Nodes<WIDTH, ORDER> &w) const
   {
     for (int i = 0; i < WIDTH; ++i) {
