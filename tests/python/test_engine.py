@@ -12,7 +12,7 @@ from benchmarks.engine import Bars, Curve, Finding, Job, Lab, LammpsError, Measu
 from benchmarks.engine import Study, Table, conduct, provenance, publish, runner
 from benchmarks.engine.logs import Log
 from benchmarks.engine.store import read_data, write_data
-from benchmarks.studies.hard.long import Long
+from benchmarks.studies.accuracy.evaluate import Cost
 
 PROGRAM = """#!/bin/sh
 # stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script
@@ -159,7 +159,7 @@ def test_data_come_back_as_they_were(tmp_path):
     """Also views of arrays, keys that are tuples, and numbers that are not finite."""
     data = {
         ("pose", 0.1): (np.array([1.0, np.inf, 1e-300]), "text", None),
-        "long": Long(10, 1e-10, float("inf")),
+        "cost": Cost(float("inf"), "at most"),
         3: [np.float64(0.1), True, float("nan")],
     }
     whole = np.random.default_rng(1).normal(size=(30, 4, 3))
