@@ -77,7 +77,7 @@ def test_a_change_of_the_time_step(case1, factor):
 
 
 def test_a_longer_step_and_back(case1):
-    """The run is at most half as precise as one that starts anew with the first step."""
+    """The error is at most twice that of a run in which the fix is defined anew for the short step."""
     anew = "unfix move\nfix move body gear/quat molecule formulation ${formulation}\nfix_modify move energy yes"
     exact = end(case1.run("run 15000", dt=0.004))  # to t = 60
     kept, again = (
