@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 from fractions import Fraction
-from math import comb, factorial
+from math import comb
 
 import mpmath
 import numpy as np
@@ -43,105 +43,6 @@ def one_percent_off(corrector):
 
 
 # --- order ------------------------------------------------------------------------------------------
-def characteristic(c, order, terms):
-    """Coefficients of s^0 ... s^(terms-1) of (e^s - 1)^N times
-
-    order = 1: s c_0 + lambda (e_1 - s e_0) R c, order = 2: s^2/2 c_0 + lambda (e_2 - s^2/2 e_0) R c,
-
-    R = (lambda - P)^-1, lambda = e^s: zero where lambda is a root of the step.
-    """
-    n = len(c)
-
-    def times(a, b):
-        return [sum(a[i] * b[k - i] for i in range(k + 1)) for k in range(terms)]
-
-    root = [Fraction(1, factorial(k)) for k in range(terms)]
-    powers = [[Fraction(k == 0) for k in range(terms)]]
-    for _ in range(n):
-        powers.append(times(powers[-1], [Fraction(0), *root[1:]]))
-    found, held, rows = [0] * terms, [0] * terms, list(c)
-    for k in range(n):
-        found = [x + rows[order] * y for x, y in zip(found, powers[n - k - 1])]
-        held = [x + rows[0] * y for x, y in zip(held, powers[n - k - 1])]
-        rows = [sum(comb(m, j) * rows[m] for m in range(j + 1, n)) for j in range(n)]
-    found, held = times(root, found), times(root, held)
-    below = [c[0] * y - x for x, y in zip(held, powers[n])]
-    return [x + y / order for x, y in zip(found, [0] * order + below)]
-
-
-def has_order(c, order, free_c0=False):
-    """Whether all powers vanish, exactly, that order N asks for (free_c0: without that of c_0)."""
-    return not any(characteristic(c, order, len(c) + order - free_c0))
-
-
-@pytest.mark.parametrize("formulation", ROOTS)
-def test_coefficients_have_the_roots_and_the_order_that_were_asked_for(formulation):
-    corrector = made(formulation)
-    for roots, c in zip(ROOTS[formulation], corrector.sets):
-        assert has_order(c, corrector.order)
-        step = prediction.open_loop(np.array(c, dtype=float), corrector.order)
-        found = np.linalg.eigvals(step[corrector.order :, corrector.order :])
-        assert np.poly(found) == pytest.approx(np.poly([0.0, *roots]).real, abs=1e-6)
-    refused = [not all(has_order(c, corrector.order) for c in wrong.sets) for wrong in one_percent_off(corrector)]
-    assert refused.count(False) <= 2 * (3 - corrector.order)  # entries that order does not contain
-
-
-@pytest.mark.parametrize("formulation, values", [("first", 5), ("second", 5), ("second", 12)])
-def test_roots_at_zero_are_gears(formulation, values):
-    right = gear(formulation, values)
-    rest = placed(right.order, np.zeros(values - right.order - 1))
-    assert rest == pytest.approx([float(x) for x in right.sets[0][right.order :]], rel=1e-12)
-    assert tuple(completed(right.order, right.sets[0][right.order :])) == right.sets[0]
-
-
-# --- the search -------------------------------------------------------------------------------------
-@pytest.mark.parametrize("formulation, values", [("second", 5), ("second", 6), ("first", 4)])
-def test_a_short_search_finds_better_coefficients_of_exact_order(formulation, values):
-    search = Search(formulation, values)
-    corrector, cost = search.run(seed=1, iterations=8)
-    classical = gear(formulation, values)
-    assert cost == search.cost(corrector) < search.cost(classical) - 1.0
-    assert 10 ** search.oscillation(corrector)[0] < 10 ** search.oscillation(classical)[0] / 3
-    for c in corrector.sets:
-        assert has_order(c, corrector.order, search.free_c0)
-        assert has_order(c, corrector.order) != search.free_c0
-    again, _ = search.run(seed=1, iterations=8)
-    assert again == corrector
-
-
-@pytest.mark.parametrize("values", spectral.VALUES)
-def test_the_search_by_spectra_finds_the_set_of_the_kernel(values):
-    own, wanted = kernel.tuned("second", values, any_norm=True), spectral.SpectralSearch(values=values)
-    found, cost = wanted.run(seed=1, iterations=60)
-    assert wanted.cost(own) == pytest.approx(cost, rel=1e-3) and max(wanted.excess(own)) < 1e-6
-    np.testing.assert_allclose(found.floats, own.floats, rtol=1e-3)
-    assert has_order(own.sets[0], 2, free_c0=True)
-
-
-@pytest.mark.parametrize("formulation", ROOTS)
-def test_tuned_sets_stand_noise_and_friction(formulation):
-    for values in kernel.VALUES[formulation]:
-        noise, friction = Search(formulation, values).disturbances(kernel.tuned(formulation, values))
-        assert noise < 1e-3 and friction < 1e-3
-
-
-def test_the_command_prints_lines_of_the_table():
-    done = CliRunner().invoke(
-        command.main, "coefficients --search second 5 --seed 2 --iterations 1".split()
-    )
-    number = r"(-?[\d.e-]+)L"
-    pattern = rf"\{{SECOND, DRIVEN, \{{{number}, {number}\}}, {number}\}},\n"
-    line = re.match(pattern, done.output)
-    assert line, done.output
-    c = completed(2, [Fraction(1), Fraction(line[1]), Fraction(line[2])])
-    found = Corrector("second", ((Fraction(line[3]), *c[1:]),) * 2)
-    assert f"tuned: cost {Search('second', 5).cost(found):.3f}\n" in done.output
-    assert "Gear's: cost" in done.output
-    done = CliRunner().invoke(command.main, "coefficients --search second 13".split())
-    assert done.exit_code == 2 and "4 to 12 of second, 5 of spectral" in done.output
-
-
-# --- linear properties ------------------------------------------------------------------------------
 def stepped(corrector, z):
     """Matrix of one step in extended precision, from what a step does to each row."""
     n, columns = corrector.values, []
@@ -176,6 +77,77 @@ def roots_of(corrector, z):
         return damping, phase, max(float(abs(root)) for root in roots[1:])
 
 
+def order_of(corrector):
+    """The power of z with which the principal root misses exp(iz): N + 1 if the order is N."""
+    sizes = [np.hypot(*roots_of(corrector, z)[:2]) for z in (0.02, 0.01)]
+    return np.log2(sizes[0] / sizes[1])
+
+
+@pytest.mark.parametrize("formulation", ROOTS)
+def test_coefficients_have_the_roots_and_the_order_that_were_asked_for(formulation):
+    corrector = made(formulation)
+    assert order_of(corrector) == pytest.approx(corrector.values + 1, abs=0.1)
+    for roots, c in zip(ROOTS[formulation], corrector.sets):
+        step = prediction.open_loop(np.array(c, dtype=float), corrector.order)
+        found = np.linalg.eigvals(step[corrector.order :, corrector.order :])
+        assert np.poly(found) == pytest.approx(np.poly([0.0, *roots]).real, abs=1e-6)
+    assert sum(order_of(wrong) < corrector.values + 0.9 for wrong in one_percent_off(corrector)) >= 4
+
+
+@pytest.mark.parametrize("formulation, values", [("first", 5), ("second", 5), ("second", 12)])
+def test_roots_at_zero_are_gears(formulation, values):
+    right = gear(formulation, values)
+    rest = placed(right.order, np.zeros(values - right.order - 1))
+    assert rest == pytest.approx([float(x) for x in right.sets[0][right.order :]], rel=1e-12)
+    assert tuple(completed(right.order, right.sets[0][right.order :])) == right.sets[0]
+
+
+# --- the search -------------------------------------------------------------------------------------
+@pytest.mark.parametrize("formulation, values", [("second", 5), ("second", 6), ("first", 4)])
+def test_a_short_search_finds_better_coefficients_of_exact_order(formulation, values):
+    search = Search(formulation, values)
+    corrector, cost = search.run(seed=1, iterations=8)
+    classical = gear(formulation, values)
+    assert cost == search.cost(corrector) < search.cost(classical) - 1.0
+    assert 10 ** search.oscillation(corrector)[0] < 10 ** search.oscillation(classical)[0] / 3
+    assert order_of(corrector) == pytest.approx(values + 1 - search.free_c0, abs=0.1)
+    again, _ = search.run(seed=1, iterations=8)
+    assert again == corrector
+
+
+@pytest.mark.parametrize("values", spectral.VALUES)
+def test_the_search_by_spectra_finds_the_set_of_the_kernel(values):
+    own, wanted = kernel.tuned("second", values, any_norm=True), spectral.SpectralSearch(values=values)
+    found, cost = wanted.run(seed=1, iterations=60)
+    assert wanted.cost(own) == pytest.approx(cost, rel=1e-3) and max(wanted.excess(own)) < 1e-6
+    np.testing.assert_allclose(found.floats, own.floats, rtol=1e-3)
+    assert order_of(own) == pytest.approx(values, abs=0.1)
+
+
+@pytest.mark.parametrize("formulation", ROOTS)
+def test_tuned_sets_stand_noise_and_friction(formulation):
+    for values in kernel.VALUES[formulation]:
+        noise, friction = Search(formulation, values).disturbances(kernel.tuned(formulation, values))
+        assert noise < 1e-3 and friction < 1e-3
+
+
+def test_the_command_prints_lines_of_the_table():
+    done = CliRunner().invoke(
+        command.main, "coefficients --search second 5 --seed 2 --iterations 1".split()
+    )
+    number = r"(-?[\d.e-]+)L"
+    pattern = rf"\{{SECOND, DRIVEN, \{{{number}, {number}\}}, {number}\}},\n"
+    line = re.match(pattern, done.output)
+    assert line, done.output
+    c = completed(2, [Fraction(1), Fraction(line[1]), Fraction(line[2])])
+    found = Corrector("second", ((Fraction(line[3]), *c[1:]),) * 2)
+    assert f"tuned: cost {Search('second', 5).cost(found):.3f}\n" in done.output
+    assert "Gear's: cost" in done.output
+    done = CliRunner().invoke(command.main, "coefficients --search second 13".split())
+    assert done.exit_code == 2 and "4 to 12 of second, 5 of spectral" in done.output
+
+
+# --- linear properties ------------------------------------------------------------------------------
 @pytest.mark.parametrize("formulation", ROOTS)
 def test_properties_are_those_of_another_evaluation(formulation):
     corrector = made(formulation)
