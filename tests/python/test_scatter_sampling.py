@@ -1,4 +1,4 @@
-"""gearquat scatter: which flights are flown."""
+"""gearquat scatter: the choice of flights."""
 
 from dataclasses import replace
 from types import SimpleNamespace

@@ -206,10 +206,10 @@ def manual_page() -> str:
 def package_readme(author: str, email: str) -> str:
     """That of the package, where the package is one of LAMMPS' own."""
     text = (PACKAGE / "README").read_text()
-    before, build, after = re.match(r"(.*\nHow to build\n\n)(.*?)(What is where\n.*)", text, re.S).groups()
+    before, build, after = re.match(r"(.*\nHow to build\n\n)(.*?)(Contents\n.*)", text, re.S).groups()
     assert "STANDARD_PACKAGES" in build
     build = (
-        "The package needs no library and no other package.\n\n"
+        "The package requires neither libraries nor other packages.\n\n"
         "  CMake             -D PKG_GEARQUAT=on\n"
         "  traditional make  make yes-gearquat\n\n"
     )
