@@ -8,5 +8,5 @@ FORMULATIONS = ("second", "first")
 
 
 def deck(scene):
-    """Input deck of a scene under examples, such as "case1" or "hard/poles"."""
+    """Input deck of a scene under examples, such as "case1" or "water"."""
     return EXAMPLES / scene / f"in.{Path(scene).name}"

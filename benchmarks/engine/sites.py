@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 from gearquat_analysis import open_dump
 from gearquat_analysis.bodies import Bodies
 from gearquat_analysis.superposition import superpose
-from benchmarks.reference import bodies_from_sites
 
 
 @dataclass(frozen=True)
@@ -23,11 +22,6 @@ class Sites:
     masses: np.ndarray
     positions: np.ndarray
     velocities: np.ndarray
-
-    def start(self):
-        """(RigidBodies, State) of the first frame, where all sites are one body."""
-        same_body = np.zeros(len(self.masses), dtype=int)
-        return bodies_from_sites(self.masses, self.positions[0], self.velocities[0], same_body)
 
 
 def read_sites(path):

@@ -78,15 +78,14 @@ def cube(half_length):
     return ["%g %g %slo %shi" % (-half_length, half_length, a, a) for a in "xyz"]
 
 
-def data_text(title, box, masses, atoms, velocities, bond=()):
+def data_text(title, box, masses, atoms, velocities):
     """Text of a LAMMPS data file, atom style full.
 
     ``box``: its lines; ``masses``: one of each type, a number or words; ``atoms``: (molecule, type,
-    charge, position) each; ``bond``: IDs of two atoms, if there is one.
+    charge, position) each.
     """
     lines = ["LAMMPS data file: " + title, "", "%d atoms" % len(atoms)]
-    lines += ["%d atom types" % len(masses), *(["1 bonds", "1 bond types"] if bond else []), ""]
-    lines += [*box, "", "Masses", ""]
+    lines += ["%d atom types" % len(masses), "", *box, "", "Masses", ""]
     lines += [
         "%d %s" % (t, m if isinstance(m, str) else "%.17g" % m) for t, m in enumerate(masses, 1)
     ]
@@ -95,7 +94,6 @@ def data_text(title, box, masses, atoms, velocities, bond=()):
         lines.append("%d %d %d %g %s" % (tag, molecule, kind, charge, numbers(place)))
     lines += ["", "Velocities", ""]
     lines += ["%d %s" % (tag, numbers(v)) for tag, v in enumerate(velocities, start=1)]
-    lines += ["", "Bonds", "", "1 1 %d %d" % bond] if bond else []
     return "\n".join(lines) + "\n"
 
 

@@ -23,6 +23,18 @@ def test_several_runs_are_one_run(case1):
         assert (end(case1.run(commands)) == whole).all(), commands  # bit for bit
 
 
+def test_a_rerun_in_between(case1):
+    """It finds the energies of the dumped poses, and bodies ignore it with reinit no or begin anew from its last frame."""
+    dump = "dump d body custom 100 frames id x y z vx vy vz\ndump_modify d sort id format float %.17g\nrun 1000\nundump d"
+    whole = end(case1.run("run 1000\nrun 1000"))
+    for reinit in ("no", "yes"):
+        result = case1.run(f"{dump}\nrerun frames dump x y z vx vy vz\nrun 1000", inertia=f"reinit {reinit}")
+        first, again = (np.array(table["v_total"]) for table in result.thermo[:2])
+        assert reinit == "no" or first == pytest.approx(again, abs=1e-10)
+        assert (end(result) == whole).all() == (reinit == "no")
+        assert end(result) == pytest.approx(whole, abs=1e-7)
+
+
 def test_the_comparisons_can_fail(case1):
     """A step or a time that is 1 % off is detected by both comparisons used here."""
     whole = end(case1.run("run 1000"))
@@ -62,6 +74,17 @@ def test_a_change_of_the_time_step(case1, factor):
     )
     assert error(case1.run(f"run 1000\ntimestep {0.02 * factor}\nrun {steps}")) < allowed + 1e-11
     assert error(case1.run(f"run 1000\ntimestep {0.0202 * factor}\nrun {steps}")) > allowed + 1e-11
+
+
+def test_a_longer_step_and_back(case1):
+    """The error is at most twice that of a run in which the fix is defined anew for the short step."""
+    anew = "unfix move\nfix move body gear/quat molecule formulation ${formulation}\nfix_modify move energy yes"
+    exact = end(case1.run("run 15000", dt=0.004))  # to t = 60
+    kept, again = (
+        np.abs(end(case1.run(f"run 1000\ntimestep 0.2\nrun 100\n{words}\ntimestep 0.02\nrun 1000")) - exact)[:3].max()
+        for words in ("", anew)
+    )
+    assert kept < 2 * again + 1e-11
 
 
 def test_what_the_user_changes_between_runs_is_taken_over(lmp_tree):

@@ -8,7 +8,7 @@ from benchmarks.engine.series import Series
 from benchmarks.studies.cases import plan
 
 
-def make(time, center, potential=None, translation=None, rotation=None, error=None):
+def make(time, center, potential=None, translation=None, rotation=None):
     """Series at ``time`` (n,) with the given columns; what is not given is zero or constant."""
     n = len(time)
 
@@ -17,15 +17,9 @@ def make(time, center, potential=None, translation=None, rotation=None, error=No
 
     potential, translation = column(potential), column(translation)
     rotation = column(rotation, 1.0)
-    total = potential + translation + rotation if error is None else 1.0 + column(error)
+    total = potential + translation + rotation
     center = np.asarray(center, dtype=float)
     return Series(time, time, center, potential, translation, rotation, total, np.zeros(n))
-
-
-def line(end=100, rate=(0.0, 0.0, 0.0), start=(0.0, 0.0, 0.0), **columns):
-    """A body in uniform motion, sampled once per unit of time."""
-    time = np.arange(end + 1.0)
-    return make(time, np.asarray(start) + np.outer(time, rate), **columns)
 
 
 ENERGY = {1: -0.72360304, 2: -0.72360304, 3: 3.99270832}

@@ -1,7 +1,6 @@
-"""The study accuracy: orders, prices, errors and bounds of made-up numbers; real runs, one scene."""
+"""The study accuracy: orders, prices and errors of made-up numbers; real runs of one scene."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,24 +9,14 @@ from scipy.spatial.transform import Rotation
 from benchmarks.engine import LammpsError, session
 from benchmarks.engine.methods import DEFAULTS
 from benchmarks.engine.sites import pose_errors
-from benchmarks.reference import stability
-from benchmarks.reference.lammps_forces import deck_problem
-from benchmarks.reference.paper import SITE_MASSES
-from benchmarks.studies.accuracy import evaluate, heldout, plan, runs, tables
+from benchmarks.studies.accuracy import evaluate, plan, runs
 from benchmarks.studies.accuracy.evaluate import Cost, cost_of, fitted_order
 from benchmarks.studies.cases.accuracy import reference
-from benchmarks.studies.coefficients import kernel
 
 STEPS = 0.5 / 2.0 ** np.arange(0, 8, 0.5)
 
 
 # --- fitted orders --------------------------------------------------------------------------------
-@pytest.mark.parametrize("order", [7.0, 7.07])
-def test_order_of_a_power_law(order):
-    fit = fitted_order(STEPS, 3.0 * STEPS**order)
-    assert (fit.order, fit.coefficient) == pytest.approx((order, 3.0), rel=1e-9)
-
-
 def test_rounding_and_coarse_steps_do_not_count():
     noise = 1e-9 * np.resize([2.0, 1.0, 3.0], len(STEPS))
     errors = np.maximum(STEPS**5, noise)
@@ -37,12 +26,6 @@ def test_rounding_and_coarse_steps_do_not_count():
     assert errors[fit.used].min() > evaluate.ABOVE_FLOOR * noise.max()
     assert STEPS[fit.used].max() < STEPS[2] / 1.25
     assert np.polyfit(np.log(STEPS[3:]), np.log(errors[3:]), 1)[0] < 4.9  # the rule matters
-
-
-def test_expected_orders_are_those_of_the_kernel():
-    for name, orders in {"first": (3, 4, 5, 6, 7, 8), "second": (4, 4, 6, 6, 8, 8, 10)}.items():
-        for n, order in zip(plan.VALUES[name], orders):
-            assert evaluate.expected_order(name, n) == order
 
 
 # --- prices ---------------------------------------------------------------------------------------
@@ -91,66 +74,6 @@ def test_pose_errors_are_rms_over_bodies():
     off[0, 0] = math.nan
     lost = pose_errors(masses, molecules, before, off, reference)
     assert lost == (math.inf, math.inf)
-
-
-def test_energy_error_and_drift():
-    time = np.arange(0.0, 41.0)
-    found = runs.energy_errors(time, -0.7 + 1e-6 * time)
-    assert found == pytest.approx((4e-5, 1e-6), rel=1e-6)
-    assert runs.energy_errors(time, np.full(41, math.nan)) == (math.inf, math.inf)
-
-
-# --- stability ------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("n", range(4, 13))
-def test_linear_limits(n):
-    """A spurious root passes -1, and the determinant that shows it is linear in the square of the step."""
-    none, unit = (np.linalg.det(stability.second_order_step(n, z) + np.eye(n)) for z in (0.0, 1.0))
-    found = tables.limit_of("second", n, kernel.gear)
-    assert found == pytest.approx(np.sqrt(none / (none - unit)), abs=2e-5)
-
-
-@pytest.mark.parametrize("made", [kernel.gear, kernel.tuned])
-def test_a_wrong_coefficient_moves_the_limit(made):
-    def wrong(formulation, values):
-        right = made(formulation, values)
-        sets = ([1.01 * float(x) if row == 3 else x for row, x in enumerate(c)] for c in right.sets)
-        return replace(right, sets=tuple(map(tuple, sets)))
-
-    limit = tables.limit_of("second", 8, made)
-    assert abs(tables.limit_of("second", 8, wrong) - limit) > 2e-3 * limit
-
-
-@pytest.mark.parametrize("least", [3, 50, 99, 100, 101, 777])
-def test_bisection_finds_the_fewest_steps(least):
-    asked = []
-    found = runs.fewest_steps(lambda n: asked.append(n) or n >= least, 100, 10_000)
-    assert least <= found <= max(1.02 * least, least + 1) and len(asked) < 25
-    assert runs.fewest_steps(lambda n: False, 100, 1000) is None
-
-
-# --- timings --------------------------------------------------------------------------------------
-
-
-# --- bounds and page ------------------------------------------------------------------------------
-
-
-# --- held-out scenes ------------------------------------------------------------------------------
-
-
-def test_starts_are_seeded_and_their_files_exact(tmp_path):
-    again = [problem.start.packed() for problem in heldout.random_starts()]
-    scenes = list(heldout.scenes(tmp_path, quick=True))
-    assert len(scenes) == heldout.STARTS + 4
-    for before, (scene, problem) in zip(again, scenes):
-        assert (problem.start.packed() == before).all()
-        with deck_problem(scene.deck, dict(scene.variables)).field as field:
-            places, speeds = field.start_positions(), field.per_atom("v")[:4]
-        assert np.abs(places[:4] - problem.site_positions(problem.start)).max() < 2e-14
-        momentum = SITE_MASSES @ speeds / sum(SITE_MASSES)
-        assert np.abs(momentum - problem.start.velocity[0]).max() < 1e-15
-    assert len({np.asarray(start, float).tobytes() for start in again}) == heldout.STARTS
 
 
 # --- real LAMMPS ----------------------------------------------------------------------------------

@@ -1,19 +1,14 @@
-"""Energy over long runs: slopes and their uncertainty, judging of made-up numbers, a small run."""
-
+"""Energy over long runs: slopes and their uncertainty."""
 
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 from scipy.stats import linregress
 
-from benchmarks.engine.methods import gear
 from benchmarks.engine.statistics import slope
-from benchmarks.reference import paper_problem, solvers, splittings
 from benchmarks.studies import drift
 
 TIME = np.arange(2001.0)
-DEFAULT, HIGH, NO_SQUISH = drift.DEFAULT.label, gear("second", 10).label, drift.NO_SQUISH.label
-NVE, VERLET = "fix rigid/nve", drift.VERLET.label
 
 
 # --- the slope ----------------------------------------------------------------------------------
@@ -43,25 +38,3 @@ def test_uncertainty_is_the_scatter_of_repeated_slopes(memory):
     assert (naive == pytest.approx(np.std(found), rel=0.3)) == (memory == 0.0)
     significant = np.abs(found) > drift.SIGNIFICANT * told
     assert significant.mean() < 0.03
-
-
-# --- one run ------------------------------------------------------------------------------------
-
-
-# --- comparing ----------------------------------------------------------------------------------
-
-
-# --- running ------------------------------------------------------------------------------------
-
-
-def test_a_splitting_holds_the_energy_and_a_solver_does_not():
-    """Test case 1 to t = 200 and 400 at 0.1 per evaluation: the error of RKN6 stays."""
-    kept, lost = (
-        [work(paper_problem(1), end, *own)[1] for end, own in zip((200.0, 400.0), settings)]
-        for work, settings in (
-            (splittings.largest_energy_error, [(splittings.SPLITTINGS[1], n) for n in (182, 364)]),
-            (solvers.largest_energy_error, [("DOP853", 1e-7)] * 2),
-        )
-    )
-    assert kept[0] == kept[1] < 1e-5
-    assert 1e-6 < 1.2 * lost[0] < lost[1]

@@ -6,11 +6,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from benchmarks.studies.coefficients import prediction
 from benchmarks.studies.coefficients.kernel import gear, tuned
 from benchmarks.studies.coefficients.prediction import SEGMENT, Spectrum, response
 from benchmarks.studies.coefficients.search import spectrum as roots
-from benchmarks.studies.liquids.plan import LIQUIDS
 
 PHASES = (0.2, 0.3, 0.4, 0.5)
 EVERY = [pytest.param(tuned("second", n), id=f"tuned-{n}") for n in (6, 7, 8, 10)]
@@ -63,54 +61,3 @@ def test_drift_of_a_single_frequency(axes):
     # a line is as wide as the window, and H rises with a high power of the frequency
     assert found.drift(own, dt) == pytest.approx(expected, rel=0.1)
     assert found.drift(own, 1.02 * dt) != pytest.approx(expected, rel=0.1)
-
-
-def test_leakage_is_below_what_long_steps_see():
-    """A slow motion has no power at high frequencies."""
-    found = Spectrum.of(oscillations(0.02), oscillations(0.02), 1.0)
-    assert found.rotation.sum() == pytest.approx(1.0)
-    assert found.rotation[found.omega > 0.1].sum() < 1e-9
-    assert abs(found.drift(tuned("second", 7), 4.0)) < 1e-3
-
-
-def test_frequencies_that_steps_cannot_see_are_left_out():
-    own = tuned("second", 5)
-    found = Spectrum.of(oscillations(1.0), oscillations(1.0), 1.0)
-    assert np.isfinite(found.drift(own, 4.0)) and abs(found.drift(own, 4.0)) < 1.0
-
-
-def test_recorded_spectra_are_read_as_they_were_written(tmp_path):
-    own = tuned("second", 5, any_norm=True)
-    spectra = {"a": Spectrum.of(oscillations(0.2), oscillations(0.3), 1.0)}
-    spectra["b"] = Spectrum.of(oscillations(0.1), oscillations(0.3, 2), 1.0)
-    header, rows = prediction.table(spectra)
-    lines = [",".join(f'"{word}"' for word in header), *(",".join(row) for row in rows)]
-    path = tmp_path / "spectra.csv"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    found = prediction.recorded(path)
-    assert found.keys() == spectra.keys() and [one.axes for one in found.values()] == [3, 2]
-    for key, one in found.items():
-        assert one.drift(own, 3.0) == pytest.approx(spectra[key].drift(own, 3.0), rel=1e-3)
-
-
-def test_spectra_of_six_liquids_are_there():
-    spectra = prediction.recorded()
-    assert list(spectra) == [liquid.title for liquid in LIQUIDS]
-    for liquid in LIQUIDS:
-        assert spectra[liquid.title].axes == liquid.axes
-        for part in (spectra[liquid.title].translation, spectra[liquid.title].rotation):
-            assert part.sum() == pytest.approx(1.0, rel=1e-3)
-
-
-def test_file_of_a_deck_is_read(tmp_path):
-    """Three comments, then for each step its number, that of its rows, and rows of six velocities."""
-    velocities, rotations = oscillations(0.1), oscillations(0.2)
-    lines = ["# a", "# b", "# c"]
-    for k, rows in enumerate(np.concatenate([velocities, rotations], axis=2)):
-        lines += [f"{k} {len(rows)}"]
-        lines += [" ".join([str(n + 1), *map(repr, map(float, row))]) for n, row in enumerate(rows)]
-    path = tmp_path / "a.bodies"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    found, expected = prediction.read(path, 1.0), Spectrum.of(velocities, rotations, 1.0)
-    np.testing.assert_allclose(found.rotation, expected.rotation, rtol=1e-12)
-    np.testing.assert_allclose(found.translation, expected.translation, rtol=1e-12)

@@ -1,4 +1,4 @@
-"""The engine of the benchmarks: measurements, logs, many runs, data kept, pages, publishing, the command."""
+"""The engine of the benchmarks: logs, many runs, data kept, publishing, the command."""
 
 import time
 from pathlib import Path
@@ -9,10 +9,10 @@ from click.testing import CliRunner
 
 from benchmarks import __main__ as command
 from benchmarks.engine import Bars, Curve, Finding, Job, Lab, LammpsError, Measurement, Panel
-from benchmarks.engine import Study, Table, conduct, provenance, publish, runner
+from benchmarks.engine import Study, Table, conduct, publish, runner
 from benchmarks.engine.logs import Log
 from benchmarks.engine.store import read_data, write_data
-from benchmarks.studies.hard.long import Long
+from benchmarks.studies.accuracy.evaluate import Cost
 
 PROGRAM = """#!/bin/sh
 # stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script
@@ -35,18 +35,6 @@ def fake(tmp_path):
     done = []
     lab = Lab(tmp_path / "out", str(program), jobs=2, advance=done.append)
     return lab, deck, done
-
-
-# --- measurements -------------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    "bounds, within, beyond",
-    [({"most": 1e-12}, 0.99e-12, 1.01e-12), ({"least": 2.0}, 2.02, 1.98)],
-)
-def test_bounds(bounds, within, beyond):
-    assert Measurement("x", within, **bounds).holds
-    assert not Measurement("x", beyond, **bounds).holds
-    assert not Measurement("x", float("nan"), **bounds).holds
-    assert Measurement("x", float("nan")).holds
 
 
 # --- logs ---------------------------------------------------------------------------------------
@@ -82,15 +70,6 @@ def gone(pid):
     return False
 
 
-def test_arguments_and_steps(fake, tmp_path):
-    lab, deck, _ = fake
-    seen, log = [], tmp_path / "log.good"
-    script = 'echo "$@" > "$4"\necho "  Step  Time"\necho " 5 0.5 1"\necho " 10 1 2"\n'
-    runner.run(deck("good", script), log, {"dt": 0.1}, lab.lmp, 1, seen.append)
-    assert seen == [5, 10]
-    assert log.read_text().split() == f"-in good -log {log} -nocite -var dt 0.1".split()
-
-
 def test_error_is_told_with_the_last_lines_and_ends_the_whole_group(fake, tmp_path):
     lab, deck, _ = fake
     child = f"sleep 60 > /dev/null 2>&1 &\necho $! > {tmp_path}/child\n"
@@ -101,17 +80,6 @@ def test_error_is_told_with_the_last_lines_and_ends_the_whole_group(fake, tmp_pa
 
 
 # --- many runs ----------------------------------------------------------------------------------
-def test_a_sweep_runs_every_combination(fake):
-    lab, deck, done = fake
-    script = deck("in.echo", 'echo "$@" >> "$4"\necho 50 1 1\necho 100 1 1\n')
-    axes = {"pose": ("a", "b"), "dt": (0.1, 0.2)}
-    found = lab.sweep("echo", script, axes, lambda run: run.log.text.split(), {"steps": 100})
-    assert list(found) == [("a", 0.1), ("a", 0.2), ("b", 0.1), ("b", 0.2)]
-    words = found["b", 0.2]
-    assert words[words.index("pose") + 1] == "b" and words[words.index("dt") + 1] == "0.2"
-    assert sum(done) == pytest.approx(1.0)
-
-
 def test_an_error_ends_all_runs_unless_it_is_a_result(fake):
     lab, deck, _ = fake
     endless = Job(deck("in.endless", "while true; do echo 1 1 1; sleep 0.05; done\n"), {}, 1000)
@@ -159,7 +127,7 @@ def test_data_come_back_as_they_were(tmp_path):
     """Also views of arrays, keys that are tuples, and numbers that are not finite."""
     data = {
         ("pose", 0.1): (np.array([1.0, np.inf, 1e-300]), "text", None),
-        "long": Long(10, 1e-10, float("inf")),
+        "cost": Cost(float("inf"), "at most"),
         3: [np.float64(0.1), True, float("nan")],
     }
     whole = np.random.default_rng(1).normal(size=(30, 4, 3))
@@ -235,23 +203,3 @@ def test_check_refuses_what_is_out_of_bounds(run):
     done = run("made", "--check", value=1.01e-12)
     assert done.exit_code == 1 and "FAILED an error: 1.0e-12" in done.output
     assert run("made", value=1.01e-12).exit_code == 0
-
-
-@pytest.mark.parametrize(
-    "words, said",
-    [
-        (["other"], "no study other; there are made"),
-        (["made/two"], "no part two; its parts: one"),
-        (["made", "--quick", "--publish"], "needs the whole study"),
-        (["made/one", "--publish"], "needs the whole study"),
-        (["made", "--search", "second", "5"], "made has nothing to search for"),
-    ],
-)
-def test_bad_options(run, words, said):
-    done = run(*words)
-    assert done.exit_code == 2 and said in done.output
-
-
-def test_measurements_name_no_commit_where_git_is_not_installed(monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    assert provenance.commit("src") == ""

@@ -38,14 +38,6 @@ def test_every_reference_is_cited_and_every_citation_has_a_reference(maker):
     assert [key for key in keys if f"@{key}" not in PAPER] == []
 
 
-def test_what_is_wrong_is_refused(maker, tmp_path):
-    with pytest.raises(ValueError, match="nobody"):
-        maker["markup"](PAPER.replace("@gear]", "@nobody]"))
-    picture = PAPER.replace("accuracy_cost/main.png", "accuracy_cost/nothing.png")
-    with pytest.raises(ValueError, match="nothing.png"):
-        maker["make_pdf"](picture, tmp_path / "paper.pdf")
-
-
 def test_it_has_the_form_of_the_journal():
     body = PAPER.split("---\n", 2)[2]
     assert re.findall(r"^# (.*)$", body, re.M) == SECTIONS

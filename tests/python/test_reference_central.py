@@ -1,6 +1,6 @@
 """benchmarks/reference/central.py: quadrature of collision integrals, beside trajectories and published tables."""
 
-from math import factorial, log
+from math import log
 
 import numpy as np
 import pytest
@@ -99,27 +99,6 @@ def test_the_quadrature_has_converged(omega, monkeypatch, nodes):
     for temperature in (0.5, 1.0, 10.0):
         for order, power in ((1, 1), (1, 2), (2, 2)):
             assert coarse(order, power, temperature) == pytest.approx(omega(order, power, temperature), rel=1e-5)
-
-
-def test_rigid_spheres_have_integrals_of_one(omega, monkeypatch):
-    monkeypatch.setattr(omega, "Q", np.ones_like(omega.Q))
-    for power in (1, 2, 3):
-        assert omega(1, power, 2.0) == pytest.approx(1.0, abs=1e-7)
-    wrong = omega(1, 1, 2.0) * factorial(2) / factorial(3)
-    assert wrong != pytest.approx(1.0, rel=0.01)
-
-
-def test_an_error_of_one_percent_in_the_diameter_is_noticed(omega):
-    class Larger(central.LennardJones):
-        def energy(self, r):
-            return super().energy(r / 1.01)
-
-        def slope(self, r):
-            return super().slope(r / 1.01) / 1.01
-
-    other = central.Scattering(Larger(), 2.0).cross_sections()
-    same = central.Scattering(central.LennardJones(), 2.0).cross_sections()
-    assert np.array(other) / same == pytest.approx(1.01**2, rel=1e-5)
 
 
 def test_the_cut_potential_is_that_of_its_force():

@@ -10,14 +10,13 @@ from benchmarks.reference import (
     Problem,
     RigidBodies,
     State,
-    paper_problem,
     reference_state,
     splittings,
 )
 from benchmarks.reference.fields import LennardJonesUnits
 from benchmarks.reference.free_top import exact_state
 from benchmarks.reference.solvers import state_errors
-from benchmarks.reference.splittings import SPLITTINGS, FreeRotation, Motion, states
+from benchmarks.reference.splittings import SPLITTINGS, Motion, states
 
 LONG = np.longdouble
 LABELS = [splitting.label for splitting in SPLITTINGS]
@@ -118,20 +117,6 @@ def test_a_wrong_coefficient_spoils_the_order(splitting, name, place):
 
 
 # --- motion ---------------------------------------------------------------------------------------
-@EVERY
-def test_a_step_back_leads_to_the_start(splitting):
-    motion = Motion(driven_top())
-    start = motion.state.packed()
-    motion.advance(splitting, 0.3)
-    assert np.abs(motion.state.packed() - start).max() > 0.1
-    motion.advance(splitting, -0.3)
-    assert np.abs(motion.state.packed() - start).max() < 1e-13
-    wrong = replace(splitting, kicks=(1.01 * splitting.kicks[0], *splitting.kicks[1:]))
-    motion.advance(wrong, 0.3)
-    motion.advance(wrong, -0.3)
-    assert np.abs(motion.state.packed() - start).max() > 1e-6
-
-
 TOPS = [  # round the largest, the smallest axis, near the middle one, and fast
     ((7, 5, 3), (2, 0.3, -0.1)),
     ((7, 5, 3), (0.2, 0.1, -1.5)),
@@ -160,14 +145,6 @@ def test_a_free_top_turns_exactly(moments, omega, time):
         assert max(off, angle) < limit if wrong == 1 else max(off, angle) > 1e3 * limit
 
 
-def test_motions_without_this_solution_are_refused():
-    with pytest.raises(ValueError, match="three equal moments"):
-        FreeRotation([[1, 1, 1]])
-    about_an_axis = np.array([[0.0, 0.0, 1.0]])
-    with pytest.raises(ValueError, match="not quite about a principal axis"):
-        FreeRotation([[3, 2, 1]])(np.eye(3)[None], about_an_axis, 1.0)
-
-
 # --- work -----------------------------------------------------------------------------------------
 @EVERY
 def test_every_evaluation_is_counted(splitting):
@@ -185,23 +162,3 @@ def test_every_evaluation_is_counted(splitting):
     assert splitting.stages == int(splitting.label.split()[-2])
     (end, _), *_ = states(driven_top(), 2.0, splitting, 6)
     assert (end.packed() == found[-1][0].packed()).all()
-
-
-def test_a_high_order_pays_at_small_errors():
-    """Test case 1: order 4 is ahead at few evaluations of the forces, order 6 at many."""
-    problem = paper_problem(1)
-    end = reference_state(problem, 200.0)
-
-    def errors(evaluations):
-        for splitting in SPLITTINGS[:2]:
-            counts = [evaluations // splitting.stages]
-            (point,) = splittings.work_precision(problem, 200.0, end, splitting, counts)
-            assert point.evaluations == pytest.approx(evaluations, rel=0.01)
-            yield point.errors.rms_center
-
-    low, high = errors(1100)
-    assert 1e-5 < low < high < 1e-2
-    low, high = errors(3200)
-    assert 1e-11 < high < 0.01 * low
-    low, high = errors(16000)
-    assert high < 1e-10 < low < 1e-8

@@ -1,11 +1,11 @@
-"""The cache of reference states: what makes another entry, memory, disk, promised accuracy."""
+"""The cache of reference states: what makes another entry, memory, disk."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from benchmarks.reference import FreeField, Problem, paper_problem, reference_state, reference_states
+from benchmarks.reference import Problem, paper_problem, reference_state, reference_states
 from benchmarks.reference import store
 from benchmarks.reference.integrators import integrate
 
@@ -59,16 +59,6 @@ def test_another_problem_is_another_entry(calls, part):
     assert calls == [1.0, 1.0]
 
 
-def test_another_field_or_accuracy_is_another_entry(calls):
-    problem = paper_problem(1)
-    reference_state(problem, 1.0)
-    reference_state(problem, 1.0, tolerance=1e-16)
-    reference_state(problem, 1.0, fixed_step=0.1)
-    problem.field.charges[0] *= 1.01
-    reference_state(problem, 1.0)
-    assert len(calls) == 4
-
-
 def test_disk_keeps_every_digit_and_a_broken_file_is_computed_anew(calls, tmp_path):
     problem, folder = paper_problem(3), tmp_path / "new"
     first = reference_state(problem, 1.0, folder=folder)
@@ -79,16 +69,3 @@ def test_disk_keeps_every_digit_and_a_broken_file_is_computed_anew(calls, tmp_pa
         store._memory.clear()
         again = reference_state(problem, 1.0, folder=folder)
         assert calls == times and (again.packed() == first.packed()).all()
-
-
-def test_without_forces_the_state_is_exact(calls):
-    free = paper_problem(1).with_field(FreeField())
-    end = reference_state(free, 1000.0)
-    assert calls == []
-    assert sum(free.energies(end)) == pytest.approx(sum(free.energies(free.start)), rel=1e-18)
-    assert (end.center == free.start.center + 1000 * free.start.velocity).all()
-
-
-def test_double_precision_is_refused():
-    with pytest.raises(RuntimeError, match="long double of at least 64 bits' precision is req"):
-        reference_state(paper_problem(1).astype(np.float64), 1.0)

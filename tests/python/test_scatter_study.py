@@ -41,15 +41,6 @@ def test_rates_keep_energy_momentum_and_angular_momentum(seed):
     assert (orbital + rates[:, MOMENTUM]).sum(axis=0) == pytest.approx(np.zeros(3), abs=1e-12 * size)
 
 
-def test_forces_end_at_the_cut_off():
-    r = np.array([[4.999, 5.001, 5.999, 6.001]])
-    one = np.ones((1, 4))
-    energy, force = Dispersion(one, one, 2.0, 5.0).terms(r)
-    assert np.abs(energy).max() < 1e-9 and np.abs(force).max() < 1e-6 and not force[0, 1:].any()
-    energy, force = Charges(one, 0.3, 6.0).terms(r)
-    assert np.abs(energy[0, 2:]).max() < 1e-6 and np.abs(force[0, 2:]).max() < 1e-4 and not force[0, 3]
-
-
 @pytest.mark.parametrize("deck, temperature, largest", [("in.dumbbells", 2.0, 3.5), ("in.nitrogen", 300.0, 8.0)])
 def test_flights_are_those_of_dop853(deck, temperature, largest):
     """Velocities and angular momenta after the encounter to 1e-8; flown back, they return."""
@@ -57,9 +48,3 @@ def test_flights_are_those_of_dop853(deck, temperature, largest):
     once = rows[rows[:, 2] <= 1]
     assert len(once) >= 3
     assert once[:, :2].max() < 1e-8 and once[:, 3].max() < 1e-7
-
-
-# --- other methods --------------------------------------------------------------------------------
-
-
-# --- judging --------------------------------------------------------------------------------------

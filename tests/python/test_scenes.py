@@ -17,7 +17,6 @@ def generator(examples):
 
 
 GENERATORS = ["common/make_scenes", "top/make_top"]
-GENERATORS += [f"hard/{name}/make_{name}" for name in ("poles", "inertia", "boundaries")]
 
 
 @pytest.mark.parametrize("program", GENERATORS)

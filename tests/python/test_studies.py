@@ -14,7 +14,7 @@ from running import ROOT
 #: test_liquids.py makes its page of made-up runs, because real ones take minutes
 STUDIES = [study for key, study in all_studies().items() if key != "liquids"]
 #: where a quick run of all parts takes minutes; there is no page of some parts
-PARTS = {"accuracy": ("top",), "hard": ("poles", "fast"), "scatter": ("conservation",)}
+PARTS = {"accuracy": ("top",), "scatter": ("conservation",)}
 
 
 def beyond(bound, sign):
