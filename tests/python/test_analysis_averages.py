@@ -145,7 +145,7 @@ def test_uneven_times():
     hot = np.arange(FRAMES) < FRAMES // 2
     results.time = np.cumsum(np.where(hot, 0.1, 1.0))
     results.ke_translation = results.ke_translation * np.where(hot, 2.0, 1.0)[:, None]
-    with pytest.warns(UserWarning, match="no averages but temperatures: .* the time after frame 0 at 0.1 is 0.2"):
+    with pytest.warns(UserWarning, match="no diffusion coefficients .* times: .* the time after frame 0 at 0.1 is 0.2"):
         found = averages.averages(poses)
     assert [one.name for one in found] == [one.name for one in even if one.name.startswith("temperature")]
     assert found[0].value == pytest.approx(1.3 * (2.0 * 0.1 + 1.0) / 1.1, rel=0.01)

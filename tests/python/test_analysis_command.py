@@ -196,7 +196,7 @@ def test_an_analysis_of_another_dump_is_kept(tmp_path):
     before = files(out)
     assert "other settings (the dump): another --out is required" in analyze(other, out).output
     path.write_text(other.read_text())
-    assert "(the dump was written anew): another --out is required" in analyze(path, out).output
+    assert "(the dump was rewritten): another --out is required" in analyze(path, out).output
     assert files(out) == before
     (out / "settings.json").unlink()
     assert "out has bodies.csv of another analysis: another --out" in analyze(path, out).output
@@ -220,9 +220,9 @@ def test_files_of_others_are_not_written_over(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (["--data", __file__], "leave out what is about atoms: data"),
-        (["--body", "i_body"], "leave out what is about atoms: body"),
-        (["--reference", "first"], "--reference is about atoms"),
+        (["--data", __file__], "leave out the options for atoms: data"),
+        (["--body", "i_body"], "leave out the options for atoms: body"),
+        (["--reference", "first"], "--reference needs atoms"),
     ],
 )
 def test_options_about_atoms_are_refused_with_a_table(water, tmp_path, arguments, text):
@@ -238,7 +238,7 @@ def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path
     path.write_text("".join(frames) + "ITEM: TIME\n3.0\n" + dumps.frame(3, rows))
     result = analyze(path, tmp_path)
     assert result.exit_code == 0, result.output
-    assert "Warning: there are no averages but temperatures" in result.output
+    assert "Warning: there are no diffusion coefficients and correlation times" in result.output
     assert "made.dump: body 1 is not rigid: at step 3" in result.output
     assert (tmp_path / "averages.csv").exists() and not (tmp_path / "correlations.csv").exists()
     result = analyze(path, tmp_path / "one", "--frames", ":1")
@@ -312,7 +312,7 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--timestep", "0"], "'--timestep': 0.0 is not in the range x>0"),
         (["--near", __file__, "--radius", "1"], f"--near {__file__}: a file with x y z in each"),
         (["--wrap"], "--wrap needs --convert"),
-        (["--frames", "99:"], "no frame is left to analyze"),
+        (["--frames", "99:"], "no frame is selected"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
         (["--near", __file__], "should be provided together"),
         (

@@ -132,7 +132,7 @@ def test_masses_and_molecules_of_a_data_file(write, tmp_path):
     poses = Poses(universe.atoms).run()
     assert "velocity" not in poses.results and poses.results.residual.max() < 1e-13
     data.write_text(DATA + "\n".join(rows.splitlines()[1:]) + "\n")
-    with pytest.raises(DumpError, match="no atom 12, which the dump has"):
+    with pytest.raises(DumpError, match="atom 12 of the dump is missing"):
         open_dump(path, data=data)
 
 
@@ -169,7 +169,7 @@ def test_a_data_file_with_sections_of_fixes(write, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "column", "wrong", "text"),
-    [("type", 2, 2, "type 1 of atom 4, which has 2 in the dump"), ("mass", 3, 2.525, "mass 2.5 of atom 4, .* 2.525 in the")],
+    [("type", 2, 2, "type 1 of atom 4, but 2 in the dump"), ("mass", 3, 2.525, "mass 2.5 of atom 4, .* 2.525 in the")],
 )
 def test_a_data_file_of_another_run(write, tmp_path, name, column, wrong, text):
     """Types or masses disagree, here by 1 %; six digits of a mass are enough."""
@@ -266,7 +266,7 @@ def test_parts_of_bodies_are_refused(write, tmp_path):
     ("name", "text"),
     [
         ("id", "no column id; without it a row cannot be followed"),
-        ("mol", "no column mol; it says which atoms make which body"),
+        ("mol", "no column mol, which has the IDs of bodies"),
         ("mass", "no column mass; dump it, or give a data file .--data."),
         ("yu", "no positions; columns xu yu zu or x y z are required"),
     ],
@@ -303,7 +303,7 @@ def test_a_last_frame_that_is_cut_off(write, lost):
     path = write(MOTION, TIMES)
     text = path.read_text()
     path.write_text(text[:-lost])
-    with pytest.warns(UserWarning, match="poses.dump: the last frame is not whole, and is left out"):
+    with pytest.warns(UserWarning, match="poses.dump: the last frame is incomplete and is left out"):
         trajectory = open_dump(path).trajectory
     assert trajectory.cut_off and len(trajectory) == 2 and len(list(trajectory)) == 2
     assert not open_dump(write(MOTION, TIMES)).trajectory.cut_off
@@ -360,11 +360,11 @@ def test_what_is_not_finite(write, column):
     ("old", "new", "text"),
     [
         (b"ITEM: TIMESTEP", b"ITEM: LABEL\nlj\nITEM: TIMESTEP", "no frame of a LAMMPS dump begins"),
-        (b"ITEM: TIMESTEP", b"thermo", "no frame of a LAMMPS dump begins where one should"),
+        (b"ITEM: TIMESTEP", b"thermo", "the header of a frame of a LAMMPS dump is required"),
         (b"ITEM: ATOMS", b"ITEM: GRID", "a dump custom or dump local is required"),
         (b"ITEM: BOX BOUNDS pp pp pp", b"ITEM: BOX BOUNDS", "a box that is not orthogonal or"),
         (b"\n1 1 1 ", b"\n1 1 1 oops", "step 0: .*could not convert string"),
-        (b"ITEM: TIMESTEP", b"\xff\xfe\0", "a dump of text is required, and this is a binary file"),
+        (b"ITEM: TIMESTEP", b"\xff\xfe\0", "this is a binary file; a text dump is required"),
     ],
 )
 def test_other_files(write, old, new, text):

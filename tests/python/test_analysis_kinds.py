@@ -87,5 +87,5 @@ def test_names(tmp_path):
 def test_bodies_that_are_all_different(tmp_path):
     path = dumps.write(tmp_path / "many.dump", dumps.Motion([4] * 12), np.arange(120.0))
     assert names(path) == ([""], True)
-    with pytest.warns(UserWarning, match="bodies are of many kinds: diffusion and correlation times are those of all"):
+    with pytest.warns(UserWarning, match="too many kinds of bodies: diffusion and correlation times are averages over all"):
         averages.averages(Poses(open_dump(path).atoms).run())

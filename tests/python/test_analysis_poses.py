@@ -164,7 +164,7 @@ def test_some_of_the_frames(dump, poses, tmp_path, file, span):
         ({"reference": "last"}, "first, principal or positions are required"),
         ({"units": "imperial"}, "units imperial: one of lj, real"),
         ({"potential": "c_pe"}, "no column c_pe was read with the dump"),
-        ({}, "no frame is left"),
+        ({}, "no frame is selected"),
     ],
 )
 def test_impossible_arguments(dump, arguments, text):
@@ -280,7 +280,7 @@ def test_atoms_that_are_there_twice(dump, poses):
 
 @pytest.mark.parametrize("use", [averages.averages, Poses.totals, Poses.to_dataframe, lambda poses: poses.results.q])
 def test_results_need_a_run(dump, use):
-    with pytest.raises(NoDataError, match="there is no results.* yet: call run"):
+    with pytest.raises(NoDataError, match="results.* does not exist yet: call run"):
         use(Poses(open_dump(dump)))
 
 
@@ -292,7 +292,7 @@ def test_bodies_that_are_not_rigid(tmp_path):
         return rows
 
     path = dumps.write(tmp_path / "bent.dump", MOTION, TIMES, bent)
-    with pytest.warns(UserWarning, match="bent.dump: body 1 is not rigid: at step 4 a site is 0.* of the body's size"):
+    with pytest.warns(UserWarning, match="bent.dump: body 1 is not rigid: at step 4 a site deviates by 0.* of the body's size"):
         Poses(open_dump(path)).run()
     for spread in (10.0, 1e3, 1e5):
         far = dumps.Motion(COUNTS, linear=[3], spread=spread)
