@@ -149,7 +149,7 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     # files that another analysis does not write are not those of the one before
     result = analyze(water / "water.dump", tmp_path, "--units", "real")
-    assert result.exit_code == 0 and "The earlier analysis in" in result.output
+    assert result.exit_code == 0 and "replaces the earlier one in" in result.output
     assert not (tmp_path / "poses.csv").exists() and (tmp_path / "averages.csv").exists()
     few = tmp_path / "few"
     result = analyze(water / "water.dump", few, "--units", "real", "--frames", ":2")
@@ -183,7 +183,7 @@ def test_an_analysis_of_other_settings_is_kept(tmp_path, arguments, text):
     assert analyze(path, tmp_path / "other", *arguments).exit_code == 0  # the advice
     path.write_text(path.read_text() + dumps.frame(8, motion.rows(8.0)))
     result = analyze(path, out, "--csv")
-    assert result.exit_code == 0 and "The earlier analysis in" in result.output
+    assert result.exit_code == 0 and "replaces the earlier one in" in result.output
     assert len(columns(out / "totals.csv")) == 9
 
 
@@ -300,7 +300,7 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         path = dumps.write(tmp_path / "far.dump", dumps.Motion([4], omega=omega), np.arange(8.0))
         result = analyze(path, tmp_path / str(omega))
         assert result.exit_code == 0, result.output
-        assert ("trust the mean-square" in result.output) == said
+        assert ("the mean-square rotation is not" in result.output) == said
 
 
 @pytest.mark.parametrize(
@@ -311,7 +311,7 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--reference", "nofile"], "--reference nofile: 'principal', 'first' or a file with x"),
         (["--timestep", "0"], "'--timestep': 0.0 is not in the range x>0"),
         (["--near", __file__, "--radius", "1"], f"--near {__file__}: a file with x y z in each"),
-        (["--wrap"], "--wrap needs --convert"),
+        (["--wrap"], "--wrap works only with --convert"),
         (["--frames", "99:"], "no frame is selected"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
         (["--near", __file__], "should be provided together"),

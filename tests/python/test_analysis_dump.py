@@ -159,7 +159,7 @@ def test_a_data_file_with_sections_of_fixes(write, tmp_path):
     style = "id type x y z"  # all atoms are one residue to MDAnalysis, which is no body
     atomic = data_of(tmp_path)
     atomic.write_text(re.sub(r"(?m)^(\d+) \d+ 1 0 0 0$", r"\1 1 0 0 0", atomic.read_text()))
-    with pytest.raises(DumpError, match="no column mol; .*a data file with molecules"):
+    with pytest.raises(DumpError, match="no column mol, .*a data file with molecules"):
         open_dump(path, data=atomic, atom_style=style)
     bare = data_of(tmp_path)
     bare.write_text(bare.read_text().replace("Masses\n\n1 2.5\n", ""))
@@ -265,7 +265,7 @@ def test_parts_of_bodies_are_refused(write, tmp_path):
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("id", "no column id; without it a row cannot be followed"),
+        ("id", "no column id; it is required to identify atoms"),
         ("mol", "no column mol, which has the IDs of bodies"),
         ("mass", "no column mass; dump it, or give a data file .--data."),
         ("yu", "no positions; columns xu yu zu or x y z are required"),
@@ -359,10 +359,10 @@ def test_what_is_not_finite(write, column):
 @pytest.mark.parametrize(
     ("old", "new", "text"),
     [
-        (b"ITEM: TIMESTEP", b"ITEM: LABEL\nlj\nITEM: TIMESTEP", "no frame of a LAMMPS dump begins"),
+        (b"ITEM: TIMESTEP", b"ITEM: LABEL\nlj\nITEM: TIMESTEP", "the header of a frame of a LAMMPS dump is required"),
         (b"ITEM: TIMESTEP", b"thermo", "the header of a frame of a LAMMPS dump is required"),
         (b"ITEM: ATOMS", b"ITEM: GRID", "a dump custom or dump local is required"),
-        (b"ITEM: BOX BOUNDS pp pp pp", b"ITEM: BOX BOUNDS", "a box that is not orthogonal or"),
+        (b"ITEM: BOX BOUNDS pp pp pp", b"ITEM: BOX BOUNDS", "an orthogonal or restricted triclinic box"),
         (b"\n1 1 1 ", b"\n1 1 1 oops", "step 0: .*could not convert string"),
         (b"ITEM: TIMESTEP", b"\xff\xfe\0", "this is a binary file; a text dump is required"),
     ],

@@ -154,6 +154,6 @@ def test_motion_of_one_body(tmp_path):
     assert [list(poses.motion(body)[1]) for body in (1, 2, 3)] == [[1, 2, 3], [3], []]
     assert [len(pictures.draw_motion(poses, body).axes) for body in (1, 2, 3)] == [2, 2, 1]
     said = dumps.analyze(tmp_path / "x.dump", tmp_path, "--follow", 4)
-    assert said.exit_code == 1 and "no body has the ID 4; the first is 1, and the last 3" in said.output
+    assert said.exit_code == 1 and "no body has the ID 4; the first ID is 1, and the last 3" in said.output
     assert dumps.analyze(tmp_path / "x.dump", tmp_path, "--follow", 2).exit_code == 0
     assert (tmp_path / "motion.png").read_bytes().startswith(b"\x89PNG")

@@ -273,7 +273,7 @@ def test_a_universe_will_do(dump, poses):
 
 def test_atoms_that_are_there_twice(dump, poses):
     atoms = open_dump(dump).atoms
-    with pytest.raises(ValueError, match="an atom is in the group twice; .* atoms.unique"):
+    with pytest.raises(ValueError, match="an atom is in the group twice; .*atoms.unique"):
         Poses(atoms + atoms[3:4])
     assert np.array_equal(Poses((atoms + atoms[3:4]).unique).bodies.mass, poses.bodies.mass)
 
