@@ -201,7 +201,7 @@ def measurements(results):
         name = MODELS[model]
         for quantity, title in QUANTITIES.items():
             what = f"{name}, {title.partition(',')[0]}"
-            right = "0" if quantity == "difference" else f"that at {plan.finest:g} fs"
+            right = "0" if quantity == "difference" else f"the value at {plan.finest:g} fs"
             shift, most = farthest(results, model, RIGID, quantity)
             least = most if quantity == "difference" else None
             ours = farthest(results, model, OURS, quantity)[0]
@@ -212,7 +212,7 @@ def measurements(results):
             rows.append(Measurement(f"{what}, difference of {same}", apart, most=2.0, **errors))
         times = f"{plan.finest:g} fs of `rigid/nvt/small` over {plan.longest:g} fs of ours"
         ratio = cost_ratio(results, model)
-        rows.append(Measurement(f"{name}, ratio of times to that answer, {times}", ratio, spec=".1f"))
+        rows.append(Measurement(f"{name}, ratio of times per ns, {times}", ratio, spec=".1f"))
     return rows
 
 
@@ -223,7 +223,7 @@ def deviations_table(results):
         largest = [farthest(results, model, method, quantity)[0] for method in (RIGID, OURS)]
         numbers = [f"{number:.1f}" for number in (*largest, answer(results, model, quantity))]
         rows.append([f"{MODELS[model]}: {title.partition(',')[0]}", *numbers])
-    both = f"{plan.longest:g} fs of {METHODS[OURS]} less {plan.finest:g} fs of {METHODS[RIGID]}"
+    both = f"{plan.longest:g} fs of {METHODS[OURS]} minus {plan.finest:g} fs of {METHODS[RIGID]}"
     header = ("deviation in standard errors", f"{METHODS[RIGID]}, largest", f"{METHODS[OURS]}, largest", both)
     return Table(header, rows)
 

@@ -237,5 +237,5 @@ def find(results):
         table.append([title, *row, f"{own:.0f}" if own else "–", f"{ratios[title]:.2f}", f"{took}"])
     worst = max(ratios, key=ratios.get)
     header = ["scene", *(f"N = {values}" for values in VALUES), "auto", "auto / best", "took"]
-    what = f"held-out starts: evaluations of `values auto` to {tables.power(TARGET)} over those of the best N"
+    what = f"held-out starts: evaluations of `values auto` to {tables.power(TARGET)} over the evaluations of the best N"
     return Table(header, table), [Measurement(what, ratios[worst], spec=".2f", remark=worst, most=MOST)]

@@ -146,8 +146,8 @@ def find(results):
             means[title] = _mean(own)
             row += [f"{value:.3g}" for value in (means[title], own.min(initial=np.inf))]
         worst = min(means, key=lambda title: np.nan_to_num(means[title], nan=-1.0))
-        what = f"held-out scenes, {formulation} formulation: error with Gear's coefficients over that"
-        what += " of the defaults at equal evaluations"
+        what = f"held-out scenes, {formulation} formulation: error with Gear's coefficients over the error"
+        what += " with the defaults at equal evaluations"
         least = LEAST_MEAN if formulation == "second" else LEAST
         mean = _mean(np.array(list(means.values())))
         found.append(Measurement(f"{what}, geometric mean", mean, spec=".3g", least=least))

@@ -339,7 +339,7 @@ CLAIMS = (
         f"the energy stays {PERCENT} of the swing above its start from t = 4000 ± {WITHIN} on;"
         " it is explained if it does from another time on",
         late_drift,
-        reason="chaos decides when the body comes close to a sphere, where the step is too large",
+        reason="the time at which the body comes close to a sphere, where the step is too large, is chaotic",
     ),
     Claim(
         "test case 2, Fig. 6",
@@ -351,8 +351,8 @@ CLAIMS = (
     step_does_not_matter(1, "test case 2", "with the steps of cases 1 and 2", 250, other=2),
     Claim(
         "test case 2, Fig. 7",
-        "x of the first formulation is similar to that of test case 1 until about t = 1000",
-        f"the time is within {WITHIN} with one body; it is explained if those of the two enclose it",
+        "x of the first formulation is similar to x of test case 1 until about t = 1000",
+        f"the time is within {WITHIN} with one body; it is explained if the times of the two bodies enclose it",
         similar_curve,
         lead="time until x differs by a quarter of its range: ",
     ),
@@ -371,7 +371,7 @@ CLAIMS = (
         " run; it is explained if it does in some",
         potential_vanishes,
         all,
-        reason="some bodies are still inside at the end, since chaos decides when they leave",
+        reason="some bodies are still inside at the end, because the time at which they leave is chaotic",
     ),
     formulations_part(3, "test case 3, Table 7", "they differ after t = 800", 800, 800),
     Claim(
@@ -380,7 +380,7 @@ CLAIMS = (
         "it does so in a run with the choices of the paper; it is explained if the formulations differ",
         leaving_direction,
         lead="first and second formulation: ",
-        reason="where the formulations part before the body leaves, its direction is chaotic",
+        reason="if the formulations diverge before the body leaves, its direction is chaotic",
     ),
     step_does_not_matter(1, "discussion, point 3", "in case 1 with half the step", 1300),
     step_does_not_matter(3, "discussion, point 3", "in case 3 with a fifth of the step", 800),
@@ -392,7 +392,7 @@ CLAIMS = (
         "the ratio of the two errors is above 2; it is explained if above 1.05",
         omega_first,
         lead=f"error at t = {OMEGA_END:g} with a step of {OMEGA_STEP:g}: ",
-        reason="the corrected omega is better, but both converge: the predicted one is no error",
+        reason="the corrected omega is better, but both converge: the predicted omega is not an error",
     ),
 )
 #: judged as well where the 50 million steps of --full were run

@@ -39,7 +39,7 @@ def idle_measurements(results):
             what = f"{effect.name}, off: instructions of its own functions per body and step"
             measurements.append(Measurement(what, results.idle(effect), **free))
         if effect.never:
-            what = f"{effect.name}, off: instructions more than where it is impossible"
+            what = f"{effect.name}, off: additional instructions compared with a scene where it is impossible"
             measurements.append(Measurement(what, results.fix(effect.off, effect.never), **free))
     return measurements
 
@@ -67,7 +67,7 @@ def effects_table(results):
         own = number(results.idle(effect)) if effect.own else "none of its own"
         twin = number(results.fix(effect.off, effect.never)) if effect.never else ""
         rows.append([effect.name, *on, own, twin])
-    off = ("off: instructions of its own functions", "off: instructions more than where impossible")
+    off = ("off: instructions of its own functions", "off: additional instructions compared with an impossible effect")
     return Table(("effect", "on: instructions", "on: ns", *off), rows)
 
 

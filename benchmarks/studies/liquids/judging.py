@@ -94,7 +94,7 @@ def beside_the_best(results):
             noise = math.hypot(error, scatter)
             excess.append(((abs(rate) - abs(best)) / noise if noise else math.inf, dt))
         worst, dt = max(excess)
-        what = f"{scene.title}: size of the drift less that of the best number of values, in standard errors"
+        what = f"{scene.title}: size of the drift minus the size with the best number of values, in standard errors"
         yield Measurement(what, worst, spec=".1f", remark=f"at {dt:g} fs", most=most)
 
 
@@ -109,7 +109,7 @@ def predictions(results):
             most = max(PREDICTED, PART * abs(rate)) + WITHIN * error
             ratios.append((wrong / most if math.isfinite(rate) else math.inf, dt))
         worst, dt = max(ratios)
-        what = f"{scene.title}: error of the predicted drift by what is allowed"
+        what = f"{scene.title}: error of the predicted drift relative to its bound"
         yield Measurement(what, worst, spec=".2f", remark=f"at {dt:g} fs", most=1.0 if several(results) else None)
 
 

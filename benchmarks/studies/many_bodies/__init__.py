@@ -81,7 +81,7 @@ def temperature_measurements(results, method):
     yield Measurement(what, of.kinetic_mismatch(thermo), spec=".0e", most=ROUNDING)
     off = of.warmer(results, method)
     most = allowed(1, off.freedoms) * off.error
-    what = f"mean temperature less that of {NVE_SMALL.label}"
+    what = f"difference of the mean temperature from {NVE_SMALL.label}"
     yield Measurement(what, off.value, off.error, ".1f", "K", least=-most, most=most)
 
 
@@ -162,7 +162,7 @@ def pressure_tables(results):
     def instant(k):
         return lambda method: of.instants(results, method)[:, k]
 
-    shift = f"mean pressure less that at step {dts[0]:g} fs, same times, atm"
+    shift = f"difference of the mean pressure from step {dts[0]:g} fs, same times, atm"
     after, digits = f"pressure after {results.plan.interval:g} fs, atm", "{:.4f}".format
     return {
         "pressure": table("mean pressure, atm", dts, means(of.mean_pressures), shown),

@@ -169,7 +169,7 @@ def measurements(results):
     shares = results.shares()
     shift, most = largest(shares, 1.0)
     rows.append(Measurement("small crystal, largest deviation of a share of the box from kT/2", shift, most=most, **errors))
-    what = "the same as a part of kT/2"
+    what = "the same as a fraction of kT/2"
     rows.append(Measurement(what, float(np.abs(shares.value - 1.0).max()), float(shares.error.max()), ".3f"))
     shift, most = largest(results.sheared(), results.expected_sheared())
     what = "crystal under a shear stress, largest deviation of one of six components of the pressure"
@@ -177,8 +177,8 @@ def measurements(results):
     ours = results.counted[OURS]
     for method in (RIGID, SHAKE):
         theirs, words = results.counted[method], METHODS[method]
-        rows.append(Measurement(f"instructions of a step over those with {words}", ours.step / theirs.step, spec=".3f"))
-        what = f"instructions in the fix over those in {words}, without the mesh"
+        rows.append(Measurement(f"ratio of instructions per step to {words}", ours.step / theirs.step, spec=".3f"))
+        what = f"ratio of instructions in the fix to {words}, without the mesh"
         rows.append(Measurement(what, ours.fixes / theirs.fixes, spec=".2f"))
     return rows
 
@@ -205,7 +205,7 @@ def crystal_table(results):
     for k, name in enumerate(COMPONENTS[:3]):
         cells = [with_error(mean.value[k], mean.error[k]) for mean in (ours, rigid, work)]
         rows.append([name, f"{TARGETS[k]:g}", f"{expected[k]:.4f}", *cells])
-    header = ("component", "target", "mean that belongs to it", METHODS[OURS], METHODS[RIGID], "(P − P₀) V/kT")
+    header = ("component", "target", "exact mean", METHODS[OURS], METHODS[RIGID], "(P − P₀) V/kT")
     return Table(header, rows)
 
 
@@ -217,7 +217,7 @@ def shear_table(results):
         [name, f"{targets[k]:g}", f"{right[k]:.4f}", with_error(found.value[k], found.error[k])]
         for k, name in enumerate(COMPONENTS)
     ]
-    return Table(("component", "target", "mean that belongs to it", "molecular pressure"), rows)
+    return Table(("component", "target", "exact mean", "molecular pressure"), rows)
 
 
 def find(results):

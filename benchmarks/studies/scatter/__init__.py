@@ -144,7 +144,7 @@ def _of_integrals(runs):
     words = "Ω*: largest deviation from quadrature, in standard errors"
     rows.append(Measurement(words, worst, spec=".1f", most=3.5))
     rows.append(Measurement("Ω*(1,1), Ω*(2,2): largest standard error, relative", largest, most=0.002))
-    words = "Ω*: what the cut-off of the deck changes at most, relative, by quadrature"
+    words = "Ω*: largest relative effect of the deck's cut-off, by quadrature"
     rows.append(Measurement(words, left, most=1e-4))
     header = ("T*", "integral", "mean over flights", "standard error", "quadrature", "deviation / standard error")
     return rows, {"integrals": Table(header, cells)}
@@ -155,12 +155,12 @@ def _of_molecules(runs):
     value, error = runs["nitrogen"].quantities["viscosity"]
     rows = [
         Measurement("viscosity of nitrogen at 300 K", value, error, ".2f", "µPa s"),
-        _near("its deviation from the measured one, relative", value, error, VISCOSITY[0]),
+        _near("its relative deviation from the measured value", value, error, VISCOSITY[0]),
     ]
     for name, gas in (("helium", "helium"), ("ion", "nitrogen")):
         value, error = runs[name].quantities["cross section"]
         rows.append(Measurement(f"cross section of choline in {gas} at 301 K", value, error, ".2f", "Å²"))
-        rows.append(_near("its deviation from the published computed one, relative", value, error, CHOLINE[gas][0]))
+        rows.append(_near("its relative deviation from the published computed value", value, error, CHOLINE[gas][0]))
     kinds = ("flights", "orbiting", "unparted", "lost")
     counts = [(PAIRS[name], *(run.counts[kind] for kind in kinds)) for name, run in runs.items()]
     return rows, {"molecules": Table(("pair", *kinds), counts)}
@@ -178,7 +178,7 @@ def _of_conservation(run):
     gone = counts["lost"] + counts["unparted"]
     rows = [
         Measurement("dumbbell flights", counts["flights"], spec=".0f"),
-        Measurement("dumbbell flights that were lost or did not part", gone, spec=".0f", most=0),
+        Measurement("dumbbell flights that were lost or did not separate", gone, spec=".0f", most=0),
         Measurement("dumbbell flights with a repeated step", counts["repeated"], spec=".0f"),
         Measurement("dumbbell flights that orbited", counts["orbiting"], spec=".0f"),
     ]
@@ -195,11 +195,11 @@ def _of_reference(arrays):
     every = np.concatenate(list(arrays.values()))
     simple = every[every[:, 2] <= 1]
     rows = [
-        Measurement("flights beside DOP853", len(every), spec=".0f"),
-        Measurement("flights beside DOP853 that orbited", len(every) - len(simple), spec=".0f"),
+        Measurement("flights compared with DOP853", len(every), spec=".0f"),
+        Measurement("flights compared with DOP853 that orbited", len(every) - len(simple), spec=".0f"),
         Measurement("largest deviation of a velocity (not orbiting)", simple[:, 0].max(), most=1e-8),
         Measurement("largest deviation of an angular momentum (not orbiting)", simple[:, 1].max(), most=1e-8),
-        Measurement("largest deviation of a velocity after the way back (not orbiting)", simple[:, 3].max(), most=1e-7),
+        Measurement("largest deviation of a velocity after the reversed flight (not orbiting)", simple[:, 3].max(), most=1e-7),
     ]
     header = ("deck", "flight", "turnings", "velocity", "angular momentum", "velocity, flown back")
     orbiting = [
@@ -228,7 +228,7 @@ def _of_methods(points):
         rows.append(Measurement(words, 1 / ours, spec=".0f"))
         for label in points:
             if label != "fix gear/quat":
-                words = f"time of {label} over that of the fix at {level:.0e}"
+                words = f"time of {label} relative to the fix at {level:.0e}"
                 least = 10.0 if level == COMPARED[-1] else None
                 rows.append(Measurement(words, seconds[label][at] / ours, spec=".1f", least=least))
     return rows, tables

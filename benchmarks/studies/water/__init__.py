@@ -119,12 +119,12 @@ def measurements(found):
         both = [found[series] for series in (LONG["tip4p"], SHORT)]
         apart = difference(*(mean(samples, read) for samples in both))
         most = widest(apart[1], *both)
-        words = f"{what} of {MODELS['tip4p'].title}, {LONG['tip4p'].text}, less that of {SHORT.text}"
+        words = f"{what} of {MODELS['tip4p'].title}, {LONG['tip4p'].text}, minus {SHORT.text}"
         rows.append(Measurement(words, *apart, ".5f", unit, least=-most, most=most))
     squeezed = [found[series] for series in COMPRESSED]
     apart = difference(jackknife(found[LONG["spce"]], fluctuating), by_two_pressures(*squeezed))
     most, remark = widest(apart[1], *squeezed), f"the latter: {text(by_two_pressures(*squeezed))}"
-    words = "compressibility of SPC/E water from fluctuations less that from two pressures"
+    words = "compressibility of SPC/E water from fluctuations minus compressibility from two pressures"
     rows.append(Measurement(words, *apart, ".3f", "1/GPa", remark, least=-most, most=most))
     for series, samples in found.items():
         value, error = mean(samples, warmer)
