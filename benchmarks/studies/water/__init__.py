@@ -1,6 +1,6 @@
-"""Water at constant pressure: density, temperatures and compressibility, and how they depend on the time step.
+"""Water at constant pressure: density, temperatures and compressibility, and their dependence on the time step.
 
-plan.py (what is run), runs.py (LAMMPS' runs and the samples that are kept), and here what follows from samples.
+plan.py (sizes of the runs), runs.py (LAMMPS' runs and the stored samples), and here the results from samples.
 """
 
 import math
@@ -15,12 +15,12 @@ from .runs import BOLTZMANN, measure
 
 #: 1/atm in 1/GPa, and kcal/mol/A^3 in atm
 PER_GPA, ATMOSPHERES = 1.0 / 1.01325e-4, 68568.415
-#: energy that is constant because molecules are rigid, which the scene of SPC/E leaves in, kcal/mol: two O-H of 1 A and one H-H
+#: constant energy within rigid molecules, which the scene of SPC/E includes, kcal/mol: two O-H of 1 A and one H-H
 WITHIN_MOLECULE = {
     "spce": 332.06371 * 0.4238**2 * (1 / (2 * math.sin(math.radians(109.47) / 2)) - 4),
     "tip4p": 0.0,
 }
-#: how many values are compared with what they should be, which decides how far off the worst may be
+#: number of values that are compared with expected ones; it determines the largest deviation allowed
 COMPARED = 6
 
 
@@ -72,7 +72,7 @@ def difference(one, other):
 
 
 def widest(error, *groups):
-    """How far from what it should be a value with this standard error may be, from so many groups of samples."""
+    """Largest allowed deviation of a value with this standard error, from this number of groups of samples."""
     freedoms = sum(len(samples) - 1 for samples in groups)
     return error * allowed(COMPARED, freedoms) if freedoms > 1 else math.nan
 
@@ -83,12 +83,12 @@ def density(sample):
 
 
 def energy(sample):
-    """Potential energy of a molecule among the others, kcal/mol."""
+    """Potential energy per molecule without the energy within it, kcal/mol."""
     return sample.energy - WITHIN_MOLECULE[sample.model]
 
 
 def warmer(sample):
-    """Temperature of translation less that of rotation."""
+    """Temperature of translation minus temperature of rotation."""
     return sample.translation - sample.rotation
 
 
