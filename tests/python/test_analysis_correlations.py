@@ -74,7 +74,7 @@ def test_rotation_is_not_bounded(held):
 
 @pytest.mark.parametrize(("moments", "first", "number"), [([3, 2, 2], 1, 3), ([3, 3, 1], 0, 3), ([2, 2, 2], 0, 6)])
 def test_directions_stand_for_all(moments, first, number):
-    """P1 and P2 of few directions are those of many in the plane, or in space, of the axes with equal moments."""
+    """P1 and P2 of few directions agree with many directions in the plane (or space) of axes with equal moments."""
     q, _, _ = rotating(RNG.normal(size=(BODIES, 3)))
     few = directions(np.tile(moments, (BODIES, 1)), np.tile(np.eye(3), (BODIES, 1, 1)), first)
     assert few.shape == (number, BODIES, 3) and np.linalg.norm(few, axis=2) == pytest.approx(np.ones((number, BODIES)))

@@ -149,7 +149,7 @@ PROPERTY = "\ni_body\n\n" + "".join(f"{k + 1} 7\n" for k in range(12))
 
 
 def test_a_data_file_with_sections_of_fixes(write, tmp_path):
-    """Behind velocities they do no harm; elsewhere the file is named, and what it must not have."""
+    """After velocities they do no harm; elsewhere the message has the file and the forbidden sections."""
     path = write(MOTION, TIMES, lambda t, r: r[:, [0, 4, 5, 6]], columns="id xu yu zu")
     atoms = open_dump(path, data=data_of(tmp_path, VELOCITIES + PROPERTY)).atoms
     assert atoms.masses.tolist() == [2.5] * 12 and atoms.resids.tolist() == (MOTION.of + 1).tolist()
@@ -205,7 +205,7 @@ def test_atoms_in_no_body_are_left_out(write):
 
 @pytest.mark.parametrize("stated", [True, False])
 def test_the_distance_of_frames(tmp_path, stated):
-    """dt and totaltime are those of the times of frames: 20 steps of 0.5 are 10; of uneven ones dt is the mean."""
+    """dt and totaltime follow from the times of frames: 20 steps of 0.5 are 10; dt is the mean if frames are uneven."""
     for steps in ([100, 120, 140, 160], [100, 120, 150, 160]):
         text = [dumps.frame(step, MOTION.rows(step)) for step in steps]
         if stated:
@@ -220,7 +220,7 @@ def test_the_distance_of_frames(tmp_path, stated):
 
 @pytest.mark.parametrize("suffix", ["", ".gz", ".bz2"])
 def test_compressed_dumps_are_read_forward(tmp_path, monkeypatch, suffix):
-    """Frames are those of the plain file in any order, and a compressed file is not unpacked anew for each of them."""
+    """Frames agree with the plain file in any order, and a compressed file is not unpacked again for each frame."""
     import bz2
     import gzip
 

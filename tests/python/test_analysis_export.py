@@ -34,7 +34,7 @@ def test_units_of_results(poses, dump):
 
 
 def test_without_times_only_what_is_found_from_frames_is_in_steps(dump):
-    """A velocity is that of the dump: 5 times the slope of the center by the step, if a step is 5 fs long."""
+    """Velocities are from the dump: a step of 5 fs makes the slope of the center per step 5 times the velocity."""
     poses = Poses(open_dump(dump).atoms, units="real").run()
     units = {"velocity": "Å/fs", "omega_space": "rad/fs", "angular_momentum_space": "g/mol Å²/fs", "momentum": "g/mol Å/fs"}
     units |= {"velocity_autocorrelation": "Å²/fs²", "time": "step", "lag": "step", "correlation time": "step"}

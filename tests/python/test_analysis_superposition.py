@@ -1,4 +1,4 @@
-"""Known rotations are found, of bodies of any kind; the principal frame is that of the bodies."""
+"""Known rotations are found for bodies of any kind; the principal frame agrees with the bodies'."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_small_and_half_turns(turn):
 
 
 def test_the_rotation_is_the_best_one():
-    """Of sites that are not rigid: no small further turn makes the weighted squares smaller."""
+    """For sites that are not rigid: every small additional rotation increases the weighted squares."""
     bodies = bodies_of([5] * 40)
     arms = turned(bodies, Rotation.random(40, RNG)) + 0.2 * RNG.normal(size=(200, 3))
     arms -= bodies.center(arms)[bodies.of]
@@ -66,7 +66,7 @@ def test_the_rotation_is_the_best_one():
     for axis in np.vstack([np.eye(3), -np.eye(3)]):
         other = Rotation.from_rotvec(1e-3 * axis) * Rotation.from_quat(q, scalar_first=True)
         assert (squares(other.as_quat(scalar_first=True)) > squares(q)).all()
-    # and it is that of SciPy's own, other method, body by body
+    # and it agrees with SciPy's method, body by body
     for b in range(40):
         own = bodies.of == b
         best, _ = Rotation.align_vectors(arms[own], bodies.shape[own], bodies.masses[own])

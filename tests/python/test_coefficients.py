@@ -34,7 +34,7 @@ def made(formulation):
 
 
 def one_percent_off(corrector):
-    """The Corrector with one entry wrong, for every entry but the one that is 1 by definition."""
+    """The Corrector with one wrong entry, for every entry except the entry that is 1 by definition."""
     for which in range(3 - corrector.order):
         for j in range(corrector.values):
             if j != corrector.order:
@@ -72,7 +72,7 @@ def characteristic(c, order, terms):
 
 
 def has_order(c, order, free_c0=False):
-    """Whether all powers vanish, exactly, that order N asks for (free_c0: without that of c_0)."""
+    """True if all conditions of order N are satisfied exactly (free_c0: without the condition on c_0)."""
     return not any(characteristic(c, order, len(c) + order - free_c0))
 
 
@@ -186,7 +186,7 @@ def test_the_command_prints_lines_of_the_table():
 
 # --- linear properties ------------------------------------------------------------------------------
 def stepped(corrector, z):
-    """Matrix of one step in extended precision, from what a step does to each row."""
+    """Matrix of one step in extended precision, from a step of each row."""
     n, columns = corrector.values, []
 
     def predicted(rows):

@@ -20,7 +20,7 @@ def test_parting_time_is_the_first_sample_beyond_the_threshold():
 
 @pytest.mark.parametrize("there", [2.0, np.nan])
 def test_parting_is_where_it_first_happens(there):
-    """Coming back does not undo a parting; what is no number has parted."""
+    """Runs that come close again have still parted; NaN counts as parted."""
     gap = np.zeros((101, 3))
     gap[30, 1] = there
     assert dv.parting_time(line(), make(np.arange(101.0), gap), 1.0) == 30.0

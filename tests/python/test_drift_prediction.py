@@ -45,7 +45,7 @@ def test_a_body_in_wells_loses_what_the_response_says(corrector, omega_h):
 
 # --- spectra --------------------------------------------------------------------------------------
 def oscillations(omega, axes=3, bodies=5, dt=1.0):
-    """Velocities (samples, bodies, 3) that oscillate with ``omega``, those of further axes zero to rounding."""
+    """Velocities (samples, bodies, 3) that oscillate with ``omega``; other axes are zero within round-off."""
     random = np.random.default_rng(1)
     phases = random.uniform(0, 2 * np.pi, (bodies, 3))
     series = np.cos(omega * dt * np.arange(3 * SEGMENT)[:, None, None] + phases)
@@ -103,7 +103,7 @@ def test_spectra_of_six_liquids_are_there():
 
 
 def test_file_of_a_deck_is_read(tmp_path):
-    """Three comments, then for each step its number, that of its rows, and rows of six velocities."""
+    """Three comments, then for each step: its number, its number of rows, and rows of six velocities."""
     velocities, rotations = oscillations(0.1), oscillations(0.2)
     lines = ["# a", "# b", "# c"]
     for k, rows in enumerate(np.concatenate([velocities, rotations], axis=2)):

@@ -135,7 +135,7 @@ def test_exact_pendulums():
 def test_collision(run):
     results = run(fast, ["wall"], (0.002,))
     assert all(held(fast.find(results)))
-    # an error of 0.02 % of the energy, of which the estimates know nothing
+    # an error of 0.02 % of the energy, which the estimates do not include
     for error, expected in ((0.02, [False, True]), (0.2, [False, False])):
         wrong = {key: replace(one, error=one.error + error) for key, one in results.items()}
         assert held(fast.find(wrong)) == expected

@@ -39,7 +39,7 @@ def pasted(lmp_wheel):
 
 
 def command_blocks(page):
-    """What a reader would paste into a shell: blocks of bash, and indented lines that begin with a command."""
+    """The commands that a reader would paste into a shell: blocks of bash, and indented lines that begin with a command."""
     text = (ROOT / "doc" / "howto" / f"{page}.md").read_text()
     return [*blocks(page, "bash"), *re.findall(r"^    ((?:gearquat|lmp|python) .*)$", text, re.M)]
 

@@ -101,7 +101,7 @@ def test_a_flight_does_not_depend_on_those_before(dumbbells):
 
 
 def test_poses(dumbbells):
-    """A flight that meets nothing turns both bodies by what their rotation says."""
+    """In a flight without a collision both bodies turn by their angular velocity."""
     number = np.arange(1)
     random = np.full((1, rotational(dumbbells)), 0.3)
     start = starts_of(dumbbells, 4.45 + number, 2.0 + number, 1.0 + number, random)[0][2]
@@ -280,7 +280,7 @@ def reduced(tmp_path_factory):
 
 @pytest.mark.parametrize("style", ["real", "si", "cgs", "electron", "micro"])
 def test_all_styles_of_units(tmp_path, style, reduced):
-    """The same collisions in other units: the same plan, the same integrals by those of spheres."""
+    """The same collisions in other units: the same plan, and the same integrals relative to hard spheres."""
     sigma = colliding.SIGMA / (UNITS[style].angstrom * 1e-10)
     deck, out = colliding.write_argon(tmp_path, style), tmp_path / "out"
     run(deck, out, "--temperature", str(2.0 * colliding.WELL), "--count", "32", "--sigma", f"{sigma:.17g}")
@@ -304,7 +304,7 @@ def test_all_styles_of_units(tmp_path, style, reduced):
 
 # --- several temperatures -------------------------------------------------------------------------
 def test_several_temperatures_of_molecules(tmp_path):
-    """Averages agree with those of flights at each temperature alone, and rotation gains nothing."""
+    """Averages agree with flights at each temperature alone, and rotation gains nothing."""
     deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5)
     options = ("--temperature", "2", "--temperature", "1", "--largest", "3", "--count", "768")
     output = run(deck, tmp_path / "both", *options)

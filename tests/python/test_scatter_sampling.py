@@ -1,4 +1,4 @@
-"""gearquat scatter: which flights are flown."""
+"""gearquat scatter: selection of the flights."""
 
 from dataclasses import replace
 from types import SimpleNamespace
