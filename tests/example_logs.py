@@ -50,7 +50,7 @@ def decks(examples: Path = EXAMPLES, ranks: int = 1) -> list[Path]:
 
 
 def needs_wheel(deck: Path) -> bool:
-    """Whether the wheel can run it and the tree cannot."""
+    """True if the wheel can run it and the tree cannot."""
     return any(style in deck.read_text() for style in STYLES_OF_THE_WHEEL)
 
 
@@ -60,7 +60,7 @@ def name_of(deck: Path) -> str:
 
 
 def copy_examples(to: Path) -> Path:
-    """The folders with decks, in the place that LAMMPS has for those of a package."""
+    """The folders with decks, located like LAMMPS' examples of a package."""
     target = to / "examples" / "PACKAGES" / "gearquat"
     for name in ("common", *FOLDERS):
         shutil.copytree(EXAMPLES / name, target / name, ignore=shutil.ignore_patterns("log.lammps", "out.*"))

@@ -19,7 +19,7 @@ from pathlib import Path
 from running import ROOT, TREE_BUILD
 
 SOURCES, UNIT = ROOT / "src" / "GEARQUAT", ROOT / "build" / "unit"
-#: what is looked for in a line, and what stands there instead
+#: a pattern in a line, and its replacement
 CHANGES = (
     (r" \+ ", " - "),
     (r" - ", " + "),
@@ -49,7 +49,7 @@ def candidates() -> list[tuple[Path, int, str]]:
 
 
 def passes(*command: object, **settings: object) -> tuple[bool, str]:
-    """Whether a command succeeds, and what it says."""
+    """True if a command succeeds, and its output."""
     done = subprocess.run([*map(str, command)], cwd=ROOT, capture_output=True, text=True, **settings)
     return done.returncode == 0, done.stdout + done.stderr
 

@@ -34,7 +34,7 @@ def deck(scene: str, task: str) -> str:
 
 
 def results(log: str) -> dict[str, list[float]]:
-    """What a deck printed in lines ``result NAME NUMBERS NAME NUMBERS``."""
+    """Results of a deck, from lines ``result NAME NUMBERS NAME NUMBERS``."""
     found: dict[str, list[float]] = {}
     for line in RESULT.findall(log):
         for word in line.split():
@@ -54,7 +54,7 @@ def run(lmp: Lammps, scene: str, task: str, **variables: object) -> dict[str, li
 
 @dataclass
 class Report:
-    """One report: its deck, the rows that are run, and the columns made of what they print."""
+    """One report: its deck, the rows that are run, and the columns computed from their output."""
 
     name: str
     scene: str
@@ -91,7 +91,7 @@ class Report:
 
 
 class Refused(Report):
-    """What LAMMPS says."""
+    """LAMMPS' output."""
 
     def table(self, machines: dict[str, Lammps]) -> str:
         rows = []

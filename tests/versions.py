@@ -1,4 +1,4 @@
-"""What `tests/run versions` found, as a table; with --publish on the page about installing."""
+"""The results of `tests/run versions` as a table; with --publish on the page about installing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PARTS = {"harness": "LAMMPS' harness", "lammps": "the fix in LAMMPS", "python": 
 
 
 def version_of(executable: Path) -> str:
-    """What LAMMPS says of itself, like "22 Jul 2025 - Update 4"."""
+    """LAMMPS' version text, like "22 Jul 2025 - Update 4"."""
     told = subprocess.run([executable, "-h"], capture_output=True, text=True, check=True).stdout
     return re.search(r"Parallel Simulator - (.*)", told)[1].strip()
 

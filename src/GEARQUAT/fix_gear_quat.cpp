@@ -9,7 +9,7 @@
    See the README file in the package's directory.
 ------------------------------------------------------------------------- */
 
-/* Between the hooks of LAMMPS and what they are for: a step is made in gear_quat_step.cpp. */
+/* The hooks of LAMMPS and the objects behind them; the step itself is in gear_quat_step.cpp. */
 
 #include "fix_gear_quat.h"
 
@@ -98,7 +98,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
   motion->meet_bodies();
   count_rows();
-  size_array_rows_variable = !args->mol.empty();    // rows may be asked for before they are there
+  size_array_rows_variable = !args->mol.empty();    // rows may be requested before they exist
 
   // last, because LAMMPS would call back a fix whose constructor has failed
   extlist = new int[size_vector]{1, 1};
@@ -126,7 +126,7 @@ FixGearQuat::~FixGearQuat()
 int FixGearQuat::setmask()
 {
   resume();
-  show_bodies();    // they may be asked for before the first run
+  show_bodies();    // local data may be requested before the first run
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR |
       INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step->tolerance ? END_OF_STEP : 0) |
       MIN_PRE_EXCHANGE | MIN_PRE_NEIGHBOR | MIN_PRE_FORCE | MIN_POST_FORCE | MIN_ENERGY;
@@ -177,7 +177,7 @@ void FixGearQuat::reset_dt()
   step->follow_length();
 }
 
-/// In a minimization, LAMMPS goes on from the end of the last line search.
+/// In a minimization, LAMMPS continues from the end of the last line search.
 void FixGearQuat::deform(int flag)
 {
   if (flag == 0 && minimization->is_on()) minimization->put_back();
@@ -193,7 +193,7 @@ void FixGearQuat::setup_pre_exchange()
   if (reported) driven_box->pass_faces_before_run();    // there was a run
 }
 
-/// Bodies keep their state between runs, and take over what the user has changed in the atoms.
+/// Bodies keep their state between runs, and adopt changes that the user has made in the atoms.
 void FixGearQuat::setup_pre_neighbor()
 {
   ownership->check_whole();
@@ -214,7 +214,7 @@ void FixGearQuat::setup_pre_neighbor()
   count_rows();
 }
 
-/// Atoms are changed when nothing can refuse the run any more.
+/// Atoms are changed only after all checks that may end the run.
 void FixGearQuat::setup(int vflag)
 {
   step->expect_readers_at_end(readers_at_end(lmp, this));
@@ -237,7 +237,7 @@ void FixGearQuat::count_rows()
   size_array_rows = std::max(size_array_rows, (int) bodies->number());
 }
 
-/// LAMMPS does not ask for local data.
+/// LAMMPS does not call a function to request local data.
 void FixGearQuat::show_bodies()
 {
   array_local = table->local();
@@ -278,8 +278,8 @@ void FixGearQuat::final_integrate()
   end_step(atom->f, atom->torque);
 }
 
-/// f, torque: what all pair styles and fixes have made in the step before.  The first fix gear/quat
-/// in the list starts the bodies of all of them.
+/// f, torque: from all pair styles and fixes in the previous step.  The first fix gear/quat in the
+/// list starts the bodies of all of them.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
   if (motion_acts) {
@@ -318,7 +318,7 @@ void FixGearQuat::post_run()
   driven_box->end_run();
 }
 
-/// Virial of the constraint forces, at the pose where the forces were taken.
+/// Virial of the constraint forces, at the pose at which the forces were evaluated.
 void FixGearQuat::tally_virial(int vflag, double **f)
 {
   v_init(vflag);
@@ -362,7 +362,7 @@ void FixGearQuat::min_pre_force(int /*vflag*/)
   minimization->fit_all();
 }
 
-/// Fix box/relax may ask for the pressure next.
+/// Fix box/relax may request the pressure next.
 void FixGearQuat::min_post_force(int vflag)
 {
   sites->gather_loads(atom->f, atom->torque);
@@ -370,8 +370,8 @@ void FixGearQuat::min_post_force(int vflag)
   min_vflag = vflag;
 }
 
-/// When all other fixes have added their forces.  In LAMMPS' setup, thermo output has come first,
-/// and the virial is that of the forces before they were projected.
+/// Called when all other fixes have added their forces.  In LAMMPS' setup, thermo output is printed
+/// before, with the virial of the forces before their projection.
 double FixGearQuat::min_energy(double *fextra)
 {
   fextra[0] = 0.0;
@@ -389,8 +389,8 @@ void FixGearQuat::min_store()
   minimization->store();
 }
 
-/// Bodies need no degrees of freedom beside those of their atoms; with one, which stays 0, LAMMPS
-/// calls min_energy() and min_store().
+/// Bodies need no degrees of freedom besides the ones of their atoms.  With a single one, which
+/// stays 0, LAMMPS calls min_energy() and min_store().
 int FixGearQuat::min_dof()
 {
   return 1;

@@ -9,7 +9,7 @@
    See the README file in the package's directory.
 ------------------------------------------------------------------------- */
 
-/* The hooks of LAMMPS that carry data: with atoms from rank to rank, and into restart files. */
+/* The hooks of LAMMPS for data: with atoms from rank to rank, and in restart files. */
 
 #include "fix_gear_quat.h"
 
@@ -38,7 +38,7 @@ void FixGearQuat::copy_arrays(int i, int j, int delflag)
   ownership->copy_arrays(i, j, delflag);
 }
 
-/// A new atom is in no body unless set_molecule() follows.
+/// A new atom belongs to no body unless set_molecule() follows.
 void FixGearQuat::set_arrays(int i)
 {
   ownership->set_arrays(i);
@@ -115,7 +115,7 @@ void FixGearQuat::restart(char *buf)
 void FixGearQuat::resume()
 {
   if (!restarts->was_read()) return;
-  const bool others_come = !args->mol.empty();    // also from outside of the group
+  const bool others_come = !args->mol.empty();    // insertions may come from outside of the group
   met_atoms = restarts->resume(others_come ? groupbit : 0);
   if (!met_atoms) create_bodies();
 }

@@ -5,15 +5,16 @@
 
 /* Quaternions of any length, in the second-order formulation.
 
-   A projection onto |q| = 1 after each step changes rows 0 and 1 of a history alone.  It makes the
-   method irreversible, and at long steps half of the drift of the energy comes from it.  With
-   Scheme::any_norm() there is none: the equation of q holds for any length (gear_quat_math.h), a weak
-   spring keeps the length close to 1, and sites use q/|q|.  Three things belong to it:
+   A projection onto |q| = 1 after each step changes only rows 0 and 1 of a history.  It makes the
+   method irreversible, and at long steps it causes half of the energy drift.  With
+   Scheme::any_norm() there is no projection: the equation of q is valid for any length
+   (gear_quat_math.h), a weak spring keeps the length close to 1, and sites use q/|q|.  This
+   requires three things:
 
-     - residuals use the pose where the torque was met, the predicted one;
+     - residuals use the pose at which the torque was evaluated, the predicted one;
      - passes are repeated until the residual converges, unless their number is given;
      - a body that turns fast is unstable in this equation.  Between two speeds of rotation, in
-       radians per step, Eq. 6 with its projection replaces it gradually, and beyond them it is
+       radians per step, Eq. 6 with its projection gradually replaces it; beyond them Eq. 6 is used
        alone, with its two passes.  Five values are stable without it. */
 
 #ifndef GEAR_QUAT_ANY_NORM_H
@@ -51,11 +52,11 @@ class AnyNorm {
     return std::min(1.0, (std::sqrt(turn2) - slow) / (fast - slow));
   }
 
-  /// Whether passes are to be repeated.
+  /// True if passes are repeated.
   bool converges(double part) const { return repeats && part < 1.0; }
 
-  /// Calls pass(), which finds the residual `total` anew, until this no longer changes, or until it
-  /// changes by more than before.
+  /// Calls pass(), which computes the residual `total`, until it converges or changes by more than
+  /// before.
   template <class Pass> static void repeat(double part, const double *total, Pass pass)
   {
     const int fewest = part > 0.0 ? FEWEST_OF_FAST : FEWEST;
@@ -80,8 +81,8 @@ class AnyNorm {
     return dot4(total, total) - radial * radial / dot4(q, q);
   }
 
-  /// What the projection adds to rows 0 and 1 where both equations have a part.  As long as that of
-  /// Eq. 6 is small, rates are scaled as q is, which leaves the angular velocity as it is.
+  /// Changes of rows 0 and 1 by the projection where both equations contribute.  While the
+  /// projection of Eq. 6 is small, rates are scaled like q, which preserves the angular velocity.
   static void projection(double part, const double *q, const double *rates, double *of_q,
                          double *of_rates)
   {

@@ -111,11 +111,11 @@ void Arguments::parse_keywords(int narg, char **arg)
   if (is_on("tolerance", "")) check_control();
   check_pressure();
   thermostat.may_wait = !mol.empty();
-  if (!infile.empty()) reinit = false;    // what a file states is not computed again from the atoms
+  if (!infile.empty()) reinit = false;    // values in a file are not recomputed from the atoms
 }
 
-/// Keywords of the test cases of the paper, as if they were given, except those that are given and
-/// those that do not fit to these.
+/// Adds the keywords of the test cases of the paper, except keywords that are given and keywords
+/// that conflict with them.
 void Arguments::take_preset()
 {
   using Words = std::vector<std::pair<std::string, std::string>>;
@@ -139,8 +139,8 @@ void Arguments::take_preset()
   }
 }
 
-/// True if a keyword has this value, given or by default; with an empty one, if it is in use, that
-/// is, has any value but the word none.
+/// True if a keyword has this value, given or by default; with an empty value, true if the keyword
+/// has any value other than the word none.
 bool Arguments::is_on(const std::string &keyword, const std::string &value) const
 {
   const auto place = given.find(keyword);
@@ -152,7 +152,7 @@ bool Arguments::is_on(const std::string &keyword, const std::string &value) cons
   return !present.empty() && !(row.kind == Keyword::WORD && present == "none");
 }
 
-/// What keywords require of each other and exclude.
+/// Checks requirements and conflicts between keywords.
 void Arguments::check_conditions() const
 {
   const auto because = [](const Keyword::Condition &condition) {
@@ -161,7 +161,7 @@ void Arguments::check_conditions() const
   for (const auto &row : keyword_table()) {
     if (!given.count(row.name) || !is_on(row.name, "")) continue;
     std::string user = row.name, lacking,
-                reasons;    // all at once: one error should not lead to the next
+                reasons;    // all at once: fixing one error should not lead to the next
     for (const auto &condition : row.needs) {
       if (!is_on(row.name, condition.only_for) || is_on(condition.keyword, condition.value))
         continue;
@@ -183,7 +183,7 @@ void Arguments::check_conditions() const
   }
 }
 
-/// Stores integers, the default ones too, and ends the run if one is outside of its range.
+/// Stores integers, including defaults, and ends the run if one is outside of its range.
 void Arguments::check_ranges()
 {
   const bool tolerance = is_on("tolerance", "");
@@ -247,7 +247,7 @@ void Arguments::check_control()
                  pressure.start[k], pressure.stop[k]);
 }
 
-/// Directions without a period have no pressure, and tilts are free all together only.
+/// Directions without a period have no pressure, and tilts are free only all together.
 void Arguments::check_pressure()
 {
   PressureWords &p = pressure;
@@ -278,7 +278,7 @@ void Arguments::check_pressure()
                    "yz");
       p.on[along_z] = false;
     }
-  if (domain->dimension == 2 && p.tied[1] == 1 && p.tied[2] != 2)    // xyz is as xy
+  if (domain->dimension == 2 && p.tied[1] == 1 && p.tied[2] != 2)    // xyz is equivalent to xy
     error->all(FLERR,
                "Fix gear/quat couple: in two dimensions there is no edge along z; use couple xy");
   check_directions();
@@ -317,7 +317,7 @@ void Arguments::check_directions() const
     error->all(FLERR, "Fix gear/quat: keyword couple cannot be used with tri, xy, xz and yz");
 }
 
-/// Coupled directions need the same numbers.
+/// Coupled directions must have the same numbers.
 void Arguments::check_coupling() const
 {
   const PressureWords &p = pressure;
@@ -426,11 +426,11 @@ std::vector<tagint> Arguments::group_ids(int groupbit) const
   return ids;
 }
 
-/// The largest value and the largest difference of values: doubles up to here hold integers
-/// exactly.
+/// The largest value and the largest difference of values: doubles up to this limit represent
+/// integers exactly.
 static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
 
-/// Bodies are numbered from the smallest value in the group, as fix rigid numbers them.
+/// Bodies are numbered from the smallest value in the group, as in fix rigid.
 std::vector<tagint> Arguments::custom_ids(int groupbit) const
 {
   std::vector<tagint> ids(atom->nlocal, 0);
@@ -487,7 +487,7 @@ std::vector<tagint> Arguments::custom_ids(int groupbit) const
    bodies to masks
 ------------------------------------------------------------------------- */
 
-/// n, *, *n, n* or m*n with 1 <= m <= n <= number; false if it is none of these.
+/// Parses n, *, *n, n* or m*n with 1 <= m <= n <= number; false for any other text.
 static bool parse_range(const std::string &text, tagint number, tagint &first, tagint &last)
 {
   const size_t star = text.find('*');

@@ -5,10 +5,10 @@
 
 /* The words of the fix command: which atoms make bodies, and how they are integrated.
 
-   The keywords stand in one table with one row for each.  A row says what follows the
-   keyword, what holds without it, which other keywords it requires or excludes, what it means, and
-   where its value is stored.  The parser is a loop over these rows, error messages are made from
-   them, and `fix ID group gear/quat keywords` prints them for people and for programs. */
+   The keywords are listed in one table with one row each.  A row gives the words after the keyword,
+   the default, the other keywords that it requires or excludes, its meaning, and the member that
+   stores its value.  The parser is a loop over these rows, error messages are made from them, and
+   `fix ID group gear/quat keywords` prints them for people and for programs. */
 
 #ifndef LMP_GEAR_QUAT_ARGUMENTS_H
 #define LMP_GEAR_QUAT_ARGUMENTS_H
@@ -32,15 +32,15 @@ struct MaskWords {
   bool on[3];
 };
 
-/// What keywords temp, tchain and thermostat say.
+/// Values of keywords temp, tchain and thermostat.
 struct ThermostatWords {
   double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
   int length = 0;
   bool separate = false;
-  bool may_wait = false;    ///< bodies may come later, so that there may be none
+  bool may_wait = false;    ///< bodies may be inserted later, so that there may be none
 };
 
-/// What the keywords of constant pressure say, for the components xx yy zz yz xz xy.
+/// Values of the pressure keywords, for the components xx yy zz yz xz xy.
 struct PressureWords {
   static constexpr int COMPONENTS = 6;
   bool on[COMPONENTS] = {};
@@ -66,13 +66,13 @@ struct PressureWords {
   }
 };
 
-/// The words behind a keyword, after they were read.
+/// The words after a keyword, parsed.
 struct KeywordValue {
-  std::string text;                    ///< the first word as it stands
+  std::string text;                    ///< the first word as written
   int integer = 0;                     ///< of an INTEGER
   double number = 0.0;                 ///< of a NUMBER, in units of `unit`
-  std::string measure = {};            ///< of a NUMBER, the word behind it
-  double unit = 1.0;                   ///< of a NUMBER, the number behind that word
+  std::string measure = {};            ///< of a NUMBER, the word after it
+  double unit = 1.0;                   ///< of a NUMBER, the number after that word
   std::vector<double> numbers = {};    ///< of NUMBERS
   MaskWords mask = {};                 ///< of a MASK
 
@@ -80,7 +80,7 @@ struct KeywordValue {
 };
 
 struct Keyword {
-  /// WORD: one of some words; NUMBER: a positive one, perhaps with a word behind it, which may have
+  /// WORD: one of some words; NUMBER: a positive one, optionally followed by a word, which may have
   /// a unit, another positive number; NUMBERS: some positive ones; NAME: any word that is not
   /// empty; MASK: four words, and the keyword may be given many times.
   enum Kind { WORD, INTEGER, NUMBER, NAME, MASK, NUMBERS };
@@ -91,9 +91,8 @@ struct Keyword {
   /// Another keyword that has to be given, or must not be; value: empty for any but "none".
   struct Condition {
     std::string keyword, value;
-    std::string reason;    ///< ends the error message, may be empty
-    std::string
-        only_for;    ///< what is required: by this value of the keyword alone, empty: by any
+    std::string reason;      ///< ends the error message, may be empty
+    std::string only_for;    ///< required only by this value of the keyword; empty: by any value
   };
   using Store = void (*)(Arguments &, const KeywordValue &);
 
@@ -103,12 +102,12 @@ struct Keyword {
   Store store;
 
   Kind kind = WORD;
-  std::vector<std::string> words;    ///< WORD: the possible ones; NUMBER: those behind it, the
+  std::vector<std::string> words;    ///< WORD: the possible ones; NUMBER: the words after it, the
                                      ///< first is the default; NAME, MASK, NUMBERS: what follows
   std::string standard;              ///< WORD: the default
   std::string with_tolerance;        ///< WORD: the default then, empty: the same
-  std::vector<Range> ranges;         ///< INTEGER: one, or those of formulation second and first
-  int any_sign = 0;                  ///< NUMBERS: so many of the first may be negative or zero
+  std::vector<Range> ranges;         ///< INTEGER: one, or one per formulation, second first
+  int any_sign = 0;                  ///< NUMBERS: how many of the first may be negative or zero
   int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
   bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them
   bool may_be_auto = false;          ///< INTEGER: the word auto is possible, and the default
@@ -189,28 +188,27 @@ struct Keyword {
     return gear && range.standard_gear ? range.standard_gear : range.standard;
   }
 
-  /// Reads the words behind arg[0] into value and returns how many they are.  Words that cannot be
-  /// meant end the run on all ranks.
+  /// Reads the words after arg[0] into value and returns their number.  Invalid words end the run
+  /// on all ranks.
   int read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const;
-  /// What the words have to be, as a sentence has it: "no, short or long", "1 to 100", "M xflag
-  /// yflag zflag".
+  /// The words required, as in a sentence: "no, short or long", "1 to 100", "M xflag yflag zflag".
   std::string required() const;
-  /// The same with what holds for some settings of other keywords.
+  /// The same, with the values that depend on other keywords.
   std::string possible_values() const;
 };
 
 /// All rows, in the order of the manual.
 const std::vector<Keyword> &keyword_table();
 
-/// The row of a keyword.  An unknown one ends the run on all ranks, with what to write instead if
-/// it is a keyword of the rigid fixes, or else with what may follow `before`, the keyword ahead of
-/// it.
+/// The row of a keyword.  An unknown keyword ends the run on all ranks.  The message gives the
+/// equivalent of a keyword of the rigid fixes, otherwise the words allowed after the previous
+/// keyword, `before`.
 const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
 
 /// The numbers of values of a formulation that have tuned coefficients, in a row.
 std::string tuned_numbers(bool first, const std::string &between);
 
-/// Whether a word is an integer, and which.
+/// True if a word is an integer; returns its value.
 bool read_integer(const std::string &text, int &integer);
 
 /// The table as text: a line of titles and a line for each row, whose columns are separated by two
@@ -219,8 +217,8 @@ std::string list_of_keywords();
 
 // words of the rigid fixes that this fix does not have
 
-/// The words of fix_modify that the rigid fixes have: returns how many were used, and ends the run
-/// on all ranks where this fix cannot do what they ask for.
+/// Handles the words of fix_modify that the rigid fixes have and returns how many were used.  Ends
+/// the run on all ranks if this fix does not support the request.
 int modify_like_rigid(LAMMPS *lmp, int narg, char **arg);
 
 /* ---------------------------------------------------------------------- */
@@ -234,41 +232,41 @@ struct Arguments : protected Pointers {
   std::vector<std::string> groups;    ///< group: one per body
   std::string custom;                 ///< custom: i_name or v_name
 
-  // what the keywords say; the table in gear_quat_keyword_table.cpp has the defaults
+  // values of the keywords; the table in gear_quat_keyword_table.cpp has the defaults
 
   Scheme scheme;
-  bool automatic_values = false;    ///< the number of values of `scheme` is that of smooth motion
+  bool automatic_values = false;    ///< `scheme` has the number of values for smooth motion
   StepControl control;              ///< eps 0: the step is LAMMPS' own
-  double every_time = 0.0;          ///< steps end at its multiples; 0: at any times
+  double every_time = 0.0;          ///< steps end at multiples of it; 0: at any time
   Start start;
   bool reinit;
   Report report;
   std::string infile;
-  std::string mol;    ///< template of bodies to come
+  std::string mol;    ///< template of bodies that are inserted
   std::vector<MaskWords> masks;
   Isokinetic isokinetic;
   bool rescale;
   ThermostatWords thermostat;    ///< damp 0: none
   PressureWords pressure;        ///< none on: the box stays
 
-  /// Parse the words after the style.  Any fault ends the run on all ranks with a message that
-  /// names the word and what is required.
+  /// Parses the words after the style.  Any error ends the run on all ranks with a message that
+  /// gives the word and the words required.
   Arguments(LAMMPS *lmp, int narg, char **arg);
 
-  /// Whether the command has this keyword.
+  /// True if the command has this keyword.
   bool states(const std::string &keyword) const { return given.count(keyword) > 0; }
 
-  /// Keyword tolerance and those that bound its steps, as in the command; empty without it.
+  /// Keyword tolerance and the keywords that bound its steps, as in the command; empty without it.
   std::string words_of_control() const;
   /// Keywords of the pressure, as in the command.
   std::string words_of_pressure() const;
 
-  /// Body of every owned atom, 0 for atoms in none; faults name the atom.  Collective.
+  /// Body of every owned atom, 0 for atoms in none; error messages give the atom.  Collective.
   std::vector<tagint> body_ids(int groupbit) const;
 
-  /// What keywords force and torque turn off, for bodies of which something is off; later keywords
-  /// replace earlier ones.  ids: of all bodies, sorted.  A range that is none, or has bodies that
-  /// do not exist, ends the run, and so does motion out of the plane in two dimensions.
+  /// Components turned off by keywords force and torque, for bodies with at least one; later
+  /// keywords replace earlier ones.  ids: of all bodies, sorted.  An invalid range, a range with
+  /// bodies that do not exist, or motion out of the plane in two dimensions ends the run.
   std::map<tagint, Mask> masks_of(const std::vector<tagint> &ids) const;
 
  private:

@@ -23,11 +23,11 @@ using namespace GearQuat;
 
 static constexpr double NONE = std::numeric_limits<double>::infinity();
 
-// an arm that is shorter than this part of positions is rounding
+// an arm that is shorter than this part of positions is due to rounding
 
 static constexpr double ROUNDING = 1.0e-14;
 
-// a body with no more sites is small
+// a body with at most this many sites is small
 
 static constexpr bigint SMALL = 1000;
 
@@ -122,7 +122,7 @@ void Assembly::find_arm(const double *x, const double *center, double *arm) cons
 
 Assembly::Site Assembly::site_of(int part, int i) const
 {
-  Site site;    // without zeros that nobody reads
+  Site site;    // without initialization, for speed
   site.rank = comm->me;
   site.local = i;
   site.tag = atom->tag[i];
@@ -144,14 +144,14 @@ double Assembly::radius(int part) const
   return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
 }
 
-/// The unit of a sum over all sites of a body; bound: of a term.
+/// The unit of a sum over all sites of a body; bound: of its terms.
 double Assembly::scale_of(int part, double bound) const
 {
   if (is_small(part)) return 0.0;
   return ExactSum::scale_of(bound * std::max(1.0, (double) sizes[part].natoms / MANY));
 }
 
-/// The same, of terms that are proportional to the mass.
+/// The same for terms that are proportional to the mass.
 double Assembly::unit_of(int part, double bound) const
 {
   return scale_of(part, sizes[part].mass * bound);
@@ -221,8 +221,8 @@ void Assembly::find_sizes()
     if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
 }
 
-/// Small bodies become known as a whole, in the order of atom IDs, to all ranks that have sites of
-/// them.
+/// Sends small bodies as a whole, in the order of atom IDs, to all ranks that have some of their
+/// sites.
 void Assembly::gather_small()
 {
   const auto by_tag = [this](int i, int j) {
@@ -297,7 +297,7 @@ void Assembly::find_extremes()
   }
 }
 
-/// The owner is the site nearest to the middle of the body, for it needs the fewest ghosts.
+/// The owner is the site nearest to the middle of the body, which needs the fewest ghosts.
 void Assembly::find_moments()
 {
   const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
@@ -393,7 +393,7 @@ std::vector<Assembly::Momenta> Assembly::find_momenta()
   });
 }
 
-/// The owner's rank counts a body of the file.
+/// Only the owner's rank counts a body of the file.
 void Assembly::take_given(const GivenBody &given_body, int part)
 {
   Made &one = made[part];

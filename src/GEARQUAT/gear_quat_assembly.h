@@ -6,7 +6,7 @@
 /* Assembly: from sites with positions and velocities to rigid bodies.
 
    Owner, mass properties, pose and velocities of a body follow from sums, extremes and counts over
-   its sites.  Every rank adds up the sites that it owns, and a few numbers per body and rank are
+   its sites.  Every rank sums over the sites that it owns, and a few numbers per body and rank are
    sent (gear_quat_ranks.h), so that memory and messages do not grow with the sites of a body.  The
    sums do not depend on the order of the sites (gear_quat_exact_sum.h), so bodies are the same, to
    the last bit, on any number of ranks.  The sums of a small body are plain ones in the order of the
@@ -46,7 +46,7 @@ struct SiteSum {
 
 class Assembly : protected Pointers {
  public:
-  /// A body of which this rank has sites.
+  /// A body with sites on this rank.
   struct Made {
     tagint owner;             ///< atom ID of the owner atom
     int owner_rank, local;    ///< where the owner atom is, and its index there
@@ -61,7 +61,7 @@ class Assembly : protected Pointers {
   Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
            const std::vector<tagint> &ids);
 
-  /// The bodies of which this rank has sites.
+  /// The bodies with sites on this rank.
   const std::vector<Made> &bodies() const { return made; }
   /// act: of the body, of a site's atom, and of its place in the body: from the center
   /// of mass, along the principal axes.
@@ -83,10 +83,10 @@ class Assembly : protected Pointers {
   const Extended *extended;
   Parts parts;
   std::vector<Made> made;
-  double certain;    ///< sites closer to each other than this have image flags that count alike
+  double certain;    ///< sites closer to each other than this have consistent image flags
 
   enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS };
-  tagint faulty[FAULTS] = {};    ///< a body met on this rank with each fault, 0 for none
+  tagint faulty[FAULTS] = {};    ///< a body with each fault on this rank, 0 for none
   std::vector<tagint> found;     ///< given bodies whose owner atoms are here
 
   struct Site {
@@ -98,8 +98,8 @@ class Assembly : protected Pointers {
   };
   std::map<int, std::vector<Site>> whole;    ///< small bodies on several ranks: part -> all sites
 
-  // What one pass over the sites finds, for each part; merged, for the whole body.  A pass needs
-  // the results of those before.
+  // Results of one pass over the sites, for each part; merged, for the whole body.  A pass needs
+  // the results of earlier passes.
 
   struct Sizes {    ///< scales of the sums
     bigint natoms;

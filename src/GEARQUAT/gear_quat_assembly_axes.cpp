@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The assembly of bodies: principal axes, their directions, and the rotation; what no body can be,
-   and what is probably a mistake. */
+/* The assembly of bodies: principal axes, their directions, and the rotation; invalid bodies and
+   probable mistakes. */
 
 #include "gear_quat_assembly.h"
 
@@ -23,17 +23,17 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr double ROUNDED = 1.0e-3;    // of a moment that was written with few digits
+static constexpr double ROUNDED = 1.0e-3;    // of a moment written with few digits
 static constexpr double HALF = 0.5;          // of a period
 static constexpr double NONE = std::numeric_limits<double>::infinity();
 
-static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: neither side
+static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: on neither side
 
 /* ----------------------------------------------------------------------
    principal axes
 ------------------------------------------------------------------------- */
 
-/// Principal moments and axes, the latter without directions.
+/// Principal moments, and axes without directions.
 void Assembly::find_axes(int part, const Momenta &momenta)
 {
   double tensor[9];
@@ -51,7 +51,7 @@ void Assembly::find_axes(int part, const Momenta &momenta)
   principal_axes(tensor, moments, one.axes);
   check_moments(one);
   drop_vanishing_moments(moments);
-  // in two dimensions the z axis stays where it is, exactly
+  // in two dimensions the z axis does not change at all
   if (domain->dimension == 3) sort_axes(moments, one.axes);
 }
 
@@ -79,8 +79,8 @@ void Assembly::find_rotation(int part, const Momenta &momenta)
 ------------------------------------------------------------------------- */
 
 /// Directs the axes by the body itself, not by its orientation at the start: the first and the
-/// third axis point to the side of the heaviest site that is not in the plane across the axis; of
-/// equally heavy sites the first one counts.
+/// third axis point to the side of the heaviest site that is not in the plane perpendicular to the
+/// axis; among equally heavy sites the first one counts.
 void Assembly::orient_axes()
 {
   if (domain->dimension != 3) return;
@@ -112,10 +112,10 @@ void Assembly::orient_axes()
   for (int part = 0; part < parts.number(); ++part) direct(made[part].axes, sides[part]);
 }
 
-/// One axis follows from the two others.
+/// Sets two directions; the third axis follows from them.
 void Assembly::direct(double *axes, const Sides &sides)
 {
-  // false if all sites are in the plane across the axis
+  // false if all sites are in the plane perpendicular to the axis
 
   const auto turn = [&](int k) {
     if (sides.tag[k] == MAXTAGINT) return false;
@@ -130,10 +130,10 @@ void Assembly::direct(double *axes, const Sides &sides)
 }
 
 /* ----------------------------------------------------------------------
-   what no body can be
+   invalid bodies
 ------------------------------------------------------------------------- */
 
-/// In the order of Assembly's faults, of which the first one is reported.
+/// In the order of Assembly's faults; the first one found is reported.
 static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
     "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
@@ -144,7 +144,8 @@ static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
     "position and its image flags right?"};
 
-/// A given center may lie outside of the body, but not by half a box: image flags belong to it.
+/// A given center may lie outside of the body, but not by half a box, since image flags belong to
+/// it.
 void Assembly::check_place(int part, const Momenta &momenta)
 {
   const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
@@ -152,7 +153,7 @@ void Assembly::check_place(int part, const Momenta &momenta)
   if (!(momenta.from_center2 <= far * far)) faulty[APART] = made[part].body.id;
 }
 
-/// Of sums over masses all this holds by itself, up to rounding.
+/// Sums over masses satisfy all of this automatically, up to rounding.
 void Assembly::check_moments(const Made &one)
 {
   const double *moments = one.body.rigid.inertia;
@@ -191,8 +192,8 @@ void Assembly::report_missing() const
 
 namespace {
 
-/// The sites of a body along each direction, in intervals that are half a period long unless the
-/// body extends over many periods: two sites in one interval have no gap of more than half a period
+/// The sites of a body along each direction, in intervals of half a period, or longer if the body
+/// extends over many periods: two sites in one interval have no gap of more than half a period
 /// between them.
 struct Clumps {
   static constexpr int INTERVALS = 16;
@@ -249,7 +250,7 @@ std::array<double, 2> Assembly::bounds(int part, int direction) const
   return found;
 }
 
-/// Two plates may be one body, but two halves of a molecule at opposite faces of the box are not.
+/// Two plates may be one body, but two halves of a molecule at opposite faces of the box may not.
 void Assembly::warn_of_clumps() const
 {
   std::vector<tagint> wide(atom->nlocal, 0);    // bodies that may have a gap

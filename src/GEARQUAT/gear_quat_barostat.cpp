@@ -21,7 +21,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// Without temp a thermostat that does not act, with the temperature of the box's mass.
+/// Without temp, a thermostat without chains, with the temperature for the box's mass.
 static ThermostatWords words_of(const ThermostatWords &words, const PressureWords &pressure)
 {
   if (words.damp > 0.0) return words;
@@ -93,7 +93,7 @@ double Barostat::mass_of(int component) const
   return (freedoms[TRANSLATION] + d) * kt * period * period / d;
 }
 
-/// Of the components that move, 0 for others.
+/// For the components that move, 0 for others.
 Upper Barostat::masses() const
 {
   Upper found;
@@ -148,7 +148,7 @@ double Barostat::mean_target(const Upper &pressures) const
   return directions > 0.0 ? sum / directions : 0.0;
 }
 
-/// As LAMMPS' barostats: linear in the number of the step.
+/// Linear in the number of the step, as in LAMMPS' barostats.
 void Barostat::find_target(bigint step, double h)
 {
   const bigint steps = update->endstep - update->beginstep;
@@ -162,7 +162,7 @@ void Barostat::find_target(bigint step, double h)
   }
 }
 
-/// From the start to another time.
+/// Advances the target from the start to another time.
 void Barostat::move_target(double time)
 {
   target = target_at_start + target_rate.scaled(time);
@@ -200,7 +200,7 @@ double Barostat::rate_of_heat() const
   const double mean = mean_target(target), v = volume();
   for (int k = 0; k < Upper::SIZE; ++k)
     if (asked.on[k]) sum += v * (target[k] - (k < 3 ? mean : 0.0)) * rate[k];
-  // directions that do not move have no part in the mean
+  // only directions that move contribute to the mean
   sum -= v * mean_target(target_rate);
   const double kt_rate = width != 0.0 ? line.kt_step / width : 0.0;
   return sum - 0.5 * kt_rate / kt * twice_kinetic_of_box();
@@ -239,7 +239,7 @@ void Barostat::sum_present_momenta()
   sum_momenta(sums);
 }
 
-/// Everything that follows from M and G.
+/// Updates all quantities that depend on M and G.
 void Barostat::note_box()
 {
   const double weights[3] = {weight_of(0), weight_of(1), weight_of(2)};
@@ -384,7 +384,7 @@ void Barostat::put_back()
   box.set(cell.matrix());
 }
 
-/// As a length, what it moves at the faces of the box; as an energy, its work.
+/// As a length, the displacement at the faces of the box; as an energy, its work.
 void Barostat::errors(const VariableOrder &order, double h, int values,
                       const Include &include) const
 {
@@ -443,7 +443,7 @@ double Barostat::element(int n)
   if (n < P_TARGET) {
     sum_present();
     sum_present_momenta();
-    if (!(volume() > 0.0)) return 0.0;    // there was no run
+    if (!(volume() > 0.0)) return 0.0;    // there was no run yet
     const double unit_of_pressure = to_pressure / volume();
     const Upper found = (kinetic + virial.value()).scaled(unit_of_pressure);
     return n == PRESSURE ? found.trace() / dimensions() : found[PLACES[n - P_COMPONENT]];

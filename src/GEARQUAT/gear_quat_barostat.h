@@ -9,11 +9,11 @@
 
      W G_ab' = sum m v_a v_b + delta_ab b_a sum m v^2 + W_ab - P_ab V delta_ab - W xi G_ab        (P2)
 
-   for the components that are free, with v relative to a constant common motion, the molecular
-   virial W_ab (gear_quat_virial.h), b = 1/N_f with the degrees of freedom N_f of translation, or
-   (3, 1, -1)/N_f if the box shears, and
-   the mass W = (N_f + d) kT Pdamp^2/d.  Coupled components have the mean of their right sides.  xi
-   is the friction of a chain of the box.  The energy
+   for the free components.  v is relative to a constant common motion, and W_ab is the molecular
+   virial (gear_quat_virial.h).  The weights are b = 1/N_f with the translational degrees of freedom
+   N_f, or (3, 1, -1)/N_f if the box shears.  The mass is W = (N_f + d) kT Pdamp^2/d.  Coupled
+   components have the mean of their right-hand sides.  xi is the friction of a chain of the box.
+   The energy
 
      U + K + sum W G_ab^2/2 + P V + S + energies of the chains,                                 (P7)
      S' = V sum (P_ab - P delta_ab) G_ab - V P' - sum (W'/2) G_ab^2,   P = sum P_aa/d
@@ -36,7 +36,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class Barostat : public Thermostat {
  public:
-  /// Elements of the fix's vector behind those of Thermostat.
+  /// Elements of the fix's vector after the elements of Thermostat.
   enum {
     PRESSURE = Thermostat::ELEMENTS,
     P_COMPONENT,    ///< xx yy zz xy xz yz
@@ -105,7 +105,7 @@ class Barostat : public Thermostat {
   std::string read(const Sections &file) override;
 
  private:
-  friend class Coupling;    // calls what correct_by_passes() asks for
+  friend class Coupling;    // calls the functions required by correct_by_passes()
 
   PressureWords asked;
   MolecularVirial virial;
@@ -120,7 +120,7 @@ class Barostat : public Thermostat {
   Upper target_rate;                         ///< and their change with time
   double kt = 0.0;                           ///< of the mass of the box, then
   Upper made_target, made_rate;              ///< of the last step before this run
-  std::array<double, 2> told_of_box = {};    ///< what the log has: freedoms and total momentum
+  std::array<double, 2> told_of_box = {};    ///< last logged freedoms and total momentum
 
   Upper matrix, rate;    ///< M and G in the present pass, or at a node
   struct Moving {        ///< what a step changes
@@ -142,7 +142,7 @@ class Barostat : public Thermostat {
 
   BoxFrequency frequency;
   bool warned_box = false, warned_mesh = false;
-  Upper drive_of_smaller;           ///< in the start, before the box is larger
+  Upper drive_of_smaller;           ///< in the start, before the box is enlarged
   Upper begun_box, begun_matrix;    ///< the box of LAMMPS, and M, where the run began
 
   // the start
@@ -177,7 +177,7 @@ class Barostat : public Thermostat {
   double mode_of_box() const;
   Upper drive() const;
   double rate_of_heat() const;
-  /// Those of Upper that the box may have: tilts are the last ones.
+  /// Components of Upper that the box may have: tilts are the last ones.
   int moving_components() const { return asked.shears() ? Upper::SIZE : 3; }
   void add_momenta(int ibody, const double *velocity, Tensor &sums, int count) const;
   void sum_momenta(const Tensor &sums);

@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keywords of constant pressure, before a run: what is refused, the temperature of the box's mass,
-   and the start, in which every node has a box of its own.  And restart files. */
+/* Keywords of constant pressure, before a run: unsupported settings, the temperature for the box's
+   mass, and the start, in which every node has its own box.  Also restart files. */
 
 #include "gear_quat_barostat.h"
 
@@ -33,7 +33,7 @@ using namespace GearQuat;
    before a run
 ------------------------------------------------------------------------- */
 
-/// What has a force without a virial, or places that do not follow the box.
+/// Refuses forces without a virial, and positions that do not follow the box.
 void Barostat::refuse_scene() const
 {
   bigint here = 0;
@@ -71,7 +71,7 @@ void Barostat::refuse_scene() const
                    "than half a period steps take longer");
 }
 
-/// Without temp and ptemp: that of the bodies where the box begins to move.
+/// Without temp and ptemp, the temperature of the bodies when the box starts to move.
 void Barostat::find_temperature()
 {
   if (acts() || words.start > 0.0) return;
@@ -87,7 +87,7 @@ void Barostat::find_temperature()
   const auto all = over_ranks(MPI_SUM, here, world);
   if (!(all[0] > 0.0))
     error->all(FLERR,
-               "Fix gear/quat: the mass of the box is that of a temperature, and the bodies have "
+               "Fix gear/quat: the mass of the box needs a temperature, and the bodies have "
                "none; give them velocities first, or add keyword ptemp");
   words.start = words.stop = all[0] / all[1] * force->mvv2e / force->boltz;
 }
@@ -123,7 +123,7 @@ void Barostat::begin_run(bool begins, double h)
   made_rate = target_rate;
   if (update->nsteps > 0 || begins) find_target(update->ntimestep, h);
   if (begins) refer_to_box(h);
-  correction = Upper();    // forces are those of the corrected box
+  correction = Upper();    // forces are evaluated in the corrected box
   std::copy_n(domain->prd, 3, begun_box.m.begin());
   begun_matrix = matrix;
   frequency.begin_run();
@@ -262,20 +262,20 @@ void Barostat::seed_local(double h, int terms)
 }
 
 /* ----------------------------------------------------------------------
-   how fast the box oscillates: one evaluation of the forces in a step permits no more than an
-   oscillation of the bodies
+   oscillation of the box: with one evaluation of the forces per step, its limit is the same as for
+   an oscillation of the bodies
 ------------------------------------------------------------------------- */
 
-// a mesh for long-range forces is made for edges that differ by less
+// the mesh of long-range forces is made for edges that differ by less than this
 
 static constexpr double OF_MESH = 0.15;
 
-// a box that changes by more in a step, or so much in shape under unequal targets, is lost
+// limits for the change of the box in a step, and for the change of its shape under unequal targets
 
 static constexpr double IN_A_STEP = 0.03, IN_SHAPE = 4.0, OF_HEIGHT = 2.0;
 
-/// Of the pressure's dependence on the box at constant scaled centers: its positions move by less
-/// than a tenth of the neighbor skin.
+/// Strain for measuring the dependence of the pressure on the box at constant scaled centers:
+/// positions change by less than a tenth of the neighbor skin.
 double Barostat::probing_strain() const
 {
   const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
@@ -314,7 +314,7 @@ void Barostat::leave_probe(int side)
   warn_of_box("", width);
 }
 
-/// when: words before "the box".
+/// when: the words before "the box".
 void Barostat::warn_of_box(const std::string &when, double h)
 {
   warned_box = true;
@@ -340,7 +340,7 @@ void Barostat::watch_box(double h)
     warn_of_box(fmt::format("in step {} ", update->ntimestep), h);
 }
 
-/// LAMMPS chooses the mesh before a run, but Ewald's wave vectors in every box.
+/// LAMMPS chooses the mesh only before a run, but Ewald's wave vectors in every box.
 void Barostat::watch_mesh()
 {
   const KSpace *kspace = force->kspace;
@@ -369,7 +369,7 @@ Cause Barostat::instability(double h) const
           fmt::format("Use a Pdamp of {:.2g} or longer", frequency.needed_period(h))};
 }
 
-/// The box is predicted and not yet shown.
+/// The box is predicted, but LAMMPS' box is still the old one.
 void Barostat::refuse_box() const
 {
   const Upper &before = box.matrix();
@@ -394,7 +394,7 @@ void Barostat::refuse_box() const
     stretch[0] = std::min(stretch[0], now);
     stretch[1] = std::max(stretch[1], now);
   }
-  const Upper strain = matrix * begun_matrix.inverse();    // which flips do not change
+  const Upper strain = matrix * begun_matrix.inverse();    // invariant under flips
   for (int k = 3; k < Upper::SIZE; ++k) sheared = std::max(sheared, std::fabs(strain[k]));
   if (stretch[1] < IN_SHAPE * stretch[0] && sheared < OF_HEIGHT) return;
   error->all(FLERR,
@@ -412,7 +412,7 @@ void Barostat::refuse_box() const
    restart
 ------------------------------------------------------------------------- */
 
-/// Which components are free, and which directions change alike.
+/// The free components and the coupled directions, as a number.
 double Barostat::mode_of_box() const
 {
   int mode = 0;

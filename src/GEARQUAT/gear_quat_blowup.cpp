@@ -25,23 +25,23 @@ using namespace GearQuat;
 static constexpr double NONE = std::numeric_limits<double>::infinity();
 
 static constexpr double NEARLY_LINEAR = 0.01;    // smallest moment by the largest
-static constexpr bigint MANY = 10;               // bodies that share their energy
-static constexpr double MARGIN = 0.6;    // of the longest step: later forces may vary faster
-static constexpr double TAIL = 4.0;      // thermal rotations are so much faster at most
+static constexpr bigint MANY = 10;               // enough bodies to share their energy
+static constexpr double MARGIN = 0.6;    // of the longest step, since later forces may vary faster
+static constexpr double TAIL = 4.0;      // ratio of the fastest thermal rotation to the mean
 
-// a body that errs by more than this part of its motion in a step is not followed any more, and if
-// these are more than this part of all bodies, it is not a single collision
+// a body is inaccurate if its error exceeds this part of its motion in a step; if more than this
+// part of all bodies are inaccurate, the cause is not a single collision
 
 static constexpr double INACCURATE = 0.03, WIDESPREAD = 0.1;
 
-// forces that would ask for a step so much shorter are those of an overlap
+// forces that would require a step shorter by this factor are due to an overlap
 
 static constexpr double OVERLAP = 0.01;
 
 static constexpr char MEND[] = "or make the body linear by an infile with a smallest moment of 0";
 
 /* ----------------------------------------------------------------------
-   how fast the motion is
+   speed of the motion
 ------------------------------------------------------------------------- */
 
 Pace GearQuat::pace_of(LAMMPS *lmp, const Bodies &bodies)
@@ -89,7 +89,7 @@ double Pace::longest_step(const Scheme &scheme) const
 
 namespace {
 
-/// Finds the axes of the smallest and of the largest moment.  False unless the smallest one is
+/// Finds the axes of the smallest and of the largest moment.  True only if the smallest moment is
 /// tiny.
 bool thin(const RigidBody &body, int &smallest, int &largest)
 {
@@ -107,7 +107,7 @@ struct Lost {
   double moment, largest_moment, omega, longest_step;
 };
 
-/// The body that rotates fastest of all that are lost.
+/// The fastest rotation among all bodies that rotate too fast.
 struct Fastest {
   double omega = 0.0;
   tagint id = 0;
@@ -124,7 +124,7 @@ struct Fastest {
   }
 };
 
-/// Of all ranks; returns its ID, 0 if there is none.  Collective.
+/// Over all ranks; returns its ID, 0 if there is none.  Collective.
 tagint find_lost(LAMMPS *lmp, const Scheme &scheme, const Fastest &fastest, double h, Lost &lost)
 {
   const double omega = over_ranks(MPI_MAX, fastest.omega, lmp->world);
@@ -143,7 +143,7 @@ tagint find_lost(LAMMPS *lmp, const Scheme &scheme, const Fastest &fastest, doub
   return id;
 }
 
-/// The fastest rotation about an axis that bodies of this temperature come to.
+/// The fastest rotation about an axis for bodies at this temperature.
 double thermal_rotation(LAMMPS *lmp, const Bodies &bodies, double kt)
 {
   double fastest2 = 0.0;
@@ -155,14 +155,14 @@ double thermal_rotation(LAMMPS *lmp, const Bodies &bodies, double kt)
 
 }    // namespace
 
-// a body that is also under forces follows fewer radians in a step than a free one, by this part
+// a body under forces follows fewer radians in a step than a free one, by this factor
 
 static constexpr double CLEAR_OF_FORCES = 0.8;
 
 void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme,
                            const Pace &pace, double h)
 {
-  Fastest now, warm;    // as they are, and with their share of the energy
+  Fastest now, warm;    // now, and with their share of the energy
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const Body &body = bodies.body_at(ibody);
     BodyState state = bodies.state_of(ibody);
@@ -202,8 +202,8 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
   }
 }
 
-/// What to do about a body that is lost while it turns so, if it is nearly linear and turns about
-/// its axis; else empty.
+/// Advice for a body that becomes unstable by this rotation, if it is nearly linear and turns about
+/// its axis; otherwise empty.
 static std::string advice_on_spin(const RigidBody &body, const double *omega_body)
 {
   int smallest, largest;
@@ -237,7 +237,7 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   const tagint id = bodies.body_at(ibody).id;
   const double time = update->atime + (update->ntimestep - update->atimestep) * update->dt;
   std::string molecule;
-  int bad = -1;    // a site on which the force is no number
+  int bad = -1;    // a site with a non-finite force
   for (const Site &site : sites) {
     if (site.body != ibody) continue;
     if (atom->molecule_flag && atom->molecule[site.atom] != id)
@@ -255,8 +255,8 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   error->one(FLERR, text);
 }
 
-/// All ranks notice that a large body is unstable, each with its own sites.  Returns the text of
-/// the rank whose site is nearest to another atom.
+/// All ranks find that a large body is unstable, each with its own sites.  Returns the text of the
+/// rank whose site is nearest to another atom.
 std::string Blowup::agree(const std::string &text, int ibody, int bad, const Meeting &met) const
 {
   const bool any = std::any_of(sites.begin(), sites.end(), [&](const auto &site) {
@@ -272,7 +272,7 @@ std::string Blowup::agree(const std::string &text, int ibody, int bad, const Mee
   return broadcast(text, world, best.rank);
 }
 
-/// The motion of this body is certain to be lost; the errors of the others in the last step tell
+/// The motion of this body is certainly unstable; the errors of the others in the last step show
 /// whether the step is too long for all of them.
 Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
 {
@@ -299,7 +299,7 @@ Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
   return {"The motion of this body became unstable first", shorter_step(h)};
 }
 
-/// The others whose error is a large part of their motion in the last step.
+/// The number of other bodies whose error is a large part of their motion in the last step.
 int Blowup::inaccurate_bodies(int ibody, double h) const
 {
   int others = 0;
@@ -338,7 +338,7 @@ std::string Blowup::shorter_step(double h) const
   return fmt::format("Halve the time step, {:g}, until the total energy is conserved", size);
 }
 
-/// Says which limit is exceeded; the cause comes before its effects.
+/// Text for the limit that is exceeded; causes are tested before effects.
 std::string Blowup::what_happened(int ibody, const BodyState &s, double h) const
 {
   const Load &l = bodies.load_of(ibody);
@@ -355,7 +355,7 @@ std::string Blowup::what_happened(int ibody, const BodyState &s, double h) const
                      under);
 }
 
-/// A site on which the force is no number, or else the one that is nearest to another atom.
+/// Text for a site with a non-finite force, or otherwise for the site nearest to another atom.
 std::string Blowup::where(int ibody, int bad, const Meeting &met) const
 {
   if (met.other < 0)
@@ -366,11 +366,11 @@ std::string Blowup::where(int ibody, int bad, const Meeting &met) const
                      bad < 0 ? "" : ", and the force on it is no number");
 }
 
-/// Of the sites here, or of the one asked for, the nearest to an atom that is not of this body.
+/// The site on this rank, or the one given, that is nearest to an atom of no or another body.
 Blowup::Meeting Blowup::nearest(int ibody, int only) const
 {
   Meeting found = {-1, -1, NONE};
-  std::vector<int> others;    // along x: only those are looked at that may be nearer
+  std::vector<int> others;    // along x, to examine only atoms that may be nearer
   for (int j = 0; j < atom->nlocal + atom->nghost; ++j)
     if (ownership.id_of(j) != bodies.body_at(ibody).id && std::isfinite(atom->x[j][0]))
       others.push_back(j);
@@ -381,7 +381,7 @@ Blowup::Meeting Blowup::nearest(int ibody, int only) const
   for (const Site &site : sites) {
     if (site.body != ibody || (only >= 0 && site.atom != only)) continue;
     const double *x = atom->x[site.atom];
-    const auto look = [&](int j) {    // false: this atom and those beyond are too far away
+    const auto look = [&](int j) {    // false: this atom and all beyond are too far away
       const double *y = atom->x[j], d[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
       if (dot3(d, d) < found.distance2) found = {site.atom, j, dot3(d, d)};
       return d[0] * d[0] < found.distance2;

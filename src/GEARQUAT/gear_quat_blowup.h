@@ -3,12 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Ends a run before its first step if a body turns faster than the method can follow (mostly nearly
-   linear ones, whose smallest moment of inertia makes them spin about their axis), and at the step
-   in which a body becomes unstable, before its atoms are placed, so before a dump or another fix
-   sees them.  The comparison is in gear_quat_limits.h and is made by the fix for every body and
-   step; this file makes the error message.  The message says what became unstable first: the
-   coupling of all bodies, else the forces, else the motion of the bodies. */
+/* Ends a run before its first step if a body turns faster than the method can follow.  Such bodies
+   are mostly nearly linear; their smallest moment of inertia makes them spin about their axis.
+   Ends a run at the step in which a body becomes unstable, before its atoms are placed, so before a
+   dump or another fix sees them.  The fix makes the comparison for every body and step
+   (gear_quat_limits.h); this file makes the error message.  The message says what became unstable
+   first: the coupling of all bodies, else the forces, else the motion of the bodies. */
 
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
 #define LMP_GEAR_QUAT_BLOWUP_H
@@ -21,29 +21,29 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// How fast the motion is at the beginning of a run.
+/// Speed of the motion at the beginning of a run.
 struct Pace {
-  double kt = 0.0;    ///< twice the mean kinetic energy of a degree of freedom; 0 of a few bodies
-  double vibration = 0.0;    ///< an angular frequency, see pace_of(); 0 if nothing tells it
+  double kt = 0.0;    ///< twice the mean kinetic energy of a degree of freedom; 0 if bodies are few
+  double vibration = 0.0;    ///< an angular frequency, see pace_of(); 0 if unknown
 
   /// The longest step with which a scheme follows the vibrations, infinite if they are not known.
   double longest_step(const Scheme &scheme) const;
 };
 
-/// The largest F^2/(m kT) of a body, and T^2/(I kT) about its axes: in equilibrium the mean of this
-/// is the mean curvature of the potential energy by mass, and in a collision it is about the
-/// curvature there.  Forces that accelerate all bodies alike make no vibration.  Collective; loads:
-/// present.
+/// The largest F^2/(m kT) of a body, and T^2/(I kT) about its axes.  In equilibrium its mean is the
+/// mean curvature of the potential energy by mass; in a collision it is about the curvature there.
+/// Forces that accelerate all bodies alike cause no vibration.  Collective; loads: present.
 Pace pace_of(LAMMPS *lmp, const Bodies &bodies);
 
 /// Ends the run on all ranks if a body turns faster than can be followed at a step h.  Rank 0 warns
-/// of a nearly linear one that will, once it has its share of the kinetic energy.  Collective.
+/// of a nearly linear body that will do so once it has its share of the kinetic energy.
+/// Collective.
 void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, const Pace &pace,
                  double h);
 
 class Blowup : protected Pointers {
  public:
-  /// shortest: what keyword dtmin says, or 0.
+  /// shortest: value of keyword dtmin, or 0.
   Blowup(LAMMPS *lmp, const Bodies &bodies, Ownership &ownership, const Sites &sites,
          const Scheme &scheme, double shortest) :
       Pointers(lmp),
@@ -53,21 +53,21 @@ class Blowup : protected Pointers {
 
   /// At the beginning of a run, as pace_of() finds it.
   Pace pace;
-  /// Where it is unstable, it was so before the bodies were; may be null.
+  /// If it is unstable, it became so before the bodies; may be null.
   const Coupling *coupling = nullptr;
 
-  /// Those of the present step and box.
+  /// Of the present step and box.
   MotionLimits limits;
 
   /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms
-  /// are where the loads were taken; f: forces on them.
+  /// are at the positions of the loads; f: forces on them.
   void check_loads(double h, double **f) const;
-  /// The same of one body.
+  /// The same for one body.
   void check_load(int ibody, double h, double **f) const;
-  /// Ends the run on all ranks, from the one that owns the body (of a large one, from all of them
-  /// together): says step, time, body, its site nearest to another atom (or one on which the force
-  /// is no number), what became unstable first, and what to change.
-  /// Atoms are where the load was taken; s: what came of it, beyond the limits.
+  /// Ends the run on all ranks, called by the rank that owns the body (for a large one, by all of
+  /// them together).  The message gives step, time, body, its site nearest to another atom (or one
+  /// with a non-finite force), what became unstable first, and a remedy.  Atoms are at the
+  /// positions of the load; s: the resulting state, beyond the limits.
   [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
 
  private:

@@ -23,7 +23,7 @@ void Bodies::set_scheme(const Scheme &other)
 }
 
 /* ----------------------------------------------------------------------
-   which bodies there are
+   list of bodies
 ------------------------------------------------------------------------- */
 
 void Bodies::resize(int nhere)

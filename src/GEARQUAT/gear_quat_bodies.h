@@ -3,13 +3,13 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The store of bodies: columns with an element for each body that this rank knows, and lists of
+/* The store of bodies: columns with an element for each body present on this rank, and lists of
    indices into them.
 
    Owned bodies come first, then copies of large bodies that other ranks own, then ghost bodies.
-   This rank moves the first two kinds and has their histories; of a ghost body it has what its own
-   atoms need.  Which bodies there are is up to gear_quat_ownership.h; which atoms they have, to
-   gear_quat_sites.h.  The store itself knows neither atoms nor messages between ranks.
+   This rank moves the first two kinds and has their histories; of a ghost body it has only the data
+   that its own atoms need.  gear_quat_ownership.h determines the bodies, gear_quat_sites.h their
+   atoms.  The store itself contains neither atoms nor messages between ranks.
 
    Centers of mass are unwrapped: atoms are placed with their own images, so bodies need none. */
 
@@ -34,11 +34,11 @@ struct Body {
   tagint natoms;    ///< sites
   double extent;    ///< largest distance of a site from the owner atom
   int from_file;    ///< mass and inertia were given, not summed
-  int fresh;        ///< has come in this step: no history yet
+  int fresh;        ///< inserted in this step: no history yet
   int large;        ///< on several ranks: not all of its sites can see their owner atom
-  Mask off;         ///< components of the load that do not act
+  Mask off;         ///< components of the load that are turned off
 
-  /// The way of the outermost part of the body, a site or a part of a solid, per radian.
+  /// Displacement per radian of the outermost part of the body, a site or a part of a solid.
   double reach() const
   {
     const double *i = rigid.inertia;
@@ -53,9 +53,9 @@ struct Body {
 
 class Bodies {
  public:
-  /// No bodies; histories will be those of the scheme.
+  /// No bodies; histories will have the format of the scheme.
   explicit Bodies(const Scheme &scheme);
-  /// Histories will be those of another scheme; those that there are lose their rows.
+  /// Changes the scheme of histories; existing histories lose their rows.
   void set_scheme(const Scheme &other);
 
   int nhere() const { return (int) body.size(); }
@@ -64,15 +64,15 @@ class Bodies {
   int nmoved() const { return nmove; }
   /// Bodies on all ranks.
   bigint number() const { return nbodies; }
-  /// How often bodies have come or gone, the same on all ranks.
+  /// The number of insertions and removals, the same on all ranks.
   int changes() const { return nchanges; }
 
-  // bodies that this rank moves by what they need in a step, large ones last and in the same order
-  // on all ranks; valid until atoms are exchanged
+  // bodies that this rank moves, by the work in a step; large ones last and in the same order on
+  // all ranks; valid until atoms are exchanged
 
   std::vector<int> tops;      ///< rotate
-  std::vector<int> points;    ///< have no moments of inertia: their orientation stays
-  std::vector<int> fresh;     ///< have come in this step and have no history yet
+  std::vector<int> points;    ///< have no moments of inertia: their orientation is constant
+  std::vector<int> fresh;     ///< were inserted in this step and have no history yet
 
   const Body &body_at(int ibody) const { return body[ibody]; }
   const RigidBody &rigid_of(int ibody) const { return body[ibody].rigid; }
@@ -82,20 +82,20 @@ class Bodies {
   const Correction &last_of(int ibody) const { return last[ibody]; }
   /// True if every rank has this body.
   bool is_large(int ibody) const { return !large.empty() && body[ibody].large; }
-  /// True if states and loads travel between ranks: some bodies, here or elsewhere, have copies.
+  /// True if states and loads are sent between ranks: some bodies, here or elsewhere, have copies.
   bool have_copies() const { return copies; }
   void set_copies(bool any) { copies = any; }
   /// The load without the components that are turned off for this body.
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
   /// The rotation matrix space -> body of the state, as of the last update of the frame.
   const double *axes(int ibody) const { return frame[ibody].axes; }
-  /// Of bodies that this rank moves only.
+  /// Only for bodies that this rank moves.
   double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
-  /// Doubles of a history, with a trial row also of the one that was kept.
+  /// Doubles of a history; with a trial row, including the saved copy.
   int history_size() const { return row_size; }
 
-  // What moves bodies writes states and corrections, and frames or update_frames().
+  // Code that moves bodies writes states and corrections, and frames or update_frames().
 
   BodyState &change_state(int ibody) { return state[ibody]; }
   BodyFrame &change_frame(int ibody) { return frame[ibody]; }
@@ -109,10 +109,10 @@ class Bodies {
   {
     for (auto &correction : last) correction.work = 0.0;
   }
-  /// Fresh bodies have histories now and become like all others.
+  /// Fresh bodies have histories now and are treated like all others.
   void take_in_fresh();
-  // Of a scheme with a trial row: histories that are kept for a step that may be undone, also if
-  // bodies change their ranks in it.
+  // With a trial row: saves histories for a step that may be undone, even if bodies move to other
+  // ranks in it.
   void keep_histories();
   void put_back_histories();
 
@@ -129,22 +129,22 @@ class Bodies {
   const std::vector<BodyState> &states() const { return state; }
   std::vector<Load> &change_loads() { return load; }
 
-  // what ownership does
+  // for ownership
 
   std::vector<int> large;         ///< copies and owned ones, in the same order on all ranks
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
 
   Body &change_body(int ibody) { return body[ibody]; }
   Load &change_load(int ibody) { return load[ibody]; }
-  /// Owned bodies alone stay.
+  /// Keeps only owned bodies.
   void drop_copies();
   /// Index of another body, owned or a copy of a large one; ghost bodies must not be there yet.
   int add_owned();
   int add_copy();
   int add_ghost();
-  /// The last owned body takes the place of this one.  Copies must not be there.
+  /// Replaces this body by the last owned one.  There must be no copies.
   void remove_owned(int ibody);
-  /// Body n becomes what body from[n] was; a permutation of owned bodies.  Copies must not be there.
+  /// Body n becomes body from[n]; a permutation of owned bodies.  There must be no copies.
   void permute(const std::vector<int> &from);
   void clear();
   /// Makes the lists and the frames of all bodies.
@@ -159,13 +159,13 @@ class Bodies {
   int row_size;
   int nown = 0, nmove = 0;
   bigint nbodies = 0;
-  int nchanges = 0;    ///< of nbodies
+  int nchanges = 0;    ///< of nbodies, insertions and removals
   bool copies = false;
 
   std::vector<Body> body;
   std::vector<BodyState> state;
   std::vector<Load> load;
-  std::vector<Correction> last;    ///< what the last corrector has found
+  std::vector<Correction> last;    ///< results of the last corrector
   std::vector<BodyFrame> frame;    ///< of the states
   std::vector<double> rows;        ///< histories of moved bodies
 

@@ -63,7 +63,7 @@ void Box::set(const Upper &deformation)
   inverse_change = inverse - Upper::one();
 }
 
-/// Directions that M leaves alone keep the bits of their faces.
+/// Directions that M does not change keep the bits of their faces.
 void Box::show(bool forces)
 {
   Upper before;
@@ -92,11 +92,11 @@ void Box::show(bool forces)
 // flips
 // ---------------------------------------------------------------------------------------------
 
-// by so much of a period a tilt exceeds half of it, so that it is not flipped back at once
+// a tilt must exceed half of a period by this part of it, so that it is not flipped back at once
 
 static constexpr double BEYOND = 0.1;
 
-// LAMMPS' class that moves atoms to any rank; its header is missing beside some of its libraries
+// LAMMPS' class for moving atoms to any rank; its header is missing in some installations
 
 #if __has_include("irregular.h")
 static constexpr bool MIGRATES = true;
@@ -109,7 +109,7 @@ static constexpr bool MIGRATES = false;
 static void migrate_atoms(LAMMPS *) {}
 #endif
 
-/// So many periods bring a tilt back to less than half of one.
+/// The number of periods that reduces a tilt to less than half a period.
 static int periods_of(double tilt, double period)
 {
   if (std::fabs(tilt) < (0.5 + BEYOND) * period) return 0;

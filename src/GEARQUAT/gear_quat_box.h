@@ -4,8 +4,9 @@
 ------------------------------------------------------------------------- */
 
 /* LAMMPS' box at any time of a start or a step, as the deformation M of a reference box:
-   R = o + M (X - o), where R is a position and X the scaled one that histories hold, and o is a
-   fixed point.  With M = 1 positions, velocities and the box have the same bits as without. */
+   R = o + M (X - o), where R is a position, X the scaled position in histories, and o a fixed
+   point.  With M = 1 positions, velocities and the box have the same bits as without a moving
+   box. */
 
 #ifndef LMP_GEAR_QUAT_BOX_H
 #define LMP_GEAR_QUAT_BOX_H
@@ -25,7 +26,7 @@ class Box : protected Pointers {
 
   /// The present box of LAMMPS is the reference from now on: M = 1.
   void refer();
-  /// M of the states that are mapped from now on.
+  /// Sets M for the mapping of states.
   void set(const Upper &deformation);
   const Upper &matrix() const { return m; }
   double volume(const Upper &deformation) const
@@ -33,21 +34,21 @@ class Box : protected Pointers {
     return reference_volume * deformation.determinant();
   }
 
-  /// LAMMPS' box becomes that of M, with all that LAMMPS derives from it.  forces: some are going to
-  /// be evaluated in it.
+  /// Sets LAMMPS' box to the deformation M, with all quantities that LAMMPS derives from it.
+  /// forces: they will be evaluated in it.
   void show(bool forces);
 
   /// False if another command has changed LAMMPS' box since show().
   bool is_shown() const;
-  /// Whether flip() is possible on so many ranks.
+  /// True if flip() is possible on this number of ranks.
   bool can_flip() const;
-  /// True if a tilt exceeds half of the period that it is a part of.
+  /// True if a tilt exceeds half of the corresponding period.
   bool is_tilted() const;
-  /// The box becomes the least tilted cell of the same lattice, and atoms get their images in it.  M
-  /// stays, and so do histories.  To be called before atoms are exchanged.
+  /// Replaces the box by the least tilted cell of the same lattice; atoms get their images in it.
+  /// M and histories do not change.  To be called before atoms are exchanged.
   void flip();
 
-  // scaled centers and their velocities, and those in space
+  // scaled centers with their velocities, and unscaled ones
 
   void to_space(BodyState &s) const
   {
@@ -70,7 +71,7 @@ class Box : protected Pointers {
     inverse.times(velocity, s.velocity);
   }
 
-  /// For restart files: the reference, and the fixed point.
+  /// For restart files: the reference and the fixed point.
   static constexpr int NUMBERS = 15;
   using Record = std::array<double, NUMBERS>;
   Record record() const;
@@ -78,10 +79,10 @@ class Box : protected Pointers {
 
  private:
   std::vector<double> fixed;
-  /// As Domain::h, and behind it boxlo and boxhi.
+  /// As Domain::h, followed by boxlo and boxhi.
   std::array<double, 12> reference = {};
   double origin[3] = {};
-  std::array<double, 9> shown = {};    ///< as Domain::h, and behind it boxlo
+  std::array<double, 9> shown = {};    ///< as Domain::h, followed by boxlo
   double reference_volume = 0.0;
   Upper m = Upper::one(), inverse = Upper::one();
   Upper change, inverse_change;    ///< M - 1 and M^-1 - 1

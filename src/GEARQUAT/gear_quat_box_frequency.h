@@ -3,9 +3,10 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* How fast a box oscillates: it moves by the pressure, and the pressure by the box (doc/theory.md,
-   Eq. P9).  The start measures the frequency by the forces in two boxes.  In a run, its square is the
-   mean of -W drive'.G over that of W G.G, in equilibrium, with fading sums. */
+/* Frequency of the oscillation of a box: the pressure drives the box, and the box changes the
+   pressure (doc/theory.md, Eq. P9).  The start measures the frequency from the forces in two boxes.
+   In a run, in equilibrium, its square is the ratio of the means of -W drive'.G and W G.G, with
+   fading sums. */
 
 #ifndef LMP_GEAR_QUAT_BOX_FREQUENCY_H
 #define LMP_GEAR_QUAT_BOX_FREQUENCY_H
@@ -16,14 +17,14 @@ namespace LAMMPS_NS::GearQuat {
 
 class BoxFrequency {
  public:
-  /// Parts of the fastest oscillation that the method follows: from one on there is a warning, from
-  /// the other an error.
+  /// Limits for the fastest oscillation, as a part of the limit of the method: beyond the first
+  /// there is a warning, beyond the second an error.
   static constexpr double WARNED = 0.6, REFUSED = 0.95;
 
-  /// The method follows so many radians in a step.
+  /// The number of radians per step that the method follows.
   void set_fastest(double radians) { fastest = radians; }
   double followed() const { return fastest; }
-  /// The damping time of the box; sums fade in two of them.
+  /// The damping time of the box; sums fade over two of them.
   void set_period(double time) { period = time; }
   void begin_run() { since = 0.0; }
   /// An angular frequency that the start has measured.
@@ -47,14 +48,14 @@ class BoxFrequency {
     last = drive;
     since += std::fabs(h);
   }
-  /// True if the sums are those of this run.
+  /// True if the sums represent this run.
   bool is_settled() const { return since >= MEMORY * period; }
 
   double value() const
   {
     return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : probed;
   }
-  /// Radians in a step h, and these as a part of what the method follows.
+  /// Radians in a step h, and their ratio to the limit of the method.
   double radians(double h) const { return value() * std::fabs(h); }
   double part(double h) const { return radians(h) / fastest; }
   /// Infinite if the box does not oscillate.
@@ -62,7 +63,7 @@ class BoxFrequency {
   {
     return value() > 0.0 ? 0.5 * WARNED * fastest / value() : HUGE_VAL;
   }
-  /// The damping time at which there is no warning.
+  /// The shortest damping time without a warning.
   double needed_period(double h) const { return 1.05 * period * part(h) / WARNED; }
 
  private:

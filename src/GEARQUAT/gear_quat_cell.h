@@ -12,12 +12,12 @@
      X'' = M^-1 [F/m - (2 G + b.G + xi) v],   v = M X',   G = M' M^-1,   b.G = sum_a b_a G_aa     (P3)
      M'' = (G' + G^2) M                                                                           (P4)
 
-   The host knows G' without its friction, the drive.  The cell is integrated by the second-order
+   The host provides the drive, G' without its friction.  The cell is integrated in the second-order
    form in both formulations of the bodies; formulation first has the momentum m X'.
 
-   Sources: G. J. Martyna, D. J. Tobias, M. L. Klein, J. Chem. Phys. 101, 4177 (1994), section II;
-   for an upper triangular cell the weights b are those with which the flow has the divergence of
-   the measure V^(1-d) dh. */
+   Sources: G. J. Martyna, D. J. Tobias, M. L. Klein, J. Chem. Phys. 101, 4177 (1994), section II.
+   For an upper triangular cell the weights b follow from the requirement that the flow has the
+   divergence of the measure V^(1-d) dh. */
 
 #ifndef GEAR_QUAT_CELL_H
 #define GEAR_QUAT_CELL_H
@@ -110,9 +110,9 @@ struct Upper {
 
 /* ---------------------------------------------------------------------- */
 
-/// What takes the place of Friction in a moving cell: the terms of Eq. P3 that depend on velocities,
-/// for the scaled momentum p = m X'.  A motion of all bodies together with a constant velocity
-/// V = M c has no part in b.G and in xi:
+/// Replaces Friction in a moving cell: the terms of Eq. P3 that depend on velocities, for the
+/// scaled momentum p = m X'.  A constant common velocity V = M c of all bodies is excluded from b.G
+/// and xi:
 ///   p' = M^-1 F - damping (p - m c) - drag m c
 struct CellFriction {
   Upper damping;    ///< M^-1 (2 G + b.G + xi) M
@@ -122,7 +122,8 @@ struct CellFriction {
   bool implicit = false;
 
   CellFriction() = default;
-  /// alpha: of the thermostat, along all axes the same.  weights: b.  times: of G in the damping.
+  /// alpha: of the thermostat, the same along all axes.  weights: b.  times: factor of G in the
+  /// damping.
   CellFriction(const Friction &alpha, const Upper &matrix, const Upper &rate,
                const double (&weights)[3], double times = 2.0) :
       rotation(alpha.rotation),
@@ -160,7 +161,7 @@ struct CellFriction {
 
 /* ---------------------------------------------------------------------- */
 
-/// The history of M, with as many values as those of the bodies.
+/// The history of M, with as many values as the histories of the bodies.
 class CellHistory {
  public:
   static constexpr int WIDTH = Upper::SIZE;
@@ -168,8 +169,8 @@ class CellHistory {
 
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
-  /// Formulation first has Gear's coefficients here.  A changing step, whose number of values
-  /// changes, too, has a fixed number here.
+  /// In formulation first it has Gear's coefficients.  With a changing step, the number of values,
+  /// which otherwise changes too, is fixed here.
   static constexpr int VALUES_OF_CHANGING_STEP = 6;
   static Scheme scheme_of(const Scheme &bodies)
   {
@@ -200,7 +201,7 @@ class CellHistory {
     total = Upper();
   }
 
-  // in the present pass; before the first pass, and in a step that is complete, of the rows
+  // in the present pass; before the first pass and in a completed step, from the rows
 
   Upper matrix() const { return row(0) + total.scaled(c[0]); }
   /// M'
@@ -217,7 +218,7 @@ class CellHistory {
 
   void predict() { Nordsieck<WIDTH>::predict(rows.data(), n); }
 
-  /// One pass in a step of h: the friction, which may be strong, is solved for.
+  /// One pass in a step of h.  It is implicit in the friction, which may be strong.
   void pass(const Upper &drive, double friction, double h)
   {
     const Upper now = matrix(), rate = this->rate(h);
@@ -227,13 +228,13 @@ class CellHistory {
     for (int k = 0; k < WIDTH; ++k)
       total[k] = divisor * (half_h2 * without[k] - 0.5 * h * friction * first[k] - second[k]);
   }
-  /// The step is complete.
+  /// Completes the step.
   void finish()
   {
     Nordsieck<WIDTH>::correct<WIDTH>(rows.data(), n, c.data(), 0, total.m.data());
     total = Upper();
   }
-  /// M of the present pass less that of the prediction.
+  /// The change of M by the corrector up to the present pass.
   Upper correction() const { return total.scaled(c[0]); }
   /// The local error of M in the present step.
   Upper local_error() const { return total.scaled(weight); }

@@ -3,24 +3,24 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A Nose-Hoover chain: a thermostat of M variables xi_k (1/time), of which the first is the
-   friction of all momenta that it acts on (doc/theory.md, Eqs. T1 to T4):
+/* A Nose-Hoover chain: a thermostat of M variables xi_k (1/time).  The first one is the friction of
+   all momenta that the chain acts on (doc/theory.md, Eqs. T1 to T4):
 
      p' = F - xi_1 p,   L' = tau - xi_1 L                                                     (T1)
      xi_1' = (2K/(g kT) - 1)/tau^2 - xi_1 xi_2                                                (T2)
      xi_2' = g xi_1^2 - 1/tau^2 - xi_2 xi_3
      xi_k' = xi_(k-1)^2 - 1/tau^2 - xi_k xi_(k+1)          k > 2, without the last term for k = M
 
-   with the kinetic energy K of g degrees of freedom, and the masses Q_1 = g kT tau^2,
-   Q_k = kT tau^2 of the fixes nvt and rigid/nvt.  Potential energy + K + E is constant, where
+   with the kinetic energy K of g degrees of freedom, and the masses Q_1 = g kT tau^2 and Q_k = kT
+   tau^2 of the fixes nvt and rigid/nvt.  Potential energy + K + E is constant, where
 
      E = sum_k Q_k xi_k^2/2 + S                                                               (T3)
      S' = kT (g xi_1 + xi_2 + ... + xi_M) - (sum_k Q_k xi_k^2/2) T'/T                         (T4)
 
-   also while the target T and with it the masses change.
+   even while the target T changes, and with it the masses.
    Sources: G. J. Martyna, M. L. Klein, M. Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II,
    where p_eta_k = Q_k xi_k; the masses: G. J. Martyna, M. E. Tuckerman, D. J. Tobias, M. L. Klein,
-   Mol. Phys. 87, 1117 (1996), section 2.5.  A chain of a single variable is that of W. G. Hoover,
+   Mol. Phys. 87, 1117 (1996), section 2.5.  A chain with a single variable: W. G. Hoover,
    Phys. Rev. A 31, 1695 (1985), after S. Nose, J. Chem. Phys. 81, 511 (1984).
 
    Far from the target, or with many degrees of freedom, xi_2 grows as g xi_1^2: the chain is stiff,
@@ -29,9 +29,9 @@
    have quadratic right-hand sides, so the Taylor series of their solution under this polynomial is
    a recursion.  It is summed in sub-steps as short as its last terms require.
 
-   The host calls, for the start: flow() for the friction at another time, and seed() with 2K there;
-   once a step advance() in every pass, with the 2K that is known then, and conclude(); and where
-   degrees of freedom or velocities change join(). */
+   For the start, the host calls flow() for the friction at another time, and seed() with the 2K
+   there.  Once a step it calls advance() in every pass, with the current 2K, and then conclude().
+   When degrees of freedom or velocities change, it calls join(). */
 
 #ifndef GEAR_QUAT_CHAIN_H
 #define GEAR_QUAT_CHAIN_H
@@ -45,7 +45,7 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What a chain aims at.
+/// Target of a chain.
 struct ChainTarget {
   double kt = 0.0;         ///< Boltzmann's constant * temperature
   double kt_rate = 0.0;    ///< its derivative in time
@@ -55,7 +55,7 @@ struct ChainTarget {
 
 /// A polynomial in the time since a chain's present one, in units of a step.
 struct ChainDrive {
-  static constexpr int MOST = 2 * ((MAX_VALUES + 1) / 2) + 1;    ///< terms, those of a start
+  static constexpr int MOST = 2 * ((MAX_VALUES + 1) / 2) + 1;    ///< terms in a start
   int terms = 0;
   std::array<double, MOST> c = {};
 
@@ -81,15 +81,15 @@ class Chain {
   static constexpr int LONGEST = 10;    ///< most variables xi
   static constexpr int MOST = LONGEST + 1;
   using Variables = std::array<double, MOST>;    ///< xi_1 ... xi_M, S
-  /// Sums 2K that are kept: those of the polynomial, and two more for its error.
+  /// Stored sums 2K: those for the polynomial, and two more for its error.
   static constexpr int MOST_SUMS = MAX_VALUES + 2;
-  /// A chain of so many sub-steps in a step is stiff; and one of so many more is given up.
+  /// A chain with STIFF sub-steps per step is stiff; beyond GIVEN_UP the solution is abandoned.
   static constexpr int STIFF = 4, GIVEN_UP = 200000;
-  static constexpr double SETTLING = 10.0;    ///< steps until a stiff chain moves slowly
+  static constexpr double SETTLING = 10.0;    ///< steps until a stiff chain varies slowly
 
   explicit Chain(int length) : length(length) {}
 
-  /// Of variables: xi and S.
+  /// Number of variables: xi and S.
   int size() const { return length + 1; }
   /// In the present pass.
   double friction() const { return now[0]; }
@@ -98,14 +98,14 @@ class Chain {
   /// E, Eq. T3: what the chain has taken from the bodies.
   double energy(const ChainTarget &target) const { return moving(target, now) + now[length]; }
 
-  /// The solution of Eqs. T2 and T4 that begins with the variables at the beginning of the step.
+  /// The solution of Eqs. T2 and T4 with the initial values at the beginning of the step.
   struct Flow {
     Variables y;
     int substeps;    ///< GIVEN_UP: y is not the solution
   };
 
   /// At the time `until`, in units of the step h, of either sign.  target: at the beginning of the
-  /// step.  Without degrees of freedom nothing moves.
+  /// step.  Without degrees of freedom the variables are constant.
   Flow flow(const ChainTarget &target, const ChainDrive &drive, double h, double until) const
   {
     Flow found = {begun, 0};
@@ -130,8 +130,8 @@ class Chain {
     return found;
   }
 
-  /// True if histories of bodies cannot begin with the motion of the chain: it is stiff over a step
-  /// of h, or would be unstable backwards in time over so many.
+  /// True if the motion of the chain is unsuitable for the start of histories of bodies: it is
+  /// stiff over a step of h, or would be unstable over `steps` steps backwards in time.
   bool is_stiff(const ChainTarget &target, double twice_kinetic, double h, int steps) const
   {
     double largest = 0.0;
@@ -140,8 +140,8 @@ class Chain {
     return largest * steps * std::fabs(h) > 0.5 || flow(target, constant, h, 1.0).substeps >= STIFF;
   }
 
-  /// A chain that has never moved and is stiff moves at once and then slowly: what it does in its
-  /// first steps of h, with a constant 2K, is its past.  E stays zero.
+  /// A stiff chain without a past changes abruptly and then slowly: its motion in the first steps
+  /// of h, with a constant 2K, is taken as its past.  E stays zero.
   void begin_settled(const ChainTarget &target, double twice_kinetic, double h)
   {
     if (known > 0 || begun != Variables() || !is_stiff(target, twice_kinetic, h, 1)) return;
@@ -171,7 +171,7 @@ class Chain {
     return found.substeps < GIVEN_UP;
   }
 
-  /// 2K at the end of a step of h, as earlier sums foretell it.
+  /// 2K at the end of a step of h, extrapolated from earlier sums.
   double foretold(double h, int values) const
   {
     double x[MOST_SUMS];
@@ -183,7 +183,7 @@ class Chain {
     return sum;
   }
 
-  /// The step is complete: the 2K of its last pass is the first of the earlier ones.
+  /// Completes the step: the 2K of its last pass becomes the first of the earlier sums.
   void conclude()
   {
     begun = now;
@@ -196,10 +196,10 @@ class Chain {
     ages[0] = 0.0;
   }
 
-  /// The start.  twice: points at 2K of the present time; behind and before it in memory are those
-  /// of `pairs` later and earlier times of this spacing.  Of earlier ones `count` are kept, and
-  /// those without a node follow from the polynomial through all nodes, whose next difference is
-  /// zero.
+  /// For the start.  twice: points to 2K at the present time; the values at `pairs` later and
+  /// earlier times of this spacing are after and before it in memory.  `count` earlier sums are
+  /// kept; those without a node are extrapolated by the polynomial through all nodes, whose next
+  /// difference is zero.
   void seed(const double *twice, int pairs, double spacing, int count)
   {
     const int order = 2 * pairs + 1;
@@ -220,8 +220,8 @@ class Chain {
     }
   }
 
-  /// Velocities have changed, or bodies have come or gone: 2K is another from one moment to the
-  /// next.  E and all xi stay, and earlier sums are scaled as the last one.
+  /// For a discontinuity of 2K, when velocities have changed or bodies were inserted or removed.  E
+  /// and all xi stay, and earlier sums are scaled like the last one.
   void join(const ChainTarget &before, const ChainTarget &target, double twice_kinetic)
   {
     now[length] += moving(before, now) - moving(target, now);
@@ -234,9 +234,9 @@ class Chain {
     ages[0] = 0.0;
   }
 
-  /// The highest derivative that a polynomial through 2K at `values` times leaves out of the rate
-  /// of the friction, with powers of h (1/time): h^(j+1) (2K)^(j)/(g kT tau^2) for j = values - 1,
-  /// values and values + 1; after conclude().
+  /// The leading terms in the rate of the friction that a polynomial through 2K at `values` times
+  /// does not represent, with powers of h (1/time): h^(j+1) (2K)^(j)/(g kT tau^2) for j = values -
+  /// 1, values and values + 1; after conclude().
   struct LeftOut {
     double fewer = 0.0, same = 0.0, more = 0.0;
   };
@@ -257,19 +257,19 @@ class Chain {
     return found;
   }
 
-  /// Everything, for restart files: the variables, and the sums with their ages.
+  /// The complete state, for restart files: the variables, and the sums with their ages.
   struct Record {
     Variables y;
     double known;
     std::array<double, MOST_SUMS> sums, ages;
 
-    /// As numbers of a file: how many are known, and each sum with its age.
+    /// As numbers of a file: how many sums there are, and each sum with its age.
     void append_sums(std::vector<double> &numbers) const
     {
       numbers.push_back(known);
       for (int i = 0; i < (int) known; ++i) numbers.insert(numbers.end(), {sums[i], ages[i]});
     }
-    /// From these, beginning at a place, which moves on; none where the numbers end.
+    /// Reads these from position `at`, which is advanced; none where the numbers end.
     void take_sums(const std::vector<double> &numbers, size_t &at)
     {
       const int count = at < numbers.size() ? (int) numbers[at++] : 0;
@@ -303,8 +303,8 @@ class Chain {
     return 0.5 * target.kt * target.period * target.period * sum;
   }
 
-  /// Taylor series of u_k = h xi_k and of S in the time s in units of h.  With the part kappa of
-  /// the target that 2K is, and rho = (h/tau)^2, the coefficients of powers of s obey
+  /// Taylor series of u_k = h xi_k and of S in the time s in units of h.  With the ratio kappa of
+  /// 2K to its target and rho = (h/tau)^2, the coefficients of powers of s obey
   ///   (j+1) u_1[j+1] = rho (kappa[j] - delta_j0) - (u_1 u_2)[j]
   ///   (j+1) u_2[j+1] = g (u_1 u_1)[j] - rho delta_j0 - (u_2 u_3)[j],   and so on,
   /// where (a b)[j] is the sum of a[i] b[j-i].
@@ -346,7 +346,8 @@ class Chain {
       }
     }
 
-    /// With which the last two terms are rounding: a power of two, so that all ranks agree.
+    /// The substep at which the last two terms are rounding: a power of two, so that all ranks
+    /// agree.
     double longest_substep() const
     {
       int shorter = 0;

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Which number of values suits a scene.
+/* Choice of the number of values for a simulation.
 
    The fast edge z of a motion is the frequency of its fastest vibrations times the step.  With y the
    positions and orientations of all bodies, weighted by masses and moments of inertia,
@@ -11,14 +11,15 @@
      z^4 = sum (|h^4 y''''|^2 + |h^5 y'''''|^2) / sum (|h^2 y''|^2 + |h^3 y'''|^2).
 
    A single vibration gives its own frequency exactly, at any phase, and many give the upper end of
-   their spectrum.  A start has computed these derivatives.  The rows of a history are no measure: with
-   tuned coefficients the higher ones keep errors that make z up to twice as large.  Where derivatives
-   are not known, the mean square frequency of rotations, the sum of torque^2/I over that of
-   I omega^2, stands for them.
+   their spectrum.  A start has computed these derivatives.  The rows of a history cannot replace
+   them: with tuned coefficients the errors of the higher rows make z up to twice as large.  Where
+   derivatives are unknown, the mean square frequency of rotations, the ratio of the sums of
+   torque^2/I and I omega^2, is used instead.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
-   Measured drifts of liquids decide where five values take over from nine (doc/theory.md).  Random
-   forces and friction exclude many values whatever the motion is (gear_quat_limits.h). */
+   The crossover from nine to five values follows from measured drifts of liquids (doc/theory.md).
+   Random forces and friction exclude large numbers of values for any motion
+   (gear_quat_limits.h). */
 
 #ifndef GEAR_QUAT_CHOICE_H
 #define GEAR_QUAT_CHOICE_H
@@ -33,13 +34,13 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Sums over bodies, and over ranks by the host, that tell how fast a motion is.
+/// Sums over bodies, and over ranks by the host, that measure the frequencies of a motion.
 class MotionSums {
  public:
-  /// those of (z/h)^4, torque^2/I and I omega^2; they add up
+  /// sums of (z/h)^4, torque^2/I and I omega^2, which add up over bodies
   static constexpr int SUMS = 4;
   double sums[SUMS] = {};
-  /// |omega|^2 of the body that turns fastest; the largest counts
+  /// |omega|^2 of the body that turns fastest; its maximum is taken over bodies
   double omega2 = 0.0;
 
   /// A body at the beginning of a series with steps of this length.
@@ -49,9 +50,9 @@ class MotionSums {
     if (series.terms > 4) add_derivatives(body, rows, 3, series.terms > 5 ? 4 : 3, step);
     add_spin(body, state);
   }
-  /// How fast a body turns, and nothing else of it.
+  /// Only the angular velocity of a body.
   void add(const RigidBody &body, const BodyState &state) { add_spin(body, state); }
-  /// A body of which the load alone is known.
+  /// A body with a known load and no derivatives.
   void add(const RigidBody &body, const BodyState &state, const double *torque_body)
   {
     for (int k = 0; k < 3; ++k) {
@@ -62,7 +63,7 @@ class MotionSums {
     add_spin(body, state);
   }
 
-  /// Radians in a step; infinite if nothing tells it, 0 if nothing moves.
+  /// Radians in a step; infinite if unknown, 0 without motion.
   double fast_edge(double h) const
   {
     const double size = std::fabs(h);
@@ -70,16 +71,17 @@ class MotionSums {
     if (sums[3] > 0.0) return EDGE_BY_MEAN * size * std::sqrt(sums[2] / sums[3]);
     return sums[2] > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   }
-  /// Whether derivatives tell it.
+  /// True if the fast edge is from derivatives.
   bool knows_derivatives() const { return sums[1] > 0.0; }
   double turn(double h) const { return std::fabs(h) * std::sqrt(omega2); }
 
  private:
-  /// 1.75 in SPC/E at 300 K, 4 and more in fluids whose bodies collide now and then; too large a one
-  /// costs accuracy that a start without derivatives does not have.
+  /// 1.75 in SPC/E at 300 K, 4 and more in fluids whose bodies collide rarely.  A value that is too
+  /// large costs only accuracy, which a start without derivatives does not have.
   static constexpr double EDGE_BY_MEAN = 3.0;
 
-  /// rows: 2 to 5, h^k/k! times the derivatives, of which `known` are; quaternion: its column.
+  /// rows: 2 to 5, h^k/k! times the derivatives; `known` of them are known.  quaternion: its
+  /// column.
   void add_derivatives(const RigidBody &body, const double *const *rows, int quaternion, int known,
                        double h)
   {
@@ -105,15 +107,15 @@ class MotionSums {
   }
 };
 
-/// What decides on the number of values.
+/// Input to the choice of the number of values.
 struct ChoiceOfValues {
   double edge = 0.0;     ///< radians in a step, see MotionSums
-  bool exact = false;    ///< known from derivatives
+  bool exact = false;    ///< from derivatives
   double turn = 0.0;     ///< radians in a step of the body that turns fastest
   Noise noise = Noise::NONE;
-  double damping = 0.0;       ///< part of a momentum that forces take in a step
+  double damping = 0.0;       ///< part of a momentum that is damped by forces in a step
   double friction = 0.0;      ///< of a coupling, times the step
-  bool may_be_gear = true;    ///< the corrector is free, too
+  bool may_be_gear = true;    ///< the corrector may be changed, too
 
   enum class Reason { FORMULATION, MOTION, NOISE, DAMPING, FRICTION };
   struct Choice {
@@ -121,21 +123,21 @@ struct ChoiceOfValues {
     Reason reason;
   };
 
-  // second formulation, tuned: radians in a step up to which nine values are best, those beyond
-  // which no number conserves the energy for long, those at the step that is advised then, and the
-  // factor by which a present choice may leave its limits
+  // second formulation, tuned: radians in a step up to which nine values are best; radians beyond
+  // which no number conserves the energy for long; radians at the step that is advised then; and
+  // the factor of the hysteresis of a present choice
 
   static constexpr double EDGE_OF_NINE = 0.25, TURN_OF_NINE = 0.4;
   static constexpr double LONGEST_EDGE = 0.6, LONGEST_TURN = 0.5;
   static constexpr double ADVISED_EDGE = 0.5, ADVISED_TURN = 0.4;
   static constexpr double BAND = 1.3;
 
-  /// Error of the friction of forces up to which a choice is made, of a motion that random forces
-  /// make and of another; beyond the second it is told.  The band is that of motion.
+  /// Largest accepted error due to the friction of forces, for motion driven by random forces and
+  /// for other motion; beyond the second value there is a warning.  The band is the one of the
+  /// motion.
   static constexpr double RANDOM_ERROR = 0.02, LARGEST_ERROR = 0.05;
 
-  /// scheme: with the number of values that smooth motion has.  present: the number so far, 0 for
-  /// none.
+  /// scheme: with the number of values for smooth motion.  present: the current number, 0 for none.
   Choice choose(const Scheme &scheme, int present = 0) const
   {
     Choice choice = {scheme, Reason::FORMULATION};
@@ -161,25 +163,25 @@ struct ChoiceOfValues {
     return choice;
   }
 
-  /// Whether a step is too long for any number of values; only with tuned coefficients of the second
-  /// formulation.
+  /// True if a step is too long for any number of values; only with tuned coefficients of the
+  /// second formulation.
   bool too_long(const Scheme &scheme) const
   {
     return !scheme.first() && scheme.tuned && (shakes() || turn > LONGEST_TURN);
   }
-  /// A step, as a part of the present one, that is not too long.
+  /// A step that is not too long, as a part of the present one.
   double advised_part() const
   {
     return std::min(shakes() ? ADVISED_EDGE / edge : 1.0,
                     turn > LONGEST_TURN ? ADVISED_TURN / turn : 1.0);
   }
 
-  /// Whether the friction of forces is too strong for this scheme.
+  /// True if the friction of forces is too strong for this scheme.
   bool too_damped(const Scheme &scheme) const
   {
     return friction_error(scheme, damping) > LARGEST_ERROR;
   }
-  /// The largest part of a momentum that some of the schemes that a choice has may lose in a step.
+  /// The largest part of a momentum that may be lost in a step, over the schemes of a choice.
   double largest_damping(const Scheme &scheme) const
   {
     double most = largest_friction(scheme, LARGEST_ERROR);
@@ -189,7 +191,7 @@ struct ChoiceOfValues {
   }
 
  private:
-  /// Random forces make no vibrations.
+  /// Random forces cause no vibrations.
   bool shakes() const { return exact && noise == Noise::NONE && edge > LONGEST_EDGE; }
 
   Scheme by_motion(Scheme scheme, int present) const
@@ -204,7 +206,7 @@ struct ChoiceOfValues {
     return suits_noise(scheme, noise) && (friction == 0.0 || friction <= FrictionLimit::of(scheme));
   }
 
-  /// What may take the place of a scheme, the best first and in the end what permits most.
+  /// Alternatives to a scheme, the best first, the most permissive last.
   std::vector<Scheme> others(const Scheme &scheme) const
   {
     std::vector<Scheme> list;

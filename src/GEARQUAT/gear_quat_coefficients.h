@@ -9,8 +9,8 @@
    differential equation is fed back into every row, y_j += c_j r, with
      first-order equation   r = h y' - y_1           c_1 = 1
      second-order equation  r = h^2/2 y'' - y_2      c_2 = 1
-   Everything follows from the polynomial P_n(s) = (1 + s)(1 + s/2)...(1 + s/n) and from the weights
-   gamma_k of Adams and Moulton, 1/2 1/12 1/24 19/720 3/160 ... (their magnitudes).
+   All coefficients follow from the polynomial P_n(s) = (1 + s)(1 + s/2)...(1 + s/n) and the weights
+   gamma_k of Adams and Moulton, 1/2 1/12 1/24 19/720 3/160 ...  (their magnitudes).
    Source: C. W. Gear, "Numerical Initial Value Problems in Ordinary Differential Equations" (1971);
    for 5 and 6 values Pratt & Bin Mohamad Zaini, Tables 1 and 2 (beta_2 = 1: the printed 4 is a
    misprint). */
@@ -78,7 +78,7 @@ inline Fraction adams_moulton(int k)
   return Fraction(0) - signed_weight[k];
 }
 
-/// First-order equation, N values; of order N, and of N + 1 for even N where motion swings slowly.
+/// First-order equation, N values; of order N, and of order N + 1 for even N if the motion is slow.
 inline Fractions first_order_coefficients(int values)
 {
   Fractions p = {1};    // P_(N-2)
@@ -92,9 +92,9 @@ inline Fractions first_order_coefficients(int values)
   return c;
 }
 
-/// Second-order equation, N values.  velocity_c0: for right sides that depend on velocities, of
-/// order N - 1; otherwise for positions alone, of order N, and of N + 1 for even N where motion
-/// swings slowly.
+/// Second-order equation, N values. velocity_c0: for right-hand sides that depend on velocities, of
+/// order N - 1; otherwise for right-hand sides of positions alone, of order N, and of order N + 1
+/// for even N if the motion is slow.
 inline Fractions second_order_coefficients(int values, bool velocity_c0)
 {
   const Fractions a = first_order_coefficients(values - 1);
@@ -103,9 +103,9 @@ inline Fractions second_order_coefficients(int values, bool velocity_c0)
   return c;
 }
 
-/// What a residual tells of the local error of row 0.  First-order equation: the difference from
-/// the corrector of the next lower order, c_0(N - 1) - c_0(N); the error itself is of one order
-/// more.
+/// The weight of a residual in the local error of row 0.  First-order equation: the difference from
+/// the corrector of the next lower order, c_0(N - 1) - c_0(N); the error itself is one order
+/// higher.
 inline Fraction first_order_error_weight(int values)
 {
   return adams_moulton(values - 1);

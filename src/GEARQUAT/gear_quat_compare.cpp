@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The atoms of all bodies compared with what the bodies know of them: their number, masses and
-   places.  Once per run, not per step. */
+/* Comparison of the atoms of all bodies with the data of the bodies: number, masses and positions.
+   Once per run, not per step. */
 
 #include "gear_quat_sites.h"
 
@@ -27,12 +27,12 @@ static constexpr double SAME_MOMENTS = 1.0e-9;    // relative; arms have the rou
 static constexpr double ROUNDING = 1.0e-13;       // of positions
 
 /* ----------------------------------------------------------------------
-   the atoms of all bodies counted
+   counts of the atoms of all bodies
 ------------------------------------------------------------------------- */
 
 namespace {
 
-/// A sum that carries what rounding takes off, so that a body of many atoms keeps its mass.
+/// A sum with a carry for rounding errors, so that the mass of a body with many atoms is accurate.
 struct CarriedSum {
   double sum = 0.0, carried = 0.0;
 
@@ -45,12 +45,11 @@ struct CarriedSum {
   double value() const { return sum + carried; }
 };
 
-/// The atoms of a body on one rank, or on all; the owner's numbers are 0 where it is not among
-/// them.
+/// The atoms of a body on one rank, or on all; numbers of the owner are 0 on other ranks.
 struct AtomsOfBody {
   bigint natoms = 0;
   tagint smallest_id = MAXTAGINT, largest_id = 0;    ///< the user's, of the body
-  bigint in_group = 0;                               ///< atoms in the group that is asked about
+  bigint in_group = 0;                               ///< atoms in the group of the request
   bigint own_freedoms = 0;                           ///< rotational ones of the atoms themselves
   CarriedSum mass;
 
@@ -59,31 +58,31 @@ struct AtomsOfBody {
   int rank = -1;
   bigint had = 0;            ///< atoms that the body had when it was made
   int freedoms = 0;          ///< of the body, translation and rotation
-  double body_mass = 0.0;    ///< 0 unless masses have to add up to it
+  double body_mass = 0.0;    ///< 0 unless the sum of masses must match it
 
-  // zero unless places and masses are compared with those that the body has
+  // zero unless positions and masses are compared with the body
 
   double first[3] = {};                      ///< sum of mass times arm, body frame
   double second[6] = {};                     ///< xx, yy, zz, xy, xz, yz of the inertia, body frame
   double body_moments[3] = {};               ///< of the owner: principal moments
-  double found[3] = {}, expected[3] = {};    ///< of the owner: unwrapped position, and where the
-                                             ///< body has it
+  double found[3] = {}, expected[3] = {};    ///< of the owner: unwrapped position, actual and
+                                             ///< according to the body
 
   void merge(const AtomsOfBody &other);
 };
 
-/// Compares body by body; all() returns the findings of all ranks.
+/// Compares body by body; all() returns the results of all ranks.
 class Comparer : protected Pointers {
  public:
-  /// The atoms of this rank are counted.
+  /// Counts the atoms of this rank.
   Comparer(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership, int groupbit);
 
-  /// Adds masses and places of atoms to the counts.
+  /// Adds masses and positions of atoms to the counts.
   void describe(const Sites &sites);
-  /// Counts become those of whole bodies, on all ranks that have atoms of them, and are compared
-  /// with the bodies.  Collective.
+  /// Merges the counts over all ranks that have atoms of a body, and compares them with the bodies.
+  /// Collective.
   void merge();
-  /// Looks at the places of sites in whole bodies.
+  /// Examines the positions of sites in whole bodies.
   void look_for_tears(const Sites &sites);
   /// Collective.
   Comparison all();
@@ -93,7 +92,7 @@ class Comparer : protected Pointers {
   const Ownership &ownership;
   Parts parts;
   std::vector<AtomsOfBody> counts;
-  std::vector<int> part_of;    ///< the part of each body here, once there are places
+  std::vector<int> part_of;    ///< the part of each body on this rank, if positions are compared
   Comparison found;
 
   void count_atom(int i, int groupbit, AtomsOfBody &count) const;
@@ -209,7 +208,7 @@ void Comparer::compare(const AtomsOfBody &body)
     found.removed_freedoms += domain->dimension * body.natoms + body.own_freedoms - body.freedoms;
 }
 
-/// Center and principal moments change if masses move from one atom of a body to another.
+/// Center and principal moments change if mass moves from one atom of a body to another.
 bool Comparer::same_masses(const AtomsOfBody &body) const
 {
   const double *moments = body.body_moments, *second = body.second;

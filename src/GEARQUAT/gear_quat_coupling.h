@@ -3,16 +3,16 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What acts on all bodies together: a friction that depends on sums over all of them.  A fix has
-   one coupling or none.
+/* A coupling acts on all bodies together: a friction that depends on sums over all of them.  A fix
+   has one coupling or none.
 
-   Every step correct() corrects the predicted histories and states of all bodies.  All couplings do
-   that by the same loop, correct_by_passes(): in every pass of the corrector the sums determine the
-   friction, and the friction the next velocities and sums.
+   Every step correct() corrects the predicted histories and states of all bodies.  All couplings
+   use the same loop, correct_by_passes(): in every pass of the corrector the sums determine the
+   friction, and the friction determines the next velocities and sums.
 
-   The start finds histories by collocation (gear_quat_startup.h).  It calls seed_local() alone, or
-   begin_start(); for every pair of nodes foretell(), at both nodes visit_node(), settle(); and
-   seed() at the end.
+   The start finds histories by collocation (gear_quat_startup.h).  It calls either seed_local()
+   alone, or the following: begin_start(); for every pair of nodes foretell(), visit_node() at both
+   nodes and settle(); and seed() at the end.
 
    Functions are collective unless they say otherwise. */
 
@@ -31,12 +31,12 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Why a motion became unstable, and what to change: sentences without full stops, empty for none.
+/// The cause of an instability and a remedy: sentences without full stops, empty for none.
 struct Cause {
   std::string what, remedy;
 };
 
-/// The nodes of a start, all of them about the present time.
+/// The nodes of a start, centered at the present time.
 struct StartNodes {
   const Collocation &collocation;
   double spacing;    ///< time between nodes
@@ -49,104 +49,103 @@ class Coupling : protected Pointers {
 
   // before a run
 
-  /// States and loads are those of the first step, of length h; LAMMPS' setup may not have shown
+  /// States and loads belong to the first step, of length h; LAMMPS' setup may not have evaluated
   /// the forces of all fixes yet.  anew: there are no histories.  Ends the run if the coupling
   /// cannot act.
   virtual void begin_run(bool anew, double h) = 0;
-  /// The method of the bodies is another one; there are no histories.  Local.
+  /// The scheme of the bodies has changed; there are no histories.  Local.
   virtual void set_scheme(const Scheme & /*scheme*/) {}
-  /// After begin_run(): the strongest friction that the run will have, times the step.  Local.
+  /// After begin_run(): the strongest friction expected in the run, times the step.  Local.
   virtual double friction_ahead(double /*h*/) const { return 0.0; }
   /// True if degrees of freedom depend on the forces of all fixes.  Local.
   virtual bool awaits_forces() const { return false; }
-  /// The loads are those of all fixes.
+  /// The loads include all fixes.
   virtual void meet_forces() {}
-  /// The first step begins, after meet_forces().  begins: histories do, too.
+  /// The first step begins, after meet_forces().  begins: with new histories.
   virtual void begin_steps(bool /*begins*/) {}
   virtual void end_run() {}
-  /// Why histories should start anew, null for no reason; after meet_forces().
+  /// A reason for a new start of histories, null for none; after meet_forces().
   virtual const char *reason_to_start_anew() const { return nullptr; }
-  /// False if a start would lose what the coupling has kept.  Local.
+  /// False if a start would lose the variables of the coupling.  Local.
   virtual bool may_start_anew() const { return true; }
 
-  // a step; a moving box is that of a barostat, and all below is for that alone
+  // a step; the following functions are for a moving box, that is, for a barostat
 
-  /// Histories are predicted, and states hold what their rows say: the box becomes the predicted
-  /// one, and centers and velocities of states those in space.
+  /// Histories are predicted, and states contain their scaled rows: the box becomes the predicted
+  /// one, and centers and velocities of states become unscaled.
   virtual void predict(const Integrator & /*integrator*/) {}
-  /// Loads are those of the forces f on atoms, which LAMMPS has just evaluated.
+  /// The loads are from the forces f on atoms, which LAMMPS has just evaluated.
   virtual void meet_virial(double ** /*f*/) {}
-  /// A state with the scaled center and velocity that a history has.  Local.
+  /// A state with the scaled center and velocity of a history.  Local.
   virtual BodyState scaled(const BodyState &s) const { return s; }
   /// False if another command has changed the box since the last run.  Local.
   virtual bool knows_box() const { return true; }
-  /// True if the box is tilted so much that another cell of the same lattice is to replace it.
+  /// True if the box is tilted so much that another cell of the same lattice should replace it.
   virtual bool is_tilted() const { return false; }
-  /// Before atoms are exchanged: replaces the box where it is tilted.
+  /// Replaces a tilted box, before atoms are exchanged.
   virtual void flip_box() {}
-  /// False if LAMMPS needs the virial of the constraint forces for nothing but this coupling, in
-  /// the present step.  Local.
+  /// False if in the present step LAMMPS needs the virial of the constraint forces only for this
+  /// coupling.  Local.
   virtual bool others_ask_for_virial() const { return true; }
 
-  /// Friction and rates by the present states and loads.
+  /// Computes friction and rates from the present states and loads.
   virtual void measure() = 0;
-  /// After measure(): the load that moves a body, with the friction.  Local.
+  /// After measure(): the load on a body, including the friction.  Local.
   virtual Load acting(int ibody) const = 0;
   /// Histories and states from predicted to corrected ones.
   virtual void correct(const Integrator &integrator, int passes) = 0;
-  /// The step of h holds.
+  /// The step of length h is accepted.
   virtual void note_step(double /*h*/) {}
-  /// In a step that holds, when bodies that came have histories and none is left of those that have
-  /// gone.
+  /// In an accepted step, after inserted bodies have histories and removed bodies are gone.
   virtual void follow_changes(double /*h*/) {}
   /// Other fixes have changed velocities of bodies, after measure().
   virtual void follow_velocities(double /*h*/) {}
-  /// Variables are kept for a step that may be undone, and put back.  Local.
+  /// Saves variables for a step that may be undone; put_back() restores them.  Local.
   virtual void keep() {}
   virtual void put_back() {}
   /// The step of the histories changes.  Local.
   virtual void rescale(double /*ratio*/) {}
-  /// The next step should not be longer; infinite for any length.  Local.
+  /// Longest next step; infinite for no limit.  Local.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
-  /// Calls `include` of the errors that the coupling has made in this step of h.  Local.
+  /// Calls `include` with the errors of the coupling in this step of h.  Local.
   using Include = std::function<void(const StepMeasures &)>;
   virtual void errors(const VariableOrder & /*order*/, double /*h*/, int /*values*/,
                       const Include & /*include*/) const
   {
   }
-  /// Whether the coupling is unstable in steps of h.  Local.
+  /// The cause if the coupling is unstable in steps of h, otherwise empty.  Local.
   virtual Cause instability(double /*h*/) const { return {}; }
 
   // the start
 
   virtual void begin_start(const StartNodes &nodes) = 0;
   virtual void foretell(const StartNodes &nodes) = 0;    ///< local
-  /// As measure(), with the states and loads of a node.
+  /// As measure(), for the states and loads of a node.
   virtual void visit_node(const StartNodes &nodes, int node) = 0;
   virtual void settle(const StartNodes &nodes, int pair) = 0;    ///< local
   /// From the innermost `pairs`.  values: of the method.  Local.
   virtual void seed(const StartNodes &nodes, int pairs, int values) = 0;
   /// From the present alone, after measure(); the histories of bodies have `terms` terms.
   virtual void seed_local(double h, int terms) = 0;
-  // With a moving box: its histories begin anew; it becomes that of a node, and states, which have
-  // scaled centers, those in space; it is that of the start again.
+  // With a moving box: refer_to_box() resets its histories; enter_node() sets the box of a node and
+  // unscales the states, whose centers are scaled; leave_nodes() restores the box of the start.
   virtual void refer_to_box(double /*h*/) {}
   virtual void enter_node(const StartNodes & /*nodes*/, int /*node*/) {}
   virtual void leave_nodes() {}
-  // After the start, with a moving box: forces are evaluated in a box that is a little smaller (side
-  // -1), and a little larger (1), with the scaled centers of the start; states are those again.
+  // After the start, with a moving box: forces are evaluated in a box that is a little smaller
+  // (side -1), and a little larger (1), with the scaled centers of the start; states are restored.
   virtual bool probes() const { return false; }
   virtual void enter_probe(int /*side*/) {}
   /// Ends the run if the box would oscillate too fast for the step.
   virtual void leave_probe(int /*side*/) {}
-  /// The virial that forces at nodes are evaluated with, as LAMMPS' vflag.  Local.
+  /// LAMMPS' vflag for the evaluation of forces at nodes.  Local.
   virtual int vflag() const { return 0; }
 
   // elements of the fix's vector
 
   virtual int elements() const = 0;
   virtual double element(int n) = 0;
-  /// True if the element grows with the number of bodies.
+  /// True if the element is proportional to the number of bodies.
   virtual bool extensive(int n) const = 0;
   /// The energy that thermo keyword econserve adds.  Local.
   virtual double energy() const { return 0.0; }
@@ -155,7 +154,7 @@ class Coupling : protected Pointers {
 
   /// Its sections, the same on all ranks.  Local.
   virtual void write(Sections &file) const = 0;
-  /// Of the same kind of coupling.  Returns what the file does not have, empty if it has all.
+  /// From the same kind of coupling.  Returns the items that the file lacks, empty for none.
   /// Local.
   virtual std::string read(const Sections &file) = 0;
 
@@ -169,13 +168,13 @@ class Coupling : protected Pointers {
       for (const int ibody : *list) act(ibody);
   }
 
-  // what a law may have otherwise: the force that acts on a scaled center, and what a corrected
-  // state, which has a scaled center, becomes
+  // functions that a law may override: the force on a scaled center, and the conversion of a
+  // corrected state with a scaled center
 
   const Load &met(int ibody) const { return bodies.load_of(ibody); }
   void place(int /*ibody*/, const Integrator::Pending &, BodyState &, Correction &) const {}
 
-  /// The load of a body without the components that are turned off; `masked` may hold it.
+  /// The load of a body without the components that are turned off; `masked` is storage for it.
   const Load &load_of(int ibody, Load &masked) const
   {
     if (bodies.body_at(ibody).off == 0) return bodies.load_of(ibody);
@@ -186,17 +185,17 @@ class Coupling : protected Pointers {
   /// The loop of all couplings.  Law has
   ///   void begin_passes(const Integrator &)
   ///   void add_prediction(const Integrator &, int ibody, const Pending &)    of an owned body
-  ///   void find_friction(const Integrator &, int pass)    from the sums, which begin anew
-  ///   Friction friction_of(int ibody) const, and Friction of_all, that of a body without masks
+  ///   void find_friction(const Integrator &, int pass)    from the sums, which it resets
+  ///   Friction friction_of(int ibody) const, and Friction of_all, for a body without masks
   ///   void add(int ibody, const double *velocity, const double *omega_body, const Pending &)
-  ///   static constexpr bool SUMS_OF_LAST_PASS             whether add() is called after it
+  ///   static constexpr bool SUMS_OF_LAST_PASS             true if add() is called after it
   ///   void end_passes(const Integrator &)
   ///   void finish(const Integrator &, const RigidBody &, double *rows)    of a corrected history
   template <class Law> void correct_by_passes(Law &law, const Integrator &integrator, int passes);
 
-  /// The part of the kinetic energy that is zero, as an adjective with a blank behind it or empty
-  /// for both parts; null if none is.  separate: each part has a friction of its own, which scales
-  /// it; moves: the parts that have degrees of freedom.
+  /// The part of the kinetic energy that is zero, as an adjective followed by a blank or empty for
+  /// both parts; null if none is.  separate: each part has its own friction, which scales it;
+  /// moves: the parts that have degrees of freedom.
   static const char *part_at_rest(const double (&energies)[2], const bool (&moves)[2],
                                   bool separate)
   {
@@ -213,13 +212,13 @@ class Coupling : protected Pointers {
   std::vector<Integrator::Pending> pending;
 };
 
-/// The load that moves a body: after measure(), if there is a coupling.
+/// The load on a body: after measure(), if there is a coupling.
 inline Load acting_on(const Bodies &bodies, const Coupling *coupling, int ibody)
 {
   return coupling ? coupling->acting(ibody) : bodies.acting(ibody);
 }
 
-/// The state that the history of a body has.
+/// The state in the history of a body.
 inline BodyState scaled_of(const Bodies &bodies, const Coupling *coupling, int ibody)
 {
   return coupling ? coupling->scaled(bodies.state_of(ibody)) : bodies.state_of(ibody);

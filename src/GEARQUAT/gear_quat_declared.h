@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What the classes of LAMMPS declare of themselves, as far as they have these members: those of the
-   patch in doc/upstream.  The compiler finds out; without a member nothing is declared. */
+/* Declarations in classes of LAMMPS with the patch in doc/upstream.  The members are detected at
+   compile time; without a member nothing is declared. */
 
 #ifndef GEAR_QUAT_DECLARED_H
 #define GEAR_QUAT_DECLARED_H
@@ -55,7 +55,7 @@ template <typename Run> bool evaluates_forces(Run *, int, int, long)
 {
   return false;
 }
-/// True if the run style has evaluated the forces of the present positions, without those of fixes.
+/// True if the run style has evaluated the forces at the present positions, without fixes.
 template <typename Run> bool evaluated_by(Run *run, int eflag, int vflag)
 {
   return evaluates_forces(run, eflag, vflag, 0);

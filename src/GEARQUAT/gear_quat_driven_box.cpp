@@ -70,7 +70,7 @@ void DrivenBox::rest()
 }
 
 /// The fix whose motion of the box is followed with the order of the method, null for none: other
-/// atoms move by a method of second order, and a box that jumps has no derivatives.
+/// atoms are integrated by a second-order method, and a discontinuous box has no derivatives.
 Fix *DrivenBox::smooth_driver() const
 {
   Fix *driver = nullptr;
@@ -84,7 +84,7 @@ Fix *DrivenBox::smooth_driver() const
   return driver && driver->nevery == 1 && alone ? driver : nullptr;
 }
 
-/// What the thermostat has kept goes on.
+/// The variables of the thermostat are kept.
 void DrivenBox::drive(Fix *deform)
 {
   if (!deform && !cell) return;
@@ -107,7 +107,7 @@ void DrivenBox::drive(Fix *deform)
 
 void DrivenBox::begin_remap()
 {
-  if (!cell) ownership.note_box();    // otherwise bodies are in that of the end of the step
+  if (!cell) ownership.note_box();    // otherwise bodies are in the box at the end of the step
 }
 
 void DrivenBox::end_step()
@@ -142,7 +142,7 @@ void DrivenBox::remap_centers()
   }
 }
 
-/// Of the state and of the history.
+/// Moves the centers of the state and of the history.
 void DrivenBox::move_center(int ibody, const double *way)
 {
   double *center = bodies.change_state(ibody).center;
@@ -161,10 +161,10 @@ void DrivenBox::place_sites()
 }
 
 /* ----------------------------------------------------------------------
-   atoms stay where they are
+   atoms do not move
 ------------------------------------------------------------------------- */
 
-/// The way through so many periods of a box.
+/// The displacement for this number of periods of a box.
 static void through(const double *h, const double *periods, double *way)
 {
   way[0] = h[0] * periods[0] + h[5] * periods[1] + h[4] * periods[2];
@@ -172,7 +172,7 @@ static void through(const double *h, const double *periods, double *way)
   way[2] = h[2] * periods[2];
 }
 
-/// Owned bodies have their values; copies of large ones become those of their owners.
+/// Owned bodies have their values; copies of large bodies receive the values of their owners.
 void DrivenBox::share(std::vector<Vector> &of_moved) const
 {
   if (bodies.large.empty()) return;
@@ -196,7 +196,7 @@ std::vector<DrivenBox::Vector> DrivenBox::present_images()
   return found;
 }
 
-/// At the beginning of a run or at its end, or where a box has jumped.
+/// At the beginning or end of a run, or after a discontinuity of the box.
 void DrivenBox::follow()
 {
   if (driven) follow(domain->h, domain->boxlo);
@@ -229,7 +229,7 @@ void DrivenBox::follow(const double *h, const double *corner)
   ownership.note_box(h, corner);
 }
 
-/// LAMMPS is going to wrap this place by so many periods, by its own comparisons.
+/// The periods by which LAMMPS is going to wrap this position, by the same comparisons.
 static void wraps_of(Domain *domain, double *x, double *wraps)
 {
   double fraction[3];
@@ -245,7 +245,8 @@ static void wraps_of(Domain *domain, double *x, double *wraps)
   }
 }
 
-/// Periods by which owner atoms have gone, or are going to go, into another image since follow().
+/// The change of the images of owner atoms, in periods, since follow(), including the next
+/// wrapping.
 std::vector<DrivenBox::Vector> DrivenBox::passed_faces()
 {
   const auto now = present_images();
@@ -266,7 +267,7 @@ std::vector<DrivenBox::Vector> DrivenBox::passed_faces()
   return passed;
 }
 
-/// What bodies get, by the atom IDs of owned bodies' owner atoms.
+/// Velocity changes of bodies, by the atom IDs of owned bodies' owner atoms.
 std::vector<DrivenBox::Passage> DrivenBox::pass_faces()
 {
   std::vector<Passage> passages;
@@ -299,7 +300,7 @@ void DrivenBox::add_velocity(int ibody, const double *velocity)
   for (int k = 0; k < 3; ++k) rows[Scheme::MOMENTUM + k] += mass * velocity[k];
 }
 
-/// LAMMPS would give velocities to the atoms of a body one by one, so they are wrapped here.
+/// LAMMPS would change the velocities of the atoms of a body one by one, so they are wrapped here.
 void DrivenBox::pass_faces_before_run()
 {
   follow();

@@ -5,13 +5,13 @@
 
 /* A box that another fix changes during a run (doc/theory.md, Boxes that other commands change).
 
-   A fix that remaps atoms with the box tells the rigid fixes before and after (Fix::deform()).  Then
-   the centers of mass are remapped, and bodies keep their shapes, orientations and velocities.
+   A fix that remaps atoms with the box notifies the rigid fixes before and after (Fix::deform()).
+   Then the centers of mass are remapped, and bodies keep their shapes, orientations and velocities.
 
-   Where the box changes without a remap, atoms stay where they are.  The center of mass of a body,
-   which is unwrapped, stays beside its owner atom, and the other images of the body move with the
-   box.  With fix deform remap v a body that passes a face of the box gets the velocity of the image
-   beyond it, as LAMMPS' atoms do. */
+   If the box changes without a remap, atoms do not move.  The center of mass of a body, which is
+   unwrapped, stays with its owner atom, and the other images of the body move with the box.  With
+   fix deform remap v a body that crosses a face of the box gets the velocity of the image beyond
+   it, like LAMMPS' atoms. */
 
 #ifndef LMP_GEAR_QUAT_DRIVEN_BOX_H
 #define LMP_GEAR_QUAT_DRIVEN_BOX_H
@@ -60,7 +60,7 @@ class DrivenBox : protected Pointers {
   void begin_step();
   /// Before atoms are wrapped and exchanged in a step: fix deform remap v.  Collective.
   void meet_faces() { pass_faces(); }
-  /// Before that in LAMMPS' setup, where atoms get the velocities of bodies again.  Collective.
+  /// The same in LAMMPS' setup, where atoms get the velocities of bodies again.  Collective.
   void pass_faces_before_run();
   /// Sites are placed in the last box.  Collective.
   void end_run();
@@ -81,7 +81,8 @@ class DrivenBox : protected Pointers {
   void drive(Fix *deform);
 
   using Vector = std::array<double, 3>;
-  std::vector<Vector> images;    ///< periods of the owner atoms of moved bodies, in follow()
+  std::vector<Vector>
+      images;    ///< periodic images of the owner atoms of moved bodies, in follow()
 
   /// A velocity that a body gets beyond a face.
   struct Passage {

@@ -20,7 +20,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// Without temp a thermostat that does not act, whose temperature only scales sums.
+/// Without temp, a thermostat without chains, whose temperature only scales sums.
 static ThermostatWords words_of(const ThermostatWords &words)
 {
   if (words.damp > 0.0) return words;
@@ -64,7 +64,8 @@ void DrivenCell::show(const Cell &cell)
   domain->set_local_box();
 }
 
-/// The box that fix deform makes at the end of that step.  No atom is remapped, and no box flipped.
+/// The box that fix deform will make at the end of that step.  No atom is remapped, and no box
+/// flipped.
 DrivenCell::Cell DrivenCell::ask(bigint step)
 {
   asking = true;
@@ -106,7 +107,7 @@ Upper DrivenCell::interpolate(int first, double time, double h, Cell &cell) cons
   return change.scaled(1.0 / h) * cell.edges().inverse();
 }
 
-/// M of the states that are mapped from now on.
+/// Sets M for the mapping of states.
 void DrivenCell::move_to(const Cell &cell)
 {
   shown = cell;
@@ -142,7 +143,7 @@ BodyState DrivenCell::scaled(const BodyState &s) const
   return found;
 }
 
-/// In such a step fix deform changes the box while forces are not yet evaluated.
+/// In such a step fix deform changes the box before forces are evaluated.
 bool DrivenCell::is_flip_due() const
 {
   return driver->next_reneighbor == update->ntimestep;
@@ -154,7 +155,7 @@ void DrivenCell::put_back_box()
   ahead = false;
 }
 
-/// Earlier boxes become cells of the same lattice as the present one.
+/// Converts earlier boxes to cells of the same lattice as the present one.
 void DrivenCell::note_box()
 {
   const Cell now = present();
@@ -242,7 +243,7 @@ void DrivenCell::leave_nodes()
    a step
 ------------------------------------------------------------------------- */
 
-/// Everything that follows from M, G and the friction of the thermostat.
+/// Updates all quantities that depend on M, G and the friction of the thermostat.
 void DrivenCell::note_friction_of_cell()
 {
   constexpr double NO_WEIGHTS[3] = {0.0, 0.0, 0.0};
@@ -316,14 +317,14 @@ void DrivenCell::remap(const std::vector<double> &before, bool histories)
   refer_to_shown();
 }
 
-/// States and histories are those of the present box.
+/// Converts states and histories to the present box.
 void DrivenCell::refer_to_shown()
 {
   reference = shown;
   matrix = inverse = Upper::one();
 }
 
-/// The present box is the reference of the history from now on.
+/// Makes the present box the reference of the history.
 void DrivenCell::rows_to_space(double *rows) const
 {
   if (!remaps) return;
@@ -341,7 +342,7 @@ void DrivenCell::rows_to_space(double *rows) const
   std::copy_n(now, 3, rows + Scheme::POSITION);
 }
 
-/// state: in space already.
+/// state: already unscaled.
 void DrivenCell::place(int ibody, const Integrator::Pending &pending, BodyState &state,
                        Correction &last) const
 {

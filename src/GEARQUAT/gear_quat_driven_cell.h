@@ -3,19 +3,19 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A cell whose motion is prescribed: that of fix deform, in a scene whose atoms are all in bodies of
-   one fix (doc/theory.md, Eq. P10).  With remap x scaled centers obey
+/* A cell with a motion prescribed by fix deform, if all atoms belong to bodies of one fix
+   (doc/theory.md, Eq. P10).  With remap x scaled centers obey
 
      X'' = M^-1 [F/m - (G + xi) v],   v = M X',   G = M' M^-1
 
-   where the reference of M is the box at the beginning of each step, so that between steps histories
-   are those of positions and M is 1.
+   where the reference of M is the box at the beginning of each step.  Between steps, M is therefore
+   1 and histories contain positions.
 
    Without a remap M is 1 at all times, and G is 0.
 
-   LAMMPS changes the box at the end of a step.  The forces of a step need the box of its end, which
-   a polynomial through the last boxes foretells.  Before a run fix deform itself tells its boxes at
-   the steps around the present one. */
+   LAMMPS changes the box at the end of a step.  The forces of a step need the box at its end, which
+   is extrapolated by a polynomial through the last boxes.  Before a run fix deform itself provides
+   its boxes at the steps around the present one. */
 
 #ifndef LMP_GEAR_QUAT_DRIVEN_CELL_H
 #define LMP_GEAR_QUAT_DRIVEN_CELL_H
@@ -29,7 +29,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class DrivenCell : public Thermostat {
  public:
-  /// As Domain::h, and behind it boxlo.
+  /// As Domain::h, followed by boxlo.
   struct Cell {
     std::array<double, 9> h = {};
 
@@ -42,23 +42,23 @@ class DrivenCell : public Thermostat {
   };
 
   using Images = std::vector<std::array<double, 3>>;
-  /// images: periods of the owner atoms of moved bodies, when the start begins.
+  /// images: periodic images of the owner atoms of moved bodies, when the start begins.
   DrivenCell(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
              const Scheme &scheme, const Images &images);
 
   /// deform: the fix that moves the box in this run.
   void obey(Fix *deform) { driver = deform; }
-  /// True while fix deform is asked for a box: no atom is remapped.
+  /// True while fix deform computes a box for this class: no atom is remapped.
   bool is_asking() const { return asking; }
   void note_remap() { remaps = true; }
-  /// Fix deform has changed the box, from the one that bodies are in to the next.
+  /// Fix deform has changed the box from the present box of the bodies to the next one.
   void remap(const std::vector<double> &before, bool histories);
   bool remaps_atoms() const { return remaps; }
-  /// A step begins: the box that its forces will be evaluated in.
+  /// Begins a step; returns the box in which its forces will be evaluated.
   const Cell &foretell();
   /// h' of that box.
   const Upper &rate_of_faces() const { return face_rate; }
-  /// LAMMPS' box is that of the beginning of the step again, if predict() has changed it.
+  /// Resets LAMMPS' box to the beginning of the step, if predict() has changed it.
   void put_back_box();
 
   void begin_run(bool anew, double h) override;
@@ -97,7 +97,7 @@ class DrivenCell : public Thermostat {
   }
 
  private:
-  friend class Coupling;    // calls what correct_by_passes() asks for
+  friend class Coupling;    // calls the functions required by correct_by_passes()
 
   static constexpr int KNOWN = 9;    ///< boxes that a polynomial goes through
   static constexpr int PAST = KNOWN - 1, AHEAD = PAST / 2;
@@ -114,7 +114,7 @@ class DrivenCell : public Thermostat {
   Cell then;                                   ///< at the end of the step
   Upper face_rate;
   Cell reference, shown;          ///< of M = 1, and of the present M
-  bool ahead = false;             ///< LAMMPS' box is that of the end of the step
+  bool ahead = false;             ///< LAMMPS' box is the one at the end of the step
   Upper matrix, inverse, rate;    ///< M, M^-1 and G
   CellFriction of_all;
 

@@ -3,11 +3,11 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A sum that does not depend on the order of its terms, nor on how they are spread over ranks:
-   integers in units of 2^-73 of a scale that all terms share.  A term is rounded to that; the sum
-   of up to 2^31 terms is exact otherwise, while it stays below 2^20 scales.
+/* A sum that does not depend on the order of its terms, nor on their distribution over ranks:
+   integers in units of 2^-73 of a scale that all terms share.  Terms are rounded to this unit;
+   otherwise the sum of up to 2^31 terms is exact, while it is below 2^20 scales.
 
-   Every rank adds its terms; the host adds `limbs` of all ranks, number by number, and asks for
+   Every rank adds its terms; the host sums `limbs` over all ranks element by element and calls
    value(). */
 
 #ifndef GEAR_QUAT_EXACT_SUM_H
@@ -29,7 +29,7 @@ struct ExactSum {
     return std::ldexp(1.0, exponent);
   }
 
-  /// A term that is too large, or no number, makes the sum that large.
+  /// A term that is too large or not finite sets the sum to its largest value.
   void add(double term, double scale)
   {
     double units = term * (UPPER / scale);
@@ -40,7 +40,7 @@ struct ExactSum {
     limbs[1] += (std::int64_t)(rest + std::copysign(0.5, rest));
   }
 
-  /// The terms of a sum of the same scale.
+  /// Adds the terms of a sum with the same scale.
   void add(const ExactSum &other)
   {
     for (int k = 0; k < 2; ++k) limbs[k] += other.limbs[k];

@@ -20,7 +20,7 @@ using namespace GearQuat;
 static const char *const SHAPES[] = {"a point", "a sphere",   "an ellipsoid",
                                      "a line",  "a triangle", "a body"};
 
-// an atom counts as changed by the user when it is off by more than rounding, relative
+// an atom counts as changed by the user if its deviation exceeds rounding, relative
 
 static constexpr double SAME = 1.0e-11;
 
@@ -30,7 +30,7 @@ Extended::Extended(LAMMPS *lmp, const Scheme &scheme) : Pointers(lmp), scheme(sc
 }
 
 /* ----------------------------------------------------------------------
-   what an atom is: lines and triangles have a radius too, so spheres are asked for last
+   the kind of an atom: lines and triangles have a radius too, so spheres are tested last
 ------------------------------------------------------------------------- */
 
 int Extended::shape_of(int i) const
@@ -58,7 +58,7 @@ Extended::Own Extended::own(int i, double mass) const
   return mine;
 }
 
-/// Angular momentum of the atom itself as the atom style has it.
+/// Angular momentum of the atom itself in the atom style.
 void Extended::rate(int i, const Own &mine, double *momentum_space) const
 {
   std::fill_n(momentum_space, 3, 0.0);
@@ -72,7 +72,7 @@ void Extended::rate(int i, const Own &mine, double *momentum_space) const
   if (domain->dimension == 2) momentum_space[0] = momentum_space[1] = 0.0;
 }
 
-/// LAMMPS after 2025 has ellipsoids with exponents, whose moments are not those of an ellipsoid.
+/// LAMMPS versions after 2025 have superellipsoids, whose moments differ from an ellipsoid.
 template <class A>
 static auto has_superellipsoids(const A *atom, int) -> decltype(atom->superellipsoid_flag)
 {
@@ -192,7 +192,7 @@ Extended::Pose Extended::pose(const Record &record, int i, const BodyState &stat
   own_angular_momentum(record.moments, own, made.omega, made.momentum);
   if (domain->dimension == 2) made.momentum[0] = made.momentum[1] = 0.0;
   std::fill_n(made.mu, 3, 0.0);
-  if (record.dipole) {    // of the length that the atom style states
+  if (record.dipole) {    // with the length given by the atom style
     to_space(a, record.mu_body, made.mu);
     const double factor = atom->mu[i][3] / length(made.mu);
     for (double &component : made.mu) component *= factor;
@@ -225,7 +225,7 @@ void Extended::add_torques(double **torque, std::vector<Load> &loads) const
     for (int k = first; k < 3; ++k) loads[site.body].torque_space[k] += torque[site.atom][k];
 }
 
-/// As far as rounding allows: vectors relative to their length.
+/// Equal up to rounding: vectors relative to their length.
 static bool same(const double *a, const double *b, int n)
 {
   double largest = 0.0, difference = 0.0;

@@ -5,14 +5,14 @@
 
 /* Atoms of bodies that are more than points: spheres, ellipsoids, lines, triangles, and dipoles.
 
-   When bodies are made, own_momenta() gives what an atom adds to inertia and angular momentum, and
-   attach() keeps how it sits in its body.  The record travels with the atom.  While bodies move,
-   the store lists such atoms after every exchange, and calls place() wherever it places sites and
-   add_torques() wherever it gathers forces.  Without such atoms there are no records, no list, and
-   none of these calls.
+   When bodies are made, own_momenta() gives the contributions of an atom to inertia and angular
+   momentum, and attach() records its position and orientation in its body.  The record travels with
+   the atom.  While bodies move, the store lists such atoms after every exchange, calls place()
+   wherever it places sites, and add_torques() wherever it gathers forces.  Without such atoms there
+   are no records, no list, and none of these calls.
 
-   Ellipsoids, lines and triangles keep their orientation in LAMMPS' atom styles.  Where a plugin
-   cannot read these, refuse() says so. */
+   Ellipsoids, lines and triangles have their orientation in LAMMPS' atom styles.  Where a plugin
+   cannot read these, refuse() reports it. */
 
 #ifndef LMP_GEAR_QUAT_EXTENDED_H
 #define LMP_GEAR_QUAT_EXTENDED_H
@@ -38,17 +38,18 @@ class Extended : protected Pointers {
   /// Ends the run on all ranks, naming an atom, if one of `atoms` (local indices) cannot be moved.
   void refuse(const std::vector<int> &atoms) const;
 
-  // bodies are made; everything known before is dropped
+  // bodies are made; earlier records are dropped
 
   /// True if one of the atoms, on any rank, is more than a point.  Collective.
   bool any(const std::vector<int> &atoms) const;
   /// Drop all records; keep: from now on there are records, one for each of nmax atoms.
   void reset(bool keep, int nmax);
   bool has_records() const { return kept; }
-  /// What the atom itself adds to its body's inertia tensor (row-major) and angular momentum.
+  /// Contributions of the atom itself to its body's inertia tensor (row-major) and angular
+  /// momentum.
   void own_momenta(int atom, double mass, double *inertia_space,
                    double *angular_momentum_space) const;
-  /// Keep how the atom sits in its body, whose orientation is q_body.
+  /// Records the position and orientation of the atom in its body, whose orientation is q_body.
   void attach(int atom, double mass, const double *q_body);
   /// Rotational degrees of freedom that LAMMPS counts for the atom itself.
   int freedoms(int atom) const;
@@ -63,10 +64,10 @@ class Extended : protected Pointers {
 
   /// Lists the atom if it is more than a point.
   void list(int atom, int body);
-  /// Orientations and dipoles, and rates (angular velocities or momenta) if they are wanted.
+  /// Sets orientations and dipoles, and rates (angular velocities or momenta) if requested.
   void place(const std::vector<BodyState> &states, bool orientations, bool rates) const;
   void add_torques(double **torque, std::vector<Load> &loads) const;
-  /// True if sizes, orientations, dipoles and rates of these atoms are those of their bodies.
+  /// True if sizes, orientations, dipoles and rates of these atoms match their bodies.
   bool match(int atom, double mass, const BodyState &state) const;
 
   // per-atom records
@@ -83,7 +84,7 @@ class Extended : protected Pointers {
  private:
   enum Shape { POINT, SPHERE, ELLIPSOID, LINE, TRIANGLE, BODY };
 
-  struct Record {    ///< an atom in its body
+  struct Record {    ///< an atom relative to its body
     int shape;
     int dipole;            ///< 1 if it has one
     double moments[3];     ///< of its own, in its own frame
@@ -91,13 +92,13 @@ class Extended : protected Pointers {
     double mu_body[3];
   };
 
-  struct Own {    ///< an atom as the atom style has it
+  struct Own {    ///< an atom in the atom style
     int shape, dipole;
     double moments[3];
     double q[4];
   };
 
-  struct Pose {    ///< an atom as its body has it
+  struct Pose {    ///< an atom as computed from its body
     double q[4], mu[3], omega[3], momentum[3];
   };
 
@@ -105,7 +106,7 @@ class Extended : protected Pointers {
   bool kept = false;
   std::vector<Record> records;
 
-  AtomVecEllipsoid *ellipsoids = nullptr;    ///< what the atom style is made of
+  AtomVecEllipsoid *ellipsoids = nullptr;    ///< components of the atom style
   AtomVecLine *lines = nullptr;
   AtomVecTri *triangles = nullptr;
 

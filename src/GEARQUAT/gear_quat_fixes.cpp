@@ -34,7 +34,7 @@ OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &o
     Pointers(lmp),
     fix(fix), bodies(bodies), ownership(ownership), sites(sites), args(args)
 {
-  std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // equal to nothing
+  std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // different from any number
 }
 
 /* ----------------------------------------------------------------------
@@ -73,7 +73,7 @@ void OtherFixes::init()
   }
 }
 
-/// Two thermostats on the same bodies would fight each other.
+/// Two thermostats on the same bodies would work against each other.
 void OtherFixes::refuse_thermostat(const Fix *other) const
 {
   if (args.thermostat.damp == 0.0) return;
@@ -84,8 +84,8 @@ void OtherFixes::refuse_thermostat(const Fix *other) const
                other->id, other->style);
 }
 
-/// Random forces have no derivatives, forces of collisions last a single step, and those of contacts
-/// set in at once.
+/// Random forces have no derivatives, forces of collisions last a single step, and contact forces
+/// are discontinuous.
 void OtherFixes::tell_noise()
 {
   constexpr char RANDOM[] = "are random", AT_ONCE[] = "set in at once where particles touch";
@@ -163,7 +163,7 @@ void OtherFixes::check_gravity()
     if (n) std::fill_n(atom->f[0], n, 0.0);
     other->post_force(0);
     sites.gather_loads(atom->f, atom->torque);
-    int here[2] = {0, 0};    // atoms that feel it, bodies that should feel more or less
+    int here[2] = {0, 0};    // atoms that feel it, bodies with a wrong weight
     for (const Site &site : sites) {
       const double *f = atom->f[site.atom];
       if (dot3(f, f) == 0.0) continue;
@@ -185,14 +185,14 @@ void OtherFixes::check_gravity()
                      other->id);
     else if (any[1])
       error->warning(FLERR,
-                     "Fix gear/quat: fix {} (gravity) pulls at the masses of atoms, and these are "
-                     "not those of the bodies; use fix addforce instead",
+                     "Fix gear/quat: fix {} (gravity) acts on the masses of atoms, which differ "
+                     "from the masses of their bodies; use fix addforce instead",
                      other->id);
   }
 }
 
 /* ----------------------------------------------------------------------
-   velocities that bodies take over
+   velocities that bodies adopt
 ------------------------------------------------------------------------- */
 
 std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
@@ -202,7 +202,7 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
   for (const auto *one : taken)
     if (one->nevery > 0 && step % one->nevery == 0) acted.push_back(one);
   if (acted.empty()) return changed;
-  const auto before = bodies.snapshot();    // its loads are those of the last step
+  const auto before = bodies.snapshot();    // with the loads of the last step
   if (!gather_impulses()) return changed;
 
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
@@ -270,7 +270,7 @@ bool OtherFixes::is_noted(const Site &site, double **values) const
   return std::equal(noted, noted + 3, values[site.atom]);
 }
 
-/// The next sample begins.
+/// Starts the next sample.
 void OtherFixes::note_velocity()
 {
   if (++sample >= sites.number()) sample = 0;

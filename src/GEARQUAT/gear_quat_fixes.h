@@ -3,13 +3,13 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Other fixes that change velocities, places or masses of the atoms of bodies.  By what they do
-   (gear_quat_known_styles.h) bodies take the change over, the run ends once the change happens, or
-   it does not begin.  What no table knows is found by samples.
+/* Other fixes that change velocities, positions or masses of the atoms of bodies.  Depending on the
+   effect (gear_quat_known_styles.h), bodies adopt the change, the run ends once the change occurs,
+   or the run does not begin.  Effects of styles that no table lists are detected by samples.
 
-   The fix calls init() before every run; take_velocities() before a step, with the velocities that
-   the step before has left; check_places() after the forces, with the predicted places;
-   note_place() and note_velocity() when it has placed its sites. */
+   The fix calls init() before every run; take_velocities() before a step, with the velocities left
+   by the previous step; check_places() after the forces, with the predicted positions; note_place()
+   and note_velocity() when it has placed its sites. */
 
 #ifndef LMP_GEAR_QUAT_FIXES_H
 #define LMP_GEAR_QUAT_FIXES_H
@@ -39,27 +39,27 @@ class OtherFixes : protected Pointers {
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
-  /// True if some fix may change velocities, and bodies take that over.
+  /// True if some fix may change velocities and bodies adopt the change.
   bool any_taken() const { return !taken.empty(); }
 
-  /// Rank 0 warns of fix gravity that bodies do not feel, or feel by masses that are not theirs.
-  /// In setup(), before loads are gathered.  Collective.
+  /// Rank 0 warns of fix gravity if bodies do not feel it, or feel it with other masses than their
+  /// own.  In setup(), before loads are gathered.  Collective.
   void check_gravity();
 
-  /// Bodies here whose velocities other fixes have changed in the end of that step: their states
-  /// have the new velocities, on all ranks.  A change that is no rigid motion ends the run if
-  /// `end`, and is left alone otherwise.  Collective.
+  /// Returns bodies on this rank whose velocities other fixes have changed at the end of that step;
+  /// their states have the new velocities, on all ranks.  A change that is not a rigid motion ends
+  /// the run if `end`, and is otherwise ignored.  Collective.
   std::vector<int> take_velocities(bigint step, bool end);
 
-  // These are local and look at a single site unless a fix is known to move atoms.  A site that is
-  // as note_velocity() and note_place() have seen it, right after the fix had placed it, needs no
-  // more than that comparison.
+  // These are local and test a single site unless a fix is known to move atoms.  If the site still
+  // matches note_velocity() and note_place(), called right after the fix had placed it, this
+  // comparison is sufficient.
 
   void note_velocity();
   void check_velocities();
   void note_place();
   void check_places();
-  /// All sites, places and velocities, where a run begins without any comparison.
+  /// Tests the positions and velocities of all sites, at the beginning of a run.
   void check_all();
 
  private:
@@ -68,10 +68,10 @@ class OtherFixes : protected Pointers {
   Ownership &ownership;
   Sites &sites;
   const Arguments &args;
-  std::vector<const Fix *> taken;      ///< whose velocities bodies take over
-  std::vector<const Fix *> watched;    ///< that may move single atoms
-  int sample = 0;                      ///< the site that is looked at next
-  double noted[3];                     ///< its velocity or place
+  std::vector<const Fix *> taken;      ///< bodies adopt velocities from these
+  std::vector<const Fix *> watched;    ///< these may move single atoms
+  int sample = 0;                      ///< the site that is tested next
+  double noted[3];                     ///< its velocity or position
   bool warned_noise = false;           ///< of random forces and the like
   bool warned_change = false;          ///< of a change by something unknown in this run
 

@@ -3,8 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* All fixes gear/quat of a run.  Their bodies act on each other, so histories start together, and
-   one fix asks here what another one moves.  Every fix has such a list; it makes it in init(). */
+/* All fixes gear/quat of a run.  Their bodies act on each other, so their histories start together,
+   and a fix can look up here which atoms another one moves.  Every fix makes such a list in
+   init(). */
 
 #ifndef LMP_GEAR_QUAT_FLEET_H
 #define LMP_GEAR_QUAT_FLEET_H

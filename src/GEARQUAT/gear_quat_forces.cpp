@@ -33,11 +33,11 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// step numbers for a look at forces that depend on time: multiples of everything and of nothing
+// step numbers for testing a dependence on time: a multiple of all intervals and one of none
 
 static constexpr bigint EVERY_TIMES = 0, AT_NO_TIMES = 1000003;
 
-// forces are the same that differ by this part of the largest one: sums may run in another order
+// forces count as equal up to this part of the largest one, since sums may run in another order
 
 static constexpr double SAME = 1.0e-13;
 
@@ -78,7 +78,7 @@ void Forces::look_at_styles()
     why = fmt::format("run style {} {}", update->integrate_style, reason);
   if (const char *style = unrepeatable_bond(force))
     why = fmt::format("bonds of style {} may break or change for good", style);
-  // while LAMMPS sets up, contacts keep their histories
+  // during LAMMPS' setup, contacts keep their histories
   const bool contacts = which == Which::OF_VELOCITIES && known(PairFact::CONTACTS, force);
   if (which == Which::OF_VELOCITIES) styles = force->pair && comm->ghost_velocity;
   if (styles && known(PairFact::UNREPEATABLE, force) && !contacts)
@@ -115,7 +115,7 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
   }
 }
 
-/// Whose force may be that of a variable, empty for none.
+/// The name of a style whose force may depend on a variable, empty for none.
 std::string Forces::reader_of_variables() const
 {
   if (known(PairFact::READS_VARIABLES, force))
@@ -125,7 +125,8 @@ std::string Forces::reader_of_variables() const
   return "";
 }
 
-/// A variable that draws or counts must not be evaluated more often than without this fix.
+/// A variable that draws random numbers or counts must not be evaluated more often than without
+/// this fix.
 void Forces::look_at_variables()
 {
   const std::string reader = reader_of_variables();
@@ -140,8 +141,8 @@ void Forces::look_at_variables()
   }
 }
 
-/// What follows a variable of the time, or acts every few steps, gives another force at another
-/// step.
+/// A style that depends on a variable of the time, or acts every few steps, has different forces at
+/// another step.
 void Forces::look_at_time()
 {
   save();
@@ -165,7 +166,7 @@ void Forces::look_at_time()
   restore();
 }
 
-/// Forces and torques of the styles, or of the fixes, at another step; reason() says if one of
+/// Forces and torques of the styles, or of the fixes, at another step; reason() reports if one of
 /// them reads an energy or a pressure.
 std::vector<double> Forces::loads_at(bigint step, bool of_fixes)
 {
@@ -242,7 +243,7 @@ void Forces::evaluate(int eflag, int vflag)
   update->setupflag = setting_up;
 }
 
-/// What Verlet::run() does in a step without new neighbor lists, up to post_force() of fixes.
+/// Repeats Verlet::run() for a step without new neighbor lists, up to post_force() of fixes.
 void Forces::evaluate_styles(int eflag, int vflag)
 {
   if (all_after && evaluated_by_run_style(eflag, vflag)) return;
@@ -263,7 +264,7 @@ void Forces::clear_owned()
   if (atom->torque_flag) std::fill_n(atom->torque[0], n, 0.0);
 }
 
-/// Without flags thermo output of the step stays as it is.
+/// Without flags thermo output of the step does not change.
 void Forces::compute_forces(int eflag, int vflag)
 {
   if (force->pair && force->pair->compute_flag) force->pair->compute(eflag, vflag);
@@ -278,12 +279,12 @@ void Forces::compute_forces(int eflag, int vflag)
 }
 
 /* ----------------------------------------------------------------------
-   what LAMMPS notes of computes
+   LAMMPS' records of computes
 ------------------------------------------------------------------------- */
 
 static constexpr bigint NEVER = -1;
 
-/// The notes of a compute that name the step of its last evaluation.
+/// The records of a compute with the step of its last evaluation.
 static std::vector<bigint *> steps_of_evaluation(Compute *one)
 {
   return {&one->invoked_scalar, &one->invoked_vector, &one->invoked_array, &one->invoked_peratom,
@@ -390,7 +391,7 @@ void RespaForces::add(int level)
   }
 }
 
-/// LAMMPS keeps them in a fix of its own, that packs for each atom 3 numbers a level: forces, then
+/// LAMMPS keeps them in a separate fix that packs for each atom 3 numbers per level: forces, then
 /// torques.
 void RespaForces::sum_present()
 {

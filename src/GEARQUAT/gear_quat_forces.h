@@ -5,13 +5,14 @@
 
 /* Forces at positions that are not steps: what the start-up needs of LAMMPS.
 
-   Followed: pair, bonded and kspace forces of styles that depend on positions and velocities only,
-   and the post_force() of the fixes in a list (external fields, walls, springs).  Not followed, so
-   that reason() says why: anything that moves atoms, changes their data or draws random numbers,
-   and what depends on the time or on energies and pressures, which LAMMPS knows in steps only.
-   Whether forces depend on the time is measured: they are evaluated at other steps.
+   The start-up evaluates forces at positions between steps.  Followed: pair, bonded and kspace
+   forces of styles that depend on positions and velocities only, and the post_force() of the fixes
+   in a list (external fields, walls, springs).  Not followed, with an explanation in reason(): any
+   style that moves atoms, changes their data or draws random numbers, or that depends on the time
+   or on energies and pressures, which are available at steps only.  A dependence on the time is
+   measured: forces are evaluated at other steps.
 
-   And the forces of a step of r-RESPA. */
+   The class RespaForces sums the forces of a step of r-RESPA. */
 
 #ifndef LMP_GEAR_QUAT_FORCES_H
 #define LMP_GEAR_QUAT_FORCES_H
@@ -33,20 +34,20 @@ namespace LAMMPS_NS::GearQuat {
 
 struct Scheme;
 
-/// What LAMMPS notes of computes: in which step each was evaluated last, for which steps it was
-/// asked, and in which step energies and virials were tallied.  A fix whose force is a variable of
-/// computes changes these notes whenever its force is evaluated, between steps too.
+/// LAMMPS' records of computes: the last step at which each was evaluated, the steps for which it
+/// was requested, and the step in which energies and virials were tallied.  A fix whose force is a
+/// variable of computes changes these records whenever its force is evaluated, also between steps.
 class Tallies : protected Pointers {
  public:
   explicit Tallies(LAMMPS *lmp) : Pointers(lmp) {}
 
-  /// Keep the notes, and forget that computes were evaluated.
+  /// Saves the records and marks computes as not evaluated.
   void save();
-  /// Energies and virials of the last step pass for those of the present step number.
+  /// Marks energies and virials of the last step as current.
   void pretend();
   /// True if a compute that needs such a tally was evaluated since save().
   bool used() const;
-  /// Put back what save() kept.  Computes that were evaluated since will be evaluated again.
+  /// Restores the records of save().  Computes evaluated since then will be evaluated again.
   void restore();
 
  private:
@@ -59,41 +60,41 @@ class Tallies : protected Pointers {
   bigint tallied[4];
 };
 
-/// Which forces without derivatives act on the atoms that `in_body` tells.  Collective.
+/// The kind of forces without derivatives that act on the atoms selected by `in_body`.  Collective.
 Noise noise_of_forces(const LAMMPS *lmp, const std::function<bool(int)> &in_body);
 
 class Forces : protected Pointers {
  public:
   enum class Which {
     ALL,               ///< at any positions
-    WITHOUT_RANDOM,    ///< those of fixes whose forces are random are left out
+    WITHOUT_RANDOM,    ///< without fixes whose forces are random
     OF_VELOCITIES      ///< at present positions, and only those that may depend on velocities
   };
-  /// Looks at the scene.  owners: the fixes that ask, themselves not evaluated.  Collective.
+  /// Examines the simulation.  owners: the calling fixes, which are not evaluated.  Collective.
   Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners, Which which = Which::ALL);
 
-  /// Empty if forces can be followed, else what stands in the way.
+  /// Empty if forces can be followed, otherwise the reason.
   const std::string &reason() const { return why; }
 
-  /// False if nothing is there to be evaluated.
+  /// False if there is nothing to evaluate.
   bool any() const { return styles || !post_force.empty(); }
 
-  /// Keep all data of all atoms, ghosts too, whatever the atom style has: positions, velocities,
-  /// forces, and what pair styles sum up or overwrite besides, such as rates of energies.
+  /// Saves all data of all atoms, including ghosts, for any atom style: positions, velocities,
+  /// forces, and other quantities that pair styles sum up or overwrite, such as rates of energies.
   void save();
-  /// Put back what save() kept.
+  /// Restores the data of save().
   void restore();
-  /// Largest distance of an owned atom from where save() found it, on all ranks.
+  /// Largest displacement of an owned atom since save(), on all ranks.
   double largest_displacement() const;
   /// Forces of owned atoms at their present positions into atom->f.  Without flags energies and
-  /// virials are left as they are; with those of LAMMPS' present step they are those of the
+  /// virials do not change; with the flags of LAMMPS' present step they are evaluated at these
   /// positions.
   void evaluate(int eflag = 0, int vflag = 0);
 
  private:
   const Which which;
   std::string why;
-  bool styles = true;    ///< pairs and what else LAMMPS evaluates before fixes
+  bool styles = true;    ///< pairs and all other forces that LAMMPS evaluates before fixes
   std::vector<Fix *> pre_force, post_force;
   bool all_after = true;    ///< no fix of post_force acts before the forces of the styles instead
   struct Copy {
@@ -116,8 +117,8 @@ class Forces : protected Pointers {
   void compute_forces(int eflag, int vflag);
 };
 
-/// r-RESPA with one step for all levels: the forces of a step are the sum over the levels, each of
-/// which LAMMPS shows in atom->f when that level ends.
+/// r-RESPA with one step for all levels: the forces of a step are the sum over the levels.  LAMMPS
+/// has the forces of each level in atom->f when that level ends.
 class RespaForces : protected Pointers {
  public:
   RespaForces(LAMMPS *lmp);
@@ -127,7 +128,7 @@ class RespaForces : protected Pointers {
   static std::vector<double> steps(LAMMPS *lmp);
   /// True for the level that begins and ends a step.
   bool outermost(int level) const;
-  /// Before a step: the sum over the levels of what each has found last, all fixes included.
+  /// Before a step: the sum over the levels of their latest forces, including all fixes.
   void sum_present();
   /// The forces, and torques where atoms have some, of one level; level 0 begins a sum.
   void add(int level);

@@ -25,8 +25,8 @@ using namespace GearQuat;
    friction that can be evaluated
 ------------------------------------------------------------------------- */
 
-static constexpr int CHANGES = 4;         // of velocities; a friction of contacts has many rates
-static constexpr double NONE = 1.0e-9;    // of the change of a velocity in a step is rounding
+static constexpr int CHANGES = 4;         // of velocities; the friction of contacts has many rates
+static constexpr double NONE = 1.0e-9;    // smaller changes of a velocity in a step are rounding
 
 double FrictionOfForces::of_velocities(double h)
 {
@@ -79,8 +79,8 @@ double FrictionOfForces::of_velocities(double h)
   return rate;
 }
 
-/// Different for each body and as large as velocities are, or would be at a way of a part of the skin
-/// in a step.
+/// Changes that differ for each body and are as large as the velocities, or as the velocity for a
+/// displacement by a part of the skin in a step.
 std::vector<FrictionOfForces::Twist> FrictionOfForces::begin(double h) const
 {
   double here[2] = {0.0, 0.0};
@@ -109,7 +109,7 @@ std::vector<FrictionOfForces::Twist> FrictionOfForces::begin(double h) const
   return twists;
 }
 
-/// What the present loads do, without the gyroscopic part.
+/// Accelerations by the present loads, without the gyroscopic part.
 std::vector<FrictionOfForces::Twist> FrictionOfForces::accelerations() const
 {
   std::vector<Twist> found(bodies.nmoved(), Twist());
@@ -126,7 +126,7 @@ std::vector<FrictionOfForces::Twist> FrictionOfForces::accelerations() const
   return found;
 }
 
-/// By mass and moments.  Collective.
+/// Weighted by mass and moments.  Collective.
 double FrictionOfForces::norm(const std::vector<Twist> &twists) const
 {
   double here = 0.0;
@@ -180,7 +180,7 @@ double FrictionOfForces::of_random(double **f, double h)
   return sums[2] / (half + std::sqrt(half * half + sums[1] * sums[2]));
 }
 
-/// kT of the highest temperature that these fixes have as a target, negative if they do not tell it.
+/// kT of the highest target temperature of these fixes, negative if unknown.
 double FrictionOfForces::thermal_energy(const std::vector<const Fix *> &fixes) const
 {
   double target = -1.0;

@@ -3,14 +3,14 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* How strongly forces damp the bodies, measured before a step.
+/* Measures the damping of bodies by forces, before a step.
 
-   Friction that can be evaluated: velocities are changed by those of rigid bodies, u, and the loads
-   answer by -Gamma u.  The fastest rate of M^-1 Gamma, M the masses and moments, follows from a few
-   such changes, each along the last answer.
+   Friction that can be evaluated: velocities are changed by rigid-body velocities u, and the loads
+   change by -Gamma u.  The fastest rate of M^-1 Gamma, with the masses and moments M, follows from
+   a few such changes, each along the last response.
 
-   Random forces, which must not be evaluated: they are the present forces without all others.  A
-   friction 1/tau on the velocity of each atom comes with random forces of a temperature T in steps of
+   Random forces must not be evaluated again: they are the present forces minus all others.  A
+   friction 1/tau on the velocity of each atom implies random forces of a temperature T in steps of
    h, so that
      sum f^2/m = sum m v^2/tau^2 + n 2 kT/(h tau)    for n components. */
 
@@ -31,8 +31,8 @@ class FrictionOfForces : protected Pointers {
   {
   }
 
-  /// The part of a momentum that forces take in a step h, 0 if it is not known.  f: the forces of the
-  /// last step.  After the call atoms, states and loads are as before.  Collective.
+  /// The part of a momentum that is damped by forces in a step h, 0 if unknown.  f: the forces of
+  /// the last step.  After the call atoms, states and loads are as before.  Collective.
   double part(double **f, double h)
   {
     const double random = of_random(f, h);    // f may be atom->f

@@ -8,8 +8,9 @@
      p' = F - alpha p,   L' = tau - alpha L    (space frame; body frame: omega' gains -alpha omega)
      alpha = sum(F.v + tau.omega) / sum(m v.v + omega.I.omega)
 
-   with the sums over all bodies, so that d/dt of the lower one vanishes; the gyroscopic term does
-   no work.  `total` has one alpha, `separate` one for translation and one for rotation, each from
+   with sums over all bodies, so that the time derivative of the denominator vanishes; the
+   gyroscopic term does no work.  `total` has one alpha, `separate` one for translation and one for
+   rotation, each from
    its own terms.  For points: D. J. Evans, W. G. Hoover, B. H. Failor, B. Moran, A. J. C. Ladd,
    Phys. Rev. A 28, 1016 (1983). */
 
@@ -67,7 +68,7 @@ inline Multipliers multipliers(Isokinetic mode, const KineticSums &sums)
   return {both, both};
 }
 
-/// What momenta have to be multiplied with to have the kinetic energies of `wanted` again.
+/// Factors of the momenta that restore the kinetic energies of `wanted`.
 inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
                                  const KineticSums &found)
 {
@@ -81,13 +82,13 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
   return {both, both};
 }
 
-/// The rates at which momenta of a body decay, 1/time: of its momentum along the axes of space, and
-/// of its angular momentum.
+/// The rates at which the momenta of a body decay, 1/time: of its momentum along the axes of space,
+/// and of its angular momentum.
 struct Friction {
   double translation[3] = {0.0, 0.0, 0.0};
   double rotation = 0.0;
-  /// Velocity of a motion of all bodies that does not decay, and its acceleration by the present
-  /// forces less the one that the rows of the bodies are predicted with.
+  /// Velocity of a motion of all bodies that does not decay, and the difference of its acceleration
+  /// by the present forces from the one in the predicted rows.
   double common[3] = {0.0, 0.0, 0.0}, unforeseen[3] = {0.0, 0.0, 0.0};
   bool implicit = false;    ///< residuals are solved for the friction that they change
 
@@ -105,10 +106,10 @@ struct Friction {
   }
   double torque(double met, double l) const { return met - rotation * l; }
 
-  // A residual r changes a velocity by `share` * r, and thereby the friction: explicit residuals
-  // of a center become those that solve for both; and the part of one of rotation that does so.
-  // share: with the units of a time.  unit: the residual that an acceleration makes.  The common
-  // motion has no friction, so its residual is the explicit one.
+  // A residual r changes a velocity by `share` * r, and thus the friction.  Explicit residuals of a
+  // center become implicit ones; and likewise one component for rotation.  share: with the units of
+  // a time.  unit: the residual of a unit acceleration.  The common motion has no friction, so its
+  // residual is the explicit one.
 
   void solve(double share, double unit, double *residual) const
   {

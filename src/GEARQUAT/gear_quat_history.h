@@ -4,19 +4,17 @@
 ------------------------------------------------------------------------- */
 
 /* Nordsieck history of one body: n rows of WIDTH components, row after row,
-   row j = h^j/j! d^j y/dt^j.  Every routine works on one body; loops over bodies live in the
-   caller.
+   row j = h^j/j! d^j y/dt^j.  Every routine works on one body; the caller loops over bodies.
 
-   Compensated: the first CARRIES rows are integrated, not set anew by the differential equation,
-   so their rounding adds up over a run.  Each has a carry behind the n rows that holds what its sum
-   has lost so far (W. Kahan, Commun. ACM 8, 40 (1965)); a row stands for row + carry.  Compilers
-   that are told to treat additions as associative (-ffast-math) undo this.
+   Compensated sums: the first CARRIES rows are integrated, not set by the differential equation, so
+   their rounding errors accumulate.  Each has a carry after the n rows with the rounding error of
+   its sum so far (W. Kahan, Commun. ACM 8, 40 (1965)); the value is row + carry.  Compilers that
+   treat additions as associative (-ffast-math) undo this.
 
-   The scheme says how many rows and carries there are, and which column holds what.
+   The scheme defines the numbers of rows and carries, and the columns.
 
    Kinematics reads pose and velocities of a body from the rows of its history, before or after a
-   correction, and writes velocities into them.  The evolution in time is that of
-   gear_quat_integrator.h. */
+   correction, and writes velocities into them. gear_quat_integrator.h has the evolution in time. */
 
 #ifndef GEAR_QUAT_HISTORY_H
 #define GEAR_QUAT_HISTORY_H
@@ -31,12 +29,12 @@ namespace LAMMPS_NS::GearQuat {
 
 enum class Formulation { FIRST, SECOND };
 
-/// What keeps quaternions at unit length.  YES: they are projected after every step.  NO: nothing,
-/// and formulas take |q| = 1 for granted (the paper's).  AUTO: equations that hold for any length,
+/// Treatment of the length of quaternions.  YES: they are projected after every step.  NO: they are
+/// not projected, and formulas assume |q| = 1 (as in the paper).  AUTO: equations for any length
 /// where the method has them (Scheme::any_norm), otherwise YES.
 enum class Projection { AUTO, YES, NO };
 
-/// What is the same for all bodies of a run.
+/// Settings common to all bodies of a run.
 struct Scheme {
   Formulation formulation = Formulation::SECOND;
   int rows = 0;                    ///< values kept; 0: as many as the paper
@@ -52,8 +50,9 @@ struct Scheme {
   bool first() const { return formulation == Formulation::FIRST; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
-  /// Whether quaternions obey equations for any length: not with even numbers of values, whose
-  /// leading error damps and therefore gains nothing, nor with Gear's coefficients.
+  /// True if quaternions obey equations for any length.  Even numbers of values are excluded
+  /// because their leading error is dissipative, so nothing is gained, and so are Gear's
+  /// coefficients.
   bool any_norm() const
   {
     const int n = values();
@@ -61,10 +60,11 @@ struct Scheme {
   }
   /// Passes of a body.  If passes is 0, a rotation with any_norm() is corrected until it converges.
   int fixed_passes() const { return passes ? passes : AUTOMATIC_PASSES; }
-  /// Passes of all bodies together, with a coupling.  A rotation with any_norm() converges in the first
-  /// of them.  Three are what the kinetic energy needs to converge: with two, water at long steps is
-  /// heated with five values and cooled with seven.  Faster bodies, which are projected, have as many.
-  /// With nine values, which are for short steps, a third pass would lose some of these earlier.
+  /// Passes of all bodies together, with a coupling.  A rotation with any_norm() converges in the
+  /// first pass.  The kinetic energy needs three passes to converge: with two, water at long steps
+  /// is heated with five values and cooled with seven.  Faster bodies, which are projected, have as
+  /// many.  With nine values, which are for short steps, a third pass would make some of these
+  /// unstable earlier.
   int coupled_passes() const
   {
     return passes == 0 && any_norm() && values() < 9 ? CONVERGING_PASSES : fixed_passes();
@@ -74,10 +74,10 @@ struct Scheme {
   /// Doubles of a history: rows, carries, trial row.
   int size() const { return (values() + carries() + trial) * width(); }
   int trial_row() const { return (values() + carries()) * width(); }
-  /// Of the error of positions in time, while forces vary slowly along the way (otherwise even N
-  /// keep N, and N - 1 with velocity_c0).  See gear_quat_tuned.h.
+  /// Order of the error of positions in time, if forces vary slowly along the trajectory (otherwise
+  /// N for even N, and N - 1 with velocity_c0).  See gear_quat_tuned.h.
   int order() const;
-  /// The number of values whose start has the order that this scheme needs.
+  /// The number of values for which a start has the order required by this scheme.
   int start_values() const { return tuned ? std::min(values(), order()) : values(); }
 
   // columns of a row
@@ -89,8 +89,8 @@ struct Scheme {
   int quaternion() const { return first() ? FIRST_QUATERNION : SECOND_QUATERNION; }
   static constexpr int OMEGA = 10;    ///< first only
 
-  /// What q is divided by where a unit quaternion is meant: unprojected, the paper's formulas are
-  /// taken as they stand, and a body is only as rigid as |q| = 1 holds.
+  /// The divisor of q for a unit quaternion.  Without projection, the paper's formulas are used as
+  /// they are, and a body is rigid only to the accuracy of |q| = 1.
   double norm2(const double *q) const { return projection != Projection::NO ? dot4(q, q) : 1.0; }
 };
 
@@ -103,7 +103,7 @@ constexpr int MAX_SIZE = (FIRST_MOST + 2) * Scheme::FIRST_WIDTH >
 template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   static double *carry_of(double *rows, int n, int row) { return rows + (n + row) * WIDTH; }
 
-  /// rows[row] += value for COUNT components from `component` on, compensated where it counts.
+  /// rows[row] += value for COUNT components from `component` on, compensated where applicable.
   template <int COUNT>
   static void add(double *rows, int n, int row, int component, const double *value)
   {
@@ -119,10 +119,11 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 
   /// Advance the history by one step: the Taylor series (Eq. 11) as additions of Pascal's triangle.
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
-  /// n: 3 to 12, those of both formulations.  COUNT: components from the first on; the others stay.
+  /// n: 3 to 12, for both formulations.  COUNT: components from the first on; the others do not
+  /// change.
   template <int COUNT = WIDTH> static void predict(double *rows, int n)
   {
-    switch (n) {    // a number of rows that the compiler knows, so that a column stays in registers
+    switch (n) {    // a number of rows known at compile time, so that a column stays in registers
       case 3:
         return pascal<3, COUNT>(rows);
       case 4:
@@ -151,7 +152,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   static void correct(double *rows, int n, const double *coefficients, int component,
                       const double *residual)
   {
-    double r[COUNT];    // a copy: residual might be in `rows`, for all the compiler knows
+    double r[COUNT];    // a copy: residual may alias `rows`
 #pragma GCC unroll 4
     for (int c = 0; c < COUNT; ++c) r[c] = residual[c];
     for (int j = 0; j < CARRIES; ++j) {
@@ -186,7 +187,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   }
 
  private:
-  /// sum += value; carry takes what rounding takes away (Knuth's two-sum, exact).
+  /// sum += value; carry receives the rounding error (Knuth's two-sum, exact).
   static void add_exactly(double &sum, double &carry, double value)
   {
     const double b = value + carry, a = sum;
@@ -195,7 +196,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
     carry = (a - (sum - rounded)) + (b - rounded);
   }
 
-  // unrolled by name: LAMMPS is mostly built with -O2, which leaves loops alone
+  // unrolled by name: LAMMPS is mostly built with -O2, which does not unroll loops
   template <int N, int COUNT> static void pascal(double *rows)
   {
     for (int c = 0; c < COUNT; ++c) {
@@ -265,12 +266,12 @@ class Kinematics {
   }
 
   /// Velocities of the state into a history of the same pose, and with them the accelerations that
-  /// depend on velocities: those of the rotation and, of formulation first, those of the load,
-  /// which may be damped.  Other derivatives stay.  load: at this pose.
+  /// depend on velocities: of the rotation and, in formulation first, of the load, which may be
+  /// damped.  Other derivatives do not change.  load: at this pose.
   ///
-  /// The corrector sets these rows too, but for the second derivative of the quaternion in
-  /// formulation first.  That changes by what the velocities change of it: to set it in every step
-  /// would be another corrector, unstable with 8 values.
+  /// The corrector sets these rows too, except for the second derivative of the quaternion in
+  /// formulation first.  This derivative changes only by its dependence on the velocities: setting
+  /// it in every step would be a different corrector, unstable with 8 values.
   void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
                       double *rows) const
   {
@@ -309,7 +310,7 @@ class Kinematics {
     if (scheme.first()) std::fill_n(carry + Scheme::OMEGA, 3, 0.0);
   }
 
-  /// d(|q|^2/2)/dt as the history has it; it should vanish.
+  /// d(|q|^2/2)/dt from the history; it should vanish.
   double radial_rate(const double *rows) const
   {
     const double *q = rows + scheme.quaternion();
@@ -336,7 +337,7 @@ class Kinematics {
   }
 
  private:
-  /// All is read before any of it is written: for all the compiler knows, it is written to `rows`.
+  /// All values are read before any is written: the output may alias `rows`.
   template <Formulation FORM>
   void find_state(const RigidBody &body, const double *rows, BodyState &state,
                   BodyFrame &frame) const
@@ -366,12 +367,12 @@ class Kinematics {
   }
 };
 
-/// No step can be right if a body turns by half a turn in it (from the poses alone nobody can tell
-/// which way round), if it crosses the whole scene, if its quaternion is so far from unit length that
-/// unprojected sites are a hundred times too far out or in, or if its motion is no number.  All of
-/// this is far outside of the stable range, so only runs that are lost end here:
+/// No step can be right if a body turns by half a turn in it (the poses alone do not determine the
+/// direction of the turn), if it crosses the whole simulation box, if its quaternion is so far from
+/// unit length that unprojected sites are wrong by a factor of a hundred, or if its motion is not
+/// finite.  All of this is far outside of the stable range, so only unstable runs end here:
 /// the quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h =
-/// 1.57, and no method here is stable beyond 1.42.
+/// 1.57, and all methods here are unstable beyond 1.42.
 struct MotionLimits {
   static constexpr double TURN = 3.14159265358979323846;    ///< radians in a step
   static constexpr double NORM2 = 100.0;    ///< |q|^2 is less than this, and more than its inverse
@@ -385,13 +386,13 @@ struct MotionLimits {
   {
   }
 
-  /// False for velocities beyond the limits, and for any that are no numbers.
+  /// False for velocities beyond the limits and for non-finite ones.
   bool keep_velocities(const BodyState &s) const
   {
     return dot3(s.velocity, s.velocity) < speed2 && dot3(s.omega_body, s.omega_body) < rate2;
   }
 
-  /// And for |q|.  Of a corrected state: a predicted q is not meant to have unit length.
+  /// Also tests |q|.  Of a corrected state: a predicted q does not have unit length.
   bool keep(const BodyState &s) const
   {
     const double norm2 = dot4(s.q, s.q);

@@ -13,11 +13,11 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// a place that is further away by less than this part of a period has not changed by a period
+// a displacement that has grown by less than this part of a period has not changed by a period
 
 static constexpr double PART = 0.25;
 
-// coordinates count as the same that differ by this part of the box
+// coordinates count as equal if they differ by less than this part of the box
 
 static constexpr double SAME = 1.0e-9;
 
@@ -29,7 +29,7 @@ void GearQuat::to_periods(const Domain *domain, const double *way, double *perio
   periods[2] = to_box[2] * way[2];
 }
 
-/// The way that leads through so many periods of a box.
+/// The displacement for this number of periods of a box.
 static void through(const double *box, const double *periods, double *way)
 {
   way[0] = box[0] * periods[0] + box[5] * periods[1] + box[4] * periods[2];
@@ -49,7 +49,7 @@ static bool is_periodic(const Domain *domain, int direction)
 bool GearQuat::image_flag_overflow(const Domain *domain, const double *expected,
                                    const double *unwrapped, double *turns)
 {
-  const double range = (double) IMGMASK + 1.0;    // so many boxes, then flags begin again
+  const double range = (double) IMGMASK + 1.0;    // number of boxes after which flags wrap around
   const double away[3] = {expected[0] - unwrapped[0], expected[1] - unwrapped[1],
                           expected[2] - unwrapped[2]};
   double boxes[3];

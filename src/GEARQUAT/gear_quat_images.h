@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* LAMMPS counts how often an atom has crossed the periodic box in image flags of few bits.  An atom
-   that has gone through more boxes than they can count begins again at the other end. */
+/* LAMMPS counts the periodic box crossings of an atom in image flags of few bits.  The flags of an
+   atom that crosses more boxes than they can count wrap around. */
 
 #ifndef LMP_GEAR_QUAT_IMAGES_H
 #define LMP_GEAR_QUAT_IMAGES_H
@@ -15,29 +15,31 @@ class Domain;
 
 namespace LAMMPS_NS::GearQuat {
 
-/// True if image flags have turned over: turns (3) are the periods by which `unwrapped` (3), made of
-/// the flags, has to be moved to be nearest to `expected` (3); 0 where flags have not turned over.
+/// True if image flags have overflowed: turns (3) are the periods by which `unwrapped` (3),
+/// computed from the flags, must be shifted to be nearest to `expected` (3); 0 for flags without
+/// overflow.
 bool image_flag_overflow(const Domain *domain, const double *expected, const double *unwrapped,
                          double *turns);
 
-/// Add to `unwrapped` (3) the turns of the image flags that bring it nearest to `expected` (3).
-/// It is not touched where the flags have not turned over.
+/// Adds to `unwrapped` (3) the overflow of the image flags that brings it nearest to `expected`
+/// (3).  It does not change without an overflow.
 void undo_image_flag_overflow(const Domain *domain, const double *expected, double *unwrapped);
 
-/// True if the place of an atom beside another one has changed by whole periods, to a place that is
-/// `further` away from it.
+/// True if the position of an atom relative to another one has changed by whole periods and has
+/// become longer by `further`.
 bool whole_periods_away(const Domain *domain, const double *change, double further);
 
-/// True if that place has changed by what another box makes of atoms in different images.
+/// True if this relative position has changed by the effect of another box on atoms in different
+/// images.
 /// box_before: as Domain::h.
 bool moved_with_faces(const Domain *domain, const double *box_before, const double *change);
 
-/// Where another box takes an unwrapped position: its coordinates in units of the periods stay.
-/// box_before: as Domain::h, and behind it the corner of the box.
+/// The image of an unwrapped position in another box: its coordinates in units of the periods stay.
+/// box_before: as Domain::h, followed by the corner of the box.
 void follow_box(const Domain *domain, const double *box_before, const double *position,
                 double *moved);
 
-/// A way (3) in units of the periods.
+/// Converts a displacement (3) to units of the periods.
 void to_periods(const Domain *domain, const double *way, double *periods);
 
 }    // namespace LAMMPS_NS::GearQuat

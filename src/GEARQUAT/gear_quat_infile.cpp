@@ -39,12 +39,13 @@ enum { MASS, INERTIA = 4 };
 static constexpr int NUMBERS = GivenBody::NUMBERS;
 static_assert(offsetof(GivenBody, image) == NUMBERS * sizeof(double), "as many words in a line");
 
-/// A fault of the file, kept until all ranks can report it together.
+/// An error in the file, kept until all ranks can report it together.
 struct Fault {
   std::string text;
 };
 
-/// LAMMPS' own splitting takes quotation marks for something, and reads on where one is not closed.
+/// LAMMPS' own splitting interprets quotation marks, and reads beyond the line if one is not
+/// closed.
 std::vector<std::string> words_of(const std::string &line)
 {
   std::istringstream stream(utils::trim_comment(line));
@@ -61,11 +62,12 @@ double number(const std::string &word, const std::string &where)
   return value;
 }
 
-/// Between -most and most; more is given as most + 1, so that the caller can say what is too large.
+/// Between -most and most; a larger value is returned as most + 1, so that the caller can report
+/// it.
 bigint integer(const std::string &word, const std::string &where, const char *what, bigint most)
 {
   char *end = nullptr;
-  const bigint value = std::strtoll(word.c_str(), &end, 10);    // the largest there is, if beyond
+  const bigint value = std::strtoll(word.c_str(), &end, 10);    // on overflow the limit
   if (!utils::is_integer(word) || end != word.c_str() + word.size())
     throw Fault{where + ": '" + word.c_str() + "' is not an integer (" + what + ")"};
   return value > most || value < -most ? most + 1 : value;

@@ -37,8 +37,8 @@ struct GivenBody {
 
 using GivenBodies = std::map<tagint, GivenBody>;
 
-/// Read on rank 0, return on all ranks; none for an empty filename.  Any fault of the file ends the
-/// run on all ranks with a message that names file and line.
+/// Reads on rank 0, returns on all ranks; none for an empty filename.  Any error in the file ends
+/// the run on all ranks with a message that gives the file and line.
 GivenBodies read_given_bodies(LAMMPS *lmp, const std::string &filename);
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -12,9 +12,9 @@
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
    Second-order formulation (Rapaport), 7 components:
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
-   With Scheme::any_norm() the second equation is that of gear_quat_any_norm.h.  Equation numbers: Pratt & Bin Mohamad Zaini.  The host calls, in this order and once a step:
-   predict(), body_state(), [forces at that state], correct(); for a body without moments of inertia
-   the three whose names end in center, which leave all that belongs to rotation as it is. */
+   With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.  Equation numbers:
+   Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(), body_state(), [forces] and
+   correct(), or for a body without moments of inertia the functions whose names end in center. */
 
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
@@ -26,7 +26,7 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// In place of Friction where there is none.
+/// Replaces Friction where there is none.
 struct Undamped {
   static constexpr bool implicit = false;
 
@@ -38,12 +38,11 @@ struct Undamped {
 
 class Integrator : public Kinematics {
  public:
-  /// h: the time step, not zero; negative runs backwards.  Throws std::domain_error if the scheme
-  /// asks for tuned coefficients that do not exist.
+  /// h: not zero; negative runs backwards.  Throws std::domain_error for a missing tuned set.
   Integrator(const Scheme &scheme, double h) : Integrator(scheme, h, CorrectorCoefficients(scheme))
   {
   }
-  /// With other coefficients than those of the scheme, of as many values.
+  /// Uses the given coefficients, as many as in the scheme.
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       Kinematics(scheme, h), n(scheme.values()), any_norm(scheme), c(coefficients)
   {
@@ -75,8 +74,8 @@ class Integrator : public Kinematics {
     for (int i = 0; i < scheme.width(); ++i) rows[scheme.trial_row() + i] *= factor;
   }
 
-  /// Correct a predicted history with the load met at the predicted pose, then project.  axes: of
-  /// this pose, as axes_of() finds them.
+  /// Corrects a predicted history with the load at the predicted pose, then projects.  axes: of
+  /// this pose, from axes_of().
   Correction correct(const RigidBody &body, const Load &load, const double *axes,
                      double *rows) const
   {
@@ -91,18 +90,17 @@ class Integrator : public Kinematics {
     return correct(body, load, axes_of(rows).data(), rows);
   }
 
-  // Under a friction that depends on all bodies together: the same correction pass by pass,
-  // begin(), passes times [friction] -> correct_pass(), then finish(), and in the first-order form
-  // also scale_momenta().
+  // With a friction that depends on all bodies: begin(), [friction] and correct_pass() for each
+  // pass, finish(), and in the first-order form also scale_momenta().
 
   struct Residual {    ///< summed over the passes
     double x[3], q[4];
   };
-  /// What a correction remembers of the prediction.
+  /// The part of the prediction that a correction needs.
   struct Pending {
     double x[3], q[4], torque_body[3];
     Residual total;
-    bool converged;    ///< a pass has repeated the rotation until it no longer changed
+    bool converged;    ///< a pass has iterated the rotation to convergence
   };
 
   Pending begin(const Load &load, const double *axes, const double *rows) const
@@ -116,7 +114,7 @@ class Integrator : public Kinematics {
     return pending;
   }
 
-  /// Damper: Friction, or what has its functions.
+  /// Damper: Friction, or a class with the same functions.
   template <class Damper>
   void correct_pass(const RigidBody &body, const Load &load, const Damper &friction, double *rows,
                     Pending &pending) const
@@ -126,8 +124,7 @@ class Integrator : public Kinematics {
     });
   }
 
-  /// The force that predicted rows are those of: h times its difference from the one that is met is
-  /// the residual of a momentum.
+  /// The force in the predicted rows; h times its error is the residual of a momentum.
   void force_of_rows(const RigidBody &body, const double *rows, double *force) const
   {
     const double *row = scheme.first() ? rows + scheme.width() + Scheme::MOMENTUM
@@ -136,7 +133,7 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) force[i] = unit * row[i];
   }
 
-  /// The velocities after so many passes.
+  /// The velocities after the passes so far.
   void velocities_of_pass(const RigidBody &body, const double *rows, const Pending &pending,
                           double *velocity, double *omega_body) const
   {
@@ -160,7 +157,7 @@ class Integrator : public Kinematics {
     return conclude(load, rows, pending);
   }
 
-  /// A rotation about an axis without inertia stays: it has no momentum.
+  /// A rotation about an axis without inertia does not change: it has no momentum.
   void scale_momenta(const RigidBody &body, const Multipliers &factor, double *rows) const
   {
     double change[3];
@@ -171,7 +168,7 @@ class Integrator : public Kinematics {
     add_first(rows, Scheme::OMEGA, change);
   }
 
-  /// A scalar y with the step and the coefficients of the momenta, y' = rate: its n rows to t + h.
+  /// Advances the n rows of y with y' = rate to t + h, with step and coefficients of the momenta.
   void advance(double *rows_of_scalar, double rate) const
   {
     Nordsieck<1>::predict(rows_of_scalar, n);
@@ -179,7 +176,7 @@ class Integrator : public Kinematics {
     Nordsieck<1>::correct<1>(rows_of_scalar, n, c.driven.data(), 0, &residual);
   }
 
-  /// Torque and moments of inertia have no part in it.
+  /// Torque and moments of inertia are not used.
   Correction correct_center(const RigidBody &body, const Load &load, double *rows) const
   {
     double x[3], residual[3] = {0.0, 0.0, 0.0}, dx[3];
@@ -216,7 +213,7 @@ class Integrator : public Kinematics {
   AnyNorm any_norm;
   CorrectorCoefficients c;
 
-  /// Residual of a column is target - row, row that of the order of the equation.
+  /// The residual of a column is target - row, for the row of the order of the equation.
   template <int COUNT, class History>
   void feed_back(History history, const CorrectorCoefficients::Array &coefficients, double *rows,
                  const double *row, int component, double *target, double *total = nullptr) const
@@ -233,7 +230,7 @@ class Integrator : public Kinematics {
       for (int i = 0; i < COUNT; ++i) total[i] += target[i];
   }
 
-  /// Momenta (Eq. 14) and positions (Eq. 13): as long as forces stay one pass is all.
+  /// Momenta (Eq. 14) and positions (Eq. 13): for constant forces one pass is sufficient.
   template <int CARRIES, class Damper>
   void correct_center(First<CARRIES> history, const RigidBody &body, const Load &load,
                       const Damper &damper, double *rows, double *residual) const
@@ -317,7 +314,7 @@ class Integrator : public Kinematics {
             c.weight2 * dot3(total.x, total.x), c.weight2 * any_norm.turning2(total.q, pending.q)};
   }
 
-  /// Positions (Eq. 17): forces stay, so one pass is all.
+  /// Positions (Eq. 17): forces are constant, so one pass is sufficient.
   void position_residual(const RigidBody &body, const Load &load, const double *rows,
                          double *residual) const
   {
@@ -361,8 +358,7 @@ class Integrator : public Kinematics {
     project(history, part, rows);
   }
 
-  /// The residual of the quaternion after one more pass; total: of the passes before; part: see
-  /// AnyNorm::projected_part().
+  /// The residual of the quaternion after another pass.  total: earlier; part: projected_part().
   template <class Damper>
   void rotation_residual(const RigidBody &body, const double *per_inertia,
                          const double *torque_body, const Damper &damper, double part,
@@ -386,9 +382,7 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[i];
   }
 
-  // what predicted rows and the residuals of a pass stand for
-
-  /// Without projection the pose is the predicted one, where the torque was met.
+  /// Without projection the pose is the predicted one, at which the torque was evaluated.
   void rotation_of_pass(double part, const double *rows, const double *total, double *q,
                         double *qdot) const
   {
@@ -406,7 +400,7 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
   }
 
-  /// Finds residuals alone: rows stay predicted until finish_passes().
+  /// Computes only residuals: rows stay predicted until finish_passes().
   template <int CARRIES, class Damper>
   void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
             double *rows, Pending &pending) const
@@ -430,7 +424,7 @@ class Integrator : public Kinematics {
       rotation_residual(body, per_inertia, pending.torque_body, friction, part, rows, total);
     };
     if (!friction.implicit) {
-      // a friction that changes by little in the next passes needs no more than one
+      // the friction changes little in later passes, for which one iteration is sufficient
       if (!pending.converged && any_norm.converges(part))
         AnyNorm::repeat(part, total, turn);
       else
@@ -444,8 +438,8 @@ class Integrator : public Kinematics {
     withhold(body, rows, before, 1.0 - friction.implicit_torque(share), total);
   }
 
-  /// Takes back a part of how a residual has changed, where there is friction: neither its radial
-  /// part, which keeps |q|, nor a rotation about an axis without inertia has any.
+  /// Undoes a part of the change of a residual, due to friction.  The radial part, which conserves
+  /// |q|, and a rotation about an axis without inertia have no friction.
   void withhold(const RigidBody &body, const double *rows, const double *before, double part,
                 double *total) const
   {
@@ -469,7 +463,7 @@ class Integrator : public Kinematics {
     project(history, part, rows);
   }
 
-  /// A rescaled q with a radial rate left in would damp the spin: the rate is projected too
+  /// A rescaled q with a nonzero radial rate would damp the rotation, so the rate is projected too
   /// (Eq. 4).  part: see AnyNorm::projected_part().
   template <int CARRIES> void project(Second<CARRIES> history, double part, double *rows) const
   {
@@ -488,7 +482,7 @@ class Integrator : public Kinematics {
     history.template add<4>(rows, n, 1, Scheme::SECOND_QUATERNION, change);
   }
 
-  /// |q| = 1 (Eq. 3), by what is missing: a compensated row keeps its digits.
+  /// |q| = 1 (Eq. 3), as an increment, so that a compensated row keeps its digits.
   template <class History> void project_row(History history, double *rows) const
   {
     const double *q = rows + scheme.quaternion();

@@ -22,7 +22,7 @@ IsokineticConstraint::IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Sc
 {
 }
 
-/// What owned bodies have added is summed over all ranks, and sums begin anew.
+/// Sums the contributions of owned bodies over all ranks, and resets the local sums.
 void IsokineticConstraint::sum()
 {
   static constexpr int N = sizeof(KineticSums) / sizeof(double);
@@ -49,7 +49,7 @@ void IsokineticConstraint::begin_run(bool anew, double /*h*/)
   counted = bodies.number();
 }
 
-/// Without kinetic energy there is no multiplier.
+/// Without kinetic energy the multiplier is undefined.
 void IsokineticConstraint::refuse_rest() const
 {
   int turn = 0;
@@ -71,7 +71,7 @@ void IsokineticConstraint::refuse_rest() const
    a step
 ------------------------------------------------------------------------- */
 
-/// The torques are those at the predicted pose in all passes.
+/// In all passes torques are evaluated at the predicted pose.
 void IsokineticConstraint::add_prediction(const Integrator &, int ibody,
                                           const Integrator::Pending &pending)
 {
@@ -83,7 +83,7 @@ void IsokineticConstraint::end_passes(const Integrator &integrator)
 {
   sum();
   heat.advance(integrator, sums.power());
-  if (counted != bodies.number()) {    // some were removed, with what they had
+  if (counted != bodies.number()) {    // some were removed, with their energy
     target = sums;
     counted = bodies.number();
   }

@@ -3,12 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword isokinetic: bodies whose kinetic energy stays what it is (gear_quat_gauss.h).  The
-   multipliers need sums over all bodies on all ranks: a reduction of four numbers in every pass of
-   the corrector, and one after it.
+/* Keyword isokinetic: bodies with constant kinetic energy (gear_quat_gauss.h).  The multipliers
+   need sums over all bodies on all ranks: a reduction of four numbers in every pass of the
+   corrector, and one after it.
 
-   The heat that the constraint takes, W' = sum(F.v + tau.omega), is integrated as the bodies are,
-   so that potential and kinetic energy and W are constant to the order of the method. */
+   The heat removed by the constraint, W' = sum(F.v + tau.omega), is integrated like the bodies, so
+   that the sum of potential energy, kinetic energy and W is constant to the order of the method. */
 
 #ifndef LMP_GEAR_QUAT_ISOKINETIC_H
 #define LMP_GEAR_QUAT_ISOKINETIC_H
@@ -20,14 +20,14 @@ namespace LAMMPS_NS::GearQuat {
 
 class IsokineticConstraint : public Coupling {
  public:
-  /// Elements of the fix's vector behind those of Sums.
+  /// Elements of the fix's vector after the elements of Sums.
   enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS };
 
   /// rescale: after each step momenta are scaled to the kinetic energy at the start.
   IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, Isokinetic mode,
                        bool rescale);
 
-  /// Without histories the kinetic energy to be kept is that of now.
+  /// Without histories the present kinetic energy is the one to be conserved.
   void begin_run(bool anew, double h) override;
   bool may_start_anew() const override { return false; }
 
@@ -62,7 +62,7 @@ class IsokineticConstraint : public Coupling {
   std::string read(const Sections &file) override;
 
  private:
-  friend class Coupling;    // calls what correct_by_passes() asks for
+  friend class Coupling;    // calls the functions required by correct_by_passes()
 
   Scheme scheme;
   Isokinetic mode;
@@ -73,7 +73,7 @@ class IsokineticConstraint : public Coupling {
   Multipliers alpha;
   Friction of_all;    ///< alpha
   Multipliers factor;
-  bigint counted = 0;    ///< bodies that the target belongs to
+  bigint counted = 0;    ///< number of bodies in the target
   ScalarHistory heat;
   Collocation::Scalar heat_at_nodes;
 

@@ -8,7 +8,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// A third pass rarely pays, and a number with too many digits would seem to hang.
+// A third pass rarely pays, and with a number of too many digits the run would seem to hang.
 
 static constexpr int PASSES_MOST = 100;
 
@@ -26,7 +26,7 @@ static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies c
 using Value = KeywordValue;
 
 /* ----------------------------------------------------------------------
-   the table; what decided the defaults is in doc/decisions.md
+   the table; the reasons for the defaults are in doc/decisions.md
 ------------------------------------------------------------------------- */
 
 /// A keyword that makes components of the pressure constant.
@@ -53,8 +53,8 @@ static const std::vector<Keyword> TABLE = {
   Keyword("corrector", INTEGRATION, "which coefficients correct a history",
           [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
       .word({"tuned", "gear"}).standard_with_tolerance("gear")
-      .cannot_go_with({"tolerance", "tuned", "rows of tuned coefficients forget a change of the "
-                       "step too slowly; leave out corrector, or write corrector gear"}),
+      .cannot_go_with({"tolerance", "tuned", "with tuned coefficients, errors from a change of "
+                       "the step decay too slowly; leave out corrector, or write corrector gear"}),
   Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
           [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
       .integer({{1, PASSES_MOST, 0}}).or_auto(),
@@ -76,8 +76,8 @@ static const std::vector<Keyword> TABLE = {
             a.control.eps = v.number * v.unit;
             a.control.energy = v.measure == "energy";
           }).number({"length", "energy"})
-      .cannot_go_with({"isokinetic", "", "heat and multipliers are those of one step and one "
-                       "number of values"}),
+      .cannot_go_with({"isokinetic", "", "heat and multipliers need a fixed step and number "
+                       "of values"}),
   Keyword("dtmin", STEP, "the time step does not become shorter",
           [](Arguments &a, const Value &v) { a.control.shortest = v.number; })
       .number().requires_also({"tolerance", "", ""}),
@@ -167,7 +167,7 @@ static const std::vector<Keyword> TABLE = {
       .integer({{0, Chain::LONGEST, 3}}),
   Keyword("ptemp", PHYSICS, "the temperature by which the box has its mass, without temp",
           [](Arguments &a, const Value &v) { a.pressure.temperature = v.number; })
-      .number().cannot_go_with({"temp", "", "the mass of the box is that of the temperature of temp"}),
+      .number().cannot_go_with({"temp", "", "the mass of the box has the temperature of temp"}),
   Keyword("flip", PHYSICS, "whether a box that is tilted by more than half a period is replaced",
           [](Arguments &a, const Value &v) { a.pressure.flip = v.is("yes"); }).word({"yes", "no"}),
   Keyword("dilate", PHYSICS, "the atoms that follow the box: all, because all are in bodies",

@@ -33,7 +33,7 @@ static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGI
     {{"tparam"}, "a thermostat is integrated with the bodies, without iterations; leave it out"},
     {{"pparam"}, "a barostat is integrated with the bodies, without iterations; leave it out"},
     {{"scalexy", "scalexz", "scaleyz"}, SCALED_TILT},
-    {{"drag"}, "the motion of the box is that of its equations; use a longer Pdamp instead"},
+    {{"drag"}, "the equations of motion of the box have no drag; use a longer Pdamp instead"},
     {{"mtk"}, "its terms always belong to the equations of motion; leave it out"},
     {{"nreset"}, "pressures are those of the present box, not of a reference cell; leave it out"},
     {{"tloop", "ploop"}, "chains choose their own sub-steps; leave it out"},
@@ -43,7 +43,7 @@ static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGI
     {{"bodyforces"}, "forces are always summed late, in the end of the step"},
 };
 
-/// What to write instead of a keyword of fix rigid and its kin; empty for any other word.
+/// The alternative to a keyword of fix rigid and its variants; empty for any other word.
 static std::string instead_of_rigid_keyword(const std::string &keyword)
 {
   for (const auto &[keywords, instead] : RIGID_WORDS)
@@ -89,7 +89,7 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, cons
                   utils::join_words(names, ", "));
 }
 
-/// In brackets, where there are two ranges, the formulation.
+/// In brackets, with the formulation if there are two ranges.
 template <typename Text> static std::string of_formulations(const Keyword &row, Text text)
 {
   if (row.ranges.size() == 1) return text(row.ranges[0]);
@@ -132,7 +132,7 @@ std::string Keyword::possible_values() const
   return text;
 }
 
-/// An integer that is too large for its type becomes the largest of it, which no range contains.
+/// An integer that is too large for its type becomes its largest value, which no range contains.
 bool GearQuat::read_integer(const std::string &text, int &integer)
 {
   if (!utils::is_integer(text)) return false;
@@ -141,7 +141,7 @@ bool GearQuat::read_integer(const std::string &text, int &integer)
   return true;
 }
 
-/// Whether a word is a number, and which.
+/// True if a word is a number; returns its value.
 static bool read_number(const std::string &text, double &number)
 {
   number = utils::is_double(text) ? std::strtod(text.c_str(), nullptr) : HUGE_VAL;

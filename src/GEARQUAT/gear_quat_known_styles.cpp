@@ -65,7 +65,7 @@ static constexpr StyleFact<PairFact> PAIRS[] = {
     {PairFact::READS_VARIABLES, "^hybrid/scaled", "factors of its styles are numbers or variables"},
 };
 
-// whole names, which Force::bond_match() compares
+// whole names, as compared by Force::bond_match()
 
 static constexpr Word UNREPEATABLE_BONDS[] = {
     {"quartic", "sets the type of a broken bond to 0"},

@@ -3,10 +3,11 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What this package knows about other styles of LAMMPS by their names.  LAMMPS does not tell these
-   facts, so they were read in its source; every row of a table has its reason.  Where LAMMPS does
-   tell them (gear_quat_declared.h), its word counts.  The callers decide what follows from a fact.
-   In each table the first row that matches counts.  Patterns have the syntax of utils::strmatch(). */
+/* Properties of other LAMMPS styles, looked up by name.  LAMMPS does not declare these properties,
+   so they were read from its source; every row of a table has its reason.  Where LAMMPS does
+   declare them (gear_quat_declared.h), the declaration takes precedence.  The callers decide on the
+   consequences.  In each table the first matching row counts.  Patterns have the syntax of
+   utils::strmatch(). */
 
 #ifndef LMP_GEAR_QUAT_KNOWN_STYLES_H
 #define LMP_GEAR_QUAT_KNOWN_STYLES_H
@@ -23,78 +24,81 @@ class LAMMPS;
 
 namespace LAMMPS_NS::GearQuat {
 
-/// As messages name a fix: with ID and style.
+/// The name of a fix in messages: ID and style.
 std::string name_of(const Fix *fix);
 
-/// What is known of a pair style, also where it is a part of a hybrid one.
+/// Properties of a pair style, also as a part of a hybrid style.
 enum class PairFact {
-  UNREPEATABLE,       ///< its forces are others when they are evaluated again, or so they may be
+  UNREPEATABLE,       ///< its forces differ, or may differ, when they are evaluated again
   RANDOM,             ///< its forces are random
-  CONTACTS,           ///< its forces are those of contacts, with friction
+  CONTACTS,           ///< its forces are contact forces with friction
   READS_VARIABLES,    ///< it may evaluate variables of the script
 };
 
-/// What is known of a fix, by one word each.
+/// Properties of a fix.
 enum class FixFact {
   REPEATABLE,    ///< post_force() is a function of positions, velocities and perhaps the time
                  ///< that changes forces and torques only
   THREADS,       ///< pre_force() clears the forces of the threads of the OPENMP package
   WITHOUT_VARIABLES,    ///< of REPEATABLE: evaluates no variables of the script
   RANDOM,               ///< its forces or changes of velocities are random
-  COLLISIONS,           ///< its forces are collisions, each of which lasts one step
-  CONTACTS,             ///< its forces are those of contacts, with friction
-  THERMOSTAT,           ///< it holds a temperature, by forces or by velocities
+  COLLISIONS,           ///< its forces are due to collisions, each of which lasts one step
+  CONTACTS,             ///< its forces are contact forces with friction
+  THERMOSTAT,           ///< it controls a temperature, by forces or by velocities
   TIME_STEP,            ///< it changes the time step
   BODY_OF_ATOMS,        ///< after init() extract("body") gives the body of each atom, or -1
   FIRST_RIGID,          ///< it takes the masses of bodies from the first rigid fix alone
   CARRIES_BODIES,       ///< it calls deform() of rigid fixes where it remaps atoms with the box
-  NO_FORCE,             ///< it acts around the forces, but changes none
-  NO_LOCAL_DATA,        ///< it acts at the end of a step, but reads no local data of a fix itself
+  NO_FORCE,             ///< it is called around the forces, but changes none
+  NO_LOCAL_DATA,        ///< it is called at the end of a step, but reads no local data of a fix
 };
 
-/// What is known of a compute.
+/// Properties of a compute.
 enum class ComputeFact {
   READS_LOCAL_DATA,    ///< it may read local data of a fix
-  ADDS_UP,             ///< it adds up what every evaluation of forces tells it
+  ADDS_UP,             ///< it accumulates the data of every evaluation of forces
 };
 
-/// The reason for what is known of a style, null if it is not known of it.
+/// The reason for this property of a style, null if the style does not have it.
 const char *known(PairFact what, const Force *force);
 const char *known(FixFact what, const Fix *fix);
 const char *known(ComputeFact what, const Compute *compute);
-/// Whether, and by whom, forces of all styles can be evaluated again: a line each.
+/// For each style, whether its forces can be evaluated again, and the source of this information: a
+/// line each.
 std::vector<std::string> sources_of_repeatability(LAMMPS *lmp);
 /// The bond style whose bonds may break or change for good when they are evaluated, null for none.
 const char *unrepeatable_bond(const Force *force);
-/// True if that variable, as `info variables` shows it, is another one whenever it is evaluated.
+/// True if that variable, as shown by `info variables`, changes whenever it is evaluated.
 bool is_unrepeatable(const std::string &variable);
 
-/// Why a run style evaluates forces otherwise than LAMMPS' run styles verlet and respa, null if not.
+/// The reason if a run style evaluates forces differently from LAMMPS' run styles verlet and respa,
+/// otherwise null.
 const char *unrepeatable_run_style(const std::string &style);
 
 /// False for no style and for style zero, of pairs, bonds, angles, dihedrals or impropers.
 bool exerts_forces(const void *style, const char *name);
 
-/// What a fix does to velocities, places, types or number of atoms.
+/// The effect of a fix on velocities, positions, types or number of atoms.
 struct ActOnAtoms {
   const char *pattern;
   enum {
     MOMENTUM,       ///< subtracts a rigid motion from velocities
-    TEMPERATURE,    ///< scales velocities, all of them alike unless a bias or a region divides them
-    REFLECTION,     ///< mirrors single atoms that reach a place
+    TEMPERATURE,    ///< scales velocities, uniformly unless a bias or a region divides them
+                    ///< them
+    REFLECTION,     ///< mirrors single atoms that reach a position
     IMPULSE,        ///< a force that is inversely proportional to the time step
     SINGLE          ///< changes atoms one by one
   } act;
   enum {
     GROUP,            ///< its group
-    ANY,              ///< any atoms, whatever its group
+    ANY,              ///< any atoms, for any group
     CONSTRAINED,      ///< atoms of its group whose degrees of freedom it subtracts
     AT_INTEGRATION    ///< its group, if a keyword makes it act in initial_integrate()
   } on;
   const char *reason;
-  const char *instead;    ///< what suits bodies
+  const char *instead;    ///< an alternative that is suitable for bodies
 };
-/// Null for a fix that does nothing of that, as far as is known.
+/// Null for a fix without such an effect, as far as is known.
 const ActOnAtoms *act_on_atoms(const Fix *fix);
 
 }    // namespace LAMMPS_NS::GearQuat

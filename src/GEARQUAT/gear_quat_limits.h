@@ -3,26 +3,26 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What a method follows in steps of h, found by trial with the method itself, so that no table is
+/* Limits of a method with steps of h, found by trial with the method itself, so that no table is
    needed: free rotations, vibrations, forces without derivatives, and friction.
 
-   Which rotations a method follows depends on the number of values, on the passes and on the
-   moments: a free flight tells.
+   The fastest rotation depends on the number of values, on the passes and on the moments of
+   inertia; it is found by a trial of a free rotation.
 
-   Forces without derivatives are random, or those of collisions, which last a single step.  What a
-   history makes of their derivatives heats the bodies.  A force in one step alone, and none
-   afterwards, changes the velocity in the steps that follow by d_1, d_2, ..., whose sum is 1 in
-   units of h F/m.  Forces that are independent from step to step change the velocity in a step by
-   sum d_k^2 times the right mean square.
+   Forces without derivatives are random, or due to collisions that last a single step.  The
+   derivatives that a history computes from them heat the bodies.  A force in one step alone changes
+   the velocity in the following steps by d_1, d_2, ..., whose sum is 1 in units of h F/m.  Forces
+   that are independent from step to step change the velocity in a step by sum d_k^2 times the
+   correct mean square.
 
-   Forces of friction are those of predicted velocities.  How a method follows them is told by the
-   mean square of a momentum that random kicks make, which the friction determines.
+   Friction is evaluated at predicted velocities.  The accuracy of a method under friction is
+   measured by the mean square of a momentum driven by random kicks, which the friction determines.
 
-   The friction of a coupling is another: a step of h turns the rows of a free body under the
-   constant friction xi into others: predict, then add c_j times the residual that
-   Integrator::correct_pass() finds.  This map is linear and depends on h xi alone.  While its
-   spectral radius is 1 or less, the method is stable.  Far from its target a chain has a friction
-   of several times 1/tau. */
+   The friction of a coupling is treated separately.  A step of h maps the rows of a free body under
+   the constant friction xi: it predicts, then adds c_j times the residual of
+   Integrator::correct_pass().  This map is linear and depends on h xi alone.  If its spectral
+   radius is 1 or less, the method is stable.  Far from its target a chain has a friction of several
+   times 1/tau. */
 
 #ifndef GEAR_QUAT_LIMITS_H
 #define GEAR_QUAT_LIMITS_H
@@ -40,7 +40,7 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// The state with the velocities that a load gives it in a step h.
+/// The state with the velocities that result from a load in a step h.
 inline BodyState kicked(const RigidBody &body, const BodyState &before, const Load &load, double h)
 {
   BodyState s = before;
@@ -55,17 +55,18 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
 
 constexpr int FLIGHT_STEPS = 100, LONG_FLIGHT_STEPS = 5000;
 
-/// Radians in a step; whatever the method, a slower rotation survives.
+/// Radians in a step; a slower rotation is stable with all methods.
 constexpr double FLIGHT_SLOW = 0.1;
 
-/// False if the body goes astray within so many steps without any load.
+/// False if the body becomes unstable within this number of steps without any load.
 inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const BodyState &state,
                             double h, int steps = FLIGHT_STEPS)
 {
   const Integrator integrator(scheme, h);
   const MotionLimits limits(h, std::numeric_limits<double>::infinity());
   const Load none = Load();
-  std::vector<double> history(scheme.size());    // an array would have to be as long as the longest
+  std::vector<double> history(scheme.size());    // allocated at run time: a fixed array would need
+                                                 // the largest size
   double *rows = history.data();
   BodyState still = state;
   for (double &component : still.velocity) component = 0.0;
@@ -80,7 +81,7 @@ inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const B
   return true;
 }
 
-/// The longest step, of h and its halves, thirds, ..., that the long flight survives.
+/// The longest step, among h, h/2, h/3, ..., that is stable in the long trial.
 inline double longest_step(const Scheme &scheme, const RigidBody &body, const BodyState &state,
                            double h)
 {
@@ -90,7 +91,7 @@ inline double longest_step(const Scheme &scheme, const RigidBody &body, const Bo
   return h / parts;
 }
 
-/// True if a harmonic motion of so many radians in a step keeps its energy within a factor of two.
+/// True if a harmonic motion of this many radians per step keeps its energy within a factor of two.
 inline bool survives_oscillation(const Scheme &scheme, double radians)
 {
   const double h = 1.0;
@@ -141,7 +142,7 @@ enum class Noise { NONE, RANDOM, COLLISIONS };
 /// sum d_k^2 of the center of mass, with these coefficients.
 inline double noise_gain(const Scheme &scheme, const CorrectorCoefficients &c)
 {
-  constexpr int STEPS = 1000;    // roots of 0.99 have faded
+  constexpr int STEPS = 1000;    // roots of 0.99 have decayed
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
   double rows[MAX_VALUES] = {}, gain = 0.0;
   for (int step = 0; step < STEPS; ++step) {
@@ -161,7 +162,7 @@ inline double noise_gain(const Scheme &scheme)
   return noise_gain(scheme, CorrectorCoefficients(scheme));
 }
 
-/// Values that do not heat with Gear's coefficients (tests/lammps/test_other_fixes.py).
+/// Values that do not cause heating with Gear's coefficients (tests/lammps/test_other_fixes.py).
 inline int most_with_noise(const Scheme &scheme, Noise noise)
 {
   if (noise == Noise::NONE) return MAX_VALUES;
@@ -169,7 +170,7 @@ inline int most_with_noise(const Scheme &scheme, Noise noise)
   return scheme.first() ? 4 : 6;
 }
 
-/// False if such forces heat bodies more than they do with the largest of these numbers.
+/// False if such forces heat bodies more than with the largest of these numbers.
 inline bool suits_noise(const Scheme &scheme, Noise noise)
 {
   const int most = most_with_noise(scheme, noise);
@@ -180,7 +181,7 @@ inline bool suits_noise(const Scheme &scheme, Noise noise)
   return noise == Noise::NONE || noise_gain(scheme) <= 1.001 * noise_gain(limit);
 }
 
-/// The keywords that suit this noise, in words; empty if those of the scheme do.
+/// The keywords suitable for this noise, as text; empty if the scheme is suitable.
 inline std::string remedy_for_noise(const Scheme &scheme, Noise noise)
 {
   if (suits_noise(scheme, noise)) return "";
@@ -215,8 +216,8 @@ inline double largest_of(const RowMap &a, int n)
   return std::isfinite(largest) ? largest : std::numeric_limits<double>::infinity();
 }
 
-/// What a step makes of the rows of a momentum, the first of which is row order - 1 of a history,
-/// under a friction that takes this part of the predicted momentum.
+/// The map of the rows of a momentum in a step with a friction that removes this part of the
+/// predicted momentum.  The first row is row order - 1 of a history.
 inline RowMap map_of_friction(const Scheme &scheme, double part)
 {
   const CorrectorCoefficients c(scheme);
@@ -233,13 +234,14 @@ inline RowMap map_of_friction(const Scheme &scheme, double part)
   return map;
 }
 
-/// The mean square of the momentum that random kicks make under such a friction, by what it should
-/// be: 1 if the friction is followed, and what bodies have of the temperature of random forces.
-/// Infinite if momenta grow.  The sum over all steps doubles its number of steps in each turn.
+/// The mean square of a momentum driven by random kicks under such a friction, relative to its
+/// exact value: 1 if the method is accurate.  It is also the ratio of the temperature of the bodies
+/// to the temperature of random forces.  Infinite if momenta grow.  Each iteration doubles the
+/// number of steps in the sum.
 inline double friction_response(const Scheme &scheme, double part)
 {
   constexpr int DOUBLINGS = 40;
-  constexpr double LOST = 1.0e6, FADED = 1.0e-10, MOST = 1.0e30;    // rows grow before they fade
+  constexpr double LOST = 1.0e6, FADED = 1.0e-10, MOST = 1.0e30;    // rows grow before they decay
   const CorrectorCoefficients c(scheme);
   const int order = scheme.first() ? 1 : 2, n = scheme.values() + 1 - order;
   RowMap map = map_of_friction(scheme, part), sum = {};
@@ -260,13 +262,14 @@ inline double friction_response(const Scheme &scheme, double part)
   return 2.0 * part * sum[0][0];
 }
 
-/// How far the friction is from being followed.
+/// Relative error of the method under this friction.
 inline double friction_error(const Scheme &scheme, double part)
 {
   return part > 0.0 ? std::fabs(friction_response(scheme, part) - 1.0) : 0.0;
 }
 
-/// The largest part of a momentum, in hundredths, that friction may take in a step within this error.
+/// The largest part of a momentum, in hundredths, that friction may remove in a step within this
+/// error.
 inline double largest_friction(const Scheme &scheme, double error)
 {
   int hundredths = 0;
@@ -278,7 +281,7 @@ inline double largest_friction(const Scheme &scheme, double error)
 
 class FrictionLimit {
  public:
-  /// h xi that is followed: stable, and not a large part of a momentum in a step.
+  /// The largest h xi that is stable and is not a large part of a momentum in a step.
   static double of(const Scheme &scheme) { return std::min(stable(scheme), ACCURATE); }
 
   /// The smallest unstable h xi, positive; MOST if there is none below.
@@ -301,7 +304,7 @@ class FrictionLimit {
  private:
   static constexpr double LEAST = 0.02, RATIO = 1.05;
   static constexpr int HALVINGS = 8;
-  // powers of the map up to 2^16, which may grow by this if it is stable
+  // powers of the map up to 2^16; those of a stable map grow at most by this factor
   static constexpr int SQUARINGS = 16;
   static constexpr double TRANSIENT = 1.0e6;
 
@@ -314,8 +317,8 @@ class FrictionLimit {
   {
   }
 
-  /// The rows of a velocity v of the second formulation are (j + 1) times those of a position behind
-  /// the first one, divided by h.
+  /// The rows of a velocity v in the second formulation are the rows of a position after the first
+  /// one, times (j + 1) and divided by h.
   RowMap map(double friction) const
   {
     RowMap a = {};
@@ -352,8 +355,8 @@ class FrictionLimit {
   }
 };
 
-/// The largest |xi_1| (1/time) that a chain of a single variable reaches with an ideal gas, from its
-/// first integral (xi tau)^2 + f - ln f with f = 2K/(g kT); longer chains stay below it.
+/// The largest |xi_1| (1/time) that a chain with a single variable reaches with an ideal gas, from
+/// its first integral (xi tau)^2 + f - ln f with f = 2K/(g kT); longer chains stay below it.
 inline double friction_bound(const Chain &chain, const ChainTarget &target, double twice_kinetic)
 {
   const double part = twice_kinetic / (target.freedoms * target.kt);
@@ -361,9 +364,9 @@ inline double friction_bound(const Chain &chain, const ChainTarget &target, doub
   return std::sqrt(begun * begun + std::max(0.0, part - 1.0 - std::log(part))) / target.period;
 }
 
-/// The same of this chain in steps of h, found by a trial of two damping times; infinite if it
-/// cannot be followed.  A gas takes up heat only by its kinetic energy, so bodies with a potential
-/// energy need no more.
+/// The same for this chain in steps of h, found by a trial of two damping times; infinite if the
+/// chain cannot be followed.  A gas takes up heat only as kinetic energy, so bodies with a
+/// potential energy need no more.
 inline double friction_on_trial(Chain chain, const ChainTarget &target, double twice_kinetic,
                                 double h)
 {

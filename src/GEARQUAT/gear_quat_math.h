@@ -11,14 +11,14 @@
    Equation numbers: Pratt & Bin Mohamad Zaini, with the misprints of Eqs. 5, 6 and 8 corrected
    (last row of W is (-q1, -q2, -q3, q4); A is the rotation matrix space -> body).
 
-   Mass properties and Euler's equations of one rigid body.  Frames: see gear_quat_math.h.
+   Mass properties and Euler's equations of one rigid body.
 
-   Components of the total force and torque, along the axes of space, may be masked: what does not
-   act is taken by something outside of the body, which does no work on it where it stands still.
-   The load that was met stays what it is for energy and virial, the load that acts moves the body.
+   Components of the total force and torque, along the axes of space, may be masked: an external
+   constraint, which does no work on a body at rest, balances the masked components.  Energy and
+   virial use the full load, the motion uses the masked load.
 
    Sites of finite size have moments of inertia about their own center, in their own frame: `own` in
-   a name stands for the frame of the site. */
+   a name refers to the frame of the site. */
 
 #ifndef GEAR_QUAT_MATH_H
 #define GEAR_QUAT_MATH_H
@@ -57,7 +57,7 @@ inline void cross3(const double *a, const double *b, double *out)
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/// sum += a, with no loop: most LAMMPS are built with -O2, which leaves loops alone.
+/// sum += a, without a loop: most LAMMPS builds use -O2, which does not unroll loops.
 inline void add3(const double *a, double *sum)
 {
   sum[0] += a[0];
@@ -100,8 +100,7 @@ inline void quaternion_acceleration(const double *q, const double *qdot,
 
 /// The same for a q of any length r, with s = q.qdot/r^2 = r'/r:
 ///   qddot = 1/2 W(q) (omegadot_body + 2 s omega_body, -1/2 |omega_body|^2 + 2 r''/r),
-///   r''/r = -1/2 stiffness (r^2 - 1), which keeps the length close to 1.
-/// part: of Eq. 6 in a mixture of both equations, 0 to 1.
+///   r''/r = -1/2 stiffness (r^2 - 1), which keeps the length close to 1.  part: of Eq. 6, 0 to 1.
 inline void quaternion_acceleration(const double *q, const double *qdot, const double *omega_body,
                                     const double *omegadot_body, double stiffness, double part,
                                     double *qddot)
@@ -117,7 +116,7 @@ inline void quaternion_acceleration(const double *q, const double *qdot, const d
 }
 
 /// omega_body = 2 W(q)^T qdot / norm2, the inverse of Eq. 5.
-/// norm2: |q|^2, or 1 where the paper's formulas are wanted as they stand.
+/// norm2: |q|^2, or 1 for the paper's formulas as they are.
 inline void angular_velocity(const double *q, double norm2, const double *qdot, double *omega_body)
 {
   w_transposed_times(q, qdot, omega_body);
@@ -128,7 +127,7 @@ inline void angular_velocity(const double *q, double norm2, const double *qdot, 
 
 /// A(q), Eq. 8, row-major: e_body = A e_space.
 /// norm2 = |q|^2 gives a rotation for every q: sites stay rigid between prediction and projection.
-/// norm2 = 1 is Eq. 8 as it stands, a rotation only as far as |q| = 1 holds.
+/// norm2 = 1 is Eq. 8 as it is, a rotation only to the accuracy of |q| = 1.
 inline void rotation_matrix(const double *q, double norm2, double a[9])
 {
   const double s = 2.0 / norm2;
@@ -163,8 +162,7 @@ inline void to_space(const double a[9], const double *body, double *space)
   space[2] = a[2] * body[0] + a[5] * body[1] + a[8] * body[2];
 }
 
-/// The unit quaternion of a proper rotation matrix A (space -> body, row-major).
-/// The largest component is found first, so that no small one is divided by.
+/// The unit quaternion of a rotation matrix A (space -> body, row-major), without small divisors.
 inline void quaternion_from_matrix(const double a[9], double *q)
 {
   const double four[4] = {1.0 + a[0] - a[4] - a[8], 1.0 - a[0] + a[4] - a[8],
@@ -202,7 +200,7 @@ inline void project_rate(const double *q, double *rate)
 
 /* ---------------------------------------------------------------------- */
 
-/// A moment of inertia below this fraction of the largest counts as zero, as fix rigid counts it.
+/// A moment of inertia below this fraction of the largest counts as zero, as in fix rigid.
 constexpr double LINEAR_FRACTION = 1.0e-7;
 
 /// Mass and principal moments.  A zero moment has no rotational degree of freedom.
@@ -214,14 +212,14 @@ struct RigidBody {
   {
     return (inertia[0] > 0.0) + (inertia[1] > 0.0) + (inertia[2] > 0.0);
   }
-  /// With those of translation; in two dimensions the body turns about z alone.
+  /// Includes translation; in two dimensions the body turns only about z.
   int freedoms(int dimension) const
   {
     return dimension == 2 ? 2 + (inertia[2] > 0.0) : 3 + rotational_freedoms();
   }
 };
 
-/// Where a body is and how it moves: the 13 numbers that place and move its sites.
+/// Position and motion of a body: the 13 numbers that determine its sites.
 struct BodyState {
   double center[3];        ///< center of mass, unwrapped
   double q[4];             ///< orientation, scalar part last
@@ -229,7 +227,7 @@ struct BodyState {
   double omega_body[3];    ///< angular velocity along the principal axes
 };
 
-/// What placing a site needs, derived from a state.
+/// Data for placing a site, derived from a state.
 struct BodyFrame {
   double axes[9];    ///< rotation matrix space -> body
   double omega_space[3];
@@ -241,9 +239,9 @@ struct Load {
   double torque_space[3];
 };
 
-/// What the corrector tells of a step.
+/// Results of the corrector in a step.
 struct Correction {
-  double work;    ///< of the load along the way from the predicted to the corrected pose
+  double work;    ///< of the load, from the predicted to the corrected pose
   double position_error2, quaternion_error2;    ///< squared estimates of the local errors
 
   /// Estimated local error of the center of mass, length.
@@ -257,7 +255,7 @@ inline void angular_acceleration(const RigidBody &body, const double *torque_bod
                                  const double *omega_body, double *omegadot_body)
 {
   const double *inertia = body.inertia;
-  const auto about = [&](int i, int j, int k) {    // indices the compiler knows
+  const auto about = [&](int i, int j, int k) {    // indices known at compile time
     const double gyroscopic = (inertia[j] - inertia[k]) * omega_body[j] * omega_body[k];
     return inertia[i] > 0.0 ? (torque_body[i] + gyroscopic) / inertia[i] : 0.0;
   };
@@ -273,7 +271,7 @@ inline void inverse_moments(const RigidBody &body, double *per_inertia)
   for (int i = 0; i < 3; ++i) per_inertia[i] = body.inertia[i] > 0.0 ? 1.0 / body.inertia[i] : 0.0;
 }
 
-/// Eq. 7 for many torques and angular velocities: no division that waits for them.
+/// Eq. 7 for many torques and angular velocities, without divisions on the critical path.
 inline void angular_acceleration(const RigidBody &body, const double *per_inertia,
                                  const double *torque_body, const double *omega_body,
                                  double *omegadot_body)
@@ -305,7 +303,7 @@ inline void angular_acceleration(const RigidBody &body, const BodyState &state, 
   angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
 }
 
-/// A bit for each component that is off; 0: everything acts.
+/// A bit for each component that is off; 0: all components act.
 using Mask = int;
 
 constexpr Mask force_off(int component)
@@ -318,7 +316,7 @@ constexpr Mask torque_off(int component)
   return 1 << (3 + component);
 }
 
-/// What is left of a load.
+/// The load without the masked components.
 inline Load acting_load(const Load &met, Mask off)
 {
   Load acting = met;
@@ -329,7 +327,7 @@ inline Load acting_load(const Load &met, Mask off)
   return acting;
 }
 
-/// Work of a load met at the pose `before` along the small way to the pose `after`.
+/// Work of a load at the pose `before` over the small displacement to the pose `after`.
 inline double work_between(const Load &met, const BodyState &before, const BodyState &after)
 {
   double torque_body[3], dx[3], dq[4], angle_body[3];
@@ -354,9 +352,8 @@ inline double rotational_energy(const RigidBody &body, const double *omega_body)
 }
 
 /// Principal moments and axes of a symmetric tensor (row-major) by cyclic Jacobi rotations.
-/// After the call the rows of `a` are the axes, a rotation matrix space -> body: every Jacobi
-/// rotation is proper, so the axes are right-handed.
-/// Axes are not sorted: an axis that is principal already stays exactly as it is.
+/// After the call the rows of `a` are the axes, a right-handed rotation matrix space -> body.  Axes
+/// are not sorted: an axis that is already principal does not change at all.
 inline void principal_axes(const double tensor[9], double moments[3], double a[9])
 {
   double m[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -393,7 +390,7 @@ inline void principal_axes(const double tensor[9], double moments[3], double a[9
   }
 }
 
-/// Largest moment first; the rows of `a` go with their moments and stay right-handed.
+/// Largest moment first; the rows of `a` are sorted with their moments and stay right-handed.
 inline void sort_axes(double moments[3], double a[9])
 {
   auto swap = [&](int k, int l) {
@@ -409,7 +406,7 @@ inline void sort_axes(double moments[3], double a[9])
       if (moments[l] < moments[l + 1]) swap(l, l + 1);
 }
 
-/// Moments that are zero but for rounding become exactly zero: a linear body has two rotational
+/// Sets moments that are zero except for rounding to exactly zero: a linear body has two rotational
 /// degrees of freedom, a point none.
 inline void drop_vanishing_moments(double moments[3])
 {
@@ -442,7 +439,7 @@ inline void line_moments(double mass, double length, double moments[3])
   moments[1] = moments[2] = mass * length * length / 12.0;
 }
 
-/// A thin triangle with these corners about its center, along axes that are principal.
+/// A thin triangle with these corners relative to its center, along its principal axes.
 inline void triangle_moments(double mass, const double *c1, const double *c2, const double *c3,
                              double moments[3])
 {
@@ -477,14 +474,14 @@ inline void relative_orientation(const double *q_body, const double *q_own, doub
   project_norm(relative);
 }
 
-/// q_own = q_body * relative, of unit length whatever that of q_body.
+/// q_own = q_body * relative, of unit length for any length of q_body.
 inline void site_orientation(const double *q_body, const double *relative, double *q_own)
 {
   w_times(q_body, relative, q_own);
   project_norm(q_own);
 }
 
-/// A turn about the z axis, and back; the angle is in (-pi, pi].
+/// The rotation about the z axis by an angle, and the inverse; the angle is in (-pi, pi].
 inline void quaternion_about_z(double angle, double *q)
 {
   q[0] = q[1] = 0.0;

@@ -160,7 +160,7 @@ void Minimization::project(double **f)
 }
 
 /* ----------------------------------------------------------------------
-   where the minimizer returns to
+   starting point of a line search
 ------------------------------------------------------------------------- */
 
 void Minimization::store()

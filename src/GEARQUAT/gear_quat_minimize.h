@@ -5,12 +5,12 @@
 
 /* Rigid bodies in LAMMPS' command minimize (doc/theory.md, Energy minimization).
 
-   LAMMPS' minimizers move atoms along straight lines, by combinations of the forces on them.  The
-   forces on the atoms of a body are projected on its rigid motions, so that these combinations are
-   rigid motions, too, and before each evaluation of the forces the body goes to the pose that is
-   nearest to its atoms, and they to their places in it.  So the degrees of freedom of a body are
-   those of its atoms, nothing is sent to all ranks, and rotations and translations have the same
-   measure, the way of the atoms.
+   LAMMPS' minimizers move atoms along straight lines, by linear combinations of the forces on them.
+   The forces on the atoms of a body are projected onto its rigid motions, so that these
+   combinations are rigid motions, too.  Before each evaluation of the forces the body moves to the
+   pose nearest to its atoms, and the atoms move to their positions in it.  The degrees of freedom
+   of a body are thus the ones of its atoms, nothing is sent to all ranks, and rotations and
+   translations have the same measure, the displacement of the atoms.
 
    Bodies keep their velocities, and their angular velocities along their principal axes. */
 
@@ -35,19 +35,21 @@ class Minimization : protected Pointers {
   void init();
   /// Between init() and end().
   bool is_on() const { return on; }
-  /// Bodies were made, or atoms exchanged.  Collective.
+  /// Called when bodies were made or atoms exchanged.  Collective.
   void measure();
-  /// Loads are present.  Ends the run on all ranks if one is not a number; warns of rotations that
+  /// Loads are present.  Ends the run on all ranks if one is not finite; warns of rotations that
   /// move no atom.  Collective.
   void check_loads();
-  /// Bodies go to their atoms, and atoms to their places, ghosts not.  Collective.
+  /// Moves bodies to their atoms, and atoms to their positions, except ghosts.  Collective.
   void fit();
-  /// The same before forces are evaluated, with ghosts, unless fit() was called since then.
+  /// The same before forces are evaluated, with ghosts, unless fit() was called after the last
+  /// evaluation.
   void fit_all();
-  /// The forces f on atoms of bodies become those that move them as rigid bodies.  Collective.
+  /// Projects the forces f on atoms of bodies onto rigid motions.  Collective.
   void project(double **f);
 
-  // Where the minimizer returns to, in the memory of histories, which a minimization does not need.
+  // Starting point of a line search, stored in the memory of histories, which a minimization does
+  // not need.
 
   void store();
   void put_back();

@@ -20,18 +20,18 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// A sum of forces is zero if in a damping time it changes the total momentum by less than this part
-// of its thermal value, or if it is less than this part of all forces: the pairs of forces that add
-// up to them may be larger, and of single precision.
+// a sum of forces counts as zero if in a damping time it changes the total momentum by less than
+// this part of its thermal value, or if it is less than this part of all forces: the individual
+// pair forces may be larger, and of single precision
 
 static constexpr double PART_OF_THERMAL = 1.0e-10, PART_OF_FORCES = 1.0e-8;
 
-// or as many times as large as the sum of independent errors of all atoms: a mesh whose forces are
-// derivatives of interpolated energies leaves a third of that
+// or if it is less than this multiple of the sum of independent errors of all atoms: a mesh whose
+// forces are derivatives of interpolated energies leaves a third of it
 
 static constexpr double ERRORS_OF_MESH = 3.0;
 
-// exact sums hold terms up to 2^20 units: forces of overlaps, and fast common motion
+// exact sums represent terms up to 2^20 units: forces of overlaps, and fast common motion
 
 static constexpr double LARGE_FORCES = 1073741824.0, LARGE_MOMENTA = 1024.0;    // 2^30, 2^10
 
@@ -95,7 +95,7 @@ void TotalMomentum::add_up(bigint *limbs)
 {
   for (int k = 0; k < 3; ++k) {
     ExactSum sums[2];
-    double here = 0.0;    // only judged: its rounding may depend on where bodies are
+    double here = 0.0;    // only for a test: its rounding may depend on the distribution of bodies
     for (int ibody = 0; counts(k) && ibody < bodies.nowned(); ++ibody) {
       const Body &body = bodies.body_at(ibody);
       if (body.off & force_off(k)) continue;
@@ -128,10 +128,10 @@ double TotalMomentum::twice_energy() const
 }
 
 /* ----------------------------------------------------------------------
-   is it constant?
+   test whether it is constant
 ------------------------------------------------------------------------- */
 
-/// The largest sum of forces that is none.
+/// The largest sum of forces that counts as zero.
 double TotalMomentum::explained() const
 {
   double most = PART_OF_THERMAL * thermal / period;
@@ -163,7 +163,7 @@ bool TotalMomentum::judge()
 }
 
 /* ----------------------------------------------------------------------
-   what it means
+   consequences
 ------------------------------------------------------------------------- */
 
 double TotalMomentum::freedoms() const

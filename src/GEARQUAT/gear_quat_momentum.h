@@ -11,16 +11,17 @@
 
      p' = F - xi (p - m V),   2 K = sum p^2/m - P^2/M                                       (T5)
 
-   so that a common motion neither changes nor affects anything else.  If the forces do not add up
-   to zero, the thermostat acts on whole momenta, and P counts.
+   so that a common motion is conserved and affects nothing else.  If the forces do not add up to
+   zero, the thermostat acts on whole momenta, including P.
 
    A sum of forces counts as zero if it is explained by rounding or by the mesh of long-range
-   forces.  Every step measures it in each direction where P was constant so far.  A direction in which P has
-   changed is measured again only if histories begin anew: between two contacts with a wall P is
-   constant, and still warm.
+   forces.  Every step measures the sum in each direction in which P was constant so far.  A
+   direction in which P has changed is measured again only when histories are reset: between two
+   contacts with a wall P is constant, but still part of the heat.
 
-   The host adds `LIMBS` integers of add_up() over all ranks and gives the sums to take().  That of
-   the momentum is exact (gear_quat_exact_sum.h), so that it does not depend on where bodies are. */
+   The host sums the `LIMBS` integers of add_up() over all ranks and passes the sums to take().  The
+   sum of momenta is exact (gear_quat_exact_sum.h), so it does not depend on the distribution of
+   bodies over ranks. */
 
 #ifndef LMP_GEAR_QUAT_MOMENTUM_H
 #define LMP_GEAR_QUAT_MOMENTUM_H
@@ -50,23 +51,23 @@ class TotalMomentum : protected Pointers {
 
   /// Before the sums of a step.  kt: of the thermostat.
   void begin_sums(double kt);
-  /// The force that the predicted rows of an owned body are those of, in a step.
+  /// The force in the predicted rows of an owned body, in a step.
   void add_predicted(int ibody, const double *force);
-  /// Momenta and forces of owned bodies by their present states and loads.
+  /// Momenta and forces of owned bodies from their present states and loads.
   void add_up(bigint *limbs);
   void take(const bigint *limbs);
 
   // after take()
 
-  /// True if the forces in a direction in which P was constant do not add up to zero: then P is no
-  /// longer constant there.  Collective.
+  /// True if forces do not add up to zero in a direction in which P was constant: P is no longer
+  /// constant there.  Collective.
   bool judge();
   /// P^2/M in the directions in which P is constant.
   double twice_energy() const;
   /// M V_a V_b of the common motion in these directions.
   double twice_energy(int a, int b) const { return mass[a] * common[a] * common[b]; }
-  /// Velocity of the common motion in these directions, and its acceleration less the one that rows
-  /// are predicted with, if these were added.
+  /// Velocity of the common motion in these directions, and the difference of its acceleration from
+  /// the acceleration in the predicted rows, if these were added.
   void move_along(Friction &friction) const
   {
     std::copy_n(common, 3, friction.common);
@@ -77,7 +78,7 @@ class TotalMomentum : protected Pointers {
   bool any() const { return count[0] + count[1] + count[2] > 0.0; }
   /// Degrees of freedom of translation, after weigh().
   double freedoms() const;
-  /// ", without those of the total momentum along x and y," or empty.
+  /// The excluded total momentum for messages, or empty.
   std::string description() const;
 
   /// For restart files: bit k is set if P is constant in direction k.
@@ -92,7 +93,7 @@ class TotalMomentum : protected Pointers {
   double count[3] = {}, mass[3] = {};
   double momentum[3] = {}, force[3] = {};
   double common[3] = {};        ///< velocity of the common motion, where it is constant
-  double unforeseen[3] = {};    ///< its acceleration less the one that rows are predicted with
+  double unforeseen[3] = {};    ///< the difference of its acceleration from the predicted rows
   ExactSum differences[3];      ///< of forces on this rank, for unforeseen
   double thermal = 0.0;         ///< momentum of all bodies together at the target
   double unit_momentum = 1.0, unit_force = 1.0;

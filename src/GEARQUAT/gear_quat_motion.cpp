@@ -20,18 +20,18 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// If the step becomes shorter than this part of the last one, histories start anew: the errors in
-// their higher rows are those of the long step.  If it becomes longer than so many of the last one,
-// too: these errors grow with powers of the ratio, and may be as large as the motion.
+// Histories start again if the step becomes shorter than this part of the last one: the errors in
+// their higher rows are due to the long step.  They also start again if the step becomes longer by
+// more than this factor: the errors grow with powers of the ratio, and may be as large as the
+// motion.
 
 static constexpr double SHORTER = 0.49, LONGER = 2.05;
 
-// Forces at a corrected pose differ from those at the predicted one by what the step has corrected,
-// so at a stable step they leave a smaller residual than the last one.  If a residual exceeds the
-// last one OTHER_FORCES times, or OTHER_NOISE times where forces are random, the forces are not
-// those of the last step any more.  Residuals that rounding explains are excepted: rounding of
-// forces, relative to the largest force on an atom, and rounding of the way that a body moves in a
-// step.
+// Forces at a corrected pose differ from forces at the predicted pose by the effect of the
+// correction, so at a stable step their residual is smaller than the last one.  If a residual
+// exceeds the last one by OTHER_FORCES, or by OTHER_NOISE for random forces, the forces have
+// changed since the last step.  Residuals explained by rounding are excepted: rounding of forces,
+// relative to the largest force on an atom, and rounding of the displacement of a body in a step.
 
 static constexpr double OTHER_FORCES = 1.0, OTHER_NOISE = 10.0;
 static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-13;
@@ -71,7 +71,7 @@ void Motion::forget(const std::string &why)
 void Motion::impose_masks()
 {
   if (!ownership.change_masks(masks) || !step.started)
-    return;    // only those of a restart file can be others
+    return;    // only the scheme of a restart file may differ
   step.started = false;
   if (comm->me == 0)
     error->warning(FLERR,
@@ -90,7 +90,7 @@ void Motion::begin_run()
                                       : step.scheme(),
                 step.blowup.pace, h);
   if (step.coupling && args.automatic_values && !step.started && !args.scheme.first()) {
-    Scheme damped = args.scheme;    // as much friction as any number of values permits
+    Scheme damped = args.scheme;    // the strongest friction that any number of values permits
     damped.rows = SECOND_FEWEST;
     step.coupling->set_scheme(damped);
   }
@@ -100,7 +100,7 @@ void Motion::begin_run()
   set_up = true;
 }
 
-/// Positive; infinite where nothing but errors and dtmax limits it.
+/// Positive; infinite if it is limited only by errors and dtmax.
 double Motion::longest_step() const
 {
   return step.coupling ? step.coupling->longest_step() : HUGE_VAL;
@@ -129,7 +129,7 @@ void Motion::take_velocities(bigint of_step, bool end)
 }
 
 /* ----------------------------------------------------------------------
-   which histories go on
+   which histories continue
 ------------------------------------------------------------------------- */
 
 void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
@@ -171,7 +171,7 @@ void Motion::start_together(const std::vector<Motion *> &full, const std::vector
 {
   if (!std::count(needed.begin(), needed.end(), true)) return;
 
-  // Histories that could continue start anew too if this gives the others a start of full order.
+  // Histories that could continue also start again if this gives the others a start of full order.
 
   const bool some_go_on = std::count(needed.begin(), needed.end(), false) > 0;
   const bool together = !some_go_on || full[0]->forces_can_be_followed();
@@ -181,7 +181,7 @@ void Motion::start_together(const std::vector<Motion *> &full, const std::vector
   const bool found = Start(full[0]->lmp, starters, full[0]->step.length()).run();
   for (size_t n = 0; n < full.size(); ++n)
     if (needed[n] || (together && found)) full[n]->begin(found);
-  for (size_t n = 0; n < full.size(); ++n)    // which changes the step of all of them
+  for (size_t n = 0; n < full.size(); ++n)    // this changes the step of all of them
     if ((found || needed[n]) && full[n]->step.tolerance)
       full[n]->step.tolerance->shorten_first_step(found);
 }
@@ -191,15 +191,15 @@ const char *Motion::reason_to_start_anew(double **f)
 {
   const double now = std::fabs(step.length()), last = std::fabs(step.time_step.made());
   if (now < SHORTER * last && can_start_anew())
-    return "the time step is less than half of that of the last steps";
+    return "the time step is less than half of the previous one";
   if (now > LONGER * last && last != 0.0 && can_start_anew())
-    return "the time step is more than twice that of the last steps";
+    return "the time step is more than twice the previous one";
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
   if (const char *other = another_scheme_suits()) return other;
   const char *changed = step.coupling ? step.coupling->reason_to_start_anew() : nullptr;
   if (changed && bootstraps() && forces_can_be_followed()) return changed;
-  return forces_changed(f) ? "forces are not those of the last step" : nullptr;
+  return forces_changed(f) ? "forces have changed since the last step" : nullptr;
 }
 
 /// The other fixes that move atoms: the derivatives of forces depend on that motion.
@@ -211,14 +211,14 @@ std::string Motion::present_movers() const
   return ids;
 }
 
-/// True if a new start would be of full order, and nothing but the histories would be new.
+/// True if a new start would be of full order, and would change only the histories.
 bool Motion::can_start_anew() const
 {
   return !step.tolerance && !(step.coupling && !step.coupling->may_start_anew()) && bootstraps() &&
       forces_can_be_followed();
 }
 
-/// By a start of full order, of all fixes together.
+/// By a start of full order, for all fixes together.
 bool Motion::forces_can_be_followed() const
 {
   std::vector<const Fix *> owners;
@@ -227,7 +227,7 @@ bool Motion::forces_can_be_followed() const
   return Forces(lmp, owners).reason().empty();
 }
 
-/// True if the present loads leave a residual that the histories cannot have left.
+/// True if the residual of the present loads is too large for the histories.
 bool Motion::forces_changed(double **f)
 {
   if (step.coupling) step.coupling->measure();
@@ -253,7 +253,7 @@ bool Motion::forces_changed(double **f)
   return ratio > OTHER_NOISE || (ratio > OTHER_FORCES && forces_can_be_followed());
 }
 
-/// The part of a residual that rounding explains, as a length.  force: the largest one on an atom.
+/// The part of a residual due to rounding, as a length.  force: the largest one on an atom.
 double Motion::rounding(int ibody, double force) const
 {
   const Body &body = bodies.body_at(ibody);
@@ -275,7 +275,7 @@ double Motion::last_error() const
   return largest;
 }
 
-/// True if histories have to start; rank 0 says why they start anew.
+/// True if histories have to start; rank 0 prints the reason if they start again.
 bool Motion::has_to_start(double **f)
 {
   if (step.coupling) step.coupling->meet_forces();
@@ -290,7 +290,7 @@ bool Motion::has_to_start(double **f)
   return needs;
 }
 
-/// Quaternions begin with unit length, whatever they had.
+/// Quaternions start with unit length, for any previous length.
 Starter Motion::starter(bool needed)
 {
   for (int ibody = 0; ibody < bodies.nmoved() && step.scheme().any_norm(); ++ibody)

@@ -3,9 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The motion of the bodies of a fix from run to run: which histories go on, and which begin; what
-   other fixes have done to velocities; what a restart file keeps.  A step itself is that of
-   gear_quat_step.h. */
+/* The motion of the bodies of a fix across runs: histories that continue or start, changes of
+   velocities by other fixes, and restart data.  A single step is in gear_quat_step.h. */
 
 #ifndef LMP_GEAR_QUAT_MOTION_H
 #define LMP_GEAR_QUAT_MOTION_H
@@ -24,55 +23,56 @@ class Motion : protected Pointers {
   Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
          Ownership &ownership, Sites &sites, OtherFixes &others, Step &step);
 
-  /// The store has made its bodies, and they receive their masks.  Collective.
+  /// The store has made its bodies; sets their masks.  Collective.
   void meet_bodies();
-  /// Before a run.  Ends it if the scene does not allow a changing time step.  Collective.
+  /// Before a run.  Ends it if the simulation does not allow a changing time step.  Collective.
   void init();
-  /// Histories have to be made anew.  Rank 0 says why if there are any.
+  /// Discards the histories.  Rank 0 prints the reason if there are any.
   void forget(const std::string &why);
-  /// The masks of the command replace those of a restart file.  Collective.
+  /// Replaces the masks of a restart file by the masks of the command.  Collective.
   void impose_masks();
   /// Before the first step, whose poses, velocities and loads are present.  Collective.
   void begin_run();
-  /// True if degrees of freedom depend on forces that LAMMPS' setup may not have shown yet.
+  /// True if degrees of freedom depend on forces that LAMMPS' setup may not have evaluated yet.
   bool awaits_forces() const { return set_up && step.coupling && step.coupling->awaits_forces(); }
-  /// The loads are those of all fixes.  Collective.
+  /// The loads include all fixes.  Collective.
   void meet_forces() { step.coupling->meet_forces(); }
   void end_run();
 
-  /// Before a step: bodies, and then their histories, take over the velocities that other fixes
-  /// have given to atoms, in the end of that step if `end`.  Collective.
+  /// Before a step: bodies, and then their histories, adopt velocities that other fixes have given
+  /// to atoms, at the end of that step if `end`.  Collective.
   void take_velocities(bigint of_step, bool end);
   /// True before the first step of a run that LAMMPS has set up: begin_steps() has to be called.
   bool begins_steps() const { return set_up; }
-  /// For all fixes gear/quat together: histories are made from present loads, by the forces f and
-  /// torques of all fixes, unless there are some that agree with them.  Those that need a start make
-  /// all others begin anew with them, where a full start is possible.  Collective.
+  /// For all fixes gear/quat together: makes histories from present loads, with the forces f and
+  /// torques of all fixes, unless consistent histories exist.  If one fix needs a start, all others
+  /// start with it, where a full start is possible.  Collective.
   static void begin_steps(const Fleet &fleet, double **f, double **torque);
-  /// Whether contacts may close in the steps that follow, whose friction nobody has been told.
+  /// True if contacts, whose friction has not been measured, may close in the following steps.
   bool watches_contacts() const { return watches; }
-  /// Before a step, now and then: their friction is measured.  f: as begin_steps().  Collective.
+  /// Before a step, occasionally: measures the friction of contacts.  f: as in begin_steps().
+  /// Collective.
   void look_at_contacts(double **f);
-  /// The largest error of a body here in the last step, as a length.
+  /// The largest error of a body on this rank in the last step, as a length.
   double last_error() const;
 
-  // elements of the fix's vector behind those of Sums
+  // elements of the fix's vector after the elements of Sums
 
   int elements() const { return of_tolerance() + of_coupling(); }
   double element(int n) const;
-  /// 1 if an element grows with the number of bodies.
+  /// 1 if an element is proportional to the number of bodies.
   int extensive(int n) const;
-  /// What a thermostat has taken from the bodies; collective.
+  /// The energy that a thermostat has removed from the bodies; collective.
   double energy() const { return step.coupling ? step.coupling->energy() : 0.0; }
 
-  /// What is not a history, as sections of a restart file.
+  /// Writes the state other than histories as sections of a restart file.
   void write(Sections &file) const;
-  /// Before the histories of the file arrive: those of its settings that this command does not
-  /// state become those of the fix, if histories can go on with them.
+  /// Before the histories of the file arrive: settings of the file that this command does not state
+  /// are adopted, if histories can continue with them.
   void adopt_scheme(const Sections &file);
-  /// The histories of the file have arrived.  If they do not fit this command they start anew, and
-  /// rank 0 says so, as it does if they go on with another corrector.  Returns what the file does
-  /// not have of the rest, empty if it has all.
+  /// The histories of the file have arrived.  If they do not fit this command, histories start
+  /// again, and rank 0 prints a message, as it does if they continue with another corrector.
+  /// Returns the items that the file lacks, empty for none.
   std::string read(const Sections &file);
 
  private:
@@ -86,7 +86,7 @@ class Motion : protected Pointers {
   Step &step;
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
   bool set_up = false;     ///< LAMMPS has evaluated forces for a run, no step of it has begun
-  bool resumed = false;    ///< histories are those of a restart file
+  bool resumed = false;    ///< histories are from a restart file
   std::string movers;      ///< IDs of the other fixes that moved atoms in the last steps
 
   int of_tolerance() const { return step.tolerance ? (int) Tolerance::ELEMENTS : 0; }
@@ -94,8 +94,8 @@ class Motion : protected Pointers {
   double longest_step() const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
   ChoiceOfValues scene_of_start(const MotionSums &here) const;
-  double edge_rate = 0.0;    ///< fast edge by time, when the number was chosen
-  double damping = 0.0;      ///< part of a momentum that forces take in a step
+  double edge_rate = 0.0;    ///< fast edge divided by the step, when the number was chosen
+  double damping = 0.0;      ///< part of a momentum that is damped by forces in a step
   void measure_friction(double **f);
   bool warned_friction = false, watches = false;
   bigint next_look = 0;    ///< step before which the friction of contacts is measured again

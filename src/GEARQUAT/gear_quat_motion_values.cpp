@@ -26,7 +26,7 @@ using namespace GearQuat;
    the number of values, where the command does not state it
 ------------------------------------------------------------------------- */
 
-/// What decides on it.  here: of the bodies that this rank owns.  Collective.
+/// Input to the choice.  here: of the bodies that this rank owns.  Collective.
 ChoiceOfValues Motion::scene_of(const MotionSums &here) const
 {
   MotionSums all = here;
@@ -45,7 +45,7 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
   return scene;
 }
 
-/// With the friction of a coupling whose run has begun.
+/// Includes the friction of a coupling whose run has begun.
 ChoiceOfValues Motion::scene_of_start(const MotionSums &here) const
 {
   ChoiceOfValues scene = scene_of(here);
@@ -105,14 +105,14 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
         rounded_down(std::fabs(step.length()) * scene.advised_part()));
 }
 
-/// What forces take of a momentum in a step.  f: the forces of all fixes.  Collective.
+/// Measures the damping of momenta by forces in a step.  f: the forces of all fixes.  Collective.
 void Motion::measure_friction(double **f)
 {
   if (!step.tolerance)
     damping = FrictionOfForces(lmp, fix, bodies, ownership, sites).part(f, step.length());
 }
 
-/// A measurement evaluates forces five times: after steps that are an eighth longer each time.
+/// A measurement evaluates forces five times; the intervals between measurements grow by an eighth.
 void Motion::look_at_contacts(double **f)
 {
   constexpr bigint FIRST = 10, PART = 8;
@@ -125,7 +125,7 @@ void Motion::look_at_contacts(double **f)
   next_look = update->ntimestep + std::max(FIRST, done / PART);
 }
 
-/// Rank 0 warns once if the histories cannot follow that.  Collective.
+/// Rank 0 warns once if this is too strong for the histories.  Collective.
 void Motion::tell_friction()
 {
   const ChoiceOfValues scene = scene_of(MotionSums());
@@ -152,9 +152,9 @@ void Motion::tell_friction()
       automatic ? "" : ", or values auto");
 }
 
-/// Returns why histories should begin anew with another number of values, null if they should not:
-/// the step, a rotation or forces have changed.  Vibrations count as in the last start, which alone
-/// measures them.  Collective.
+/// Returns why histories should start again with another number of values, null if they should not:
+/// the step, a rotation or forces have changed.  Vibrations are from the last start, since only a
+/// start measures them.  Collective.
 const char *Motion::another_scheme_suits()
 {
   if (!args.automatic_values || resumed) return nullptr;

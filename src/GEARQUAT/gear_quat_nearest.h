@@ -3,9 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The rigid motion of a body that is nearest to given motions of its n sites, with equal weights
-   (doc/theory.md, Energy minimization): for small motions a linear problem, for large ones the
-   orthogonal Procrustes problem.  Components that are held do not move. */
+/* The rigid motion of a body that is nearest to given displacements of its n sites, with equal
+   weights (doc/theory.md, Energy minimization): for small motions a linear problem, for large ones
+   the orthogonal Procrustes problem.  Fixed components do not move. */
 
 #ifndef LMP_GEAR_QUAT_NEAREST_H
 #define LMP_GEAR_QUAT_NEAREST_H
@@ -20,7 +20,7 @@ struct Arms {
   double sum[3];
   double products[9];    ///< sum of d_a d_b, row-major, lengths squared
 
-  /// The same of a body with these axes (space -> body), if the sums are those along its axes.
+  /// The same for a body with these axes (space -> body), if the sums are along its axes.
   Arms in_space(const double *axes) const
   {
     Arms out = {number, {}, {}};
@@ -34,19 +34,20 @@ struct Arms {
   }
 };
 
-/// A small rigid motion: site i goes by way + turn x arm_i.
+/// A small rigid motion: site i moves by way + turn x arm_i.
 struct Twist {
   double way[3];     ///< of the center of mass
   double turn[3];    ///< in radians, in space
 };
 
-/// A rotation about an axis moves no site if the sum of squared distances from it is so small a part
-/// of that from the center of mass: the axis of a linear body.
+/// A rotation about an axis moves no site if the sum of squared distances from the axis is less
+/// than this part of the sum of squared distances from the center of mass: the axis of a linear
+/// body.
 constexpr double NO_ARM = 1.0e-12;
 
-/// Solves m x = b for positive semidefinite m by Cholesky's method with pivots.  Components that are
-/// held, and those that the others determine up to NO_ARM of their scale, are 0; `free` says which
-/// are not.
+/// Solves m x = b for positive semidefinite m by Cholesky's method with pivots.  Components that
+/// are held, and components that the others determine up to NO_ARM of their scale, are 0; `free`
+/// marks all other components.
 inline void solve_free(const double m[6][6], const double b[6], const double scale[6],
                        const bool held[6], double x[6], bool free[6])
 {
@@ -85,7 +86,7 @@ inline void solve_free(const double m[6][6], const double b[6], const double sca
 }
 
 /// The twist nearest to vectors v_i on the sites.  sums: of v_i and of arm_i x v_i, as force and
-/// torque.  idle: receives the rotations that move no site, if it is not null; they are zero.
+/// torque.  idle: if not null, receives the rotations that move no site; they are zero.
 inline Twist nearest_twist(const Arms &arms, Mask off, const Load &sums, Mask *idle = nullptr)
 {
   const double *p = arms.products, *s = arms.sum, trace = p[0] + p[4] + p[8];
@@ -125,8 +126,9 @@ inline void quaternion_of_turn(const double *turn, double *q)
   q[3] = std::cos(0.5 * angle);
 }
 
-/// The move nearest to the motions u_i of the sites.  sum: of u_i; products: of (u_i)_a (d_i)_b,
-/// row-major.  By Gauss' and Newton's method; from the present pose, which the answer is near to.
+/// The move nearest to the displacements u_i of the sites.  sum: of u_i; products: of (u_i)_a
+/// (d_i)_b, row-major.  Uses the Gauss-Newton method from the present pose, which is near the
+/// solution.
 inline Move nearest_move(const Arms &arms, Mask off, const double *sum, const double *products)
 {
   constexpr int ROUNDS = 50;
@@ -157,7 +159,7 @@ inline Move nearest_move(const Arms &arms, Mask off, const double *sum, const do
     project_norm(move.rotation);
     add3(twist.way, move.way);
     const double size = dot3(twist.way, twist.way) + reach2 * dot3(twist.turn, twist.turn);
-    if (!(size < 0.25 * last)) break;    // nothing is left but rounding
+    if (!(size < 0.25 * last)) break;    // only rounding is left
     last = size;
   }
   return move;

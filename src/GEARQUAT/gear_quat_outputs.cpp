@@ -18,7 +18,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// |q|^2 of four squares carries this rounding itself; less is reported as zero
+// |q|^2 as a sum of four squares has this rounding error; a smaller deviation is reported as zero
 
 static constexpr double NORM_ROUNDING = 1.0e-15;
 
@@ -103,8 +103,7 @@ double BodyTable::global(int row, int column)
   return row < (int) all.size() ? all[row][column] : 0.0;
 }
 
-/// A center in the box and its image flags; also where it has flown so far that flags are no
-/// integers.
+/// A center in the box and its image flags, also if they exceed the range of integers.
 void BodyTable::wrap(const double *center, double *wrapped, double *image) const
 {
   const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};
@@ -119,7 +118,7 @@ void BodyTable::wrap(const double *center, double *wrapped, double *image) const
   if (tilted) domain->lamda2x(wrapped, wrapped);
 }
 
-/// Quaternions have unit length, and the scalar first, as everywhere in LAMMPS.
+/// Quaternions have unit length, and the scalar first, as in LAMMPS.
 void BodyTable::fill_row(int ibody, double *row) const
 {
   const Body &body = bodies.body_at(ibody);
@@ -150,7 +149,7 @@ void BodyTable::fill_row(int ibody, double *row) const
 
 void BodyTable::gather_rows()
 {
-  std::vector<Row> rows_here(bodies.nowned());    // local() has shown `mine`
+  std::vector<Row> rows_here(bodies.nowned());    // local() uses `mine`
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) fill_row(ibody, rows_here[ibody].data());
   all = gather_sorted(rows_here, world, [](const Row &a, const Row &b) {
     return a[ID] < b[ID];
@@ -159,7 +158,7 @@ void BodyTable::gather_rows()
 }
 
 /* ----------------------------------------------------------------------
-   what other C++ code may ask for
+   data for other C++ code
 ------------------------------------------------------------------------- */
 
 void *Extract::extract(const std::string &name, int &dim)
@@ -179,7 +178,7 @@ void *Extract::extract(const std::string &name, int &dim)
 
   if (name == "body") {
     dim = 1;
-    body.assign(atom->nlocal + 1, -1);    // one more: no null pointer on a rank without atoms
+    body.assign(atom->nlocal + 1, -1);    // one more: avoids a null pointer without atoms
     for (int i = 0; i < atom->nlocal; ++i) body[i] = ownership.body_of(i);
     return body.data();
   }

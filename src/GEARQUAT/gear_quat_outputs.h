@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What users see of the bodies: of all together the fix's scalar and vector, of each a row of
-   numbers in its global array and local data; and what other C++ code may ask for by name. */
+/* Output of the bodies: the fix's scalar and vector for all bodies together, a row of numbers for
+   each body in its global array and local data, and data for other C++ code by name. */
 
 #ifndef LMP_GEAR_QUAT_OUTPUTS_H
 #define LMP_GEAR_QUAT_OUTPUTS_H
@@ -23,7 +23,7 @@ class Motion;
 /// The fix's scalar and vector.  All calls are collective.
 class Sums : protected Pointers {
  public:
-  /// Elements of the vector, as the manual lists them.
+  /// Elements of the vector, as listed in the manual.
   enum {
     KE_TRANSLATION,
     KE_ROTATION,
@@ -38,10 +38,10 @@ class Sums : protected Pointers {
 
   Sums(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
 
-  /// Energy that takes thermo's potential energy from the predicted to the corrected pose; zero if
-  /// it is less than rounding of the centers alone can make of the loads.
+  /// Change of the potential energy from the predicted to the corrected pose; zero if it is less
+  /// than the effect of round-off in the centers on the loads.
   double energy_correction() const;
-  /// An element; integrator: null as long as there are no histories.
+  /// An element; integrator: null while there are no histories.
   double element(int n, const Integrator *integrator) const;
 
  private:
@@ -54,7 +54,7 @@ class Sums : protected Pointers {
 /// ID) and for its local data (owned bodies).
 class BodyTable : protected Pointers {
  public:
-  /// Columns, counted from 0; the first fifteen are those of fix rigid.
+  /// Columns, counted from 0; the first fifteen are as in fix rigid.
   enum {
     CENTER = 0,
     VELOCITY = 3,
@@ -75,10 +75,10 @@ class BodyTable : protected Pointers {
   {
   }
 
-  /// Rows of owned bodies, anew at every call; the pointers stay valid until the next one.
+  /// Rows of owned bodies, computed at every call; the pointers stay valid until the next one.
   double **local();
-  /// A number of the global array, 0 in rows without a body.  Rows are gathered when the first is
-  /// asked for after sites were listed or placed: collective.
+  /// A number of the global array, 0 in rows without a body.  Rows are gathered at the first
+  /// request after sites were listed or placed: collective.
   double global(int row, int column);
   double memory_usage() const
   {
@@ -91,35 +91,35 @@ class BodyTable : protected Pointers {
   using Row = std::array<double, COLUMNS>;
   std::vector<Row> mine, all;
   std::vector<double *> rows;
-  int gathered = -1;    ///< `all` is of this number of placements
+  int gathered = -1;    ///< number of placements when `all` was gathered
 
   void wrap(const double *center, double *wrapped, double *image) const;
   void fill_row(int ibody, double *row) const;
   void gather_rows();
 };
 
-/// What other C++ code may ask the fix by name, see Fix::extract(): names as those of fix rigid
-/// where it has them.  Bodies are numbered as in the local data of the fix, owned ones first.
+/// Data that other C++ code may request from the fix by name, see Fix::extract(): names as in fix
+/// rigid where they exist.  Bodies are numbered as in the local data of the fix, owned ones first.
 class Extract : protected Pointers {
  public:
-  /// template_id: that of keyword mol, or empty.
+  /// template_id: template of keyword mol, or empty.
   Extract(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership, const Sums &sums,
           const std::string &template_id) :
       Pointers(lmp),
       bodies(bodies), ownership(ownership), sums(sums), template_id(template_id)
   {
-    find_template(lmp, template_id);    // it has to exist
+    find_template(lmp, template_id);    // it must exist
   }
 
-  /// Null for an unknown name.  The result holds until atoms or bodies are exchanged, created or
-  /// removed, or until the same name is asked for again.  dim: 0 scalar, 1 vector, 2 array.
+  /// Null for an unknown name.  The result is valid until atoms or bodies are exchanged, created or
+  /// removed, or until the same name is requested again.  dim: 0 scalar, 1 vector, 2 array.
   ///   body         int *      owned atoms: number of the body, -1 for none
   ///   nbody        int *      owned and ghost bodies of this rank
   ///   masstotal    double *   owned and ghost bodies
   ///   inertia      double **  the same: principal moments
   ///   ke           double *   translational kinetic energy of all bodies; collective
   ///   erotational  double *   rotational kinetic energy of all bodies; collective
-  ///   onemol       Molecule **  the molecules of the template of keyword mol, null without
+  ///   onemol       Molecule **  the molecules of the template of keyword mol, otherwise null
   void *extract(const std::string &name, int &dim);
 
  private:

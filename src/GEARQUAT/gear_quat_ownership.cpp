@@ -37,7 +37,7 @@ double Ownership::mass_of(int i) const
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
 }
 
-/// On a single rank ghosts are images of own atoms, on several their owners tell them.
+/// On a single rank ghosts are images of its atoms; on several ranks they receive the IDs.
 tagint Ownership::id_of(int i) const
 {
   return body_id[i < atom->nlocal ? i : atom->map(atom->tag[i])];
@@ -122,10 +122,10 @@ Ownership::Resumed Ownership::resume(const std::vector<const double *> &packed, 
                                      int group)
 {
   const std::vector<tagint> ids(body_id.begin(),
-                                body_id.begin() + atom->nlocal);    // as the command has them
+                                body_id.begin() + atom->nlocal);    // numbered by the command
   const bigint expected = bodies.number();
   clear(with_extended);
-  int here[2] = {0, 0};    // atoms that are in a body only here, only in the file
+  int here[2] = {0, 0};    // atoms in a body only here, only in the file
   for (int i = 0; i < atom->nlocal; ++i) {
     if (packed[i]) unpack_exchange(i, packed[i]);
     if (group && !(atom->mask[i] & group)) continue;
@@ -135,7 +135,7 @@ Ownership::Resumed Ownership::resume(const std::vector<const double *> &packed, 
     if (owned[i] >= 0) bodies.change_body(owned[i]).id = ids[i];
   }
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_id[i] != 0) continue;    // left out, or in no body
+    if (body_id[i] != 0) continue;    // omitted, or in no body
     if (owned[i] >= 0) remove_owned(owned[i]);
     set_arrays(i);
   }
@@ -171,7 +171,7 @@ void Ownership::check_whole()
   follow_atom_ids();
 }
 
-/// Owners may have got other atom IDs (reset_atoms id, delete_atoms compress yes): told to their
+/// Owners may have new atom IDs (reset_atoms id, delete_atoms compress yes): sends them to their
 /// sites.
 void Ownership::follow_atom_ids()
 {
@@ -242,11 +242,11 @@ void Ownership::update()
   } while (!take_stock());
 }
 
-/// Many bodies are put into the order of their atoms, so that a step goes through memory in one
-/// direction.  A few may be elsewhere, as they come and go.
+/// Many bodies are sorted in the order of their atoms, so that a step accesses memory in one
+/// direction.  A few may be out of order, after migration.
 void Ownership::order_bodies()
 {
-  constexpr int MANY = 4000, FEW = 10;    // bodies; one of so many
+  constexpr int MANY = 4000, FEW = 10;    // numbers of bodies; one in FEW
   const int n = bodies.nowned();
   int descents = 0;
   for (int ibody = 1; ibody < n; ++ibody) descents += owner_atom[ibody] < owner_atom[ibody - 1];
@@ -261,7 +261,7 @@ void Ownership::order_bodies()
   for (int ibody = 0; ibody < n; ++ibody) owned[owner_atom[ibody]] = ibody;
 }
 
-/// Owner atoms of bodies that are not large learn whether sites on other ranks look for them.
+/// Owner atoms of bodies that are not large receive a request if sites on other ranks need them.
 void Ownership::share_owners()
 {
   std::vector<double> sought(atom->nlocal + atom->nghost, 0.0);
@@ -276,7 +276,7 @@ void Ownership::share_owners()
     if (sought[i] > 0.0 && owned[i] >= 0 && !bodies.is_large(owned[i])) shared[i] = owned[i];
 }
 
-/// The IDs of their bodies for ghost atoms, and the bodies themselves for ghosts of shared owner
+/// Sends the IDs of bodies to ghost atoms, and the bodies themselves to ghosts of shared owner
 /// atoms.
 void Ownership::tell_ghosts()
 {
@@ -284,7 +284,7 @@ void Ownership::tell_ghosts()
   comm->forward_comm(fix);
 }
 
-/// The bodies of all owned atoms.
+/// Finds the bodies of all owned atoms.
 void Ownership::find_bodies()
 {
   unseen.clear();
@@ -296,7 +296,7 @@ void Ownership::find_bodies()
   }
 }
 
-/// Count what all ranks have.  False if some bodies have become large: all is to be done again.
+/// Counts over all ranks.  False if some bodies have become large: the update must be repeated.
 bool Ownership::take_stock()
 {
   const bigint lost = (bigint) unseen.size();

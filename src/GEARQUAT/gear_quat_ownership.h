@@ -3,17 +3,17 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Which atoms form a body, and which rank owns it: fills the store of bodies, and carries messages
-   about bodies between ranks.
+/* The assignment of atoms to bodies and of bodies to ranks: fills the store of bodies, and carries
+   messages about bodies between ranks.
 
    A body belongs to the rank that owns its owner atom and migrates with it.  Ranks whose atoms
    belong to it have a ghost body: a copy of pose and velocities, found through the ghost of the
    owner atom.  Few bodies lie across the border of two ranks, so only the owner atoms of these are
    shared with their ghosts.
 
-   A body that reaches further than ghost atoms are seen is large: every rank has it, with its
-   history, and moves it as its owner does; its loads are summed over all ranks.  Of all other
-   bodies only the owner has the history.
+   A body that extends further than the cutoff of ghost atoms is large: every rank has it, with its
+   history, and moves it like its owner; its loads are summed over all ranks.  Other bodies have a
+   history only on the rank of the owner.
 
    The fix calls update() after every exchange of atoms, and spread_states() whenever states have
    changed, or spread_moved() if their frames were written with them. */
@@ -36,14 +36,14 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What a comparison has found, the same on all ranks; bodies are named by their IDs, 0 for none.
+/// Result of a comparison, the same on all ranks; bodies are given by their IDs, 0 for none.
 struct Comparison {
-  bigint removed_freedoms = 0;    ///< that rigidity takes from bodies wholly in the group
-  tagint broken = 0;              ///< a body that has lost atoms, or that several IDs name
+  bigint removed_freedoms = 0;    ///< removed by rigidity from bodies wholly in the group
+  tagint broken = 0;              ///< a body that has lost atoms, or that is given by several IDs
   bigint left = 0, had = 0;       ///< its atoms now and before
-  tagint mass_changed = 0;        ///< one whose atoms have another mass, center or inertia
-  tagint torn = 0;                ///< one whose atoms are whole periods further apart than before
-  tagint cut = 0;                 ///< one that another box has torn at the faces of the box
+  tagint mass_changed = 0;        ///< a body whose atoms have another mass, center or inertia
+  tagint torn = 0;                ///< a body whose atoms are now whole periods further apart
+  tagint cut = 0;                 ///< a body that another box has torn at the faces of the box
 };
 
 class Ownership : protected Pointers {
@@ -53,11 +53,11 @@ class Ownership : protected Pointers {
   // atoms
 
   bool in_body(int atom) const { return body_id[atom] != 0; }
-  /// The user's ID of an atom's body, of ghosts too; 0 for none.
+  /// The user's ID of an atom's body, also for ghosts; 0 for none.
   tagint id_of(int atom) const;
   /// The index of an owned atom's body, as of update(); -1 for none.
   int body_of(int atom) const { return atom < (int) index.size() ? index[atom] : -1; }
-  /// The index of the body that an owned atom is the owner of, -1 for none.
+  /// The index of the body whose owner is this atom, -1 for none.
   int owned_by(int atom) const { return owned[atom]; }
   /// The local index of the owner atom of an owned body.
   int owner_of(int ibody) const { return owner_atom[ibody]; }
@@ -66,79 +66,79 @@ class Ownership : protected Pointers {
   /// From the center of mass of its body, along the principal axes.
   const double *arm_of(int atom) const { return arm[atom].data(); }
   double mass_of(int atom) const;
-  /// An atom of the fix group was created or, with -1, put into a body: it belongs to no body yet.
+  /// An atom of the fix group was created or, with -1, added to a body: it belongs to no body yet.
   void note_outside_atom(int change) { outside_atoms += change; }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
   void spread_labels(std::vector<double> &label);
-  /// Ghost atoms learn the IDs of their bodies if all bodies are large.  Collective.
+  /// Ghost atoms receive the IDs of their bodies if all bodies are large.  Collective.
   void tell_ids_to_ghosts()
   {
     if (nlarge == bodies.number()) tell_ghosts();
   }
 
-  /// How atoms that are more than points sit in their bodies.
+  /// Positions and orientations of extended atoms in their bodies.
   Extended &extended() { return records; }
   const Extended &extended() const { return records; }
 
   // life cycle, all collective
 
-  /// Build all bodies anew from the atoms; ids: body of every owned atom, 0 for none.
+  /// Builds all bodies from the atoms; ids: body of every owned atom, 0 for none.
   void create(const std::vector<tagint> &ids, const GivenBodies &given);
-  /// Build more bodies, of atoms that are in none.  fresh: in a step, without histories.
+  /// Builds more bodies, from atoms that are in none.  fresh: in a step, without histories.
   void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
-  /// Build the same bodies anew from the atoms' present masses, positions and velocities.
+  /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.
   void recreate();
-  /// Bodies as a restart file has them, in place of those that the command has just made of the
-  /// same atoms; the command numbers them and may leave some out.  NONE, and no bodies are left, if
-  /// they differ otherwise.  packed: of every owned atom, or null; with_extended: there are records
-  /// of atoms that are more than points; group: atoms outside of it are in what bodies the file
-  /// says, 0 for none.
+  /// Replaces the bodies that the command has just made by the bodies of a restart file, made of
+  /// the same atoms; the command numbers them and may omit some.  Returns NONE, and removes all
+  /// bodies, if they differ otherwise.  packed: of every owned atom, or null; with_extended: there
+  /// are records of extended atoms; group: the file gives the bodies of atoms outside of the group,
+  /// 0 for none.
   enum class Resumed { ALL, FEWER, NONE };
   Resumed resume(const std::vector<const double *> &packed, bool with_extended, int group);
   /// Ends the run if an atom of a body is of a kind that cannot be followed.
   void refuse_atoms() const;
-  /// Before a run: bodies that reach further than ghost atoms are seen are large.
+  /// Before a run: bodies that extend further than the cutoff of ghost atoms become large.
   void choose_large();
-  /// Find the body of every atom after atoms were exchanged, created or removed; one that not all
-  /// of its atoms find becomes large.  Ends the run if a body has lost some of its atoms.
+  /// Finds the body of every atom after atoms were exchanged, created or removed; a body that some
+  /// of its atoms cannot find becomes large.  Ends the run if a body has lost some of its atoms.
   void update();
-  /// Ends the run if a body has lost some of its atoms, and follows changed atom IDs; needs no
+  /// Ends the run if a body has lost some of its atoms, and updates changed atom IDs; needs no
   /// ghosts.
   void check_whole();
-  /// Numbers and masses of atoms compared with those of their bodies.  Needs no ghost atoms, so it
-  /// can be called at any time.  groupbit: the group that degrees of freedom are asked for, 0 for
-  /// none.  In gear_quat_compare.cpp.  Collective.
+  /// Compares numbers and masses of atoms with their bodies.  Needs no ghost atoms, so it can be
+  /// called at any time.  groupbit: the group whose degrees of freedom are requested, 0 for none.
+  /// In gear_quat_compare.cpp.  Collective.
   Comparison count_atoms(int groupbit = 0) const;
   /// The IDs of all bodies, sorted, on all ranks.  Collective.
   std::vector<tagint> all_ids() const;
-  /// Gives these masks, by IDs, to all bodies.  True if one had another; collective.
+  /// Sets these masks, by IDs, for all bodies.  True if one has changed; collective.
   bool change_masks(const std::map<tagint, Mask> &masks);
   /// Atoms in bodies, and large bodies, on all ranks.
   bigint number_of_atoms() const { return natoms; }
   bigint number_of_large() const { return nlarge; }
-  /// The box that the positions of bodies belong to, as Domain::h and boxlo.
+  /// The box of the positions of bodies, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
-  /// The present one, or another one.
+  /// Sets it to the present box, or to another one.
   void note_box();
   void note_box(const double *h, const double *corner);
-  /// Before a run, and before atoms are exchanged: where change_box has remapped the atoms of
-  /// bodies from box() to the present box, these get back their shapes and orientations, and their
-  /// centers are remapped.  True, with a warning, if there are any; warns of bodies that another
-  /// box has deformed otherwise.  Needs no ghosts.  In gear_quat_remap.cpp.  Collective.
+  /// Before a run, and before atoms are exchanged: if change_box has remapped the atoms of bodies
+  /// from box() to the present box, restores shapes and orientations of the bodies and remaps their
+  /// centers.  Returns true, with a warning, if there are any; warns of bodies that another box has
+  /// deformed otherwise.  Needs no ghosts.  In gear_quat_remap.cpp.  Collective.
   bool follow_box();
 
   // a step
 
   void spread_states();
-  /// The same where the frames of all bodies that this rank moves are those of their states.
+  /// The same if the frames of all bodies that this rank moves match their states.
   void spread_moved();
-  /// A load for each body, of this rank's atoms: becomes the sum over all ranks for bodies that
-  /// this rank moves.
+  /// loads: for each body, from this rank's atoms.  Sums them over all ranks for bodies that this
+  /// rank moves.
   void sum(std::vector<Load> &loads);
-  /// Ghost bodies receive the loads of their owners.
+  /// Sends the loads of their owners to ghost bodies.
   void spread(std::vector<Load> &loads);
 
-  // what the fix forwards
+  // functions called by the fix
 
   void grow_arrays(int nmax);
   void copy_arrays(int from, int to, int delflag);
@@ -158,9 +158,9 @@ class Ownership : protected Pointers {
   void unpack_reverse(int n, const int *list, const double *buf);
   int max_exchange() const;
   int max_forward() const;
-  /// The most that was needed at a time, with the store; see note_scratch().
+  /// The peak memory, including the store; see note_scratch().
   double memory_usage() const;
-  /// So many bytes more are allocated now, and will be freed before the next step.
+  /// Records temporary memory of this many bytes, freed before the next step.
   void note_scratch(double bytes);
 
  private:
@@ -170,20 +170,20 @@ class Ownership : protected Pointers {
 
   bigint natoms = 0, nlarge = 0;    ///< on all ranks
   int outside_atoms = 0;            ///< created since the fix was defined, in no body
-  bool warned_outside = false;      ///< that there are such atoms
-  bool any_ghosts = false;          ///< an atom, on any rank, has its body on another one, which
-                                    ///< is not large; changes only when atoms are exchanged
+  bool warned_outside = false;      ///< of such atoms
+  bool any_ghosts = false;          ///< an atom, on any rank, belongs to a body of another rank
+                                    ///< that is not large; changes only when atoms are exchanged
   std::vector<double> last_box;
   std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
   std::vector<int> index;         ///< see body_of()
-  std::vector<tagint> unseen;     ///< owner atoms that atoms here do not see
+  std::vector<tagint> unseen;     ///< owner atoms that atoms on this rank cannot find
   double peak = 0.0;              ///< bytes
 
   std::vector<tagint> large_owners;    ///< atom IDs of the owners of bodies.large, sorted
   std::vector<double> packed_large;    ///< large bodies while atoms are exchanged
-  std::vector<double> parts, sums;     ///< their loads: of the atoms here, and of all
+  std::vector<double> parts, sums;     ///< their loads: from the atoms on this rank, and from all
 
-  // per atom, ghosts too
+  // per atom, including ghosts
 
   std::vector<tagint> body_id;      ///< the user's ID of its body, 0 for none
   std::vector<tagint> owner_tag;    ///< atom ID of the owner of its body
@@ -191,8 +191,8 @@ class Ownership : protected Pointers {
   std::vector<int> shared;    ///< the same if atoms on other ranks are in that body, otherwise -1
   std::vector<std::array<double, 3>> arm;    ///< see arm_of()
 
-  /// packed: IDs of body and owner, arm, size of history; behind the arm the record of an atom that
-  /// is more than a point
+  /// packed: IDs of body and owner, arm, size of history; after the arm the record of an extended
+  /// atom
   static constexpr int ATOM_SIZE = 6;
   static constexpr int STATE_SIZE = sizeof(BodyState) / sizeof(double);
   static constexpr int LOAD_SIZE = sizeof(Load) / sizeof(double);
@@ -200,7 +200,7 @@ class Ownership : protected Pointers {
   static constexpr int LAST_SIZE = sizeof(Correction) / sizeof(double);
 
   enum class Message { GHOSTS, STATES, LOADS, LABELS };
-  Message message = Message::STATES;    ///< what communication with ghosts carries
+  Message message = Message::STATES;    ///< the data in communication with ghosts
   double *labels = nullptr;             ///< of all atoms, while these are sent
   Load *loads = nullptr;                ///< of all bodies, while these are sent
 
@@ -225,7 +225,7 @@ class Ownership : protected Pointers {
   void sum_large(std::vector<Load> &column);
 
   int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + bodies.history_size(); }
-  /// of a large body: atom ID of its owner atom, and what an owner has
+  /// of a large body: atom ID of its owner atom, and the data of an owner
   int large_size() const { return 1 + moved_size(); }
   int pack_moved(int ibody, double *buf) const;
   int unpack_moved(int ibody, const double *buf, int size);

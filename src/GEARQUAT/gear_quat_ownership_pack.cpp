@@ -3,13 +3,13 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Bodies as streams of doubles: between ranks, to ghosts and back, and in restart files.  And large
-   bodies, those whose sites cannot all see their owner atom.
+/* Bodies as streams of doubles: between ranks, to ghosts and back, and in restart files.  Also
+   large bodies, some of whose sites cannot find their owner atom.
 
-   Before a run, and when they become more or fewer, their owners give them to all ranks, with their
-   histories.  From then on every rank predicts and corrects them, from the same loads and so to the
-   same bits, and keeps them while atoms are exchanged: the one message of a step is the sum of the
-   loads. */
+   Before a run, and when their number changes, their owners send them to all ranks, with their
+   histories.  From then on every rank predicts and corrects them, from the same loads and thus to
+   the same bits, and keeps them while atoms are exchanged: the only message in a step is the sum of
+   the loads. */
 
 #include "gear_quat_ownership.h"
 
@@ -43,7 +43,7 @@ int Ownership::pack_exchange(int i, double *buf) const
   return m + pack_moved(ibody, buf + m);
 }
 
-/// In a restart file a history may be of another scheme.
+/// In a restart file a history may have another scheme.
 int Ownership::unpack_exchange(int i, const double *buf)
 {
   int m = 0;
@@ -69,7 +69,7 @@ int Ownership::pack_moved(int ibody, double *buf) const
   return m + bodies.history_size();
 }
 
-/// size: of the history, which is passed over if it is of another scheme.
+/// size: of the history, which is skipped if it has another scheme.
 int Ownership::unpack_moved(int ibody, const double *buf, int size)
 {
   int m = unpack_body(buf, ibody);
@@ -186,7 +186,7 @@ void Ownership::unpack_forward(int n, int first, const double *buf)
   }
 }
 
-/// Labels of atoms, while there are any, or else loads.
+/// Labels of atoms, if there are any, otherwise loads.
 int Ownership::pack_reverse(int n, int first, double *buf)
 {
   if (labels) {
@@ -202,7 +202,7 @@ int Ownership::pack_reverse(int n, int first, double *buf)
   return m;
 }
 
-/// Both are added up.
+/// Both are summed.
 void Ownership::unpack_reverse(int n, const int *list, const double *buf)
 {
   if (labels) {
@@ -222,7 +222,7 @@ void Ownership::unpack_reverse(int n, const int *list, const double *buf)
    large bodies
 ------------------------------------------------------------------------- */
 
-/// How far away a ghost atom may be; with comm_modify mode multi only some atoms are seen so far.
+/// Maximum distance of a ghost atom; with comm_modify mode multi only some atoms extend that far.
 static double ghost_cutoff(const Comm *comm, const Domain *domain)
 {
   const double *cut = comm->cutghost;    // in a triclinic box along its reciprocal axes
@@ -248,7 +248,7 @@ void Ownership::count_large()
   nlarge = over_ranks(MPI_SUM, here, world);
 }
 
-/// A site does not see its owner atom, though that is there: from here on its body is large.
+/// A site cannot find its owner atom, although it exists: its body becomes large.
 void Ownership::promote()
 {
   std::sort(unseen.begin(), unseen.end());
@@ -260,7 +260,7 @@ void Ownership::promote()
   count_large();
 }
 
-/// Before atoms are exchanged: the owner may be another rank afterwards.
+/// Before atoms are exchanged, since the owner may be on another rank afterwards.
 void Ownership::pack_large()
 {
   packed_large.resize(bodies.large.size() * large_size());
@@ -286,7 +286,7 @@ void Ownership::gather_large()
   packed_large = gather(mine, world);
 }
 
-/// Large bodies of other ranks, behind the owned ones.
+/// Adds large bodies of other ranks after the owned ones.
 void Ownership::share_large()
 {
   const int size = large_size();
@@ -308,7 +308,7 @@ void Ownership::share_large()
   }
 }
 
-/// The body of an owned atom, -1 if that is not to be seen from here.
+/// The body of an owned atom, -1 if this rank cannot find it.
 int Ownership::find_body(int i) const
 {
   const auto found = std::lower_bound(large_owners.begin(), large_owners.end(), owner_tag[i]);

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What all ranks have together.  Every call is collective. */
+/* Data combined over all ranks.  Every call is collective. */
 
 #ifndef LMP_GEAR_QUAT_RANKS_H
 #define LMP_GEAR_QUAT_RANKS_H
@@ -22,7 +22,7 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// N numbers (int, tagint, bigint or double) of every rank brought together, number by number.
+/// Reduces N numbers (int, tagint, bigint or double) over all ranks, element by element.
 template <typename T, size_t N> std::array<T, N> over_ranks(MPI_Op op, T (&here)[N], MPI_Comm world)
 {
   static_assert(std::is_arithmetic<T>::value);
@@ -41,14 +41,14 @@ template <typename T> T over_ranks(MPI_Op op, T here, MPI_Comm world)
   return over_ranks(op, one, world)[0];
 }
 
-/// Sends each item to its rank, and returns those that were sent here.
+/// Sends each item to its rank, and returns the items received.
 template <typename T>
 std::vector<T> send_to_ranks(Comm *comm, std::vector<T> items, std::vector<int> ranks)
 {
   constexpr int IRREGULAR = 0, UNSORTED = 0;
   const int n = (int) items.size();
   std::vector<T> received;
-  items.emplace_back();    // no null pointers on a rank without items
+  items.emplace_back();    // avoids null pointers on a rank without items
   ranks.push_back(0);
   const auto receive = [](int count, char *in, int &flag, int *&, char *&, void *where) {
     const auto *first = reinterpret_cast<const T *>(in);
@@ -61,7 +61,7 @@ std::vector<T> send_to_ranks(Comm *comm, std::vector<T> items, std::vector<int> 
   return received;
 }
 
-/// The text that one rank has.
+/// Sends the text of one rank to all.
 inline std::string broadcast(std::string text, MPI_Comm world, int root)
 {
   int size = (int) text.size();
@@ -73,12 +73,12 @@ inline std::string broadcast(std::string text, MPI_Comm world, int root)
 
 constexpr int EVERY_RANK = -1;
 
-/// What all ranks have, in the order of the ranks: on one of them (empty elsewhere), or on every
-/// one.  T: without pointers, for it is sent as bytes.
+/// Gathers the items of all ranks in the order of the ranks, on one rank (empty elsewhere) or on
+/// all.  T: without pointers, since it is sent as bytes.
 template <typename T>
 std::vector<T> gather(std::vector<T> &mine, MPI_Comm world, int root = EVERY_RANK)
 {
-  int here = (int) mine.size(), me, ranks;    // not const: MPI without MPI wants it so
+  int here = (int) mine.size(), me, ranks;    // not const: required by LAMMPS' MPI stubs
   MPI_Comm_rank(world, &me);
   MPI_Comm_size(world, &ranks);
   std::vector<int> counts(ranks, 0), starts(ranks, 0);
@@ -107,10 +107,10 @@ std::vector<T> gather_sorted(std::vector<T> &mine, MPI_Comm world, Before before
   return all;
 }
 
-/// Sums over bodies.  The atoms of a body may be on several ranks; those on one rank are a part of
-/// the body.  Every rank adds up its parts, and merge() brings the parts of the same body together,
-/// so a message has one item for each part, however many atoms that part has.  Bodies whose atoms
-/// are all on one rank need no message.
+/// Sums over bodies.  The atoms of a body may be on several ranks; its atoms on one rank are a part
+/// of the body.  Every rank sums over its parts, and merge() combines the parts of the same body,
+/// so a message has one item for each part, for any number of atoms.  Bodies whose atoms are all on
+/// one rank need no message.
 class Parts {
  public:
   /// key: of n owned atoms, positive and the same for all atoms of a body, 0 for an atom in none.
@@ -136,7 +136,7 @@ class Parts {
 
   int number() const { return (int) keys.size(); }
   tagint key(int part) const { return keys[part]; }
-  /// The part with a key that one of the atoms has.
+  /// The part with this key, which one of the atoms must have.
   int find(tagint key) const
   {
     return (int) (std::lower_bound(keys.begin(), keys.end(), key) - keys.begin());
@@ -156,13 +156,13 @@ class Parts {
   }
   /// Parts of bodies that have atoms on other ranks too.
   const std::vector<int> &on_several_ranks() const { return shared; }
-  /// From here on merge() leaves out the parts for which `whole` is true, on all ranks alike.
+  /// From here on merge() omits the parts for which `whole` is true, consistently on all ranks.
   template <class Whole> void complete(Whole whole)
   {
     shared.erase(std::remove_if(shared.begin(), shared.end(), whole), shared.end());
   }
 
-  /// One item for each part, with a function merge() that takes in the item of another rank.  After
+  /// items: one for each part, with a function merge() that adds the item of another rank.  After
   /// the call every part has the item of the whole body.  Items are merged in the order of the
   /// ranks and sent as bytes.  Collective.
   template <typename Item> void merge(std::vector<Item> &items) const { merge(items, shared); }
@@ -195,7 +195,7 @@ class Parts {
       if (ranks[part].number > 1) shared.push_back(part);
   }
 
-  /// Every item goes to the rank that the key names, which returns it merged.
+  /// Every item is sent to the rank given by its key, which returns it merged.
   template <typename Item> void merge(std::vector<Item> &items, const std::vector<int> &which) const
   {
     if (comm->nprocs == 1) return;

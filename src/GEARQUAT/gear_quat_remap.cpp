@@ -5,11 +5,11 @@
 
 /* Bodies in a box that has changed between two runs.
 
-   change_box remap takes every atom to the same place of the new box, relative to its faces, and so
-   stretches bodies.
+   change_box remap moves every atom to the same position of the new box, relative to its faces, and
+   thus stretches bodies.
 
-   The atoms of each body meet on one rank, which compares their positions with those that the body
-   had in the old box, direction by direction. */
+   The atoms of each body are sent to one rank, which compares their positions with their positions
+   in the old box, direction by direction. */
 
 #include "gear_quat_ownership.h"
 
@@ -28,34 +28,34 @@ using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 static constexpr double SAME = 1.0e-11;       // of the box: rounding of positions
-static constexpr double DEFORMED = 1.0e-3;    // of a distance: more than digits that a file lacks
+static constexpr double DEFORMED = 1.0e-3;    // of a distance: more than the precision of a file
 
 namespace {
 
-/// An atom of a body as its rank knows it.
+/// An atom of a body, from its rank.
 struct Member {
   int rank, local;
   tagint owner, id;    ///< atom ID of the body's owner, the user's ID of the body
-  tagint natoms;       ///< of the body; this and all below 0 unless the atom is its owner
+  tagint natoms;       ///< of the body; this and all below are 0 unless the atom is its owner
   BodyState state;
   double arm_body[3];
   double found[3];    ///< unwrapped position
 
-  double expected[3], remapped[3];    ///< by the body in the old box, and taken to the new one
+  double expected[3], remapped[3];    ///< from the body in the old box, and mapped to the new one
 };
 
-/// What its rank has to do: move the atom, and if it is the owner of its body the center.
+/// Instructions to its rank: move the atom and, if it is the owner of its body, the center.
 struct Order {
   int local, owns;
   double way[3], center[3];
 };
 
-/// What another box has done to a body.
+/// The effect of another box on a body.
 enum class Change { NONE, REMAPPED, DEFORMED };
 
 }    // namespace
 
-/// Whether all atoms are off by the same from those positions in one direction.
+/// True if all atoms have the same deviation from those positions in one direction.
 template <class Position>
 static bool are_off_together(const Member *atoms, int n, int k, double same, Position position)
 {
@@ -65,7 +65,7 @@ static bool are_off_together(const Member *atoms, int n, int k, double same, Pos
   });
 }
 
-/// Not where the faces of the box have torn the body: that is an error of its own.
+/// False if the faces of the box have torn the body: that is a separate error.
 static bool is_deformed(const Domain *domain, const double *box_before, const Member *atoms, int n)
 {
   bool deformed = false;
@@ -82,8 +82,8 @@ static bool is_deformed(const Domain *domain, const double *box_before, const Me
   return deformed;
 }
 
-/// The atoms of a body, its owner first, have positions `expected` and `remapped`.  center: becomes
-/// that of a remapped body.
+/// The atoms of a body, its owner first, have positions `expected` and `remapped`.  center: set to
+/// the center of a remapped body.
 static Change change_of(const Domain *domain, const double *box_before, const Member *atoms, int n,
                         double *center)
 {
@@ -107,7 +107,7 @@ static Change change_of(const Domain *domain, const double *box_before, const Me
     const bool is_remapped = are_off_together(atoms, n, k, same, remapped);
     if (!keeps_shape && !is_remapped)
       return is_deformed(domain, box_before, atoms, n) ? Change::DEFORMED : Change::NONE;
-    // an atom alone, or atoms that the remap has not moved apart
+    // a single atom, or atoms that the remap has not moved apart
     const bool only_remapped = std::fabs(off) > same && std::fabs(off_remapped) <= same;
     if (is_remapped && (!keeps_shape || only_remapped)) {
       center[k] = after[k] + off_remapped;
@@ -118,7 +118,7 @@ static Change change_of(const Domain *domain, const double *box_before, const Me
   return follows ? Change::REMAPPED : Change::NONE;
 }
 
-/// Where the body has its atoms, and where the new box takes these positions.
+/// Positions of the atoms in the body, and their images in the new box.
 static void place_members(const Domain *domain, const double *box_before, Member *atoms, int n)
 {
   const BodyState &state = atoms[0].state;
@@ -133,8 +133,8 @@ static void place_members(const Domain *domain, const double *box_before, Member
   }
 }
 
-/// What is to be done with the atoms of all bodies that meet here, and on which ranks.  remapped:
-/// grows by the number of bodies; deformed: becomes the ID of one.
+/// Instructions for the atoms of all bodies gathered on this rank, and their ranks.  remapped:
+/// increased by the number of bodies; deformed: set to the ID of one.
 static std::vector<Order> orders_to(const Domain *domain, const double *box_before,
                                     std::vector<Member> &all, std::vector<int> &ranks,
                                     bigint &remapped, tagint &deformed)

@@ -27,25 +27,26 @@ using namespace GearQuat;
 
 namespace {
 
-/// What bodies there are, the same on all ranks.
+/// The bodies of the simulation, the same on all ranks.
 struct Scene {
-  /// Bodies by their principal moments; two are equal that differ by less than 1e-7 of the largest.
+  /// Bodies by their principal moments; moments are equal if they differ by less than 1e-7 of the
+  /// largest.
   enum Top { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
   enum { BODIES = TOPS, FREEDOMS, SITES_OFF_CENTER, EXTENDED_SITES, SITES_OF_GHOSTS, COUNTS };
 
-  std::array<bigint, COUNTS> count;    ///< bodies of each kind, and of all that are named here
+  std::array<bigint, COUNTS> count;    ///< bodies of each kind, and of all kinds listed here
   bigint fewest_sites, most_sites;     ///< of a body
   bigint large;                        ///< bodies that every rank has
   double farthest;                     ///< largest coordinate of a center of mass, unwrapped
 };
 
-/// A row of the report.  omits: the contributions that are left out, with a bound.
+/// A row of the report.  omits: the omitted contributions, with a bound.
 struct Effect {
   const char *name;
   bool on;
   std::string reason;
   std::string omits;
-  bool in_part = false;    ///< may leave out something while it is on
+  bool in_part = false;    ///< may omit something while it is on
 };
 
 }    // namespace
@@ -252,7 +253,7 @@ static Effect compensation(const Arguments &args, const Scene &scene)
           fmt::format("rounding of a coordinate, at most {:.1e} of length in a sum", rounding)};
 }
 
-/// What holds the kinetic energy: one keyword at most.
+/// The control of the kinetic energy: at most one keyword.
 static Effect temperature(const Arguments &args)
 {
   const ThermostatWords &words = args.thermostat;
@@ -291,13 +292,13 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
       compensation(args, scene),
       {"changing step", args.control.eps > 0.0,
        args.control.eps > 0.0 ? args.words_of_control() : "no tolerance",
-       "control of the error of a step: it is what the time step makes it"},
+       "control of the error of a step: the time step determines it"},
   };
   if (args.pressure.any()) rows.push_back({"barostat", true, args.words_of_pressure(), ""});
   return rows;
 }
 
-/// How the bodies are integrated.
+/// Settings of the integration.
 static std::string settings(const Arguments &args)
 {
   const Scheme &scheme = args.scheme;

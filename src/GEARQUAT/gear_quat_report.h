@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The scene report: what the fix computes in this scene and what it leaves out, each with its
-   reason, and what the surroundings of the bodies cost that need not be. */
+/* The report: the features of this simulation, those that are off, each with its reason, and
+   avoidable costs due to the surroundings of the bodies. */
 
 #ifndef LMP_GEAR_QUAT_REPORT_H
 #define LMP_GEAR_QUAT_REPORT_H
@@ -25,19 +25,19 @@ class Sites;
 struct Arguments;
 struct Fleet;
 
-/// The papers that LAMMPS asks users of the fix to cite: of the fix, and of each feature in use.
+/// The papers to cite, for the fix and for each feature in use.
 void add_citations(LAMMPS *lmp, const Arguments &args);
 
-/// Writes the report to screen and log on rank 0, as long as args.report wants it, and the warning
-/// of advice_on_surroundings() in any case.  Collective; to be called in setup(), when neighbor
-/// lists are built and bodies have their ghosts.
+/// Writes the report to screen and log on rank 0, if args.report requests it, and the warning of
+/// advice_on_surroundings() in any case.  Collective; to be called in setup(), when neighbor lists
+/// are built and bodies have their ghosts.
 void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
                   const Bodies &bodies, Ownership &ownership, const Sites &sites);
 
 /// A part of the report: pairs of atoms that nothing moves, pairs within a body, and atoms of the
-/// fix group that no body uses, found in the neighbor lists of the pair styles.  A sentence each,
-/// below it the line of the input script that mends it; nothing is changed.  Rank 0 warns if the
-/// pair style acts between atoms of a body.  Collective.
+/// fix group that no body uses, found in the neighbor lists of the pair styles.  Each is one
+/// sentence, followed by a line of the input script as a remedy; nothing is changed.  Rank 0 warns
+/// if the pair style acts between atoms of a body.  Collective.
 std::vector<std::string> advice_on_surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                                 const Fleet &fleet, const Bodies &bodies,
                                                 Ownership &ownership);

@@ -43,7 +43,7 @@ void Restart::write(FILE *fp) const
   fwrite(data.data(), size, 1, fp);
 }
 
-/// LAMMPS does not tell the size of the block: only what every release wrote is read at first.
+/// LAMMPS does not pass the size of the block, so the part that every release wrote is read first.
 /// Files of releases up to 0.2.0 begin with the formulation, 0 or 1.
 void Restart::read(const char *buf)
 {
@@ -73,7 +73,7 @@ void Restart::read(const char *buf)
   waiting = true;
 }
 
-/// Other fixes step over these data: the first number tells how many there are.
+/// The first number is the count of numbers, with which other fixes skip these data.
 int Restart::pack(int i, double *buf) const
 {
   const int n = HEAD + ownership.pack_exchange(i, buf + HEAD);
@@ -82,8 +82,8 @@ int Restart::pack(int i, double *buf) const
   return n;
 }
 
-/// The data of each atom here, null where there are none.  Rows stay where LAMMPS has read them: if
-/// atoms were deleted since, those that took their places have theirs behind the rows of all atoms.
+/// The data of each atom on this rank, null if there are none.  Rows keep their positions: if atoms
+/// were deleted, the rows of the atoms that replaced them are after the rows of all atoms.
 std::vector<const double *> Restart::packed_atoms() const
 {
   std::unordered_map<tagint, int> without;
@@ -101,13 +101,13 @@ std::vector<const double *> Restart::packed_atoms() const
   for (int i = 0; i < atom->nlocal; ++i) look(i);
   const bigint all = over_ranks(MPI_SUM, (bigint) without.size(), world);
   const bigint deleted = (bigint) sections.number("bodies", 1) - atom->natoms;
-  if (all > deleted) return packed;    // not only deleted: there may be no such rows
+  if (all > deleted) return packed;    // not only deletions: these rows may not exist
   for (int i = atom->nlocal; !without.empty() && i < atom->nlocal + deleted && i < atom->nmax; ++i)
     look(i);
   return packed;
 }
 
-/// The data of atoms in the lengths of this release.
+/// The data of atoms, converted to the lengths of this release.
 Ownership::Resumed Restart::resume_bodies(int group) const
 {
   std::vector<const double *> packed = packed_atoms();
@@ -135,8 +135,8 @@ bool Restart::resume(int group)
   if (found == Resumed::NONE) {
     if (comm->me == 0)
       error->warning(FLERR,
-                     "Fix gear/quat: the bodies of this command consist of other atoms than those "
-                     "of the restart file; they begin anew from their atoms");
+                     "Fix gear/quat: the bodies of this command consist of other atoms than in "
+                     "the restart file; they are made again from their atoms");
     return false;
   }
   const std::string missing = motion.read(sections);
@@ -145,7 +145,7 @@ bool Restart::resume(int group)
                               "start anew",
                               fix->id, release.empty() ? "" : ", of release " + release + ",",
                               missing));
-  if (found == Resumed::FEWER)    // forces have derivatives that the motion of the others made
+  if (found == Resumed::FEWER)    // the motion of the others contributes to derivatives of forces
     motion.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "
                               "this command, histories start anew",
                               fix->id));
@@ -153,7 +153,7 @@ bool Restart::resume(int group)
 }
 
 /* ----------------------------------------------------------------------
-   the text beside a restart file
+   the text file beside a restart file
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -174,7 +174,7 @@ Line line_of(const Body &body, const BodyState &state, const double *row)
   std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, written.angular_momentum_space);
   std::copy_n(row + BodyTable::IMAGE, 3, written.image);
 
-  // A^T I A, the rows of A being the principal axes; xx yy zz xy xz yz
+  // A^T I A, where the rows of A are the principal axes; xx yy zz xy xz yz
 
   static constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
   double a[9];

@@ -12,7 +12,7 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What 0.3.0 wrote, of numbers only.
+/// The format of 0.3.0, of numbers only.
 struct Release030 {
   static constexpr double FORMAT = 4;
   static constexpr int VALUES = 12, VARIABLES = 11;    ///< most values; most xi of a chain, and S
@@ -27,15 +27,15 @@ struct Release030 {
   struct {
     double mode, length;    ///< number of chains, 0 for none; of variables xi
     double bodies, kt, kt_step, period, freedoms[2];
-    /// Row 0 is the present value, those behind it are derivatives in units of the step, and the
-    /// last one is a trial row.  The last variable of a chain is S.
+    /// Row 0 is the present value, the next ones are derivatives in units of the step, and the last
+    /// one is a trial row.  The last variable of a chain is S.
     double rows[2][VARIABLES][VALUES + 1];
   } thermostat;
 
   /// The data of atoms.
   static constexpr AtomParts PARTS = {5, 11, 11, 13, 3, 6};
 
-  /// Today's chains need kinetic energies of past steps, which there are none of.
+  /// The kinetic energies of past steps, which present chains need, are not in the file.
   Sections sections() const
   {
     Sections to;

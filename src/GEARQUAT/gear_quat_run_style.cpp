@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-// what LAMMPS' run styles know and do
+// access to LAMMPS' run styles
 
 #include "gear_quat_declared.h"
 #include "gear_quat_forces.h"

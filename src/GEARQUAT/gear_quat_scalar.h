@@ -4,8 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* A scalar y with the equation y' = rate that is integrated with the bodies: a Nordsieck history
-   with the values and coefficients of their momenta.  A coupling keeps in it what belongs to all
-   bodies together, such as the heat that a thermostat has taken. */
+   with the values and coefficients of their momenta.  A coupling uses it for variables common to
+   all bodies, such as the heat removed by a thermostat. */
 
 #ifndef GEAR_QUAT_SCALAR_H
 #define GEAR_QUAT_SCALAR_H
@@ -23,7 +23,7 @@ class ScalarHistory {
   double value() const { return rows[0]; }
   void add(double change) { rows[0] += change; }
 
-  /// The derivatives from `terms` terms of a series in units of series_step; the value stays.
+  /// Sets the derivatives from `terms` terms of a series in units of series_step; the value stays.
   void seed(const double *series, int terms, double series_step, double h, int values)
   {
     double power = 1.0;
@@ -33,10 +33,10 @@ class ScalarHistory {
     }
   }
 
-  /// Another step, ratio = new step / old step.
+  /// Changes the step; ratio = new step / old step.
   void rescale(double ratio, int values) { Nordsieck<1>::rescale(rows.data(), values, ratio); }
 
-  /// To the end of the step, where y' = rate.
+  /// Advances to the end of the step, where y' = rate.
   void advance(const Integrator &integrator, double rate) { integrator.advance(rows.data(), rate); }
   /// With the coefficients of a first-order equation.
   void advance(const double *coefficients, int values, double h, double rate)

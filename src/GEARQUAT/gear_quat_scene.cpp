@@ -31,7 +31,7 @@ using namespace FixConst;
 using namespace GearQuat;
 
 /* ----------------------------------------------------------------------
-   what the fix refuses
+   unsupported settings
 ------------------------------------------------------------------------- */
 
 /// Forces are evaluated once per step, so all levels of r-RESPA need the same time step.
@@ -71,7 +71,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &f
   }
 }
 
-/// Granular walls ask only the first rigid fix for the masses of its bodies; pair styles refuse a
+/// Granular walls request the masses of bodies only from the first rigid fix; pair styles refuse a
 /// second one.
 static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
 {
@@ -82,9 +82,9 @@ static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
   for (const auto *other : lmp->modify->get_fix_list())
     if (known(FixFact::FIRST_RIGID, other))
       lmp->error->warning(FLERR,
-                          "Fix gear/quat: fix {} ({}) knows the bodies of fix {} only and damps "
-                          "contacts of those of fix {} with the masses of atoms; use one fix for "
-                          "all bodies",
+                          "Fix gear/quat: fix {} ({}) uses the bodies of fix {} only and damps "
+                          "contacts of the bodies of fix {} with the masses of atoms; use one fix "
+                          "for all bodies",
                           other->id, other->style, first->id, fix->id);
 }
 
@@ -102,7 +102,7 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
 }
 
 /* ----------------------------------------------------------------------
-   who reads and who acts
+   readers of data, and fixes that act on atoms
 ------------------------------------------------------------------------- */
 
 // where other fixes may read the velocities of predicted sites
@@ -166,7 +166,7 @@ namespace {
 struct Membership {
   bigint in_bodies, unmoved;    ///< unmoved: in no body, and no fix moves them
   bigint all;
-  int first_rank;    ///< the lowest one that has some of them
+  int first_rank;    ///< the lowest rank with some of them
 
   void merge(const Membership &other)
   {
@@ -187,7 +187,7 @@ static bool is_moved(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, int i)
   });
 }
 
-/// What to write, if the molecules are rigid.
+/// The remedy, if the molecules are rigid.
 static std::string remedy(const LAMMPS *lmp, const Fix *fix, const Arguments &args)
 {
   switch (args.bodystyle) {

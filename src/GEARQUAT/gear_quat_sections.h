@@ -3,16 +3,16 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Named sections of numbers, in which a restart file keeps what is not data of atoms.  Each object
-   writes and reads the sections of its own state.  A reader passes over sections that it does not
-   know, and asks how many numbers a section has, so releases read each other's files.  A number
-   keeps its place and its meaning in a section; new ones are added at the end.
+/* Named sections of numbers, which a restart file contains besides the data of atoms.  Each object
+   writes and reads the sections of its own state.  A reader ignores unknown sections and queries
+   the number of elements in a section, so releases read each other's files.  A number keeps its
+   position and meaning in a section; new ones are added at the end.
 
-   Packed, as 64-bit numbers: MAGIC, FORMAT, how many numbers there are in all; and of each section
-   its name in NAME bytes, how many numbers it has, and these.
+   Packed, as 64-bit numbers: MAGIC, FORMAT, the total count of numbers; and for each section its
+   name in NAME bytes, its count of numbers, and the numbers.
 
-   In the data of atoms, too, new numbers are added at the end of a part; AtomParts says how long
-   the parts of a file are. */
+   In the data of atoms, too, new numbers are added at the end of a part; AtomParts has the lengths
+   of the parts in a file. */
 
 #ifndef GEAR_QUAT_SECTIONS_H
 #define GEAR_QUAT_SECTIONS_H
@@ -36,13 +36,13 @@ class Sections {
 
   void put(const std::string &name, Numbers numbers) { all[name] = std::move(numbers); }
 
-  /// True if there is such a section with at least so many numbers.
+  /// True if there is such a section with at least this many numbers.
   bool has(const std::string &name, size_t count) const
   {
     const auto found = all.find(name);
     return found != all.end() && found->second.size() >= count;
   }
-  /// Empty if there is none.
+  /// Empty if there is no such section.
   const Numbers &get(const std::string &name) const
   {
     static const Numbers NONE;
@@ -69,7 +69,7 @@ class Sections {
     return buf;
   }
 
-  /// Takes the place of what there was.  False, and there are no sections, if buf is not whole.
+  /// Replaces the contents.  False, without sections, if buf is incomplete.
   bool unpack(const Numbers &buf)
   {
     all.clear();
@@ -98,11 +98,12 @@ class Sections {
   std::map<std::string, Numbers> all;
 };
 
-/// How many numbers the parts of an atom's data have.  They are in this order:
-///   site    of every atom of a body; the first one is the ID of the body, 0 for none: then there
-///           is nothing else
-///   record  how it sits in its body, if the file has extended sites: as many, or only a zero
-///   the size of the history, 0 for an atom that does not own its body: then there is nothing else
+/// The counts of numbers in the parts of an atom's data.  They are in this order:
+///   site    of every atom of a body; the first one is the ID of the body, 0 for none: then nothing
+///           follows
+///   record  its position and orientation in its body, if the file has extended sites: as many
+///           numbers, or only a zero
+///   the size of the history, 0 for an atom that does not own its body: then nothing follows
 ///   body, state, last, load, and the history
 struct AtomParts {
   int site, record, body, state, last, load;
@@ -124,9 +125,9 @@ struct AtomParts {
   }
   static constexpr size_t NUMBERS = 6;
 
-  /// The data of an atom whose parts have these lengths, with the lengths of `other`: numbers
-  /// that are not there are 0, and those that `other` does not know are left out.  extended: the
-  /// file has extended sites.
+  /// Converts the data of an atom whose parts have these lengths to the lengths of `other`: missing
+  /// numbers are 0, and numbers unknown to `other` are omitted.  extended: the file has extended
+  /// sites.
   Sections::Numbers converted(const double *data, const AtomParts &other, bool extended) const
   {
     Sections::Numbers result;
@@ -160,7 +161,7 @@ struct AtomParts {
   }
 
  private:
-  /// Integers are kept as their bits.
+  /// Integers are stored as their bits.
   static std::int64_t integer(const double &number)
   {
     std::int64_t bits;

@@ -18,7 +18,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// atoms count as moved by the user when they are off by more than rounding of coordinates and
+// atoms count as moved by the user if their deviation exceeds rounding of coordinates and
 // velocities, relative to box and body
 
 static constexpr double SAME = 1.0e-11;
@@ -29,7 +29,8 @@ static double *first_of(double **vectors)
   return vectors ? vectors[0] : nullptr;
 }
 
-/// The way through so many periods of the present box, with the operations of Domain::unmap().
+/// The displacement for this number of periods of the present box, with the operations of
+/// Domain::unmap().
 static void through(const Domain *domain, const int *periods, double *way)
 {
   const double *h = domain->h;
@@ -83,7 +84,7 @@ void Sites::list()
     for (const Site &site : sites) extended.list(site.atom, site.body);
 }
 
-/// Counts the sites of each body, then puts each where it belongs.
+/// Counts the sites of each body, then moves each to its position.
 void Sites::sort()
 {
   const int n = bodies.nhere();
@@ -135,7 +136,7 @@ std::array<int, 3> Sites::image_of(const Site &site) const
    positions and velocities
 ------------------------------------------------------------------------- */
 
-/// What the images take from unwrapped positions in the present box, with the operations of
+/// Computes the displacements of the images in the present box, with the operations of
 /// Domain::unmap().
 void Sites::find_ways()
 {
@@ -203,7 +204,7 @@ void Sites::place_extended()
   if (!extended.sites.empty()) extended.place(bodies.states(), true, true);
 }
 
-/// What its image takes from an unwrapped position.
+/// The displacement of its image.
 void Sites::wrap(const Site &site, double *away) const
 {
   through(domain, images[image[&site - begin()]].data(), away);
@@ -267,8 +268,8 @@ bool Sites::is_as_fast(const Site &site) const
    sums over sites
 ------------------------------------------------------------------------- */
 
-/// One sum for each body here: start(ibody) makes it, add(sum, site, arm_space) takes in a site,
-/// finish(ibody, sum) receives it.  arm_space: null for a site at the center of mass.
+/// One sum for each body on this rank: start(ibody) initializes it, add(sum, site, arm_space) adds
+/// a site, finish(ibody, sum) uses it.  arm_space: null for a site at the center of mass.
 template <class Start, class Add, class Finish>
 void Sites::sum_over_sites(Start start, Add add, Finish finish) const
 {
@@ -285,7 +286,7 @@ void Sites::sum_over_sites(Start start, Add add, Finish finish) const
   }
 }
 
-/// The loads of all bodies from the force on each site, which force_on(site) points to.
+/// The loads of all bodies from the forces on the sites; force_on(site) is a pointer to a force.
 template <class Force> void Sites::gather(Force force_on, double **torque)
 {
   std::vector<Load> &loads = bodies.change_loads();
@@ -427,8 +428,8 @@ void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
           lacking[k] =
               mass * (acceleration.linear[k] + tangential[k] + radial[k]) - f[site.atom][k];
         for (int k = 0; k < 3; ++k) constraint.virial[k] = arm_space[k] * lacking[k];
-        // where forces act at the center of mass alone, a torque remains, and the virial of a box
-        // that shears y into x and z into both is not that of the opposite shear
+        // if forces act only at the center of mass, a torque remains, and the virial of a box that
+        // shears y into x and z into both differs from the one of the opposite shear
         const bool turns = turning == Turning::YES;
         const double *to = turns ? arm_space : lacking, *from = turns ? lacking : arm_space;
         constraint.virial[3] = to[0] * from[1];

@@ -3,12 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The atoms of bodies: sites, listed body by body, so that a sum over the sites of a body needs
-   nothing of other bodies.  Positions and velocities of atoms follow from the states of their
-   bodies, loads of bodies from the forces on their atoms.
+/* The atoms of bodies: sites, listed body by body, so that a sum over the sites of a body needs no
+   data of other bodies.  Positions and velocities of atoms follow from the states of their bodies,
+   loads of bodies from the forces on their atoms.
 
-   The periodic images of sites are integers, and the way that they stand for is computed from the
-   present box: nothing that depends on the box is kept.
+   The periodic images of sites are integers, and their displacements are computed from the present
+   box: no data depend on earlier boxes.
 
    The fix calls list() after Ownership::update(); and every step:
      [predict states] -> Ownership::spread_moved() -> place() -> [forces] -> gather_loads()
@@ -34,58 +34,58 @@ class Sites : protected Pointers {
  public:
   Sites(LAMMPS *lmp, Bodies &bodies, Ownership &ownership);
 
-  // body by body; within a body those at its center of mass first, then by local index
+  // body by body; within a body sites at its center of mass first, then by local index
 
   int number() const;
   const Site *begin() const { return sites.data(); }
   const Site *end() const { return begin() + sites.size(); }
   const Site &operator[](int n) const;
 
-  /// Find the sites of all bodies, after atoms were exchanged or bodies were made.
+  /// Lists the sites of all bodies, after atoms were exchanged or bodies were made.
   void list();
   /// Sites on this rank that are more than points.
   bigint number_of_extended() const { return (bigint) extended.sites.size(); }
 
   // positions and velocities
 
-  /// Positions of all sites, and velocities if anything reads them before the next call.
+  /// Sets positions of all sites, and velocities if they are read before the next call.
   void place(bool velocities);
-  /// Velocities alone: before a run positions were made by the last step, or by the user.
+  /// Sets only velocities: before a run positions were set by the last step, or by the user.
   void place_velocities();
-  /// Orientations and rates of atoms that are more than points, where these were moved alone.
+  /// Sets orientations and rates of extended atoms, if only these have changed.
   void place_extended();
-  /// True if masses, positions and velocities of all atoms are those of their bodies.  Ends the run
-  /// if image flags or another box have torn a body.  Sites are listed, and Ownership::box() is the
-  /// box before.  In gear_quat_compare.cpp.  Collective.
+  /// True if masses, positions and velocities of all atoms match their bodies.  Ends the run if
+  /// image flags or another box have torn a body.  Sites are listed, and Ownership::box() is the
+  /// previous box.  In gear_quat_compare.cpp.  Collective.
   bool match_bodies() const;
-  /// How often sites were listed or placed, the same on all ranks: what was made of positions or
-  /// loads at another number is out of date.
+  /// The number of times that sites were listed or placed, the same on all ranks: results computed
+  /// from positions or loads at another number are out of date.
   int placements() const { return nplacements; }
 
-  struct Expected {    ///< position or velocity of a site by the state of its body
+  struct Expected {    ///< position or velocity of a site from the state of its body
     double value[3];
-    double size;    ///< what its rounding is relative to
+    double size;    ///< scale of its rounding error
   };
   // site: one of this list
   Expected expected_position(const Site &site) const;
   Expected expected_velocity(const Site &site) const;
-  /// Unwrapped positions: of the atom, and where its body has it.
+  /// Unwrapped positions: of the atom, and from its body.
   void unwrapped(const Site &site, double *found, double *expected) const;
-  // True if place or velocity of the atom are those of its body, up to rounding.
+  // True if position or velocity of the atom match its body, up to rounding.
   bool is_there(const Site &site) const;
   bool is_as_fast(const Site &site) const;
 
-  /// Periods that the unwrapped position of an atom of a body is away.
+  /// The number of periods between the unwrapped and the wrapped position of an atom of a body.
   std::array<int, 3> image_of(const Site &site) const;
 
   // sums over sites
 
-  /// any: something in the scene may make a force; otherwise no loads are gathered.
+  /// any: there may be forces; otherwise no loads are gathered.
   void expect_forces(bool any);
   /// Loads of all bodies that this rank moves, from the forces on the sites of all ranks.  torque:
-  /// of the atoms themselves, used where they are more than points; null for none.
+  /// of the atoms themselves, used for extended atoms; null for none.
   void gather_loads(double **f, double **torque);
-  /// The same of the momenta by which velocities of atoms differ from those of their bodies.
+  /// The same for the momenta due to differences between velocities of atoms and their bodies.
   void gather_impulses();
 
   /// Adds the products of forces on owned sites and their arms, f_a d_b for xx yy zz yz xz xy: as
@@ -93,15 +93,16 @@ class Sites : protected Pointers {
   void add_arm_virial(double **f, ExactSum *sums, double scale) const;
 
   /// Constraint force m a - f of a site under the present loads, its arm from the center of mass,
-  /// its virial (xx yy zz xy xz yz), and the mean place of the body's sites.
+  /// its virial (xx yy zz xy xz yz), and the mean position of the body's sites.
   struct ConstraintForce {
     double force[1][3], arm[1][3], virial[6], centroid[3];
   };
-  /// Whether bodies turn; otherwise the forces on a body act at its center of mass alone.
+  /// YES if bodies turn; otherwise the forces on a body act only at its center of mass.
   enum class Turning { NO, YES };
-  /// tally: of an atom and its constraint force.  Those of a body add up to zero, so any origin
-  /// serves for the virial.  all: sites at centers of mass and centroids too, as the centroid form
-  /// of the virial needs them, otherwise 0.  Collective.
+  /// tally: of an atom and its constraint force.  The constraint forces of a body add up to zero,
+  /// so the virial does not depend on the origin.  all: include sites at centers of mass and
+  /// compute centroids, as required by the centroid form of the virial; otherwise centroids are 0.
+  /// Collective.
   void visit_constraint_forces(double **f, bool all, Turning turning,
                                const std::function<void(int, ConstraintForce &)> &tally);
 
@@ -113,7 +114,7 @@ class Sites : protected Pointers {
   Extended &extended;
 
   std::vector<Site> sites;
-  std::vector<std::array<int, 3>> images;     ///< periods that unwrapped positions are away
+  std::vector<std::array<int, 3>> images;     ///< in periods, from wrapped to unwrapped positions
   std::vector<int> image;                     ///< of the sites: index of the image
   std::vector<std::array<double, 3>> ways;    ///< scratch: of the images, in the present box
   std::vector<int> first, first_arm;    ///< of each body: its first site, its first one with an arm

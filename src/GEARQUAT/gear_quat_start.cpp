@@ -119,7 +119,7 @@ std::string Start::names() const
   return utils::join_words(ids, " and ");
 }
 
-/// True if forces jump so early that a history begins with a lower order than it can keep.
+/// True if forces become discontinuous so early that a history starts with a reduced order.
 bool Start::lowers_order(const StartFound &start) const
 {
   return start.verdict == StartPlan::Verdict::JUMPS &&
@@ -128,7 +128,7 @@ bool Start::lowers_order(const StartFound &start) const
          });
 }
 
-/// Those that the histories begin with.
+/// The initial orders of the histories.
 std::string Start::orders(const StartFound &start) const
 {
   std::string orders;
@@ -143,10 +143,10 @@ std::string Start::orders(const StartFound &start) const
 
 /* ---------------------------------------------------------------------- */
 
-/// The number of values is chosen by the derivatives that so many pairs of nodes tell.
+/// The number of pairs of nodes needed for a choice of the number of values.
 static constexpr int PAIRS_THAT_TELL = 2;
 
-/// What find_start() asks of LAMMPS.
+/// The host of find_start().
 struct Start::Search {
   Start &our;
   Forces &forces;
@@ -170,7 +170,7 @@ struct Start::Search {
     }
   }
 
-  /// The length that the motion of a body is compared with.
+  /// The length scale for the motion of a body.
   double length(const Body &body) const { return body.extent > 0.0 ? body.extent : skin; }
 
   void begin(double of)
@@ -216,7 +216,7 @@ struct Start::Search {
     return true;
   }
 
-  /// As choose() will find.
+  /// The result of choose().
   int values_that_do(int values) const
   {
     if (std::any_of(our.starters.begin(), our.starters.end(), [](const Starter &one) {
@@ -231,7 +231,7 @@ struct Start::Search {
     return std::min(values, most);
   }
 
-  /// Forces in boxes around that of the start.
+  /// Evaluates forces in boxes around the box of the start.
   void probe()
   {
     for (const int side : {-1, 1}) {
@@ -254,8 +254,8 @@ struct Start::Search {
     }
   }
 
-  /// Forces at one node; change: grows to what they change.  False, with nothing evaluated, if a
-  /// site would leave the skin.
+  /// Evaluates forces at one node; change: increased to the largest change.  False, without an
+  /// evaluation, if a site would leave the skin.
   bool visit_node(int node, double &change)
   {
     for (auto &one : our.starters) {
@@ -321,7 +321,7 @@ StartFound Start::search(Forces &forces)
   return start;
 }
 
-/// Node spacing: the step, or as much of it as keeps every site within half the skin.
+/// Node spacing: the step, shortened if necessary to keep every site within half the skin.
 double Start::first_spacing() const
 {
   const double span = collocation.pairs() * std::fabs(h);
@@ -338,7 +338,7 @@ double Start::first_spacing() const
   return way > reach ? h * reach / way : h;
 }
 
-/// By the derivatives that so many pairs tell, with the states of the start.
+/// From the derivatives of this number of pairs, with the states of the start.
 MotionSums Start::sums_of(const Starter &one, const Bodies::Snapshot &snapshot, int pairs,
                           double spacing) const
 {
@@ -359,7 +359,7 @@ void Start::choose(const StartFound &start, const std::vector<Bodies::Snapshot> 
   }
 }
 
-/// Histories of all bodies from the polynomials that were found.
+/// Histories of all bodies from the polynomials.
 void Start::seed_all(const StartFound &start)
 {
   for (auto &one : starters) {

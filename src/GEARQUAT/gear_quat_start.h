@@ -3,9 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Start-up of all bodies inside LAMMPS, those of several fixes together: the loop over nodes and
-   bodies around the kernel's collocation (gear_quat_startup.h), with LAMMPS' own forces at every
-   node. */
+/* Start-up of all bodies inside LAMMPS, for all fixes together: the loop over nodes and bodies
+   around the kernel's collocation (gear_quat_startup.h), with LAMMPS' own forces at every node. */
 
 #ifndef LMP_GEAR_QUAT_START_H
 #define LMP_GEAR_QUAT_START_H
@@ -21,48 +20,48 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What loads tell of the motion of the bodies that this rank owns.
+/// Estimates of the motion, from loads, of the bodies that this rank owns.
 MotionSums sums_by_loads(const Bodies &bodies);
 
 /// The bodies of one fix in a start.
 struct Starter {
   const Fix *fix;
-  Bodies *bodies;    ///< states and loads are those of the start
+  Bodies *bodies;    ///< with states and loads of the start
   Ownership *ownership;
   Sites *sites;
-  Coupling *coupling;    ///< null without
+  Coupling *coupling;    ///< null if there is none
   Scheme scheme;
-  bool needed;    ///< false if there are histories, to be kept where not all rows can be found
-  /// The scheme for this motion, which histories have after the call; null where it is given.
+  bool needed;    ///< false if there are histories, which are kept if not all rows can be found
+  /// Chooses the scheme for this motion, which histories have after the call; null if it is given.
   /// Collective.
   std::function<Scheme(const MotionSums &)> choose;
-  /// What would be chosen; null where it is given.  Collective.
+  /// Predicts this choice; null if the scheme is given.  Collective.
   std::function<Scheme(const MotionSums &)> foresee;
 
   std::vector<Collocation::Workspace> work = {};
 
   Load acting(int ibody) const { return acting_on(*bodies, coupling, ibody); }
   BodyState scaled(int ibody) const { return scaled_of(*bodies, coupling, ibody); }
-  /// Histories of all bodies from what states and loads determine.  terms: 2 for the paper's start,
-  /// in which every second and higher derivative is zero, or 3 with the loads.  Collective.
+  /// Histories of all bodies from states and loads alone.  terms: 2 for the paper's start, in which
+  /// all derivatives from the second on are zero, or 3 with the loads.  Collective.
   void seed_local(int terms, double h);
-  /// The scheme by what loads tell of the motion.  Collective.
+  /// Chooses the scheme from loads.  Collective.
   void choose_by_loads();
 };
 
-/// History of one body from what its state, with a scaled center, and the load that acts on it
-/// determine.  terms: 2, or 3 for the load too.
+/// History of one body from its state, with a scaled center, and from the load that acts on it.
+/// terms: 2, or 3 to include the load.
 void seed_body(Bodies &bodies, int ibody, const BodyState &state, const Load &acting,
                const Scheme &scheme, double h, int terms);
 
 class Start : protected Pointers {
  public:
-  /// starters: all that start together, with one set of nodes.  h: the step of the histories.
+  /// starters: all fixes that start together, with one set of nodes.  h: the step of the histories.
   Start(LAMMPS *lmp, const std::vector<Starter> &starters, double h);
 
-  /// Derivatives consistent with the trajectory; where forces cannot be followed, those that the
-  /// present loads determine, and a message on rank 0.  After the call atoms are as before.
-  /// Returns true if all rows are known.  Collective.
+  /// Computes derivatives consistent with the trajectory; if forces cannot be followed, the
+  /// derivatives from the present loads, with a message on rank 0.  After the call atoms are as
+  /// before.  Returns true if all rows are known.  Collective.
   bool run();
 
  private:
@@ -71,7 +70,7 @@ class Start : protected Pointers {
 
   Collocation collocation;
   int evaluations = 0;    ///< of the forces, so far
-  std::string reason;     ///< why the last spacing failed, or what is to be said about it
+  std::string reason;     ///< why the last spacing failed, or a remark about it
 
   struct Search;
   std::string names() const;

@@ -7,33 +7,32 @@
 
    A history starts from the Taylor series of the trajectory in x and q,
      x(t) = sum_j X_j (t/H)^j,   q(t) = sum_j Q_j (t/H)^j,
-   of which `terms` are known: 2 (position and velocity: the paper's zero start), 3 (forces too), or
-   as many as collocation finds.
+   with a number of known `terms`: 2 (position and velocity: the paper's zero start), 3 (forces
+   too), or the number found by collocation.
 
    Collocation: the second derivatives at the nodes t = k H, k = -m..m, are interpolated by one
    polynomial; integrating it twice from the exact start gives the state at a node, and the forces
    there give new second derivatives (Picard iteration).  Pairs of nodes are added outwards: each is
-   foretold by the polynomial through the nodes inside it.  Rows 0 and 1 stay exact: no difference
-   of positions enters a velocity.  Nodes on both sides of the start, neither of which is evaluated
-   first, make it symmetric under time reversal.
+   extrapolated by the polynomial through the nodes inside it.  Rows 0 and 1 stay exact: no
+   difference of positions enters a velocity.  Nodes on both sides of the start, treated equally,
+   make it symmetric under time reversal.
 
-   The host of find_start() calls, for every body: begin(); foretell() for one pair more; for both
-   nodes of a pair state_at(), [forces at that state], set_load(), and then settle(); at the end
-   series() and seed().
+   The host of find_start() calls, for every body: begin(); foretell() to add a pair; state_at(),
+   [forces], set_load() for both nodes of a pair, then settle(); finally series() and seed().
 
-   find_start() decides which pair of nodes is evaluated next, and when enough is known.  After two
-   pairs the host may say that fewer values do.  Where the polynomial through 1..m-1 foretells the
-   accelerations at pair m, it errs by e_m, which falls by about z^2 from pair to pair if forces are
-   smooth, with z the angle that the fastest motion turns in a spacing.  Before a pair is added, those inside are
-   evaluated once more with the polynomial that has become better:
+   find_start() decides which pair of nodes is evaluated next, and when to stop.  After two pairs
+   the host may reduce the number of values.  The polynomial through the pairs 1..m-1 predicts the
+   accelerations at pair m with an error e_m.  If forces are smooth, e_m decreases by about z^2 from
+   pair to pair, with z the angle of the fastest motion in a spacing.  Before a pair is added, the
+   pairs inside are evaluated again with the improved polynomial:
 
      1 | 1 2 | 1 2 3 | 1 2 3 4
 
-   Each further round gains two orders of the spacing.  An evaluation is left out if the change that
-   the contraction seen so far lets expect lies below the tolerance.
+   Each further round gains two orders of the spacing.  An evaluation is omitted if the change
+   expected from the contraction so far is below the tolerance.
 
-   Where e_m does not fall, forces are no polynomial at this scale: they jump, as at a cutoff, and
-   the pairs inside m hold all that a polynomial can tell. */
+   If e_m does not decrease, a polynomial does not represent the forces at this scale: they are
+   discontinuous, as at a cutoff, and only the pairs inside m are useful. */
 
 #ifndef GEAR_QUAT_STARTUP_H
 #define GEAR_QUAT_STARTUP_H
@@ -51,16 +50,16 @@ namespace LAMMPS_NS::GearQuat {
 class StartPlan {
  public:
   static constexpr int MAX_PAIRS = (MAX_VALUES + 1) / 2;
-  static constexpr int MAX_SPACINGS = 8;    ///< that are tried, each half of the one before
+  static constexpr int MAX_SPACINGS = 8;    ///< tries, each with half the spacing
 
   enum class Verdict { GOES_ON, CONVERGED, JUMPS, SHORTER_SPACING };
 
-  /// Pairs of nodes that the order of a history of so many rows needs.
+  /// Pairs of nodes required by the order of a history with this number of rows.
   static int pairs_for(int values) { return (values + 1) / 2; }
 
   explicit StartPlan(int values) : wanted(values), odd(values % 2), most(pairs_for(values)) {}
 
-  /// As if it were for so many values, if these are fewer.
+  /// Reduces the number of values.
   void limit(int values)
   {
     if (values >= wanted) return;
@@ -71,12 +70,12 @@ class StartPlan {
 
   /// The pair to be evaluated next, 1..pairs_for(values).
   int pair() const { return present; }
-  /// It has to be foretold first.
+  /// It has to be extrapolated first.
   bool is_new() const { return present > known; }
-  /// Pairs that the polynomial goes through; fewer than were evaluated where forces jump.
+  /// Pairs in the polynomial; fewer than were evaluated if forces are discontinuous.
   int pairs() const { return known; }
 
-  /// After pair() was evaluated.  change: the largest change of an acceleration there in any body,
+  /// After pair() was evaluated.  change: the largest change of an acceleration in any body,
   /// relative to its motion (Collocation::set_load).
   Verdict take(double change)
   {
@@ -96,40 +95,39 @@ class StartPlan {
   }
 
  private:
-  // a first pair that is missed by more than this part of the motion is too far out
+  // the first pair is too far out if its relative error exceeds this
   static constexpr double TOO_FAR = 0.5;
-  // smooth forces are missed by less from pair to pair, and change by less when evaluated once more
+  // for smooth forces errors decrease from pair to pair, and changes decrease in another evaluation
   static constexpr double FALLS = 1.0, CONTRACTS = 0.5;
-  // less than rounding takes from velocities in a step; and the rounding of forces, at most
+  // less than the rounding of velocities in a step; and an upper bound for the rounding of forces
   static constexpr double CONVERGED = 1.0e-15, ROUNDING = 1.0e-9;
-  // the last changes, as a part of what the polynomial leaves out; beyond four pairs less, for the
-  // highest derivatives multiply what the pairs inside are off by, unless there is a pair to spare
+  // tolerance for the last changes, relative to the truncation error; smaller beyond four pairs,
+  // since the highest derivatives multiply errors of the inner pairs, unless there is a spare pair
   static constexpr double ALLOWED = 0.03;
   double allowed_part() const
   {
     return odd || known < 5 ? ALLOWED : std::ldexp(ALLOWED, 3 * (4 - known));
   }
-  // errors inside, as they are extrapolated, as a part of what the last new pair was missed by
+  // limit for the extrapolated errors inside, relative to the error of the last new pair
   static constexpr double CLEAR = 0.5;
 
   int wanted;    ///< number of values
-  bool odd;      ///< it is: one pair more than the order needs
+  bool odd;      ///< odd number of values: one pair more than the order needs
   int most;
   int present = 1;             ///< pair that is evaluated
   int known = 0;               ///< pairs evaluated at least once
-  int round = 0;               ///< last pair of a round that evaluates all pairs anew
+  int round = 0;               ///< last pair of a round that evaluates all pairs again
   double contraction = 1.0;    ///< of a change when a pair is evaluated once more
   double first[MAX_PAIRS + 1] = {HUGE_VAL}, last[MAX_PAIRS + 1] = {};    ///< changes
 
-  /// What a polynomial of the method's order leaves out: by that much the first pair beyond it
-  /// would be missed.
+  /// Truncation error of a polynomial of the method's order: the error at the first pair beyond it.
   double left_out() const
   {
     if (odd || known < 2) return first[known];
     return first[known] * std::min(1.0, first[known] / first[known - 1]);
   }
 
-  /// The rest of a round, another round, one more pair, or the end.
+  /// Continues a round, starts another round, adds a pair, or ends.
   Verdict choose()
   {
     const bool more = known < most && first[known] > CONVERGED;
@@ -137,7 +135,7 @@ class StartPlan {
     while (present < round)
       if (contraction * last[++present] > allowed) return Verdict::GOES_ON;
     const double next = contraction * *std::max_element(last + 1, last + known + 1);
-    // extrapolation to the next pair makes errors up to four times larger for each pair inside
+    // extrapolation to the next pair multiplies errors by up to four for each pair inside
     const bool again = more ? round < known && std::ldexp(next, 2 * known) > CLEAR * first[known]
                             : next > allowed;
     if (!again && !more) return Verdict::CONVERGED;
@@ -152,23 +150,22 @@ class StartPlan {
   }
 };
 
-/// A start that was found.
+/// Result of a start.
 struct StartFound {
   StartPlan::Verdict verdict;    ///< CONVERGED or JUMPS; SHORTER_SPACING if there is none
   int pairs = 0;                 ///< of nodes that the polynomial goes through
   double spacing = 0.0;          ///< of the nodes
   double change = 0.0;           ///< the last one seen
 
-  /// The highest derivative of positions that is known.
+  /// The highest known derivative of positions.
   int order() const { return 2 * pairs + 2; }
 };
 
 /// The start of all bodies of a host.  The host has
 ///   void begin(double spacing)             all bodies at the start, no pair known
-///   void foretell()                        one pair more, for all bodies
-///   bool visit(int pair, double &change)   forces at both nodes of the pair; false if they cannot
-///                                          be evaluated there
-///   int values_that_do(int values)         at most `values`; after the first visit of pair 2
+///   void foretell()                        adds a pair, for all bodies
+///   bool visit(int pair, double &change)   forces at both nodes; false if they cannot be evaluated
+///   int values_that_do(int values)         sufficient values, at most `values`; after pair 2
 template <class Host> StartFound find_start(int values, double spacing, Host &host)
 {
   using Verdict = StartPlan::Verdict;
@@ -198,7 +195,7 @@ struct TaylorSeries {
   double c[MAX_TERMS][7];
 };
 
-/// The three terms that a state and the load on it determine, in units of the step h.
+/// The three terms determined by a state and its load, in units of the step h.
 inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, const Load &load,
                                  double h)
 {
@@ -221,9 +218,8 @@ inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, 
   return series;
 }
 
-/// Fill all rows of a history from a series in units of the step `series_step`.
-/// After the call rows with no known term are zero; momenta and angular velocities of the
-/// first-order form are derivatives of the same series.
+/// Fills all rows of a history from a series in units of `series_step`; rows without a known term
+/// are zero.  Momenta and angular velocities of the first-order form are derivatives of the series.
 inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries &series,
                  double series_step, double h, double *rows)
 {
@@ -254,15 +250,15 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
   }
 }
 
-/// Collocation of a body or of a scalar; the object's tables are the same for all.
+/// Collocation for a body or a scalar; the tables of the object are common to all.
 class Collocation {
  public:
   static constexpr int MAX_HALF = StartPlan::MAX_PAIRS;
   static constexpr int MAX_NODES = 2 * MAX_HALF + 1;
 
-  /// A function with WIDTH components that obeys an equation of this ORDER: its exact start, and
-  /// the derivatives of that order at the nodes.  Rows of the start and rates are in the units of
-  /// the host: for a body in units of the node spacing.
+  /// A function with WIDTH components and an equation of this ORDER: its exact start, and the
+  /// derivatives of that order at the nodes.  Rows of the start and rates are in the units of the
+  /// host: for a body in units of the node spacing.
   template <int WIDTH, int ORDER> struct Nodes {
     int pairs;                        ///< of nodes that the polynomial goes through
     double start[ORDER][WIDTH];       ///< the function, and its first derivative if ORDER is 2
@@ -273,17 +269,17 @@ class Collocation {
   using Workspace = Nodes<7, 2>;
   using Scalar = Nodes<1, 1>;
 
-  /// As many nodes as the order of a history of `values` rows needs.
+  /// Uses the number of nodes required by the order of a history with `values` rows.
   explicit Collocation(int values) : half(StartPlan::pairs_for(values)), polynomial(half + 1)
   {
     for (int pairs = 0; pairs <= half; ++pairs) polynomial[pairs].make(pairs);
   }
 
-  /// Nodes on each side of the start, which needs no forces: its own are known.
+  /// Nodes on each side of the start, whose own forces are already known.
   int pairs() const { return half; }
 
-  /// No pair is known yet: constant second derivatives, those of `series` (at least three terms, in
-  /// units of the node spacing).
+  /// Starts without pairs: constant second derivatives, taken from `series` (at least three terms,
+  /// in units of the node spacing).
   void begin(const TaylorSeries &series, Workspace &w) const
   {
     w.pairs = 0;
@@ -294,7 +290,7 @@ class Collocation {
     }
   }
 
-  /// The same of any functions: their values, first and second derivatives.
+  /// The same for any functions: their values, first and second derivatives.
   template <int WIDTH>
   void begin(const double *value, const double *first, const double *second,
              Nodes<WIDTH, 2> &w) const
@@ -305,7 +301,7 @@ class Collocation {
     std::copy_n(second, WIDTH, w.rate[half]);
   }
 
-  /// No pair is known yet: a constant rate.
+  /// Starts without pairs: a constant rate.
   void begin(double start, double rate, Scalar &s) const
   {
     s.pairs = 0;
@@ -313,7 +309,7 @@ class Collocation {
     s.rate[half][0] = rate;
   }
 
-  /// One pair more, with the rates that the present polynomial has there.
+  /// Adds a pair, with the rates of the present polynomial.
   template <int WIDTH, int ORDER> void foretell(Nodes<WIDTH, ORDER> &w) const
   {
     const Polynomial &inside = polynomial[w.pairs];
@@ -359,9 +355,9 @@ class Collocation {
     return state;
   }
 
-  /// Note the load met at a node, until settle().  length: the size of the body.  Returns by how
-  /// much the second derivatives there change, relative to the first or second derivatives of that
-  /// body, whichever are larger; infinite if the load is no number.
+  /// Stores the load at a node, until settle().  length: the size of the body.  Returns the change
+  /// of the second derivatives there, relative to the first or second derivatives of that body,
+  /// whichever are larger; infinite if the load is not finite.
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
                   double spacing, double length, Workspace &w) const
   {
@@ -377,20 +373,19 @@ class Collocation {
     return relative(change, met, length, w);
   }
 
-  /// The same of a scalar.
+  /// The same for a scalar.
   void set_rate(int node, double rate, Scalar &s) const { set_rates(node, &rate, s); }
-  /// And of any functions.
+  /// The same for any functions.
   template <int WIDTH, int ORDER>
   void set_rates(int node, const double *rates, Nodes<WIDTH, ORDER> &w) const
   {
     std::copy_n(rates, WIDTH, w.met[node > 0]);
   }
 
-  /// The rate at the start; before and behind it in memory are those at the other nodes.
+  /// The rate at the start; rates at the other nodes are before and after it in memory.
   const double *rate_at_start(const Scalar &s) const { return s.rate[half]; }
 
-  /// The polynomial goes through what was met at both nodes of a pair: neither side is first, so
-  /// the start is symmetric under time reversal.
+  /// Updates the polynomial with both nodes of a pair, treated equally, for time reversibility.
   template <int WIDTH, int ORDER> void settle(int pair, Nodes<WIDTH, ORDER> &w) const
   {
     for (int i = 0; i < WIDTH; ++i) {
@@ -408,7 +403,7 @@ class Collocation {
     expand(w, pairs, series.c[0]);
     return series;
   }
-  /// The same of any functions: c[WIDTH * j + i] for term j of function i.
+  /// The same for any functions: c[WIDTH * j + i] for term j of function i.
   template <int WIDTH> void expand(const Nodes<WIDTH, 2> &w, int pairs, double *c) const
   {
     for (int i = 0; i < WIDTH; ++i) {
@@ -418,12 +413,12 @@ class Collocation {
         c[WIDTH * (j + 2) + i] = double(coefficient(j, i, w, pairs) / ((j + 1) * (j + 2)));
     }
   }
-  /// Terms of a function with known second derivatives.
+  /// The number of terms of a function with known second derivatives.
   static int terms_of(int pairs) { return 2 * pairs + 3; }
   TaylorSeries series(const Workspace &w) const { return series(w, w.pairs); }
 
-  /// The same of a scalar whose rates are per unit of time, with `spacing` between nodes: its terms
-  /// are returned, at most MAX_NODES + 1.
+  /// The same for a scalar whose rates are per unit of time, with `spacing` between nodes.  Returns
+  /// the number of terms, at most MAX_NODES + 1.
   int series(const Scalar &s, int pairs, double spacing, double *c) const
   {
     c[0] = s.start[0][0];
@@ -433,7 +428,7 @@ class Collocation {
   }
 
  private:
-  /// Motion slower than this part of the body's size (of a radian) in a step is none.
+  /// Motion slower than this part of the body's size (of a radian) in a step is ignored.
   static constexpr double SMALLEST = 1.0e-4;
 
   /// Column or row of a node in the tables.
@@ -492,7 +487,7 @@ class Collocation {
   int half;
   std::vector<Polynomial> polynomial;    ///< through 0..half pairs
 
-  /// Of s^j in the polynomial through the innermost `pairs`, component i.
+  /// Coefficient of s^j in the polynomial through the innermost `pairs`, component i.
   template <int WIDTH, int ORDER>
   long double coefficient(int j, int i, const Nodes<WIDTH, ORDER> &w, int pairs) const
   {

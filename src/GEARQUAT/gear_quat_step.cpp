@@ -24,7 +24,8 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-/// Keywords exclude two couplings, and one with a changing step where it cannot follow.
+/// The keywords exclude two couplings, and a coupling with a changing step if it does not support
+/// one.
 std::unique_ptr<Coupling> GearQuat::make_coupling(LAMMPS *lmp, const Fix *fix,
                                                   const Arguments &args, Bodies &bodies,
                                                   const Sites &sites)
@@ -74,7 +75,7 @@ void Step::end(double **f, double **torque)
   within = false;
   for (;;) {
     gather(f, torque);
-    // here: the atoms are those that forces belong to
+    // here, since the atoms are at the positions of the forces
     if (!coupling || coupling->others_ask_for_virial()) tally(vflag_of_step, f);
     correct(f);
     if (is_accepted()) break;
@@ -87,7 +88,7 @@ void Step::end(double **f, double **torque)
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(true);
   others.note_velocity();
-  if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where the forces were taken
+  if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where forces were evaluated
 }
 
 void Step::gather(double **f, double **torque)
@@ -109,7 +110,7 @@ void Step::choose_next()
    its parts
 ------------------------------------------------------------------------- */
 
-/// In the first step of a run with `pre no` nothing has compared bodies with their atoms.
+/// In the first step of a run with `pre no` bodies have not been compared with their atoms yet.
 void Step::check_other_fixes()
 {
   if (update->ntimestep == update->firststep + 1 && !compared)
@@ -159,7 +160,7 @@ void Step::correct(double **f)
     args.masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
 }
 
-/// MASKED: some components of the loads do not act.
+/// MASKED: some components of the loads are turned off.
 template <bool MASKED> void Step::correct_bodies(double **f)
 {
   const auto correct_all = [&](auto changing) {
@@ -169,7 +170,7 @@ template <bool MASKED> void Step::correct_bodies(double **f)
   tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
 }
 
-/// POINT: without moments of inertia.  CHANGING: the time step follows the error.
+/// POINT: without moments of inertia.  CHANGING: the time step adapts to the error.
 template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ibody, double **f)
 {
   double *rows = bodies.history(ibody);
@@ -199,13 +200,13 @@ void Step::correct_together()
   if (tolerance) tolerance->note_correction(*integrator, *coupling);
 }
 
-/// Without a control every step is accepted.
+/// Without step control every step is accepted.
 bool Step::is_accepted()
 {
   return !tolerance || tolerance->accepts();
 }
 
-/// Histories are those of the beginning of the step again, for another try.
+/// Restores the histories to the beginning of the step, for another try.
 void Step::shorten()
 {
   bodies.put_back_histories();
@@ -218,7 +219,7 @@ void Step::shorten()
   if (coupling) coupling->keep();
 }
 
-/// The step is not made again.
+/// Accepts the step.
 void Step::hold(double **f)
 {
   if (tolerance || coupling) {    // otherwise correct_body() has done this
@@ -229,7 +230,7 @@ void Step::hold(double **f)
   begin_fresh(f);
 }
 
-/// The histories of bodies that came in this step begin with the derivatives that are known.
+/// Histories of bodies inserted in this step start with the known derivatives.
 void Step::begin_fresh(double **f)
 {
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
@@ -242,10 +243,10 @@ void Step::begin_fresh(double **f)
   if (coupling) coupling->follow_changes(integrator->step());
 }
 
-/// A box that follows the atoms sets no limits.
+/// A shrink-wrapped box sets no limits.
 void Step::find_limits(double h)
 {
-  constexpr int SHRINKS = 2;    // codes of LAMMPS from this one on mean faces that follow the atoms
+  constexpr int SHRINKS = 2;    // LAMMPS' boundary codes from this one on are shrink-wrapped
   double longest = 0.0;
   for (int k = 0; k < 3; ++k) {
     const int *faces = domain->boundary[k];
@@ -255,7 +256,7 @@ void Step::find_limits(double h)
   blowup.limits = MotionLimits(h, longest);
 }
 
-/// Of a corrected state.
+/// Tests a corrected state.
 inline void Step::check_limits(int ibody, double **f) const
 {
   const BodyState &state = bodies.state_of(ibody);
@@ -273,7 +274,7 @@ bool Step::shows_local_data() const
   return is_due(readers.of_local_data);
 }
 
-/// True if output is due in this step, or one of the periods ends with it.
+/// True if output is due in this step, or if the step is a multiple of one of the periods.
 bool Step::is_due(const std::vector<int> &periods) const
 {
   const bigint now = update->ntimestep;
@@ -308,7 +309,7 @@ void Step::set_scheme(const Scheme &scheme)
 
 void Step::follow_length()
 {
-  if (tolerance && started && !time_step.is_changing()) return;    // it will be put back
+  if (tolerance && started && !time_step.is_changing()) return;    // it will be restored
   const double ratio = time_step.follow();
   if (ratio == 0.0) return;
   if (integrator)

@@ -7,12 +7,12 @@
 
      begin()            predict, place sites
      LAMMPS             forces at the predicted sites
-     end()              gather loads, correct, judge the error;
-                        if it is too large: undo, shorten, predict, place, evaluate, and again
+     end()              gather loads, correct, test the error;
+                        if it is too large: undo, shorten, predict, place, evaluate, and repeat
                         place sites
      choose_next()      with a changing step, when all fixes have finished this one
 
-   A Step owns what steps are made with: the length, the integrator, the coupling of all bodies, the
+   A Step owns the objects of a step: the length, the integrator, the coupling of all bodies, the
    control of the error, and the limits beyond which a run ends. */
 
 #ifndef LMP_GEAR_QUAT_STEP_H
@@ -33,13 +33,14 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// What acts on all bodies together, by the keywords.
+/// The coupling of all bodies selected by the keywords, null for none.
 std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                         Bodies &bodies, const Sites &sites);
 
 class Step : protected Pointers {
  public:
-  /// tally(vflag, f): adds the virial of the constraint forces, by the forces f on atoms.
+  /// tally(vflag, f): adds the virial of the constraint forces, computed from the forces f on
+  /// atoms.
   using Tally = std::function<void(int, double **)>;
   Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
        Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally);
@@ -56,17 +57,17 @@ class Step : protected Pointers {
 
   // before a run
 
-  /// Whether anything reads velocities between begin() and end().
+  /// of_predicted_velocities: true if velocities are read between begin() and end().
   void expect_readers(bool of_predicted_velocities) { velocities_read = of_predicted_velocities; }
-  /// Bodies have been compared with their atoms, so that the next step need not do so.
+  /// Bodies have been compared with their atoms, so the next step omits it.
   void note_comparison() { compared = true; }
-  /// Histories and integrator take over LAMMPS' time step.
+  /// Histories and integrator adopt LAMMPS' time step.
   void follow_length();
-  /// Histories have the number of values of scheme().
+  /// Makes the integrator; histories have the number of values of scheme().
   void make_integrator();
-  /// Another coupling between runs; null for none.
+  /// Replaces the coupling between runs; null for none.
   void set_coupling(std::unique_ptr<Coupling> other);
-  /// Another method, without keyword tolerance; there are no histories.
+  /// Replaces the scheme, without keyword tolerance; there are no histories.
   void set_scheme(const Scheme &scheme);
 
   /// Ends the run if the present loads would make a body unstable in the next step.
@@ -86,7 +87,7 @@ class Step : protected Pointers {
   double length() const { return time_step.length(); }
   /// Null before the first run.
   const Integrator *present_integrator() const { return integrator.get(); }
-  /// The load that moves a body; with a coupling after its measure().
+  /// The load on a body; with a coupling after its measure().
   Load acting(int ibody) const { return acting_on(bodies, coupling.get(), ibody); }
 
   TimeStep time_step;
@@ -103,8 +104,8 @@ class Step : protected Pointers {
   OtherFixes &others;
   Tally tally;
   std::unique_ptr<Integrator> integrator;
-  int vflag_of_step = 0;          ///< what LAMMPS asked of the virial when the step began
-  bool velocities_read = true;    ///< between prediction and correction, by others
+  int vflag_of_step = 0;          ///< LAMMPS' vflag when the step began
+  bool velocities_read = true;    ///< by other styles, between prediction and correction
   bool compared = false;
   bool within = false;
   Readers readers;

@@ -3,25 +3,27 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A step and a number of values that follow the error.
+/* A step and a number of values that adapt to the error.
 
-   Behind its n rows and their carries a history has a trial row, the row n it would have with one
-   value more:  a_n = h^n/n! y^(n),  found from how the last row changes in a step.  Then
+   After its n rows and their carries a history has a trial row, the row n of a history with one
+   more value: a_n = h^n/n! y^(n).  It is computed from the change of the last row in a step.  Then
 
      error of a step with k values    e_k = gamma_(k-1) |h^k y^(k)| = gamma_(k-1) k! |a_k|
 
    is known for k = n - 1 from the last row, for n from the trial row, and for n + 1 from the change
-   of the trial row.  e_n is the estimate of Integrator::correct() (with one pass exactly).  A row
-   less makes the last row the trial row, a row more the trial row the last one.
+   of the trial row.  e_n is the estimate of Integrator::correct() (exactly so with one pass).  When
+   the number of values decreases, the last row becomes the trial row; when it increases, vice
+   versa.
+
    Source: C. W. Gear, "Numerical Initial Value Problems in Ordinary Differential Equations" (1971),
    chapter 9, for the comparison of three orders.
 
-   The host calls, for every body and once a step: correct() in place of Integrator::correct(), or
-   last_row() and errors() around a correction of all bodies together; then, with the largest errors
-   of all bodies, StepControl::fails().  If so, and if the host has kept the histories, it puts them
-   back and makes the step again as StepControl::repeat() says.  Otherwise
-   Steady::count() and StepControl::next().  If values change, add_row() or drop_row() for every
-   body; then Integrator::rescale(). */
+   Once per step the host calls, for every body, correct() instead of Integrator::correct(), or
+   last_row() and errors() around a correction of all bodies together.  It then calls
+   StepControl::fails() with the largest errors of all bodies.  If the step fails, and the host has
+   saved the histories, it restores them and repeats the step as given by StepControl::repeat().
+   Otherwise it calls Steady::count() and StepControl::next().  If the number of values changes, it
+   calls add_row() or drop_row() for every body, and finally Integrator::rescale(). */
 
 #ifndef GEAR_QUAT_STEP_CONTROL_H
 #define GEAR_QUAT_STEP_CONTROL_H
@@ -35,10 +37,11 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Largest values with which a shrinking step is stable (tests/unit/test_step_control.cpp).
+/// Largest number of values with which a shrinking step is stable
+/// (tests/unit/test_step_control.cpp).
 constexpr int VARIABLE_MOST = 10;
 
-/// Local errors of a step with one value fewer, the present number, one more.
+/// Local errors of a step with one value fewer, the present number, and one more.
 struct StepErrors {
   double fewer = 0.0, same = 0.0, more = 0.0;
 
@@ -50,14 +53,14 @@ struct StepErrors {
   }
 };
 
-/// As a length: of the position, or of the orientation times the reach of the body, whichever is
-/// larger.  As an energy: how much of it the errors of position, orientation and velocities may be
-/// worth.
+/// Errors as a length: of the position, or of the orientation times the reach of the body,
+/// whichever is larger.  Errors as an energy: the largest change of energy due to the errors of
+/// position, orientation and velocities.
 struct StepMeasures {
   StepErrors length, energy;
   struct {
     double length = 0.0, energy = 0.0;
-  } rounding;    ///< what rounding of its state may make of those of a body
+  } rounding;    ///< part of the errors that is due to rounding of the state of a body
 
   void include(const StepMeasures &other)
   {
@@ -66,7 +69,7 @@ struct StepMeasures {
   }
 };
 
-/// Histories with a trial row; the scheme's number of values is the present one.
+/// Histories with a trial row; the scheme has the present number of values.
 class VariableOrder {
  public:
   explicit VariableOrder(const Scheme &scheme) : scheme(scheme), n(scheme.values())
@@ -79,8 +82,8 @@ class VariableOrder {
     chain = {adams_moulton(n - 1).value(), adams_moulton(n).value(), adams_moulton(n + 1).value()};
   }
 
-  /// Integrator::correct(), and the errors of the step that ends with it.  reach: how far a
-  /// rotation by a radian moves what is far out on the body.
+  /// Integrator::correct(), and the errors of the completed step.  reach: displacement of the
+  /// outermost part of the body per radian.
   Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
                      const Load &load, const double *axes, double *rows, StepMeasures &found) const
   {
@@ -99,8 +102,8 @@ class VariableOrder {
     return row;
   }
 
-  /// The errors of the step of a history that was corrected since last_row() and has a trial row
-  /// after the call.  axes: of any pose of the step.
+  /// The errors of the step of a history that was corrected since last_row().  After the call it
+  /// has a trial row.  axes: of any pose of the step.
   StepMeasures errors(const Integrator &integrator, const RigidBody &body, double reach,
                       const Load &load, const double *axes, const Row &before, double *rows) const
   {
@@ -123,7 +126,7 @@ class VariableOrder {
     return errors;
   }
 
-  /// Errors of a step from the rows alone, those of the present number of values.
+  /// Errors of a step from the rows alone, for the present number of values.
   StepMeasures measures(const Integrator &integrator, const RigidBody &body, double reach,
                         const Load &load, const double *axes, const double *rows) const
   {
@@ -134,9 +137,9 @@ class VariableOrder {
     return errors;
   }
 
-  /// What the error of a chain in this step would do to a body of this mass in thermal motion: an
-  /// error d of the friction makes the error h d v of a velocity v.  A cold body hardly feels the
-  /// friction, so its own errors do not show whether the chain is accurate.  left_out: of the
+  /// The effect of the error of a chain in this step on a body of this mass in thermal motion: an
+  /// error d of the friction causes the error h d v of a velocity v.  A cold body is insensitive to
+  /// the friction, so its own errors do not show whether the chain is accurate.  left_out: by the
   /// polynomial through 2K.
   StepMeasures errors_of_chain(const Chain::LeftOut &left_out, double kt, double mass,
                                double h) const
@@ -150,7 +153,7 @@ class VariableOrder {
     return found;
   }
 
-  /// One value more.  After the call the rows are those of n + 1 values; their trial row is zero
+  /// One value more.  After the call there are the rows of n + 1 values; the trial row is zero
   /// until the next step.
   void add_row(double *rows) const
   {
@@ -175,12 +178,12 @@ class VariableOrder {
   }
 
  private:
-  /// k! gamma / the part of a_k that is measured: of poses, and of velocities times the step.  In
-  /// the second formulation velocities have a value less.
+  /// k! gamma divided by the measured part of a_k: for poses, and for velocities times the step.
+  /// In the second formulation velocities have one value less.
   struct Weights {
     double pose, rate;
   };
-  /// What an error of a unit costs in energy; rates: of the velocities times the step.
+  /// Change of energy per unit of error; rates: of the velocities times the step.
   struct Worth {
     double position, rate, angle, turn[3], q[4], norm2, twice_kinetic;
   };
@@ -189,7 +192,7 @@ class VariableOrder {
   Scheme scheme;
   int n;
   Weights fewer, same, more;
-  StepErrors chain;    ///< weights of what a polynomial of 2K leaves out
+  StepErrors chain;    ///< weights of the terms not represented by a polynomial of 2K
 
   Weights weights(int k, double factorial) const
   {
@@ -203,8 +206,8 @@ class VariableOrder {
     return std::max(length(x), 2.0 * reach * std::sqrt(dot4(q, q)));
   }
 
-  /// Forces belong to rounded coordinates, so the energy is off by as much times the force, however
-  /// short the steps are.
+  /// Forces are evaluated at rounded coordinates, so the energy has an error of the rounding times
+  /// the force, for any length of the step.
   double rounding_of_sites(double reach, const double *rows) const
   {
     const double *x = rows + Scheme::POSITION;
@@ -246,8 +249,8 @@ class VariableOrder {
   }
 };
 
-/// Steps made so far with the present number of values, with the present length, and since one had
-/// to be repeated.
+/// Steps made so far with the present number of values, with the present length, and since the last
+/// repetition.
 struct Steady {
   int values = 0, step = 0, repeat = 0;
 
@@ -259,50 +262,52 @@ struct Steady {
   static constexpr int FOR_LONG = 1000000;
 };
 
-/// The law.  A step whose error exceeds eps fails; where the host can undo it, it asks repeat() for
-/// another length.
+/// The control law.  A step whose error exceeds eps fails; if the host can undo it, it calls
+/// repeat() for another length.
 class StepControl {
  public:
-  static constexpr double SAFETY = 0.9;    ///< of a step that would have the error eps
-  /// Limits of new step / old step, as a factor of the last row where the step grows: errors in the
-  /// rows grow with them.  The step grows once in as many steps as there are values.
+  static constexpr double SAFETY = 0.9;    ///< relative to a step with the error eps
+  /// Limits of new step / old step.  For a growing step the limit is a factor of the last row,
+  /// since the errors of the rows grow with it.  The step grows once in as many steps as there are
+  /// values.
   static constexpr double GROWTH_OF_LAST_ROW = 25.0, SHRINK = 0.5, SHRINK_FAILED = 0.2;
   static double largest_growth(int values)
   {
     return std::pow(GROWTH_OF_LAST_ROW, 1.0 / (values - 1));
   }
-  /// Between these ratios nothing changes, so that rows are not rescaled in every step.
+  /// Between these ratios nothing changes, to avoid rescaling the rows in every step.
   static constexpr double NO_SHORTER = 0.97, NO_LONGER = 1.1;
-  /// The part of the longest step that the motion allows, wherever a step has to be changed for it.
+  /// Factor applied to the longest step that the motion allows, whenever a step is limited by it.
   static constexpr double CLEAR_OF_LIMIT = 0.9;
-  /// What an other number of values has to promise: an error smaller by this.
+  /// A change of the number of values requires an error that is smaller by this factor.
   static constexpr double FEWER = 2.0, MORE = 3.0;
-  /// Or, where the step stays, one more value a step that could be longer by this.
+  /// If the step does not change, another value requires that the step could be longer by this
+  /// factor.
   static constexpr double CLEARLY_MORE = 1.02;
-  /// A step that fails within so few of another one has rows that are of no use.
+  /// If a step fails within this many steps of another failure, the rows are unusable.
   static constexpr int SOON = 4;
-  /// With ten values, errors of rows grow if each step is shorter by 0.78 to 0.88, and fade if by
-  /// this or more.  So a step that holds is not made much shorter within so many steps of another
-  /// change.
+  /// With ten values, errors of rows grow if each step is shorter by a factor of 0.78 to 0.88, and
+  /// decay for this factor and larger ones.  An accepted step is therefore not made much shorter
+  /// within this many steps of another change.
   static constexpr double GENTLE = 0.95;
   static constexpr int FADED = 5;
 
-  double eps = 0.0;                        ///< error a step may make, a length or an energy
+  double eps = 0.0;                        ///< accepted error of a step, a length or an energy
   bool energy = false;                     ///< which of the two
   double shortest = 0.0, longest = 0.0;    ///< limits of the step; longest 0: none
   int fewest = 0, most = 0;                ///< limits of the number of values
-  /// Orders of the step by which the error falls short of the number of values: 1 for energies in
-  /// the second formulation, whose velocities have a value less.
+  /// Difference between the number of values and the order of the error in the step: 1 for energies
+  /// in the second formulation, whose velocities have one value less.
   int short_of = 0;
 
   struct Next {
     double step;    ///< with the sign of the present one
     int values;
-    bool held;    ///< would be shorter, but for the limit
+    bool held;    ///< limited from below; it would be shorter
   };
 
-  /// Errors of a body by the part of eps that rounding leaves: no step is short enough to remove
-  /// it.
+  /// Errors of a body that count, after subtraction of rounding: no step is short enough to remove
+  /// rounding.
   StepMeasures counted(StepMeasures of_body) const
   {
     StepErrors &errors = energy ? of_body.energy : of_body.length;
@@ -322,7 +327,7 @@ class StepControl {
     return !(error <= eps) && std::fabs(step) > shortest;
   }
 
-  /// Length and values of another try.
+  /// Length and number of values of another try.
   Next repeat(double error, double step, int values, const Steady &steady) const
   {
     const bool again = steady.repeat < SOON;
@@ -334,8 +339,9 @@ class StepControl {
     return {std::copysign(size, step), again && values > fewest ? values - 1 : values, false};
   }
 
-  /// step, values: of the step that made these errors.  farthest: the step is not longer, whatever
-  /// the errors are.  Numbers of values are compared by what they allow as far as a step may grow.
+  /// step, values: of the step with these errors.  farthest: upper limit of the step, for any
+  /// errors.  Numbers of values are compared by the steps that they allow, up to the limit of
+  /// growth.
   Next next(const StepErrors &errors, double step, int values, const Steady &steady,
             double farthest = std::numeric_limits<double>::infinity()) const
   {
@@ -382,19 +388,20 @@ class StepControl {
   double low_order_step(double jerk, double speed, double mass) const
   {
     if (!energy) return std::cbrt(6.0 * eps / jerk);
-    const double rest = std::sqrt(2.0 * eps / mass);    // a change of velocity worth eps from rest
+    const double rest = std::sqrt(2.0 * eps / mass);    // change of velocity with the energy eps,
+                                                        // from rest
     return std::sqrt(2.0 / jerk * std::min(rest, speed > 0.0 ? eps / (mass * speed) : rest));
   }
 
-  /// By what factor the step may change so that the error becomes eps.
+  /// The factor of the step for which the error becomes eps.
   double allowed(double error, int values) const
   {
     return error > 0.0 ? std::pow(eps / error, 1.0 / (values - short_of)) : HUGE_VAL;
   }
 };
 
-/// Steps of equal length, at most the given one, that end exactly at a time that is not far: a step
-/// that is cut at the end alone would be of no use for the next ones.  way: to that time, positive.
+/// Equal steps, at most as long as the given one, that end exactly at a time in the near future: a
+/// shortened last step would be useless for the following steps.  way: time until then, positive.
 inline double even_step(double step, double way)
 {
   constexpr double FAR = 10.0, ROUNDING = 1.0e-9;

@@ -30,17 +30,17 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// label of an atom: that of its body, or one of these
+// labels of an atom: the label of its body, or one of these
 
 static constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
 
-static constexpr double WORTH = 0.01;    // share of pairs that is worth a line of the script
+static constexpr double WORTH = 0.01;    // minimum share of pairs for a line of the script
 
 static constexpr char WITH_KSPACE[] =
     " (LAMMPS then warns of exclusions with a kspace style, whose share in that energy stays: a "
     "constant, too)";
 
-static constexpr int MOST_GROUPS = 8 * sizeof(int);    // a bit of the mask each
+static constexpr int MOST_GROUPS = 8 * sizeof(int);    // one bit of the mask each
 
 namespace {
 
@@ -61,7 +61,7 @@ class Surroundings : protected Pointers {
   const Fleet &fleet;
   const Bodies &bodies;
   Ownership &ownership;
-  const std::vector<double> label;    ///< of atoms, ghosts too: what moves them
+  const std::vector<double> label;    ///< of atoms, including ghosts: the style that moves them
 
   std::vector<double> labels() const;
   void visit_pairs(const std::function<void(int, int, int)> &visit) const;
@@ -87,7 +87,7 @@ std::vector<double> Surroundings::labels() const
   return made;
 }
 
-/// Entries of the lists that pair styles run over in every step: two atoms, and how they are bonded.
+/// The pairs of atoms in the neighbor lists of pair styles in every step, and their bonds.
 void Surroundings::visit_pairs(const std::function<void(int, int, int)> &visit) const
 {
   for (int which = 0; which < neighbor->nlist; ++which) {
@@ -104,7 +104,7 @@ void Surroundings::visit_pairs(const std::function<void(int, int, int)> &visit) 
   }
 }
 
-/// All pairs, those between atoms that nothing moves, those within bodies.
+/// Counts all pairs, pairs between atoms that nothing moves, and pairs within bodies.
 std::array<bigint, 3> Surroundings::count_pairs() const
 {
   bigint here[3] = {0, 0, 0};
@@ -116,8 +116,8 @@ std::array<bigint, 3> Surroundings::count_pairs() const
   return over_ranks(MPI_SUM, here, world);
 }
 
-/// Atoms that nothing moves, atoms of the fix group in no body, those of the latter that nothing
-/// moves.
+/// Counts atoms that nothing moves, atoms of the fix group in no body, and atoms that belong to
+/// both kinds.
 std::array<bigint, 3> Surroundings::count_atoms() const
 {
   bigint here[3] = {0, 0, 0};
@@ -174,7 +174,7 @@ std::vector<std::string> Surroundings::advice() const
   return text;
 }
 
-/// Atoms of a body that overlap may have an energy beside which all others are rounding.
+/// The energy of overlapping atoms of a body may be so large that the rest is lost in rounding.
 void Surroundings::warn_of_own_pairs() const
 {
   if (!exerts_forces(force->pair, force->pair_style) || meets_itself()) return;
@@ -201,7 +201,7 @@ void Surroundings::warn_of_own_pairs() const
                  exclude_own());
 }
 
-/// True if a body may be so large that it meets its own periodic image: that moves it.
+/// True if a body may be large enough to interact with its own periodic image, which moves it.
 bool Surroundings::meets_itself() const
 {
   double extent = 0.0;
@@ -214,7 +214,7 @@ bool Surroundings::meets_itself() const
   return false;
 }
 
-/// An existing group of atoms that nothing moves, the largest, or one to be made.
+/// An existing group of atoms that nothing moves, the largest, or a new one.
 std::string Surroundings::exclude_still(bigint still) const
 {
   std::string best;

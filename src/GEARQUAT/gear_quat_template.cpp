@@ -30,10 +30,10 @@ Molecule **GearQuat::find_template(LAMMPS *lmp, const std::string &template_id)
 }
 
 /* ----------------------------------------------------------------------
-   a molecule comes
+   insertion of a molecule
 ------------------------------------------------------------------------- */
 
-/// The stated molecule at its place, turned.
+/// The molecule of the template at its position, rotated.
 static GivenBody given_at(const StatedMolecule &stated, const Insertion &at)
 {
   const double q[4] = {at.quat[1], at.quat[2], at.quat[3], at.quat[0]};

@@ -22,7 +22,7 @@ using namespace GearQuat;
 static constexpr double SAME = 1.0e-6;       // numbers of a file have few digits
 static constexpr double ROUNDED = 1.0e-3;    // of a moment
 
-/// As the molecule has it now: what it states, and sums over its atoms for the rest.
+/// The present properties of the molecule: given ones, and sums over its atoms for the rest.
 static StatedMolecule present(Molecule *molecule)
 {
   molecule->compute_center();
@@ -46,7 +46,7 @@ static bool differ(const StatedMolecule &a, const StatedMolecule &b, double size
   return any;
 }
 
-/// Empty if a body can be so.
+/// Empty if a body can have these properties.
 static std::string fault_of(const StatedMolecule &stated, double size)
 {
   double moments[3], axes[9];
@@ -76,7 +76,7 @@ static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::st
   molecule->masstotal = mass;
   std::copy_n(com, 3, molecule->com);
   std::copy_n(tensor, 6, molecule->itensor);
-  present(molecule);    // what follows from them
+  present(molecule);    // compute dependent quantities
 
   const double size = std::max(molecule->maxextent, molecule->molradius);
   stated.differs = differ(stated, summed, size);
@@ -88,8 +88,8 @@ static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::st
   if (lmp->comm->me == 0)
     utils::logmesg(
         lmp,
-        "Fix gear/quat: molecule template {} states mass, center of mass or inertia other "
-        "than those of its atoms; bodies are as it states (mass {:g}, atoms {:g})\n",
+        "Fix gear/quat: molecule template {} gives a mass, center of mass or inertia "
+        "that differ from its atoms; bodies use the given values (mass {:g}, atoms {:g})\n",
         template_id, stated.mass, summed.mass);
   return stated;
 }

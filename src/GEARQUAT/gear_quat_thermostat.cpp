@@ -19,16 +19,16 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// a kinetic energy that is less than this part of what is subtracted from it is rounding
+// a kinetic energy smaller than this part of the subtracted energy is due to rounding
 
 static constexpr double ROUNDING_OF_ENERGY = 1.0e-13;
 
-// a part of a kinetic energy that is below this fraction of its target for as many damping times is
-// not about to become warm: chains of its own make it grow by several powers of ten in that time
+// a part of the kinetic energy that stays below this fraction of its target for this many damping
+// times will not become warm: a separate chain increases it by several powers of ten in that time
 
 static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
 
-// a friction that is taken implicitly, times the step: a weaker one is as accurate without
+// limit for an implicit friction, times the step: a weaker one is equally accurate if explicit
 
 static constexpr double STRONG = 1.0e-3;
 
@@ -100,13 +100,13 @@ Friction Thermostat::friction_of(int ibody) const
   return found;
 }
 
-/// Of kinetic energies: the same in all steps with one target.
+/// Scale of kinetic energies: the same in all steps with one target.
 double Thermostat::scale() const
 {
   return ExactSum::scale_of(std::max(1.0, freedoms[TRANSLATION] + freedoms[ROTATION]) * line.kt);
 }
 
-/// Adds what the chains have of the kinetic energy of a body.
+/// Adds the part of the kinetic energy of a body that the chains act on.
 void Thermostat::add_kinetic(int ibody, const double *velocity, const double *omega_body,
                              Sums &sums) const
 {
@@ -211,7 +211,7 @@ void Thermostat::end_passes(const Integrator &)
   for (auto &chain : chains) chain.conclude();
 }
 
-/// A kinetic energy that is no number belongs to a body that is lost, which ends the run.
+/// A non-finite kinetic energy is due to an unstable body, which ends the run.
 void Thermostat::advance(int chain, double twice_kinetic, double h, int values)
 {
   if (!std::isfinite(twice_kinetic)) return;
@@ -237,7 +237,7 @@ Chain::LeftOut Thermostat::left_out(double h, int values) const
   return all;
 }
 
-/// Every body moves with the temperature of the target, as far as the chains' errors matter.
+/// The errors of the chains are weighted as if every body had the target temperature.
 void Thermostat::errors(const VariableOrder &order, double h, int values,
                         const Include &include) const
 {

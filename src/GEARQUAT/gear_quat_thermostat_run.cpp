@@ -3,9 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword temp, before a run: degrees of freedom, the target of its steps, whether the friction is
-   going to be too strong, and the start of the chains.  And in a step in which degrees of freedom
-   change. */
+/* Keyword temp, before a run: degrees of freedom, the target of its steps, a test for too strong
+   friction, and the start of the chains.  Also steps in which degrees of freedom change. */
 
 #include "gear_quat_thermostat.h"
 
@@ -27,15 +26,15 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// targets that differ by less are the same but for rounding
+// targets that differ by less than this are equal up to rounding
 
 static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
-// a motion of all bodies together with less kinetic energy, in kT, is not worth a line
+// a common motion of all bodies with less kinetic energy than this, in kT, is not reported
 
 static constexpr double TOLD_MOTION = 0.01;
 
-// a friction that is nearly too strong, as a part of the limit
+// a friction that is nearly too strong, relative to the limit
 
 static constexpr double SAFE = 0.8;
 
@@ -45,7 +44,7 @@ static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
    degrees of freedom
 ------------------------------------------------------------------------- */
 
-/// In two dimensions bodies turn about z alone, whatever keywords say.
+/// In two dimensions bodies turn only about z, for any keywords.
 bool Thermostat::is_thermostatted(int ibody, Part part, int component) const
 {
   if (part == TRANSLATION) return total.belongs(ibody, component);
@@ -68,8 +67,8 @@ void Thermostat::count_freedoms()
   changes = bodies.changes();
 }
 
-/// Degrees of freedom by the present forces.  constant: the directions, as in a record, in which
-/// the total momentum was constant so far.
+/// Determines degrees of freedom from the present forces.  constant: the directions, as in a
+/// record, in which the total momentum was constant so far.
 void Thermostat::judge(double constant)
 {
   total.restore(constant);
@@ -118,7 +117,7 @@ void Thermostat::follow_changes(double h)
    before a run
 ------------------------------------------------------------------------- */
 
-/// Of the last step that was made.
+/// Of the last completed step.
 Thermostat::Setting Thermostat::setting() const
 {
   if (waiting) return made;
@@ -138,7 +137,7 @@ void Thermostat::begin_run(bool begins, double h)
   note_friction();
   refuse_nothing(false);
   refuse_friction(h);
-  // a single pass meets the friction of the prediction only
+  // a single pass uses only the predicted friction
   const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
   if (acts() && words.damp < fewest * std::fabs(update->dt) && comm->me == 0)
     error->warning(
@@ -173,7 +172,7 @@ const char *Thermostat::reason_to_start_anew() const
                : nullptr;
 }
 
-/// Space-frame components of a torque belong to no part of the rotational energy.
+/// Space-frame components of a torque do not correspond to a part of the rotational energy.
 void Thermostat::refuse_masks() const
 {
   if (domain->dimension == 2) return;
@@ -192,7 +191,7 @@ void Thermostat::refuse_masks() const
                partly);
 }
 
-/// Friction warms nothing that stands still.
+/// Friction cannot warm bodies at rest.
 void Thermostat::refuse_nothing(bool meets_all) const
 {
   if (!acts() || (words.may_wait && counted == 0)) return;
@@ -200,7 +199,7 @@ void Thermostat::refuse_nothing(bool meets_all) const
     error->all(FLERR,
                "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
                "torque leave on, so they have no temperature");
-  // what may still turn out to be heat
+  // the part that may still become heat
   const double common = meets_all ? 0.0 : total.twice_energy();
   if (meets_all && freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0) return;
   const char *missing =
@@ -214,10 +213,10 @@ void Thermostat::refuse_nothing(bool meets_all) const
 }
 
 /* ----------------------------------------------------------------------
-   is the friction going to be stronger than the bodies can follow?
+   test for a friction that is too strong for the bodies
 ------------------------------------------------------------------------- */
 
-/// Ends the run if so.
+/// Ends the run if it is too strong.
 void Thermostat::refuse_friction(double h) const
 {
   const double limit = most_friction / std::fabs(h);
@@ -245,7 +244,7 @@ void Thermostat::refuse_friction(double h) const
 
 double Thermostat::friction_ahead(double h) const
 {
-  constexpr double WEAK = 0.1;    // times the step: any method follows it
+  constexpr double WEAK = 0.1;    // times the step: weak enough for any method
   const double size = std::fabs(h);
   double strongest = 0.0;
   for (int c = 0; c < (int) chains.size(); ++c) {
@@ -259,7 +258,7 @@ double Thermostat::friction_ahead(double h) const
   return strongest;
 }
 
-/// The longest step that the friction, and the damping time, permit.
+/// The longest step permitted by the friction and the damping time.
 double Thermostat::longest_step() const
 {
   if (!acts()) return std::numeric_limits<double>::infinity();
@@ -306,11 +305,11 @@ void Thermostat::watch_friction(double h)
 }
 
 /* ----------------------------------------------------------------------
-   the start: kinetic energies at the nodes of the bodies' collocation, and the chains that they
-   drive from the start to each node
+   the start: kinetic energies at the nodes of the bodies' collocation, which drive the chains from
+   the start to each node
 ------------------------------------------------------------------------- */
 
-/// Chains that have never moved begin near to where they go.
+/// Chains that have never moved start near their stationary state.
 void Thermostat::settle_fresh(double h)
 {
   for (size_t c = 0; c < chains.size(); ++c)

@@ -17,7 +17,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// A length that no motion can have is refused before a run, by the look at the scene.
+/// An invalid length is refused earlier, by the checks before a run.
 double TimeStep::follow()
 {
   const double next = update->dt;
@@ -29,7 +29,7 @@ double TimeStep::follow()
 
 void TimeStep::change(double step)
 {
-  update->update_time();    // in every step: the sum has the same rounding in two runs as in one
+  update->update_time();    // in every step: rounding then does not depend on the number of runs
   if (step != update->dt) set(step);
 }
 
@@ -38,12 +38,12 @@ void TimeStep::change_begun(double step)
   const bigint before = update->ntimestep - 1;
   update->atime += (before - update->atimestep) * update->dt;
   update->atimestep = before;
-  --update->ntimestep;    // a dump in intervals of time may not be due any more when this step ends
+  --update->ntimestep;    // a dump in intervals of time may not be due at the new end of the step
   set(step);
   ++update->ntimestep;
 }
 
-/// As fix dt/reset changes it; this fix learns of it with all others.
+/// Changes the step as fix dt/reset does; this fix is notified together with all others.
 void TimeStep::set(double step)
 {
   changing = true;

@@ -3,12 +3,11 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The length of the step, of histories and of LAMMPS.  This class alone changes either.
+/* The length of the step, of histories and of LAMMPS.  Only this class changes either of them.
 
-   Histories have the length of the last step, or of the one that has begun.  LAMMPS' own may differ
-   from it after the command timestep, and then histories follow: whoever holds them rescales them
-   by follow().  With keyword tolerance it is the other way round: change() and change_begun() tell
-   LAMMPS and all fixes. */
+   Histories have the length of the last step, or of the present one.  After the command timestep
+   LAMMPS' length may differ; then the histories follow: their owner rescales them by follow().
+   With keyword tolerance, change() and change_begun() set the length of LAMMPS and of all fixes. */
 
 #ifndef LMP_GEAR_QUAT_TIME_STEP_H
 #define LMP_GEAR_QUAT_TIME_STEP_H
@@ -23,27 +22,27 @@ class TimeStep : protected Pointers {
 
   /// Of the histories; 0 before the first run.
   double length() const { return h; }
-  /// Of the last step that was made; 0 before the first one.
+  /// Of the last completed step; 0 before the first one.
   double made() const { return last; }
   /// A step of this length begins.
   void begin() { last = h; }
-  /// LAMMPS' step becomes that of the histories.  Returns the new length by the old one, 0 if
-  /// nothing changes; infinite if there was none.
+  /// Adopts LAMMPS' step for the histories.  Returns the ratio of new to old length, 0 for no
+  /// change; infinite if there was none.
   double follow();
-  /// True while fixes are told of a length that change() has set.
+  /// True while fixes are notified of a length set by change().
   bool is_changing() const { return changing; }
 
-  // LAMMPS' step, and all that depends on it in other fixes and in this one
+  // LAMMPS' step, and dependent quantities in other fixes and in this one
 
   /// After the present step.
   void change(double step);
-  /// Of the present step, which has begun with another length: the time so far was made of the
+  /// Changes the present step, which has begun with another length: the time so far consists of the
   /// steps before it.
   void change_begun(double step);
 
   // times
 
-  /// When the present step began, and when it ends.
+  /// The times at the beginning and at the end of the present step.
   double beginning() const;
   double end() const;
 

@@ -57,9 +57,9 @@ void Tolerance::refuse_scene() const
           other->id, other->style);
     if (same && same->tuned)
       error->all(FLERR,
-                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and tuned "
-                 "coefficients forget a change too slowly; give it corrector gear, or let this fix "
-                 "move its bodies",
+                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and with "
+                 "tuned coefficients errors from a change decay too slowly; give it corrector "
+                 "gear, or let this fix move its bodies",
                  other->id, other->style);
     if (same && comm->me == 0)
       error->warning(FLERR,
@@ -97,7 +97,7 @@ void Tolerance::begin(bool full)
   }
 }
 
-/// The error of the first step, as far as the rows of bodies on this rank tell.
+/// The error of the first step, estimated from the rows of bodies on this rank.
 double Tolerance::first_error() const
 {
   const Integrator integrator(present, update->dt);
@@ -112,8 +112,8 @@ double Tolerance::first_error() const
   return largest;
 }
 
-/// The first step of histories that know no more than the present loads: forces are taken to change
-/// by themselves while a body moves by its own size, or while they accelerate it that far.
+/// The first step of histories with the present loads alone.  Forces are assumed to change by their
+/// own magnitude while a body moves by its size, at its speed or by its acceleration from rest.
 double Tolerance::first_step_of_low_order() const
 {
   double least = std::numeric_limits<double>::infinity();
@@ -167,7 +167,7 @@ void Tolerance::shorten_first_step(bool full)
   tell_of_first_step(instead);
 }
 
-/// instead: the length that LAMMPS had.
+/// instead: the length in LAMMPS.
 void Tolerance::tell_of_first_step(double instead) const
 {
   if (comm->me == 0)
@@ -175,13 +175,13 @@ void Tolerance::tell_of_first_step(double instead) const
                    update->dt, instead);
 }
 
-/// The first fix gear/quat, which starts histories for all before it begins the step.
+/// The first fix gear/quat, which starts the histories of all before it begins the step.
 const Fix *Tolerance::first_mover() const
 {
   return fleet.members.front().fix;
 }
 
-/// A fix that has begun this step when `begins` begins it, null for none.
+/// A fix that has begun this step before `begins` begins it, null for none.
 const Fix *Tolerance::integrated_before(const Fix *begins) const
 {
   for (const auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
@@ -235,7 +235,9 @@ void Tolerance::put_back_begun_step()
 void Tolerance::tell_of_step() const
 {
   if (comm->me == 0)
-    utils::logmesg(lmp, "Fix gear/quat tolerance: goes on with a time step of {:.3g}, not {:.3g}\n",
+    utils::logmesg(lmp,
+                   "Fix gear/quat tolerance: keeping time step {:.3g}; the timestep command "
+                   "({:.3g}) is ignored\n",
                    time_step.length(), update->dt);
 }
 

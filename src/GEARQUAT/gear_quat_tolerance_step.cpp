@@ -3,7 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword tolerance, in a step: errors of all bodies, whether it is repeated, and the next one. */
+/* Keyword tolerance, in a step: errors of all bodies, the test for a repetition, and the next
+   step. */
 
 #include "gear_quat_tolerance.h"
 
@@ -28,26 +29,25 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// no step moves a site by more than this part of the neighbor skin: a force that begins on the way
-// is met before the body is deep in it
+// no step moves a site by more than this part of the neighbor skin, so that the onset of a force is
+// noticed before the body has moved far into its range
 
 static constexpr double PART_OF_SKIN = 0.25;
 
-// and by no more than this part in the steps between two in which lists may be rebuilt
+// limit for the motion between two steps at which lists may be rebuilt
 
 static constexpr double PART_UNSEEN = 0.5;
 
-// a step that has failed so often is not repeated any more
+// a step that has failed this many times is not repeated any more
 
 static constexpr int MOST_TRIES = 40;
 
-// steps that belong to the start; by how many relative standard deviations a step is shorter than
-// the mean that is as short as few others; and how many more of such steps the control has to save
-// to pay
+// steps that belong to the start; a rarely shorter step, in relative standard deviations below the
+// mean; and the smallest excess of fixed steps of that length with which the control pays
 
 static constexpr double UNSETTLED = 100.0, SPREADS = 2.0, LITTLE_GAIN = 0.6;
 
-// the part of a step that counts as no time
+// a smaller part of a step counts as no time
 
 static constexpr double ROUNDING_OF_TIME = 1.0e-6;
 
@@ -116,7 +116,7 @@ void Tolerance::note_correction(const Integrator &integrator, const Coupling &co
   });
 }
 
-/// No site on this rank is faster.
+/// An upper limit for the speeds of sites on this rank.
 double Tolerance::largest_speed() const
 {
   double largest = 0.0;
@@ -128,7 +128,7 @@ double Tolerance::largest_speed() const
   return largest;
 }
 
-/// Steps in which LAMMPS does not ask whether neighbor lists are still right.
+/// Steps in which LAMMPS does not test the neighbor lists.
 double Tolerance::steps_unseen() const
 {
   const double every = neighbor->every;
@@ -136,7 +136,7 @@ double Tolerance::steps_unseen() const
   return every * std::max(1.0, std::ceil(neighbor->delay / every));
 }
 
-/// How far a site may move in a step, infinite if nothing is known of the forces' range.
+/// Maximum displacement of a site in a step, infinite if the range of the forces is unknown.
 double Tolerance::limit_of_motion() const
 {
   double range = neighbor->skin > 0.0 ? neighbor->skin : std::numeric_limits<double>::infinity();
@@ -144,7 +144,7 @@ double Tolerance::limit_of_motion() const
   return range * std::min(PART_OF_SKIN, PART_UNSEEN / steps_unseen());
 }
 
-/// Where nothing moves nothing is known of what a longer step would do.
+/// Without motion the effect of a longer step is unknown.
 double Tolerance::farthest_step(double speed) const
 {
   return speed == 0.0 ? std::fabs(update->dt) : limit_of_motion() / speed;
@@ -192,7 +192,7 @@ void Tolerance::refuse_lost() const
              update->ntimestep);
 }
 
-/// No time would pass in a step below its last digit.
+/// Refuses a step so short that the time would not change.
 void Tolerance::refuse_frozen() const
 {
   const double begun = time_step.beginning();
@@ -255,11 +255,11 @@ double Tolerance::choose(double permitted)
   return next.step;
 }
 
-/// The next time at which a step has to end, infinite if there is none: that of a dump in intervals
-/// of time, or of every_time.  step: positive; now: when it begins.
+/// The next time at which a step has to end, infinite if there is none: a multiple of every_time,
+/// or a dump in intervals of time.  step: positive; now: its beginning.
 double Tolerance::next_output(double step, double now) const
 {
-  const double nearest = now + ROUNDING_OF_TIME * step;    // until then it is of the last step
+  const double nearest = now + ROUNDING_OF_TIME * step;    // earlier times belong to the last step
   double next = std::numeric_limits<double>::infinity();
   if (every_time > 0.0) next = (std::floor(now / every_time) + 1.0) * every_time;
   if (next <= nearest) next += every_time;
@@ -272,8 +272,8 @@ double Tolerance::next_output(double step, double now) const
   return next;
 }
 
-/// Steps of equal length end where output is due within a few steps, the last of them to the last
-/// bit.  now: when the step begins.
+/// Equal steps that end at the next output if it is due within a few steps; the last one ends there
+/// to the last bit.  now: the beginning of the step.
 double Tolerance::even(double step, double now) const
 {
   if (step <= 0.0) return step;
@@ -309,7 +309,7 @@ void Tolerance::order_output()
   if (every_time > 0.0 && is_even(update->atime + update->dt, update->dt)) announce_output();
 }
 
-/// The step that ends now, in the sums behind the outputs.
+/// Adds the present step to the sums for the outputs.
 void Tolerance::note_step(double size, int values)
 {
   record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
@@ -334,8 +334,8 @@ void Tolerance::end_run()
   const double more = mean / shortest - 1.0;
   if (n > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
     utils::logmesg(lmp,
-                   "Fix gear/quat tolerance: the step has changed little, and the control does not "
-                   "pay here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
+                   "Fix gear/quat tolerance: the step has changed little, and step control gains "
+                   "little here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
                    "steps with Gear's coefficients, and tuned ones permit longer steps\n",
                    shortest, 100.0 * more);
   settled = Settled();
@@ -359,7 +359,7 @@ void Repeat::begin_run()
   told = why;
 }
 
-/// Why steps cannot be repeated, empty if they can.
+/// The reason why steps cannot be repeated, empty if they can.
 std::string Repeat::reason() const
 {
   if (!forces->reason().empty()) return forces->reason();
@@ -371,8 +371,8 @@ std::string Repeat::reason() const
 
 void Repeat::evaluate(int vflag)
 {
-  modify->clearstep_compute();             // what computes found belongs to other positions
-  const bigint now = update->ntimestep;    // as Integrate::ev_set() has set them
+  modify->clearstep_compute();             // results of computes are from other positions
+  const bigint now = update->ntimestep;    // as set by Integrate::ev_set()
   const int eflag = (update->eflag_global == now ? ENERGY_GLOBAL : 0) |
       (update->eflag_atom == now ? ENERGY_ATOM : 0);
   forces->evaluate(eflag, vflag);

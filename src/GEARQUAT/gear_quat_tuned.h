@@ -5,35 +5,36 @@
 
 /* Tuned coefficients of the corrector.
 
-   Gear's numbers put every spurious root of the corrector at zero.  Order does not ask for this: of
-   the N coefficients it determines one (first-order equation, c_0) or two (second-order, c_0 and
-   c_1), and one is 1 by definition.  The others, the tail, are free, and the table below chooses
-   them for rigid bodies.  Its tails are decimals; what order determines is solved for from them.
+   Gear's coefficients put every spurious root of the corrector at zero.  The order does not require
+   this: of the N coefficients it determines one (first-order equation, c_0) or two (second-order,
+   c_0 and c_1), and one is 1 by definition.  The others, the tail, are free.  The table below has
+   tails optimized for rigid bodies, as decimals; the coefficients that the order determines are
+   computed from them.
 
-   Five values have a second set, for quaternions of any length (gear_quat_any_norm.h), where steps are
-   long and the drift of the energy counts.  With c = (0, 17/24, 1, 7/12, 7/24) the method is symmetric
-   in time and has no drift, but it remembers noise for ever.  The set of the table has spurious roots
-   of modulus 0.98 and the angle and c_0 of the least drift in liquids (doc/coefficients.md).
+   Five values have a second set, for quaternions of any length (gear_quat_any_norm.h), where steps
+   are long and the energy drift is important.  With c = (0, 17/24, 1, 7/12, 7/24) the method is
+   symmetric in time and has no drift, but noise does not decay.  The set of the table has spurious
+   roots of modulus 0.98 and the angle and c_0 of the least drift in liquids (doc/coefficients.md).
 
-   Order conditions.  Let the right side be given in time and its solution be a polynomial of degree
-   N, y_N = h^N/N! y^(N) = 1 for all times.  The rows then deviate from the exact ones, y_j = exact
-   + e_j, by an e_j that is steady above row q - 1 (q: the order of the equation), with a steady
-   residual r:
+   Order conditions.  Let the right-hand side be a given function of time and the solution a
+   polynomial of degree N, y_N = h^N/N! y^(N) = 1 for all times.  The rows then deviate from the
+   exact ones, y_j = exact + e_j, by an e_j that is constant above row q - 1 (q: the order of the
+   equation), with a constant residual r:
 
      row N-1           c_(N-1) r = N
      rows N-2 ... q    sum_(k>j) binom(k, j) e_k = binom(N, j) - c_j r,   e_q = 0
      row q-1           its deviation does not grow if
                        c_(q-1) r = binom(N, q-1) - sum_(k>=q) binom(k, q-1) e_k             (1)
 
-   For q = 1 this makes order N.  For q = 2 it makes order N - 1, and one degree more determines
-   c_0.  With y_(N+1) = 1, y_N = (N + 1) n after n steps, deviations and residual are (N + 1) e_j n
-   + b_j and (N + 1) r n + s:
+   For q = 1 this gives order N.  For q = 2 it gives order N - 1, and a polynomial of one degree more
+   determines c_0.  With y_(N+1) = 1, y_N = (N + 1) n after n steps, deviations and residual are (N
+   + 1) e_j n + b_j and (N + 1) r n + s:
 
      row N-1           c_(N-1) s = binom(N+1, N-1) + (N + 1) e_(N-1)
      rows N-2 ... 2    sum_(k>j) binom(k, j) b_k = binom(N+1, j) - c_j s + (N + 1) e_j,   b_2 = 0
-     row 1             goes astray by g = sum_(k>=2) k b_k - (N + 1) + c_1 s in a step
+     row 1             deviates by g = sum_(k>=2) k b_k - (N + 1) + c_1 s in a step
 
-   and the predicted position, the one that forces see, has the right second derivative if
+   and the predicted position, at which forces are evaluated, has the correct second derivative if
 
      c_0 r = 1 - sum_(k>=2) e_k - g/(N + 1)                                                 (2)
 
@@ -55,8 +56,8 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Columns that forces drive: momenta and angular velocities, in the second formulation positions
-/// and quaternions.  Columns that integrate others: positions and quaternions of the first one.
+/// Columns driven by forces: momenta and angular velocities, in the second formulation positions
+/// and quaternions.  Columns that integrate others: positions and quaternions of formulation first.
 enum class Columns { DRIVEN, INTEGRATED };
 
 // ---------------------------------------------------------------------------------------------
@@ -66,7 +67,7 @@ enum class Columns { DRIVEN, INTEGRATED };
 /// Steady deviations of the rows, for coefficients of an equation of order q = 1 or 2.
 class SteadyDeviations {
  public:
-  /// c: N coefficients, of which those from row q on are used.
+  /// c: N coefficients; only those from row q on are used.
   SteadyDeviations(int q, const std::vector<long double> &c) :
       q(q), n((int) c.size()), residual(n / c[n - 1]), e(descend(c, n, residual, {}))
   {
@@ -75,7 +76,7 @@ class SteadyDeviations {
   /// c_(q-1) by Eq. (1).
   long double consistent() const { return (binomial(n, q - 1) - sum(q - 1, e)) / residual; }
 
-  /// By how much row q - 1 goes astray in a step for y_(N+1) = 1; c: with c_(q-1).
+  /// Deviation of row q - 1 per step for y_(N+1) = 1; c: with c_(q-1).
   long double growth(const std::vector<long double> &c) const
   {
     const long double s = (binomial(n + 1, n - 1) + (n + 1) * e[n - 1]) / c[n - 1];
@@ -88,8 +89,8 @@ class SteadyDeviations {
     return (1.0L - sum(0, e) - growth(c) / (n + 1)) / residual;
   }
 
-  /// What a step adds to row 0 of a second-order equation beyond the exact motion from where it
-  /// began, as a part of the residual.
+  /// The change of row 0 of a second-order equation in a step, minus the exact change from the same
+  /// initial values, relative to the residual.
   long double local_error(long double c0) const { return c0 + (sum(0, e) - 1.0L) / residual; }
 
  private:
@@ -113,7 +114,7 @@ class SteadyDeviations {
     return total;
   }
 
-  /// Rows N-2 ... q for an exact solution of this degree; slope: e where deviations grow, or empty.
+  /// Rows N-2 ... q for an exact solution of this degree; slope: e if deviations grow, or empty.
   Rows descend(const Rows &c, int degree, long double residual, const Rows &slope) const
   {
     Rows d(n, 0.0L);
@@ -129,15 +130,15 @@ class SteadyDeviations {
 // the table
 // ---------------------------------------------------------------------------------------------
 
-/// What is free of the coefficients of a kind of columns.
+/// The free coefficients of a kind of columns.
 struct TunedSet {
   static constexpr long double SOLVED = std::numeric_limits<long double>::quiet_NaN();
 
   Formulation formulation;
-  Columns columns;                  ///< that have these
+  Columns columns;                  ///< with these coefficients
   std::vector<long double> tail;    ///< c_2 ... c_(N-1) of formulation first, c_3 ... of second
-  long double c0 = SOLVED;          ///< where order does not determine it
-  bool any_norm = false;            ///< replaces another set where quaternions have any length
+  long double c0 = SOLVED;          ///< if it is not determined by the order
+  bool any_norm = false;            ///< replaces another set if quaternions have any length
 
   bool solves_c0() const { return std::isnan(c0); }
   int values() const { return (int) tail.size() + (formulation == Formulation::FIRST ? 2 : 3); }
@@ -222,13 +223,13 @@ inline const TunedSet *tuned_set(const Scheme &scheme, Columns columns)
   return tuned_set(scheme.formulation, scheme.values(), columns, scheme.any_norm());
 }
 
-/// Whether there are tuned coefficients for this number of values.
+/// True if there are tuned coefficients for this number of values.
 inline bool has_tuned(Formulation formulation, int values)
 {
   return tuned_set(formulation, values, Columns::DRIVEN) != nullptr;
 }
 
-/// These numbers, from the smallest on.
+/// These numbers in ascending order.
 inline std::vector<int> tuned_values(Formulation formulation)
 {
   std::vector<int> values;
@@ -237,8 +238,8 @@ inline std::vector<int> tuned_values(Formulation formulation)
   return values;
 }
 
-/// Tuned sets of the second formulation with a c_0 of their own let positions be off by a bounded
-/// h^(N-1), which does not grow along the way.
+/// For tuned sets of the second formulation with a separate c_0, positions have an error of h^(N-1)
+/// that is bounded in time.
 inline int Scheme::order() const
 {
   if (!tuned) return (velocity_c0 ? values() - 1 : values()) | 1;
@@ -247,14 +248,14 @@ inline int Scheme::order() const
 }
 
 // ---------------------------------------------------------------------------------------------
-// what the integrator works with
+// coefficients for the integrator
 // ---------------------------------------------------------------------------------------------
 
 /// Coefficients of all columns, and the weight of residuals in the local error.
 struct CorrectorCoefficients {
   using Array = std::array<double, MAX_VALUES>;
 
-  Array driven = {}, integrated = {};    ///< see Columns; second: driven alone
+  Array driven = {}, integrated = {};    ///< see Columns; second: only driven
   double weight2;                        ///< of the residuals of positions and quaternions, squared
 
   /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned
@@ -282,8 +283,8 @@ struct CorrectorCoefficients {
     return (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
   }
 
-  /// First-order equation: h^N y^(N) has the weight that it has with Gear's coefficients, or more
-  /// if the error, of one order higher, is larger than Gear's.
+  /// First-order equation: h^N y^(N) has the same weight as with Gear's coefficients, or a larger
+  /// one if the error, of one order higher, is larger than Gear's.
   static double fill_tuned(const Scheme &scheme, Columns columns, Array &c)
   {
     const int n = scheme.values();

@@ -25,11 +25,11 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// bits of vflag in LAMMPS: each pair is tallied, or forces on owned and ghost atoms
+// bits of vflag in LAMMPS: pairs are tallied, or forces on owned and ghost atoms
 
 static constexpr int PAIR_BY_PAIR = 1, BY_FORCES = 2;
 
-// exact sums hold terms up to 2^20 units: overlaps have large forces
+// exact sums represent terms up to 2^20 units, since overlaps have large forces
 
 static constexpr double LARGE = 1048576.0;    // 2^20
 
@@ -104,7 +104,7 @@ void MolecularVirial::measure(double **f, double energy)
   for (int k = 0; k < 6; ++k) {
     std::copy_n(all_arms.begin() + 2 * k, 2, of_arms[k].limbs);
     virial[k] = all_styles[PLACES[k]] - of_arms[k].value(scale);
-    if (force->kspace) virial[k] += force->kspace->virial[PLACES[k]];    // that of all ranks
+    if (force->kspace) virial[k] += force->kspace->virial[PLACES[k]];    // the sum over all ranks
     virial[k] /= force->mvv2e;
   }
   if (!force->pair || !force->pair->tail_flag) return;

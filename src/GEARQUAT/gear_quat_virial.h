@@ -7,8 +7,8 @@
 
      W_ab = sum over pairs of F_a (R_ij)_b = V_ab - sum_i (f_i)_a (d_i)_b,      a <= b,
 
-   where V is the virial of LAMMPS' styles for atoms, and f_i and d_i are force and arm of site i.  It
-   needs no forces of constraint.  LAMMPS computes V in the steps that are asked for. */
+   where V is the virial of LAMMPS' styles for atoms, and f_i and d_i are force and arm of site i.
+   It needs no constraint forces.  LAMMPS computes V in the requested steps. */
 
 #ifndef LMP_GEAR_QUAT_VIRIAL_H
 #define LMP_GEAR_QUAT_VIRIAL_H
@@ -27,23 +27,23 @@ namespace LAMMPS_NS::GearQuat {
 
 class MolecularVirial : protected Pointers {
  public:
-  /// Adds compute ID_virial, by which LAMMPS knows the steps that need a virial.
+  /// Adds compute ID_virial, which requests the virial from LAMMPS.
   MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites);
   ~MolecularVirial() override;
 
-  /// LAMMPS computes V in that step.
+  /// LAMMPS will compute V in that step.
   void request(bigint step) const;
-  /// Of the forces f on atoms that were evaluated last, with V.  energy: of all bodies, roughly.
+  /// Computes it from V and the latest forces f on atoms.  energy: of all bodies, approximate.
   /// Collective.
   void measure(double **f, double energy);
   /// In units of mass times velocity squared.
   const Upper &value() const { return virial; }
   void restore(const Upper &saved) { virial = saved; }
-  /// True if some atoms have torques of their own, which V does not know.  Collective.
+  /// True if some atoms have torques of their own, which V does not include.  Collective.
   bool has_torques() const;
-  /// True if a compute other than that of this class asks for a virial in this step.
+  /// True if another compute requests a virial in this step.
   bool others_ask(bigint step) const;
-  /// What vflag has to be when forces are evaluated.
+  /// The vflag for the evaluation of forces.
   int flag() const;
 
  private:

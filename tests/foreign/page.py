@@ -1,4 +1,4 @@
-"""What `tests/run foreign --all` found, as doc/foreign.md; its prose is in foreign.md.j2."""
+"""The results of `tests/run foreign --all` as doc/foreign.md; its text is in foreign.md.j2."""
 
 import datetime
 import os
@@ -43,7 +43,7 @@ def by_result(outcomes):
 
 
 def not_kept(outcomes):
-    """List of what fix rigid does not keep either."""
+    """Styles whose effect fix rigid does not reproduce either."""
     excused = (o for o in outcomes if o.excused and o.result != "DIFFERS")
     return "\n".join(sorted({f"* `{o.name}` ({'; '.join(o.excused)})" for o in excused}))
 
@@ -113,7 +113,7 @@ def decks_table(verdicts):
 
 
 def measured_at(commits):
-    """The commit of all parts, or that of each."""
+    """The commit of all parts, or the one of each part."""
     if len(set(commits)) == 1:
         return f"Commit {commits[0]}"
     parts = zip(("Other styles", "variants", "decks", "unit tests"), commits)

@@ -1,7 +1,7 @@
-"""What is written behind each fix and compute style of LAMMPS to try it in the scene of scene.py.
+"""The arguments of each fix and compute style of LAMMPS for a test in the deck of scene.py.
 
-A style that `lmp -h` lists and that is neither in FIXES or COMPUTES nor matched by NOT_TRIED makes
-the run fail: a new style is seen.  In arguments <N> is a number of steps; it is multiplied when the
+If `lmp -h` lists a style that is neither in FIXES or COMPUTES nor matched by NOT_TRIED, the
+run fails: new styles are detected.  In arguments <N> is a number of steps; it is multiplied when the
 time step is divided.
 """
 
@@ -11,9 +11,9 @@ from functools import partial
 
 from . import scene
 
-#: what another style does to atoms
+#: effect of another style on atoms
 PASSIVE = "passive"  # nothing
-FORCE = "force"  # adds forces that have no memory and no chance in them
+FORCE = "force"  # adds forces that depend on the present state only
 CHANCE = "chance"  # draws random numbers in each step
 COUNT = "count"  # acts in certain steps: compared with fix rigid at the same step
 MOVES = "moves"  # changes velocities, places or masses of bodies' atoms behind the fix's back
@@ -174,7 +174,7 @@ FIXES = {
         Try(COUNT, "5 1 whole 1234", "free", before=WHOLE),
         Try(COUNT, "5 1 whole 1234 molecule yes", "bodies", before=WHOLE),
     ),
-    # atoms come, go and jump, and forces with them: tuned coefficients remember that for some steps
+    # atoms are inserted, removed and moved, so forces jump: with tuned coefficients the errors last for some steps
     "gcmc": count("10 2 2 4 1234 1.0 -0.5 0.2", group="free", floor=2e-4),
     "bond/break": (Try(COUNT, "5 1 10.0"), Try(COUNT, "5 1 0.51")),
     "bond/create": count("5 4 4 0.5 1"),

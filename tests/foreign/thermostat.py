@@ -82,7 +82,7 @@ def freedoms(atoms, vector, directions, bodies):
 
 
 def faults(answer, conserves, bodies=Bodies()):
-    """Texts of what is wrong in an answer; ``conserves`` if the other style's energy is in the total."""
+    """The errors in a result, as texts; ``conserves`` if the other style's energy is in the total."""
     found = []
     for before, moment in zip(("begin", *MOMENTS), MOMENTS):
         atoms, vector = answer.noted[moment], answer.noted[f"vector-{moment}"]

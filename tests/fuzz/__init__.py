@@ -1,4 +1,4 @@
-"""Broken input, in process: it makes the fix neither crash nor hang, and what is refused has a message.
+"""Malformed input, in process: the fix neither crashes nor hangs, and refuses input with a message.
 
 `tokens.py` breaks words, `arguments.py` and `infile.py` make inputs, `worker.py` feeds them to LAMMPS,
 `campaign.py` runs workers and counts.

@@ -1,4 +1,4 @@
-"""What most tests of the fix run with: either formulation, and a box of rigid water."""
+"""Fixtures of most tests of the fix: either formulation, and a box of rigid water."""
 
 from __future__ import annotations
 
@@ -22,5 +22,5 @@ def fix(formulation: str) -> str:
 
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
-    """27 molecules over all boundaries, in the folder where the test's LAMMPS runs."""
+    """27 molecules across all boundaries, in the folder where the test's LAMMPS runs."""
     return water_data(tmp_path / "data.water")

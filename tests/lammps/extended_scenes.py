@@ -1,4 +1,4 @@
-"""Rigid bodies with spheres, ellipsoids, lines, triangles and dipoles, and what they amount to."""
+"""Rigid bodies with spheres, ellipsoids, lines, triangles and dipoles, and equivalent points."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from scenes import empty_box
 from scipy.spatial.transform import Rotation
 
-# what an atom style needs to dump, and what its points need so that they are points
+# columns of a dump for each atom style, and settings that make its points pointlike
 STYLES = {
     "sphere": ("", "omegax omegay omegaz", "set atom {i} mass {m:.17g}\nset atom {i} diameter 0"),
     "ellipsoid": (
@@ -35,7 +35,7 @@ STYLES = {
 
 
 def words(*values) -> str:
-    """Numbers of a command, with all their digits."""
+    """Numbers of a command, with all digits."""
     return " ".join(f"{value:.17g}" for value in values)
 
 
@@ -52,7 +52,7 @@ def matrix(wxyz) -> np.ndarray:
 
 @dataclass
 class Atom:
-    """A site; ``commands`` shape atom {i}, ``moments`` and ``turn`` are those of its own frame."""
+    """A site; ``commands`` shape atom {i}; ``moments`` and ``turn`` refer to its own frame."""
 
     x: tuple
     mass: float
@@ -71,13 +71,13 @@ AXIS, TURN = (1.0, -2.0, 0.5), 70.0
 
 
 def shaped(x, mass, moments, turn, *shape):
-    """An atom that is ``set`` each of the words of ``shape``."""
+    """An atom with a ``set`` command for each of the words of ``shape``."""
     commands = "\n".join(f"set atom {{i}} {w}" for w in (shape[0], f"mass {words(mass)}", *shape[1:]))
     return Atom(x, mass, commands, moments, turn)
 
 
 def quat(axis, degrees: float) -> str:
-    """Words of ``set quat``, which takes the axis as it is."""
+    """Words of ``set quat``, with any axis."""
     return f"quat {words(*(np.array(axis) / np.linalg.norm(axis)), degrees)}"
 
 
@@ -119,7 +119,7 @@ def equivalent_points(atom: Atom) -> list[Atom]:
 
 
 def center(atoms: list[Atom]) -> np.ndarray:
-    """Of mass, shape (3,)."""
+    """Center of mass, shape (3,)."""
     return np.average([a.x for a in atoms], axis=0, weights=[a.mass for a in atoms])
 
 
@@ -133,7 +133,7 @@ def inertia(atoms: list[Atom]) -> np.ndarray:
 
 
 def body_deck(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0), **settings) -> str:
-    """A deck of one body that moves as such; settings: those of `deck`."""
+    """A deck of one rigidly moving body; settings: as in `deck`."""
     _, columns, point = STYLES[style]
     lines = [f"create_atoms 1 single {words(*a.x)}" for a in atoms]
     for i, a in enumerate(atoms, 1):
@@ -150,9 +150,9 @@ def body_deck(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0), **settin
 
 
 def deck(style, atoms, columns="", fix="single", pair="", before="", after="", **settings) -> str:
-    """A deck of bodies in a box; columns: more of the dump, settings: those of scenes.empty_box."""
+    """A deck of bodies in a box; columns: more of the dump, settings: as in scenes.empty_box."""
     outputs, own_columns, _ = STYLES[style]
-    # no temperature: a single body has too few degrees of freedom for it
+    # no temperature: a single body has too few degrees of freedom
     known = dict(masses="", exclude="", energies="pe", dt=0.005, steps=400)
     if settings.get("dimension") == 2:
         known |= dict(boundary="f f p", box="-20 20 -20 20 -0.5 0.5")

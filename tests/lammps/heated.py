@@ -1,4 +1,4 @@
-"""Bodies with a thermostat, and what tests compare of them."""
+"""Bodies with a thermostat, and comparisons used by several tests."""
 
 import re
 
@@ -7,7 +7,7 @@ from scenes import BEFORE, FORMULATIONS, MOLECULES, one_after_the_other, placed
 KINDS = ["total", "separate"]
 TEMP = "temp 0.5 0.5 0.3"
 END = "write_dump all custom {}.end id x y z vx vy vz modify sort id format float %.17g"
-#: twice the kinetic energy of the motion that all atoms have in common
+#: twice the kinetic energy of the common motion of all atoms
 COMMON = "variable common equal mass(all)*(vcm(all,x)^2+vcm(all,y)^2+vcm(all,z)^2)\n"
 COLUMNS = "econserve ecouple f_move f_move[9] f_move[10] f_move[11] f_move[12] f_move[13] f_move[14]"
 
@@ -39,10 +39,10 @@ def continued(deck, file):
 
 
 def whole_and_halves(deck_of, first, second, span=""):
-    """A run, its two halves, and the second one from a restart file; span: behind the steps of a half.
+    """A run, its two halves, and the second one from a restart file; span: text after the steps of a half.
 
-    ``deck_of(words, kind, commands)`` makes a deck. Returns decks, and a name for every three; the atoms
-    at the end are in NAME-whole.end, NAME-halves.end and NAME-again.end.
+    ``deck_of(words, kind, commands)`` makes a deck. Returns decks, and a name for every three; the final
+    atoms are in NAME-whole.end, NAME-halves.end and NAME-again.end.
     """
     decks, names = [], []
     for formulation in FORMULATIONS:

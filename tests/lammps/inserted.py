@@ -1,4 +1,4 @@
-"""Bodies that come and go in a liquid."""
+"""Insertion and removal of bodies in a liquid."""
 
 import numpy as np
 from scenes import SPCE, last_frame, water, water_data
@@ -7,7 +7,7 @@ N = 27  # molecules of the water box
 
 
 def liquid(lmp, commands, fix="gear/quat molecule", before="", dt=1.0):
-    """A deck of 27 molecules in a box of 13.5 Angstrom, a femtosecond a step."""
+    """A deck of 27 molecules in a box of 13.5 Angstrom, with steps of a femtosecond."""
     (lmp.folder / "molecule.spce").write_text(SPCE)
     data = water_data(lmp.folder / "data.water", spacing=4.5)
     return water(data, fix, dt=dt, steps=20, before=before, run=commands)

@@ -1,4 +1,4 @@
-"""The first case of the paper with other endings of its deck."""
+"""The first case of the paper with other final commands."""
 
 import numpy as np
 from scenes import restarted, whole_deck
@@ -7,7 +7,7 @@ COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketran
 
 
 class Case1:
-    """The paper's first case with another end of the deck."""
+    """The paper's first case with other final commands."""
 
     def __init__(self, lmp, examples, formulation, ranks=1):
         self.lmp, self.ranks = lmp, ranks
@@ -31,7 +31,7 @@ WORDS = 20
 
 
 def bodies_in(path):
-    """Lines of the file as numbers, (bodies, 20); the first line that counts says how many."""
+    """Lines of the file as numbers, (bodies, 20); the first line other than a comment is the count."""
     lines = [line for line in path.read_text().splitlines() if line.partition("#")[0].strip()]
     table = np.array([[float(word) for word in line.split()] for line in lines[1:]])
     assert table.shape == (int(lines[0]), WORDS)

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Restart files of a release, and what this release makes of them: tests/lammps/restarts/RELEASE.
+"""Restart files of a release, and their continuations by this release: tests/lammps/restarts/RELEASE.
 
     .venv/bin/python tests/lammps/make_restarts.py 1.2.3               # with the build of this tree
-    .venv/bin/python tests/lammps/make_restarts.py 1.2.3 --lmp FILE    # with that of another one
+    .venv/bin/python tests/lammps/make_restarts.py 1.2.3 --lmp FILE    # with another build
 
-When a release is made, the first line keeps its files for the tests of all later ones
-(doc/release.md); remove the folder first if it was made before.  Files of earlier releases are not
-made anew.  WRITE and CONTINUE are what they were made with: later releases may add cases, but have
-to leave these as they are.
+For each release, the first command saves its files for the tests of all later ones
+(doc/release.md); remove the folder first if it exists.  Files of earlier releases are not
+made again.  WRITE and CONTINUE are the decks that made them: later releases may add cases, but must
+not change these.
 
-For each case there is a restart file, and `continued.json` has the thermo output of a run that goes
-on from it, and the last frame, all with every digit.
+For each case there is a restart file. `continued.json` has the thermo output and the last frame of a run
+that continues from it, with all digits.
 """
 
 import argparse
@@ -103,16 +103,16 @@ write_dump all custom {{name}}.end id xu yu zu vx vy vz modify sort id format fl
 
 
 def words_of(name):
-    """What differs between the decks."""
+    """Differences between the decks."""
     words, columns = CASES[name]
     scene, dt = (SPHERES, 0.002) if name == "spheres" else (WATER, 0.2)
     return dict(name=name, words=words, columns=columns, scene=scene, dt=dt)
 
 
 def go_on(lmp, name, file, change=lambda words: words, ranks=1):
-    """Output of a run that continues from a file, as the stored one is, and what was said.
+    """Output of a run that continues from a file, with the steps of the stored one, and its messages.
 
-    change: of the words of the fix.
+    change: applied to the words of the fix.
     """
     parts = words_of(name)
     parts["words"] = change(parts["words"])
@@ -127,7 +127,7 @@ def main():
     parser.add_argument("--lmp", type=Path, default=running.TREE_BUILD / "lmp")
     arguments = parser.parse_args()
     folder = FOLDER / arguments.release
-    folder.mkdir(parents=True)  # what a release has written stays
+    folder.mkdir(parents=True)  # files of a release are never overwritten
     continued = {}
     with tempfile.TemporaryDirectory() as work:
         environment = running.OPEN_MPI_ENVIRONMENT

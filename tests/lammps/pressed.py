@@ -1,4 +1,4 @@
-"""Scenes with a barostat: asymmetric trimers in a smooth potential, in a periodic box."""
+"""Simulations with a barostat: asymmetric trimers in a smooth potential, in a periodic box."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ thermo {thermo}
 {run}
 write_dump all custom {end} id x y z vx vy vz ix iy iz modify sort id format float %.17g
 """
-#: repulsive, and at the cutoff rounding; the first is not in the tree
+#: repulsive, with a negligible jump at the cutoff; the first is not in the tree
 GAUSS = "pair_style gauss 2.2\npair_coeff * * -4.0 8.0"
 REPULSIVE = "pair_style buck 2.6\npair_coeff * * 60.0 0.08 0.0"
 
@@ -40,7 +40,7 @@ REPULSIVE = "pair_style buck 2.6\npair_coeff * * 60.0 0.08 0.0"
 def trimers(
     path: Path, n: int = 2, spacing: float = 2.0, flat: bool = False, images=(0, 0, 0), change=None
 ) -> Path:
-    """A data file of n^3 (flat: n^2) turned trimers without total momentum, all in the first image of the box.
+    """A data file of n^3 (flat: n^2) rotated trimers without total momentum, all in the first image of the box.
 
     ``change``: an upper triangular matrix that deforms box and centers, not molecules; the box is triclinic then.
     ``images``: flags of molecules, times -1, 0 or 1 in turn.
@@ -81,7 +81,7 @@ def trimers(
 
 
 def pressed(words: str, dt: float = 0.005, steps: int = 100, **settings) -> str:
-    """A deck; ``words`` follow `fix move all gear/quat molecule`; settings: those of DECK, and ``data``."""
+    """A deck; ``words`` follow `fix move all gear/quat molecule`; settings: as in DECK, and ``data``."""
     data = settings.pop("data", "data.trimers")
     known = dict(dimension=3, boundary="p p p", processors="* * *", box=f"read_data {data}", pair=GAUSS)
     known |= dict(before="", after="", thermo=max(1, steps // 10), run=f"run {steps}", end="end.dump")
@@ -89,12 +89,12 @@ def pressed(words: str, dt: float = 0.005, steps: int = 100, **settings) -> str:
 
 
 def frame(path: Path) -> np.ndarray:
-    """Places, velocities and image flags of a written dump, shape (atoms, 9)."""
+    """Positions, velocities and image flags of a dump, shape (atoms, 9)."""
     return np.loadtxt(path, skiprows=9)[:, 1:]
 
 
 def ends(lmp, decks: list[str], ranks: int = 1):
-    """Runs decks one after the other: the last table of each, and where its atoms end."""
+    """Runs decks one after the other: the last table and the final atoms of each."""
     decks = [deck.replace("end.dump", f"end{k}.dump") for k, deck in enumerate(decks)]
     result = lmp.succeed(one_after_the_other(decks), ranks=ranks)
     frames = [frame(lmp.folder / f"end{k}.dump") for k in range(len(decks))]
@@ -102,13 +102,13 @@ def ends(lmp, decks: list[str], ranks: int = 1):
 
 
 def distances(rows: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Of the sites of each trimer in a frame, with these edges of the box."""
+    """Distances between the sites of each trimer in a frame, with these edges of the box."""
     sites = (rows[:, :3] + rows[:, 6:9] * box).reshape(-1, 3, 3)
     return np.linalg.norm(sites - np.roll(sites, 1, axis=1), axis=2)
 
 
 def scaled_water(path, factors):
-    """The water of scenes.py with centers and edges times these factors."""
+    """The water of scenes.py with centers and edges scaled by these factors."""
     water_data(path, spacing=3.3, shift=1.65)
     text = path.read_text()
     head, _, rest = text.partition("Atoms # full\n")
@@ -136,13 +136,13 @@ def scaled_water(path, factors):
     return path
 
 
-# The second derivative jumps at the cutoff, which is between two shells of neighbors of small molecules.
+# The second derivative is discontinuous at the cutoff, which is between two shells of neighbors of small molecules.
 PAIR = "pair_style lj/sf/dipole/sf 2.42\npair_coeff * * 0.3 1.2"
 LENGTH, SIZE, MOMENT, TARGET, TIME = 4.0, 0.3, 0.8, -0.25, 0.2
 
 
 def dipoles(factors=(1.0, 1.0, 1.0), moment=MOMENT, tilt=0.0, motion=True) -> str:
-    """Commands that make eight turned trimers with charges and a dipole each; factors scale box and centers."""
+    """Commands that make eight rotated trimers with charges and a dipole each; factors scale box and centers."""
     rng = np.random.default_rng(20261126)
     factors, edges = np.array(factors), LENGTH * np.array(factors)
     sites = SIZE * (ARMS - MASSES @ ARMS / MASSES.sum())
@@ -166,7 +166,7 @@ def dipoles(factors=(1.0, 1.0, 1.0), moment=MOMENT, tilt=0.0, motion=True) -> st
 
 
 def dipoles_deck(words, dt=0.005, **scene):
-    """A run of TIME, or of no step if the bodies are at rest."""
+    """A run of TIME, or without steps if the bodies are at rest."""
     steps = round(TIME / dt) if scene.get("motion", True) else 0
     text = pressed(words, dt, steps, box=dipoles(**scene), pair=PAIR)
     return text.replace("atom_style molecular", "atom_style hybrid molecular sphere dipole")

@@ -1,4 +1,4 @@
-"""Scenes that several tests of the fix run: two small molecules, and boxes of rigid water."""
+"""Simulations used by several tests of the fix: two small molecules, and boxes of rigid water."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 FORMULATIONS = ["first", "second"]
 
-# Two rigid triangles in a box, no forces: for everything about commands and life cycles.
+# Two rigid triangles in a box without forces: for tests of commands and life cycles.
 TWO_MOLECULES = """
 units lj
 atom_style molecular
@@ -40,7 +40,7 @@ def two_molecules(fix="molecule", before="", after="run 2", boundary="p p p") ->
     return TWO_MOLECULES.format(fix=fix, before=before, after=after, boundary=boundary)
 
 
-# Bodies in an empty box; what acts on them is in {before} and {after}.
+# Bodies in an empty box; forces on them are in {before} and {after}.
 PLACED = """
 units {units}
 atom_style {style}
@@ -68,7 +68,7 @@ dump_modify poses sort id format float %.17g
 
 
 def empty_box(atoms: str, steps=100, **settings) -> str:
-    """A deck of bodies that the commands ``atoms`` make; settings: those of PLACED."""
+    """A deck of bodies made by the commands ``atoms``; settings: as in PLACED."""
     known = dict(units="lj", style="molecular", dimension=3, boundary="f f f", group="all")
     known |= dict(box="-20 20 -20 20 -20 20", room="", masses="mass * 1.0", before="", after="")
     known |= dict(fix="gear/quat molecule", dt=0.01, thermo=steps, columns="", run=f"run {steps}")
@@ -84,7 +84,7 @@ def placed(bodies, velocities=(), kinds=None, molecules=None, **settings) -> str
     """A deck with bodies whose sites are in rows of three numbers.
 
     ``velocities``: a row for each atom, ``kinds``: its type, ``molecules``: an ID for each body;
-    settings: those of empty_box.
+    settings: as in empty_box.
     """
     lines, count = [], 0
     for k, sites in enumerate(bodies):
@@ -99,8 +99,8 @@ def placed(bodies, velocities=(), kinds=None, molecules=None, **settings) -> str
     return empty_box("\n".join(lines), **settings)
 
 
-# SPC/E; dense enough to migrate and to collide, cut off smoothly so that rounding stays rounding.
-# The list has every pair: without the exclusion the sum of a molecule's own forces is rounding too.
+# SPC/E; dense enough to migrate and collide, with a smooth cutoff so that rounding errors stay small. The list has all pairs: without the
+# exclusion the sum of a molecule's internal forces would add rounding.
 WATER = """
 units {units}
 atom_style full
@@ -191,7 +191,7 @@ def random_rotation(rng: np.random.Generator) -> np.ndarray:
 def write_data(path: Path, box: list[str], masses, atoms: list, velocities: list) -> Path:
     """A data file of atom style full.
 
-    ``box``: lines of the header; ``atoms``: rows of molecule, type, charge, place and image flags;
+    ``box``: lines of the header; ``atoms``: rows of molecule, type, charge, position and image flags;
     ``velocities``: rows of three numbers.
     """
 
@@ -214,9 +214,9 @@ def water_data(
     tilt: float = 0.0,
     shift: float = 0.0,
 ) -> Path:
-    """n^3 rigid SPC/E molecules near a lattice, turned and thrown at random, over all boundaries.
+    """n^3 rigid SPC/E molecules near a lattice, with random orientations and velocities, across all boundaries.
 
-    Shifted by half a spacing (Angstrom) all of them lie inside of the box.
+    If shifted by half a spacing (Angstrom), all of them are inside the box.
     """
     rng = np.random.default_rng(20251121)
     scale = UNITS[units]
@@ -243,7 +243,7 @@ def water_data(
 
 
 def flat_water_data(path: Path, n: int = 4, spacing: float = 3.3) -> Path:
-    """n^2 rigid SPC/E molecules that lie in the plane z = 0, over all boundaries, for `dimension 2`."""
+    """n^2 rigid SPC/E molecules in the plane z = 0, across all boundaries, for `dimension 2`."""
     rng = np.random.default_rng(20251122)
     length = n * spacing
     atoms, velocities = [], []
@@ -280,9 +280,9 @@ def water(
     skin=0.9,
     dumped="",
 ) -> str:
-    """A deck; dt in fs whatever the units, ``columns`` of thermo behind the usual ones.
+    """A deck; dt in fs for all units, ``columns`` of thermo after the usual ones.
 
-    With other pairs (style and coefficients) and units lj it serves for any data of atom style full.
+    With other pairs (style and coefficients) and units lj it can be used for any data of atom style full.
     """
     scale = UNITS["real" if units == "lj" else units]
     if fix.startswith("gear/quat"):
@@ -315,7 +315,7 @@ def water(
 
 
 def restarted(deck: str, restart: Path | str) -> str:
-    """The same deck that reads a restart file instead of its data and pair coefficients."""
+    """The same deck with a restart file instead of its data and pair coefficients."""
     lines = []
     for line in deck.splitlines():
         if line.startswith("read_data"):
@@ -328,14 +328,14 @@ def restarted(deck: str, restart: Path | str) -> str:
 
 
 def one_after_the_other(decks) -> str:
-    """Independent decks in one start of MPI, which costs more than a small run does."""
+    """Independent decks in a single MPI job, whose start takes longer than a small run."""
     return "\nclear\n".join(decks)
 
 
 def frames(path: Path) -> dict[int, np.ndarray]:
     """Step -> columns of each frame of a dump, shape (rows, columns), sorted as dumped.
 
-    A last frame that the end of the run has cut off is left out.
+    A last frame that is incomplete is omitted.
     """
     found = {}
     for text in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
@@ -361,30 +361,30 @@ def difference(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def largest_change(table, column: str = "Econserve") -> float:
-    """Of a column of thermo output, from its first value."""
+    """Largest change of a column of thermo output from its first value."""
     values = np.array(table[column])
     return np.abs(values - values[0]).max()
 
 
 def expect(found: np.ndarray, right: np.ndarray, tolerance: float) -> None:
-    """Equal, relative to the largest number, and numbers that are 1 % off would not be."""
+    """Equal within the tolerance, relative to the largest number; numbers 1 % off are not."""
     scale = np.abs(right).max()
     assert np.abs(found - right).max() < tolerance * scale
     assert np.abs(1.01 * found - right).max() > 100 * tolerance * scale
 
 
 def last_numbers(path: Path, count: int) -> np.ndarray:
-    """The last numbers of a file, such as those that fix ave/time wrote, shape (count,)."""
+    """The last numbers of a file, such as those written by fix ave/time, shape (count,)."""
     return np.array(path.read_text().split()[-count:], float)
 
 
 def assigned(values: dict) -> str:
-    """Commands that give index variables of a deck their values; variables outlive `clear`."""
+    """Commands that set index variables of a deck; variables persist through `clear`."""
     return "".join(f'variable {k} delete\nvariable {k} index "{v}"\n' for k, v in values.items())
 
 
 def whole_deck(path: Path, files=("data", "infile")) -> str:
-    """An example's deck with its includes written out and its files named from anywhere."""
+    """An example's deck with its includes expanded and absolute names of files."""
     lines = []
     for line in path.read_text().splitlines():
         if line.startswith("include "):
@@ -397,7 +397,7 @@ def whole_deck(path: Path, files=("data", "infile")) -> str:
     return text
 
 
-# Three triangles and a dumbbell that attract each other and hold together; nothing is cut off.
+# Three triangles and a dumbbell that attract each other and stay together; there is no cutoff.
 MOLECULES = [
     [(0.0, 0.0, 0.0), (0.7, 0.0, 0.1), (0.0, 0.6, 0.2)],
     [(2.0, 0.3, 0.0), (2.5, 0.9, 0.1), (2.6, 0.0, 0.6)],

@@ -1,4 +1,4 @@
-"""Scenes whose step follows the error, and what they print."""
+"""Simulations with step control, and their output."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def off(run, column="v_total"):
     return np.abs(run[column] - run[column][0]).max()
 
 
-# Two molecules that meet out of free flight.
+# Two molecules that collide after free flight.
 TRIANGLE = np.array([(0, 0, 0), (1, 0, 0), (0, 1.2, 0.1)])
 TWO = [TRIANGLE - [15, 0, 0], TRIANGLE + [15, 0.3, 0.2]]
 TOWARDS = [(2, 0, 0)] * 3 + [(-2, 0, 0)] * 3

@@ -1,4 +1,4 @@
-"""The words that set the accuracy (values, passes, compensate) and the errors the fix reports."""
+"""The keywords of the accuracy (values, passes, compensate) and the errors reported by the fix."""
 
 import re
 
@@ -34,7 +34,7 @@ def errors(result, row=-1):
 def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, formulation, values):
     result, x = liquid(f"formulation {formulation} corrector gear values {values}")
     found = re.search(r"start of order (\d+) from (\d+) force evaluations", result.output)
-    # the switch of the forces has kinks, and high derivatives end there
+    # the switching function of the forces has kinks, which limit the derivatives
     full, kinks = values + (values % 2 == 0), "forces vary in jumps" in result.output
     assert int(found[1]) == (min(full, 8) if kinks else full)
     assert not kinks or values > 6
@@ -52,7 +52,7 @@ PRESET = {"second": f"values 6 {GEAR} c0 velocity", "first": f"values 5 {GEAR} m
 
 @pytest.mark.parametrize("formulation", PRESET)
 def test_the_preset_of_the_paper_is_its_keywords(liquid, formulation):
-    """To the last bit, and words that are stated come first, wherever they stand."""
+    """To the last bit; given keywords take precedence at any position."""
     fix, words = f"formulation {formulation}", PRESET[formulation]
     same = {name: liquid(f"{fix} {more}")[1] for name, more in (("preset", "preset paper"), ("words", words))}
     assert (same["preset"] == same["words"]).all()
@@ -87,7 +87,7 @@ def test_estimates_fall_with_the_power_of_the_step(cage, formulation, values, co
     coarse, fine = (cage(dt, **words) for dt in (0.1, 0.05))
     assert np.log2(coarse / fine) == pytest.approx([values] * 4, abs=within)
     other = cage(0.0505, **words)
-    assert (np.abs(other / fine - 1.01**values) < 0.006 * values).all()  # 1 % shows
+    assert (np.abs(other / fine - 1.01**values) < 0.006 * values).all()  # 1 % is detected
     assert coarse[0] == coarse[1] and coarse[2] == coarse[3]  # one body: largest is rms
 
 
@@ -97,7 +97,7 @@ def test_estimates_fall_with_the_number_of_values(cage):
 
 
 def test_estimates_of_many_bodies(liquid):
-    """The largest is not the rms, and ranks do not matter."""
+    """The largest is not the rms, and the number of ranks does not matter."""
     one, four = (errors(liquid("values 6", ranks=ranks)[0]) for ranks in (1, 4))
     assert (one[[0, 2]] > one[[1, 3]]).all()
     assert (one[[0, 2]] < one[[1, 3]] * np.sqrt(27)).all()
@@ -106,7 +106,7 @@ def test_estimates_of_many_bodies(liquid):
 
 
 def test_estimates_outlive_a_run(liquid):
-    """The first line of a run repeats what the last step of the run before has told."""
+    """The first line of a run repeats the errors of the last step of the previous run."""
     result, _ = liquid("values 6", run="run 10\nrun 10")
     before, after = result.thermo[-2], result.thermo[-1]
     for word in ERRORS.split():
@@ -114,7 +114,7 @@ def test_estimates_outlive_a_run(liquid):
 
 
 def test_passes_change_orientations_only_through_the_same_forces(liquid):
-    """The price of a pass is no force evaluation, and passes converge."""
+    """A pass requires no force evaluation, and passes converge."""
     runs = {n: liquid(f"values 6 passes {n} start zero", steps=1, dt=2.0) for n in (1, 2, 3, 9)}
     frames = {n: frame for n, (_, frame) in runs.items()}
     assert "force evaluations" not in runs[2][0].output
@@ -128,18 +128,18 @@ def test_passes_change_orientations_only_through_the_same_forces(liquid):
 
 @pytest.mark.parametrize("after", ["values 8", "values 6 compensate yes"])
 def test_a_restart_with_another_history_says_so(liquid, lmp, after):
-    """Eight rows: values 8, or values 6 and two carries; one must not be taken for the other."""
+    """Eight rows: values 8, or values 6 and two carries; the formats must not be confused."""
     before = {"values 8": "values 6 compensate yes", "values 6 compensate yes": "values 8"}[after]
     liquid(before, run="run 10\nwrite_restart half.restart")
     deck = water("data.water", f"gear/quat molecule {after}", dt=0.5, steps=10)
     result = lmp.succeed(restarted(deck, "half.restart"))
     assert "with other settings of values, compensate; poses" in result.output
-    assert "start of order" in result.output  # it starts anew
+    assert "start of order" in result.output  # a new start
 
 
 @pytest.mark.parametrize("before, after", [("gear", "tuned"), ("tuned", "gear")])
 def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
-    """A warning names both; with the same one nothing is said."""
+    """A warning names both; with the same corrector there is no message."""
     _, whole = liquid(f"corrector {before} values 8", steps=40)
     liquid(f"corrector {before} values 8", run="run 20\nwrite_restart half.restart")
     for corrector in (before, after):
@@ -156,7 +156,7 @@ def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
 
 @pytest.mark.parametrize("formulation, values", LADDER)
 def test_values_without_tuned_coefficients_are_refused(lmp_wheel, formulation, values):
-    """And those that the list of keywords names are not; with Gear's all are accepted."""
+    """So are numbers missing in the list of keywords; with Gear's all are accepted."""
     deck = two_molecules("molecule formulation {} corrector {} values {}", after="run 0")
     named = keywords.table()["values"].tuned[formulation]
     assert lmp_wheel.succeed(deck.format(formulation, "gear", values)).output
@@ -169,7 +169,7 @@ def test_values_without_tuned_coefficients_are_refused(lmp_wheel, formulation, v
 
 
 def test_jumping_forces_are_told(lmp_wheel, examples):
-    """A plain cut-off: no polynomial passes through a jump, and the start says by how much."""
+    """A plain cutoff: a polynomial does not represent a jump, and the start reports its size."""
     deck = whole_deck(examples / "water" / "in.water")
     for name in ("data.water", "forces."):
         deck = deck.replace(name, str(examples / "water" / name))

@@ -1,4 +1,4 @@
-"""`values auto`: the number that histories get, when it is chosen again, and when it stays."""
+"""`values auto`: the number of values chosen, new choices, and cases in which it is kept."""
 
 import re
 
@@ -11,7 +11,7 @@ SHORT, LONG = 0.5, 2.5  # fs, on either side of the limit in these boxes of wate
 
 
 def chosen(result):
-    """(values, whether corrector gear, reason) of every choice that the log tells."""
+    """(values, whether corrector gear, reason) of every choice in the log."""
     return [(int(n), bool(gear), why) for n, gear, why in CHOSEN.findall(result.stdout)]
 
 
@@ -24,7 +24,7 @@ def run(lmp, data, words="", ranks=1, **settings):
     return lmp.succeed(water(data, f"gear/quat molecule {words}", **settings), ranks=ranks)
 
 
-# --- what is chosen ------------------------------------------------------------------------------
+# --- the choice ----------------------------------------------------------------------------------
 def test_the_step_decides(lmp_tree, data):
     for dt, expected in ((SHORT, 9), (LONG, 5)):
         choices = chosen(run(lmp_tree, data, dt=dt))
@@ -35,7 +35,7 @@ def test_the_step_decides(lmp_tree, data):
 
 
 def test_few_values_need_few_evaluations_of_a_start(lmp_tree, data):
-    """The start learns after two pairs of nodes that five values will do, and ends as theirs does."""
+    """After two pairs of nodes the start finds that five values are sufficient, and ends as with five values."""
     starts = [(dt, words) for dt in (SHORT, LONG) for words in ("", "values 9")]
     counted = re.compile(r"start of order \d+ from (\d+) force evaluations")
     short, short_nine, long, long_nine = (
@@ -77,7 +77,7 @@ def test_random_forces(lmp_tree, data, words, expected):
 
 
 def test_forces_that_depend_on_velocities(lmp_tree, data):
-    """fix viscous takes gamma/mass, of a hydrogen atom as of an oxygen one, from the momentum of a site."""
+    """fix viscous removes gamma/mass of a site's momentum, for hydrogen and oxygen atoms."""
 
     def with_friction(gamma):
         return chosen(run(lmp_tree, data, after=f"fix v all viscous {gamma}", dt=SHORT))[0]
@@ -88,7 +88,7 @@ def test_forces_that_depend_on_velocities(lmp_tree, data):
 
 
 def gas(lmp, words, part, dt=0.005, steps=2000):
-    """Mean temperature by that of fix langevin of free triangles, of which it takes ``part`` in a step; result."""
+    """Temperature of free triangles relative to fix langevin, which damps ``part`` of a momentum in a step; result."""
     triangle = np.array([[0.0, 0.0, 0.0], [0.9, 0.0, 0.0], [0.1, 0.8, 0.2]])
     places = 2.0 * np.stack(np.meshgrid(*3 * [np.arange(4)], indexing="ij"), axis=-1).reshape(-1, 3)
     langevin = f"velocity all create 1.2 4712 loop geom\nfix l all langevin 1.2 1.2 {dt / part} 4711"
@@ -102,7 +102,7 @@ def gas(lmp, words, part, dt=0.005, steps=2000):
 @pytest.mark.parametrize("part", [1 / 50, 1 / 10, 1 / 6, 1 / 4])
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_bodies_have_the_temperature_of_random_forces(lmp_tree, part, formulation):
-    """Also where their friction is strong; at the weakest, 2 % is three standard errors."""
+    """Also with strong friction; with the weakest, 2 % is three standard errors."""
     found, result = gas(lmp_tree, f"formulation {formulation}", part)
     assert found == pytest.approx(1.0, abs=0.07 if part > 0.2 else 0.04)
     assert found != pytest.approx(1.12, abs=0.07)
@@ -111,7 +111,7 @@ def test_bodies_have_the_temperature_of_random_forces(lmp_tree, part, formulatio
 
 @pytest.mark.parametrize("words, part, told", [("", 1 / 3, True), ("", 1 / 6, False), ("values 4", 1 / 4, True)])
 def test_random_forces_that_no_number_follows_are_warned_of(lmp_tree, words, part, told):
-    """The part is that of fix langevin, from the size of its forces."""
+    """The part is the one of fix langevin, from the size of its forces."""
     found, result = gas(lmp_tree, words, part, steps=400)
     warning = re.search(r"forces take ([\d.]+) of a momentum in a step", result.words)
     assert (warning is not None) == told
@@ -161,9 +161,9 @@ def test_all_ranks_choose_alike(lmp_tree, data, ranks):
     assert np.abs(frames[0][1][:, 1:] - frames[1][1][:, 1:]).max() < 1e-10
 
 
-# --- when it is chosen again ---------------------------------------------------------------------
+# --- new choices ---------------------------------------------------------------------------------
 def springs(lmp, dt, commands, words=""):
-    """A dumbbell and a triangle that vibrate about where they are, with at most 1.42 radians per time."""
+    """A dumbbell and a triangle that vibrate about their positions, with at most 1.42 radians per time."""
     bodies = [[(0, 0, 0), (1, 0, 0), (0, 1.2, 0.1)], [(3, 3, 3), (4, 3.2, 3.1)]]
     settings = dict(before="fix s all spring/self 2.0", dt=dt, run=commands, steps=3)
     fix = f"gear/quat molecule {words}"
@@ -195,7 +195,7 @@ def test_random_forces_that_come_and_go(lmp_tree, data):
 
 # --- restart files -------------------------------------------------------------------------------
 def continued(lmp, data, words, later="", dt=LONG, before=""):
-    """The end of a run of 40 steps, that of one that was written and read after 20, and its result."""
+    """The end of a run of 40 steps, the end of one that was restarted after 20, and its result."""
     lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nrun 20"))
     whole = last_frame(lmp.folder / "poses.dump")
     lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nwrite_restart half"))

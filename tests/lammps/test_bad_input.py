@@ -1,4 +1,4 @@
-"""Every fault of the input ends the run, on all ranks, with a message that names what is wrong."""
+"""Every error in the input ends the run, on all ranks, with a message that names the error."""
 
 import re
 
@@ -400,7 +400,7 @@ def test_empty_group(lmp):
 
 
 def test_group_that_becomes_dynamic(lmp):
-    """By LAMMPS: the fix does not say that it can, for bodies do not change their atoms."""
+    """LAMMPS refuses it, because the fix does not declare support: bodies do not change their atoms."""
     after = "variable some atom x<100\ngroup some dynamic all var some every 1\nrun 1"
     deck = two_molecules(after=after).replace("fix move all", "group some id 1:6\nfix move some")
     lmp.refuse(deck, "does not allow use with a dynamic group")

@@ -1,10 +1,10 @@
-"""What is changed between two runs, and what a look at the forces may not disturb."""
+"""Changes between two runs, and evaluations of forces that must not disturb anything."""
 
 import numpy as np
 import pytest
 from scenes import last_frame, one_after_the_other, restarted, two_molecules, water, water_data
 
-ANEW = "forces are not those of the last step, histories start anew"
+ANEW = "forces have changed since the last step, histories start anew"
 FALLBACK = "start with known forces only (order 2), because"
 SPRING = "fix spring all spring/self 1.0\nfix_modify spring energy yes"
 
@@ -30,7 +30,7 @@ FIXES = {
     "first": "formulation first",
     "isokinetic": "formulation first isokinetic total",
     "masks": "force 1*5 on off off torque 3* off off on",
-    "zero": "start zero corrector gear",  # tuned histories have more of that start after 60 steps
+    "zero": "start zero corrector gear",  # histories with tuned coefficients contain more of this start after 60 steps
     "tolerance": "tolerance 1.0e-8",
 }
 
@@ -55,10 +55,10 @@ def energies(result, run=-1):
 
 @pytest.mark.parametrize("fix", FIXES)
 def test_forces_changed_between_runs(lmp_tree, data, fix):
-    """From then on all is as if the fix had been defined at that point.
+    """The following motion is the same as if the fix had been defined at that point.
 
-    At a step of 0.25 fs: the switch of the forces has kinks, and what they leave in every step is more
-    than the smallest of these changes at 0.5 fs, since tuned coefficients remember kinks for longer.
+    At a step of 0.25 fs: the switching function of the forces has kinks. At 0.5 fs their errors in every step
+    would exceed the smallest of these changes, since errors from kinks decay more slowly with tuned coefficients.
     """
     changes = CHANGES if fix == "second" else {"pair_coeff": CHANGES["pair_coeff"]}
     words = FIXES[fix]
@@ -94,7 +94,7 @@ UNCHANGED = [
     "values 4 corrector gear",
     "values 10 corrector gear compensate yes",
 ]
-# long steps, a plain cut-off, PPPM, a thermostat, r-RESPA, a field of time
+# long steps, a plain cutoff, PPPM, a thermostat, r-RESPA, a field that depends on time
 PPPM = "lj/charmm/coul/long 2.7 3.9 4.2\nkspace_style pppm 1e-4"
 SURROUNDINGS = [
     dict(dt=2.0),
@@ -107,7 +107,7 @@ SURROUNDINGS = [
 
 
 def test_unchanged_runs_go_on(lmp_tree, data):
-    """Not one of 15 runs in each of these scenes starts anew."""
+    """No history starts again in 15 runs of each of these simulations."""
     scenes = [*({"fix": fix} for fix in UNCHANGED), *SURROUNDINGS]
     decks = [deck(data, run="run 7\n" * 15, **settings) for settings in scenes]
     result = lmp_tree.succeed(one_after_the_other(decks))
@@ -119,12 +119,12 @@ def test_unchanged_runs_go_on(lmp_tree, data):
 
 
 def test_a_time_step_that_a_run_is_not_set_up_for(lmp_tree, data):
-    """With pre no too, the step of tolerance is the fix's."""
+    """With pre no, too, the fix keeps the step of tolerance."""
     columns = "time f_move[9] f_move[14]"
     text = deck(data, "tolerance 1e-9", run="run 60\n{}\nrun 40 pre no", columns=columns)
     changed = text.replace("\nrun 40", "\ntimestep 8.0\nrun 40")
     plain, other = lmp_tree.succeed(text), lmp_tree.succeed(changed)
-    assert "goes on with a time step of" in other.stdout
+    assert "keeping time step " in other.stdout
     assert other.thermo[-1]["f_move[14]"][-1] < 100
     for column in ("Time", "TotEng"):
         assert other.thermo[-1][column] == plain.thermo[-1][column]
@@ -136,7 +136,7 @@ def test_a_time_step_that_a_run_is_not_set_up_for(lmp_tree, data):
 
 
 def test_first_forces_with_respa(lmp_tree, data):
-    """A fix that the start cannot follow acts from the first step on, with levels as without."""
+    """A fix that the start cannot follow acts from the first step on, with and without levels."""
     mean = "fix mean all aveforce 0.1 NULL NULL"
     ends = []
     for style in ("verlet", "respa 2 1 pair 2"):
@@ -147,7 +147,7 @@ def test_first_forces_with_respa(lmp_tree, data):
     assert np.abs(ends[0] - ends[1]).max() < 1e-12
 
 
-# --- a look at forces disturbs nothing --------------------------------------------------------------
+# --- evaluations of forces disturb nothing -----------------------------------------------------------
 
 OF_TALLIES = {
     "pe": "variable f equal 1e-3*pe",
@@ -159,7 +159,7 @@ OF_TALLIES = {
 
 @pytest.mark.parametrize("name", OF_TALLIES)
 def test_a_field_of_energy_or_pressure(lmp_tree, data, name):
-    """Known in steps only, so the start has order 2; LAMMPS' own demands on such a field are met."""
+    """It is available at steps only, so the start has order 2; LAMMPS' requirements for such a field are met."""
     field = OF_TALLIES[name] + "\nfix a all addforce v_f 0.0 0.0"
     places = (dict(before=field, after=""), dict(after=field))
     decks = [deck(data, run="run 5", **place) for place in places]
@@ -174,7 +174,7 @@ def test_a_field_of_every_few_steps_is_not_followed(lmp_tree, data):
 
 
 def test_random_numbers_are_not_drawn(lmp_tree, data):
-    """A random force is that of the same script without a look at forces."""
+    """A random force is the same as in a run without evaluations."""
     field = "variable f equal random(-1,1,4711)\nfix a all addforce v_f 0.0 0.0\nvariable x equal f_a[1]"
     rows = []
     for start in ("bootstrap", "zero"):
@@ -184,7 +184,7 @@ def test_random_numbers_are_not_drawn(lmp_tree, data):
 
 
 def test_bonds_that_break_are_not_followed(lmp_tree):
-    """A node of the start further out would break them for good."""
+    """An outer node of the start would break them permanently."""
     bonds = (
         "bond_style quartic\nbond_coeff 1 1200 -0.55 0.25 1.3 34.6878\nspecial_bonds lj 1 1 1\n"
         "create_bonds single/bond 1 1 4"
@@ -204,7 +204,7 @@ def test_bonds_that_break_are_not_followed(lmp_tree):
 
 SWAPS = {
     "center": "set atom 1 mass 3.0\nset atom 2 mass 1.0",
-    # about the center nothing changes but the moments
+    # about the center only the moments change
     "moments": "set atom 1 mass 1.0\nset atom 2*3 mass 2.0",
 }
 ROD = """
@@ -232,7 +232,7 @@ run 1
 @pytest.mark.parametrize("swap", SWAPS)
 @pytest.mark.parametrize("extended", [False, True])
 def test_masses_that_go_from_atom_to_atom(lmp_tree, swap, extended):
-    """The sum stays; the body is that of the present masses, as if the fix had been defined then."""
+    """The sum is constant; the body has the present masses, as if the fix had been defined then."""
     style = "sphere" if extended else "hybrid molecular sphere"
     masses = "set atom 1*3 diameter {} mass 1.0\nset atom 1 mass 3.0".format(0.5 if extended else 0.0)
     if swap == "center":
@@ -254,7 +254,7 @@ ACROSS = "displace_atoms all move 9.5 0 0\nfix move all"
 
 
 def across(after, tilt=False):
-    """The first of two molecules lies across the face of the box."""
+    """The first of two molecules crosses the face of the box."""
     text = two_molecules(after=after).replace("fix move all", ACROSS)
     if tilt:
         text = text.replace("block -10 10 -10 10 -10 10", "prism -10 10 -10 10 -10 10 3 2 1")
@@ -290,15 +290,15 @@ def test_clumps_are_warned_of(lmp_tree):
     flags = "set group all image 0 0 0\nfix move all"
     torn = lmp_tree.run(across("run 2").replace("fix move all", flags))
     assert said in torn.output
-    # what mends it may come after the fix as well
+    # the remedy may also follow the fix
     lmp_tree.succeed(across("set atom 2 image 1 0 0\nrun 2").replace("fix move all", flags))
-    # what lies in a box without periods is no matter of flags
+    # in a box without periods flags do not matter
     open_box = two_molecules("single", boundary="f f f")
     assert said not in lmp_tree.run(open_box).output
 
 
 def test_rerun_without_image_flags(lmp_tree):
-    """Atoms keep the flags that they had at the end, and in the first frame they are not yet there."""
+    """Atoms keep the flags of the end of the run, which do not match the first frame."""
     dump = (
         "velocity all set 10 0 0\ndump d all custom 1 frames id x y z {}vx vy vz\nrun 5\nundump d\n"
     )

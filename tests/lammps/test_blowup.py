@@ -1,4 +1,4 @@
-"""A body that goes astray ends the run where it does so, with all that is needed to find it."""
+"""An unstable body ends the run at this step, with a message sufficient to find it."""
 
 import re
 
@@ -31,7 +31,7 @@ WHERE = re.compile(
 
 
 def blow_up(lmp, deck, ranks=1):
-    """What the fix says of it, once and in one piece: groups of WHERE; and the result."""
+    """The single message of the fix: groups of WHERE; and the result."""
     result = lmp.refuse(deck, "blow-up", ranks=ranks)
     assert result.output.count("blow-up") == 1, result.output
     assert len(result.errors) == 1, result.output
@@ -45,7 +45,7 @@ def pushed(size, pushed="id 5", pulled="empty", style="", fix="molecule"):
     return two_molecules(fix, after=after)
 
 
-# size of the force, atoms it acts on, atoms its opposite acts on, what is said
+# size of the force, atoms it acts on, atoms its opposite acts on, message
 NO_NUMBER = "meets a force that is not a finite number"
 ABSURD = {
     "force": (TOO_MUCH, "id 5", "empty", NO_NUMBER),
@@ -65,7 +65,7 @@ def test_an_absurd_force(lmp_tree, name, ranks):
     assert what in said
     assert atom in (("5", "6") if size == TOO_MUCH else ("4", "5", "6"))
     assert other in ("1", "2", "3") and 5.0 < float(away) < 9.0
-    # nothing of it has reached a dump, nor thermo
+    # neither a dump nor thermo has been affected
     seen = frames(lmp_tree.folder / "poses.dump")
     assert max(seen) == 4 and all(np.abs(frame).max() < 20 for frame in seen.values())
     assert "nan" not in result.stdout and "inf" not in result.stdout.replace("info", "")
@@ -81,7 +81,7 @@ def test_in_every_way_to_run(lmp, style):
 @pytest.mark.parametrize("start, ranks", [("zero", 1), ("bootstrap", 2)])
 @pytest.mark.parametrize("distance", [0.0, 1e-30])
 def test_atoms_on_top_of_each_other(lmp_tree, distance, start, ranks):
-    """No number, or an absurd one, before the first step: it is the start that has to end."""
+    """Infinite or very large forces before the first step: the start must end the run."""
     overlap = (
         f"set atom 4 x {1 + distance} y 0 z 0\nset atom 5 x 2 y 0 z 0\nset atom 6 x 1 y 1 z 0\n"
     )
@@ -94,7 +94,7 @@ def test_atoms_on_top_of_each_other(lmp_tree, distance, start, ranks):
 
 
 def test_an_inserted_body(lmp_tree):
-    """It begins with the forces of its first step."""
+    """It starts with the forces of its first step."""
     (lmp_tree.folder / "molecule.two").write_text(
         "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
     )
@@ -112,15 +112,15 @@ run 9
     message = "blow-up in step 1, time 0.01: body 1 meets"
     result = lmp_tree.refuse(two_molecules(after=after), message)
     assert len(result.errors) == 1
-    # nobody else is there
+    # there are no other atoms
     assert "; the force on its atom 2 is no number. The forces became unstable first" in result.words
 
 
 @pytest.mark.parametrize("values, dt, ranks", [(8, 40, 1), (8, 40, 2), (12, 6, 1), (12, 10, 4)])
 def test_too_large_a_step(lmp_tree, values, dt, ranks):
-    """Before LAMMPS loses atoms: what it says then tells nothing of where."""
+    """Before LAMMPS loses atoms, whose message does not name a body."""
     data = water_data(lmp_tree.folder / "data.water")
-    still = "velocity all set 0 0 0"  # who turns so fast already is refused
+    still = "velocity all set 0 0 0"  # faster rotations are refused at the beginning
     fix = f"gear/quat molecule corrector gear values {values}"
     deck = water(data, fix, dt=dt, thermo=1, steps=100, after=still)
     deck = deck.replace("dump poses all custom 100", "dump poses all custom 1")
@@ -132,7 +132,7 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
 
 @pytest.mark.parametrize("choices", ["accurate", "paper"])
 def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, choices):
-    """Their energy is lost, their bodies are not: |q|^2 is off by a factor of two in some."""
+    """Their energy is not conserved, but their bodies are stable: |q|^2 is off by a factor of two in some."""
     scene = whole_deck(examples / "case1" / "in.case1")
     for dt in (0.25, 1.0) if choices == "accurate" or formulation == "second" else (0.25,):
         settings = dict(formulation=formulation, choices=choices, dt=dt, out="none")

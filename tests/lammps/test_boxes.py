@@ -1,4 +1,4 @@
-"""Boxes without periods: fixed, and following the atoms; and a box that becomes triclinic."""
+"""Boxes without periods: fixed, and shrink-wrapped; and a box that becomes triclinic."""
 
 import numpy as np
 import pytest
@@ -9,8 +9,8 @@ SPACING = 3.3
 
 
 def cluster(boundary, fix, dt, steps, dump, run="run {steps}"):
-    """27 molecules of water that fly apart, well inside of what the box is at the beginning."""
-    more = "neigh_modify check no"  # the box follows at each step
+    """27 molecules of water that expand, well inside of the initial box."""
+    more = "neigh_modify check no"  # the box changes in each step
     deck = water("data.water", fix, dt=dt, steps=steps, dump=dump, run=run, after=more)
     return deck.replace("atom_style", f"boundary {boundary}\natom_style", 1)
 
@@ -55,7 +55,7 @@ dump_modify poses sort id format float %.17g
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_box_may_become_triclinic_between_runs(lmp_tree, ranks):
-    """The same box, and the same motion; all molecules lie inside."""
+    """The same box, and the same motion; all molecules are inside."""
     data = water_data(lmp_tree.folder / "data.water", spacing=4.5, shift=2.25)
     ends = []
     for change in ("", f"undump poses\nchange_box all triclinic\n{DUMP}"):

@@ -1,4 +1,4 @@
-"""Bodies that are removed or inserted while the fix exists, and what velocity does to bodies."""
+"""Removal and insertion of bodies, and the effect of command velocity on bodies."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def ids(lmp):
 
 
 def expect_temperature(thermo, row, molecules):
-    """It is that of the fix's kinetic energies with the freedoms of so many molecules."""
+    """It corresponds to the fix's kinetic energies with the degrees of freedom of this many molecules."""
 
     def temperature(molecules):
         kinetic = thermo["f_move[1]"][row] + thermo["f_move[2]"][row]
@@ -42,9 +42,9 @@ def expect_temperature(thermo, row, molecules):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_molecule_evaporates(lmp_tree, ranks):
-    """As if it had been deleted between two runs, on any number of ranks, but for the histories.
+    """As if it had been deleted between two runs, on any number of ranks, except for the histories.
 
-    Within a run they go on across the jump of the forces, which leaves an error that grows with the step.
+    Within a run they continue across the jump of the forces, with an error that grows with the step.
     """
     commands = evaporating() + show(rows=[5, 26]) + "run {steps}"
     thermo = lmp_tree.succeed(liquid(lmp_tree, commands, dt=0.001), ranks=ranks).thermo[-1]
@@ -53,7 +53,7 @@ def test_a_molecule_evaporates(lmp_tree, ranks):
         expect_temperature(thermo, row, molecules)
     assert [len(frame) for frame in ids(lmp_tree)] == present
     (gone,) = {5, 17} - set(ids(lmp_tree)[5])
-    # the array is sorted by ID and ends earlier now
+    # the array is sorted by ID and shorter now
     first = 5 if gone == 17 else 6
     assert thermo["f_move[5][28]"] == [5] * 5 + [first] * 5 + [6] * 11
     assert thermo["f_move[26][28]"] == [26] * 5 + [27] * 5 + [0] * 11
@@ -105,7 +105,7 @@ def test_a_broken_body_is_noticed_in_a_run(lmp_tree, ranks, atom):
 
 
 def test_two_bodies_broken_at_once(lmp_tree):
-    """One lost its owner, another one an atom: what is left adds up, and is noticed all the same."""
+    """One lost its owner, another one an atom: the total number is consistent, but the error is detected."""
     for members in (f"id {OXYGEN} {OXYGEN + 4}", f"id {OXYGEN + 1} {OXYGEN + 3}"):
         commands = evaporating(members, "no", number=2) + "run {steps}"
         lmp_tree.refuse(liquid(lmp_tree, commands), "2 of its", ranks=2)
@@ -120,12 +120,12 @@ def test_molecules_deleted_between_runs(lmp, ranks):
     for row in (0, 1):
         expect_temperature(result.thermo[1], row, N - 3)
         assert result.thermo[1]["f_move[24][28]"][row] == 26
-    # nothing was done to the others: those that stayed go on with their histories
+    # nothing was done to the others: the remaining ones keep their histories
     assert "atoms were changed" not in result.stdout
     assert len(ids(lmp)[-1]) == N - 3
 
 
-# Dumbbells of an atomic system; body 3 goes.
+# Dumbbells of an atomic system; body 3 is removed.
 DUMBBELLS = """
 units lj
 atom_style atomic
@@ -156,7 +156,7 @@ run 100
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_bodies_go_on_when_atoms_get_other_ids(lmp_tree, ranks):
-    """delete_atoms as it is by default gives new IDs in an atomic system, reset_atoms in all systems."""
+    """By default delete_atoms gives new IDs in an atomic system, reset_atoms in all systems."""
     columns = " ".join(f"f_move[{row}][{k}]" for row in (1, 2, 3, 4) for k in (1, 2, 3, 16, 28))
     ends = []
     for change in (" compress no", "", " compress no\nreset_atoms id", "\nwrite_restart renumbered"):
@@ -178,7 +178,7 @@ def test_all_bodies_may_go(lmp_tree):
 def test_molecules_are_inserted(lmp, ranks, formulation):
     """With their own bodies, and the same trajectory on any number of ranks."""
     commands = INSERT.format(count=3) + show() + "run {steps}"
-    # rows 28 to 30 are not there yet when thermo_style is read
+    # rows 28 to 30 do not exist yet when thermo_style is parsed
     commands += "\nthermo_style custom step f_move[28][28] f_move[30][28] f_move[30][1]\nrun 0"
     ends = []
     for number in {1, ranks}:
@@ -210,7 +210,7 @@ fix in all deposit 1 0 1 4711 region here near 0.5 mol spce rigid move &
 
 
 def in_field(lmp, dt, steps, bodies=(), force="v_fx v_fy v_fz", after=THROW, header="", **settings):
-    """A deck: a molecule is thrown into a field, or begins there; ``header`` of the template."""
+    """A deck: a molecule is inserted into a field, or starts there; ``header`` of the template."""
     (lmp.folder / "molecule.spce").write_text(SPCE.replace("3 atoms", f"3 atoms\n{header}"))
     common = dict(style="full", kinds=(1, 2, 2), masses=f"mass 1 4.0\nmass 2 1.0\n{TEMPLATE}")
     common |= dict(fix=MOL, after=FIELD.format(force=force) + after, dt=dt, steps=1, thermo=1)
@@ -220,7 +220,7 @@ def in_field(lmp, dt, steps, bodies=(), force="v_fx v_fy v_fz", after=THROW, hea
 def insertion_error(lmp, dt, words, steps=None):
     """Of a molecule that is inserted and then moves in a field for about two units of time.
 
-    The exact motion is that of a body which has it from the start, with steps of 0.01.
+    The exact motion is from a body that exists from the start, with steps of 0.01.
     """
     steps = steps or round(2.0 / dt)
     result = lmp.succeed(in_field(lmp, dt, steps + 1, fix=f"{MOL} {words}"))
@@ -236,7 +236,7 @@ def insertion_error(lmp, dt, words, steps=None):
 
 @pytest.mark.parametrize("start, order", [("bootstrap", 2), ("zero", 1)])
 def test_order_of_the_start_of_an_inserted_body(lmp_tree, formulation, start, order):
-    """Forces at the insertion are known, nothing more; the first body of a fix may be inserted."""
+    """At the insertion only the forces are known; the first body of a fix may be inserted."""
     words = f"formulation {formulation} start {start}"
     errors = [insertion_error(lmp_tree, dt, words) for dt in (0.04, 0.02, 0.01)]
     slopes = np.log2(np.divide(errors[:-1], errors[1:]))
@@ -244,7 +244,7 @@ def test_order_of_the_start_of_an_inserted_body(lmp_tree, formulation, start, or
 
 
 def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
-    """Also from the first step of the inserted body on, whatever the step was before."""
+    """Also from the first step of the inserted body on, for any previous step."""
 
     def error(dt, eps):
         return insertion_error(lmp_tree, dt, f"formulation {formulation} tolerance {eps}", 300)
@@ -266,7 +266,7 @@ def test_a_restart_with_an_inserted_body(lmp_tree):
     "commands, number",
     [
         ("create_atoms 1 single 2 2 2\ncreate_atoms 1 single 2 2 7", 2),
-        # the second one comes later
+        # the second one is inserted later
         (
             "region within block 0 13 0 13 0 13\n"
             "fix in all deposit 2 1 1 4711 region within near 2.0 attempt 2000",
@@ -300,20 +300,20 @@ FALL = "0.5 -0.3 0.7"  # a constant field
 
 @pytest.mark.parametrize("header", [MASS, ALL])
 def test_a_template_that_states_its_mass(lmp_tree, header):
-    """Center and inertia too, turned as it is inserted: as rigid/small at a step ten times smaller."""
-    said = "template spce states mass, center of mass or inertia other than"
+    """Center and inertia too, rotated at insertion: as rigid/small with a step ten times smaller."""
+    said = "template spce gives a mass, center of mass or inertia that differ from its atoms"
 
     def move(header, fix=MOL, dt=0.005, steps=200):
         deck = in_field(lmp_tree, dt, steps + 1, force=FALL, header=header, fix=fix)
         result = lmp_tree.succeed(deck)
-        return poses(lmp_tree)[:, 1:], said in result.output
+        return poses(lmp_tree)[:, 1:], said in result.words
 
     mine, told = move(header)
     rigid, _ = move(header, "rigid/nve/small molecule mol spce", 0.0005, 2000)
     of_atoms, told_of_atoms = move("")
     assert told and not told_of_atoms
     assert mine == pytest.approx(rigid, abs=2e-3)
-    assert abs(mine - of_atoms).max() > 0.05  # what the atoms add up to moves otherwise
+    assert abs(mine - of_atoms).max() > 0.05  # with the sums over atoms the motion differs
 
 
 @pytest.mark.parametrize(
@@ -336,7 +336,7 @@ def test_a_plugin_without_the_header_says_so(lmp_wheel):
 
 # --- velocity ------------------------------------------------------------------------------------
 def test_velocities_given_between_runs(lmp_tree):
-    """Bodies take momentum and angular momentum of their atoms; the rest cannot be."""
+    """Bodies get the momentum and angular momentum of their atoms; the rest is not a rigid motion."""
     dump = "write_dump all custom {} id xu yu zu vx vy vz modify sort id format float %.17g\n"
     commands = show(5) + (
         "run 5\nvelocity all create 300.0 4711 mom yes rot no dist gaussian loop geom\n"
@@ -361,11 +361,11 @@ def test_velocities_given_between_runs(lmp_tree):
         close((mass * taken).sum(1), (mass * given).sum(1), 1e-12)
         momenta = ((mass * np.cross(arms, v)).sum(1) for v in (taken, given))
         close(*momenta, 1e-12)
-        assert np.abs(taken - given).max() > 1e-3  # and the rest is gone
+        assert np.abs(taken - given).max() > 1e-3  # and the rest is lost
 
 
 def test_rows_may_be_asked_for_before_a_body_is_there(lmp_tree):
-    """An empty box into which a molecule comes."""
+    """An empty box into which a molecule is inserted."""
     after = THROW + "variable id equal f_move[1][28]"
     deck = in_field(lmp_tree, 0.005, 3, after=after, columns="v_id f_move[2][28]")
     thermo = lmp_tree.succeed(deck).thermo[-1]

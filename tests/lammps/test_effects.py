@@ -1,4 +1,4 @@
-"""The study of effects counts: an effect that is off takes no instruction of a body's step."""
+"""The study of effects counts instructions: an effect that is off adds none to a body's step."""
 
 from dataclasses import replace
 
@@ -36,15 +36,15 @@ def test_on_is_counted_in_the_functions_named_for_it(results):
         assert results.fix(effect.on, effect.base) > 10, name
         if effect.own:
             own = results.per_body(effect.on, lambda profile, effect=effect: profile.of(effect.own))
-            # where the compiler inlines what they call, little of it is theirs
+            # with inlining, few instructions are counted as theirs
             assert 5 < own < results.fix(effect.on), name
 
 
 def test_steps_are_all_alike(results):
-    """Whole numbers of instructions per body and step: nothing but the steps of bodies was counted."""
+    """Integer numbers of instructions per body and step: nothing but the steps of bodies was counted."""
     for scene in plan.scenes():
         per_body = results.fix(scene)
-        # the control of the step takes maxima, and which branch that is depends on the data
+        # step control takes maxima, whose branches depend on the data
         if "tolerance" not in scene.words:
             assert per_body == pytest.approx(round(per_body), abs=1e-9), scene
 

@@ -1,4 +1,4 @@
-"""The examples do what their reference logs say, judged by LAMMPS' own regression tests."""
+"""The examples reproduce their reference logs, compared by LAMMPS' own regression tests."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_the_examples_pass_lammps_regression_tests(lmp, tmp_path, ranks):
     assert wanted
     found = run_tests(lmp, wanted, ranks, tmp_path)
     assert set(found) == {deck.name for deck in wanted}
-    # each deck has at least four columns that are compared, and two checks a column
+    # each deck has at least four columns that are compared, with two checks per column
     assert [how for how in found.values() if not (isinstance(how, int) and how >= 8)] == []
 
 
@@ -37,7 +37,7 @@ def test_a_wrong_reference_is_noticed(lmp_tree, tmp_path):
 
 @pytest.mark.parametrize("deck", decks(), ids=lambda deck: deck.name)
 def test_the_logs_are_those_of_the_decks(deck):
-    """LAMMPS echoes every line that it reads, up to a jump; a log says nothing of where it was made."""
+    """LAMMPS echoes every line that it reads, up to a jump; a log does not say where it was made."""
     read = [deck, *(EXAMPLES / "common").glob("in.*")]
     text = deck.read_text()
     if "common/in.scene" not in text:
@@ -50,7 +50,7 @@ def test_the_logs_are_those_of_the_decks(deck):
     assert str(ROOT) not in told and "/home/" not in told and "plugins from" not in told
     lines = set(told.splitlines())
     for path in read:
-        # a line that goes on is echoed as one
+        # a continued line is echoed as one
         echoed, jump, _ = re.sub(r"&\n", "", path.read_text()).partition("jump SELF")
         whole = echoed.splitlines()[: -1 if jump else None]
         missing = [line for line in whole if line not in lines]

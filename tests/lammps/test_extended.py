@@ -1,4 +1,4 @@
-"""Atoms of bodies that are more than points: their inertia, orientation, torque, and journeys."""
+"""Extended atoms in bodies: inertia, orientation, torque, and migration."""
 
 import re
 
@@ -27,7 +27,7 @@ ORIGIN, RIGHT, ABOVE = np.array([(0, 0, 0), (1, 0.2, 0), (0, 1.1, 0.4)])
 POINT = Atom(ORIGIN, 1.0)
 TILT = (0, 1, 3), -130.0  # axis and angle
 
-# style, and a body of a point and two sites of finite size
+# style, and a body of a point and two extended sites
 BODIES = {
     "spheres": ("sphere", [POINT, sphere(RIGHT, 2.0, 0.6), sphere(ABOVE, 0.7, 1.3)]),
     "ellipsoids": (
@@ -44,14 +44,14 @@ BODIES = {
 
 
 def on_both(word, names):
-    """Mark a test of (lmp, word): the wheel has no headers for anything but spheres and dipoles."""
+    """Marks a test of (lmp, word): the wheel has headers only for spheres and dipoles."""
     pairs = [("tree", name) for name in names]
     pairs += [("wheel", name) for name in names if name in ("spheres", "dipoles")]
     return pytest.mark.parametrize(f"lmp, {word}", pairs, indirect=["lmp"])
 
 
 def a_body(name, sites=None, **settings):
-    """A deck of the body of that name, or of other sites that move alike; lines in two dimensions."""
+    """A deck of the body of that name, or of other sites with the same motion; lines in two dimensions."""
     style, atoms = BODIES[name]
     settings["dimension"] = 2 if name == "lines" else 3
     return body_deck(style, sites or atoms, spin(name), **settings)
@@ -71,7 +71,7 @@ TABLE = "fix out all ave/time 1 1 1 f_move[*] mode vector file table format ' %.
 
 
 def only_row(lmp):
-    """Of the global array of a scene with one body at the end, shape (28,)."""
+    """The row of the global array at the end, for a single body, shape (28,)."""
     return last_numbers(lmp.folder / "table", 28)
 
 
@@ -80,7 +80,7 @@ def only_row(lmp):
 
 @on_both("name", BODIES)
 def test_inertia_and_angular_momentum_include_the_atoms_own(lmp, name):
-    """A body that moves rigidly has its atoms' angular velocity only with the right tensor."""
+    """In a rigid motion atoms have the body's angular velocity only if the tensor is correct."""
     omega, (_, atoms) = spin(name), BODIES[name]
     result = lmp.succeed(a_body(name, run="run 0", after=TABLE))
     tensor, row = inertia(atoms), only_row(lmp)
@@ -89,13 +89,13 @@ def test_inertia_and_angular_momentum_include_the_atoms_own(lmp, name):
     assert row[22:25] == pytest.approx(tensor @ omega, rel=1e-12)
     assert np.linalg.norm(row[19:22]) == pytest.approx(np.linalg.norm(omega), rel=1e-12)
 
-    # the size is seen: 1 % of one of the tensors of an atom is more than that
+    # sizes matter: 1 % of one of the atom's tensors is detected
     tensor += 0.01 * atoms[1].inertia
     assert energy != pytest.approx(0.5 * omega @ tensor @ omega, rel=1e-4)
 
 
 def test_a_lone_ellipsoid_turns_as_a_free_top(lmp_tree):
-    """Angular momentum and energy stay, the orientation does not."""
+    """Angular momentum and energy are constant, the orientation is not."""
     atoms = [ellipsoid((0, 0, 0), 2.0, (0.5, 1.0, 1.6))]
     result = lmp_tree.succeed(body_deck("ellipsoid", atoms, OMEGA))
     end = last_frame(lmp_tree.folder / "poses.dump")[0]
@@ -103,7 +103,7 @@ def test_a_lone_ellipsoid_turns_as_a_free_top(lmp_tree):
     assert end[7:10] == pytest.approx(momentum, rel=1e-10)
     turn = matrix(end[10:14])
     assert np.abs(turn - atoms[0].turn).max() > 0.5
-    # and the energy of its own angular momentum is the energy of the body
+    # and the energy from its own angular momentum is the energy of the body
     energy = 0.5 * momentum @ turn @ np.diag(1 / np.array(atoms[0].moments)) @ turn.T @ momentum
     assert energy == pytest.approx(result.thermo[0]["f_move[2]"][-1], rel=1e-10)
     assert energy != pytest.approx(1.01 * result.thermo[0]["f_move[2]"][-1], rel=1e-3)
@@ -119,7 +119,7 @@ fix pull handle spring/self 3.0
 
 @on_both("name", BODIES)
 def test_the_motion_is_that_of_equivalent_points(lmp, name, formulation):
-    """A spring pulls at the point of the body, so its motion depends on the whole tensor."""
+    """A spring acts on the point of the body, so its motion depends on the whole tensor."""
     _, atoms = BODIES[name]
 
     def move(*sites):
@@ -139,7 +139,7 @@ def test_orientations_and_rates_follow_the_body(lmp, name):
     style, atoms = BODIES[name]
     sites = end(lmp, a_body(name, after=SPRING + TABLE, steps=300, dt=0.01))
     row = only_row(lmp)
-    # the turn of the body since the start, from the places of its three sites
+    # the rotation of the body since the start, from the positions of its three sites
     begin, now = (places[1:] - places[0] for places in (np.array([a.x for a in atoms]), sites[:, 1:4]))
     turn = Rotation.align_vectors(now, begin)[0].as_matrix()
     assert np.abs(turn - np.eye(3)).max() > 0.3
@@ -154,7 +154,7 @@ def test_orientations_and_rates_follow_the_body(lmp, name):
             assert np.abs(matrix(site[10:14]) - own @ matrix([1, 0.005, 0, 0])).max() > 1e-3
         elif style == "tri":
             assert site[7:10] == pytest.approx(rate, abs=1e-12)
-            # corners of an equilateral triangle whose first is at -60 degrees from its own x axis
+            # corners of an equilateral triangle, the first at -60 degrees from its own x axis
             arms = (site[10:16].reshape(2, 3) - site[1:4]) @ own
             assert np.abs(arms[:, 2]).max() < 1e-12
             side = np.sqrt(24 * atom.moments[0] / atom.mass)
@@ -177,7 +177,7 @@ MU = 1.5 * (RIGHT - ABOVE)  # dipole moment of two charges
 
 
 def charges_or_dipole(charge, radius):
-    """A sphere and two points with charges, or without them and with a dipole in the sphere."""
+    """A sphere and two points, with charges, or with a dipole in the sphere."""
     bearer = sphere(ORIGIN, 1.0, radius)
     if not charge:
         bearer.commands += f"\nset atom {{i}} dipole {words(*MU)}"
@@ -186,7 +186,7 @@ def charges_or_dipole(charge, radius):
 
 @pytest.mark.parametrize("radius", [0.0, 0.5])
 def test_a_dipole_is_torqued_as_a_pair_of_charges(lmp, radius, formulation):
-    """In a uniform field; a point dipole and one in a sphere."""
+    """In a uniform field; a point dipole and a dipole in a sphere."""
     def move(charge):
         fix = f"single formulation {formulation}"
         sites = charges_or_dipole(charge, radius)
@@ -195,14 +195,14 @@ def test_a_dipole_is_torqued_as_a_pair_of_charges(lmp, radius, formulation):
     dipoles, charges = move(0.0), move(1.5)
     assert np.abs(dipoles[:, 1:7] - charges[:, 1:7]).max() < 1e-10
     assert np.abs(dipoles[:, 1:7] - move(1.515)[:, 1:7]).max() > 1e-4
-    # the dipole has turned with the body
+    # the dipole has rotated with the body
     turned = 1.5 * (dipoles[1, 1:4] - dipoles[2, 1:4])
     assert dipoles[0, -3:] == pytest.approx(turned, abs=1e-12)
     assert np.abs(turned - MU).max() > 0.3
 
 
 def test_torques_of_atoms_are_not_in_the_virial(lmp):
-    """The forces of constraint are m a - f: without forces, as of a dipole, they are m a."""
+    """The constraint forces are m a - f; without forces, as for a dipole, they are m a."""
     after = (
         "compute p all pressure NULL fix\n"
         "fix p all ave/time 1 1 1 c_p[*] file p.txt format ' %.17g'"
@@ -219,7 +219,7 @@ def test_torques_of_atoms_are_not_in_the_virial(lmp):
     assert virial(0.0) != pytest.approx(virial(1.5) + 1.01 * of_charges, abs=1e-3)
 
 
-# atom style, spacing, forces between the sized atoms
+# atom style, spacing, forces between the extended atoms
 KINDS = {
     "dipoles": (
         "hybrid sphere dipole",
@@ -244,7 +244,7 @@ pair_coeff 1 2 0.0 0.5 1.0 0.6 0.4 1 1 1
 
 
 def clustered(kind, n=4, cut=30.0, fix="custom v_pair", before="", **settings):
-    """A deck of bodies of a sized atom and a point each."""
+    """A deck of bodies of an extended atom and a point each."""
     style, spacing, pair = KINDS[kind]
     rng = np.random.default_rng(7)
     lines = []
@@ -269,7 +269,7 @@ def clustered(kind, n=4, cut=30.0, fix="custom v_pair", before="", **settings):
 
 @pytest.mark.parametrize("kind", ["dipoles", "ellipsoids"])
 def test_energy_is_kept_with_the_methods_order(lmp_tree, kind, formulation):
-    """The energy of everything at the end, against that of the start, at halved steps."""
+    """The total energy at the end, compared with the start, for halved steps."""
     errors = []
     values = {"first": 5, "second": 6}[formulation]
     fix = f"custom v_pair formulation {formulation} corrector gear values {values}"  # order 5
@@ -280,7 +280,7 @@ def test_energy_is_kept_with_the_methods_order(lmp_tree, kind, formulation):
         assert abs(thermo["f_move[2]"][-1] - thermo["f_move[2]"][0]) > 0.01  # torques act
         errors.append(abs(energy[-1] - energy[0]))
     slopes = np.log2(np.array(errors[:-1]) / errors[1:])
-    # a torque wrong by 1 % would leave 1e-4 of the rotational energy at every step
+    # a torque 1 % off would change the rotational energy by 1e-4 in every step
     assert slopes.min() > 4.3, (errors, slopes)
 
 
@@ -295,14 +295,14 @@ def test_levels_of_respa_add_their_torques(lmp_tree):
 
 
 def test_the_start_sees_torques_that_depend_on_time(lmp_tree):
-    """A uniform field pulls at no neutral dipole, it only turns it."""
+    """A uniform field exerts no force on a neutral dipole, only a torque."""
     waving = "variable wave equal sin(0.1*step)\nfix field all efield v_wave 0.0 0.0"
     assert "start of order" in lmp_tree.succeed(clustered("dipoles", after=FIELD)).log
     log = lmp_tree.succeed(clustered("dipoles", after=waving)).log
     assert "order 2), because an external force depends on time" in log
 
 
-# --- journeys -----------------------------------------------------------------------------------
+# --- migration ----------------------------------------------------------------------------------
 
 PERIODIC = dict(boundary="p p p", box="-2.6 2.6 -2.6 2.6 -2.6 2.6")
 DRIFT = "\nvelocity all set 0.6 0.4 0.5 sum yes\ncomm_modify vel yes"
@@ -310,12 +310,12 @@ DRIFT = "\nvelocity all set 0.6 0.4 0.5 sum yes\ncomm_modify vel yes"
 
 @on_both("kind", ["dipoles", "ellipsoids"])
 def test_ranks(lmp, kind):
-    """The same motion on 1, 2 and 4 ranks, bodies migrating, to rounding."""
+    """The same motion on 1, 2 and 4 ranks with migrating bodies, to rounding."""
     settings = dict(PERIODIC, steps=600, before=DRIFT, columns="ix iy iz")
     text = clustered(kind, 8, 2.2, after="neigh_modify every 1 delay 0 check yes", **settings)
     ends = [end(lmp, text, ranks) for ranks in ((1, 2, 4) if lmp.name == "tree" else (1, 2))]
     for other in ends:
-        assert (other[:, -3:] != 0).any()  # somebody has crossed the boundary
+        assert (other[:, -3:] != 0).any()  # some atom has crossed the boundary
         assert np.abs(other - ends[0]).max() < 1e-10
 
 
@@ -353,11 +353,11 @@ def test_turned_ellipsoids_are_seen(lmp_tree):
         assert ("bodies start anew" in lmp_tree.succeed(text).log) == bool(command)
 
 
-# --- temperature, and what is refused -----------------------------------------------------------
+# --- temperature, and unsupported settings ------------------------------------------------------
 
 
 def test_degrees_of_freedom(lmp_tree):
-    """Six a body, counted with the rotations that temp/sphere counts for the spheres."""
+    """Six per body, including the rotations that temp/sphere counts for the spheres."""
     fix = "fix t all ave/time 1 1 1 c_t file t.txt format ' %.17g'"
     after = f"compute t all temp/sphere\ncompute_modify t extra/dof 0\n{fix}"
     thermo = lmp_tree.succeed(clustered("dipoles", after=after, run="run 0")).thermo[0]

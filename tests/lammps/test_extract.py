@@ -1,4 +1,4 @@
-"""What other C++ code gets from the fix by name."""
+"""Data that other C++ code gets from the fix by name."""
 
 import subprocess
 from pathlib import Path
@@ -14,7 +14,7 @@ N = 27
 
 @pytest.fixture(scope="module")
 def command() -> Path:
-    """A plugin with a command that prints it."""
+    """A plugin with a command that prints these data."""
     library = ROOT / "build" / "extract-test.so"
     source = ROOT / "tests" / "lammps" / "extract_plugin.cpp"
     words = "mpicxx.openmpi -std=c++17 -O1 -shared -fPIC -DLAMMPS_SMALLBIG -DOMPI_SKIP_MPICXX"

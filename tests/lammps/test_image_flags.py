@@ -1,10 +1,10 @@
-"""Through more periodic boxes than LAMMPS' image flags can count, which is 512 to either side."""
+"""More periodic boxes than LAMMPS' image flags can count, which is 512 in each direction."""
 
 import numpy as np
 import pytest
 from scenes import two_molecules
 
-# both molecules fly 9.5 boxes in a hundred steps; the flags begin again after 5384 steps in x
+# both molecules move by 9.5 boxes in a hundred steps; the flags wrap around after 5384 steps in x
 FLIGHT = """
 group first molecule 1
 group second molecule 2
@@ -18,7 +18,7 @@ thermo_modify norm no format float %.17g
 thermo 2000
 """
 LENGTH = 20.0
-#: of the energy of rotation: at this speed starts are of order 2, each of them errs by 1e-6
+#: of the rotational energy: at this speed starts are of order 2, each with an error of 1e-6
 STARTS = 1e-4
 
 
@@ -27,7 +27,7 @@ def run(lmp, fix, after, ranks=1):
 
 
 def flight(tables):
-    """Steps (n,) of all runs, and the unwrapped centre of the first molecule there, (n, 3)."""
+    """Steps (n,) of all runs, and the unwrapped center of the first molecule, (n, 3)."""
     columns = [f"f_move[1][{k}]" for k in range(1, 16)]
     step = np.concatenate([table["Step"] for table in tables])
     rows = np.concatenate([np.transpose([t[c] for c in columns if c in t]) for t in tables])
@@ -39,14 +39,14 @@ def test_a_body_flies_on(lmp_tree, formulation, ranks):
     result = run(lmp_tree, f"molecule formulation {formulation}", "run 8000", ranks)
     step, centre = flight(result.thermo)
     velocity = (centre[1] - centre[0]) / (0.01 * step[1])
-    assert centre[-1, 0] > 600 * LENGTH  # the flags of its atoms are back among the negative ones
+    assert centre[-1, 0] > 600 * LENGTH  # the flags of its atoms are negative again
     assert centre == pytest.approx(centre[0] + 0.01 * step[:, None] * velocity, abs=1e-6)
     spin = result.thermo[0]["f_move[2]"]
     assert spin == pytest.approx([spin[0]] * len(spin), rel=STARTS)
 
 
 def test_a_body_is_made_anew_where_the_flags_turn(lmp_tree):
-    """Sites of one body have flags at both ends of their range while it passes from one to the other."""
+    """Sites of one body have flags at both ends of their range during the overflow."""
     slowly = "velocity all set -170.0 125.0 -55.0 sum yes units box\n"
     anew = "unfix move\nfix move all gear/quat molecule\nrun 2\n" * 30
     result = run(lmp_tree, "molecule", "run 5380\n" + slowly + anew)

@@ -1,4 +1,4 @@
-"""The file beside every restart file, which keyword infile reads: a run goes on from text files."""
+"""The text file beside every restart file, which keyword infile reads: a run continues from text files."""
 
 import numpy as np
 import pytest
@@ -11,9 +11,9 @@ MOMENTUM, IMAGE = slice(14, 17), slice(17, 20)
 BOX = 9.9
 
 
-# --- what is lost is the history -----------------------------------------------------------------
+# --- only the history is lost --------------------------------------------------------------------
 def gap(case1, dt, body, mass=1.0):
-    """How far a run continued from text files is from the uninterrupted one: at its start and its end.
+    """Deviation of a run continued from text files from the uninterrupted one: at its start and its end.
 
     mass: a factor on the mass in the file.
     """
@@ -34,12 +34,12 @@ def gap(case1, dt, body, mass=1.0):
 
 @pytest.mark.parametrize("body", ["consistent", "unrotated"])
 def test_a_run_goes_on_up_to_its_history(lmp_tree, examples, formulation, body):
-    """The new start costs an error of the method's order; masses and moments of the file count."""
+    """The new start causes an error of the method's order; masses and moments of the file are used."""
     case1 = Case1(lmp_tree, examples, formulation)
     case1.variables["values"] = {"first": 5, "second": 6}[formulation]  # order 5 in either
     case1.variables["corrector"] = "gear"
     starts, gaps = zip(*(gap(case1, dt, body) for dt in (0.16, 0.08, 0.04)))
-    assert max(starts) < 1e-13  # nothing but the history is lost
+    assert max(starts) < 1e-13  # only the history is lost
     assert gaps[0] < 1e-7
     slopes = np.log2(np.divide(gaps[:-1], gaps[1:]))
     assert slopes == pytest.approx([5.0, 5.0], abs=0.4)
@@ -52,7 +52,7 @@ def test_a_mass_wrong_by_one_percent_shows(lmp_tree, examples):
     assert np.log2(gaps[0] / gaps[1]) < 1.0
 
 
-# --- what is in the file -------------------------------------------------------------------------
+# --- contents of the file ------------------------------------------------------------------------
 def write(lmp, ranks=1, fix="gear/quat molecule"):
     """Table of the file and sites (bodies, 3, 6) at the same step."""
     data = water_data(lmp.folder / "data.water")
@@ -85,7 +85,7 @@ def test_the_file_has_the_bodies(lmp, ranks):
 
 @pytest.mark.parametrize("fix", ["rigid/nve molecule", "rigid/nve/small molecule"])
 def test_the_format_is_that_of_fix_rigid(lmp_tree, fix):
-    """It reads our file, and we read what it wrote."""
+    """fix rigid reads our file, and our fix reads its file."""
     ours, _ = write(lmp_tree)
     poses = []
     for style in ("gear/quat molecule", fix):
@@ -104,7 +104,7 @@ def test_the_format_is_that_of_fix_rigid(lmp_tree, fix):
 
 
 def test_water_goes_on_on_other_ranks(lmp_tree):
-    """Two continuations, at 1 and at 4 ranks, start from the same bodies."""
+    """Two continuations, on 1 and on 4 ranks, start from the same bodies."""
     table, sites = write(lmp_tree, ranks=2)
     fix, run = "gear/quat molecule infile half.move.gear_quat", "run {steps}\nwrite_restart again"
     found = []

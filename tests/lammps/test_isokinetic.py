@@ -1,6 +1,6 @@
-"""Keyword isokinetic: constant kinetic energy, the heat it takes, restart, what is refused.
+"""Keyword isokinetic: constant kinetic energy, the heat removed, restarts, unsupported settings.
 
-That the trajectory is the same on any ranks is tested in test_large_bodies.py.
+The independence of the trajectory from the ranks is tested in test_large_bodies.py.
 """
 
 import numpy as np
@@ -34,7 +34,7 @@ def cluster(words, dt=0.004, time=0.8, run=None, every=None, style=""):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_kinetic_energy_and_heat_to_the_order_of_the_method(lmp_tree, mode):
-    """Of the first steps too: the start knows the constraint."""
+    """Including the first steps: the start uses the constraint."""
     values, steps = 6, (0.008, 0.004, 0.002)
     words = f"isokinetic {mode} rescale no values {values}"
     decks = [cluster(words, dt) for dt in steps]
@@ -45,7 +45,7 @@ def test_kinetic_energy_and_heat_to_the_order_of_the_method(lmp_tree, mode):
         assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > values - 1.3, (first, column)
     constant = [largest_change(tables[2], part) < 1e-6 for part in PARTS]
     assert constant == [mode == "separate"] * 2
-    # energy does go to and fro, and the heat is no small thing
+    # energy is exchanged, and the heat is large
     assert largest_change(tables[2], "TotEng") > 1e4 * largest_change(tables[2], "v_all")
 
 
@@ -73,7 +73,7 @@ def test_multipliers_take_what_the_forces_do(lmp_tree):
 
 
 def test_points_have_one_multiplier(lmp_tree):
-    """Bodies of one atom: no rotation, and none is asked for."""
+    """Bodies of one atom: there is no rotation, and none is required."""
     deck = cluster("isokinetic separate", 0.002)
     for old, new in (
         ("exclude molecule/intra all", "every 1"),
@@ -108,7 +108,7 @@ def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
     for n, mode in enumerate(MODES):
         assert ends[f"{mode}-whole"] == ends[f"{mode}-halves"] == ends[f"{mode}-again"]
         whole, _, half, again = tables[4 * n : 4 * n + 4]
-        for column in ("f_move[9]", "v_k"):  # heat goes on
+        for column in ("f_move[9]", "v_k"):  # heat continues
             assert whole[column][-1] == half[column][-1] == again[column][-1], column
     assert ends["total-whole"] != ends["separate-whole"]
 
@@ -127,7 +127,7 @@ def test_another_constraint_after_a_restart_begins_anew(lmp_tree):
 
 
 def test_the_energy_to_keep_is_that_of_the_atoms(lmp_tree):
-    """Velocities scaled between runs, and a body taken away: what is there then is kept."""
+    """Velocities scaled between runs, and a body removed: the energy at that time is kept."""
     commands = (
         "run 20\nvariable fast atom 1.1*vx\nvelocity all set v_fast NULL NULL\nrun 20\n"
         "group gone molecule 4\ndelete_atoms group gone compress no\nrun 20\ntimestep 0.002\nrun 20"
@@ -138,7 +138,7 @@ def test_the_energy_to_keep_is_that_of_the_atoms(lmp_tree):
     kept = [table["v_k"][0] for table in tables]
     assert kept[0] < 0.999 * kept[1] and kept[2] < 0.999 * kept[1]
     assert kept[3] == pytest.approx(kept[2], rel=1e-12)
-    # the step is another, the heat goes on
+    # the step has changed, the heat continues
     heat = [table["f_move[9]"] for table in tables]
     assert heat[2][-1] == heat[3][0] != 0.0
     assert largest_change(tables[3], "v_all") < 1e-4
@@ -152,9 +152,9 @@ def test_respa(lmp_tree):
     assert np.abs(ends[0] - ends[1]).max() < 1e-12
 
 
-# --- what is refused --------------------------------------------------------------------------
+# --- unsupported settings ----------------------------------------------------------------------
 
-# mode, velocities, what is said
+# mode, velocities, message
 AT_REST = [
     ("total", "0 0 0", "total: the kinetic energy of the bodies is zero"),
     ("separate", "0 0 0", "separate: the kinetic energy of the bodies is zero"),
@@ -166,7 +166,7 @@ AT_REST = [
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("mode, velocities, message", AT_REST)
 def test_nothing_to_keep_is_refused(lmp_tree, mode, velocities, message, ranks):
-    # one body about the origin turns without moving
+    # one body about the origin rotates without translation
     before = f"variable sx atom -y\nvariable sy atom x\nvelocity all set {velocities}"
     deck = two_molecules(f"molecule formulation first isokinetic {mode}", before)
     if "v_sx" in velocities:

@@ -1,4 +1,4 @@
-"""A run that loses a process: what it had written is whole, and goes on as if nothing had happened."""
+"""A run that loses a process: its files are complete, and the run can be continued without any effect."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ NAMES = ("even", "odd")
 
 
 def ranks_of(session):
-    """Processes of LAMMPS itself, not of what starts them."""
+    """Processes of LAMMPS itself, not of its launcher."""
     return sorted(
         process
         for process in processes_of_session(session)
@@ -26,13 +26,13 @@ def ranks_of(session):
 
 
 def expect_whole(folder, name):
-    """The bodies beside a restart file: at any moment those of one step or another."""
+    """The text file beside a restart file: at any time it contains one of the steps."""
     (line,) = bodies_in(folder / f"{name}.move.gear_quat")
     assert line[0] == 1 and np.isfinite(line).all()
 
 
 def killer(folder, rank, delay):
-    """Kills a rank a while after the first restart files are there, whatever it does just then."""
+    """Kills a rank a while after the first restart files exist, at an arbitrary point."""
 
     def kill(session):
         limit = time.monotonic() + 60.0
@@ -54,9 +54,9 @@ def newest_first(folder):
 
 @pytest.mark.parametrize("formulation, rank, delay", [("first", 0, 0.1), ("second", 1, 0.3)])
 def test_a_killed_rank(lmp_tree, examples, formulation, rank, delay):
-    """Restart files every step, two in turn: the kill falls into the writing of one of them."""
+    """Restart files every step, two in turn: the rank is killed while one of them is written."""
     case1 = Case1(lmp_tree, examples, formulation, ranks=2)
-    # no atom goes over to the other rank, which changes the order of sums
+    # no atom migrates, which would change the order of sums
     case1.variables["dt"] = 1e-4
     folder = lmp_tree.folder
     result = lmp_tree.run(
@@ -67,7 +67,7 @@ def test_a_killed_rank(lmp_tree, examples, formulation, rank, delay):
     )
     assert result.returncode != 0
 
-    # LAMMPS refuses a file that is not whole; then it is the one that was being written
+    # LAMMPS refuses an incomplete file; then it is the one that was being written
     for name in newest_first(folder):
         scene = restarted(case1.scene.replace("run ${steps}", f"run {AGAIN}"), name)
         again = lmp_tree.run(scene, case1.variables, ranks=2)

@@ -1,8 +1,8 @@
-"""Bodies of any size on several ranks: wider than ghost atoms are seen, beside small ones.
+"""Bodies of any size on several ranks: larger than the ghost cutoff, together with small ones.
 
-A slab of 288 atoms lies across the boundaries of a box, among some hundred rigid trimers; ghost atoms are
-seen 2.8 away, the slab reaches 8 from its owner atom. All stream through the box, so that the owner changes
-its rank too. Forces are smooth and the runs short: what differs between ranks is rounding.
+A slab of 288 atoms lies across the boundaries of a box, among some hundred rigid trimers; the ghost
+cutoff is 2.8, the slab extends 8 from its owner atom. All move through the box, so that the owner changes
+its rank too. Forces are smooth and the runs short: differences between ranks are due to rounding.
 """
 
 import re
@@ -34,7 +34,7 @@ compute sum all reduce sum c_stress[*]
 
 
 def slab_data(path, height=BOX, cells=CELLS, trimers=True):
-    """A slab (molecule 1) and trimers in the lower 20 of a box that may be higher."""
+    """A slab (molecule 1) and trimers in the lower 20 of a box that may be taller."""
     rng = np.random.default_rng(20251123)
     box = np.array([BOX, BOX, height])
     slab = (np.array(list(np.ndindex(*cells))) - (np.array(cells) - 1) / 2) * SPACING
@@ -67,18 +67,18 @@ def deck(data, name, fix="", after="", steps=STEPS, **settings):
 
 
 def end(lmp, text, name, ranks=1):
-    """The last frame of a deck of that name."""
+    """The last frame of the deck with that name."""
     lmp.succeed(text, ranks=ranks)
     return last_frame(lmp.folder / f"{name}.dump")
 
 
 def difference(one, other):
-    """Largest difference of positions, on the scale of the box, and of velocities, of the fastest atom."""
+    """Largest difference of positions, relative to the box, and of velocities, relative to the fastest atom."""
     moved = np.abs(one - other)
     return max(moved[:, 1:4].max() / BOX, moved[:, 4:7].max() / np.abs(one[:, 4:7]).max())
 
 
-# what a run does beside the plain one
+# additions of a run to the plain one
 WAYS = {
     "plain": dict(),
     "newton off": dict(newton="off"),
@@ -96,7 +96,7 @@ WAYS = {
     "cooled": dict(after="fix cool all temp/berendsen 100 10 0.1"),
     "tolerance": dict(fix="tolerance 1e-9 dtmax 0.004"),
     "wide tolerance": dict(fix="tolerance 1e-9 dtmax 0.004", before="comm_modify cutoff 9.8"),
-    # the last, for it has two runs
+    # the last, since it has two runs
     "timestep": dict(run="run 100\ntimestep 0.0015\nrun 100"),
 }
 RANKS = {
@@ -107,16 +107,16 @@ RANKS = {
 
 
 def to_repeat(way):
-    """The run (ranks, way) whose trajectory that way has on any number of ranks."""
+    """The run (ranks, way) that has the same trajectory as this way, for any number of ranks."""
     if "tolerance" in way:
-        # rounding decides over the last digits of every step: on as many ranks, of small bodies alone
+        # rounding determines the last digits of every step: the same number of ranks, small bodies only
         return 4, "wide tolerance"
     return 1, way if way in RANKS[1] else "plain"
 
 
 @pytest.fixture(scope="module")
 def ends(tmp_path_factory):
-    """(ranks, way) -> the last frame; (ranks, way, "begin"), "log" and "thermo" -> what else it left."""
+    """(ranks, way) -> the last frame; (ranks, way, "begin"), "log" and "thermo" -> its other output."""
     lmp = make_lmp_tree(tmp_path_factory.mktemp("slab"))
     data = slab_data(lmp.folder / "data.slab")
     found = {}
@@ -151,7 +151,7 @@ def test_the_trajectory_is_that_of_one_rank(ends, ranks, way):
 
 @pytest.mark.tree
 def test_the_scene_tells(ends):
-    """Ranks change, also that of the owner, and no ghosts of the whole slab are there."""
+    """Ranks change, including the owner's, and there are no ghosts of the whole slab."""
     begin, end = ends[4, "plain", "begin"], ends[4, "plain"]
     slab = end[: np.prod(CELLS), 1:4]
     middle = np.linalg.norm(slab - slab.mean(axis=0), axis=1) < 1.0
@@ -159,13 +159,13 @@ def test_the_scene_tells(ends):
     assert set(end[:, 7]) == {0, 1, 2, 3}
     assert ghosts(ends[4, "plain", "log"]) < 0.5 * ghosts(ends[4, "wide", "log"])
     assert int(re.findall(r"Neighbor list builds = (\d+)", ends[4, "plain", "log"])[-1]) > 10
-    assert difference(ends[1, "plain"], ends[1, "first"]) < 1e-6  # two ways to follow one motion
+    assert difference(ends[1, "plain"], ends[1, "first"]) < 1e-6  # two methods for the same motion
     for way in ("total", "separate", "thermostat", "masks", "cooled", "timestep"):
         assert difference(ends[1, "plain"], ends[1, way]) > 1e-5
 
 
 def test_single_and_group(lmp):
-    """With the slab on two ranks; in the tree two more are empty (MPICH does not wait, it spins)."""
+    """With the slab on two ranks; in the tree two more are empty (not with MPICH, which waits actively)."""
     ranks, grid = (4, "1 1 4") if lmp.name == "tree" else (2, "2 1 1")
     data = slab_data(lmp.folder / "data.slab", height=60.0)
     words = {"single": "single", "group": "group 2 slab rest", "molecule": "molecule"}
@@ -187,7 +187,7 @@ def test_single_and_group(lmp):
 
 
 def test_restarts_on_any_number_of_ranks(lmp_tree):
-    """On as many ranks the same to the last bit; on others to rounding."""
+    """To the last bit on the same number of ranks; to rounding on others."""
     data = slab_data(lmp_tree.folder / "data.slab")
     halves = f"run {STEPS // 2}\nwrite_restart {{name}}.restart\nrun {STEPS // 2}"
     whole = {}
@@ -205,7 +205,7 @@ def test_restarts_on_any_number_of_ranks(lmp_tree):
 
 
 def test_a_body_that_loses_sight_of_its_owner_becomes_large(lmp_tree):
-    """In mode multi ghosts of type 1 are seen 1.4 away, though the longest ghost cutoff is 2.8."""
+    """In mode multi the cutoff for ghosts of type 1 is 1.4, though the longest ghost cutoff is 2.8."""
     data = slab_data(lmp_tree.folder / "data.slab", cells=(4, 4, 2))
     data.write_text(data.read_text().replace("1 atom types", "2 atom types").replace("Masses\n\n1 1", "Masses\n\n1 1\n2 1"))
     text = deck(data, "multi", before="comm_modify mode multi")
@@ -222,7 +222,7 @@ def test_a_body_that_loses_sight_of_its_owner_becomes_large(lmp_tree):
 
 
 def test_a_large_body_goes_astray(lmp_tree):
-    """All ranks see it and say so once, with the site that is nearest to another atom, wherever that is."""
+    """All ranks detect it and report once, with the site nearest to another atom, on any rank."""
     data = slab_data(lmp_tree.folder / "data.slab")
     throw = "group slab molecule 1\nvelocity slab set 20000 NULL NULL"
     text = deck(data, "astray", before=throw)
@@ -253,7 +253,7 @@ compute_modify thermo_temp dynamic/dof yes
 
 
 def test_large_bodies_are_inserted(lmp_tree):
-    """Rods of nine atoms come during the run, longer than ghost atoms are seen."""
+    """Rods of nine atoms, longer than the ghost cutoff, are inserted during the run."""
     data = slab_data(lmp_tree.folder / "data.slab", trimers=False)
     (lmp_tree.folder / "rod.mol").write_text(ROD)
     text = deck(data, "rain", fix="mol rod", before="molecule rod rod.mol", after=RAIN)
@@ -263,7 +263,7 @@ def test_large_bodies_are_inserted(lmp_tree):
 
 
 def test_a_large_body_is_removed(lmp_tree):
-    """The slab evaporates halfway; the trimers go on, and no rank keeps a copy."""
+    """The slab is removed halfway; the trimers continue, and no rank keeps a copy."""
     text = deck(slab_data(lmp_tree.folder / "data.slab"), "removed", after=REMOVE)
     one, four = (end(lmp_tree, text, "removed", ranks) for ranks in (1, 4))
     assert one[0, 0] == np.prod(CELLS) + 1

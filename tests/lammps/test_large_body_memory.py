@@ -1,4 +1,4 @@
-"""The memory of a large body: that of its atoms' data, as with fix rigid, at any time of a run."""
+"""The memory of a large body: the data of its atoms, as with fix rigid, at any time of a run."""
 
 import re
 import sys
@@ -29,8 +29,8 @@ thermo 10
 {run}
 """
 RUN = "run 10"
-#: runs a program and writes the most memory that it had at a time, in kilobytes, to a file of its
-#: own: what a process prints after MPI_Finalize can be lost by mpirun
+#: runs a program and writes its peak memory, in kilobytes, to a separate file: output that a process prints after MPI_Finalize can be lost
+#: by mpirun
 WRAPPER = """
 import os, pathlib, resource, subprocess, sys
 folder, *command = sys.argv[1:]
@@ -40,7 +40,7 @@ pathlib.Path(folder, str(os.getpid())).write_text(str(peak))
 sys.exit(code)
 """
 FIX, RIGID = "gear/quat single report no", "rigid single"
-#: memory of the whole process relative to that with fix rigid
+#: memory of the whole process relative to fix rigid
 MOST = 1.35
 
 
@@ -70,12 +70,12 @@ def peak(lmp_tree):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_beside_fix_rigid(peak, ranks):
-    """A quarter of a million atoms; a message with each of them would take 800 bytes an atom."""
+    """A quarter of a million atoms; a message with each of them would take 800 bytes per atom."""
     assert peak(FIX, 40, ranks) < MOST * peak(RIGID, 40, ranks)
 
 
 def test_reported(lmp_tree):
-    """LAMMPS' sum has the data of the atoms and the copies that the start makes of them for a while."""
+    """LAMMPS' sum includes the data of the atoms and the temporary copies made by the start."""
     per_atom = {}
     for style in (FIX, RIGID):
         log = lmp_tree.succeed(WALL.format(style=style, cells=20, run="run 1\nrun 0")).log

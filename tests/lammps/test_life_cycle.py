@@ -1,4 +1,4 @@
-"""What outlives what: runs, time steps, restart files, changes by the user."""
+"""State that persists through runs, time steps, restart files and changes by the user."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_several_runs_are_one_run(case1):
 
 
 def test_the_comparisons_can_fail(case1):
-    """A step or a time that is 1 % off is seen by both comparisons used here."""
+    """A step or a time that is 1 % off is detected by both comparisons used here."""
     whole = end(case1.run("run 1000"))
     for other in (case1.run("run 1000", dt=0.0202), case1.run("run 990")):
         assert (end(other) != whole).all()
@@ -33,7 +33,7 @@ def test_the_comparisons_can_fail(case1):
 
 
 def test_a_restart_written_before_the_first_step(case1):
-    """It holds the start; see test_restart_matrix.py for all others."""
+    """It contains the start; see test_restart_matrix.py for all others."""
     whole = case1.run("run 1000")
     case1.run("run 0\nwrite_restart new")
     assert (end(case1.run("run 1000", "new")) == end(whole)).all()
@@ -50,7 +50,7 @@ def test_a_restart_with_the_other_formulation_says_so(case1):
 
 @pytest.mark.parametrize("factor", [2.0, 0.5, 10.0])
 def test_a_change_of_the_time_step(case1, factor):
-    """The run goes on as precisely as one with the coarser of the two steps from the beginning."""
+    """The run is as accurate as one with the coarser of the two steps from the beginning."""
     steps = round(1000 / factor)
     exact = end(case1.run("run 10000", dt=0.004))  # to t = 40
 
@@ -114,14 +114,14 @@ def test_unfix_and_back(case1):
     whole = case1.run("run 1000")
     back = "fix move body gear/quat molecule formulation ${formulation}\nfix_modify move energy yes"
     again = case1.run(f"run 500\nunfix move\n{back}\nrun 500")
-    # poses and velocities come back from the atoms, the rest from a new start
+    # poses and velocities are recovered from the atoms, the rest from a new start
     assert end(again) == pytest.approx(end(whole), abs=1e-7)
     assert (end(again) != end(whole)).any()
 
 
 def test_a_step_shorter_than_half_begins_anew(case1):
-    """Not at a half, nor if the step is back before it is used, nor where a start would not be full."""
-    said = "less than half of that of the last steps, histories start anew"
+    """Not at one half, nor if the step is restored before it is used, nor if a start would not be full."""
+    said = "less than half of the previous one, histories start anew"
     shorter = case1.run("run 100\ntimestep 0.008\nrun 100")
     assert shorter.stdout.count(said) == 1
     assert shorter.stdout.count("force evaluations") == 2

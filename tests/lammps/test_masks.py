@@ -1,4 +1,4 @@
-"""Keywords force and torque: components that do not act on a body, as fix rigid has them."""
+"""Keywords force and torque: components that do not act on a body, as in fix rigid."""
 
 import numpy as np
 import pytest
@@ -7,8 +7,8 @@ from scipy.special import ellipj, ellipk
 
 PRESSURE = 68568.415  # kcal/mol/Angstrom^3 in atm, LAMMPS' value in real units
 
-# A rotor of six atoms whose principal axes are those of the box, the z axis with the largest moment,
-# and a constant force on one atom: about z it is a pendulum.
+# A rotor of six atoms whose principal axes are the axes of the box, the z axis with the largest moment, and a constant force on one atom:
+# about z it is a pendulum.
 PULL_OF_ONE = """
 group end id 1
 fix pull end addforce 0.9 0.0 0.5
@@ -36,7 +36,7 @@ def pendulum(time):
 
 
 def held_rotor(time):
-    """Positions and velocities of the atoms, shape (6, 6), of the rotor that only spins about z."""
+    """Positions and velocities of the atoms, shape (6, 6), of the rotor that rotates only about z."""
     angle, rate = pendulum(time)
     c, s = np.cos(angle), np.sin(angle)
     x = np.array([(c, s, 0), (-c, -s, 0), (-s, c, 0), (s, -c, 0), (0, 0, 0.4), (0, 0, -0.4)])
@@ -48,7 +48,7 @@ def test_a_held_body_spins_as_a_pendulum(lmp_tree, formulation):
     end, table = rotor(lmp_tree, formulation)
     assert np.abs(end - exact).max() < 1e-11
     assert np.abs(end - held_rotor(4.0 * 1.01)).max() > 1e-3
-    # what is held is held to rounding of the atoms' places
+    # masked components are constant to rounding of the atoms' positions
     assert np.abs(end[4:, :3] - exact[4:, :3]).max() < 1e-15 and np.abs(end[:4, 2]).max() < 1e-15
     assert table["TotEng"][-1] == pytest.approx(table["TotEng"][0], abs=1e-12)
     free, _ = rotor(lmp_tree, formulation, masks="")
@@ -78,10 +78,10 @@ def test_respa_and_ranks_make_no_difference(lmp_tree):
         assert np.abs(rotor(lmp_tree, **settings)[0] - one).max() < 1e-13
 
 
-# --- which bodies -----------------------------------------------------------------------------
+# --- selection of bodies ----------------------------------------------------------------------
 
-# Five dumbbells whose IDs have gaps, and a constant force on every atom: x(t) = x + a t^2/2 exactly,
-# with velocity Verlet too.  They are spread over the ranks, and cross boundaries.
+# Five dumbbells whose IDs have gaps, and a constant force on every atom: x(t) = x + a t^2/2 is exact, also with velocity Verlet. They are
+# distributed over the ranks, and cross boundaries.
 IDS = (20, 3, 11, 7, 2)  # in the order of the atoms
 PULL = np.array([0.6, 0.8, -0.7])
 
@@ -98,7 +98,7 @@ def dumbbells(name, fix, **settings):
 
 
 def which_moved(folder, name):
-    """Per body, in the order of IDS: displacement over what the force makes of it, per component."""
+    """Per body, in the order of IDS: displacement relative to the effect of the force, per component."""
     first, last = frames(folder / f"{name}.dump").values()
     shift = (last - first)[:, 1:4] / (0.5 * PULL * 5.0**2)
     assert np.abs(shift[::2] - shift[1::2]).max() < 1e-10
@@ -107,7 +107,7 @@ def which_moved(folder, name):
 
 OFF, NO_X, ALL = [0, 0, 0], [0, 1, 1], [1, 1, 1]
 RANGES = {
-    # words -> what acts on bodies 2, 3, 7, 11, 20: numbers 1 to 5
+    # words -> components for bodies 2, 3, 7, 11, 20: numbers 1 to 5
     "force * off off off": [OFF, OFF, OFF, OFF, OFF],
     "force 2 off off off": [ALL, OFF, ALL, ALL, ALL],
     "force *2 off on on": [NO_X, NO_X, ALL, ALL, ALL],
@@ -123,7 +123,7 @@ def test_bodies_are_numbered_by_their_ids(lmp_tree, ranks):
         "custom": "gear/quat custom i_body force 2*3 off off off",
         "group": "gear/quat group 5 g20 g3 g11 g7 g2 force 1 off off off",
     }
-    styles = ("gear/quat", "rigid") if ranks == 1 else ("gear/quat",)  # which means the same
+    styles = ("gear/quat", "rigid") if ranks == 1 else ("gear/quat",)  # with the same meaning
     expected = {}
     for style in styles:
         for n, (words, acting) in enumerate(RANGES.items()):
@@ -180,13 +180,13 @@ def test_masks_outlive_a_restart(lmp_tree, data, ranks):
     result = lmp_tree.succeed(one_after_the_other(decks), ranks=ranks)
     whole, again, other = (last_frame(lmp_tree.folder / n) for n in ("whole", "again", "other"))
     assert np.array_equal(whole, again)
-    # masks that are other ones are those of the command, and the histories begin anew
+    # different masks are replaced by the command's, and the histories start again
     assert result.output.count("turn off other components than in the run that wrote") == 1
     assert np.abs(other - whole).max() > 1e-3
 
 
 def test_atoms_that_were_changed_keep_their_masks(lmp_tree):
-    """Bodies are made anew from the atoms; what holds them stays."""
+    """Bodies are made again from the atoms; their masks are kept."""
     fix = "gear/quat molecule force 2*3 off off off"
     displaced = "run 1\ndisplace_atoms all move 0.1 0.0 0.0\nrun 0\nrun 50"
     deck = dumbbells("again", fix, run=displaced, after="run 0")
@@ -201,7 +201,7 @@ def test_atoms_that_were_changed_keep_their_masks(lmp_tree):
 
 
 def test_what_holds_a_body_is_outside_of_it(lmp_tree):
-    """3 P V = 2 K + sum R.F with the forces that molecules met, whatever acts of them."""
+    """3 P V = 2 K + sum R.F with the full forces on molecules, for any masks."""
     data = water_data(lmp_tree.folder / "data.water", spacing=3.6, shift=1.8)
     columns = " ".join(f"f_move[{k}]" for k in range(1, 10))
     pressures = []

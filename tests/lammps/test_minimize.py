@@ -45,7 +45,7 @@ def scene(after=MINIMIZE, **settings):
 
 
 def molecules(path):
-    """Places, velocities and forces of the sites of all molecules, each of shape (molecules, 3, 3)."""
+    """Positions, velocities and forces of the sites of all molecules, each of shape (molecules, 3, 3)."""
     rows = np.loadtxt(path, skiprows=9)[:, 1:]
     return [rows[:, k : k + 3].reshape(-1, 3, 3) for k in (0, 3, 6)]
 
@@ -57,7 +57,7 @@ def stretch(x, arms=ARMS):
 
 
 def unlike_rigid(f, x):
-    """What a rigid motion leaves of forces on sites, relative: their components along the sides add up to nothing."""
+    """The part of forces on sites that is not a rigid motion, relative: their components along the sides cancel."""
     side, difference = (y - np.roll(y, 1, axis=1) for y in (x, f))
     return np.abs((side * difference).sum(axis=-1)).max() / np.abs(f).max()
 
@@ -98,7 +98,7 @@ def test_same_minimum_on_all_ranks(lmp_wheel):
 
 
 def test_gradient(lmp_wheel):
-    """Force and torque by finite differences of the energy; the forces of atoms are those of a rigid motion."""
+    """Force and torque by finite differences of the energy; the forces on atoms correspond to a rigid motion."""
     h, first, steps = 1e-3, 5, (-2, -1, 1, 2)
     turned = [f"{axis} {s * np.degrees(h):.17g}" for axis in ("1 0 0", "0 1 0", "0 0 1") for s in steps]
     moved = [" ".join(str(s * h * (k == n)) for k in range(3)) for n in range(3) for s in steps]
@@ -120,7 +120,7 @@ def test_gradient(lmp_wheel):
 
 
 def test_velocities_go_with_the_bodies(lmp_wheel):
-    """Linear velocities stay, angular velocities stay along the principal axes: so do the energies, in a run after it."""
+    """Velocities and body-frame angular velocities are constant: so are the energies in the next run."""
     after = f"run 0\nwrite_dump all custom begin.dump id xu yu zu vx vy vz fx fy fz modify sort id\n{MINIMIZE}"
     result = lmp_wheel.succeed(scene(f"{after}\nrun 50"))
     before, last = result.thermo[0], result.thermo[2]
@@ -141,7 +141,7 @@ def test_held_components(lmp_wheel):
     moved, turned = ((MASSES[:, None] * y).sum(axis=1) / MASSES.sum() for y in (before, x))
     assert np.abs((turned - moved)[:, 1]).max() < 1e-12 < 1e-2 < np.abs((turned - moved)[:, [0, 2]]).max()
     heights = [y[:, :, 2] - y[:, :1, 2] for y in (before, x)]
-    assert np.abs(heights[1] - heights[0]).max() < 1e-12    # turns about z alone
+    assert np.abs(heights[1] - heights[0]).max() < 1e-12    # rotates only about z
     assert np.abs(x[0] - before[0]).max() < 1e-12
     assert np.linalg.norm(f) < 1e-8 and stretch(x) < 1e-12
     assert result.thermo[-1]["PotEng"][-1] < 0.99 * result.thermo[-1]["PotEng"][0]
@@ -172,7 +172,7 @@ def test_rods_points_and_free_atoms(lmp_wheel):
 
 
 def test_forces_of_fixes_defined_later(lmp_wheel):
-    """A slab in a field: forces that are added behind this fix count, too."""
+    """A slab in a field: forces added after this fix are included."""
     after = "variable fz atom -2.0*(z-1.35)\nvariable e atom (z-1.35)^2\n" \
         "fix well all addforce 0.0 0.0 v_fz energy v_e\nfix_modify well energy yes\n" + MINIMIZE
     result = lmp_wheel.succeed(scene(after, boundary="p p s"))
@@ -185,7 +185,7 @@ def test_forces_of_fixes_defined_later(lmp_wheel):
 
 @pytest.mark.parametrize("words, name", [("iso 20.0", "trimers"), ("aniso 22.0", "trimers"), ("tri 20.0", "tilted")])
 def test_box_relax(lmp_wheel, words, name):
-    """The molecular pressure becomes the target, which is the slope of the energy when only centers go with the box."""
+    """The molecular pressure becomes the target: the slope of the energy if only centers are scaled."""
     kind, pressure = words.split()[0], float(words.split()[1])
     after = f"fix box all box/relax {words} vmax 0.01\nminimize 0.0 1e-7 4000 20000\nunfix box\n{MINIMIZE}\n" \
         "write_data data.relaxed nocoeff"
@@ -210,7 +210,7 @@ def test_box_relax(lmp_wheel, words, name):
     ["temp 0.7 0.7 0.5", "tolerance 1e-6", "formulation first values 3 isokinetic total", "iso 1 1 1 ptemp 1", "start zero"],
 )
 def test_whatever_moves_the_bodies_in_runs(lmp_wheel, words):
-    """Keywords of runs do not matter in a minimization between two of them; bodies store poses in the shortest history."""
+    """Keywords of runs do not matter in a minimization between them; poses are stored in the shortest history."""
     result = lmp_wheel.succeed(scene(f"run 2\n{MINIMIZE}\nrun 2", words="molecule " + words))
     minimized, after = result.thermo[1], result.thermo[2]
     assert minimized["Fnorm"][-1] < 1e-8 < 1e-6 * minimized["Fnorm"][0]
@@ -219,7 +219,7 @@ def test_whatever_moves_the_bodies_in_runs(lmp_wheel, words):
 
 
 def test_torques_of_atoms(lmp_tree):
-    """Torques on dipoles turn bodies of several atoms, and the line search finds no other gradient."""
+    """Torques on dipoles rotate bodies of several atoms, and the line search finds a consistent gradient."""
     deck = dipoles_deck("report short", moment=0.8)
     deck = re.sub(r"thermo_style custom .*", "thermo_style custom step pe fnorm", deck)
     deck = re.sub(r"^run .*$", "minimize 0.0 1e-9 5000 20000", deck, flags=re.M)

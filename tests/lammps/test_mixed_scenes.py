@@ -1,7 +1,7 @@
-"""Bodies among others: forces of every kind count, other fixes move the rest, in one box of water.
+"""Bodies among other atoms: forces of all kinds, other fixes for the rest, in one box of water.
 
-Against fix rigid/nve/small at a step so small that nothing is left of its error, and by balances of
-momentum and energy that know of no integrator.
+Compared with fix rigid/nve/small at a step so small that its error is negligible, and by balances of
+momentum and energy that are independent of the integrator.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ NO_DISPERSION = "pair_coeff 2 2 0.0 1.0\npair_coeff 1 2 0.0 1.0\n"
 
 @dataclass
 class Box:
-    """The box of water with decks that all begin alike; a deck leaves a dump of its name."""
+    """The box of water with decks that have the same beginning; a deck writes a dump with its name."""
 
     lmp: Lammps
     data: Path
@@ -46,7 +46,7 @@ class Box:
         return np.loadtxt(lines.splitlines())[:, 1:]
 
     def difference(self, one, other, atoms=slice(None)):
-        """Of positions and velocities, relative to what forces have changed in the velocities."""
+        """Of positions and velocities, relative to the change of the velocities by forces."""
         one, other = (self.end(name)[atoms] for name in (one, other))
         changed = np.abs(one[:, 4:7] - self.start()[one[:, 0].astype(int) - 1]).max()
         travelled = np.abs(one[:, 4:7]).max()
@@ -67,7 +67,7 @@ def walls(style, strength, length="2.5"):
     return f"fix w all wall/{style} {' '.join(sides)}", []
 
 
-# what a strength s of 1 makes of the deck: commands, and replacements in it
+# effect of a strength s of 1 on the deck: commands, and replacements in it
 FORCES = {
     "pair": lambda s: ("", [("0.1553", f"{0.1553 * s}")]),
     "gravity": lambda s: (f"fix g all gravity {0.05 * s} vector 0.3 0.2 -1", []),
@@ -100,14 +100,14 @@ FORCES = {
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("kind", FORCES)
 def test_every_force_counts(box, kind, ranks):
-    """As with fix rigid/nve/small at a tiny step; one of these forces 1 % stronger is seen.
+    """As with fix rigid/nve/small at a tiny step; if one of these forces is 1 % stronger, it is detected.
 
-    Plain cut-offs are jumps of the forces, which tuned coefficients answer for some tens of steps.
+    Plain cutoffs are jumps of the forces, whose errors decay over some tens of steps with tuned coefficients.
     """
     within = 1e-5 if kind == "hybrid" else 1e-6
 
     def deck(name, fix, strength=1.0):
-        # before: a fix rigid that comes first does not know the forces of others in its first half step
+        # before: a fix rigid defined first lacks the forces of others in its first half step
         before, replace = FORCES[kind](strength)
         if "wall" in kind:
             replace = [*replace, ("read_data", "boundary p p f\nread_data")]
@@ -126,7 +126,7 @@ def test_every_force_counts(box, kind, ranks):
 
 FTM2V = 1 / 48.88821291**2  # kcal/mol/Angstrom/(g/mol) in Angstrom/fs^2
 MASS = np.tile(WATER_MASSES, N**3)
-DRAG = {  # rate in 1/fs, and how it is said
+DRAG = {  # rate in 1/fs, and its command
     "langevin": (1 / 30, "fix d all langevin 0 0 30 4711"),
     "viscous": (40 * FTM2V, f"fix d all viscous {40 * MASS[0]} scale 2 {MASS[1] / MASS[0]}"),
 }
@@ -134,7 +134,7 @@ DRAG = {  # rate in 1/fs, and how it is said
 
 @pytest.mark.parametrize("kind", DRAG)
 def test_a_drag_on_every_site_stops_the_whole(box, fix, kind):
-    """In proportion to masses: forces among the sites drop out, momentum falls as an exponential."""
+    """In proportion to masses: internal forces cancel, and the momentum decays exponentially."""
     rate, drag = DRAG[kind]
     box.run(box.deck("end", fix, dt=0.1, steps=300, before=drag))
     before, after = MASS @ box.start(), MASS @ box.end("end")[:, 4:7]
@@ -145,7 +145,7 @@ def test_a_drag_on_every_site_stops_the_whole(box, fix, kind):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_what_pulls_the_whole_is_its_momentum(box, fix, ranks):
-    """Gravity and a constant force on the sites of some bodies: no step is too long for that sum."""
+    """Gravity and a constant force on the sites of some bodies: this sum is exact for any step."""
     pull = "fix g all gravity 0.5 vector 0 0 -1\nfix a bodies addforce 0.1 -0.2 0.3"
     deck = box.deck("end", fix, dt=1.0, steps=100, before=BODIES + pull)
     box.run(deck, ranks=ranks)
@@ -160,7 +160,7 @@ def test_what_pulls_the_whole_is_its_momentum(box, fix, ranks):
 
 
 def with_bonds(data):
-    """The same molecules with bonds and angles; one more ties the last body to its neighbor."""
+    """The same molecules with bonds and angles; one more bond connects the last body to its neighbor."""
     text = data.read_text()
     counts = f"{2 * N**3 + 1} bonds\n2 bond types\n{N**3} angles\n1 angle types\n"
     text = text.replace("\nMasses", f"{counts}\nMasses")
@@ -205,7 +205,7 @@ def solution(request, box):
 
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_bodies_and_solvent_move_each_other(solution, ranks):
-    """At a tiny step as with fix rigid/nve/small; without the forces between them otherwise."""
+    """At a tiny step as with fix rigid/nve/small; without the forces between them the motion differs."""
     apart = "neigh_modify exclude group bodies others\n"
     common = dict(group="bodies", before=solution.before)
     solution.run(
@@ -224,7 +224,7 @@ def test_bodies_and_solvent_move_each_other(solution, ranks):
 
 
 def test_respa_with_forces_of_both_levels(box, fix):
-    """A bond pulls a body on one level, all pairs on the other: their sum moves it."""
+    """A bond acts on a body on one level, all pairs on the other: their sum moves it."""
     box.data = with_bonds(box.data)
     before = SOLVENT["flexible"] + "\nfix others others nve\n"
     common = dict(group="bodies", dt=0.2, steps=200)
@@ -241,8 +241,8 @@ def test_respa_with_forces_of_both_levels(box, fix):
 
 
 def test_momentum_and_energy_of_a_solution(solution, fix):
-    """What bodies lose the solvent gains: by the energy of all, and by the momentum of all."""
-    # nothing is cut off: forces are the derivatives of the energy everywhere
+    """Energy and momentum are exchanged between bodies and solvent, and their totals are conserved."""
+    # there is no cutoff: forces are the derivatives of the energy everywhere
     room = "change_box all x delta -9 9 y delta -9 9 z delta -9 9 units box\n"
     whole = [
         ("read_data", "boundary f f f\nread_data"),
@@ -264,7 +264,7 @@ def test_momentum_and_energy_of_a_solution(solution, fix):
         for errors, factor in ((drift, 1.0), (wrong, 1.01)):
             total = potential + factor * kinetic
             errors.append(np.abs(total - total[0]).max() / np.ptp(potential))
-    # What is left is of the order of fix nve, and small.
+    # The remaining error is of the order of fix nve, and small.
     for errors in (drift, lost):
         assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
         assert errors[1] < 1e-5
@@ -276,7 +276,7 @@ def test_momentum_and_energy_of_a_solution(solution, fix):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_two_fixes_are_one(box, fix, ranks):
-    """The same motion, temperature and pressure; sums over bodies come in two parts."""
+    """The same motion, temperature and pressure; sums over bodies consist of two parts."""
     fix = f"{fix} start zero"
     sums, both = "f_move[1] f_move[2]", "f_move[1] f_move[2] f_rest[1] f_rest[2]"
     two = f"fix rest others {fix}\nfix_modify rest energy yes\n"
@@ -302,10 +302,10 @@ def test_two_fixes_are_one(box, fix, ranks):
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("beside", [OURS + "first", RIGID])
 def test_another_rigid_fix_beside(box, beside, ranks):
-    """Of the other formulation, or fix rigid/nve/small: all as if rigid/nve/small moved all."""
+    """Of the other formulation, or fix rigid/nve/small: as if rigid/nve/small moved all."""
     fix = OURS + "second"
     two = f"{BODIES}fix rest others {beside}\n"
-    # what another fix gear/quat moves is followed, for both start together; other fixes are not
+    # another fix gear/quat is followed, since both start together; other fixes are not
     start = "start with known forces only (order 2), because fix rest"
     if beside != RIGID:
         start = "Fix gear/quat rest and move: start of order 8 from"
@@ -328,10 +328,10 @@ def test_another_rigid_fix_beside(box, beside, ranks):
 
 
 def test_langevin_keeps_bodies_at_its_temperature(lmp_tree):
-    """Free bodies, kicked at every site: both kinds of motion are at 300 K within three error bars.
+    """Free bodies with random forces on every site: both kinds of motion are at 300 K within three error bars.
 
     The same random numbers move fix rigid/nve/small, so its translation has almost the same errors.
-    The numbers of values are those that the log recommends with random forces.
+    The numbers of values are recommended by the log for random forces.
     """
     suited = {"first": "first values 7", "second": "second values 4"}
     n, dt, damp, steps, rows = 6, 0.5, 100.0, 4000, 400
@@ -361,7 +361,7 @@ def test_langevin_keeps_bodies_at_its_temperature(lmp_tree):
 
     assert "heat bodies" not in result.output
     rigid, first, second, hotter = result.thermo
-    # kinetic energies forget each other in damp / 2
+    # kinetic energies are uncorrelated after damp / 2
     bar = 300.0 * np.sqrt(2.0 / (3 * n**3 * 0.75 * steps * dt / damp))
     for table in (first, second):
         for energy in ("f_move[1]", "f_move[2]"):

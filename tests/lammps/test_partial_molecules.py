@@ -1,4 +1,4 @@
-"""Molecules that are only partly in bodies: a warning says how many, and what to write."""
+"""Molecules that are only partly in bodies: a warning gives their number and a remedy."""
 
 import re
 
@@ -31,7 +31,7 @@ def test_only_the_oxygens(lmp_tree, style, ranks):
 
 @pytest.mark.parametrize("style", ["molecule", "group 1 oxygens", "custom v_body"])
 def test_the_advice(lmp_tree, style):
-    """After the command that the warning names the molecules are whole."""
+    """With the suggested command the molecules are whole."""
     text = deck(lmp_tree.folder, style, before="group oxygens include molecule\n")
     result = lmp_tree.succeed(text)
     assert not WARNING.search(result.words)
@@ -48,6 +48,6 @@ def test_one_molecule(lmp_tree):
 
 @pytest.mark.parametrize("rest", ["nve", "gear/quat molecule"])
 def test_another_fix_moves_the_rest(lmp_tree, rest):
-    """Flexible chains on rigid cores, and rigid parts that other bonds connect, are wanted."""
+    """Flexible chains on rigid cores, and rigid parts connected by other bonds, are intended."""
     result = lmp_tree.succeed(deck(lmp_tree.folder, "molecule", after=f"fix rest hydrogens {rest}\n"))
     assert not WARNING.search(result.words)

@@ -1,4 +1,4 @@
-"""What the bodies do: exact motions, energies, temperatures, pressures, units."""
+"""Motion of the bodies: exact solutions, energies, temperatures, pressures, units."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def free(lmp, atoms, velocities, fix, steps, dt, **settings):
 
 
 def test_a_point_in_a_spring(lmp_tree, fix):
-    """One atom alone is a body without rotation; its motion is a sine."""
+    """A single atom is a body without rotation; its motion is a sine."""
     spring = "fix s all spring/self 4.0"
     x, v = np.array([[0.1, 0.2, 0.0]]), np.array([[1.0, -0.5, 0.2]])
     end, table = free(lmp_tree, x, v, fix, 2000, 0.001, before=spring)
@@ -66,7 +66,7 @@ run 50
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_the_scalar_takes_the_energy_to_the_dumped_pose(lmp_tree, data, fix, ranks):
-    """Large shifts (zero start, long steps): right to 0.1 %, what is left is of second order."""
+    """Large shifts (zero start, long steps): correct to 0.1 %, with a remainder of second order."""
     for steps, dt in ((10, 0.4), (20, 0.2), (40, 0.1)):
         deck = water(data, f"{fix} start zero", dt=dt, steps=steps, run="run {steps}\nrun 0")
         # a style whose forces are the derivative of its energies
@@ -81,7 +81,7 @@ def test_the_scalar_takes_the_energy_to_the_dumped_pose(lmp_tree, data, fix, ran
 
 
 def test_kinetic_energies(lmp_tree, data, fix):
-    """The vector against LAMMPS' kinetic energy of the sites, after collisions and migration."""
+    """The vector, compared with LAMMPS' kinetic energy of the sites, after collisions and migration."""
     columns = "f_move[1] f_move[2] f_move[3]"
     deck = water(data, fix, steps=400, thermo=100, columns=columns)
     table = lmp_tree.succeed(deck, ranks=2).thermo[0]
@@ -132,7 +132,7 @@ def test_pressure_does_not_depend_on_the_time_step(lmp_tree, data, fix):
     coarse, middle, fine = (pressure(fix, dt) for dt in (0.2, 0.1, 0.05))
     assert coarse == pytest.approx(fine, rel=1e-6)
     assert middle == pytest.approx(fine, rel=1e-7)
-    # fix rigid's agrees but for its own error; its row 0 lacks part of the constraint forces
+    # fix rigid agrees within its error; its row 0 lacks part of the constraint forces
     rigid = pressure("rigid/nve/small molecule", 0.01)
     assert rigid[1:] == pytest.approx(fine[1:], rel=1e-3)
 
@@ -150,7 +150,7 @@ def test_without_its_virial_the_pressure_is_another(lmp_tree, data):
 
 @pytest.mark.parametrize("units", UNITS)
 def test_all_units(lmp_tree, units):
-    """The same motion as fix rigid's to its own error, in every system of units."""
+    """The same motion as with fix rigid, within its error, in every system of units."""
     data = water_data(lmp_tree.folder / "data.water", units=units)
     settings = dict(units=units, dt=0.05, steps=200)
     ours = water(data, dump="ours", after="thermo_modify lost error", **settings)
@@ -161,7 +161,7 @@ def test_all_units(lmp_tree, units):
     moved = np.abs(ours - start).max()  # forces have acted
     assert np.abs(ours - rigid).max() < 3e-4 * moved
     assert np.abs(1.01 * ours - rigid).max() > 3e-4 * moved
-    # and energy is kept: the scalar and the kinetic energies are in the units of energy
+    # and energy is conserved: the scalar and the kinetic energies are in the units of energy
     drift = energy["TotEng"][-1] - energy["TotEng"][0]
     assert abs(drift) < 0.2 * np.ptp(energy["KinEng"])
 
@@ -174,7 +174,7 @@ BOX = 20.0
 
 
 def body_file(path, x, v, image=(0, 0, 0)):
-    """What keyword infile reads about one body with these sites."""
+    """A line of keyword infile for one body with these sites."""
     center, velocity = x.mean(axis=0), v.mean(axis=0)
     arms = x - center
     inertia = np.eye(3) * (arms**2).sum() - arms.T @ arms
@@ -194,14 +194,14 @@ def infile_run(lmp, fix, dt=0.01):
 
 @pytest.mark.parametrize("image", [(0, 0, 0), (1, -2, 3)])
 def test_a_true_infile_changes_nothing(lmp_tree, fix, image):
-    """Stated as it is, the body moves as without a file; the other molecule is not in the file."""
+    """With its actual properties in the file the body moves as without it; the other molecule is not in the file."""
     body_file(lmp_tree.folder / "true", SITES, np.cross(OMEGA, SITES) + [0.1, 0.2, 0.3], image)
     plain, stated = (infile_run(lmp_tree, fix + more) for more in ("", " infile true"))
     assert np.abs(plain - stated).max() < 1e-12
 
 
 def test_an_infile_serves_fix_rigid_too(lmp_tree, fix):
-    """Another inertia than that of the sites: the same motion as fix rigid's with the same file."""
+    """Another inertia than the sites have: the same motion as fix rigid with the same file."""
     tilted = SITES @ np.array([[1.0, 0.2, 0], [0, 1, 0.3], [0.1, 0, 1]])
     body_file(lmp_tree.folder / "other", tilted, np.cross(OMEGA, tilted))
     plain, stated = (infile_run(lmp_tree, fix + more) for more in ("", " infile other"))

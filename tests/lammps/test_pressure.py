@@ -1,6 +1,6 @@
 """Constant pressure: orders, the molecular virial, edges of the box, ensembles.
 
-What is refused is in test_bad_input.py, restarts and ranks in test_pressure_runs.py.
+Unsupported settings are in test_bad_input.py, restarts and ranks in test_pressure_runs.py.
 """
 
 import numpy as np
@@ -39,7 +39,7 @@ SCHEMES = {
 
 @pytest.mark.parametrize("mode", MODES)
 def test_orders_of_velocities_edges_and_energy(lmp_wheel, mode):
-    """By slope, beside a run with more values and shorter steps."""
+    """By slope, compared with more values and shorter steps."""
     time, steps = 0.4, (0.02, 0.01, 0.005)
     decks = [pressed(f"values 9 {MODES[mode]}", 0.0025, round(time / 0.0025))]
     decks += [pressed(f"{s} {MODES[mode]}", dt, round(time / dt)) for s in SCHEMES for dt in steps]
@@ -54,10 +54,9 @@ def test_orders_of_velocities_edges_and_energy(lmp_wheel, mode):
     found = np.array([errors(k) for k in range(1, 1 + len(SCHEMES) * len(steps))])
     for values, of in zip(SCHEMES.values(), found.reshape(len(SCHEMES), len(steps), 3)):
         slopes = np.log2(of[0] / of[-1]) / (len(steps) - 1)
-        # velocities act on forces: n - 1
-        # the energy's error is a difference of two, whose signs differ at some steps
+        # forces depend on velocities: n - 1 the energy's error is a difference of two, whose signs differ at some steps
         assert (slopes > values - np.array([1.6, 1.6, 1.9])).all(), (values, slopes)
-    # a pressure 1 % off is another motion
+    # with a pressure 1 % off the motion differs
     assert errors(len(decks) - 1)[0] > 1e4 * found[5][0]
 
 
@@ -114,8 +113,8 @@ angle_coeff 1 109.47
 """
 OF_TIP4P = dict(style="tip4p/long 1 2 1 1 0.15 4.6", word="tip4p/long")
 MESH = "order 7 mesh 48 48 48"
-# Mesh and g are those of the first box, as in a run: sites of a molecule are not in the list, so g
-# counts.  LAMMPS' erfc has seven digits, which its forces are not derivatives of.
+# Mesh and g are those of the first box, as in a run: sites of a molecule are not in the list, so g matters.  LAMMPS' erfc has seven digits
+# and is not consistent with its derivatives in the forces.
 FORCES = {
     "smooth": (SMOOTH, 1e-8),
     "ewald": (LONG.format(kspace="ewald", mesh="kmax/ewald 16 16 16", **COUL), 2e-5),
@@ -164,7 +163,7 @@ COUPLES = {"xyz": (0, 1, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 
 @pytest.mark.parametrize("couple", ["none", *COUPLES])
 def test_coupled_edges_are_the_same(lmp_wheel, couple):
-    """To the last digits, whatever the corner of the box; others differ."""
+    """To the last digits, for any corner of the box; others differ."""
     result, _ = ends(lmp_wheel, [pressed(f"aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8 couple {couple}", run="run 200")])
     edges = np.array([result.thermo[0][c] for c in EDGES])
     assert largest_change(result.thermo[0]) < 1e-6
@@ -182,7 +181,7 @@ def test_an_edge_without_a_keyword_stays(lmp_wheel):
 
 
 def test_the_fixed_point_stays(lmp_wheel):
-    """The place where the center of the box is by default, and another."""
+    """The default, the center of the box, and another point."""
     columns = "thermo_style custom step xlo xhi ylo yhi zlo zhi econserve\nthermo_modify norm no format float %.17g"
     decks = [
         pressed(f"iso 0.5 0.5 1.0 {point}", run=columns + "\nrun 100")
@@ -195,12 +194,12 @@ def test_the_fixed_point_stays(lmp_wheel):
             part = (at - np.array(table[f"{name}lo"])) / edge
             assert np.ptp(part) < 1e-14 and np.ptp(edge) > 1e-4
     assert np.abs(frames[0] - frames[1]).max() == 0.0
-    # where the box is changes nothing but places
+    # the position of the box changes only positions
     assert np.abs(frames[0] - frames[2])[:, 3:6].max() < 1e-12
 
 
 def test_in_two_dimensions(lmp_wheel):
-    """The box keeps its height; orders as in three."""
+    """The box keeps its height; orders are as in three dimensions."""
     trimers(lmp_wheel.folder / "data.flat", n=3, flat=True)
     flat = dict(dimension=2, data="data.flat", pair=GAUSS, after="fix flat all enforce2d")
     steps = (0.02, 0.01)
@@ -220,7 +219,7 @@ def test_in_two_dimensions(lmp_wheel):
 
 @pytest.mark.parametrize("words, tolerance", [("iso {} 1.0", 1e-13), ("aniso {} 1.0", 1e-12)], ids=["iso", "aniso"])
 def test_lengths_within_a_molecule_do_not_change(lmp_wheel, data, words, tolerance):
-    """In 1e5 steps, and in 400 runs of 10; positions of molecules that are many periods off have fewer digits."""
+    """In 1e5 steps, and in 400 runs of 10; positions many periods away have fewer digits."""
     words = words.format("0.3 0.6") + " temp 0.7 0.9 0.8"
     many = "label loop\nvariable i loop 400\nrun 10 start 0 stop 4000\nnext i\njump SELF loop"
     settings = dict(thermo=10000, box="read_data data.trimers")
@@ -238,7 +237,7 @@ def test_lengths_within_a_molecule_do_not_change(lmp_wheel, data, words, toleran
 
 
 def test_the_total_momentum_stays_zero(lmp_wheel):
-    """In a long run with chains, whose friction would let rounding grow; and a drift stays what it is."""
+    """In a long run with chains, whose friction could amplify rounding; and a drift velocity is constant."""
     momentum = "\n".join(f"variable p{c} equal mass(all)*vcm(all,{c})" for c in "xyz")
     columns = momentum + "\nthermo_style custom step econserve v_px v_py v_pz\nthermo_modify norm no format float %.17g\n"
     drift = "velocity all set 0.3 -0.2 0.1 sum yes"
@@ -253,7 +252,7 @@ def test_the_total_momentum_stays_zero(lmp_wheel):
 
 
 def test_a_crystal_bears_a_negative_pressure(lmp_wheel):
-    """Each component is the one that is asked for, averaged over a run; unequal ones too."""
+    """Each component has its target, averaged over a run; unequal ones too."""
     pair = "pair_style morse 2.5\npair_coeff * * 0.0 2.0 1.0 2.5\npair_coeff 1 1 2.0 4.0 1.0 2.5\npair_modify shift yes"
     crystal = """lattice fcc 1.4
 region box block 0 3 0 3 0 3
@@ -284,13 +283,13 @@ run 40000"""
     mean, error = rows.mean(axis=0), rows.std(axis=0) / np.sqrt(len(rows))
     print(mean, error)
     assert (np.abs(mean[:3] - targets) < 4 * error[:3]).all() and error[:3].max() < 0.02
-    # what their mean would be
+    # for comparison, their mean
     assert np.abs(mean[:3] + 0.4).max() > 10 * error[:3].max()
     mass = (3 * 107 + 3) * 0.05 / 3
-    # ten parts of one component are too few for its own error
+    # ten parts of one component are too few for its error
     pooled = mass * np.sqrt((error[3:] ** 2).mean())
     assert (np.abs(mass * mean[3:] - 0.05) < 4 * pooled).all() and pooled < 0.05 * 0.05
-    # of 2000: the potential is cut off
+    # of 2000: the potential has a cutoff
     assert largest_change(result.thermo[2]) < 0.05
     assert abs(result.thermo[2]["Lx"][-1] / result.thermo[2]["Ly"][-1] - 1.0) > 1e-4
 
@@ -299,7 +298,7 @@ run 40000"""
 
 
 def test_pressure_times_volume_and_the_energy_of_the_box(lmp_wheel):
-    """<(P - P0) V> = -kT and three times W <G^2> = kT: what wrong weights of the trace fail."""
+    """<(P - P0) V> = -kT and three times W <G^2> = kT: wrong weights of the trace fail this test."""
     target, kt, damp = 1.0, 1.5, 0.5
     run = f"""variable work equal (f_move[15]-{target})*vol
 variable rate equal f_move[23]^2

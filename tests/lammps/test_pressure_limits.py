@@ -1,4 +1,4 @@
-"""Constant pressure: what the log says about a box that oscillates too fast, and about a mesh for another box."""
+"""Constant pressure: messages about a box that oscillates too fast, and about a mesh for another box."""
 
 import re
 
@@ -7,10 +7,10 @@ import pytest
 from pressed import pressed, trimers
 from scenes import largest_change, water_data
 
-# --- how fast the box oscillates ----------------------------------------------------------------
+# --- the frequency of the box --------------------------------------------------------------------
 
-# A crystal of points, in which a strain of the box moves every atom as a lattice does, so that the volume
-# oscillates with a single frequency.  No shell of neighbors passes the cutoff.
+# A crystal of points, in which a strain of the box moves every atom as a lattice does, so that the volume oscillates with a single
+# frequency.  No shell of neighbors crosses the cutoff.
 PAIR = "pair_style morse 1.68\npair_coeff * * 0.0 2.0 1.0 1.68\npair_coeff 1 1 2.0 4.0 1.0 1.68"
 CRYSTAL = """lattice fcc 1.75
 region box block 0 3 0 3 0 3
@@ -21,7 +21,7 @@ variable own atom id
 set group all mol v_own
 velocity all create 1e-6 87287"""
 TARGET = 0.3
-#: and the radians in a step that they follow
+#: and the limits in radians per step
 SCHEMES = {
     "values 5": 0.96,
     "values 7": 0.70,
@@ -40,7 +40,7 @@ def crystal(words, dt, run, pdamp=1.0, last=TARGET, thermo=1000):
 
 
 def volume_frequency(lmp):
-    """Of small oscillations, by the zero crossings in a run with short steps."""
+    """Of small oscillations, from the zero crossings in a run with short steps."""
     dt = 0.001
     table = lmp.succeed(crystal("values 7", dt, "run 2000", thermo=1)).thermo[0]
     strain = np.log(table["Volume"])
@@ -51,13 +51,13 @@ def volume_frequency(lmp):
 
 
 def printed(text, value, tolerance):
-    """Whether a number of two digits is this value, but for its rounding."""
+    """True if a printed number of two digits is this value, up to rounding."""
     unit = 10.0 ** (np.floor(np.log10(value)) - 1)
     return abs(float(text) - value) < 0.51 * unit + tolerance * value
 
 
 def test_a_box_that_oscillates_too_fast(lmp_wheel):
-    """The number of radians is that of the volume in a run, whatever the method; Pdamp is as long as needed."""
+    """The printed radians agree with the volume in a run, for any method; Pdamp is as long as needed."""
     omega = volume_frequency(lmp_wheel)
     for words, fastest in SCHEMES.items():
         dt = {part: part * fastest / omega for part in (0.58, 0.63, 0.75, 0.9, 0.98, 1.3)}
@@ -69,7 +69,7 @@ def test_a_box_that_oscillates_too_fast(lmp_wheel):
             percent = re.search(r"step, (\d+) % of what the method", result.words)[1]
             assert float(percent) == pytest.approx(100 * part, abs=1.5)
             assert not LATER.search(result.words)
-            # the method does follow it
+            # the method is stable with it
             assert largest_change(result.thermo[1]) < 0.02
         for part in (0.98, 1.3):
             said = f"radians in a step, and the method follows {fastest:g};"
@@ -84,14 +84,14 @@ def test_a_box_that_oscillates_too_fast(lmp_wheel):
 
 
 def test_steps_that_change_follow_the_box(lmp_wheel):
-    """With keyword tolerance a step is short enough instead, however long the first one is."""
+    """With keyword tolerance a step is short enough instead, for any first step."""
     result = lmp_wheel.succeed(crystal("tolerance 1e-8", 3.0 / volume_frequency(lmp_wheel), "run 500"))
     assert "radians" not in result.output and largest_change(result.thermo[0]) < 1e-4
 
 
 @pytest.mark.parametrize("words", SCHEMES)
 def test_a_box_that_becomes_too_stiff(lmp_wheel, words):
-    """In a ramp of the pressure: one warning, at the step where a new start would give it."""
+    """In a ramp of the pressure: one warning, at the step at which a new start would give it."""
     omega, fastest, steps, ratio = volume_frequency(lmp_wheel), SCHEMES[words], 6000, 1.15
     dt, last = 0.54 * fastest / omega, 12.0
     result = lmp_wheel.succeed(crystal(words, dt, f"run {steps}", last=last))
@@ -154,7 +154,7 @@ CASES = [("pppm", change) for change in CHANGES] + [("msm", "shrinks"), ("ewald"
 
 @pytest.mark.parametrize("style, change", CASES)
 def test_a_mesh_that_was_made_for_another_box(lmp_wheel, style, change):
-    """One warning for a run, at the first step that is 15 % off; Ewald's wave vectors follow the box."""
+    """One warning per run, at the first step that is 15 % off; Ewald's wave vectors follow the box."""
     pair, kspace = STYLES[style]
     spacing, words, edge = CHANGES[change]
     water_data(lmp_wheel.folder / "data.water", spacing=spacing, shift=spacing / 2)

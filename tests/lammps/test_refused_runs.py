@@ -1,4 +1,4 @@
-"""A run that is refused has changed nothing, and the run after the correction is the run that was meant."""
+"""A refused run has changed nothing, and the run after the correction is the intended one."""
 
 import json
 import subprocess
@@ -37,9 +37,9 @@ if spoil:
 instance.command("run 20")
 print(json.dumps(result | {"then": state()}))
 """
-#: not those of rigid bodies, which the first run makes of them
+#: not the velocities of rigid bodies, which the first run makes of them
 VELOCITIES = "velocity all create 300.0 4711 loop geom\n"
-# what spoils the run, what mends it, what is said
+# an error, its remedy, the message
 REFUSED = {
     "step": ("timestep 400.0", "timestep 0.5", "turns with an angular velocity of"),
     "zero step": ("timestep 0.0", "timestep 0.5", "requires a time step that is not zero"),
@@ -62,7 +62,7 @@ def run(folder, spoil="", mend="", fix="gear/quat molecule"):
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory):
-    """The state after a run that nothing refuses."""
+    """The state after a run without errors."""
     folder = tmp_path_factory.mktemp("straight")
     water_data(folder / "data.water")
     return run(folder)

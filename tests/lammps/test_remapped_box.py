@@ -31,7 +31,7 @@ TILTS = "change_box all xy final 0.7 yz delta 0.6 x scale 1.05 remap units box"
 
 
 def rows(box):
-    """Edges in rows, and the lowest corner, of the lines of a dump's frame."""
+    """Edges in rows, and the lowest corner, from the lines of a dump's frame."""
     box = np.array([line.split() for line in box.splitlines()], float)
     tilts = box[:, 2] if box.shape[1] == 3 else np.zeros(3)  # xy xz yz
     xy, xz, yz = tilts
@@ -68,7 +68,7 @@ def centers(sites):
 
 
 def check_remap(before, after, tolerance=1e-12):
-    """Arms and velocities stay, centers stay where they are relative to the edges of the box."""
+    """Arms and velocities are constant, centers keep their positions relative to the edges of the box."""
     (old, old_edges, old_low), (new, edges, low) = before, after
     place = (centers(old) - old_low) @ np.linalg.inv(old_edges)
     arms = [x[..., :3] - centers(x)[:, None] for x in (old, new)]
@@ -94,7 +94,7 @@ def test_shapes_stay_and_centers_follow(lmp_tree, change, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_in_a_tilted_box(lmp, ranks):
-    """Edges that get other directions shear the box, and no body."""
+    """Edges with changed directions shear the box, and no body."""
     before, after, _ = before_and_after(lmp, TILTS, tilt=2.0, ranks=ranks)
     check_remap(before, after)
     with pytest.raises(AssertionError):
@@ -110,7 +110,7 @@ def test_before_the_first_run_and_without_a_new_look_at_atoms(lmp_tree, words, f
 
 
 def test_with_an_infile(lmp_tree):
-    """Bodies that a file gives have no other place to take their centers from."""
+    """With bodies from a file, centers cannot be computed from atoms."""
     data = water_data(lmp_tree.folder / "data.water")
     lmp_tree.succeed(water(data, dt=0.5, steps=1, run="run 0\nwrite_restart given"))
     infile = next(lmp_tree.folder.glob("given.*.gear_quat"))
@@ -134,7 +134,7 @@ def test_a_group_alone_is_remapped(lmp_tree):
 
 
 def test_velocities_may_change_as_well(lmp_tree):
-    """They are taken over from the atoms, as after any other command."""
+    """They are adopted from the atoms, as after any other command."""
     doubled = "variable v{0} atom 2*v{0}\nset group all v{0} v_v{0}\n"
     change = CHANGES["scale"] + "\n" + "".join(doubled.format(k) for k in "xyz")
     before, after, result = before_and_after(lmp_tree, change)
@@ -157,7 +157,7 @@ def test_energies_are_those_of_the_new_places(lmp_tree):
 
 
 def test_a_data_file_right_after_the_change(lmp_tree):
-    """LAMMPS writes what its next run would begin with."""
+    """LAMMPS writes the initial state of its next run."""
     data = water_data(lmp_tree.folder / "data.water")
     run = f"run 1\n{CHANGES['scale']}\nwrite_data written nocoeff"
     lmp_tree.succeed(water(data, steps=1, run=run), ranks=2)
@@ -168,7 +168,7 @@ def test_a_data_file_right_after_the_change(lmp_tree):
 
 
 def test_bodies_of_one_atom_and_rods_along_an_axis(lmp_tree):
-    """A remap does not stretch them, and does not hide what it does to others."""
+    """A remap does not stretch them, and its effect on others is still detected."""
     bodies = [[(1, 2, 3)], [(3, 0, 0), (3, 0, 1.5)], [(-4, 0, 0), (-3, 0, 0)]]
     bodies = [np.array(body, float) for body in bodies]
     change = "change_box all x scale 1.1 y scale 0.9 remap"
@@ -182,7 +182,7 @@ def test_bodies_of_one_atom_and_rods_along_an_axis(lmp_tree):
 
 
 def test_a_body_that_all_ranks_have(lmp_tree):
-    """Longer than ghost atoms are seen."""
+    """Longer than the ghost cutoff."""
     rod = np.column_stack([np.arange(-14, 14.5, 2), 0.1 * np.arange(-14, 14.5, 2), np.zeros(15)])
     bodies = [rod, rod + [0, 5, 5]]
     ends = []

@@ -1,4 +1,4 @@
-"""The scene report: effects on or off with their reasons, and what the surroundings cost."""
+"""The report: effects that are on or off with their reasons, and the cost of the surroundings."""
 
 import re
 from fnmatch import fnmatchcase
@@ -24,7 +24,7 @@ PAIRS = re.compile(r"^  (\d+) of (\d+) pairs in the neighbor lists \(\d+ %\) are
 
 
 def lines_of(result):
-    """Lines of the only report, title first; none without one."""
+    """Lines of the only report, title first; empty without one."""
     lines = result.log.splitlines()
     at = [k for k, line in enumerate(lines) if TITLE.match(line)]
     assert len(at) <= 1, "more than one report"
@@ -45,7 +45,7 @@ def effects(lines):
 
 
 def proposals(lines):
-    """Lines of the input script that the report proposes; two of a line are separated by ';'."""
+    """Lines of the input script suggested in the report; two in a line are separated by ';'."""
     proposed = [line.strip().split("; ") for line in lines[1:] if line.startswith("    ")]
     return "\n".join(command for commands in proposed for command in commands)
 
@@ -56,7 +56,7 @@ def counted(lines):
     return {kind: (int(some), int(every)) for some, every, kind in rows}
 
 
-# --- the words -----------------------------------------------------------------------------------
+# --- the keywords --------------------------------------------------------------------------------
 def test_once_and_short_by_default(lmp):
     lines = report(lmp, two_molecules(after="run 2\nrun 2"))
     assert TITLE.match(lines[0]).groups() == ("move", "2", "3", "12")
@@ -203,7 +203,7 @@ def test_pairs_that_move_nothing_are_found_and_mended(lmp_tree, examples, fix, r
 
 
 def test_pairs_of_atoms_that_no_fix_moves(lmp_tree, examples):
-    """Each kind is told alone; what another fix moves is not among them."""
+    """Each kind is reported separately; atoms moved by another fix are not among them."""
 
     def kinds(exclude, mover=""):
         deck = cage(examples, f"neigh_modify exclude {exclude}")
@@ -260,9 +260,9 @@ def test_atoms_that_no_body_uses(lmp):
     assert "in no body, 0 of them moved by no fix" in "\n".join(moved)
 
 
-# --- what is left out changes nothing ------------------------------------------------------------
+# --- omitted operations change nothing ------------------------------------------------------------
 def test_points_among_tops_on_several_ranks(lmp_tree, formulation):
-    """On four ranks bodies have ghosts or not, on one none: the same to rounding."""
+    """On four ranks bodies have ghosts or not, on one rank none: the same to rounding."""
     # points, rods and an asymmetric body that attract each other
     shapes = "points", "linear", "asymmetric tops", "points", "linear"
     deck = bodies(
@@ -287,15 +287,15 @@ def test_points_among_tops_on_several_ranks(lmp_tree, formulation):
 
 
 def test_a_lone_site_is_a_point_to_the_last_bit(lmp_tree):
-    """An atom alone stays where it is placed: no rounding of its center, whatever its mass."""
+    """A single atom stays at its position: no rounding of its center, for any mass."""
     deck = bodies("points", masses="mass * 0.3", steps=50, run="run 50")
     lmp_tree.succeed(deck.replace("single 0 0 0", "single 0.1 0.3 0.7"))
     assert list(last_frame(lmp_tree.folder / "poses.dump")[0, 1:4]) == [0.1, 0.3, 0.7]
 
 
-# --- what is worth it ----------------------------------------------------------------------------
+# --- significance ---------------------------------------------------------------------------------
 def test_exclusions_with_kspace_change_a_constant(lmp_tree):
-    """And the report says that LAMMPS will warn; the motion is the same."""
+    """The report says that LAMMPS will warn; the motion is the same."""
     data = water_data(lmp_tree.folder / "data.water", shift=1.65)
     ends = []
     for exclude in ("", "neigh_modify exclude molecule/intra all"):
@@ -325,7 +325,7 @@ def test_what_is_not_worth_a_line(lmp_tree):
 
 
 def test_a_body_that_meets_its_own_image(lmp_tree):
-    """Forces between a body and its image move it: no advice to leave them out."""
+    """Forces between a body and its image move it: no advice to exclude them."""
     near = two_molecules(after="run 0").replace("-10 10 -10 10 -10 10", "-4 8 -4 8 -4 8")
     assert list(counted(report(lmp_tree, near))) == ["within"]
     far = near.replace("pair_style zero 2.0", "pair_style zero 10.0")
@@ -338,7 +338,7 @@ ROD = np.array([[0, 0, 0], [1.149, 0, 0], [-1.149, 0, 0]])
 
 
 def carbon_dioxide(path, off=0.0):
-    """64 molecules at random places, over all boundaries; off: of the middle, in Angstrom."""
+    """64 molecules at random positions, across all boundaries; off: displacement of the middle, in Angstrom."""
     rng = np.random.default_rng(4711)
     atoms, length = [], 24.0
     for molecule, cell in enumerate(np.ndindex(4, 4, 4), 1):
@@ -362,7 +362,7 @@ def test_a_middle_that_rounding_moves_is_at_the_center(lmp_tree, off, sites, ran
 
 
 def test_atoms_at_the_same_place_are_a_point(lmp_tree):
-    """Whatever their masses; what rounding leaves of an arm is no moment of inertia."""
+    """For any masses; rounding of an arm does not become a moment of inertia."""
     atoms = "\n".join(["create_atoms 1 single 0.1 0.3 0.7"] * 2 + ["create_atoms 2 single 0.1 0.3 0.7"])
     masses = "set atom * mol 1\nmass 1 0.3\nmass 2 1.1"
     rows = effects(report(lmp_tree, empty_box(atoms, masses=masses, run="run 0")))
@@ -392,7 +392,7 @@ def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words,
     mended = lmp_tree.succeed(dioxide(lmp_tree, line, f"gear/quat {words}"), ranks=ranks)
     assert not ACTS.search(mended.output)
     ends.append(last_frame(lmp_tree.folder / "poses.dump"))
-    assert ends[1] == pytest.approx(ends[0], abs=1e-6)  # beside an energy of millions
+    assert ends[1] == pytest.approx(ends[0], abs=1e-6)  # compared with an energy of millions
     shift = np.subtract(first.thermo[0]["PotEng"], mended.thermo[0]["PotEng"])
     assert shift.min() > 1e5 and np.ptp(shift) < 1e-6 * shift[0]
 
@@ -456,7 +456,7 @@ def test_no_word_where_pairs_within_bodies_do_not_interact(lmp_tree, name):
         data.write_text(data.read_text().replace("atom types", "atom types\n1 bond types", 1))
         deck = deck.replace(f"read_data {data}", f"read_data {data} {room}")
     assert not ACTS.search(lmp_tree.succeed(deck).output)
-    if name == "special bonds":  # that count in part
+    if name == "special bonds":  # with partial weights
         deck = deck.replace("bond_style", "special_bonds lj 0 0.5 1\nbond_style")
         assert ACTS.search(lmp_tree.succeed(deck).output)
 

@@ -1,7 +1,7 @@
-"""A restart beside other fixes that keep data of atoms in the same file, and files of other releases.
+"""A restart beside other fixes that store data of atoms in the same file, and files of other releases.
 
-In a restart file the data of an atom are one block after another, one for each fix; to find its own, a fix
-steps over those before it by the number that stands first in each.
+In a restart file the data of an atom are one block after another, one for each fix; a fix skips the
+blocks before its own by the number at the beginning of each.
 """
 
 import struct
@@ -9,7 +9,7 @@ import struct
 import pytest
 from scenes import restarted, water
 
-# A fix each that keeps numbers of atoms: springs, positions at the start, marks and velocities.
+# One fix each that stores numbers of atoms: springs, initial positions, marks and velocities.
 KEEPERS = """
 fix spring all spring/self 0.5
 fix_modify spring energy yes
@@ -55,7 +55,7 @@ MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
     [(0, 1.0, "an older (0.2.0 or before)"), (1, 99.0, "a newer"), (1, 5.0, "an unpublished")],
 )
 def test_files_of_other_releases_are_refused(lmp_tree, data, ranks, number, other, whose):
-    """Files of 0.2.0 begin with the formulation, 0 or 1, those of today with a magic number."""
+    """Files of 0.2.0 begin with the formulation, 0 or 1; present ones with a magic number."""
     file = lmp_tree.folder / "file.restart"
     lmp_tree.succeed(water(data, run=f"run 1\nwrite_restart {file}"))
     content = file.read_bytes()

@@ -1,16 +1,16 @@
-"""Bodies of a restart file and those of the command: the same ones go on, others begin anew."""
+"""Bodies of a restart file and of the command: the same ones continue, others are made again."""
 
 import numpy as np
 import pytest
 from scenes import WATER_MASSES, last_frame, restarted, water, water_data
 
 STEPS = 40
-WARNING = "the bodies of this command consist of other atoms than those of the restart file"
+WARNING = "the bodies of this command consist of other atoms than in the restart file"
 START = "start of order"
 
 
 class Halves:
-    """Water that writes a restart file `half` in the middle, and decks that go on from it."""
+    """Water that writes a restart file `half` in the middle, and decks that continue from it."""
 
     def __init__(self, lmp, spacing):
         self.lmp = lmp
@@ -74,7 +74,7 @@ def test_other_bodies_begin_anew(halves, fix, group, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_smaller_group_moves_its_bodies_only(halves, ranks):
-    """The others stay where they are, which the histories do not know: they start anew."""
+    """The others do not move, which the histories do not contain: they start anew."""
     halves.write()
     found, said = halves.read("gear/quat molecule", ranks, OTHERS, group="few")
     assert WARNING not in said and START in said
@@ -84,7 +84,7 @@ def test_a_smaller_group_moves_its_bodies_only(halves, ranks):
     assert (np.abs(found[:39, 1:4] - before[:39, 1:4]).max(axis=1) > 1e-4).all()
 
 
-# molecule 5 goes; all get other numbers once molecule 1 goes
+# molecule 5 is removed; all get other numbers if molecule 1 is removed
 NUMBERED = """
 variable number atom mol+10
 fix numbers all property/atom i_number
@@ -97,7 +97,7 @@ GO = "group gone molecule {}\ndelete_atoms group gone compress no\n"
 @pytest.mark.parametrize("gone", [5, 1])
 @pytest.mark.parametrize("style", ["molecule", "custom i_number"])
 def test_bodies_that_are_left_go_on(lmp_tree, style, gone, ranks):
-    """As if the others had been removed between two runs; they are too far apart to notice it."""
+    """As if the others had been removed between two runs; they are too far away to have an effect."""
     halves = Halves(lmp_tree, 8.0)
     mark = NUMBERED.format(set="set group all i_number v_number")
     whole = halves.write(f"gear/quat {style}", before=mark, between=GO.format(gone))
@@ -108,7 +108,7 @@ def test_bodies_that_are_left_go_on(lmp_tree, style, gone, ranks):
 
 
 def test_a_mask_counts_the_bodies_of_the_command(halves):
-    """Body 2 of those that are left is held at its velocity."""
+    """Body 2 of the remaining ones keeps its velocity."""
     halves.write()
     free, _ = halves.read("gear/quat molecule", before=GO.format(1))
     held, said = halves.read("gear/quat molecule force 2 off off off", before=GO.format(1))

@@ -1,8 +1,8 @@
 """A restart is the same run: formulations, numbers of values, ranks, and both commands that write.
 
-The paper's cases and a box of water whose bodies lie over its boundaries run 120 steps: undisturbed,
-with `restart` writing files on the way, and in two halves with `write_restart` in between.  From the
-files they go on, on as many ranks or on others.  Steps are long, so that a history is worth having.
+The paper's cases and a box of water with bodies across its boundaries run 120 steps: uninterrupted,
+with `restart` writing files during the run, and in two halves with `write_restart` in between.  Runs
+continue from the files, on as many ranks or on others.  Steps are long, so that the histories matter.
 """
 
 from itertools import product
@@ -39,7 +39,7 @@ WRITERS = {"restart": PERIOD, "write_restart": HALF}  # the step at which a file
 
 
 def deck_of(scene, words, commands, end, stretch=1.0, grid="* * *"):
-    """A deck that runs `commands` and leaves positions and velocities in a file `end`."""
+    """A deck that runs `commands` and writes positions and velocities to a file `end`."""
     dt = SCENES[scene] * stretch
     group = "all" if scene == "water" else "body"
     commands += f"\nwrite_dump {group} custom {end}.end id xu yu zu vx vy vz"
@@ -67,11 +67,11 @@ def reading_decks(scene, before, after, **settings):
         written = WRITERS[writer]
         end, file = f"{name}@{before}-{writer}@{after}", f"{name}@{before}.{writer}.{written}"
         rest = f"run {STEPS - written}"
-        if writer == "restart":  # which also says when neighbor lists are built
+        if writer == "restart":  # this also determines the steps with new neighbor lists
             rest = f"restart {PERIOD} {end}.restart.*\n{rest}"
         yield restarted(deck_of(scene, words, rest, end, **settings), file)
         if before == after == 1:
-            # what must be noticed: the history is not found, a step 1 % longer
+            # must be detected: a missing history, a step 1 % longer
             lost = deck_of(scene, words, rest, f"{end}-lost").replace(" move", " other")
             yield restarted(lost.replace("f_move", "f_other"), file)
             yield restarted(deck_of(scene, words, rest, f"{end}-longer", stretch=1.01), file)
@@ -88,7 +88,7 @@ def run_all(lmp, decks, ranks):
 
 @pytest.fixture(scope="module", params=SCENES)
 def runs(request, tmp_path_factory):
-    """The scene and the folder in which all its runs have left their ends."""
+    """The simulation and the folder with the final states of all its runs."""
     scene = request.param
     lmp = make_lmp_tree(tmp_path_factory.mktemp(scene))
     water_data(lmp.folder / "data.water")
@@ -118,7 +118,7 @@ def test_a_restart_goes_on_as_the_run_that_wrote_it(runs, name, before, after, w
     if before == after:
         assert every_digit(folder, wrote, again)
     if scene != "water" and before == after == 1:
-        # water builds its lists when a file is written; on two ranks sites of the body change ranks then
+        # water builds its lists when a file is written; on two ranks sites of the body then change ranks
         assert every_digit(folder, whole, wrote, again)
     assert difference(folder, whole, wrote) < 1e-12
     assert difference(folder, whole, again) < 1e-12
@@ -126,13 +126,13 @@ def test_a_restart_goes_on_as_the_run_that_wrote_it(runs, name, before, after, w
 
 @pytest.mark.parametrize("scene", ["case1", "case3"])
 def test_two_ranks_with_the_body_on_one_of_them(lmp_tree, scene):
-    """Nothing changes its rank, nor an order of sums: not a digit differs from the whole run."""
+    """No migration and no change in the order of sums: not a digit differs from the whole run."""
     run_all(lmp_tree, writing_decks(scene, 2, grid="2 1 1"), 2)
     run_all(lmp_tree, reading_decks(scene, 2, 2, grid="2 1 1"), 2)
     for name, writer in product(WORDS, WRITERS):
         whole, wrote, again = f"{name}@2", f"{name}@2-{writer}", f"{name}@2-{writer}@2"
         assert every_digit(lmp_tree.folder, whole, wrote, again)
-    assert not every_digit(lmp_tree.folder, "first-6@2", "first-8@2")  # digits do tell
+    assert not every_digit(lmp_tree.folder, "first-6@2", "first-8@2")  # digits are significant
 
 
 @pytest.mark.parametrize("writer", WRITERS)

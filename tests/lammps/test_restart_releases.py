@@ -1,8 +1,8 @@
-"""Restart files of every release are read: the run goes on as that release went on from them.
+"""Restart files of every release can be read: the run continues as in that release.
 
-The files and what their releases made of them are in `restarts`, see make_restarts.py.  Where a
-release computes the same in another order, or another compiler does, numbers differ by rounding,
-which 20 steps let grow to less than 1e-12 of the largest one in a column.
+The files and their continuations are in `restarts`, see make_restarts.py.  If a
+release or another compiler computes the same in another order, numbers differ by rounding,
+which grows to less than 1e-12 of the largest one in a column within 20 steps.
 """
 
 import json
@@ -21,8 +21,8 @@ SUMS = (
     "(its friction and energy are kept)"
 )
 
-# Later releases that compute something else than these, and by how much they differ after 20 steps.
-# 0.3.0 integrated chains as histories of their own: the two methods differ by their errors.
+# Later releases with different methods, and their differences after 20 steps. 0.3.0 integrated chains as separate histories: the two
+# methods differ by their errors.
 OTHERWISE = {("0.3.0", "temp"): 1e-7}
 
 
@@ -37,7 +37,7 @@ def columns(output, rows=slice(None)):
 
 
 def agree(found, right, tolerance):
-    """True if all numbers do, relative to the largest one of their column."""
+    """True if all numbers agree, relative to the largest one of their column."""
     assert found.keys() == right.keys()
     return all(
         np.abs(found[name] - right[name]).max() <= tolerance * np.abs(right[name]).max()
@@ -46,7 +46,7 @@ def agree(found, right, tolerance):
 
 
 def expect(found, right, tolerance):
-    """They agree, and would not if one number were 1 % off."""
+    """They agree, and do not if one number is 1 % off."""
     assert agree(found, right, tolerance)
     for name, column in right.items():
         n = np.abs(column).argmax()
@@ -68,7 +68,7 @@ def test_a_file_goes_on_as_in_its_release(lmp_tree, release, name):
 
 
 def test_chains_of_0_3_0_keep_friction_and_energy(lmp_tree):
-    """Before the first step nothing differs from what 0.3.0 shows; then past sums begin anew."""
+    """Before the first step nothing differs from the output of 0.3.0; then past sums start again."""
     output, result = go_on(lmp_tree, "temp", FOLDER / "0.3.0" / "temp.restart")
     before = columns(output, slice(1)), columns(stored("0.3.0", "temp"), slice(1))
     found, right = ({k: v for k, v in one.items() if isinstance(k, str)} for one in before)
@@ -95,13 +95,13 @@ def test_other_settings_are_noticed(lmp_tree, release):
     assert not agree(columns(output), columns(stored(release, "second")), ROUNDING)
 
 
-# --- files of the next release, and files in which something is missing ------------------------
+# --- files of the next release, and files with missing sections ---------------------------------
 
 HEAD = struct.pack("dd", float(int.from_bytes(b"gearquat", "big")), 6.0)
 
 
 def changed(file: Path, folder: Path, change) -> Path:
-    """A copy of a restart file with other sections; ``change`` gets and changes all, by name."""
+    """A copy of a restart file with other sections; ``change`` modifies all of them, by name."""
     content = file.read_bytes()
     at = content.index(HEAD)
     (size,) = struct.unpack("i", content[at - 4 : at])

@@ -1,5 +1,5 @@
-"""LAMMPS' own barostat for rigid bodies has the defects that doc/upstream/rigid_npt reports; none of these tests passes on
-a LAMMPS without them, which is how we learn of it."""
+"""LAMMPS' own barostat for rigid bodies has the defects reported in doc/upstream/rigid_npt. None of these tests passes
+with a LAMMPS without the defects, so we will notice a correction."""
 
 from __future__ import annotations
 

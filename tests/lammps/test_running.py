@@ -1,4 +1,4 @@
-"""The fixtures themselves: what a test gets back, and that nothing keeps running after a time-out."""
+"""The fixtures themselves: the results for a test, and the end of all processes after a time-out."""
 
 from __future__ import annotations
 

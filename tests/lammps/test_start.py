@@ -1,4 +1,4 @@
-"""The start inside LAMMPS: what it follows, what it leaves alone, when it steps back."""
+"""The start inside LAMMPS: forces it follows, data it must not change, reductions of the order."""
 
 import re
 
@@ -8,7 +8,7 @@ from scenes import last_frame, placed, two_molecules, water
 
 FALLBACK = "start with known forces only (order 2), because"
 
-# A dumbbell and a triangle in a field that is smooth: harmonic springs, gravity, a wall.
+# A dumbbell and a triangle in a smooth field: harmonic springs, gravity, a wall.
 BODIES = [[(0, 0, 0), (1, 0, 0), (0, 1.2, 0.1)], [(3, 3, 3), (4, 3.2, 3.1)]]
 KINDS = [1, 1, 2, 1, 2]
 VELOCITIES = np.full((5, 3), [0.3, 0.2, -0.4])
@@ -22,7 +22,7 @@ neighbor {} bin
 
 
 def field(lmp, steps, dt, words="", before="", skin=2.0, ranks=1, **settings):
-    """The result and the positions of the last step; settings: those of `placed`."""
+    """The result and the positions of the last step; settings: as in `placed`."""
     settings = dict(box="-10 10 -10 10 -10 10", masses="mass 1 1.0\nmass 2 2.0") | settings
     settings |= dict(steps=steps, dt=dt, before=SMOOTH.format(skin) + before)
     fix = f"gear/quat molecule {words}"
@@ -31,7 +31,7 @@ def field(lmp, steps, dt, words="", before="", skin=2.0, ranks=1, **settings):
 
 
 def slope(run):
-    """Order of the error of positions at t = 2, against a run with steps eight times smaller."""
+    """Order of the error of positions at t = 2, compared with steps eight times smaller."""
     ends = {n: run(n, 2.0 / n)[1] for n in (25, 50, 400)}
     errors = [np.abs(ends[n] - ends[400]).max() for n in (25, 50)]
     return np.log2(errors[0] / errors[1])
@@ -54,7 +54,7 @@ EXTERNAL = {
 @pytest.mark.parametrize("name", EXTERNAL)
 @pytest.mark.parametrize("place", ["before", "after"])
 def test_full_order_with_external_forces(lmp_tree, formulation, name, place):
-    """Fixes defined before and after ours: the start knows both."""
+    """Fixes defined before and after ours: the start includes both."""
     assert order(lmp_tree, f"formulation {formulation}", **{place: EXTERNAL[name]}) > 4.5
 
 
@@ -87,13 +87,13 @@ def test_flexible_neighbours_are_not_followed(lmp_tree):
 
 
 def test_a_start_with_known_forces_has_order_two(lmp_tree):
-    """The fallback honours the order it names."""
+    """The start with known forces has the order in its message."""
     nothing = "variable tiny equal 1e-15*step\nfix a all addforce v_tiny 0.0 0.0"
     assert 1.7 < order(lmp_tree, after=nothing) < 3.5
 
 
 def test_the_start_leaves_everything_else_alone(lmp_tree, formulation):
-    """Thermo of step 0 and what other fixes report there are those of a run without it."""
+    """Thermo output of step 0 and other fixes' output are the same as without a start."""
     after = """
 fix s all spring/self 2.0
 fix a all addforce 0.1 0.2 -0.3
@@ -117,7 +117,7 @@ fix_modify s energy yes
     ids=["observers", "another time"],
 )
 def test_the_trajectory_after_the_start_is_the_same(lmp_tree, settings):
-    """A first run of no steps, thermo, dumps, the time: nothing of it changes the start."""
+    """A first run without steps, thermo, dumps, the time: none of these change the start."""
     _, plain = field(lmp_tree, 50, 0.01)
     _, watched = field(lmp_tree, 50, 0.01, **settings)
     assert (plain == watched).all()
@@ -132,7 +132,7 @@ def test_a_thin_skin_needs_nodes_close_together(lmp_tree, skin):
 
 
 def test_time_reversal(lmp_tree, formulation):
-    """There with h and back with -h: the end of the way back is its beginning."""
+    """Forwards with h and backwards with -h: the motion returns to its beginning."""
     fix = f"formulation {formulation}"
     _, begin = field(lmp_tree, 1, 1e-9, fix)
     again = f"unfix move\nfix move all gear/quat molecule {fix}"
@@ -147,7 +147,7 @@ pair_coeff 1 1 0.1553 3.166
 pair_coeff 1 2 0.0 1.0
 pair_coeff 2 2 0.0 1.0
 """
-MIXTURES = {  # pair style, and the evaluations that its start may take
+MIXTURES = {  # pair style, and the maximum number of evaluations of its start
     "smooth": ("lj/charmm/coul/charmm 6.0 8.0", "", 20),
     "pppm": ("lj/cut/coul/long 9.0", "kspace_style pppm 1e-4", 20),
     "plain cut-off": ("lj/cut/coul/cut 8.0", "", 12),
@@ -170,7 +170,7 @@ run {steps}
 
 @pytest.fixture(scope="module")
 def liquid(examples):
-    """500 SPC/E for 20 fs: the start's order, its evaluations, its line and the last positions."""
+    """500 SPC/E for 20 fs: the start's order, its evaluations, its message and the last positions."""
 
     def run(lmp, name, dt, fix="values 9"):
         pairs = SPCE.format(MIXTURES[name][0]) + MIXTURES[name][1]
@@ -186,7 +186,7 @@ def liquid(examples):
 
 @pytest.mark.parametrize("name", MIXTURES)
 def test_evaluations_of_a_liquid(lmp_tree, liquid, name):
-    """No more of them than the forces can use, at the step that people take."""
+    """The number of evaluations is limited to the useful ones, at a typical step."""
     order, evaluations, said, _ = liquid(lmp_tree, name, 2.0)
     assert 0 < evaluations <= MIXTURES[name][2]
     assert ("because forces vary in jumps" in said) == (order < 8)
@@ -195,7 +195,7 @@ def test_evaluations_of_a_liquid(lmp_tree, liquid, name):
 
 
 def test_a_start_of_low_order_is_as_good_as_forces_that_jump(lmp_tree, liquid):
-    """A run with steps ten times smaller as reference: the start is not what is seen of the error."""
+    """Compared with steps ten times smaller: the start does not dominate the error."""
     *_, reference = liquid(lmp_tree, "plain cut-off", 0.2)
 
     def error(fix):
@@ -210,7 +210,7 @@ LONG = "lj/charmm/coul/long 2.7 3.9 4.2\npair_modify table 0\nkspace_style pppm 
 
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_water_with_kspace(lmp_tree, data, ranks):
-    """Full order where forces come from pairs, bonds' exclusions and pppm."""
+    """Full order with forces from pairs, exclusions of bonds and pppm."""
     ends = []
     for n in (20, 40, 160):
         deck = water(data, steps=n, dt=40.0 / n).replace("lj/charmm/coul/charmm 2.7 3.9", LONG)
@@ -221,7 +221,7 @@ def test_water_with_kspace(lmp_tree, data, ranks):
 
 @pytest.mark.parametrize("start", ["bootstrap", "zero"])
 def test_forces_that_are_no_numbers_do_not_pass_for_converged(lmp_tree, start):
-    """A force that is infinite off the very start: the start steps back and says so."""
+    """A force that is infinite except at the very start: the start reduces its order with a message."""
     after = """
 group first id 1
 variable wall atom exp(1000*(abs(x)>1e-9))*(abs(x)>1e-9)
@@ -251,7 +251,7 @@ PAIRS = {
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_two_fixes_start_together(lmp_tree, name):
-    """With full order, and where both are alike as one fix with all bodies does."""
+    """With full order; if both are alike, with the same result as one fix with all bodies."""
     first, second, orders = PAIRS[name]
 
     def run(n, dt):
@@ -268,7 +268,7 @@ def test_two_fixes_start_together(lmp_tree, name):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
-    """Both begin anew, with full order; where forces cannot be followed the other one goes on."""
+    """Both start again, with full order; if forces cannot be followed, the other fix continues."""
     again = "timestep 0.02\nrun 10\nunfix move\nfix move right gear/quat molecule\n"
     result, _ = two_fixes(lmp_tree, 10, 0.02, after=again, ranks=ranks)
     said = "Fix gear/quat other and move: start of order 8 from"
@@ -281,7 +281,7 @@ def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
 
 
 def test_a_fix_that_goes(lmp_tree):
-    """Its bodies stop, which the derivatives of the forces on the others do not know."""
+    """Its bodies stop, which is not contained in the derivatives of the forces on the others."""
     after = "timestep 0.02\nfix_modify move energy yes\nthermo 10\nrun 20\nunfix other\nrun 20\n"
     result, _ = two_fixes(lmp_tree, 10, 0.02, after=after)
     assert "Fix gear/quat move: other fixes move atoms than in the last steps" in result.stdout
@@ -289,7 +289,7 @@ def test_a_fix_that_goes(lmp_tree):
 
 
 def test_tolerance_beside_another_fix(lmp_tree):
-    """The first step is made shorter before either has begun it."""
+    """The first step is shortened before either fix has begun it."""
     result, _ = two_fixes(lmp_tree, 10, 0.5, "corrector gear values 8", "tolerance 1e-9")
     assert "first step" in result.stdout and result.output.count("WARNING") == 1
     assert "nothing controls the errors of the bodies of fix" in result.output

@@ -1,7 +1,7 @@
-"""The time step that a message advises is one with which the run is stable and conserves its energy.
+"""With the time step suggested in a message the run is stable and conserves its energy.
 
 Liquids and gases of water, CO2, N2 and Lennard-Jones trimers, and a single top. Each runs with steps that are
-far too long; a program reads the step from the message, as a user would, and runs with it.
+far too long; the test reads the step from the message, as a user would, and runs with it.
 """
 
 import re
@@ -121,7 +121,7 @@ LIQUIDS = {
         coefficients="pair_coeff * * 1 1",
     ),
 }
-#: steps that are too long, from the one that is refused at once to the one that is lost in the run
+#: steps that are too long, from immediately refused ones to steps that become unstable in the run
 TOO_LONG = {
     "water": (100, 7),
     "co2": (300, 60),
@@ -155,14 +155,14 @@ def deck(lmp, name, dt, steps):
 
 
 def test_a_much_longer_step_between_runs(lmp_tree):
-    """Histories are not stretched 25 times, for this makes large errors of small ones."""
+    """Histories are not rescaled by a factor of 25, which would amplify small errors."""
     (lmp_tree.folder / "co2.mol").write_text(molecule("co2"))
     result = lmp_tree.succeed(LIQUID.format(name="co2", **LIQUIDS["co2"]))
-    assert "the time step is more than twice that of the last steps, histories start" in result.words
+    assert "the time step is more than twice the previous one, histories start" in result.words
 
 
 def test_overlaps(lmp_tree):
-    """A run with the keywords that the message names takes the energy of the overlaps away."""
+    """A run with the keywords of the message removes the energy of the overlaps."""
     (lmp_tree.folder / "n2.mol").write_text(molecule("n2"))
     text = LIQUID.format(name="n2", **(LIQUIDS["n2"] | dict(lattice=2.6)))
     fix, run = "fix move all gear/quat molecule", "timestep 1.0\nthermo 50\nrun 300\n"

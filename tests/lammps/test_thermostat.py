@@ -1,6 +1,6 @@
-"""Keyword temp: Nose-Hoover chains beside those of rigid/nvt/small, energy, target, restart, ranks.
+"""Keyword temp: Nose-Hoover chains compared with rigid/nvt/small, energy, target, restart, ranks.
 
-What is refused is in test_bad_input.py, large bodies in test_large_bodies.py.
+Unsupported settings are in test_bad_input.py, large bodies in test_large_bodies.py.
 """
 
 import re
@@ -20,7 +20,7 @@ def order(steps, errors):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_econserve_to_the_order_of_the_method(lmp_tree, formulation, kind):
-    """With a target that moves; of the first steps too: the start knows the chains."""
+    """With a target that moves, including the first steps: the start uses the chains."""
     values, steps = (6, (0.008, 0.004, 0.002)) if formulation == "first" else (7, (0.016, 0.008, 0.004))
     words = f"formulation {formulation} values {values} temp 0.4 0.8 0.3 thermostat {kind}"
     decks = [cluster(words, dt) for dt in steps]
@@ -36,7 +36,7 @@ def test_econserve_to_the_order_of_the_method(lmp_tree, formulation, kind):
 
 @pytest.mark.parametrize("corrector", ["tuned", "gear"])
 def test_chains_cost_no_accuracy(lmp_tree, formulation, corrector):
-    """The conserved quantity changes less than the energy without them, at a short and at a long step."""
+    """The conserved quantity changes less than the energy without chains, for a short and for a long step."""
     words = f"formulation {formulation} values {8 if formulation == 'first' else 9} corrector {corrector}"
     decks = [cluster(f"{words} temp 0.5 0.5 0.6", dt, 1.6, every=1) for dt in (0.006, 0.012)]
     decks += [cluster(words, dt, 1.6, every=1, columns="") for dt in (0.006, 0.012)]
@@ -54,7 +54,7 @@ def test_the_columns_belong_together(lmp_tree, formulation):
     assert "and 11 of rotation" in result.log
     assert np.abs(table["Econserve"] - table["TotEng"] - table["f_move"]).max() < 1e-14
     assert (table["Ecouple"] == table["f_move"]).all()
-    # the scalar is also the way from the predicted to the corrected pose, which is short
+    # the scalar includes the change from the predicted to the corrected pose, which is small
     assert 0.0 < np.abs(table["f_move"] - table["f_move[9]"]).max() < 1e-4
     for kinetic, temperature, freedoms in (("1", "10", 9), ("2", "11", 11)):
         found = 2 * table[f"f_move[{kinetic}]"] / freedoms
@@ -76,8 +76,8 @@ def test_what_chains_take_is_what_friction_does(lmp_tree, formulation):
 
 
 def test_the_trajectory_that_rigid_nvt_approaches(lmp_tree, formulation):
-    """With the same degrees of freedom: those chains count the total momentum, as ours do where
-    forces on it do not add up to zero.  They are of first order in the step, so two steps are extrapolated."""
+    """With the same degrees of freedom: its chains include the total momentum, as ours do if forces on it
+    do not add up to zero.  They are of first order in the step, so two steps are extrapolated."""
     field = dict(after="fix field all addforce 0.02 0.01 -0.03", columns="")
     words = f"formulation {formulation} values 8 temp 0.4 0.8 0.3 thermostat separate tchain 3"
 
@@ -92,7 +92,7 @@ def test_the_trajectory_that_rigid_nvt_approaches(lmp_tree, formulation):
     errors = [np.abs(2 * fine - coarse - exact).max() for coarse, fine in zip(rigid, rigid[1:])]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.15) and errors[1] < 1e-5
     assert np.abs(rigid[-1] - exact).max() > 100 * errors[1]
-    # another damping time is another trajectory
+    # with another damping time the trajectory differs
     assert np.abs(end(words.replace("0.3", "0.303"), 0.002)[0] - exact).max() > 100 * errors[1]
 
 
@@ -120,14 +120,14 @@ def test_degrees_of_freedom(lmp_tree, name):
     said = re.search(r"thermostat of (\d+) degrees of freedom.* and (\d+) of rotation", result.log)
     assert tuple(map(int, said.groups())) == (translation, rotation)
     table = result.thermo[0]
-    if name in ("outside", "held"):  # the springs' energy is not in pe, and what holds does work
+    if name in ("outside", "held"):  # the springs' energy is not in pe, and the masks do work
         return
     assert largest_change(table, "Econserve") < 1e-6
     assert largest_change(table, "TotEng") > 1e-2
 
 
 def test_what_is_off_has_no_friction(lmp_tree, formulation):
-    """A momentum along a direction that is off persists, and an angular momentum does."""
+    """Momenta and angular momenta in masked directions are constant."""
     masks = "force 1 off off off torque 1 off off off"
     deck = cluster(f"formulation {formulation} {masks} {TEMP}", dumped="", time=1.6)
     deck = deck.replace(COLUMNS, COLUMNS + " f_move[1][4] f_move[1][23] f_move[2][4]")
@@ -135,7 +135,7 @@ def test_what_is_off_has_no_friction(lmp_tree, formulation):
     assert largest_change(table, "f_move[1][4]") < 1e-13
     assert largest_change(table, "f_move[1][23]") < 1e-6
     assert largest_change(table, "f_move[2][4]") > 1e-2
-    assert largest_change(table, "Econserve") > 1e-3  # what holds it does work on it
+    assert largest_change(table, "Econserve") > 1e-3  # the constraint does work on it
 
 
 # --- targets ------------------------------------------------------------------------------------
@@ -152,7 +152,7 @@ def test_another_target_starts_anew(lmp_tree, formulation):
         assert largest_change(table, "Econserve") < 1e-7
     last, then = results.thermo[3], results.thermo[4]
     assert (last["f_move[12]"][-1], then["f_move[12]"][0]) == (pytest.approx(0.9), pytest.approx(0.5))
-    # what the chains have taken goes on
+    # the energy removed by the chains continues
     assert then["f_move[9]"][0] != 0.0 and then["f_move[13]"][0] == last["f_move[13]"][-1]
 
 
@@ -175,7 +175,7 @@ def test_another_step(lmp_tree, formulation):
     assert np.abs(values - values[0]).max() < 1e-7
 
 
-# --- beside others, ranks, restart --------------------------------------------------------------
+# --- other fixes, ranks, restart -----------------------------------------------------------------
 
 
 def test_several_fixes(lmp_tree, formulation):
@@ -253,7 +253,7 @@ def test_a_damping_time_that_is_too_short(lmp_tree):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_passes_are_as_many_as_velocities_need_to_converge(lmp_tree, tmp_path, kind):
-    """With two of them SPC/E water drifted at 3 fs by 0.5 kT/ns/dof, separate by 1.5, which three passes do not."""
+    """With two passes the energy of SPC/E water drifted at 3 fs by 0.5 kT/ns/dof, separate by 1.5; with three it does not."""
     data, decks, words = water_data(tmp_path / "data.water"), [], f"values 5 temp 300 300 100 thermostat {kind}"
     for name, passes in (("auto", ""), ("two", "passes 2"), ("eight", "passes 8")):
         text = water(data, fix=f"gear/quat molecule {words} {passes}", dt=2.0, run=f"run 25\n{END.format(name)}")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scenes import one_after_the_other, water, water_data
 
-# Dumbbells on a lattice that hardly meet: soft spheres, so that forces are smooth
+# Dumbbells on a lattice with few collisions: soft spheres, so that forces are smooth
 GAS = """
 units lj
 atom_style molecular
@@ -44,7 +44,7 @@ def gas(lmp_tree):
 
 
 def change(table):
-    """Of the conserved energy, as a part of the heat taken or of the kinetic energy."""
+    """Change of the conserved energy, relative to the heat removed or to the kinetic energy."""
     conserved, taken = np.array(table["Econserve"]), np.abs(table[TAKEN])
     return np.ptp(conserved) / max(np.max(taken), table["KinEng"][0])
 
@@ -73,7 +73,7 @@ def test_any_length_and_few_steps_of_damping(lmp_tree, gas, formulation, length)
 
 
 def test_the_order_is_that_of_the_method(lmp_tree, gas):
-    """Where the chain is stiff, from the second run on: the first one begins with its transient."""
+    """For a stiff chain from the second run on: the first run begins with its transient."""
     errors = []
     for dt in (0.04, 0.02):
         steps = round(1.6 / dt)
@@ -99,12 +99,12 @@ def test_restart_and_ranks_of_a_stiff_chain(lmp_tree, gas):
     assert np.abs(whole - four)[:, 5:].max() < 1e-11
 
 
-# --- a first script of water --------------------------------------------------------------------
+# --- a first script for water -------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("dt", [1.0, 2.0])
 def test_water_from_a_lattice(lmp_tree, dt):
-    """Ordered molecules of 500 K, whose potential energy becomes heat, with a target of 300 K."""
+    """Ordered molecules at 500 K, whose potential energy becomes heat, with a target of 300 K."""
     fix = "gear/quat molecule temp 300 300 100"
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, fix, dt=dt, steps=round(600 / dt), thermo=10, columns="econserve ecouple f_move[*]")
@@ -118,7 +118,7 @@ def test_water_from_a_lattice(lmp_tree, dt):
 
 
 def overlapping(deck):
-    """Molecules on a narrow lattice, whose potential energy becomes twenty times the kinetic one."""
+    """Molecules on a narrow lattice, whose potential energy becomes twenty times the kinetic energy."""
     return deck.replace("lattice sc 0.02", "lattice sc 0.3")
 
 
@@ -150,7 +150,7 @@ def test_a_friction_that_is_too_strong_is_refused_and_the_advice_holds(lmp_tree,
 
 
 def test_a_friction_that_becomes_strong_is_warned_of(lmp_tree, gas):
-    """Nothing is known of it before the run: the heat comes from overlaps."""
+    """Before the run it is unknown: the heat comes from overlaps."""
     words, warning = "values 7 temp 1.0 1.0 {} tchain 1", "of the limit of the method"
     for damp, count in ((0.03, 1), (0.3, 0)):
         deck = overlapping(gas(words.format(damp), soft=300.0, dt=0.002, run="run 200"))
@@ -159,7 +159,7 @@ def test_a_friction_that_becomes_strong_is_warned_of(lmp_tree, gas):
 
 
 def test_an_unstable_thermostat_is_named_before_the_bodies(lmp_tree, gas):
-    """With a damping time of two steps and kinetic energy that comes from overlaps; the remedy helps."""
+    """With a damping time of two steps and kinetic energy from overlaps; the remedy helps."""
     words = "values 7 temp 1.0 1.0 {} tchain 1"
     for damp in (0.004, 0.2):
         deck = overlapping(gas(words.format(damp), soft=300.0, dt=0.002, run="run 200"))
@@ -172,7 +172,7 @@ def test_an_unstable_thermostat_is_named_before_the_bodies(lmp_tree, gas):
 
 # --- a covering sample --------------------------------------------------------------------------
 
-# Nitrogen of 100 K on a lattice, cut off smoothly
+# Nitrogen at 100 K on a lattice, with a smooth cutoff
 NITROGEN = """
 units real
 atom_style full
@@ -207,7 +207,7 @@ FACTORS = {
 
 
 def covering(seed=1):
-    """Rows of settings in which every pair of settings of two factors occurs once or more."""
+    """Rows of settings in which every pair of settings of two factors occurs at least once."""
     random = np.random.default_rng(seed)
     names = list(FACTORS)
     missing = {
@@ -229,13 +229,13 @@ def covering(seed=1):
 
 
 SAMPLE = covering()
-#: GEARQUAT_CHAINS=all runs the whole sample, and prints what came of it with -rP
+#: GEARQUAT_CHAINS=all runs the whole sample, and prints the results with -rP
 CHOSEN = range(len(SAMPLE)) if os.environ.get("GEARQUAT_CHAINS") == "all" else (3, 11, 19, 27)
 
 
 @pytest.mark.parametrize("number", CHOSEN)
 def test_no_chain_ends_a_run(lmp_tree, number):
-    """A damping time of 100 steps or more is never refused, whatever the target."""
+    """A damping time of 100 steps or more is never refused, for any target."""
     row = SAMPLE[number]
     (lmp_tree.folder / "nitrogen.molecule").write_text(DUMBBELL.replace("0.5 ", "0.549 "))
     words = f"temp {row['target']} {row['target']} {4 * row['damp']}" + "".join(

@@ -1,4 +1,4 @@
-"""Keyword temp where the step follows the error (tolerance), and where bodies come and go (mol)."""
+"""Keyword temp with step control (tolerance), and with insertion and removal of bodies (mol)."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def changing(words, eps, run=UNTIL.format(1.6), **settings):
 # --- tolerance ----------------------------------------------------------------------------------
 
 
-# a damping time of some twenty steps, too, a tenth of which limits the step at larger eps
+# also a damping time of some twenty steps, a tenth of which limits the step for larger eps
 @pytest.mark.parametrize("temp, digits", [(TEMP, (6, 9, 12)), ("temp 0.5 0.5 0.05", (9, 11, 13))])
 def test_the_conserved_quantity_follows_eps(lmp_tree, formulation, temp, digits):
     powers = [("", k) for k in digits] + [(" energy", k) for k in digits[:2]]
@@ -52,7 +52,7 @@ def test_the_conserved_quantity_follows_eps(lmp_tree, formulation, temp, digits)
 
 
 def test_a_step_made_again_leaves_the_chains_as_if_met_at_once(lmp_tree):
-    """A dump at the end of the repeated step makes it as long in the first place."""
+    """A dump at the end of the repeated step sets its length from the beginning."""
     words = f"{TEMP} thermostat separate"
     found = []
     for formulation in FORMULATIONS:
@@ -97,7 +97,7 @@ def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
 
 
 def test_a_restart_at_times_of_output_bit_for_bit(lmp_tree):
-    """The command restart renews neighbor lists whenever it writes a file, so both runs need it."""
+    """The command restart renews neighbor lists whenever it writes a file, so both runs use it."""
     decks = [
         changing(f"{TEMP} every/time 0.05", "1e-9", f"restart 90 {name}.*\nrun {steps}")
         for name, steps in (("first", 300), ("second", 210))
@@ -111,7 +111,7 @@ def test_a_restart_at_times_of_output_bit_for_bit(lmp_tree):
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_ranks_agree(lmp_tree, formulation):
-    """At the same times, for rounding moves the steps."""
+    """At the same times, since rounding changes the steps."""
     fix = f"gear/quat molecule formulation {formulation} temp 300 300 20 tolerance 1e-12"
     deck = water(water_data(lmp_tree.folder / "data"), fix, dt=0.5, steps=120)
     deck = deck.replace("fix_modify move energy yes", "")
@@ -119,7 +119,7 @@ def test_ranks_agree(lmp_tree, formulation):
 
 
 def test_another_target_starts_anew(lmp_tree, formulation):
-    """Between runs; the step goes on."""
+    """Between runs; the step continues."""
     fix = f"gear/quat molecule formulation {formulation} temp 0.9 0.9 0.3 tolerance 1e-9"
     run = f"run 100\nunfix move\nfix move all {fix}\nrun 100"
     cold = changing(f"formulation {formulation} {TEMP}", "1e-9", f"run 100\nwrite_restart cold\n{run}")
@@ -140,7 +140,7 @@ FREEDOMS, TARGET, DAMP = 6, 0.5, 0.3
 
 
 def coasting(words, spin, run=UNTIL.format(9.0), columns=f"f_move[24] {LARGEST}", dt=0.004):
-    """Two molecules that never meet; spin: of each about the z axis."""
+    """Two molecules that never collide; spin: of each about the z axis."""
     bodies, velocities = [], []
     for side in (-1.0, 1.0):
         sites = np.array(MOLECULES[0]) - np.mean(MOLECULES[0], axis=0)
@@ -179,7 +179,7 @@ def warming(times, kinetic):
 
 @pytest.mark.parametrize("unit", ["length", "energy"])
 def test_a_rotation_that_is_almost_zero_grows_as_it_should(lmp_tree, formulation, unit):
-    """The errors of bodies that hardly move permit any step; the friction follows the chain all the same."""
+    """The errors of bodies that hardly move permit any step; the friction is accurate nevertheless."""
     eps, errors = ("1e-6", "1e-9"), []
     words = f"formulation {formulation} thermostat separate"
     decks = [coasting(f"{words} tolerance {e} {unit}", 1e-9) for e in eps]
@@ -195,7 +195,7 @@ def test_a_rotation_that_is_almost_zero_grows_as_it_should(lmp_tree, formulation
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_cold_rotation_is_warned_of_once(lmp_tree, kind):
-    """With one chain for all it stays cold."""
+    """With a single chain it stays cold."""
     words, run = f"thermostat {kind}", "run {}\nrun 100"
     shown = dict(columns="")
     said = "the rotational kinetic energy of the bodies was below 1 % of its target for 10 damping times"
@@ -207,7 +207,7 @@ def test_cold_rotation_is_warned_of_once(lmp_tree, kind):
     assert (last["f_move[2]"][-1] < 1e-15) == (kind == "total")
 
 
-# --- bodies that come and go --------------------------------------------------------------------
+# --- insertion and removal ----------------------------------------------------------------------
 
 TRIANGLE = "tri\n\n3 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n3 0 1.1 0.2\n\nTypes\n\n1 1\n2 1\n3 1\n"
 COMES = """
@@ -219,7 +219,7 @@ MVV_TO_ENERGY = 48.88821291**2  # g/mol (A/fs)^2 to kcal/mol
 
 
 def joined(lmp, words, dt, columns="econserve", run=None, comes=COMES, **settings):
-    """A fifth molecule comes to the cluster in the first step, and brings a momentum."""
+    """A fifth molecule is inserted into the cluster in the first step, with a momentum."""
     (lmp.folder / "tri").write_text(TRIANGLE)
     columns += " v_common"
     deck = cluster(f"{words} mol tri", dt, every=1, columns=columns, run=run, style=COMMON, **settings)
@@ -231,7 +231,7 @@ def kinetic_and_potential(table):
 
 
 def test_what_is_conserved_when_a_body_comes(lmp_tree, formulation):
-    """From the insertion on, as far as without a thermostat, and the chains take what they did."""
+    """From the insertion on, as accurate as without a thermostat, and the energy of the chains is continuous."""
     steps = (0.004, 0.002, 0.001)
     words = f"formulation {formulation}"
     columns = "econserve f_move[9] f_move[10] f_move[11] f_move[13]"
@@ -258,7 +258,7 @@ def test_what_is_conserved_when_a_body_comes(lmp_tree, formulation):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_molecules_come_and_go(lmp_tree, ranks):
-    """Their degrees of freedom follow, on any number of ranks."""
+    """Their degrees of freedom are updated, on any number of ranks."""
     show = f"{COMMON}thermo_style custom step f_move[1] f_move[2] f_move[10] f_move[11] f_move[13] v_common\n"
     commands = evaporating() + INSERT.format(count=3).replace("0 5 4711", "0 7 4711")
     commands += f"{show}thermo_modify lost error format float %.17g\nthermo 1\nrun 20"
@@ -279,7 +279,7 @@ def test_molecules_come_and_go(lmp_tree, ranks):
 
 
 def test_no_bodies_yet(lmp_tree):
-    """Chains without degrees of freedom rest, and begin to move when the first ones come."""
+    """Chains without degrees of freedom are constant, and start with the first insertion."""
     columns = "econserve f_move[9] f_move[10] f_move[11] f_move[13]"
     comes = COMES.replace("4.0 4.1 1.5 1.6 1.5 1.6", "0 4 0 4 0 4").replace("deposit 1 0 1", "deposit 2 0 10")
     run = f"run 20\n{comes}\nrun 200"
@@ -288,7 +288,7 @@ def test_no_bodies_yet(lmp_tree):
     empty, table = tables(lmp_tree.succeed(deck))
     for column in ("f_move[9]", "f_move[11]", "f_move[13]"):
         assert (empty[column] == 0).all()
-    assert table["f_move[10]"][5] == 0  # of a single body only the total momentum moves
+    assert table["f_move[10]"][5] == 0  # of a single body only the total momentum is nonzero
     twice = np.array([2 * table[f"f_move[{k}]"][-1] - (k == 1) * table["v_common"][-1] for k in (1, 2)])
     freedoms = twice / [table["f_move[10]"][-1], table["f_move[11]"][-1]]
     assert freedoms == pytest.approx([3, 6], rel=1e-10)
@@ -308,7 +308,7 @@ def test_a_restart_with_an_inserted_body(lmp_tree):
 
 
 def test_a_body_comes_where_the_step_follows_the_error(lmp_tree, formulation):
-    """Where the forces jump, the error is that of bodies without a thermostat."""
+    """If the forces jump, the error is the same as without a thermostat."""
     run = UNTIL.format(1.0).replace("run 5000", "run 1\nrun 5000")
     eps, changes = ("1e-7", "1e-10", "1e-13"), []
     for temp, more in (("", ""), (TEMP, TAKEN)):

@@ -1,6 +1,6 @@
-"""Keyword tolerance: the error follows eps, the time is right, everything else is told, restarts are exact.
+"""Keyword tolerance: the error follows eps, the time is correct, other styles are notified, restarts are exact.
 
-The scene is test case 1, whose body passes a bare 1/r singularity again and again.
+The simulation is test case 1, whose body repeatedly passes a bare 1/r singularity.
 """
 
 import re
@@ -15,7 +15,7 @@ COLUMNS = " ".join(ELEMENTS)
 
 
 def case1(run="run ${steps}", before="", **settings):
-    """A deck; before: commands ahead of fix move."""
+    """A deck; before: commands before fix move."""
     known = dict(dt=0.1, every=1, out="none", more=COLUMNS, steps=1000, tolerance=1e-12) | settings
     text = whole_deck(EXAMPLES / "case1" / "in.case1").replace("run ${steps}", run)
     return assigned(known) + text.replace("fix move body", f"{before}\nfix move body")
@@ -37,7 +37,7 @@ def test_the_energy_error_follows_eps(lmp_tree, formulation):
     assert runs[-1][VALUES][-1] >= 8
     assert len(runs[0]["Step"]) < len(runs[2]["Step"])
 
-    # without the mend, a fixed step as long as the mean one
+    # without step control, a fixed step of the mean length
     mean = runs[-1][MEAN][-1]
     deck = case1(tolerance=0, dt=mean, steps=int(1000 / mean), more="", formulation=formulation)
     assert off(tables(lmp_tree.succeed(deck))[0]) > 100 * errors[-1]
@@ -58,7 +58,7 @@ def test_outputs_are_those_of_the_steps(lmp):
     assert steps.max() / steps.min() > 2
     assert 1.1 < (steps[1:] / steps[:-1]).max() < 25 ** (1 / 3)
     assert (np.diff(steps) == 0).mean() > 0.3  # rows are not rescaled in every step
-    # in two runs the same
+    # the same in two runs
     first, second = tables(lmp.succeed(case1(run="run 200\nrun 100")))
     halves = [*first["v_total"], *second["v_total"][1:]]
     assert halves == whole["v_total"].tolist()
@@ -95,10 +95,10 @@ def test_limits_of_the_step(lmp_tree):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_restart_goes_on_bit_for_bit(lmp_tree, ranks):
-    """Also where the step is at its smallest; the timestep command of the script changes nothing.
+    """Also where the step is smallest; the timestep command of the script changes nothing.
 
-    With the restart command LAMMPS makes neighbor lists at that step, as it does when it reads the
-    file: which rank owns an atom, and in which order its forces are added, is then the same.
+    With the restart command LAMMPS builds neighbor lists at that step, as it does when it reads the
+    file: the owner rank of an atom, and the order in which its forces are added, are then the same.
     """
     total, grid = 500, "processors {} {} 1\n".format(*{1: (1, 1), 2: (2, 1), 4: (2, 2)}[ranks])
     end = "\nwrite_dump body custom {}.end id xu yu zu vx vy vz modify sort id format float %.17g"
@@ -107,7 +107,7 @@ def test_a_restart_goes_on_bit_for_bit(lmp_tree, ranks):
         return tables(lmp_tree.succeed(grid + deck, ranks=ranks))[0]
 
     whole = run(case1(f"run {total}"))
-    closest = int(np.argmin(whole[NEXT][50:-50])) + 50  # well inside of the run
+    closest = int(np.argmin(whole[NEXT][50:-50])) + 50  # well inside the run
     assert whole[NEXT][closest] < 0.5 * whole[NEXT].max()
     for half in (200, closest):
         runs = f"restart {half} at.*\nrun {{}}{end}"
@@ -119,13 +119,13 @@ def test_a_restart_goes_on_bit_for_bit(lmp_tree, ranks):
         ends = [(lmp_tree.folder / f"{name}.end").read_text() for name in ("whole", "again")]
         assert ends[0] == ends[1]
 
-    # what the memory is for: without a history the run starts anew
+    # effect of the history: without it the run starts again
     lost = run(re.sub("fix move|fix_modify move|f_move", lambda m: m[0][:-4] + "other", deck))
     assert lost["v_total"][1:].tolist() != whole["v_total"][half + 1 :].tolist()
 
 
 def test_ranks_agree_to_rounding(lmp_tree):
-    """The step magnifies rounding: it follows high differences."""
+    """The step amplifies rounding: it depends on high differences."""
     deck = "processors 1 * 1\n" + case1(steps=100, tolerance=1e-8)
     one, two = (tables(lmp_tree.succeed(deck, ranks=ranks))[0] for ranks in (1, 2))
     for column in ("Time", "c_centre[1]", "c_centre[2]", "c_centre[3]", "v_total"):
@@ -144,16 +144,16 @@ variable speed equal vcm(free,x)
 
 @pytest.mark.parametrize("place", ["fix move body", "# --- the outputs"])
 def test_other_integrators_follow(lmp_tree, place):
-    """Under a constant force velocity Verlet is exact whatever its steps, if it is told of each in time."""
+    """Under a constant force velocity Verlet is exact for any steps, if it is notified of each in time."""
     deck = case1(steps=300, more=COLUMNS + " v_place v_speed", dt=0.05)
     (run,) = tables(lmp_tree.succeed(deck.replace(place, FALL + place)))
     t, x, v = run["Time"], run["v_place"], run["v_speed"]
-    # mass 1; the cage is neutral from afar, its force is far below the one of the fix
+    # mass 1; the far field of the neutral cage is much smaller than the force of the fix
     assert v == pytest.approx(0.3 * t, rel=1e-5, abs=1e-6)
     assert x - 5000 == pytest.approx(0.15 * t**2, rel=1e-5, abs=1e-6)
     steps = np.diff(t)
     assert steps.max() / steps.min() > 2
-    # had it kept its first step, its place would be far off
+    # with its first step its position would be wrong
     assert abs(0.15 * (0.05 * 300) ** 2 - (x[-1] - 5000)) > 1.0
 
 
@@ -212,24 +212,24 @@ run 100000
 
 
 def test_a_collision_out_of_free_flight(lmp_tree):
-    """The step has not grown beyond what forces that begin on the way allow, nor has N fallen."""
+    """The step has stayed below the limit for forces that set in within a step, and N has not decreased."""
     eps = [1e-8, 1e-10, 1e-13]
     decks = [
         meeting(e, pair, UNTIL)
-        # with forces that fade away smoothly, or jump
+        # with forces that decay smoothly, or jump
         for pair in ("lj/charmm/coul/charmm 4.0 6.0", "lj/cut 2.5")
         for e in eps
     ]
     runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
     for e, run in zip(eps, runs):
         steps = np.diff(run["Time"])
-        assert run["PotEng"].min() < -1 and run["Time"][-1] >= 12.5  # they have met
-        # force times eps in each step, and the bend of the force where it begins
+        assert run["PotEng"].min() < -1 and run["Time"][-1] >= 12.5  # they have collided
+        # force times eps in each step, and the kink of the force where it sets in
         assert off(run, "TotEng") < 50 * e * len(steps) + 1e-6
         assert 2.0 * steps.max() < 0.25 * 0.3 * 1.001  # a quarter of the skin
-        assert (run[VALUES][run["Time"] < 5] == 10).all()  # until they meet
+        assert (run[VALUES][run["Time"] < 5] == 10).all()  # until they collide
         assert run[LARGEST][-1] <= 1
-    for run in runs[3:]:  # a force and an energy that jump cost what they jump by
+    for run in runs[3:]:  # a jump of force and energy causes an error of its size
         assert run["Time"][-1] >= 12.5
         assert abs(run["TotEng"][-1] - run["TotEng"][0]) < 0.02
 
@@ -239,7 +239,7 @@ LATE = ("every 10 delay 20 check yes", "delay 10", "every 100 check no")
 
 @pytest.mark.parametrize("often", LATE)
 def test_neighbor_lists_that_are_looked_at_late(lmp_tree, often):
-    """No site has moved by more than half the skin when LAMMPS looks whether to make the list anew."""
+    """No site has moved by more than half the skin when LAMMPS tests its neighbor lists."""
     deck = meeting(1e-9, "lj/charmm/coul/charmm 4.0 6.0", f"neigh_modify {often}\n{UNTIL}")
     (run,) = tables(lmp_tree.succeed(deck))
     assert run["PotEng"].min() < -1 and off(run, "TotEng") < 1e-5
@@ -250,7 +250,7 @@ def test_neighbor_lists_that_are_looked_at_late(lmp_tree, often):
 ])  # fmt: skip
 @pytest.mark.parametrize("given", [0.001, 10.0])
 def test_the_first_step_is_within_the_limits(lmp_tree, words, shortest, longest, given):
-    """However long or short the time step of the script is."""
+    """For any time step of the script."""
     deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", f"timestep {given}\nrun 20", words=words)
     (run,) = tables(lmp_tree.succeed(deck))
     steps = np.diff(run["Time"])
@@ -260,7 +260,7 @@ def test_the_first_step_is_within_the_limits(lmp_tree, words, shortest, longest,
 
 @pytest.mark.parametrize("bound", ["dtmax", "every/time"])
 def test_a_time_that_stands_still_is_refused(lmp_tree, bound):
-    """Behind time zero, where no step is too short to change the time."""
+    """After time zero, where no step is too short to change the time."""
     again = "unfix move\nfix move all gear/quat molecule tolerance 1e-8 {} {}\nrun 10"
     deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", f"run 10\n{again}")
     assert "stand still" not in lmp_tree.succeed(deck.format(bound, 1e-9)).output
@@ -274,18 +274,18 @@ def test_a_shortest_step_that_is_too_long_is_named(lmp_tree):
 
 
 def test_no_bodies_yet(lmp_tree):
-    """The step does not grow while there is nothing that says how far it may."""
+    """The step does not grow as long as its limit is unknown."""
     molecule = "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
     (lmp_tree.folder / "molecule.two").write_text(molecule)
     template = dict(before="molecule two molecule.two", words="mol two")
     deck = meeting(1e-8, "lj/cut 2.5", INSERTED, [], [], **template)
     empty, run = tables(lmp_tree.succeed(deck))
     assert np.diff(empty["Time"]) == pytest.approx([0.005] * 100, rel=1e-9)
-    assert 0.005 < np.diff(run["Time"]).max() < 0.25 * 0.3 * 1.001  # they come with a speed of 1
+    assert 0.005 < np.diff(run["Time"]).max() < 0.25 * 0.3 * 1.001  # they are inserted with a speed of 1
 
 
 def test_eps_is_a_length(lmp_tree):
-    """The same error and so the same steps in all systems of units."""
+    """The same error and thus the same steps in all systems of units."""
     times = {}
     for units in ("real", "metal", "si", "cgs", "nano"):
         scale = UNITS[units]

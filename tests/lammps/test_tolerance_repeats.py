@@ -1,4 +1,4 @@
-"""Keyword tolerance: a step that fails is made again, and nothing else in LAMMPS can tell."""
+"""Keyword tolerance: a failed step is repeated, without any effect on the rest of LAMMPS."""
 
 import re
 
@@ -27,7 +27,7 @@ fix_modify move virial yes
 
 
 def scene(tolerance, after="", until=8.0, pair=SMOOTH, columns="", **settings):
-    """Two molecules out of free flight; tolerance: its values."""
+    """Two molecules that collide after free flight; tolerance: its values."""
     more = f"{NEXT} {VALUES} {LARGEST} {REPEATED} {LENGTH} {ENERGY} {columns}"
     deck = meeting(tolerance, pair, UNTIL.format(until), **settings)
     return deck.replace(f"{NEXT} {VALUES} {LARGEST}", more).replace(
@@ -40,14 +40,14 @@ def test_energies_virials_and_random_numbers_are_those_of_the_step(lmp):
     (run,) = tables(lmp.succeed(scene("1e-10 energy", SUMS, columns=columns)))
     again = np.flatnonzero(np.diff(run[REPEATED])) + 1
     assert len(again) > 10 and run[LARGEST][-1] <= 1
-    # the failed try was at another place, with another energy: F v h, 1e6 times what is seen here
+    # the failed try was at another position, with another energy: F v h, 1e6 times the difference here
     assert off(run, "TotEng") < 1e-7
     pairs = run["c_sums[1]"] - run["PotEng"]  # energy yes moves the total to the corrected pose
     assert np.abs(pairs).max() < 1e-7
     assert run["v_virial"] == pytest.approx(run["Press"], rel=1e-9, abs=1e-12)
     mean = np.loadtxt(lmp.folder / "mean")[:, 1]
     assert mean == pytest.approx(run["Press"][-len(mean) :], rel=1e-5)
-    # random numbers: as many as steps, though some steps were made twice
+    # random numbers: as many as steps, though some steps were repeated
     (plain,) = tables(lmp.succeed(scene("1e-3", SUMS, columns="v_draw", until=1.0)))
     n = min(len(plain["v_draw"]), len(run["v_draw"]))
     assert plain["v_draw"][:n].tolist() == run["v_draw"][:n].tolist()
@@ -59,7 +59,7 @@ def test_an_energy_is_an_energy(lmp_tree):
     for e, run in zip(eps, runs):
         assert run[LARGEST][-1] <= 1 and run[ENERGY].max() <= e * (1 + 1e-9)
         assert off(run, "TotEng") < 30 * e * np.sqrt(len(run["Step"]))
-    # and a length a length
+    # and a length follows a length
     (run,) = tables(lmp_tree.succeed(scene("1e-9")))
     assert run[LENGTH].max() == pytest.approx(1e-9 * run[LARGEST][-1], rel=1e-6)
     assert run[ENERGY].max() > 1e-9
@@ -67,7 +67,7 @@ def test_an_energy_is_an_energy(lmp_tree):
 
 @pytest.mark.parametrize("formulation", ["first", "second"])
 def test_forces_that_jump(lmp_tree, formulation):
-    """At a cutoff without a shift the energy jumps, and comes back when the bodies part."""
+    """At a cutoff without a shift the energy jumps, and is restored when the bodies separate."""
     run = tables(
         lmp_tree.succeed(scene("1e-9 energy", pair="lj/cut 2.5", until=12.5, words=f"formulation {formulation}"))
     )[0]
@@ -94,7 +94,7 @@ def test_where_steps_are_not_repeated_the_log_says_so(lmp_tree, command):
     assert UNFOLLOWED[command] in result.output
     (run,) = tables(result)
     assert run[REPEATED][-1] == 0 and run["PotEng"].min() < -1
-    assert off(run, "TotEng") < 1e-3  # the limit of the motion alone
+    assert off(run, "TotEng") < 1e-3  # only the limit of the motion
 
 
 def test_steps_end_at_times_of_a_dump(lmp_tree):
@@ -113,7 +113,7 @@ def test_steps_end_at_times_of_a_dump(lmp_tree):
 
 @pytest.mark.parametrize("interval", [7.3, 0.1])
 def test_steps_end_at_multiples_of_a_time(lmp, interval):
-    """With thermo 0 output is there, and only there; fix halt, first or last, ends the run there."""
+    """With thermo 0 there is output only at these times; fix halt, first or last, ends the run there."""
     words = f"every/time {interval}"
     often = scene("1e-9", until=7.3, words=words)
     rare = often.replace("thermo 1\n", "thermo 0\n")
@@ -136,7 +136,7 @@ def test_steps_end_at_multiples_of_a_time(lmp, interval):
         assert all_steps[column][shown].tolist() == at_times[column].tolist(), column
     assert all_steps["Time"][-1] == at_times["Time"][-1] < free["Time"][-1]
     tries = [len(run["Step"]) + run[REPEATED][-1] for run in (free, all_steps)]
-    assert tries[1] < 1.15 * tries[0]  # steps free to choose are up to 0.1 long
+    assert tries[1] < 1.15 * tries[0]  # steps without this condition are up to 0.1 long
 
 
 def test_a_first_step_ends_at_a_multiple(lmp_tree):
@@ -164,7 +164,7 @@ ARGON = {units: (*sizes, unit_of_time(units)) for units, sizes in ARGON.items()}
 
 
 def argon(units, eps, skin, until=5.0):
-    """A deck with two atoms that fall towards each other; skin and until in reduced units."""
+    """A deck with two atoms that move towards each other; skin and until in reduced units."""
     sigma, depth, mass, tau = ARGON[units]
     edge = 15 * sigma
     return f"""
@@ -215,14 +215,14 @@ def test_two_atoms_fly_alike_in_all_units(lmp_tree, words):
         assert len(other["Time"]) == len(lj["Time"])
         assert other["Time"] == pytest.approx(lj["Time"], rel=1e-4)
         assert other["PotEng"] == pytest.approx(lj["PotEng"], abs=1e-4)
-    # another unit is another tolerance
+    # with another unit the tolerance differs
     measure, unit = words.split()[1], 10.0
     (loose,) = tables(lmp_tree.succeed(argon("lj", f"{words.split()[0]} {measure} {unit}", skin=0.6)))
     assert len(loose["Time"]) < 0.95 * len(lj["Time"])
 
 
 def test_two_atoms_with_a_skin_of_a_millimeter(lmp_tree):
-    """As it is in units si by default."""
+    """The default in units si."""
     sigma, depth, *_ = ARGON["si"]
     decks = [argon("si", f"1e-9 length {sigma}", 0.001 / sigma)]
     decks += [argon("si", f"{1e-8 * depth} energy", 0.001 / sigma)]
@@ -232,7 +232,7 @@ def test_two_atoms_with_a_skin_of_a_millimeter(lmp_tree):
 
 
 def test_free_flight_for_a_million(lmp_tree):
-    """Nothing acts, and a wide skin lets a body fly far in a step."""
+    """There are no forces, and a wide skin lets a body move far in a step."""
     settings = dict(box="-5e5 5e5 -20 20 -20 20", boundary="p p p", thermo=1)
     bodies, velocities = [TWO[0]], [(0.01, 0, 0)] * 3
     deck = placed(
@@ -251,7 +251,7 @@ def test_free_flight_for_a_million(lmp_tree):
 
 
 def test_bodies_that_come_into_the_way(lmp_tree):
-    """Inserted bodies meet others, and no step is wrong by more than eps."""
+    """Inserted bodies collide with others, and no step has an error above eps."""
     molecule = "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
     (lmp_tree.folder / "molecule.two").write_text(molecule)
     template = dict(before="molecule two molecule.two", words="mol two")
@@ -262,14 +262,14 @@ def test_bodies_that_come_into_the_way(lmp_tree):
     assert run["Atoms"][-1] == 16 and run[REPEATED][-1] > 0
     assert run[LARGEST][-1] <= 1
     settled = run["Step"] > 1000
-    total = run["PotEng"] + run["f_move[1]"] + run["f_move[2]"]  # ke counts freedoms of atoms
+    total = run["PotEng"] + run["f_move[1]"] + run["f_move[2]"]  # ke includes freedoms of atoms
     assert np.ptp(total[settled]) < 1e-4
     assert (run[VALUES][settled] > 5).any()
 
 
 @pytest.mark.parametrize("words", ["1e-12", "1e-9 energy"])
 def test_ranks_agree(lmp_tree, words):
-    """At the same time, for rounding moves the steps."""
+    """At the same time, since rounding changes the steps."""
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, f"gear/quat molecule tolerance {words}", dt=0.5, steps=120)
     agree_on_ranks(lmp_tree, deck)
@@ -278,7 +278,7 @@ def test_ranks_agree(lmp_tree, words):
 def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, "gear/quat molecule tolerance 1e-6", dt=1.0, steps=500)
-    said = "the control does not pay here"
+    said = "step control gains little here"
     assert lmp_tree.succeed(deck).output.count(said) == 1
     halted = deck.replace("run 500", UNTIL.format(300.0))
     assert halted != deck and lmp_tree.succeed(halted).output.count(said) == 1
@@ -286,13 +286,13 @@ def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
 
 
 def test_a_tolerance_far_below_rounding(lmp_tree):
-    """What rounding makes of an error shortens no step."""
+    """Round-off errors shorten no step."""
     (run,) = tables(lmp_tree.succeed(scene("1e-200 energy", until=1.0)))
     assert run["Time"][-1] >= 1.0 and off(run, "TotEng") < 1e-12
 
 
 def test_a_tolerance_that_anything_meets(lmp_tree):
-    """Then the limit of the motion alone holds the step, and bodies still bounce off each other."""
+    """Then only the limit of the motion determines the step, and bodies still repel each other."""
     (run,) = tables(lmp_tree.succeed(scene("1e30", until=8.0)))
     assert run["PotEng"].min() < -0.5 and run[REPEATED][-1] == 0 and run["Time"][-1] >= 8.0
     assert run[NEXT].max() < 0.25 * 0.3 / 2.0 * 1.5  # a quarter of the skin at a speed of 2
@@ -340,7 +340,7 @@ dump_modify poses sort id format float %.17g {}
 
 
 def test_216_molecules_of_water(lmp_tree):
-    """The log says that a constant step would do, and the one that it names is about as accurate."""
+    """The log says that a constant step would do, and the suggested step is about as accurate."""
     duration, data = 200.0, EXAMPLES / "isokinetic" / "data.water"
 
     def fixed(steps):
@@ -357,7 +357,7 @@ def test_216_molecules_of_water(lmp_tree):
         deck = WATER_216.format(data, 0.5, words, REPEATED, 1, every, UNTIL.format(end))
         result = lmp_tree.succeed(deck)
         _, (step, poses), *_ = frames(lmp_tree.folder / "poses.dump").items()
-        return step, poses, re.findall("does not pay here: a fixed time step of (.*?) without", result.words)
+        return step, poses, re.findall("gains little here: a fixed time step of (.*?) without", result.words)
 
     right = fixed(800)
 
@@ -366,7 +366,7 @@ def test_216_molecules_of_water(lmp_tree):
 
     for eps, least, most in (("1e-5", 1e-5, 3e-4), ("1e-4", 5e-5, 1e-3)):
         steps, poses, named = controlled(eps, duration)
-        assert least < error(poses) < most and not named  # a hundred steps settle
+        assert least < error(poses) < most and not named  # a hundred steps are not counted
         *_, (named,) = controlled(eps, 2 * duration)
         number = round(duration / float(named))
         assert error(fixed(number)) < 2 * error(poses) < error(fixed(number // 2))

@@ -1,6 +1,6 @@
-"""Keyword temp: the total momentum is no heat in the directions in which forces leave it constant.
+"""Keyword temp: the total momentum is not heat in directions in which it is constant.
 
-Which these are is measured, so other fixes count by what they do.
+These directions are measured, so other fixes count by their effect.
 """
 
 import re
@@ -31,7 +31,7 @@ Bonds
 
 1 1 1 2
 """
-# Eight of them, with opposite charges that only fields feel; the first is also a group.
+# Eight of them, with opposite charges that only fields act on; the first is also a group.
 DUMBBELLS = """
 units lj
 atom_style full
@@ -75,7 +75,7 @@ def dumbbells(lmp, after="", words=WORDS, before="", bound="p", columns="", ever
 
 
 def said(log):
-    """What the log says of degrees of freedom: of translation, directions of the total momentum, of rotation."""
+    """Degrees of freedom in the log: of translation, directions of the total momentum, of rotation."""
     found = []
     for line in re.findall("thermostat of (.*)", log):
         numbers = re.findall(r"(\d+) (?:degrees|of rotation)", line)
@@ -90,10 +90,10 @@ def relative(table, along="xyz"):
     return 2 * np.array(table["f_move[1]"]) - sum(np.array(table[f"v_c{k}"]) for k in along)
 
 
-# --- what other fixes do --------------------------------------------------------------------------
+# --- effects of other fixes -----------------------------------------------------------------------
 
 WALLS = "fix it all wall/lj93 zlo -0.1 1.0 1.0 2.5 zhi 6.1 1.0 1.0 2.5"
-# Commands behind those of the fix -> directions in which the total momentum is constant.
+# Commands after the fix -> directions in which the total momentum is constant.
 OTHERS = {
     "": "xyz",
     "fix it all store/force": "xyz",
@@ -108,7 +108,7 @@ OTHERS = {
     "fix it all momentum 5 linear 1 1 1": "xyz",
     "fix it all external pf/array 1": "xyz",
     "group none empty\nfix it none addforce 0 0 1": "xyz",
-    # springs of equal strength hold a center of mass that does not move
+    # springs of equal strength hold a center of mass at rest
     "fix it all spring/self 1.0": "xyz",
     "fix it one spring/self 1.0": "",
     "fix it all spring tether 1.0 3 3 3 0.0": "",
@@ -125,7 +125,7 @@ OTHERS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_fix_counts_by_what_it_does(lmp_tree, kind):
-    """The log and the temperature of translation agree, in the row of step 0 too."""
+    """The log and the temperature of translation agree, also in the row of step 0."""
     words = f"temp 1.0 1.0 0.5 thermostat {kind}"
     bound = {WALLS: "f"}
     decks = [dumbbells(lmp_tree, after, words, bound=bound.get(after, "p")) for after in OTHERS]
@@ -145,7 +145,7 @@ def test_a_fix_counts_by_what_it_does(lmp_tree, kind):
 
 
 def test_the_order_of_definition_does_not_matter(lmp_tree):
-    """LAMMPS' setup shows the forces of fixes that are defined before ours only."""
+    """LAMMPS' setup has only the forces of fixes defined before ours."""
     field = "fix it all addforce 0 0 0.01"
     decks = [dumbbells(lmp_tree, after, WORDS, before, run="run 0") for after, before in ((field, ""), ("", field))]
     result = lmp_tree.succeed(one_after_the_other(decks))
@@ -156,7 +156,7 @@ def test_the_order_of_definition_does_not_matter(lmp_tree):
 
 
 def test_the_temperature_of_eight_dumbbells(lmp_tree):
-    """A false count of three of 37 degrees of freedom makes 8 %."""
+    """An error of three in 37 degrees of freedom would be 8 %."""
     temperature = "variable T equal (2*(f_move[1]+f_move[2])-v_cx-v_cy-v_cz)/37"
     mean = "fix T all ave/time 10 9000 100000 v_T file mean"
     deck = dumbbells(lmp_tree, "fix it all store/force", run=f"run 10000\n{mean}\nrun 90000", every=100000)
@@ -167,19 +167,19 @@ def test_the_temperature_of_eight_dumbbells(lmp_tree):
 
 
 def test_atoms_outside_and_another_fix(lmp_tree):
-    """What pulls at the bodies from outside need not be a fix."""
+    """External forces on the bodies need not be due to a fix."""
     atom = "create_atoms 1 single 0.2 0.2 1.7\ngroup bodies molecule > 0\ngroup free subtract all bodies"
     still = dumbbells(lmp_tree, before=atom)
     still = still.replace("fix move all", "fix move bodies").replace("all,", "bodies,").replace("(all)", "(bodies)")
     both = dumbbells(lmp_tree, "fix too others gear/quat molecule temp 1.0 1.0 0.5")
     both = both.replace("fix move all", "group some molecule 1 2 3\ngroup others subtract all some\nfix move some")
     log = lmp_tree.succeed(one_after_the_other([still, both])).log
-    apart = [(6, "xyz", 6), (12, "xyz", 10)]  # until they meet
+    apart = [(6, "xyz", 6), (12, "xyz", 10)]  # until they collide
     assert said(log) == [(24, "", 16), *apart, (9, "", 6), (15, "", 10)]
 
 
 def test_a_plane(lmp_tree):
-    """Forces along z belong to no degree of freedom; a field along y takes back one."""
+    """Forces along z act on no degree of freedom; a field along y adds one again."""
     bodies = [[(0, 0, 0), (1, 0, 0)], [(0, 2, 0), (1, 2.2, 0)], [(2.5, 1, 0)]]
     settings = dict(bodies=bodies, dimension=2, box="-9 9 -9 9 -0.5 0.5", boundary="f f p")
     settings |= dict(after="fix flat all enforce2d", time=0.1)
@@ -224,7 +224,7 @@ LATER = "variable pull equal 0.2*(step>{})\nfix pull all addforce 0 v_pull 0\n"
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_force_that_sets_in_later(lmp_tree, ranks):
-    """The conserved quantity goes on, the vector follows, and restarts and halves do not notice."""
+    """The conserved quantity continues, the vector is updated, and restarts and halves agree."""
     decks, parts = [], ("whole", "halves", "again")
     tail = {"whole": "run 60", "halves": "run 30\nwrite_restart half\nrun 30", "again": "run 30"}
     for part in parts:
@@ -243,7 +243,7 @@ def test_a_force_that_sets_in_later(lmp_tree, ranks):
     freedoms = 2 * whole["f_move[1]"] / whole["f_move[10]"]
     assert freedoms[:21] == pytest.approx(9, rel=1e-12) and 9.9 < freedoms[21] < 10.1
     assert np.ptp(whole["Econserve"][:21]) < 1e-3 < np.ptp(whole["TotEng"][:21])
-    # what the chains take: no jump where the degree of freedom comes
+    # energy removed by the chains: continuous when the degree of freedom is added
     power = 2 * whole["f_move[13]"] * whole["f_move[1]"] + 2 * whole["f_move[14]"] * whole["f_move[2]"]
     change = np.diff(whole["f_move[9]"])
     assert np.abs(change - 0.004 * (power[1:] + power[:-1]) / 2)[1:].max() < 1e-4
@@ -259,7 +259,7 @@ def test_it_sets_in_while_the_step_changes(lmp_tree):
 
 
 def test_a_wall_that_is_left_still_counts(lmp_tree):
-    """Between contacts the momentum is constant, and warm: a second run and a restart go on."""
+    """Between contacts the momentum is constant, and still heat: a second run and a restart continue."""
     settings = dict(after="fix wall all wall/harmonic zlo -3.2 100.0 0.0 1.0\n", every=1)
     settings["columns"] = "f_wall f_wall[1]"
     run = f"run 200\nwrite_restart half\nrun 100\n{END.format('halves')}"
@@ -278,18 +278,18 @@ def test_a_wall_that_is_left_still_counts(lmp_tree):
 
 
 def test_degrees_of_freedom_come_and_go(lmp_tree):
-    """A field releases the momentum along it, and histories that begin anew without it take it back."""
+    """A field adds the momentum along it, and histories that start again without it remove it."""
     with_force = "fix pull all addforce 0 0 1\nrun 2\nunfix pull\nrun 2\n"
     result = lmp_tree.succeed(cluster(f"{TEMP} thermostat separate", run=4 * with_force))
     assert [one[0] for one in said(result.log)] == 4 * [10, 9]
     assert "or other degrees of freedom" in result.log
 
 
-# --- a momentum that is there ---------------------------------------------------------------------
+# --- a nonzero momentum ---------------------------------------------------------------------------
 
 
 def moving(words, velocity, **settings):
-    """The cluster, which moves as a whole."""
+    """The cluster with a common velocity."""
     shift = " ".join(f"{v:.17g}" for v in velocity)
     settings = dict(box="-90 90 -90 90 -90 90", style=f"velocity all set {shift} sum yes\n") | settings
     return cluster(words, **settings)
@@ -297,7 +297,7 @@ def moving(words, velocity, **settings):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_common_motion_changes_nothing(lmp_tree, formulation, kind):
-    """Poses in the moving frame, chains and temperatures are the same; the start knows that, too."""
+    """Poses in the moving frame, chains and temperatures are the same; the start includes this, too."""
     words = f"formulation {formulation} temp 0.4 0.8 0.3 thermostat {kind}"
     velocity = np.array([3.0, -2.0, 5.0])
     decks = [moving(words, u, dumped=name, every=1) for u, name in ((0 * velocity, ""), (velocity, "mol"))]
@@ -315,7 +315,7 @@ def test_a_common_motion_changes_nothing(lmp_tree, formulation, kind):
 
 
 def test_momentum_left_by_langevin(lmp_tree):
-    """It stays what it is, and neither counts nor disturbs."""
+    """It is constant, and neither counts nor disturbs."""
     before = "fix old all gear/quat molecule values 4\nfix bath all langevin 1 1 0.1 4711\nrun 100\n"
     before += "unfix bath\nunfix old"
     deck = dumbbells(lmp_tree, before=before, every=1, run="run 200")
@@ -346,7 +346,7 @@ def test_bodies_that_only_move_together_are_cold(lmp_tree):
 
 
 def test_a_single_body(lmp_tree):
-    """Alone it has no heat; a spring pulls at it in the second step, and warms it."""
+    """Alone it has no heat; a spring acts on it in the second step, and heats it."""
     alone = dict(bodies=[[(0.3, 0.1, 0.2)]], exclude="", time=0.2, columns="f_move[10] f_move[9]")
     decks = [cluster(TEMP, **alone), cluster(TEMP, after="fix it all spring/self 1.0\n", **alone)]
     decks = [deck.replace("velocity all create 0.6 4711 loop geom", "velocity all set 1 0.5 0.2") for deck in decks]
@@ -359,7 +359,7 @@ def test_a_single_body(lmp_tree):
 
 
 def test_ranks(lmp_tree):
-    """A heavy body among light ones moves; where bodies are does not matter."""
+    """A heavy body among light ones moves; the distribution of bodies over ranks does not matter."""
     ends, deck = [], moving(TEMP, (0.3, 0.2, 0.1), run="run 50\n" + END.format("a"), masses="mass 1 1.0\nmass 2 1000.0")
     heavy = deck.replace("set atom 4*6 mol 2", "set atom 4*6 mol 2 type 2")
     assert heavy != deck

@@ -1,4 +1,4 @@
-"""The package as LAMMPS would take it: LAMMPS' own coding standard, format and lists."""
+"""The package in the form for LAMMPS: LAMMPS' own coding standard, format and lists."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ CHECKS = {
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory) -> Path:
-    """What of a LAMMPS tree with GEARQUAT is ours, and LAMMPS' scripts."""
+    """The files of this project in a LAMMPS tree with GEARQUAT, and LAMMPS' scripts."""
     tree = tmp_path_factory.mktemp("lammps")
     shutil.copytree(tree_source() / "tools" / "coding_standard", tree / "tools" / "coding_standard")
     shutil.copytree(PACKAGE, tree / "src" / "GEARQUAT")
@@ -45,7 +45,7 @@ def tree(tmp_path_factory) -> Path:
 
 
 def standard(tree, check):
-    """What one of LAMMPS' scripts complains of; empty if it is content."""
+    """The complaints of one of LAMMPS' scripts; empty if there are none."""
     script = tree_source() / "tools" / "coding_standard" / f"{check}.py"
     done = subprocess.run([sys.executable, str(script), str(tree)], capture_output=True, text=True)
     told = done.stdout + done.stderr
@@ -76,7 +76,7 @@ def test_a_new_style_is_tagged(tree):
 
 
 def reformatted(path):
-    """A source as clang-format would have it, by LAMMPS' rules."""
+    """A source formatted by clang-format with LAMMPS' rules."""
     tool = Path(sysconfig.get_path("scripts")) / "clang-format"
     rules = f"--style=file:{tree_source() / 'src' / '.clang-format'}"
     return subprocess.run([tool, rules, path], capture_output=True, text=True, check=True).stdout
@@ -91,12 +91,12 @@ def test_lammps_format(path, tmp_path):
     assert reformatted(wrong) != wrong.read_text()
 
 
-# --- what is in the package ----------------------------------------------------------------------
+# --- contents of the package ----------------------------------------------------------------------
 README = (PACKAGE / "README").read_text()
 
 
 def files_listed(readme):
-    """Files that the README lists; a name without an ending stands for a header and a source file."""
+    """Files that the README lists; a name without an ending denotes a header and a source file."""
     for name, ending in re.findall(r"^ +((?:fix_)?gear_quat\w*)(\.h|\.cpp)?  ", readme, re.M):
         yield from [name + ending] if ending else [f"{name}.cpp", f"{name}.h"]
 
@@ -122,7 +122,7 @@ def test_style_headers_include_their_base_class_only():
     assert ours == {"fix.h"}
 
 
-# --- what users are asked to cite ------------------------------------------------------------------
+# --- citations ------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     "keywords, papers",
     {

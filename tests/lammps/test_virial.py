@@ -1,4 +1,4 @@
-"""Virial of the constraint forces, shared among atoms: what thermo, stresses and heat fluxes are made of."""
+"""Virial of the constraint forces, distributed over atoms: input to thermo, stresses and heat fluxes."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from scenes import water, water_data
 OUTPUTS = 172
 PARTS = range(1, 7)
 
-# what the fix alone gives: to all, and to each atom
+# contribution of the fix alone: to the total, and to each atom
 SHARES = """
 compute stress all stress/atom NULL fix
 compute centroid all centroid/stress/atom NULL fix
@@ -28,7 +28,7 @@ run {steps}
     [(1, "run_style verlet"), (4, "run_style verlet"), (4, "run_style respa 2 1 pair 2")],
 )
 def test_shares_of_atoms_add_up(lmp_tree, data, ranks, style):
-    """Atoms change their ranks within the steps of the outputs; r-RESPA allows no other step than one."""
+    """Atoms migrate within the steps of the outputs; r-RESPA allows no step other than one."""
     names = ("v_whole{}", "c_shares[{}]", "c_diagonal[{}]")
     columns = [[name.format(k) for k in PARTS] for name in names]
     run = SHARES.format(
@@ -64,7 +64,7 @@ def flux(lmp, fix, dt, steps, ranks=1):
 
 
 def test_heat_flux_is_that_of_fix_rigid_small(lmp_tree):
-    """Its virial is made from differences of velocities: twice the step, twice the error."""
+    """Its virial is computed from differences of velocities: twice the step, twice the error."""
     ours, across = (flux(lmp_tree, "gear/quat molecule", 0.02, 50, ranks) for ranks in (1, 4))
     assert across == pytest.approx(ours, rel=1e-9)
     coarse, fine = (

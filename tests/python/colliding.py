@@ -57,7 +57,7 @@ def write_argon(folder, style):
     """Path of the deck of two atoms of argon in units ``style``, with the numbers that it has in units lj."""
     units, number = UNITS[style], "{:.17g}".format
     length, energy = SIGMA / (units.angstrom * 1e-10), WELL * units.boltzmann
-    # 39.948 u in the style's unit of mass, which follows from its units of energy, length and time
+    # 39.948 u in the mass unit of the style, from its energy, length and time
     joule, speed = 1.380649e-23 / units.boltzmann, units.angstrom * 1e-10 / (units.ps * 1e-12)
     mass = 39.948 * 1.66053907e-27 * speed**2 / (joule * units.energy)
     if style == "lj":

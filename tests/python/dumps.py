@@ -69,7 +69,7 @@ def write(path, motion, times, change=None, **header):
 
 
 def analyze(path, out, *arguments):
-    """Run ``gearquat analyze`` on a dump."""
+    """Runs ``gearquat analyze`` with a dump."""
     return CliRunner().invoke(command.analyze, [*map(str, [path, "--out", out, *arguments])])
 
 

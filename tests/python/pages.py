@@ -25,7 +25,7 @@ def blocks(page: str, language: str) -> list[str]:
 
 
 def paste(text: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Result of a shell in ``folder`` after pasting ``text``."""
+    """The output of a shell in ``folder`` with ``text`` as its input."""
     path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", text],

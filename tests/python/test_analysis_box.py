@@ -55,7 +55,7 @@ def displaced(walk):
 @pytest.mark.parametrize("names", ["xu yu zu", "x y z"])
 @pytest.mark.parametrize("backend", ["serial", "multiprocessing"])
 def test_own_motion(walk, tmp_path, names, backend):
-    """It agrees with the steps of the walk; wrapped positions are unwrapped in the changing box."""
+    """It changes with the steps; wrapped positions are followed through the changing box."""
     poses = Poses(open_dump(walk.dump(tmp_path / "a.dump", names)).atoms)
     poses.run(backend=backend, **({"n_workers": 2} if backend == "multiprocessing" else {}))
     found = own(poses)

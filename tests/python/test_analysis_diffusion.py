@@ -17,7 +17,7 @@ def brownian(rng, frames, bodies, coefficient=0.5):
 
 
 def bound(rng, frames, bodies, time):
-    """A stationary process in a harmonic well with friction: variance 1, correlation time ``time``."""
+    """In a harmonic well, with friction: a stationary process with variance 1 and correlation time ``time``."""
     forget = np.exp(-1.0 / time)
     kicks = rng.normal(size=(frames, bodies, 3)) * np.sqrt(1.0 - forget**2)
     kicks[0] /= np.sqrt(1.0 - forget**2)
@@ -92,7 +92,7 @@ def test_runs_that_are_too_short():
 
 
 def test_bodies_that_move_together():
-    """Their scatter is useless, blocks of the run are not: errors are as large as for a single body."""
+    """Their scatter is not informative, and blocks of the run are: errors agree with a single body."""
     deviations = []
     for seed in SEEDS:
         one = np.random.default_rng(seed).normal(size=(2000, 1, 3)).cumsum(axis=0)
@@ -124,7 +124,7 @@ def test_covariance_of_a_brownian_motion():
 
 @pytest.mark.parametrize("time", [0.1, 3.0, 10.0])
 def test_errors_of_series_hold(time):
-    """For a series with a correlation time of ``time`` frames."""
+    """Of a series with a correlation time of ``time`` frames."""
     known = [of_series(bound(np.random.default_rng(seed), 2000, 1, time)[:, 0, 0]) for seed in SEEDS]
     deviations = [one.value / one.error for one in known if not np.isnan(one.error)]
     assert len(deviations) >= 15
@@ -132,7 +132,7 @@ def test_errors_of_series_hold(time):
 
 
 def test_series_without_independent_blocks():
-    """A series that drifts, and a series with a correlation time of a tenth of the run."""
+    """One with a drift, and one with a correlation time of a tenth of the run."""
     rng = np.random.default_rng(1)
     drifting = rng.normal(size=2000) + np.linspace(0.0, 0.7, 2000)
     slow = bound(rng, 2000, 1, 200.0)[:, 0, 0]

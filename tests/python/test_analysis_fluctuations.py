@@ -23,7 +23,7 @@ def volumes(rng, mean, kappa, temperature):
 
 
 def test_compressibility_and_its_error():
-    """Compressibility of water from 100 runs: errors agree with the scatter, and a deviation of 10 % is detected."""
+    """For water, from 100 runs: the errors agree with the scatter, and 10 % are detected."""
     poses, found = SimpleNamespace(units="real"), []
     for seed in range(100):
         found.append(compressibility(poses, volumes(np.random.default_rng(seed), 6500.0, 0.45, 298.0), 298.0))
@@ -79,7 +79,7 @@ def gas(tmp_path_factory):
 
 
 def test_an_ideal_gas_has_no_structure(gas):
-    """Sites of the same dumbbell are excluded; errors agree with the scatter, and a deviation of 5 % is detected."""
+    """Sites of the same dumbbell are excluded; the errors agree with the scatter, and 5 % are detected."""
     atoms = open_dump(gas).atoms
     r, g, error = radial_distribution(atoms, "all", "all", bins=40)
     assert r[-1] == pytest.approx(10.0, abs=0.2) and len(g) == 40

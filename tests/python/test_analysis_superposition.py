@@ -1,4 +1,4 @@
-"""Known rotations are found for bodies of any kind; the principal frame agrees with the bodies'."""
+"""Known rotations are found, for bodies of any kind; the principal frame is the bodies' own."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_small_and_half_turns(turn):
 
 
 def test_the_rotation_is_the_best_one():
-    """For sites that are not rigid: every small additional rotation increases the weighted squares."""
+    """For sites that are not rigid: all small further rotations increase the weighted squares."""
     bodies = bodies_of([5] * 40)
     arms = turned(bodies, Rotation.random(40, RNG)) + 0.2 * RNG.normal(size=(200, 3))
     arms -= bodies.center(arms)[bodies.of]
@@ -66,7 +66,7 @@ def test_the_rotation_is_the_best_one():
     for axis in np.vstack([np.eye(3), -np.eye(3)]):
         other = Rotation.from_rotvec(1e-3 * axis) * Rotation.from_quat(q, scalar_first=True)
         assert (squares(other.as_quat(scalar_first=True)) > squares(q)).all()
-    # and it agrees with SciPy's method, body by body
+    # and it agrees with SciPy's different method, body by body
     for b in range(40):
         own = bodies.of == b
         best, _ = Rotation.align_vectors(arms[own], bodies.shape[own], bodies.masses[own])

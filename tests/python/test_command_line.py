@@ -45,7 +45,7 @@ PACKAGES = {"lammps-gearquat": ROOT / "src" / "lammps_gearquat", "gearquat-analy
 
 
 def imported(distribution):
-    """Lower-case names of the modules that a package imports, without the standard library and its own modules."""
+    """Names of the modules that a package imports, in lower case, without the standard library and its own."""
     folder = PACKAGES[distribution]
     sources = "\n".join(source.read_text() for source in folder.rglob("*.py"))
     names = set(re.findall(r"^\s*(?:import|from) (\w+)", sources, re.M))
@@ -70,7 +70,7 @@ def test_licenses_go_together():
 
 
 def test_gearquat_analyze_runs_apart_from_the_rest(tmp_path):
-    """MDAnalysis runs in another process, and the command returns its exit status."""
+    """MDAnalysis is in another process, whose status becomes the status of the command."""
     write(tmp_path / "made.dump", Motion([3]), np.arange(4))
     code = "import sys; sys.modules['MDAnalysis'] = None; from lammps_gearquat.cli import main; main()"
 

@@ -146,7 +146,7 @@ def test_errors_hold_where_the_command_stops():
 
 
 def test_several_temperatures_from_the_same_flights():
-    """Errors are correct at each temperature, and smaller than with as many flights at each temperature alone."""
+    """Errors are correct at each of them, and smaller than from as many flights at each alone."""
     temperatures, found = (0.5, 1.2, 3.0), []
     for seed in range(1, 41):
         plan, farthest = ARGON.plan(seed, temperatures, 0.03)

@@ -101,7 +101,7 @@ def test_a_flight_does_not_depend_on_those_before(dumbbells):
 
 
 def test_poses(dumbbells):
-    """In a flight without a collision both bodies turn by their angular velocity."""
+    """In a flight without interaction both bodies turn freely."""
     number = np.arange(1)
     random = np.full((1, rotational(dumbbells)), 0.3)
     start = starts_of(dumbbells, 4.45 + number, 2.0 + number, 1.0 + number, random)[0][2]
@@ -280,7 +280,7 @@ def reduced(tmp_path_factory):
 
 @pytest.mark.parametrize("style", ["real", "si", "cgs", "electron", "micro"])
 def test_all_styles_of_units(tmp_path, style, reduced):
-    """The same collisions in other units: the same plan, and the same integrals relative to hard spheres."""
+    """The same collisions in other units: the same plan, the same integrals relative to spheres."""
     sigma = colliding.SIGMA / (UNITS[style].angstrom * 1e-10)
     deck, out = colliding.write_argon(tmp_path, style), tmp_path / "out"
     run(deck, out, "--temperature", str(2.0 * colliding.WELL), "--count", "32", "--sigma", f"{sigma:.17g}")

@@ -1,4 +1,4 @@
-"""gearquat scatter: cross sections, collision integrals and gas properties with known values."""
+"""gearquat scatter: cross sections, collision integrals and properties of a gas, in known cases."""
 
 from types import SimpleNamespace
 
@@ -82,7 +82,7 @@ def test_units(style):
 def mixed(seed, warm, n=400_000):
     """Gain of rotation in collisions of linear molecules that mix all energy at random, in units of kT.
 
-    Energies of translation have the density x exp(-x); energies of both rotations have it at ``warm`` times T.
+    Energies of translation have the density x exp(-x), and energies of both rotations with ``warm`` times T, too.
     """
     random = np.random.default_rng(seed)
     x, rotation = random.gamma(2.0, size=n), warm * random.gamma(2.0, size=n)
@@ -90,7 +90,7 @@ def mixed(seed, warm, n=400_000):
 
 
 def test_relaxation_of_rotation():
-    """The rate from the squared gain at equal temperatures agrees with the mean gain at different ones."""
+    """The rate from the squared gain at equal temperatures equals the mean gain at different ones."""
     x, gain = mixed(1, 1.0)
     difference = 0.1
     _, net = mixed(2, 1.0 + difference)
@@ -122,7 +122,7 @@ def test_detailed_balance_changes_errors_only():
 
 
 def test_standard_errors():
-    """The jackknife error of a mean agrees with the standard error over replicas and Student's distribution."""
+    """The jackknife of a mean is the standard error over replicas, with the factor of Student's distribution."""
     deviations = []
     for trial in range(200):
         values = np.random.default_rng(trial).normal(1.0, 0.1, 160)
@@ -137,7 +137,7 @@ def test_standard_errors():
 
 
 def test_flights_that_have_not_parted_are_counted():
-    """Their contribution is included in the error."""
+    """Their contribution is in the error."""
     columns, plan = flown()
     columns["fate"] = np.where(np.arange(N) < 120, "unparted", "parted")
     columns["angle"][:120] = columns["energy_after"][:120] = np.nan

@@ -1,4 +1,4 @@
-"""gearquat scatter: selection of the flights."""
+"""gearquat scatter: the choice of flights."""
 
 from dataclasses import replace
 from types import SimpleNamespace

@@ -14,7 +14,7 @@ NUMBER = r"-?\d+(?:\.\d+)?"
 
 @pytest.mark.parametrize("seed", range(200))
 def test_number_and_error_end_at_the_same_digit(seed):
-    """The error has two digits, and both texts agree with the arguments, over 40 powers of ten."""
+    """The error has two digits, and both agree with the arguments, over 40 powers of ten."""
     random = np.random.default_rng(seed)
     value, error = random.choice([-1, 1]) * 10 ** random.uniform(-20, 20), 10 ** random.uniform(-20, 20)
     if error < 1e-12 * abs(value):

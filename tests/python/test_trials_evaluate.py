@@ -51,7 +51,7 @@ def test_power_of_ten_of_a_size():
 
 
 def test_parting_is_where_it_first_happens():
-    """Runs that come close again have still parted, and NaN counts as parted."""
+    """Approaching again does not undo a divergence, and a NaN is a divergence."""
     time = np.arange(5.0)
     distance = np.array([0.0, 1.0, 3.0, 0.5, np.nan])
     assert evaluate.parting_time(time, distance, 0.9) == 1.0
@@ -67,7 +67,7 @@ def curve(order, steps=(0.1, 0.05, 0.025), scale=1.0, floor=0.0, method="m"):
 
 @pytest.mark.parametrize("order", [2, 5, 9])
 def test_price_on_a_power_law(order):
-    """The cost is taken from a trial; trials approach the interpolated step until one is close to it."""
+    """It comes from a trial, and aims at the step in between until a trial is close to it."""
     error = 0.06**order
     found = price(curve(order), error)
     assert (found.kind, found.dt, found.evaluations, found.seconds) == ("at most", 0.05, 200, 0.02)

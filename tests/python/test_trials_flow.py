@@ -1,4 +1,4 @@
-"""Decks with loops, branches, files and redefinitions, and LAMMPS' own decks: trials end where LAMMPS ends."""
+"""Decks with loops, branches, files and corrections, and LAMMPS' own decks: trials end where LAMMPS ends."""
 
 import re
 
@@ -270,7 +270,7 @@ def test_the_first_run_that_can_be_measured_is_found(rigid_examples):
 
 
 def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
-    """The strings with which the sources of LAMMPS compare arguments."""
+    """Keywords parsed in the sources of LAMMPS."""
     folder = rigid_examples.parent / "src" / "RIGID"
     text = "".join((folder / f"fix_rigid{name}.cpp").read_text() for name in ("", "_small"))
     known = set(re.findall(r'strcmp\(arg\[iarg\], *"(\w+)"\)', text))

@@ -1,4 +1,4 @@
-"""Commands of a deck as text."""
+"""The commands of a deck, as text."""
 
 from dataclasses import replace
 
@@ -208,7 +208,7 @@ def test_isokinetic_runs_are_tried_in_their_formulation_only():
 
 
 def test_every_keyword_of_the_fix_is_read():
-    """The trials distinguish the keywords by subject, and leave out keywords without a subject."""
+    """The trials know the topics of all keywords, and keywords of other topics are omitted."""
     known = {"integration", "step", "bodies", "physics", "output"}
     assert {row.about for row in keywords.table().values()} == known
     for key, row in keywords.table().items():

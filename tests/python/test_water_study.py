@@ -48,6 +48,13 @@ def test_errors_of_a_jackknife_are_those_of_a_mean():
     assert value == pytest.approx(np.mean(numbers)) and error == pytest.approx(np.std(numbers, ddof=1) / 20**0.5)
 
 
+def test_a_quarter_of_the_error_takes_sixteen_times_as_long():
+    samples = made_up()[:COUNT]
+    _, error = water.mean(samples, water.density)
+    assert water.duration(samples, water.density, error) == pytest.approx(COUNT * 0.1)
+    assert water.duration(samples, water.density, error / 4) == pytest.approx(16 * COUNT * 0.1)
+
+
 def test_samples_come_back(tmp_path):
     samples = made_up()[:3]
     runs.write_samples(samples, tmp_path / "samples.csv")

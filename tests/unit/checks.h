@@ -1,5 +1,5 @@
-/* Small tools of the tests: distances, slopes, derivatives, and the 1 % error every check must
-   see. */
+/* Tools for the tests: distances, slopes, derivatives, and the error of 1 % that every check must
+   detect. */
 
 #pragma once
 
@@ -20,7 +20,7 @@ inline double largest_difference(const double *a, const double *b, int n)
   double largest = 0.0;
   for (int i = 0; i < n; ++i) {
     const double d = std::fabs(a[i] - b[i]);
-    if (!(d <= largest)) largest = d;    // a NaN is passed on, not passed over
+    if (!(d <= largest)) largest = d;    // keeps a NaN
   }
   return largest;
 }
@@ -38,7 +38,7 @@ inline double quaternion_distance(const double *a, const double *b)
   return same < opposite ? same : opposite;
 }
 
-/// Largest difference of the rotation matrices, whatever the lengths of the quaternions.
+/// Largest difference of the rotation matrices, for quaternions of any lengths.
 inline double attitude_distance(const double *p, const double *q)
 {
   using namespace LAMMPS_NS::GearQuat;
@@ -56,7 +56,7 @@ inline double attitude_distance(const double *q, const Oracle::Matrix &m)
   return largest_difference(a, b, 9);
 }
 
-/// By how much a matrix fails to be a right-handed rotation.
+/// Deviation of a matrix from a right-handed rotation.
 inline double not_orthogonal(const double *a)
 {
   using namespace LAMMPS_NS::GearQuat;
@@ -100,8 +100,8 @@ template <class F> void derivative(F f, int n, double h, double *out)
   for (int i = 0; i < n; ++i) out[i] = (8.0 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / (12.0 * h);
 }
 
-/// The check holds for the values, and for none of the sets with one value 1 % off (a zero: off
-/// by 1 % of the largest).
+/// The check passes for the values, and fails for each set with one value 1 % off (a zero: off by 1
+/// % of the largest).
 template <class F> void holds_and_refuses_one_percent(std::vector<double> values, F check)
 {
   ASSERT_TRUE(check(values));
@@ -114,7 +114,7 @@ template <class F> void holds_and_refuses_one_percent(std::vector<double> values
   }
 }
 
-/// The check holds, and fails as soon as one of the numbers it is about is 1 % off.
+/// The check passes, and fails if one of the numbers is 1 % off.
 template <class F> void holds_and_needs(const std::vector<double *> &numbers, F check)
 {
   ASSERT_TRUE(check());
@@ -126,7 +126,7 @@ template <class F> void holds_and_needs(const std::vector<double *> &numbers, F 
   }
 }
 
-/// The values agree to the tolerance, and none agrees any more when it is 1 % off.
+/// The values agree within the tolerance, and each one disagrees when it is 1 % off.
 template <int N>
 void near_and_refuses_one_percent(const double (&values)[N], const double *expected,
                                   double tolerance)
@@ -136,7 +136,7 @@ void near_and_refuses_one_percent(const double (&values)[N], const double *expec
   });
 }
 
-/// The same for each value relative to its own size.
+/// The same for each value, relative to its magnitude.
 template <int N>
 void relatively_near_and_refuses_one_percent(const double (&values)[N], const double (&expected)[N],
                                              double tolerance)
@@ -148,8 +148,8 @@ void relatively_near_and_refuses_one_percent(const double (&values)[N], const do
       near_and_refuses_one_percent({values[i]}, expected + i, tolerance * std::fabs(expected[i]));
 }
 
-/// Rows of a history at time t, step h, of polynomials with these coefficients: `width` of them for
-/// each power of the time.
+/// Rows of a history at time t, step h, for polynomials with these coefficients: `width` of them
+/// for each power of the time.
 inline std::vector<double> polynomial_rows(const std::vector<double> &a, int width, double t,
                                            double h)
 {

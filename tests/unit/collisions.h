@@ -1,5 +1,5 @@
-/* Collisions of two rigid bodies of Lennard-Jones sites, drawn at random: 3 to 12 sites of unit mass,
-   sigma and epsilon, half of the bodies charged; energies over four decades, 5 to 100 sigma apart. */
+/* Collisions of two random rigid bodies of Lennard-Jones sites: 3 to 12 sites of unit mass, sigma
+   and epsilon, half of the bodies charged; energies over four decades, 5 to 100 sigma apart. */
 
 #pragma once
 
@@ -47,11 +47,11 @@ inline Molecule random_molecule(Check::Numbers &numbers, double largest_charge)
   return molecule;
 }
 
-/// Number `which` of a sequence.
+/// Collision number `which` of a sequence.
 struct Collision {
   Molecule molecules[2];
   BodyState start[2] = {};
-  double time;    ///< when they have met and parted, or turned about each other for a while
+  double time;    ///< when the bodies have met and separated, or orbited each other for a while
   mutable long calls = 0;    ///< of the potential
 
   explicit Collision(int which)
@@ -78,7 +78,7 @@ struct Collision {
     time = distance / speed + std::min(distance / speed, 5.0);
   }
 
-  /// Of sites at rotation matrices of any quaternions; loads: of both, or null.
+  /// For sites at rotation matrices of quaternions of any length; loads: of both, or null.
   double potential(const BodyState *states, Load *loads) const
   {
     ++calls;
@@ -130,16 +130,16 @@ struct Collision {
   }
 };
 
-/// What became of a collision under a tolerance.
+/// Result of a collision under a tolerance.
 struct Outcome {
-  double error;    ///< of the energy, the largest one on the way
+  double error;    ///< of the energy, maximum over the trajectory
   double depth;    ///< largest potential, or kinetic energy at the start, whichever is larger
   double worst;    ///< error of a step, in units of eps
   long steps, evaluations, repeated;
   bool arrived;
 };
 
-/// most_steps: of a pair that goes on turning about each other.
+/// most_steps: for a pair that keeps orbiting.
 inline Outcome collide(const Collision &collision, Formulation formulation, double eps, bool energy,
                        long most_steps = 100000, bool repeats = true)
 {
@@ -156,7 +156,7 @@ inline Outcome collide(const Collision &collision, Formulation formulation, doub
     bodies.push_back(
         {collision.molecules[k].body, collision.molecules[k].reach, collision.start[k]});
 
-  // in free flight no site comes nearer to the other body than by a part of the distance
+  // in free flight no site approaches the other body by more than a part of the distance
 
   const auto farthest = [&](const vector<One> &ones) {
     double d[3], speed = 0.0;

@@ -1,5 +1,5 @@
-/* The host's part, for one body and a load that is a function of its state: start a history, then
-   predict - evaluate - correct.  LAMMPS takes this place in the fix. */
+/* The host for one body and a load that is a function of its state: starts a history, then
+   predicts, evaluates and corrects.  LAMMPS is the host of the fix. */
 
 #pragma once
 
@@ -15,7 +15,7 @@ namespace Drive {
 
 using namespace LAMMPS_NS::GearQuat;
 
-/// Load on a body at a state; norm2: what its quaternion's square is taken for (Scheme::norm2).
+/// Load on a body at a state; norm2: divisor for its quaternion (Scheme::norm2).
 using LoadOf = std::function<Load(const BodyState &state, double norm2)>;
 
 enum class Start { ZERO, FORCES, BOOTSTRAP };
@@ -54,7 +54,7 @@ constexpr int most(Formulation f)
   return f == FIRST ? FIRST_MOST : SECOND_MOST;
 }
 
-/// Every number of values of one formulation.
+/// Schemes with all numbers of values of one formulation.
 inline std::vector<Scheme> schemes_of(Formulation formulation, int passes = 1,
                                       bool compensate = false)
 {
@@ -77,7 +77,7 @@ inline Scheme with_velocity_c0(Scheme scheme)
   return scheme;
 }
 
-// The start as the host finds it (gear_quat_start.cpp).
+// the start, as in the host (gear_quat_start.cpp)
 
 /// The host of find_start(), for one body.
 struct StartHost {
@@ -113,7 +113,7 @@ struct StartHost {
   }
 };
 
-/// A series found by collocation, and what it took.
+/// A series found by collocation, and the effort.
 struct Found {
   TaylorSeries series;
   double spacing;
@@ -135,7 +135,7 @@ inline Found bootstrap(int values, const RigidBody &body, const BodyState &state
           host.evaluations};
 }
 
-/// The series after so many evaluations of every pair that rounding and truncation alone are left.
+/// The series after so many evaluations of every pair that only rounding and truncation remain.
 inline TaylorSeries settled_series(int values, const RigidBody &body, const BodyState &state,
                                    const LoadOf &load, double spacing)
 {
@@ -151,7 +151,7 @@ inline TaylorSeries settled_series(int values, const RigidBody &body, const Body
   return collocation.series(host.work);
 }
 
-/// A history of `scheme` at `state`.  The series is found at a step of `spacing`, whatever h is.
+/// A history of `scheme` at `state`.  The series is found with a step of `spacing`, for any h.
 inline std::vector<double> started(const Scheme &scheme, const RigidBody &body,
                                    const BodyState &state, const LoadOf &load, double h,
                                    Start start, double spacing)
@@ -169,7 +169,7 @@ inline std::vector<double> started(const Scheme &scheme, const RigidBody &body,
   return rows;
 }
 
-/// One body under way.
+/// One moving body.
 struct Motion {
   RigidBody body;
   Scheme scheme;
@@ -184,7 +184,7 @@ struct Motion {
       Motion(body, load, scheme, CorrectorCoefficients(scheme), h, std::move(history))
   {
   }
-  /// With other coefficients than those of the scheme.
+  /// With the given coefficients instead of the scheme's.
   Motion(const RigidBody &body, const LoadOf &load, const Scheme &scheme,
          const CorrectorCoefficients &c, double h, std::vector<double> history) :
       body(body),
@@ -220,7 +220,7 @@ struct Motion {
 
 }    // namespace Drive
 
-/// In the messages of tests.
+/// for the messages of tests
 namespace LAMMPS_NS::GearQuat {
 inline std::ostream &operator<<(std::ostream &out, const Scheme &scheme)
 {

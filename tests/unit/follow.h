@@ -1,5 +1,5 @@
-/* The host's part with a tolerance, for some bodies and loads that are functions of their states:
-   predict, evaluate, correct; a step that fails is undone, shortened and made again. */
+/* The host with a tolerance, for some bodies and loads that are functions of their states:
+   predicts, evaluates, corrects; a failed step is undone, shortened and repeated. */
 
 #pragma once
 
@@ -24,7 +24,7 @@ struct Follower {
     BodyState state = {};
     vector<double> rows = vector<double>(2 * MAX_SIZE, 0.0);
   };
-  /// Loads on all bodies at their states, quaternions of any length.
+  /// Loads on all bodies at their states, for quaternions of any length.
   using Loads = std::function<vector<Load>(const vector<One> &)>;
   /// The longest step that the motion allows.
   using Farthest = std::function<double(const vector<One> &)>;
@@ -39,8 +39,8 @@ struct Follower {
   double t = 0.0, h, largest = 0.0;    ///< error of a step, in units of eps
   Steady steady;
   long steps = 0, evaluations = 0, repeated = 0;
-  bool repeats = true;    ///< steps that fail
-  bool rounded = true;    ///< coordinates, whose rounding does not count as an error
+  bool repeats = true;    ///< failed steps
+  bool rounded = true;    ///< coordinates, whose rounding error is excluded
   Integrator integrator;
   VariableOrder order;
 
@@ -59,7 +59,7 @@ struct Follower {
     steady.repeat = Steady::FOR_LONG;
   }
 
-  /// Histories that know the present loads only, with the fewest values.
+  /// Histories from the present loads alone, with the fewest values.
   void begin_with_loads()
   {
     use(control.fewest);
@@ -122,7 +122,7 @@ struct Follower {
     return control.measured(all);
   }
 
-  /// A step that holds, if need be after some that fail.
+  /// An accepted step, possibly after failed tries.
   StepErrors step()
   {
     while (true) {
@@ -148,11 +148,11 @@ struct Follower {
     change(control.next(errors, h, scheme.values(), steady, farthest(bodies)));
   }
 
-  /// To the time `end` exactly; seen: called after every step.
+  /// Runs to the time `end` exactly; seen: called after every step.
   template <class Seen> void run(double end, Seen seen)
   {
     while (t < end) {
-      if (t + h > end) set_step(end - t);    // a step like any other, only shorter
+      if (t + h > end) set_step(end - t);    // an ordinary step, only shorter
       const StepErrors errors = step();
       seen();
       if (t < end) follow(errors);

@@ -1,4 +1,4 @@
-/* Bodies in a moving cell: `Host` takes the place of gear_quat_barostat and of the start. */
+/* Bodies in a moving cell: `Host` replaces gear_quat_barostat and the start. */
 
 #pragma once
 
@@ -40,7 +40,7 @@ struct Met {
 };
 using MetIn = std::function<Met(const vector<BodyState> &states, const Upper &matrix)>;
 
-/// What moves the cell (doc/theory.md, Eqs. P1 to P9), in the components that are on.
+/// The equations of motion of the cell (doc/theory.md, Eqs. P1 to P9), for the free components.
 struct Law {
   std::array<bool, Upper::SIZE> on = {true, true, true, false, false, false};
   bool alike = false;    ///< the diagonal has the mean of its right-hand sides
@@ -51,7 +51,7 @@ struct Law {
   double kt = 1.0, kt_rate = 0.0;
   int chain = 0, box_chain = 0;    ///< lengths; 0: none
   double freedoms = 1.0, period = 1.0, box_period = 1.0;
-  double turning = 0.0;    ///< freedoms of rotation, if it has a chain of its own
+  double turning = 0.0;    ///< degrees of freedom of rotation, if it has its own chain
 
   Upper pressures(double t) const { return pressure + pressure_rate.scaled(t); }
   double mass_at(double t) const { return mass * (1.0 + t * kt_rate / kt); }
@@ -95,7 +95,7 @@ struct Law {
 
 struct Host {
   vector<RigidBody> bodies;
-  vector<BodyState> scaled;    ///< what histories hold
+  vector<BodyState> scaled;    ///< scaled states in histories
   MetIn met_in;
   Law law;
   Scheme scheme;
@@ -112,7 +112,7 @@ struct Host {
   Upper matrix = Upper::one();
   Met met{};
   long steps = 0;
-  /// A mutant: all nodes of a start in the first cell.
+  /// A mutant: all nodes of a start use the first cell.
   bool frozen_nodes = false;
 
   double time() const { return steps * h; }
@@ -280,7 +280,7 @@ struct Host {
     return found;
   }
 
-  /// pairs 0: as many as the order needs.
+  /// pairs 0: as many as the order requires.
   void start(int pairs = 0)
   {
     Search search(*this);
@@ -362,7 +362,7 @@ struct Host {
                  law.heat_rate(time(), matrix, rate));
   }
 
-  /// The common motion of scaled centers: rounding, which an unlucky history lets grow.
+  /// Removes the common motion of scaled centers: it is rounding, which may grow in some histories.
   void rest()
   {
     const int n = scheme.values();
@@ -377,7 +377,7 @@ struct Host {
       }
   }
 
-  /// Calls what watches after each step.
+  /// Calls watch() after each step.
   template <class Watch> void run(double until, Watch watch, int pairs = 0)
   {
     start(pairs);

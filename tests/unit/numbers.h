@@ -1,4 +1,4 @@
-/* Random numbers of the tests, also for programs without GoogleTest. */
+/* Random numbers for the tests, also for programs without GoogleTest. */
 
 #pragma once
 

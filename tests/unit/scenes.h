@@ -1,4 +1,4 @@
-/* Motions whose end is known, and by how much a run of the kernel misses it. */
+/* Motions with a known end, and the error of a run of the kernel. */
 
 #pragma once
 
@@ -31,7 +31,7 @@ inline double error(const Scene &scene, const Scheme &scheme, double h, double s
   return scene.missed(motion.state());
 }
 
-/// spacing: of the nodes of the start; 0: that of each run.
+/// spacing: of the nodes of the start; 0: the spacing of each run.
 inline vector<double> errors(const Scene &scene, const Scheme &scheme, const vector<double> &h,
                              double spacing = 0.0, Start start = Start::BOOTSTRAP)
 {
@@ -48,7 +48,7 @@ inline vector<double> error_slopes(const Scene &scene, const Scheme &scheme,
   return Check::slopes(h, errors(scene, scheme, h, spacing, start));
 }
 
-/// Center of mass in the paper's cage, in extended precision, good to the last digit but one.
+/// Center of mass in the paper's cage, in extended precision, accurate to all but the last digit.
 struct CageReference {
   int test_case;
   bool consistent;
@@ -70,7 +70,7 @@ inline Scene cage(const CageScene &scene, const CageReference &reference = CAGE_
           }};
 }
 
-/// x'' = -strength x: cosine, sine, and both; what is known is that of strength 1.
+/// x'' = -strength x: cosine, sine, and both; the solution is known for strength 1.
 inline Scene oscillator(double time, double strength = 1.0, bool of_velocity = false)
 {
   Scene scene = {{2.5, {1.0, 1.0, 1.0}}, {}, {}, time, {}};

@@ -1,5 +1,6 @@
-/* gear_quat_any_norm.h: the equations hold for any |q|, to the order of the method; passes converge;
-   energy is kept better than with a projection; fast bodies move as with it. */
+/* gear_quat_any_norm.h: the equations are valid for any |q|, to the order of the method; passes
+   converge; energy is conserved better than with a projection; fast bodies move as with a
+   projection. */
 
 #include "gear_quat_limits.h"
 #include "scenes.h"
@@ -29,7 +30,7 @@ double top_error(const Scheme &scheme, double h)
   return error(free_top(), scheme, h, h);
 }
 
-/// The largest error of the energy of a free top, as a part of it.
+/// The largest relative error of the energy of a free top.
 double energy_error(const Scheme &scheme, double h, double time)
 {
   Motion motion(TOP, top_state(0.0), free_of_load, scheme, h, Start::BOOTSTRAP, h);
@@ -43,8 +44,8 @@ double energy_error(const Scheme &scheme, double h, double time)
   return worst;
 }
 
-/// Energies of a ball in springs, of its libration about z and of its center along y, which have the
-/// same frequency: their logarithmic changes in a step of z radians.
+/// Energies of a ball on springs: its libration about z and its center along y, which have the same
+/// frequency.  The logarithmic changes in a step of z radians.
 struct Losses {
   double rotation, center;
 };
@@ -72,7 +73,7 @@ Losses losses(const Scheme &scheme, double z)
             std::log(s.velocity[1] * s.velocity[1] + s.center[1] * s.center[1])};
   };
   constexpr int STEPS = 4000;
-  motion.steps(200);    // spurious roots fade
+  motion.steps(200);    // spurious roots decay
   const Losses before = logarithms();
   motion.steps(STEPS);
   const Losses after = logarithms();
@@ -81,7 +82,7 @@ Losses losses(const Scheme &scheme, double z)
 
 }    // namespace
 
-// --- which methods
+// --- the methods
 
 TEST(AnyNorm, IsForTunedOddNumbersOfTheSecondFormulation)
 {
@@ -121,7 +122,7 @@ TEST(AnyNorm, ElsewhereAutomaticMeansProjectionAndTwoPasses)
 
 TEST(AnyNorm, TheEquationIsThatOfAScaledQuaternion)
 {
-  // q = r(t) u(t) with a known unit u and r: the second derivative by differences
+  // q = r(t) u(t) with known r and unit vector u: the second derivative by differences
   const auto place = [](double t, double *q) {
     const double u[4] = {std::sin(0.3 * t), std::cos(0.7 * t), 0.4 + 0.2 * t, 0.9 - 0.1 * t * t};
     const double norm = std::sqrt(dot4(u, u)), r = 1.1 + 0.3 * t + 0.2 * t * t;
@@ -154,7 +155,7 @@ TEST(AnyNorm, TheEquationIsThatOfAScaledQuaternion)
   quaternion_acceleration(q, qdot, w, wdot, stiffness, 0.0, found);
   EXPECT_GT(Check::largest_difference(found, exact, 4), 1e-4);
 
-  // all of Eq. 6, and a mixture
+  // Eq. 6 alone, and a mixture
   double eq6[4], any[4];
   quaternion_acceleration(q, qdot, wdot, eq6);
   quaternion_acceleration(q, qdot, w, wdot, stiffness, 1.0, found);
@@ -166,7 +167,7 @@ TEST(AnyNorm, TheEquationIsThatOfAScaledQuaternion)
 
 TEST(AnyNorm, LengthsAreOfNoConsequence)
 {
-  // the same motion with q and all its derivatives longer by 2 %, which the spring takes back
+  // the same motion with q and all its derivatives longer by 2 %, which the spring reduces
   for (const int n : VALUES) {
     const Scheme scheme = tuned(n);
     const double h = n == 9 ? 0.1 : 0.05;
@@ -178,11 +179,11 @@ TEST(AnyNorm, LengthsAreOfNoConsequence)
       return Check::attitude_distance(motion.q(), top_state(24.0).q);
     };
     EXPECT_LT(turn(scheme), 5e-3) << n;
-    EXPECT_LT(turn(scheme), 0.05 * turn(projected(n))) << n;    // whose first steps turn faster
+    EXPECT_LT(turn(scheme), 0.05 * turn(projected(n))) << n;    // at first these turn faster
   }
 }
 
-// --- what it is worth
+// --- the benefit
 
 TEST(AnyNorm, HasItsOrder)
 {
@@ -227,7 +228,7 @@ TEST(AnyNorm, FiveValuesAreStableToTheLimitOfTheManual)
 
 TEST(AnyNorm, LibrationsLoseWhatCentersLose)
 {
-  // nearly all of it with seven values and a projection as well; not so with five
+  // with seven values, nearly the same with a projection; not with five
   for (const int n : {5, 7})
     for (const double z : {0.2, 0.35}) {
       const Losses any = losses(tuned(n), z), other = losses(projected(n), z);
@@ -269,7 +270,7 @@ TEST(AnyNorm, AGivenNumberOfPassesIsMade)
   calls = 0;
   AnyNorm::repeat(0.0, total, [&] {
     total[0] = std::pow(1e9, ++calls);
-  });    // without an end
+  });    // without convergence
   EXPECT_EQ(calls, 3);
   EXPECT_TRUE(AnyNorm(tuned(9)).converges(0.0));
   EXPECT_FALSE(AnyNorm(tuned(9)).converges(1.0));
@@ -344,7 +345,7 @@ TEST(AnyNorm, NoFewerBodiesAreStableThanWithProjection)
 
 TEST(AnyNorm, TheEnergyHasNoJumpWhereProjectionSetsIn)
 {
-  // a constant torque about the axis of an axially symmetric body makes it faster
+  // a constant torque about the axis of an axially symmetric body accelerates it
   const RigidBody body = {1.0, {1.0, 1.0, 1.7}};
   BodyState start = {};
   start.q[3] = 1.0;

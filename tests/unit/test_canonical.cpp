@@ -1,5 +1,6 @@
-/* Chains make canonical distributions: of a rotor with a harmonic potential, and of a body that a spring
-   and a field hold.  One variable alone does not: S. Nose, Prog. Theor. Phys. Suppl. 103, 1 (1991). */
+/* Chains generate canonical distributions: for a rotor with a harmonic potential, and for a body
+   held by a spring and a field.  A single variable does not: S. Nose, Prog.  Theor.  Phys. Suppl.
+   103, 1 (1991). */
 
 #include "thermostatted.h"
 
@@ -11,11 +12,12 @@ namespace {
 
 constexpr int SAMPLES = 10000;
 constexpr double KT = 1.0;
-/// What one in a hundred runs of all these tests falls below (C. E. Bonferroni, 1936).
+/// A probability below which one in a hundred runs of all these tests falls (C. E. Bonferroni,
+/// 1936).
 constexpr double RARE = 0.01 / 14;
 
-/// Kolmogorov's test: the probability that samples of this distribution are farther from it.
-/// cdf: of the distribution.  Asymptotic in the number of samples (A. N. Kolmogorov, 1933).
+/// Kolmogorov's test: the probability that samples of this distribution deviate more from it.  cdf:
+/// of the distribution.  Asymptotic in the number of samples (A. N. Kolmogorov, 1933).
 template <class Cdf> double probability(vector<double> samples, Cdf cdf)
 {
   std::sort(samples.begin(), samples.end());
@@ -72,7 +74,7 @@ Rotor rotor(Formulation formulation, int length)
   const auto load = [](const vector<BodyState> &s) {
     return vector<Load>{{{}, {0.0, 0.0, -STIFF * angle_about_z(s[0].q)}}};
   };
-  // narrow enough that the angle stays within half a turn
+  // so narrow that the angle stays within half a turn
   constexpr double COLD = 0.25;
   Host host{{{1.0, {MOMENT, MOMENT, MOMENT}}},
             {{{}, {0, 0, 0, 1}, {}, {0.0, 0.0, 0.5}}},
@@ -164,7 +166,8 @@ double correlation(const vector<double> &x)
   return product / square;
 }
 
-/// Samples that are independent and of this distribution.  what: of the line that shows the probability.
+/// True if samples are independent and have this distribution.  what: label of the printed
+/// probability.
 template <class Cdf>
 void expect_samples(const char *what, Formulation formulation, const vector<double> &samples, Cdf cdf)
 {
@@ -222,7 +225,7 @@ TEST(Canonical, ABodyOnSpringsInAField)
       return chi_square(x, 9);
     });
 
-    // and none of another temperature
+    // and they reject another temperature
     EXPECT_LT(probability(found.energy,
                           [](double x) {
                             return chi_square(x / 1.04, 9);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Formulation FORMULATIONS[] = {FIRST, SECOND};
 
-// --- springs between sites, and to the fixed point, as the tests of chains have
+// --- springs between sites, and to the fixed point, as in the tests of chains
 
 Met springs(const vector<BodyState> &states, const Upper &)
 {
@@ -141,7 +141,7 @@ void chain_rates(const Real *y, Real twice, Real g, Real kt, Real kt_rate, Real 
       0.5L * kt_rate / w * (g * y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
 }
 
-/// The equations of doc/theory.md as they stand there.
+/// The equations of doc/theory.md, literally.
 Vector flow(const Law &law, Real t, const Vector &y)
 {
   Vector rate = {};
@@ -227,7 +227,7 @@ Real conserved(const Law &law, Real t, const Vector &y)
 
 constexpr double TIME = 1.0;
 
-/// What the end of a run is judged by: places, axes, cell and its rate.
+/// The final quantities compared: positions, axes, cell and its rate.
 vector<double> end_of(const Law &law, int steps = 1000)
 {
   const Vector y = Thermostatted::runge_kutta(
@@ -284,7 +284,7 @@ Errors errors(const Scheme &scheme, const Law &law, double h, const vector<doubl
 
 TEST(Cell, AllEquationsConserveTheEnergyAndOthersDoNot)
 {
-  // dH'/dt along the flow, by differences along its direction
+  // dH'/dt along the flow, by differences
   for (const Mode mode : {ISO, UNEQUAL, TRICLINIC})
     for (const bool chains : {false, true}) {
       const Law right = law_of(mode, chains);
@@ -332,15 +332,15 @@ TEST(Cell, OrdersOfPositionBoxAndEnergyAreThoseOfTheScheme)
       for (const Formulation formulation : FORMULATIONS)
         for (int n = 5; n <= (formulation == FIRST ? 8 : 9); ++n)
           for (const bool tuned : {false, true}) {
-            // of tuned coefficients those that the project has
+            // of tuned coefficients only the existing ones
             if (tuned && n % 2 == (formulation == FIRST)) continue;
             const Scheme scheme = with(formulation, n, tuned);
-            // longer steps where rounding would be met, one halving more where signs differ
+            // longer steps where rounding would dominate, one more halving where signs differ
             const double wide = n < 7 ? 0.05 : 0.1, narrow = n < 9 ? 0.0125 : 0.025;
             const Errors first = errors(scheme, law, wide, exact);
             const Errors last = errors(scheme, law, narrow, exact);
             const double halvings = std::log2(wide / narrow);
-            // forces that depend on velocities leave n - 1
+            // with forces that depend on velocities the order is n - 1
             EXPECT_GT(std::log2(first.end / last.end) / halvings, n - 1.5)
                 << scheme << mode << chains;
             EXPECT_GT(std::log2(first.cell / last.cell) / halvings, n - 1.8)

@@ -1,6 +1,6 @@
-/* The ensembles that moving cells sample, where their laws are known: rotors whose forces depend on
-   scaled coordinates, and a cell with an elastic energy.  Energy is conserved with any weights b;
-   these tests are those that wrong ones fail. */
+/* The ensembles sampled by moving cells, where their distributions are known: rotors whose forces
+   depend on scaled coordinates, and a cell with an elastic energy.  Energy is conserved with any
+   weights b; these tests detect wrong weights. */
 
 #include "in_a_cell.h"
 
@@ -11,7 +11,7 @@ namespace {
 constexpr int ROTORS = 4;
 constexpr double KT = 1.0, PRESSURE = 1.0;
 
-/// Means over blocks of a run, and their standard error.
+/// Block averages of a run, and their standard error.
 class Mean {
  public:
   explicit Mean(long samples) : block(std::max(1L, samples / BLOCKS)) {}
@@ -42,7 +42,7 @@ class Mean {
   vector<double> blocks;
 };
 
-/// Waves of scaled coordinates, and how much they turn the third axes of bodies.
+/// Waves of scaled coordinates, and their coupling to the third axes of bodies.
 constexpr double WAVE = 1.0, TURN = 0.8;
 
 Load scaled_force(const Upper &matrix, const double *along, const double *axis, const double *field)
@@ -110,7 +110,7 @@ Met in_pairs(const vector<BodyState> &states, const Upper &matrix)
   return met;
 }
 
-/// Elastic energy of the cell, K/4 |M^T M - 1|^2, whatever its orientation.
+/// Elastic energy of the cell, K/4 |M^T M - 1|^2, independent of its orientation.
 constexpr double STIFFNESS = 60.0;
 Met elastic(const vector<BodyState> &states, const Upper &m)
 {
@@ -182,7 +182,7 @@ Host rotors(const MetIn &met_in, double freedoms, bool conserved, bool flexible,
 struct Volumes {
   Mean mean, variance, box;
 };
-/// Of a run of so many thousand steps; exact: mean volume.
+/// Of a run of this many thousand steps; exact: mean volume.
 Volumes volumes(double freedoms, bool conserved, double exact, long thousands)
 {
   Host host = rotors(conserved ? MetIn(in_pairs) : MetIn(in_a_field), freedoms, conserved, false,
@@ -220,7 +220,7 @@ TEST(CellEnsemble, VolumeOfRotorsWithTheirMomentumConserved)
   expect(right.mean, 4.0, 0.02);
   expect(right.variance, 4.0, 0.15);
   expect(right.box, 1.0, 0.01);
-  // all momenta are counted
+  // with all momenta counted
   const Volumes wrong = volumes(3.0 * ROTORS, true, 4.0, 100);
   refuse(wrong.mean, 4.0);
   expect(wrong.mean, 3.75, 0.03);
@@ -232,7 +232,7 @@ TEST(CellEnsemble, VolumeOfRotorsInAField)
   expect(right.mean, 5.0, 0.02);
   expect(right.variance, 5.0, 0.15);
   expect(right.box, 1.0, 0.01);
-  // freedoms of rotation are counted, and no term at all
+  // with degrees of freedom of rotation counted, and without the term
   const Volumes all = volumes(6.0 * ROTORS, false, 5.0, 100),
                 none = volumes(HUGE_VAL, false, 5.0, 100);
   refuse(all.mean, 5.0);

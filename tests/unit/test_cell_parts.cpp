@@ -68,7 +68,7 @@ TEST(CellFriction, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
   const double b[3] = {0.5, 0.1, -0.2}, mass = 1.7, share = 0.4, unit = 0.4 * mass;
   CellFriction friction(alpha, some_matrix(), some_rate(), b);
   const double predicted[3] = {0.9, -0.6, 0.35}, met[3] = {0.3, 0.8, -1.1};
-  // the common motion changes by share * unforeseen per mass, whatever the residual
+  // the common motion changes by share * unforeseen per mass, for any residual
   double momentum[3], residual[3] = {}, solved[3];
   CellFriction then = friction;
   for (int round = 0; round < 200; ++round) {
@@ -77,7 +77,7 @@ TEST(CellFriction, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
       then.common[i] = friction.common[i] + share * friction.unforeseen[i] * unit / mass;
     }
     for (int i = 0; i < 3; ++i) {
-      // the drag of the common motion has no part in what is solved for
+      // the drag of the common motion is not part of the implicit equation
       const double drag = mass *
           (friction.drag.row_times(i, then.common) - friction.drag.row_times(i, friction.common));
       residual[i] = then.force(i, met[i], momentum, mass) + drag;
@@ -94,7 +94,7 @@ TEST(CellFriction, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
 
 TEST(CellFriction, ACommonMotionIsConstantInSpace)
 {
-  // V = M c with a constant V: c' = -M^-1 G M c, whatever friction and b are
+  // V = M c with a constant V: c' = -M^-1 G M c, for any friction and b
   Friction alpha = Multipliers{0.8, 0.5};
   const double velocity[3] = {0.4, -0.7, 0.9}, b[3] = {0.5, 0.1, -0.2}, mass = 1.7;
   std::copy_n(velocity, 3, alpha.common);
@@ -114,7 +114,7 @@ TEST(CellFriction, ACommonMotionIsConstantInSpace)
 
 TEST(CellHistory, FollowsAFlowWithAConstantRate)
 {
-  // M = exp(G t) with a nilpotent and a diagonal part; friction is solved for
+  // M = exp(G t) with a nilpotent and a diagonal part; friction is implicit
   for (const double friction : {0.0, 0.7, 20.0}) {
     vector<double> off;
     for (const double h : {0.02, 0.01}) {

@@ -1,5 +1,5 @@
-/* Nose-Hoover chains: energy balance, response to the target beside a reference solution, orders of
-   the conserved quantity, other steps, and stiff chains far from the target. */
+/* Nose-Hoover chains: energy balance, response to the target compared with a reference solution,
+   orders of the conserved quantity, step changes, and stiff chains far from the target. */
 
 #include "thermostatted.h"
 #include "tied_bodies.h"
@@ -61,7 +61,8 @@ constexpr Formulation FORMULATIONS[] = {FIRST, SECOND};
 
 TEST(Chain, WhatItTakesIsWhatItsFrictionDoes)
 {
-  // E(1) - E(0) = integral of 2K xi_1, for every length, with a target that moves, forwards and back
+  // E(1) - E(0) = integral of 2K xi_1, for every length, with a target that moves, forwards and
+  // backwards
   for (int length = 1; length <= Chain::LONGEST; ++length)
     for (const double h : {0.3, -0.3}) {
       Check::Numbers numbers(length);
@@ -131,7 +132,7 @@ TEST(Chain, FollowsAKineticEnergyAsAReferenceSolution)
       for (int k = -pairs; k <= pairs; ++k) nodes.push_back(twice(k * h));
       chain.seed(nodes.data() + pairs, pairs, h, n);
       for (long k = 1; k <= std::lround(until / h); ++k) {
-        // a pass with another kinetic energy leaves nothing behind
+        // a pass with another kinetic energy has no lasting effect
         ASSERT_TRUE(chain.advance(target((k - 1) * h), 1.01 * twice(k * h), h, n));
         ASSERT_TRUE(chain.advance(target((k - 1) * h), twice(k * h), h, n));
         chain.conclude();
@@ -144,7 +145,7 @@ TEST(Chain, FollowsAKineticEnergyAsAReferenceSolution)
     EXPECT_GT(slopes(steps, errors)[n < 8 ? 2 : 1], n - 0.4) << n;
     EXPECT_LT(errors[2], 2.0e-4) << n;
   }
-  // a damping time 1 % off would be seen
+  // a damping time 1 % off would be detected
   EXPECT_GT(std::fabs(double(exact[0] - other[0])), 2.0e-3);
 }
 
@@ -156,7 +157,7 @@ TEST(Chain, ConservedQuantityToTheOrderOfTheMethod)
         const Scheme scheme = with(formulation, values, tuned);
         const TargetOf targets[] = {constant_target(0.5, 12.0, 0.7),
                                     ramp(0.4, 0.8, 4.0, 12.0, 0.7)};
-        // one halving of the step, or two where the first one is not small enough
+        // one halving of the step, or two if the first error is too large
         const auto order = [&](int length, const TargetOf &target, Change &fine) {
           fine = change(scheme, length, 0.02, target);
           return std::max(std::log2(change(scheme, length, 0.04, target).all / fine.all),
@@ -264,7 +265,7 @@ TEST(Chain, OtherDegreesOfFreedomLeaveItsEnergyAndItsFriction)
   EXPECT_DOUBLE_EQ(host.chain.energy(more), was.energy(before));
   EXPECT_EQ(host.chain.friction(), was.friction());
   EXPECT_GT(std::fabs(was.energy(more) - was.energy(before)), 1.0e-2);
-  // 2K per degree of freedom is as before, and so is what follows
+  // 2K per degree of freedom is as before, and so is the motion
   Chain still = was;
   ASSERT_TRUE(still.advance(before, 4.0, 0.02, 8));
   ASSERT_TRUE(host.chain.advance(more, 6.0, 0.02, 8));
@@ -304,7 +305,7 @@ Host gas(const Scheme &scheme, double freedoms, double kt, double target, double
               h};
 }
 
-/// Change of the conserved quantity in a gas, as a part of g kT.
+/// Change of the conserved quantity in a gas, in units of g kT.
 double gas_change(const Scheme &scheme, double freedoms, double kt, double target, double damp,
                   int length, double h, double time)
 {

@@ -1,4 +1,4 @@
-/* gear_quat_choice.h: the fast edge of known motions, and the number of values for each scene. */
+/* gear_quat_choice.h: the fast edge of known motions, and the number of values for each case. */
 
 #include "gear_quat_choice.h"
 #include "scenes.h"
@@ -17,7 +17,8 @@ Scheme automatic(Formulation formulation, bool is_tuned = true)
   return scheme;
 }
 
-/// A body in a spring, which vibrates with this angular frequency about any axis and direction.
+/// A body on a spring that vibrates with this angular frequency in any direction and about any
+/// axis.
 constexpr double OMEGA = 3.0;
 const RigidBody BALL = {2.0, {0.7, 0.7, 0.7}};
 
@@ -83,7 +84,7 @@ TEST(FastEdge, OfAFreeRotationIsThatOfItsQuaternion)
 
 TEST(FastEdge, OfManyIsThatOfTheFastOnes)
 {
-  // as much energy in a slow vibration as in a fast one
+  // equal energies in a slow and a fast vibration
   MotionSums both;
   for (const double omega : {1.0, 3.0}) {
     TaylorSeries series = {};
@@ -163,7 +164,7 @@ TEST(Choice, WithRandomForcesAndCollisionsNothingHeats)
   noisy.noise = Noise::RANDOM;
   EXPECT_EQ(noisy.choose(automatic(SECOND)).scheme.values(), 4);
   EXPECT_TRUE(noisy.choose(automatic(SECOND)).scheme.tuned);
-  // a stated corrector stays, whatever it does
+  // a given corrector is kept in any case
   noisy.noise = Noise::COLLISIONS;
   noisy.may_be_gear = false;
   EXPECT_TRUE(noisy.choose(automatic(SECOND)).scheme.tuned);
@@ -186,18 +187,18 @@ TEST(Choice, FrictionIsFollowed)
           EXPECT_GE(damped.largest_damping(wanted), 0.25);
           if (part == 0.001 && noise == Noise::NONE) EXPECT_EQ(chosen.values(), wanted.values());
         }
-  // too strong for all of them: what is least off, and it is told
+  // too strong for all of them: the most accurate one, with a warning
   Choice strong = scene(0.0);
   strong.damping = 0.7;
   EXPECT_TRUE(strong.too_damped(strong.choose(automatic(SECOND)).scheme));
   EXPECT_FALSE(strong.choose(automatic(SECOND)).scheme.tuned);
-  // a present choice stays a little longer
+  // a present choice has a hysteresis
   Choice close = scene(0.0);
   while (friction_error(automatic(SECOND), close.damping) <= Choice::LARGEST_ERROR)
     close.damping += 0.0005;
   EXPECT_NE(close.choose(automatic(SECOND)).scheme.values(), 9);
   EXPECT_EQ(close.choose(automatic(SECOND), 9).scheme.values(), 9);
-  // of a thermostat: the first number that follows it
+  // with a thermostat: the first number that follows it
   for (const double edge : {0.0, 0.5})
     for (const double friction : {0.0, 0.1, 0.2, 0.4}) {
       ChoiceOfValues hot = scene(edge);
@@ -230,11 +231,11 @@ TEST(Choice, LongStepsAreTold)
   EXPECT_DOUBLE_EQ(both.advised_part(), 0.5);
 }
 
-// --- is it right?
+// --- is it the better choice?
 
 TEST(Choice, ConservesTheEnergyOfAVibrationAtBothSidesOfTheEdge)
 {
-  // energy that a harmonic motion loses in 20 000 steps, chosen beside the other number
+  // energy lost by a harmonic motion in 20 000 steps, compared with the other number
   const auto drift = [](int values, double z) {
     Scheme scheme = automatic(SECOND);
     scheme.rows = values;

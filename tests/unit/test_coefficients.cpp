@@ -1,7 +1,7 @@
 /* gear_quat_coefficients.h: every entry as an exact fraction, derived again, compared with the
-   printed tables, and judged by what the corrector must do.  A slope would not notice an entry that
-   is wrong by 1 %; these do.  The derivation and the criteria are judged too, for more rows than the
-   kernel uses. */
+   printed tables, and tested with the conditions for a corrector.  Unlike a slope, these tests
+   detect an entry that is wrong by 1 %.  The derivation and the conditions are tested too, for more
+   rows than the kernel uses. */
 
 #include "gear_quat_coefficients.h"
 #include "oracles/gear_coefficients.h"
@@ -28,8 +28,8 @@ Exact exact(const Fractions &table)
   return c;
 }
 
-/// The coefficients of the kernel, the derivation of the oracle, and what a corrector of this kind
-/// must do.
+/// The coefficients of the kernel, the derivation of the oracle, and the conditions for this kind
+/// of corrector.
 struct FirstOrder {
   static constexpr int FEWEST = FIRST_FEWEST, MOST = FIRST_MOST;
   static Exact kernel(int n) { return exact(first_order_coefficients(n)); }
@@ -67,7 +67,7 @@ TYPED_TEST(Coefficients, DoWhatTheCorrectorMust)
   for (int n = TypeParam::FEWEST; n <= TypeParam::MOST; ++n) {
     const Exact good = TypeParam::kernel(n);
     ASSERT_TRUE(TypeParam::judge(good)) << n;
-    // a wrong entry is refuted modulo a prime, where fractions do not grow too long
+    // a wrong entry is rejected modulo a prime, where fractions do not grow
     const Row<Modular> same(good.begin(), good.end());
     ASSERT_TRUE(TypeParam::judge(same)) << n;
     for (int j = 0; j < n; ++j)
@@ -129,7 +129,7 @@ TEST(ErrorWeights, AreThoseOfTheDerivationAndDifferencesOfNeighboringC0)
     EXPECT_EQ(exact(second_order_error_weight(n)), second_order_local_error(n)) << n;
   for (int n = 3; n <= 12; ++n)
     EXPECT_EQ(first_order_error(n), first_order(n - 1)[0] - first_order(n)[0]) << n;
-  EXPECT_EQ(first_order_error(4), R(5, 12) - R(3, 8));    // of the printed table
+  EXPECT_EQ(first_order_error(4), R(5, 12) - R(3, 8));    // from the printed table
   EXPECT_EQ(first_order_error(5), R(3, 8) - R(251, 720));
   EXPECT_EQ(second_order_local_error(5), R(2) * (R(3, 8) - R(251, 720)));
 }
@@ -140,7 +140,7 @@ TEST(Criteria, TellTheKindsApart)
     EXPECT_FALSE(is_velocity_corrector(SecondOrderPosition::derived(n))) << n;
     EXPECT_FALSE(is_position_corrector(SecondOrderVelocity::derived(n))) << n;
   }
-  // Adams-Moulton with as many values as its order is another method, and refused
+  // Adams-Moulton with as many values as its order is another method, and is rejected
   EXPECT_FALSE(is_first_order_corrector(Exact{{3, 8}, 1, {11, 12}, {1, 3}, {1, 24}}));
 }
 

@@ -1,5 +1,5 @@
-/* Collisions out of free flight under a tolerance: none is lost, whatever it is, and the error of the
-   energy is what was asked for. */
+/* Collisions from free flight under a tolerance: none becomes unstable, and the error of the energy
+   is within the tolerance. */
 
 #include "checks.h"
 #include "collisions.h"
@@ -10,14 +10,14 @@ using namespace Drive;
 
 namespace {
 
-/// The environment may ask for more: GEARQUAT_COLLISIONS=10000 takes half an hour.
+/// The environment may request more: GEARQUAT_COLLISIONS=10000 takes half an hour.
 int number_of_collisions()
 {
   const char *asked = std::getenv("GEARQUAT_COLLISIONS");
   return asked ? std::atoi(asked) : 80;
 }
 
-/// Every eps has its own collisions.
+/// Each eps has its own collisions.
 void expect_all(Formulation formulation, bool energy, double most_for_eps)
 {
   const double eps[] = {1e-6, 1e-8, 1e-10, 1e-12};

@@ -1,5 +1,5 @@
-/* Compensated histories: a row stands for row + carry.  Judged in 113 bits, and by what is left
-   after a million small steps, in both formulations. */
+/* Compensated histories: the value of a row is row + carry.  Compared with 113 bits, and by the
+   error after a million small steps, in both formulations. */
 
 #include "scenes.h"
 
@@ -16,8 +16,8 @@ double magnitude(Quad x)
   return std::fabs(double(x));
 }
 
-/// n rows of one component, each `ratio` times the one before, and a carry of a part of the last
-/// digit behind them for each of the first rows.
+/// n rows of one component, each `ratio` times the previous one, followed by a carry for each of
+/// the first rows, a part of the last digit.
 template <int CARRIES> vector<double> some_rows(int n, double ratio)
 {
   Check::Numbers numbers(17 + n);
@@ -34,8 +34,8 @@ template <int CARRIES> vector<Quad> exact(const vector<double> &rows, int n)
   return sum;
 }
 
-/// Largest error of the first rows after `change`, against the same in 113 bits, in half units of
-/// the last digit of the row above (what a carry may lose), and relative to the rows themselves.
+/// Largest error of the first rows after `change`, compared with 113 bits, in half units of the
+/// last digit of the row above (the loss allowed for a carry), and relative to the rows themselves.
 struct Lost {
   double of_upper, of_row;
 };
@@ -69,7 +69,7 @@ template <int CARRIES> void expect_predict_to_keep_digits()
       return lost<CARRIES>(rows, truth, n);
     };
     EXPECT_LT(after(start).of_upper, 4.0) << n;
-    EXPECT_LT(after(start).of_row, 1e-4) << n;    // of what a sum in double may lose
+    EXPECT_LT(after(start).of_row, 1e-4) << n;    // of the loss allowed for a sum in double
     for (int j = 0; j < CARRIES; ++j) {           // 1 % of a carry, or 1 % of a row
       vector<double> bad = start;
       bad[n + j] *= 1.01;
@@ -113,7 +113,7 @@ TEST(Compensated, CorrectionLosesNoMoreThanTheLastDigitOfTheIncrement)
     for (int j = 0; j < n; ++j) {
       const double way = c[j] * residual,
                    e = magnitude(after[j] - before[j] - Quad(c[j]) * residual);
-      // a carry takes part in the sum, which rounds away a part in 1e16 of both
+      // a carry is part of the sum, which loses a part in 1e16 of both by rounding
       if (j < 2 && !(e <= 2 * HALF_ULP * way)) return false;
       if (j >= 2 && !(e <= HALF_ULP * (std::fabs(start[j]) + way) * 1.01)) return false;
     }
@@ -124,7 +124,7 @@ TEST(Compensated, CorrectionLosesNoMoreThanTheLastDigitOfTheIncrement)
 
 TEST(Compensated, SumAndCarryAreOneNumberBrokenAtTheLastDigit)
 {
-  // after any addition the carry is below half of the last digit: nothing is left to move over
+  // after any addition the carry is below half of the last digit: nothing remains to be transferred
   vector<double> rows = some_rows<2>(6, 1e-3);
   for (int k = 0; k < 1000; ++k) Nordsieck<1, 2>::predict(rows.data(), 6);
   for (int j = 0; j < 2; ++j) EXPECT_EQ(rows[j] + rows[6 + j], rows[j]);
@@ -144,7 +144,7 @@ TEST(Compensated, AddTouchesItsComponentsOnly)
 
 TEST(Compensated, RescalingKeepsRowAndCarry)
 {
-  // row 1 is the only scaled row with a carry; factors that are no powers of two
+  // row 1 is the only scaled row with a carry; factors that are not powers of two
   const int n = 5;
   for (double ratio : {0.3, -1.0, 1.7, 0.001}) {
     const vector<double> start = some_rows<2>(n, 0.5);
@@ -187,11 +187,11 @@ TEST(Compensated, MillionStepsOfFreeFlight)
     for (bool compensate : {false, true}) {
       Motion motion(body, start, free_of_load, scheme_of(formulation, 0, 1, compensate), h,
                     Start::FORCES, h);
-      // the way of one step as the start has rounded it: first p/m is one, second row 1
+      // the displacement in one step as rounded by the start: first p/m is one, second row 1
       const Quad step = motion.rows[motion.scheme.width()], end = motion.rows[0] + n * step;
       motion.steps(n);
       error[compensate] = magnitude(motion.rows[0] - end);
-      EXPECT_GT(magnitude(0.01 * n * step), 0.5);    // 1 % of the way
+      EXPECT_GT(magnitude(0.01 * n * step), 0.5);    // 1 % of the displacement
     }
     EXPECT_LE(error[1], 1000.1 * HALF_ULP * 1.1);    // the position's own last digit
     EXPECT_GT(error[0], 1e-11);
@@ -207,7 +207,7 @@ TEST(Compensated, ManyStepsOfAnOscillatorAndOfTheFreeTop)
     EXPECT_LT(swings, 1e-13);
     EXPECT_GT(error(oscillator(1000000 * h), plain, h, 0.0625), 5 * swings);
     const double spins = error(free_top(), kept, 24.0 / 200000, 0.06);
-    EXPECT_LT(spins, 6e-15);    // of the matrix: the quaternion's is half of it
+    EXPECT_LT(spins, 6e-15);    // of the matrix: twice the quaternion's
     EXPECT_GT(error(free_top(), plain, 24.0 / 200000, 0.06), 5 * spins);
   }
   EXPECT_GT(error(oscillator(1000000 * h, 1.01), scheme_of(SECOND, 0, 1, true), h, 0.0625), 0.1);

@@ -1,4 +1,4 @@
-/* What classes of LAMMPS declare of themselves, where they have the members, and where they do not. */
+/* Declarations in classes of LAMMPS that have the members, and in classes that do not. */
 
 #include "checks.h"
 
@@ -15,7 +15,7 @@ struct NewPair {
   int repeatable = UNDECLARED, no_net_force = UNDECLARED;
 };
 class ClosedPair {
-  int repeatable = 1;    // not for others
+  int repeatable = 1;    // not for other classes
 
  public:
   int no_net_force = 1;

@@ -1,6 +1,6 @@
-/* Correction::position_error and angle_error: what they are computed from, their units, the power of
-   the step, and how they compare with the true local error of a step, that is the distance from
-   where the exact motion leads from the state before it. */
+/* Correction::position_error and angle_error: their origin, their units, the power of the step, and
+   a comparison with the true local error of a step, that is, the distance from the exact solution
+   through the previous state. */
 
 #include "oracles/exact_flow.h"
 #include "oracles/gear_coefficients.h"
@@ -21,7 +21,7 @@ Errors run(const RigidBody &body, const BodyState &start, const LoadOf &load, co
 {
   const Oracle::ExactFlow flow(body, load);
   Motion motion(body, start, load, scheme, h, Start::BOOTSTRAP, std::min(h, 0.1));
-  motion.steps(skip);    // until the higher rows have forgotten the start
+  motion.steps(skip);    // until the effect of the start on the higher rows has decayed
   Errors sum = {};
   for (int n = 0; n < steps; ++n) {
     const BodyState before = motion.state(), exact = flow(before, h);
@@ -33,20 +33,20 @@ Errors run(const RigidBody &body, const BodyState &start, const LoadOf &load, co
     sum.position += estimate.position_error() * estimate.position_error() / steps;
     sum.angle += estimate.angle_error() * estimate.angle_error() / steps;
     sum.true_position += dot3(dx, dx) / steps;
-    sum.true_angle += 4.0 * dot4(dq, dq) / steps;    // a turn by an angle moves q by half of it
+    sum.true_angle += 4.0 * dot4(dq, dq) / steps;    // a rotation by an angle moves q by half of it
   }
   for (double *x : {&sum.position, &sum.angle, &sum.true_position, &sum.true_angle})
     *x = std::sqrt(*x);
   return sum;
 }
 
-/// The swinging, spinning top: x'' = -x, |omega| = 1.2.
+/// The oscillating, spinning top: x'' = -x, |omega| = 1.2.
 Errors top_run(const Scheme &scheme, double h)
 {
   return run(TOP, top_state(0.0), swing, scheme, h, 30, 60);
 }
 
-/// The weight as the oracle has it.
+/// The weight from the oracle.
 double weight(const Scheme &scheme)
 {
   const int n = scheme.values();
@@ -54,8 +54,8 @@ double weight(const Scheme &scheme)
       .value();
 }
 
-/// Estimate over true error as h goes to nothing: of the second formulation a number, of the first
-/// this over the h of d/dt, for its estimate is of one order less than its error.
+/// Limit of estimate/true error for small h: for the second formulation a number; for the first,
+/// whose estimate is one order less than its error, this number divided by h d/dt.
 double limit(const Scheme &scheme)
 {
   const int n = scheme.values();
@@ -66,11 +66,11 @@ double limit(const Scheme &scheme)
 
 }    // namespace
 
-// --- what it is
+// --- definition
 
 TEST(ErrorEstimate, IsTheWeightTimesTheResiduals)
 {
-  // c = 1 in the row of the equation: by how much that row changes is the sum of the residuals
+  // c = 1 in the row of the equation, so the change of this row is the sum of the residuals
   for (int passes : {1, 3})
     for (Scheme scheme : every_scheme(passes, true)) {
       scheme.projection = Projection::NO;
@@ -152,11 +152,11 @@ TEST(ErrorEstimate, FallsWithThePowerN)
   }
 }
 
-// --- and what it is worth
+// --- accuracy
 
 TEST(ErrorEstimate, SecondFormulationAgainstTheTrueLocalError)
 {
-  // the true one, as steps go to nothing
+  // of the true error, in the limit of small steps
   for (const Scheme &scheme : schemes_of(SECOND, 2, true)) {
     const double h = scheme.values() > 10 ? 0.12 : 0.1;
     const Errors e = top_run(scheme, h), f = top_run(scheme, 0.75 * h);
@@ -172,7 +172,7 @@ TEST(ErrorEstimate, SecondFormulationAgainstTheTrueLocalError)
 
 TEST(ErrorEstimate, FirstFormulationAgainstTheTrueLocalError)
 {
-  // too large by a factor that grows as 1/h: the estimate is that of one order less
+  // too large by a factor that grows as 1/h: the estimate has one order less
   for (const Scheme &scheme : schemes_of(FIRST, 2, true)) {
     const double h = scheme.values() > 6 ? 0.08 : 0.04;
     const Errors e = top_run(scheme, h), f = top_run(scheme, h / 2);

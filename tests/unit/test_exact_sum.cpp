@@ -20,7 +20,7 @@ double sum(const vector<double> &terms, double scale, int parts = 1)
   return all.value(scale);
 }
 
-/// Terms of very different sizes, as kinetic energies.
+/// Terms of very different sizes, like kinetic energies.
 vector<double> energies(int n)
 {
   Check::Numbers numbers(7);
@@ -39,7 +39,7 @@ TEST(ExactSum, NeitherOrderNorPartsMatter)
   for (const double one : terms) plain += one;
   std::reverse(terms.begin(), terms.end());
   for (const double one : terms) reversed += one;
-  EXPECT_NE(plain, reversed);    // as plain sums do
+  EXPECT_NE(plain, reversed);    // plain sums do depend on the order
   for (const int parts : {1, 2, 4, 7}) EXPECT_EQ(sum(terms, scale, parts), first);
 }
 
@@ -54,7 +54,7 @@ TEST(ExactSum, AsExactAsADouble)
       exact += one;
       total += one;
     }
-    for (const double of : {0.01, 1.0, 100.0}) {    // the scale is no more than a size
+    for (const double of : {0.01, 1.0, 100.0}) {    // the scale is only a size
       const double found = sum(terms, ExactSum::scale_of(of * total));
       EXPECT_LT(std::fabs(double((found - exact) / exact)), 2.5e-16);
     }

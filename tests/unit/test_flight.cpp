@@ -1,4 +1,5 @@
-/* gear_quat_limits.h: what a flight on trial loses is what a long one loses, and little more. */
+/* gear_quat_limits.h: rotations that are unstable in the trial are unstable in long runs, and vice
+   versa. */
 
 #include "drive.h"
 #include "gear_quat_limits.h"
@@ -16,7 +17,7 @@ BodyState spinning(double omega)
   return {{0, 0, 0}, {0, 0, 0, 1}, {0.1, 0, 0}, {0.0, 0.002, omega}};
 }
 
-/// Radians in a step of the slowest spin that is lost, to 1 %.
+/// Slowest unstable rotation, in radians per step, to 1 %.
 double limit(const Scheme &scheme, double h)
 {
   double slow = 0.0, fast = 4.0;
@@ -37,7 +38,7 @@ TEST(Flight, MoreValuesFollowSlowerSpins)
       if (scheme.values() < 5) continue;
       const double now = limit(scheme, 1.0);
       EXPECT_LT(now, 1.02 * last) << scheme;
-      EXPECT_GT(now, FLIGHT_SLOW) << scheme;    // what is not flown is never lost
+      EXPECT_GT(now, FLIGHT_SLOW) << scheme;    // slower rotations are stable without a trial
       EXPECT_NEAR(limit(scheme, -0.5), now, 0.02 * now);
       last = now;
     }
@@ -60,7 +61,7 @@ TEST(Flight, TheLongestStepIsOneThatIsFollowed)
     for (const double omega : {0.6, 2.7, 100.0}) {
       const BodyState state = spinning(omega);
       const double step = longest_step(scheme, CARBON_DIOXIDE, state, 1.0);
-      // what goes astray does so slowly at the limit: tuned, 9 values, 0.45 radians in a step, after 302
+      // at the limit the instability is slow: tuned, 9 values, 0.45 radians in a step, after 302
       EXPECT_TRUE(survives_flight(scheme, CARBON_DIOXIDE, state, step, 2000)) << scheme << omega;
       EXPECT_EQ(survives_flight(scheme, CARBON_DIOXIDE, state, 1.0), step == 1.0)
           << scheme << omega;

@@ -1,5 +1,5 @@
-/* The strongest friction that a method follows, beside bodies under a constant friction, and the
-   strongest that a chain makes. */
+/* The strongest friction that a method follows, compared with bodies under a constant friction, and
+   the strongest friction of a chain. */
 
 #include "thermostatted.h"
 
@@ -9,8 +9,8 @@ using namespace Thermostatted;
 
 namespace {
 
-/// The speed and the spin of a free body after so many steps of 1 under a constant friction, as
-/// parts of those at the start; both have to fade.
+/// The speed and the angular velocity of a free body after this many steps of 1 under a constant
+/// friction, relative to the start; both have to decay.
 double remains(const Scheme &scheme, double friction)
 {
   const RigidBody body = {1.3, {0.7, 0.7, 0.7}};
@@ -58,7 +58,7 @@ TEST(FrictionLimit, IsWhereAFreeBodyBecomesUnstable)
 
 TEST(Friction, ABoundAndATrialHoldForAGas)
 {
-  // a chain of one variable has a first integral; longer ones and other starts stay below it
+  // a chain of one variable has a first integral; longer chains and other starts stay below it
   const double g = 3000.0, kt = 0.7;
   for (const double part : {0.01, 0.3, 4.0, 40.0})
     for (const double damp : {12.0, 150.0})

@@ -1,6 +1,6 @@
-/* gear_quat_integrator.h along motions that are known exactly: in the paper's cage, of the free top
-   down to rounding, of a point, and back in time.  Orders are those of test_orders.cpp, single steps
-   are compared in test_paper_step.cpp. */
+/* gear_quat_integrator.h along known motions: in the paper's cage, of the free top down to
+   rounding, of a point, and back in time.  Orders are in test_orders.cpp, single steps in
+   test_paper_step.cpp. */
 
 #include "scenes.h"
 
@@ -45,7 +45,7 @@ TEST(Integrator, FreeAsymmetricTopFromThetaZeroInBothRegimes)
   for (const auto &spin : spins)
     for (const Scheme &scheme : SCHEMES) {
       Scene scene = {{1.0, {3.0, 2.0, 1.2}}, {}, free_of_load, time, {}};
-      // Euler's equations of angles fail here
+      // Euler's equations of angles are singular here
       Oracle::euler_quaternion(0.7, 0.4, 0.0, scene.start.q);
       std::copy(spin, spin + 3, scene.start.omega_body);
       const long double w[3] = {spin[0], spin[1], spin[2]};
@@ -61,9 +61,9 @@ TEST(Integrator, FreeAsymmetricTopFromThetaZeroInBothRegimes)
       const vector<double> e = errors(scene, scheme, h, 0.05);
       EXPECT_GT(Check::smallest(Check::slopes(first, e)), 4.7) << scheme;
       EXPECT_LT(Check::smallest(e), 1e-13);    // down to rounding
-      EXPECT_LT(e.back(), 5e-13);              // and not up again far
+      EXPECT_LT(e.back(), 5e-13);              // with little growth afterwards
 
-      scene.body.inertia[1] *= 1.01;    // 1 % in a moment: no order is left
+      scene.body.inertia[1] *= 1.01;    // 1 % in a moment: the order is lost
       EXPECT_LT(error_slopes(scene, scheme, first, 0.05).back(), 0.1);
     }
 }
@@ -86,7 +86,7 @@ TEST(Integrator, PointFallsAndNeverTurns)
 
 TEST(Integrator, RunsBackToWhereItStarted)
 {
-  // the same history rescaled by -1, step -h: the motion returns, to the order of the method
+  // the same history rescaled by -1, step -h: the motion is reversed, to the order of the method
   const RigidBody body = {1.0, {3.0, 2.0, 1.2}};
   const BodyState start = {{}, {0.0, 0.0, 0.0, 1.0}, {}, {1.0, 0.4, 0.0}};
   const vector<double> h = Check::halvings(0.1, 3);

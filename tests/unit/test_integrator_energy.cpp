@@ -1,5 +1,5 @@
-/* gear_quat_integrator.h: what a step leaves true - the constraints on q, and the work that turns
-   the potential at the predicted pose into that of the corrected one. */
+/* gear_quat_integrator.h: invariants of a step - the constraints on q, and the work that converts
+   the potential at the predicted pose to the corrected one. */
 
 #include "scenes.h"
 
@@ -12,8 +12,8 @@ Motion cage_motion(const CageScene &scene, const Scheme &scheme, double h)
   return Motion(scene.body, scene.start, scene, scheme, h, Start::BOOTSTRAP, 0.05);
 }
 
-/// Energy that is still missing after the correction `factor` * -work, when the
-/// corrector moves the body by about `size` (a kick in row 2 that it takes back).
+/// Energy that is missing after the correction `factor` * -work, when the corrector moves the body
+/// by about `size` (a perturbation of row 2 that it removes).
 double missing_energy(Formulation formulation, double size, double factor, bool turn)
 {
   const CageScene scene(1, true);
@@ -22,7 +22,7 @@ double missing_energy(Formulation formulation, double size, double factor, bool 
   motion.predict();
   double *pose = motion.rows + (turn ? scheme.quaternion() : 0);
   for (int i = 0; i < 3; ++i) {
-    pose[scheme.width() + i] += size;    // first: rows 1 and 2 are what the residual sees
+    pose[scheme.width() + i] += size;    // first: the residual depends on rows 1 and 2
     pose[2 * scheme.width() + i] += size;
   }
   const BodyState predicted = motion.state();
@@ -52,7 +52,7 @@ TEST(Energy, IsKeptInTheCage)
       kinetic = std::max(kinetic, translational_energy(scene.body, s.velocity));
     }
     EXPECT_LT(worst, formulation == FIRST ? 1e-7 : 1e-9);
-    EXPECT_GT(0.01 * kinetic, 1e-4);    // 1 % of what is exchanged would be seen
+    EXPECT_GT(0.01 * kinetic, 1e-4);    // 1 % of the exchanged energy would be detected
   }
 }
 
@@ -69,7 +69,7 @@ TEST(Energy, CorrectionIsRightToSecondOrderInTheShift)
       EXPECT_NEAR(slope(1.0), 2.0, 0.1);
       EXPECT_LT(slope(0.0), 1.3);     // without it
       EXPECT_LT(slope(-1.0), 1.3);    // with the wrong sign
-      // 1 % off: first order appears below shifts of about 1 % of the length of the gradient
+      // 1 % off: first order appears for displacements below 1 % of the length of the gradient
       const double tiny = turn ? 1e-5 : 2e-4;
       for (double factor : {0.99, 1.01})
         EXPECT_GT(missing_energy(formulation, tiny, factor, turn),
@@ -79,7 +79,7 @@ TEST(Energy, CorrectionIsRightToSecondOrderInTheShift)
 
 TEST(Energy, WorkIsThatOfTheLoadFromPredictedToCorrectedPose)
 {
-  // each component of force and torque alone, strong enough to move what it acts on
+  // each component of force and torque separately, strong enough to move the body
   const CageScene scene(1, true);
   for (Formulation formulation : {FIRST, SECOND})
     for (bool compensate : {false, true})
@@ -92,7 +92,7 @@ TEST(Energy, WorkIsThatOfTheLoadFromPredictedToCorrectedPose)
         const double work = motion.correct(load).work;
         const BodyState after = motion.state();
 
-        double old_a[9], new_a[9], turn[9] = {}, angle[3];    // turn: pose before to pose after
+        double old_a[9], new_a[9], turn[9] = {}, angle[3];    // pose before -> after
         rotation_matrix(before.q, dot4(before.q, before.q), old_a);
         rotation_matrix(after.q, dot4(after.q, after.q), new_a);
         for (int i = 0; i < 9; ++i)

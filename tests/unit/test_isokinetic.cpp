@@ -1,5 +1,5 @@
 /* Constant kinetic energy: multipliers, an exact solution, order of kinetic energy and heat, and
-   what scaling of momenta leaves.  `Host` takes the place of gear_quat_isokinetic and _bootstrap. */
+   the effect of scaling momenta.  `Host` replaces gear_quat_isokinetic and the start. */
 
 #include "checks.h"
 #include "drive.h"
@@ -22,7 +22,7 @@ struct Host {
   Isokinetic mode;
   double h;
   bool rescale = false;
-  bool start_knows = true;    ///< whether the start knows the multipliers
+  bool start_knows = true;    ///< true if the start uses the multipliers
 
   Integrator integrator{scheme, h};
   vector<vector<double>> rows{};
@@ -42,7 +42,7 @@ struct Host {
     return 0.5 * (s.translation + s.rotation);
   }
 
-  /// Loads that move the bodies, and the power of those met.
+  /// Loads that move the bodies, and the power of the original loads.
   vector<Load> acting(double &power) const
   {
     vector<Load> loads = loads_of(states);
@@ -54,7 +54,7 @@ struct Host {
     return loads;
   }
 
-  /// All bodies as the host of find_start().
+  /// All bodies, as the host of find_start().
   struct Search {
     Host &our;
     const Collocation &collocation;
@@ -159,7 +159,7 @@ struct Host {
     read_states();
   }
 
-  /// Calls what watches after each step.
+  /// Calls watch() after each step.
   template <class Watch> void run(double time, Watch watch)
   {
     start();
@@ -190,7 +190,7 @@ std::array<double, 6> rates_of(const BodyState &s)
   return rates;
 }
 
-/// The same after a time, n components of u at a time.
+/// The same after a time, n components of u together.
 std::array<double, 6> exact_rates(Isokinetic mode, double time)
 {
   const int n = mode == Isokinetic::TOTAL ? 6 : 3;
@@ -241,7 +241,7 @@ double total(const Host &host)
   return TiedBodies::springs(host.states).energy + host.kinetic() + host.heat.value();
 }
 
-/// What a run loses at most of the kinetic energy, and of potential + kinetic + heat.
+/// Largest changes in a run of the kinetic energy, and of potential + kinetic + heat.
 struct Losses {
   double kinetic = 0.0, all = 0.0;
 };
@@ -271,7 +271,7 @@ TEST(Isokinetic, TheConstraintTakesWhatTheLoadsDo)
     const double of_forces = std::fabs(left.force_power);
     EXPECT_TRUE(mode == Isokinetic::SEPARATE ? of_forces < 1.0e-14 : of_forces > 1.0e-2);
 
-    // with a multiplier 1 % off it does not
+    // with a multiplier 1 % off it is not
     const vector<Load> met = TiedBodies::loads(host.states);
     Multipliers alpha = multipliers(mode, host.sums(met));
     alpha.translation *= 1.01;
@@ -306,7 +306,7 @@ TEST(Isokinetic, ConstantLoadsAsTheExactSolution)
       EXPECT_GT(slopes(h, error)[1], values - 0.35) << values;
       EXPECT_LT(error[2], 1.0e-3) << values;
     }
-    // the exact solution is of this load and no other
+    // the exact solution is valid for this load only
     EXPECT_GT(
         Check::largest_difference(exact_rates(mode, 2.0).data(), exact_rates(mode, 2.02).data(), 6),
         1.0e-3);
@@ -350,7 +350,7 @@ TEST(Isokinetic, ScaledMomentaKeepTheKineticEnergyToRounding)
 
 TEST(Isokinetic, AnAxisWithoutInertiaIsLeftAlone)
 {
-  // a negative multiplier makes momenta grow, and would make rounding about the axis grow with them
+  // a negative multiplier makes momenta grow, and would amplify rounding about the axis
   const RigidBody rod = {1.0, {0.8, 0.8, 0.0}};
   const BodyState state = {{}, {0.5, 0.5, -0.5, 0.5}, {0.1, 0.2, 0.0}, {1.0, 0.3, 1.0e-14}};
   const Scheme scheme = scheme_of(FIRST, 6, 2);

@@ -1,4 +1,4 @@
-/* gear_quat_limits.h: what is beyond the limits, and what no number is. */
+/* gear_quat_limits.h: motions beyond the limits, and non-finite ones. */
 
 #include "checks.h"
 #include "gear_quat_limits.h"
@@ -51,7 +51,7 @@ TEST(Limits, LengthOfTheQuaternion)
 
 TEST(Limits, WhatIsNoNumber)
 {
-  const MotionLimits limits(H, INFINITE);    // nor is there a limit in space
+  const MotionLimits limits(H, INFINITE);    // no limit in space either
   BodyState far = at_rest();
   far.velocity[0] = 1.0e100;
   EXPECT_TRUE(limits.keep(far));
@@ -77,7 +77,7 @@ TEST(Limits, AKickIsWhatALoadMakesOfVelocities)
   s.velocity[1] = 5.0;
   s.omega_body[2] = 7.0;
   const Load load = {{4.0, 0.0, 0.0}, {6.0, 0.0, 0.0}};
-  // this q turns the axes in a circle: x in space is z in the body
+  // this q permutes the axes: x in space is z in the body
   const BodyState after = kicked(body, s, load, 0.5);
   const double velocity[3] = {1.0, 5.0, 0.0}, omega_body[3] = {0.0, 0.0, 10.0};
   EXPECT_LT(Check::largest_difference(after.velocity, velocity, 3), 1e-14);
@@ -86,8 +86,8 @@ TEST(Limits, AKickIsWhatALoadMakesOfVelocities)
 
 TEST(Limits, TheFastestOscillation)
 {
-  // velocities of a stable motion are bounded, and those of one that is 5 % faster are not; the
-  // limits are those of the manual, where spurious roots are outside of the unit circle
+  // velocities of a stable motion are bounded, and velocities of a motion 5 % faster are not; the
+  // limits are the ones in the manual, where spurious roots leave the unit circle
   for (const auto &[values, limit] : {std::pair{4, 1.05}, {7, 0.71}, {9, 0.61}}) {
     Scheme scheme;
     scheme.rows = values;

@@ -1,4 +1,4 @@
-// Masks: what acts of a load, and the work of what was met.
+// Masks: the acting part of a load, and the work of the full load.
 
 #include "drive.h"
 #include "gear_quat_math.h"
@@ -12,7 +12,7 @@ namespace {
 const RigidBody BODY = {2.0, {3.0, 2.0, 1.5}};
 const Load MET = {{1.0, -2.0, 3.0}, {0.5, 0.25, -4.0}};
 
-/// Predict and correct once from a start of order 2, and the state before and after.
+/// Predicts and corrects once from a start of order 2; the states before and after.
 struct Step {
   Correction result;
   BodyState before, after;
@@ -34,7 +34,7 @@ struct Step {
 
 TEST(Mask, EveryBitTurnsOffItsComponent)
 {
-  for (int k = 0; k <= 6; ++k) {    // 6: nothing is off
+  for (int k = 0; k <= 6; ++k) {    // 6: no component is off
     const Load acting = acting_load(MET, k == 6 ? 0 : k < 3 ? force_off(k) : torque_off(k - 3));
     for (int i = 0; i < 3; ++i) {
       EXPECT_EQ(acting.force[i], i == k ? 0.0 : MET.force[i]);
@@ -56,7 +56,7 @@ TEST(Mask, WorkIsTheCorrectorsWhereEverythingActs)
 
 TEST(Mask, WorkIsThatOfTheLoadThatWasMet)
 {
-  // about x the body turns although no torque acts: Euler's equations couple the axes
+  // about x the body turns without a torque: Euler's equations couple the axes
   const Step step(SECOND, torque_off(0));
   const Load rest = {{}, {MET.torque_space[0], 0.0, 0.0}};
   const double missing = work_between(rest, step.before, step.after);

@@ -1,4 +1,4 @@
-/* gear_quat_nearest.h: the rigid motion that is nearest to motions of sites. */
+/* gear_quat_nearest.h: the rigid motion nearest to displacements of sites. */
 
 #include "checks.h"
 #include "gear_quat_nearest.h"
@@ -10,14 +10,14 @@ namespace {
 
 using Vectors = vector<vector<double>>;
 
-/// The way of a site by a twist.
+/// The displacement of a site by a twist.
 void way_of_site(const Twist &twist, const vector<double> &arm, double *out)
 {
   cross3(twist.turn, arm.data(), out);
   add3(twist.way, out);
 }
 
-/// Any arms, whose mean is not the center of mass.
+/// Random arms, whose mean is not the center of mass.
 Vectors some_arms(Check::Numbers &numbers, int n)
 {
   Vectors arms(n);
@@ -62,7 +62,7 @@ Move move_to(const Vectors &arms, const Vectors &motions, Mask off = 0)
   return nearest_move(sums_of(arms), off, sum, products);
 }
 
-/// Where a move takes an arm, from where the center of mass was.
+/// The position of an arm after a move, from the original center of mass.
 vector<double> moved(const Move &move, const vector<double> &arm)
 {
   double a[9];
@@ -73,7 +73,7 @@ vector<double> moved(const Move &move, const vector<double> &arm)
   return out;
 }
 
-/// Sum of squares of what a move leaves of the motions.
+/// Sum of squares of the displacements that a move does not represent.
 double left_by(const Move &move, const Vectors &arms, const Vectors &motions)
 {
   double sum = 0.0;
@@ -104,8 +104,8 @@ TEST(NearestTwist, OfARigidMotionIsThatMotion)
       is_given);
 }
 
-/// What is left of forces has neither sum nor moment, and the product of two twists as vectors on
-/// sites is that of force and way, torque and turn.
+/// The residual forces have neither sum nor moment, and the product of two twists as vectors on
+/// sites equals force times displacement plus torque times rotation.
 TEST(NearestTwist, IsAnOrthogonalProjection)
 {
   Check::Numbers numbers(32);
@@ -157,7 +157,7 @@ TEST(NearestTwist, HoldsComponents)
   EXPECT_EQ(found.turn[1], 0.0);
   EXPECT_EQ(found.turn[2], 0.0);
   EXPECT_GT(std::fabs(found.turn[0]), 0.01);
-  // the rest of the forces is orthogonal to what may move
+  // the residual forces are orthogonal to the allowed motions
   Vectors rest = forces;
   for (size_t n = 0; n < arms.size(); ++n) {
     double one[3];

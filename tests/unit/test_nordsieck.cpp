@@ -20,7 +20,7 @@ std::vector<double> rows_of(const std::vector<double> &a, double t, double h)
 
 TEST(Nordsieck, PredictIsTaylorsSeriesExactly)
 {
-  // small whole numbers: every sum is exact, so the comparison is of bits
+  // small integers: every sum is exact, so the comparison is bitwise
   const std::vector<double> a = {1, -2, 3, 4, 5, -6, 7, 1, -2, 3, -4, 5, 2, 2, -3, 1, -1, 2};
   auto check = [&](const std::vector<double> &start) {
     std::vector<double> rows = start;
@@ -62,7 +62,7 @@ TEST(Nordsieck, RescaledHistoryIsTheSamePolynomial)
   auto check = [&](const std::vector<double> &start) {
     std::vector<double> rows = start;
     Rows::rescale(rows.data(), N, 0.3 / 0.8);
-    // row 5 is small after rescaling: compare row by row against its own size
+    // row 5 is small after rescaling: each row is compared relative to its own size
     for (int i = 0; i < N * WIDTH; ++i)
       if (!(std::fabs(rows[i] - expected[i]) <= 1e-14 * std::fabs(expected[i]))) return false;
     return true;
@@ -76,7 +76,7 @@ TEST(Nordsieck, RescalesCompose)
   Rows::rescale(twice.data(), N, 0.5);
   Rows::rescale(twice.data(), N, 0.25);
   Rows::rescale(once.data(), N, 0.125);
-  EXPECT_EQ(twice, once);    // powers of two: to the bit
+  EXPECT_EQ(twice, once);    // powers of two: bitwise equal
   Rows::rescale(twice.data(), N, 1.0);
   EXPECT_EQ(twice, once);
   Rows::rescale(once.data(), N, 1.01);

@@ -1,5 +1,5 @@
-/* The scene the paper's runs are made in, checked before anything moves in it: both printed
-   energies, the body, the symmetry of the charges, forces and torques as gradients. */
+/* The paper's test system, checked before it is used in runs: both printed energies, the body, the
+   symmetry of the charges, forces and torques as gradients. */
 
 #include "checks.h"
 #include "gear_quat_math.h"
@@ -11,7 +11,7 @@ using std::vector;
 
 namespace {
 
-/// State moved by dx and turned by a small rotation vector about the space axes.
+/// State displaced by dx and rotated by a small rotation vector about the space axes.
 BodyState moved(const BodyState &s, const double *dx, const double *angle_space)
 {
   BodyState out = s;
@@ -19,7 +19,7 @@ BodyState moved(const BodyState &s, const double *dx, const double *angle_space)
   const double f = length > 0.0 ? std::sin(0.5 * length) / length : 0.5;
   const double turn[4] = {f * angle_space[0], f * angle_space[1], f * angle_space[2],
                           std::cos(0.5 * length)};
-  w_times(turn, s.q, out.q);    // a turn about space axes multiplies from the left
+  w_times(turn, s.q, out.q);    // a rotation about space axes multiplies from the left
   for (int i = 0; i < 3; ++i) out.center[i] += dx[i];
   return out;
 }
@@ -78,7 +78,7 @@ TEST(CageScene, ForceAndTorqueAreTheGradientOfTheEnergy)
 {
   const CageScene scene(1, true);
   BodyState s = scene.start;
-  s.center[0] = 86.0;    // closer to the sphere at (100, 0, 0): nothing here is small
+  s.center[0] = 86.0;    // closer to the sphere at (100, 0, 0), where all terms are large
   s.center[1] = -1.5;
   const Load load = scene.load(s, dot4(s.q, s.q));
   double gradient[6];

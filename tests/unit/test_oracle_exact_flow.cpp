@@ -1,4 +1,4 @@
-/* The extrapolated flow, checked against the exact free top and an oscillator. */
+/* The extrapolated flow, compared with the exact free top and an oscillator. */
 
 #include "checks.h"
 #include "oracles/exact_flow.h"

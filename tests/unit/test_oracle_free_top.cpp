@@ -1,5 +1,5 @@
-/* The exact free top, checked against something much simpler: Runge-Kutta of fourth order in
-   extended precision with very many steps, on omega and on the nine elements of A. */
+/* The exact free top, compared with a much simpler method: fourth-order Runge-Kutta in extended
+   precision with very many steps, for omega and the nine elements of A. */
 
 #include "oracles/free_top.h"
 

@@ -1,7 +1,7 @@
-/* The order of every number of values, by slope: of the position in the paper's cage and of an
+/* The order for every number of values, from slopes: of the position in the paper's cage and of an
    oscillator, of the orientation of the free top and of a rod.  With many values sums are
-   compensated, so that rounding comes late; the steps of each slope are where the highest term has
-   taken over. */
+   compensated, to delay the onset of rounding; the steps of each slope are in the asymptotic
+   range. */
 
 #include "scenes.h"
 
@@ -30,7 +30,7 @@ const vector<Scheme> PAPER = {scheme_of(FIRST), scheme_of(SECOND),
 
 }    // namespace
 
-// asked of every N from 5 on: the odd one of N and N + 1, less 0.4, until rounding
+// required for every N from 5 on: the odd one of N and N + 1, minus 0.4, until rounding
 
 TEST(Orders, PositionInTheCage)
 {
@@ -44,8 +44,8 @@ TEST(Orders, PositionInTheCage)
     const Scheme scheme = compensated(FIRST, s.values);
     EXPECT_GT(slope(scene, scheme, s.wide, s.narrow), scheme.order() - s.less) << scheme;
   }
-  // 11 values: terms of opposite sign make single slopes uneven, so from the widest step on;
-  // 12 values: from 13 rounding leaves 12.4
+  // 11 values: terms of opposite sign make single slopes irregular, so the range starts at the
+  // widest step; 12 values: above 12.4 rounding dominates
   for (const Steps &s : {Steps{4, 0.25, 0.16},
                          {5, 0.1, 0.05},
                          {6, 0.16, 0.08},
@@ -97,8 +97,8 @@ TEST(Orders, OfTheShorterStarts)
   }
 }
 
-// an oscillation has no more than N, even or odd: the odd one above holds where the body is carried
-// along more than it swings
+// for an oscillation the order is at most N, even or odd: the odd order above is found if the
+// displacement of the body exceeds the amplitude of its oscillation
 
 TEST(Orders, OscillatorHasOrderN)
 {
@@ -119,14 +119,14 @@ TEST(Orders, OscillatorWithThePapersValues)
   for (const Scheme &scheme : PAPER) {
     const bool six = !scheme.first() && !scheme.velocity_c0;
     EXPECT_GT(smallest(error_slopes(oscillator(10.0), scheme, h, 0.05)), six ? 5.8 : 4.7);
-    // the velocity row of the second formulation keeps an error of order 5 with either c_0
+    // the velocity row of the second formulation has an error of order 5 with either c_0
     EXPECT_GT(smallest(error_slopes(oscillator(10.0, 1.0, true), scheme, h, 0.05)), 4.7);
     EXPECT_LT(smallest(error_slopes(oscillator(10.0, 1.01), scheme, h, 0.05)), 0.1);
   }
 }
 
-// the free top: N in the first formulation, N - 1 in the second, whatever the number of passes.
-// The even ones of these are approached from up to one above.
+// the free top: N in the first formulation, N - 1 in the second, for any number of passes.  For
+// even numbers the slope approaches this from up to one above.
 
 TEST(Orders, OrientationOfTheFreeTop)
 {
@@ -135,7 +135,7 @@ TEST(Orders, OrientationOfTheFreeTop)
       const int n = scheme.values(), order = n - (scheme.first() ? 0 : 1);
       const bool high = n > (scheme.first() ? 7 : 8);
       if (passes == 1 && n > 9) continue;      // unstable: see test_passes.cpp
-      if (passes == 2 && n == 12) continue;    // no asymptotic range is left above rounding
+      if (passes == 2 && n == 12) continue;    // there is no asymptotic range above rounding
       const Steps s = n == 12   ? Steps{n, 0.08, 0.06}
           : n == 11             ? Steps{n, 0.08, 0.05}
           : n == 10             ? Steps{n, 0.05, 0.04}
@@ -157,7 +157,7 @@ TEST(Orders, OnePercentInAMomentLeavesNoOrder)
 
 TEST(Orders, RodTurnsUniformlyAndUnderTorque)
 {
-  // torque along body x from rest about it: angle = omega t + torque/(2 I) t^2, from theta = 0
+  // torque along body x, no initial rotation about y and z: angle = omega t + torque/(2 I) t^2
   const double omega = 1.5, time = 4.0;
   const vector<double> h = Check::halvings(0.05, 4);
   for (int none : {1, 2})    // the axis without inertia
@@ -175,10 +175,11 @@ TEST(Orders, RodTurnsUniformlyAndUnderTorque)
           return std::max(Check::quaternion_distance(q, s.q), std::fabs(s.omega_body[0] - w));
         };
         const vector<double> e = errors(rod, scheme, h, 0.05);
-        // over all: terms of order 5 and 6 of opposite sign make single slopes uneven here
+        // over the whole range: terms of order 5 and 6 of opposite sign make single slopes
+        // irregular here
         EXPECT_GT(Check::slopes({h[0], h[3]}, {e[0], e[3]})[0], 4.7) << scheme;
         EXPECT_LT(e.back(), 1e-11);
-        rod.start.omega_body[0] *= 1.01;    // 1 % in the spin: no order is left
+        rod.start.omega_body[0] *= 1.01;    // 1 % in the angular velocity: the order is lost
         EXPECT_LT(error_slopes(rod, scheme, h, 0.05).back(), 0.1);
       }
 }

@@ -1,5 +1,5 @@
-/* gear_quat_integrator.h, one step, against the paper's equations written down literally a second
-   time; every choice of the scheme, and every number that enters. */
+/* gear_quat_integrator.h, one step, compared with an independent literal implementation of the
+   paper's equations; every option of the scheme, and every input number. */
 
 #include "checks.h"
 #include "drive.h"
@@ -27,7 +27,7 @@ vector<long double> table_of(const Scheme &scheme)
   return table;
 }
 
-/// A history of no particular motion, its quaternion close to but not on |q| = 1.
+/// An arbitrary history, with a quaternion close to but not on |q| = 1.
 vector<double> some_history(const Scheme &scheme)
 {
   Check::Numbers numbers(31);
@@ -41,7 +41,7 @@ vector<double> some_history(const Scheme &scheme)
   return rows;
 }
 
-// what both are given: mass, moments, force, torque
+// common input: mass, moments, force, torque
 const vector<double> GIVEN = {1.7, 3.0, 2.0, 0.7, 0.4, -0.9, 0.3, 0.25, 0.6, -0.8};
 
 vector<double> kernel_step(const Scheme &scheme, const vector<double> &given)
@@ -90,7 +90,8 @@ vector<double> literal_step(const Scheme &scheme, const vector<long double> &tab
   return out;
 }
 
-/// The literal step agrees with the kernel's; 1 % in a coefficient, or in anything given, does not.
+/// The literal step agrees with the kernel's, and disagrees if a coefficient or an input is 1 %
+/// off.
 void expect_literal(const Scheme &scheme)
 {
   const vector<long double> table = table_of(scheme);

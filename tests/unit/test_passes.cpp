@@ -1,5 +1,5 @@
-/* Scheme::passes: what correcting again with the same load does for a spin, that it leaves the
-   translation alone, where it leads to, and for how large a step it is needed. */
+/* Scheme::passes: effect of repeated corrections with the same load on a rotation, absence of an
+   effect on the translation, the limit of many passes, and the step for which they are needed. */
 
 #include "scenes.h"
 
@@ -18,7 +18,7 @@ double top_error(const RigidBody &body, const Scheme &scheme, int passes)
   return error(free_top(body), passing(scheme, passes), 0.05, 0.05);
 }
 
-/// A load that acts on everything.
+/// A load with all components.
 Load some_load(const BodyState &s, double norm2)
 {
   Load l = swing(s, norm2);
@@ -26,8 +26,8 @@ Load some_load(const BodyState &s, double norm2)
   return l;
 }
 
-/// By how much the corrected rows of a step miss the equations of motion, load and its torque along
-/// the body axes held as they were met.  Unprojected: a projection moves q afterwards.
+/// Deviation of the corrected rows of a step from the equations of motion, with constant load and
+/// constant body-frame torque.  Unprojected, since a projection moves q afterwards.
 double missed(const RigidBody &judge, Scheme scheme, int passes, double h)
 {
   scheme.projection = Projection::NO;
@@ -60,7 +60,7 @@ double missed(const RigidBody &judge, Scheme scheme, int passes, double h)
 
 }    // namespace
 
-// found: a second pass makes the error 5 to 30 times smaller, then nothing more is to gain
+// found: a second pass makes the error 5 to 30 times smaller, further ones gain nothing
 
 TEST(Passes, TheSecondOneIsWorthAFactorAndTheThirdIsNot)
 {
@@ -82,7 +82,7 @@ TEST(Passes, WithManyValuesOneIsUnstableAndTwoAreNot)
 {
   for (const Scheme &scheme : every_scheme()) {
     if (scheme.values() <= (scheme.first() ? 7 : 8)) continue;
-    EXPECT_FALSE(top_error(TOP, scheme, 1) < 1e-2) << scheme;    // may be no number
+    EXPECT_FALSE(top_error(TOP, scheme, 1) < 1e-2) << scheme;    // may be NaN
     EXPECT_LT(top_error(TOP, scheme, 2), 1e-9) << scheme;
   }
 }

@@ -1,4 +1,5 @@
-/* A body without moments of inertia: what is left out of a step changes no bit of its motion. */
+/* A body without moments of inertia: the omitted operations of a step change no bit of its
+   motion. */
 
 #include "drive.h"
 
@@ -15,7 +16,7 @@ Load pull(const double *x)
   return {{-x[0] + 0.1 * x[1], std::sin(x[1]), -2.0 * x[2]}, {0.3, -0.2, 0.1}};
 }
 
-/// History of a point on its way, in a scheme.
+/// History of a moving point, in a scheme.
 std::vector<double> history(const Scheme &scheme, double h)
 {
   BodyState s = {{0.4, -0.3, 1.0}, {0.0, 0.0, 0.0, 1.0}, {0.1, 0.7, -0.2}, {0.0, 0.0, 0.0}};

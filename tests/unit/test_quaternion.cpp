@@ -81,7 +81,7 @@ TEST(Quaternion, MatrixOfAnyLengthIsARotationAndWithNormOneIsEq8)
     return largest_difference(a, half.data(), 9) <= 0.5e-15;
   });
   rotation_matrix(q.data(), 1.0, a);
-  EXPECT_GT(not_orthogonal(a), 1e-2);    // this q is no unit quaternion
+  EXPECT_GT(not_orthogonal(a), 1e-2);    // this q is not a unit quaternion
 }
 
 TEST(Quaternion, BodyAndSpaceComponents)
@@ -94,7 +94,7 @@ TEST(Quaternion, BodyAndSpaceComponents)
   EXPECT_LT(largest_difference(body, x, 3), 1e-15);
   to_space(a, x, space);
   EXPECT_LT(largest_difference(space, y, 3), 1e-15);
-  EXPECT_GT(largest_difference(body, y, 3), 0.9);    // the other sense would give -x or y
+  EXPECT_GT(largest_difference(body, y, 3), 0.9);    // the opposite sense would give -x or y
 }
 
 TEST(Quaternion, FromMatrixReturnsInAllFourBranches)
@@ -118,7 +118,8 @@ TEST(Quaternion, FromMatrixReturnsInAllFourBranches)
   }
   EXPECT_GT(*std::min_element(met, met + 4), 50);
 
-  // one component alone is a half turn (theta = pi) or no turn; ties must not divide by zero either
+  // a single component is a half turn (theta = pi) or no rotation; ties must not divide by zero
+  // either
   const double half = std::sqrt(0.5);
   const double edges[][4] = {{1, 0, 0, 0},          {0, 1, 0, 0},         {0, 0, 1, 0},    //
                              {0, 0, 0, 1},          {0.5, 0.5, 0.5, 0.5}, {half, 0, half, 0},
@@ -172,7 +173,7 @@ TEST(Quaternion, AngularVelocityInvertsTheRate)
   };
   Check::holds_and_refuses_one_percent(omega, check);
 
-  double radial[4], none[3], zero[3] = {0, 0, 0};    // growth of |q| is no rotation
+  double radial[4], none[3], zero[3] = {0, 0, 0};    // growth of |q| is not a rotation
   for (int i = 0; i < 4; ++i) radial[i] = 0.3 * q[i];
   angular_velocity(q.data(), 1.0, radial, none);
   EXPECT_LT(largest_difference(none, zero, 3), 1e-16);
@@ -218,7 +219,7 @@ TEST(Quaternion, ProjectionsMeetTheirConstraintAndNothingElse)
   angular_velocity(q.data(), 1.0, rate.data(), spin_before);
   project_rate(q.data(), rate.data());
   angular_velocity(q.data(), 1.0, rate.data(), spin);
-  EXPECT_LT(largest_difference(spin, spin_before, 3), 1e-15);    // the rotation is left alone
+  EXPECT_LT(largest_difference(spin, spin_before, 3), 1e-15);    // the rotation does not change
   auto check = [&](const vector<double> &r) {
     return std::fabs(dot4(q.data(), r.data())) <= 2e-16;
   };

@@ -9,7 +9,7 @@ using std::vector;
 
 namespace {
 
-/// Worst of: A T A^T against the moments, relative; A against a right-handed rotation.
+/// Maximum of two deviations: A T A^T from the moments, relative; A from a right-handed rotation.
 double not_principal(const double *tensor, const double *moments, const double *a)
 {
   double scale = 0.0, worst = Check::not_orthogonal(a);
@@ -99,7 +99,7 @@ TEST(PrincipalAxes, OfRandomTensors)
     for (double &x : t) x *= scale;
     principal_axes(t, moments, a);
     EXPECT_LT(not_principal(t, moments, a), 4e-15);
-    moments[n % 3] *= 1.01;    // the check sees a wrong moment and a wrong axis
+    moments[n % 3] *= 1.01;    // the check detects a wrong moment and a wrong axis
     EXPECT_GT(not_principal(t, moments, a), 1e-5);
     principal_axes(t, moments, a);
     a[n % 9] += 0.01;
@@ -140,7 +140,7 @@ TEST(PrincipalAxes, LeaveAnAxisThatIsPrincipalUntouched)
     for (int i = 0; i < 9; ++i) EXPECT_EQ(a[i], identity[i]);
     for (int i = 0; i < 3; ++i) EXPECT_EQ(moments[i], t[4 * i]);    // not sorted
   }
-  const double flat[9] = {2, 0.5, 0, 0.5, 3, 0, 0, 0, 5};    // a 2d body: z stays z, to the bit
+  const double flat[9] = {2, 0.5, 0, 0.5, 3, 0, 0, 0, 5};    // in two dimensions: z does not change
   principal_axes(flat, moments, a);
   EXPECT_EQ(moments[2], 5.0);
   EXPECT_EQ(a[2], 0.0);
@@ -164,7 +164,7 @@ TEST(PrincipalAxes, OfThePapersBody)
   EXPECT_NEAR(known[2], 81.29131707, 5e-9);
   Check::near_and_refuses_one_percent(moments, known, 1e-12);
   EXPECT_LT(not_principal(tensor, moments, a), 1e-15);
-  // tilted by 5.6 degrees about x, and by no other axis
+  // tilted by 5.6 degrees about x only
   EXPECT_NEAR(std::fabs(a[8]), std::cos(0.5 * std::atan(150.0 / 757.5)), 1e-14);
   EXPECT_NEAR(std::acos(std::fabs(a[8])) * 180.0 / std::acos(-1.0), 5.6, 0.01);
   EXPECT_EQ(a[0], 1.0);
@@ -189,7 +189,7 @@ TEST(VanishingMoments, AreThoseBelowTheFractionOfTheLargest)
 
 TEST(VanishingMoments, OfARodAndOfOneAtom)
 {
-  // two sites on a tilted line: the tensor's smallest moment is rounding, and goes
+  // two sites on a tilted line: the tensor's smallest moment is rounding, and is removed
   const double along[3] = {0.3, -1.1, 0.7}, none[9] = {};
   double t[9], moments[3], a[9];
   for (int i = 0; i < 9; ++i)

@@ -75,8 +75,8 @@ TEST(Sections, WhatIsNotWholeIsRefused)
   for (size_t size = 0; size < whole.size(); ++size) {
     Numbers cut(whole.begin(), whole.begin() + (std::ptrdiff_t) size);
     EXPECT_FALSE(file.unpack(cut)) << size;
-    if (size >= (size_t) Sections::HEAD) cut[2] = (double) size;    // cut off by who wrote it
-    // what is left is whole between two sections
+    if (size >= (size_t) Sections::HEAD) cut[2] = (double) size;    // truncated by the writer
+    // the rest is valid if it ends between two sections
     EXPECT_EQ(file.unpack(cut), size == 3 || size == 6 || size == 10) << size;
     EXPECT_EQ(file.has("tolerance", 0), false);
   }
@@ -93,7 +93,8 @@ TEST(Sections, WhatIsNotWholeIsRefused)
   });
 }
 
-/// Of a body with an extended site, of one without, of an atom that owns none, of one in none.
+/// For a body with an extended site, a body without one, an atom that owns no body, and an atom in
+/// no body.
 TEST(AtomParts, AreLengthenedAndCutOff)
 {
   const AtomParts older = {2, 3, 2, 1, 1, 1}, later = {3, 4, 3, 1, 2, 1};
@@ -130,7 +131,7 @@ TEST(AtomParts, AreWrittenAndRead)
   }
 }
 
-/// Each number is its place in the struct, and those that say what there is are small.
+/// Each number equals its position in the struct, and the counts are small.
 TEST(Release030, BecomesSections)
 {
   Release030 old;

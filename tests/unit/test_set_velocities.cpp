@@ -1,6 +1,6 @@
-/* Integrator::set_velocities(): a thermostat scales the velocities of a body again and again.  What is
-   left of the history makes the motion after it of second order, and not of first, and it is no
-   corrector of its own. */
+/* Integrator::set_velocities(): a thermostat scales the velocities of a body repeatedly.  With the
+   remaining rows of the history the motion afterwards is of second order, not first, and the
+   function does not act as a corrector. */
 
 #include "checks.h"
 #include "drive.h"
@@ -18,8 +18,8 @@ const vector<double> STEPS = {0.05, 0.025, 0.0125, 0.00625};
 const Scheme SCHEMES[] = {scheme_of(FIRST, 0, 2), scheme_of(FIRST, 0, 2, true),
                           scheme_of(SECOND, 0, 2), scheme_of(SECOND, 0, 2, true)};
 
-/// The state after KICKS times EVERY, velocities scaled at the end of each.  factor: of the load that
-/// set_velocities() is told.
+/// The state after KICKS times EVERY steps, with velocities scaled at the end of each.  factor: of
+/// the load passed to set_velocities().
 BodyState kicked_motion(const RigidBody &body, const BodyState &start, const LoadOf &load,
                         const Scheme &scheme, double h, double factor = 1.0)
 {
@@ -44,7 +44,8 @@ BodyState kicked_motion(const RigidBody &body, const BodyState &start, const Loa
 
 }    // namespace
 
-/// Of a free top whose spin is scaled the orientation goes on along the same path, more slowly.
+/// When the angular velocity of a free top is scaled, it continues along the same path, more
+/// slowly.
 TEST(SetVelocities, FreeTop)
 {
   const RigidBody body = {1.0, {3.0, 2.0, 1.2}};
@@ -66,7 +67,7 @@ TEST(SetVelocities, FreeTop)
   }
 }
 
-/// A rod under a constant torque about its axis of rotation; one that is told 1 % too much of it is of
+/// A rod under a constant torque about its axis of rotation; with a torque 1 % off the motion is of
 /// first order.
 TEST(SetVelocities, RodUnderTorque)
 {
@@ -94,11 +95,11 @@ TEST(SetVelocities, RodUnderTorque)
   }
 }
 
-/// A thermostat that has nothing to do leaves the motion as it is: velocities are set to what they are
-/// after every step of a spinning top.
+/// A thermostat with a factor of one does not change the motion: velocities are set to their own
+/// values after every step of a spinning top.
 TEST(SetVelocities, TheSameInEveryStep)
 {
-  constexpr double H = 0.05;    // few values follow it less exactly than this test asks
+  constexpr double H = 0.05;    // few values are less accurate than this test requires
   const RigidBody body = {1.0, {3.0, 2.0, 1.2}};
   const BodyState start = {{}, {0.0, 0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {1.0, 0.4, 0.5}};
   for (const bool tuned : {false, true})

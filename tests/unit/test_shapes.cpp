@@ -1,4 +1,4 @@
-/* gear_quat_math.h: own inertia of sites with a size, and orientations that follow a body. */
+/* gear_quat_math.h: own inertia of extended sites, and orientations fixed to a body. */
 
 #include "checks.h"
 #include "gear_quat_math.h"
@@ -68,7 +68,7 @@ TEST(Moments, TriangleIsThatOfPoints)
   const int n = 200;
   Points points;
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n - i; ++j)    // centers of equal pieces, the even and the odd ones
+    for (int j = 0; j < n - i; ++j)    // centers of equal pieces, even and odd ones
       for (int odd = 0; odd < (j < n - i - 1 ? 2 : 1); ++odd) {
         const double u = (i + (1 + odd) / 3.0) / n, v = (j + (1 + odd) / 3.0) / n;
         double p[3];
@@ -100,7 +100,7 @@ TEST(Orientations, FollowTheBodyAndComeBack)
   to_space(a_own, e.data(), expected);
   EXPECT_LT(largest_difference(in_space, expected, 3), 1e-15);
 
-  // of unit length for a body whose quaternion is not, and not for any relative orientation
+  // of unit length for a body quaternion of any length, but not for any relative orientation
   vector<double> longer = body;
   for (double &x : longer) x *= 1.01;
   site_orientation(longer.data(), relative, again);

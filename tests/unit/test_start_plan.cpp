@@ -1,5 +1,5 @@
-/* gear_quat_startup.h: which pair of nodes comes next, when enough is known, and how many evaluations
-   of the forces that takes. */
+/* gear_quat_startup.h: the next pair of nodes, the end of the start, and the number of evaluations
+   of the forces. */
 
 #include "scenes.h"
 
@@ -8,7 +8,7 @@ using Verdict = StartPlan::Verdict;
 
 namespace {
 
-/// The pairs in the order of their evaluation, if `change` tells what each finds; and the verdict.
+/// The pairs in the order of their evaluation, for given results `change`; and the verdict.
 struct Course {
   std::string pairs;
   Verdict verdict;
@@ -28,7 +28,8 @@ Course course(int values, const std::function<double(int pair, bool is_new, int 
   return course;
 }
 
-/// Smooth forces: new pairs are missed by z^(2 m - 1), and a round shrinks what is left by `contraction`.
+/// Smooth forces: new pairs have an error of z^(2 m - 1), and a round reduces errors by
+/// `contraction`.
 Course smooth(int values, double z, double contraction, int enough = MAX_VALUES)
 {
   std::vector<double> last(StartPlan::MAX_PAIRS + 1);
@@ -40,7 +41,7 @@ Course smooth(int values, double z, double contraction, int enough = MAX_VALUES)
       enough);
 }
 
-/// x'' = -x and a step of the force at |t| = 0.13, of this height.
+/// x'' = -x and a jump of the force at |t| = 0.13, of this height.
 LoadOf jumping(double height)
 {
   return [height](const BodyState &s, double) {
@@ -107,7 +108,7 @@ TEST(StartPlan, ForcesJumpWhereANewPairIsMissedByMoreThanTheOneInside)
     EXPECT_EQ(c.known, jump - 1);
     EXPECT_EQ(c.pairs.back() - '0', jump);
   }
-  // and where a further evaluation changes hardly less than the one before
+  // and if a further evaluation changes little less than the previous one
   EXPECT_EQ(course(8,
                    [](int, bool is_new, int) {
                      return is_new ? 0.1 : 0.06;
@@ -125,7 +126,7 @@ TEST(StartPlan, AFirstPairThatIsMissedAltogetherIsTooFarOut)
 
 TEST(StartPlan, EvaluationsInTheCage)
 {
-  // test case 1 at the steps that errors of 1e-4 to 1e-10 take
+  // test case 1 at the steps for errors of 1e-4 to 1e-10
   const CageScene scene(1, true);
   for (int values : {7, 8, 9})
     for (double h : {0.35, 0.25, 0.125, 0.0625}) {
@@ -138,7 +139,7 @@ TEST(StartPlan, EvaluationsInTheCage)
 
 TEST(StartPlan, EvaluationsOfSmoothMotions)
 {
-  // a round more than pairs at most: each gains an order where forces depend on velocities
+  // at most one round more than pairs: each gains an order if forces depend on velocities
   for (int values = FIRST_FEWEST; values <= SECOND_MOST; ++values) {
     const int pairs = StartPlan::pairs_for(values);
     for (double h : {0.02, 0.05, 0.1, 0.2, 0.3}) {
@@ -151,7 +152,7 @@ TEST(StartPlan, EvaluationsOfSmoothMotions)
 
 TEST(StartPlan, TheStartIsNotWhatLimitsARun)
 {
-  // against a start whose errors are those of rounding: far below the error of the run itself
+  // compared with a start with rounding errors only: far below the error of the run itself
   const Scene scene = cage(CageScene(1, true));
   const Found exact = bootstrap(12, scene.body, scene.start, scene.load, 0.05, 12.0);
   const Scheme scheme = scheme_of(SECOND, 8, 2);
@@ -171,7 +172,7 @@ TEST(StartPlan, TheStartIsNotWhatLimitsARun)
     };
     EXPECT_LT(differs(end(found, 1.0)), 1e-4 * scene.missed(best)) << h;
     EXPECT_GT(differs(end(found, 1.01)),
-              1e-4 * scene.missed(best));    // 1 % in one derivative is seen
+              1e-4 * scene.missed(best));    // 1 % in one derivative is detected
   }
 }
 
@@ -198,7 +199,7 @@ TEST(StartPlan, HalvesTheSpacingUntilTheFirstPairIsForetold)
 
 TEST(StartPlan, NorInFastRotation)
 {
-  // what forces the velocities make is known more slowly, round by round, than what positions make
+  // forces that depend on velocities converge more slowly, round by round
   const Scene scene = free_top();
   const TaylorSeries exact = settled_series(12, scene.body, scene.start, scene.load, 0.05);
   for (int values : {7, 9, 11}) {
@@ -219,7 +220,7 @@ TEST(StartPlan, NorInFastRotation)
         return Check::attitude_distance(end(found.series, found.spacing, off).q, best.q);
       };
       EXPECT_LT(differs(1.0), 0.2 * scene.missed(best)) << values << ' ' << h;
-      EXPECT_GT(differs(1.01), scene.missed(best));    // 1 % in one derivative is seen
+      EXPECT_GT(differs(1.01), scene.missed(best));    // 1 % in one derivative is detected
     }
   }
 }

@@ -1,5 +1,5 @@
-/* gear_quat_startup.h: the rows a history starts from, against exact Taylor coefficients, under
-   translation and reversal of time, and for the shorter starts. */
+/* gear_quat_startup.h: the initial rows of a history, compared with exact Taylor coefficients,
+   under translation and reversal of time, and for the shorter starts. */
 
 #include "scenes.h"
 
@@ -36,8 +36,8 @@ bool is_rate(const Scheme &scheme, int i)
 
 TEST(Startup, EveryRowIsItsTaylorCoefficient)
 {
-  // row by row against its own size; spacings at which truncation is below 0.3 % in the highest row
-  // and rounding as well
+  // row by row, relative to its size; at these spacings truncation and rounding are below 0.3 % in
+  // the highest row
   for (const Scheme &scheme : every_scheme()) {
     const double h = scheme.first() ? 0.02 : scheme.values() > 10 ? 0.07 : 0.05;
     const vector<double> exact = exact_rows(scheme, h);
@@ -51,8 +51,8 @@ TEST(Startup, EveryRowIsItsTaylorCoefficient)
 
 TEST(Startup, RowsHaveTheOrderTheMethodNeeds)
 {
-  // an error d of a row costs d in a position of the first formulation, and d/h in a velocity of
-  // the second: the start must not be what limits the order
+  // an error d of a row causes an error d in a position of the first formulation, and d/h in a
+  // velocity of the second: the start must not limit the order
   for (const Scheme &scheme : every_scheme()) {
     const int n = scheme.values();
     const vector<double> h = n > 8 ? vector<double>{0.15, 0.12} : vector<double>{0.2, 0.1, 0.05};
@@ -72,7 +72,7 @@ TEST(Startup, FoundAtALargeStepAndSeededToASmallOne)
     vector<double> large = rows_of(scheme, 0.05, 0.05);
     const vector<double> small = rows_of(scheme, 0.001, 0.05);
     Integrator(scheme, 0.05).rescale(large.data(), 0.001 / 0.05);
-    EXPECT_LT(largest_difference(large, small), 1e-16);    // seeding at h is rescaling to h
+    EXPECT_LT(largest_difference(large, small), 1e-16);    // equivalent to rescaling to h
     EXPECT_LT(largest_difference(small, exact), tight);
     EXPECT_GT(largest_difference(rows_of(scheme, 0.00101, 0.0505), small), 1e-6);
   }
@@ -80,7 +80,8 @@ TEST(Startup, FoundAtALargeStepAndSeededToASmallOne)
 
 TEST(Startup, TwoTermsAreThePapersZeroStart)
 {
-  // known: the state and its rates; with forces one derivative more of everything, and no further
+  // known: the state and its rates; with forces one more derivative of everything, and no further
+  // one
   for (const Scheme &scheme : every_scheme())
     for (int terms : {2, 3}) {
       const vector<double> exact = exact_rows(scheme, 0.1);
@@ -99,8 +100,8 @@ TEST(Startup, TwoTermsAreThePapersZeroStart)
 
 TEST(Startup, TimeTranslation)
 {
-  // rows carried from an earlier start, against a start from the exact state at the later time:
-  // they differ by the truncation of the method, N in the rows the corrector settles
+  // rows carried from an earlier start, compared with a start from the exact state at the later
+  // time: they differ by the truncation of the method, N in the rows that the corrector determines
   for (const Scheme &scheme : {scheme_of(FIRST), scheme_of(SECOND)}) {
     auto differences = [&](double later) {
       vector<double> d;
@@ -136,7 +137,7 @@ TEST(Startup, SeriesOfLaterStartIsTheShiftedSeries)
 
 TEST(Startup, TimeReversal)
 {
-  // in the cage, where forces and torques depend on everything
+  // in the cage, where forces and torques depend on all coordinates
   const CageScene scene(1, true);
   BodyState back = scene.start;
   for (int i = 0; i < 3; ++i) {
@@ -154,7 +155,7 @@ TEST(Startup, TimeReversal)
       return largest_difference(rows, forward);
     };
     EXPECT_LT(reversed(start(back, 1.0), true), 1e-14);
-    EXPECT_LT(reversed(start(scene.start, -1.0), false), 1e-14);    // the same by a negative step
+    EXPECT_LT(reversed(start(scene.start, -1.0), false), 1e-14);    // the same with a negative step
     BodyState off = back;
     off.omega_body[0] *= 1.01;
     EXPECT_GT(reversed(start(off, 1.0), true), 1e-8);

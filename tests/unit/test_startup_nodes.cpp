@@ -1,5 +1,5 @@
-/* Collocation in gear_quat_startup.h: its polynomials, how far the inner nodes see ahead, and the number
-   that gear_quat_startup.h judges. */
+/* Collocation in gear_quat_startup.h: its polynomials, extrapolation from the inner nodes, and the
+   convergence measure. */
 
 #include "scenes.h"
 
@@ -10,7 +10,7 @@ namespace {
 
 constexpr int EVERY_PAIRS[] = {2, 3, 4, 5, 6};
 
-/// The fewest values that take so many pairs of nodes.
+/// The fewest values that require this many pairs of nodes.
 int values_for(int pairs)
 {
   return 2 * pairs;
@@ -23,7 +23,7 @@ double polynomial(const vector<double> &a, double s)
   return sum;
 }
 
-/// Coefficients of a polynomial of this degree, all terms about 1 at the outermost nodes.
+/// Coefficients of a polynomial of this degree, with all terms about 1 at the outermost nodes.
 vector<double> of_degree(int degree, int pairs)
 {
   vector<double> a = Check::Numbers(degree).list(degree + 1);
@@ -32,7 +32,7 @@ vector<double> of_degree(int degree, int pairs)
   return a;
 }
 
-/// Second derivatives at the nodes -inner..inner, in all columns; elsewhere none.
+/// Second derivatives at the nodes -inner..inner, in all columns; zero elsewhere.
 Collocation::Workspace nodes_of(const vector<double> &a, int pairs, int inner)
 {
   Collocation::Workspace w = {};
@@ -48,7 +48,7 @@ TEST(StartupNodes, AsManyAsTheOrderNeeds)
 {
   for (const Scheme &scheme : every_scheme()) {
     const Collocation collocation(scheme.start_values());
-    // the polynomial of x'' has degree 2 pairs, that of x two more, and nodes are symmetric
+    // the polynomial of x'' has degree 2 pairs, the one of x two more, and nodes are symmetric
     EXPECT_GE(2 * collocation.pairs() + 2, scheme.order() + (scheme.first() ? 0 : 1));
     EXPECT_GE(2 * collocation.pairs() + 2, scheme.values());    // all rows are found
   }
@@ -108,7 +108,7 @@ TEST(StartupNodes, ForetellingIsExactForWhatTheInnerNodesHold)
       };
       const vector<double> a = of_degree(2 * inner, pairs), b = of_degree(2 * inner + 1, pairs);
       EXPECT_LT(worst(a, a), 1e-11) << pairs << ' ' << inner;
-      EXPECT_GT(worst(b, b), 1e-6);    // one degree more is not
+      EXPECT_GT(worst(b, b), 1e-6);    // one degree more is not exact
       vector<double> off = a;
       off[2 * inner] *= 1.01;
       EXPECT_GT(worst(off, a), 1e-4);
@@ -117,7 +117,7 @@ TEST(StartupNodes, ForetellingIsExactForWhatTheInnerNodesHold)
 
 TEST(StartupNodes, FewerPairsAreAPolynomialOfLowerDegree)
 {
-  // what the outer nodes hold does not count
+  // values at the outer nodes are ignored
   const Collocation collocation(8);
   const vector<double> a = of_degree(4, 4);
   Collocation::Workspace w = nodes_of(a, 4, 2);
@@ -130,7 +130,7 @@ TEST(StartupNodes, FewerPairsAreAPolynomialOfLowerDegree)
 
 TEST(StartupNodes, BothNodesOfAPairAreSettledAtOnce)
 {
-  // the state at the second one does not know of the load at the first
+  // the state at the second node does not depend on the load at the first
   const Collocation collocation(8);
   StartHost host = {collocation, TOP, top_state(0.0), swing, 1.0};
   host.begin(0.1);
@@ -147,7 +147,7 @@ TEST(StartupNodes, BothNodesOfAPairAreSettledAtOnce)
 
 TEST(StartupNodes, ChangeIsRelativeToTheMotion)
 {
-  // a point with x'' = F/m: what the node held before, what it holds now, and the scale
+  // a point with x'' = F/m: the previous value at the node, the new value, and the scale
   const Collocation collocation(5);
   const RigidBody point = {2.0, {0.0, 0.0, 0.0}};
   auto change = [&](double before, double force, double velocity, double length) {
@@ -164,7 +164,7 @@ TEST(StartupNodes, ChangeIsRelativeToTheMotion)
   // H^2 F/m = 0.125 F
   EXPECT_NEAR(change(0.0625, 1.0, 2.0, 1.0), 0.0625 / 1.0, 1e-15);      // H x' = 1 is the larger
   EXPECT_NEAR(change(0.0625, 1.0, 0.1, 1.0), 0.0625 / 0.125, 1e-15);    // H^2 x'' is
-  EXPECT_NEAR(change(0.0, 8e-6, 0.0, 3.0), 1e-6 / 3e-4, 1e-15);         // slower than counts
+  EXPECT_NEAR(change(0.0, 8e-6, 0.0, 3.0), 1e-6 / 3e-4, 1e-15);         // slower than the limit
   EXPECT_GT(std::fabs(change(0.0625, 1.01, 2.0, 1.0) - 0.0625), 5e-4);
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(change(0.0, infinity, 0.0, 1.0), infinity);

@@ -1,5 +1,5 @@
-/* A step and a number of values that follow the error: the rows, the estimates, the law, and what
-   comes of them in the paper's cage. */
+/* A step and a number of values that adapt to the error: the rows, the estimates, the control law,
+   and the results in the paper's cage. */
 
 #include "checks.h"
 #include "follow.h"
@@ -9,7 +9,7 @@ using namespace Drive;
 
 namespace {
 
-/// By what factor the rows that a scheme sets anew grow in a step when nothing but the step changes.
+/// Growth factor per step of the rows set by a scheme when only the step changes.
 double growth(const Scheme &scheme, double ratio)
 {
   const int n = scheme.values(), order = scheme.first() ? 1 : 2;
@@ -83,8 +83,8 @@ struct Following : Follower {
   }
 };
 
-/// The error of a chain's step that n values estimate for n + more values, over the error of a
-/// step with n + more values: of the place of a body in thermal motion, and of its energy.
+/// The error of a chain's step that n values estimate for n + more values, over the error of a step
+/// with n + more values: of the position of a body in thermal motion, and of its energy.
 std::array<double, 2> chain_estimate_over_error(int n, int more, double h, double mass)
 {
   // 2K(t) = A exp(t): xi_1 is known, and so are all of its derivatives
@@ -123,7 +123,7 @@ std::array<double, 2> chain_estimate_over_error(int n, int more, double h, doubl
     return more < 0 ? errors.fewer : more > 0 ? errors.more : errors.same;
   };
   const double speed = std::sqrt(3.0 * target.kt / mass);
-  // a wrong friction for a step: the velocity is off by h error speed
+  // a wrong friction for a step changes the velocity by h error speed
   return {of(found.length) / (h * h * error * speed),
           of(found.energy) / (mass * speed * h * error * speed)};
 }
@@ -132,7 +132,7 @@ std::array<double, 2> chain_estimate_over_error(int n, int more, double h, doubl
 
 TEST(StepControl, AShrinkingStepIsStable)
 {
-  // errors of rows have to fade faster than the step shrinks: in the second formulation they count as
+  // errors of rows must decay faster than the step shrinks: in the second formulation they count as
   // velocities, times the step
 
   const auto worst = [](const Scheme &scheme, double least) {
@@ -253,7 +253,7 @@ TEST(StepControl, TheEstimateIsTheCorrectorsOwn)
          rows.data());
     integrator.predict(rows.data());
     for (const double reach :
-         {1e-3, 1.0, 1e3}) {    // an angle counts as the way of what is far out
+         {1e-3, 1.0, 1e3}) {    // an angle counts as the displacement of the outermost part
       StepMeasures errors;
       vector<double> copy = rows;
       const Correction own = VariableOrder(scheme).correct(
@@ -294,14 +294,14 @@ TEST(StepControl, TheLaw)
   EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 8, 100}).step, 0.1);
   EXPECT_DOUBLE_EQ(next({big, 0.0, big}, 0.1, 8, {100, 100, 8}).step, 0.1);
 
-  // one that was just changed is made shorter gently while it holds; if not, the last row is of no use
+  // an accepted step that was just changed is shortened gently; otherwise the last row is unusable
 
   EXPECT_DOUBLE_EQ(next({big, error(0.91), big}, 0.1, 8, {100, 4, 100}).step, 0.095);
   EXPECT_DOUBLE_EQ(next({big, error(0.91), big}, 0.1, 8, {100, 5, 100}).step, 0.091);
   EXPECT_DOUBLE_EQ(next({big, error(0.8), big}, 0.1, 8, {100, 1, 1}).step, 0.08);
   EXPECT_EQ(next({big, error(0.8), big}, 0.1, 8, {100, 1, 1}).values, 7);
 
-  // another number of values has to promise more than that the error is smaller
+  // another number of values must promise more than a smaller error
 
   EXPECT_EQ(next({error(0.7, 7) / 2.0, error(0.6), big}, 0.1).values, 7);
   EXPECT_EQ(next({error(0.7, 7) * 1.01, error(0.7), big}, 0.1).values, 8);
@@ -312,7 +312,7 @@ TEST(StepControl, TheLaw)
   EXPECT_EQ(next({big, error(0.6), 0.0}, 0.1, 9).values, 9);
   EXPECT_EQ(next({0.0, error(0.6), big}, 0.1, 4).values, 4);
 
-  // as far as the step may grow: without forces no number of values is better than another
+  // as far as the step may grow: without forces all numbers of values are equivalent
 
   for (const double small : {0.0, 1e-30, 1e-20}) {
     EXPECT_EQ(next({small, small, small}, 0.1).values, 8);
@@ -353,7 +353,7 @@ TEST(StepControl, AStepThatFails)
   EXPECT_DOUBLE_EQ(control.repeat(nan, 0.1, 8, before).step, 0.1 * StepControl::SHRINK_FAILED);
   EXPECT_LT(control.repeat(1.0001e-6, 0.1, 8, before).step, 0.09);
 
-  // a failure soon after another one: the last row is of no use
+  // a failure soon after another one: the last row is unusable
 
   EXPECT_LE(control.repeat(1.0001e-6, 0.1, 8, soon).step, 0.1 * StepControl::SHRINK);
   EXPECT_EQ(control.repeat(1.0001e-6, 0.1, 8, soon).values, 7);
@@ -366,17 +366,17 @@ TEST(StepControl, AStepThatFails)
 
 TEST(StepControl, EvenSteps)
 {
-  EXPECT_EQ(even_step(0.1, 1.01), 0.1);    // far away
+  EXPECT_EQ(even_step(0.1, 1.01), 0.1);    // far in the future
   EXPECT_DOUBLE_EQ(even_step(0.1, 0.35), 0.35 / 4);
   EXPECT_DOUBLE_EQ(even_step(0.1, 0.1), 0.1);
-  EXPECT_DOUBLE_EQ(even_step(0.1, 0.3), 0.1);    // rounding makes no fourth step
+  EXPECT_DOUBLE_EQ(even_step(0.1, 0.3), 0.1);    // rounding does not cause a fourth step
   EXPECT_DOUBLE_EQ(even_step(0.1, 0.02), 0.02);
 }
 
 TEST(StepControl, AFailedStepLeavesNoTrace)
 {
-  // a step that is far too long, repeated until it holds, and the same motion that met the last length
-  // at once
+  // a step that is far too long, repeated until it is accepted, compared with the same motion with
+  // the final length from the beginning
   Following body(SECOND, 1e-9, 0.1), other(SECOND, 1e-9, 0.1);
   for (int n = 0; n < 20; ++n) {
     body.follow(body.step());
@@ -392,7 +392,7 @@ TEST(StepControl, AFailedStepLeavesNoTrace)
   other.step();
   EXPECT_EQ(other.repeated, 0);
   EXPECT_LT(Check::largest_difference(body.rows(), other.rows(), 3 * body.scheme.width()),
-            1e-11);    // but for the rounding of several changes of the step
+            1e-11);    // up to the rounding of several changes of the step
 }
 
 TEST(StepControl, TheErrorFollowsEps)
@@ -418,8 +418,8 @@ TEST(StepControl, TheErrorFollowsEps)
 
 TEST(StepControl, RoundedCoordinatesMakeNoStepShorter)
 {
-  // an ellipse about a charge at 100 from the origin, down to a distance of 0.005: the energy is known
-  // to 4e-10 there, and a step that is made for less is of no use
+  // an ellipse about a charge at 100 from the origin, down to a distance of 0.005: the energy is
+  // known to 4e-10 there, and a smaller tolerance is useless
   const double nearest = 0.005, far = 100.0;
   RigidBody body = {1.0, {1.0, 1.0, 1.0}};
   BodyState start = {};
@@ -461,8 +461,8 @@ TEST(StepControl, RoundedCoordinatesMakeNoStepShorter)
 
 TEST(StepControl, EncountersKeepTheEnergy)
 {
-  // the first 2000 of case 1, with a dozen of encounters; a step as long as the mean one loses ten
-  // thousand times as much
+  // the first 2000 of case 1, with a dozen close encounters; fixed steps of the mean length have an
+  // error ten thousand times as large
   for (Formulation formulation : {FIRST, SECOND}) {
     Following body(formulation, 1e-13, 0.1);
     EXPECT_LT(body.run(2000.0), 1e-8);

@@ -1,5 +1,6 @@
-/* gear_quat_tuned.h and gear_quat_limits.h: the order conditions, against the characteristic equation
-   in exact fractions; every tuned set, whatever its numbers; and what random forces make of it. */
+/* gear_quat_tuned.h and gear_quat_limits.h: the order conditions, compared with the characteristic
+   equation in exact fractions; every tuned set, for any numbers; and its response to random
+   forces. */
 
 #include "gear_quat_limits.h"
 #include "oracles/characteristic.h"
@@ -48,7 +49,7 @@ Exact gear(Formulation formulation, int n)
   return c;
 }
 
-/// What the kernel makes of the rows from the order on.
+/// The rows from the order on, completed by the kernel.
 Coefficients completed(Formulation formulation, const Exact &c)
 {
   TunedSet set = {formulation, {}, {}};
@@ -66,7 +67,8 @@ bool near(const Coefficients &found, const Exact &right)
   return found.size() == right.size();
 }
 
-/// Powers that order asks to vanish do, up to rounding; c0_free: those that c_0 does not enter.
+/// True if the powers required by the order vanish, up to rounding; c0_free: those independent of
+/// c_0.
 bool has_order(const Coefficients &c, int order, bool c0_free = false)
 {
   const int n = int(c.size()), last = order == 1 ? (c0_free ? n - 1 : n) : (c0_free ? n : n + 1);
@@ -76,8 +78,8 @@ bool has_order(const Coefficients &c, int order, bool c0_free = false)
   });
 }
 
-/// Coefficients that order determines are refused if they are 1 % off, and those of the tail unless
-/// the conditions do not contain them (the oracle tells).
+/// Coefficients determined by the order are rejected if they are 1 % off, and coefficients of the
+/// tail too, unless the conditions do not contain them (according to the oracle).
 void refuses_one_percent(const Exact &right, int order, bool c0_free = false)
 {
   const int n = int(right.size());
@@ -99,7 +101,7 @@ void refuses_one_percent(const Exact &right, int order, bool c0_free = false)
   }
 }
 
-/// The fraction that a decimal or a quotient of small numbers stands for.
+/// The fraction represented by a decimal or by a quotient of small numbers.
 Rational rational_of(long double x)
 {
   Rational::Integer h[2] = {1, 0}, k[2] = {0, 1};    // convergents of the continued fraction
@@ -133,7 +135,7 @@ TEST(OrderConditions, MakeGearsCoefficientsOfGearsTails)
 
 TEST(OrderConditions, AreThoseOfTheCharacteristicEquation)
 {
-  // tails anywhere near Gear's; the oracle solves for the other coefficients exactly
+  // tails near Gear's; the oracle solves for the other coefficients exactly
   for (const Formulation formulation : {FIRST, SECOND})
     for (int n = fewest(formulation); n <= most(formulation); ++n)
       for (const int shift : {-1, 1, 2}) {
@@ -212,11 +214,11 @@ TEST(TunedSets, NoneMeansAnError)
   EXPECT_NO_THROW(Integrator(tuned(scheme_of(SECOND, tuned_values(SECOND).front())), 0.1));
 }
 
-// --- what they do
+// --- their properties
 
 namespace {
 
-/// The exponent of the error, where it is far from both rounding and the largest steps.
+/// The exponent of the error, far from both rounding and the largest steps.
 double slope_seen(const Scene &scene, const Scheme &scheme)
 {
   vector<double> h, e;
@@ -236,7 +238,7 @@ double slope_seen(const Scene &scene, const Scheme &scheme)
 TEST(TunedOrders, PositionOfTheOscillator)
 {
   for (const Scheme &scheme : tuned_schemes()) {
-    if (scheme.values() < 5) continue;    // no step here has a small error
+    if (scheme.values() < 5) continue;    // errors are large for all of these steps
     EXPECT_GT(slope_seen(oscillator(200.0), scheme), scheme.order() - 0.5) << scheme;
     EXPECT_LT(slope_seen(oscillator(200.0, 1.01), scheme), 0.5) << scheme;
   }
@@ -253,7 +255,8 @@ TEST(TunedOrders, OrientationOfTheFreeTop)
 
 namespace {
 
-/// Estimated by true local error of the position of the swinging top, root mean squares over a run.
+/// Ratio of estimated and true local error of the position of the oscillating top, root mean
+/// squares over a run.
 double estimated_by_true(const Scheme &scheme, double h)
 {
   const Oracle::ExactFlow flow(TOP, swing);
@@ -274,7 +277,7 @@ double estimated_by_true(const Scheme &scheme, double h)
 TEST(TunedEstimates, AreTheLocalErrorOrAboveIt)
 {
   for (const Scheme &scheme : tuned_schemes(2)) {
-    if (scheme.values() > 9) continue;    // rounding of the state is near
+    if (scheme.values() > 9) continue;    // rounding of the state is close
     const double h = scheme.values() > 7 ? 0.12 : 0.1, wide = estimated_by_true(scheme, h);
     if (scheme.first()) {    // an estimate of one order less
       EXPECT_GT(wide, 1.0) << scheme;
@@ -290,7 +293,7 @@ TEST(TunedEstimates, AreTheLocalErrorOrAboveIt)
 
 namespace {
 
-/// Mean square change of the velocity in a step under random forces, by that of the kicks alone.
+/// Mean square change of the velocity in a step under random forces, relative to the kicks alone.
 double measured_gain(const Scheme &scheme)
 {
   std::mt19937 random(4711);

@@ -1,4 +1,4 @@
-/* Bodies under one Nose-Hoover chain: `Host` takes the place of gear_quat_thermostat and _bootstrap. */
+/* Bodies with one Nose-Hoover chain: `Host` replaces gear_quat_thermostat and the start. */
 
 #pragma once
 
@@ -41,13 +41,13 @@ struct Host {
     return sum;
   }
 
-  /// What the bodies and the chain have but for potential energy.
+  /// Energy of the bodies and the chain without the potential energy.
   double kinetic_and_chain() const
   {
     return 0.5 * twice_kinetic() + (length ? chain.energy(target_of(time())) : 0.0);
   }
 
-  /// All bodies and the chain as the host of find_start().
+  /// All bodies and the chain, as the host of find_start().
   struct Search {
     Host &our;
     const Collocation &collocation;
@@ -159,16 +159,16 @@ struct Host {
     }
   }
 
-  /// Steps are longer by this factor from now on.
+  /// Multiplies the step by this factor from now on.
   void change_step(double ratio)
   {
-    steps = std::lround(time() / (h * ratio));    // targets that move are not meant
+    steps = std::lround(time() / (h * ratio));    // not for targets that move
     h *= ratio;
     integrator.set_step(h);
     for (auto &one : rows) integrator.rescale(one.data(), ratio);
   }
 
-  /// Calls what watches after each step.
+  /// Calls watch() after each step.
   template <class Watch> void run(double until, Watch watch)
   {
     start();
@@ -186,7 +186,7 @@ inline TargetOf constant_target(double kt, double freedoms, double period)
   };
 }
 
-/// Solution of y' = f(t, y) at a time by the classical Runge-Kutta method in long double.
+/// Solution of y' = f(t, y) at a time by the classical Runge-Kutta method, in long double.
 template <size_t N, class F>
 std::array<long double, N> runge_kutta(F f, std::array<long double, N> y, long double until,
                                        int steps)

@@ -1,5 +1,5 @@
-/* Two asymmetric bodies tied to each other and to the origin by springs, at sites off their centers: a scene
-   of the tests of bodies that are corrected together. */
+/* Two asymmetric bodies tied to each other and to the origin by springs, at sites off their
+   centers, for the tests of couplings. */
 
 #pragma once
 
@@ -50,7 +50,7 @@ inline Springs springs(const vector<BodyState> &states)
   return all;
 }
 
-/// What a host asks for.
+/// The loads requested by a host.
 inline vector<Load> loads(const vector<BodyState> &states)
 {
   return springs(states).loads;

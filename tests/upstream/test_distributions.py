@@ -1,4 +1,4 @@
-"""What pip installs: a wheel and a source distribution, each in a fresh environment.
+"""The distributions for pip: a wheel and a source distribution, each in a fresh environment.
 
 Minutes, most of them pip's; `tests/run upstream` runs it.
 """

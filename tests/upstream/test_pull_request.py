@@ -1,8 +1,8 @@
-"""What LAMMPS' developers and their continuous integration would do with the pull request.
+"""The checks of LAMMPS' developers and their continuous integration, applied to the pull request.
 
-The patch is applied to the newest release, which ``tests/run upstream`` names in GEARQUAT_UPSTREAM; then come
-LAMMPS' own checks, manual, builds and unit tests. A planted fault shows that each check looks at the package.
-An hour of one core if nothing is in the compiler cache.
+The patch is applied to the newest release, which ``tests/run upstream`` names in GEARQUAT_UPSTREAM, followed by
+LAMMPS' own checks, manual, builds and unit tests. A deliberate error shows that each check examines the package.
+This takes an hour on one core with an empty compiler cache.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def tree(release: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def docenv(release: Path) -> Path:
-    """What LAMMPS' manual is built with; kept in build, for it takes minutes."""
+    """The environment for building LAMMPS' manual; kept in build, since it takes minutes."""
     utils, folder = release / "doc" / "utils", ROOT / "build" / "upstream" / "docenv"
     # LAMMPS takes sphinx-fortran from a branch on GitHub; the released one reads in one process
     wanted = [line for line in (utils / "requirements.txt").read_text().splitlines() if "git+" not in line]
@@ -68,7 +68,7 @@ def docenv(release: Path) -> Path:
 
 
 def make(tree: Path, target: str, docenv: Path) -> tuple[int, str]:
-    """``make check-whitespace`` in src, ``make style_check`` in doc: exit code and what was said."""
+    """``make check-whitespace`` in src, ``make style_check`` in doc: exit code and output."""
     where = "src" if target.startswith("check-") else "doc"
     # a folder for MathJax keeps make from cloning it; the finished pages alone load it
     (tree / "doc/utils/sphinx-config/_static/mathjax").mkdir(exist_ok=True)
@@ -112,7 +112,7 @@ def test_examples_are_complete_and_speak_of_nothing_else(tree):
 
 
 def test_entries_that_only_a_clone_needs(release, tmp_path):
-    """Distributors leave these two files out of what they publish."""
+    """Distributors omit these two files from their packages."""
     clone = tmp_path / "lammps"
     (clone / ".github").mkdir(parents=True)
     for part in ("cmake", "doc"):
@@ -178,7 +178,7 @@ def test_checks_pass_and_look(tree, docenv, target):
 
 
 def test_manual(tree, docenv):
-    """All pages, without a warning other than that of sphinx-fortran about itself."""
+    """All pages, without a warning other than one of sphinx-fortran about itself."""
     code, said = make(tree, "html", docenv)
     page = tree / "doc" / "html" / "fix_gear_quat.html"
     assert code == 0 and page.exists(), said[-5000:]

@@ -20,6 +20,8 @@ WITHIN_MOLECULE = {
     "spce": 332.06371 * 0.4238**2 * (1 / (2 * math.sin(math.radians(109.47) / 2)) - 4),
     "tip4p": 0.0,
 }
+#: standard errors that a comparison of time steps needs: K, g/mL (3e-4 of the density), kcal/mol (0.02 kJ/mol)
+NEEDED = {"T translation − T rotation": 0.3, "density": 3e-4, "potential energy": 0.02 / 4.184}
 #: number of values that are compared with expected ones; it determines the largest deviation allowed
 COMPARED = 6
 
@@ -106,6 +108,23 @@ def table(found):
     return Table((*header, "compressibility, 1/GPa"), rows)
 
 
+def duration(samples, read, error):
+    """Nanoseconds after which the standard error of ``read(sample)`` is ``error``: it falls with their square root."""
+    return sum(sample.ps for sample in samples) / 1000 * (mean(samples, read)[1] / error) ** 2
+
+
+def durations(found):
+    """Length of each series at 1 atm that is required for the errors NEEDED, in ns."""
+    rows = []
+    for series, samples in found.items():
+        if series.pressure == 1.0 and samples:
+            cells = [f"{duration(samples, read, error):.2g}" for read, error in zip((warmer, density, energy), NEEDED.values())]
+            rows.append([MODELS[series.model].title, series.text, *cells])
+    units = ("K", "g/mL", "kcal/mol")
+    header = [f"{name}, ± {error:.2g} {unit}" for (name, error), unit in zip(NEEDED.items(), units)]
+    return Table(("model", "method and step", *header), rows)
+
+
 def measurements(found):
     """Measurements with their bounds."""
     rows = []
@@ -146,7 +165,7 @@ def find(samples):
     ]
     context["pressures"] = [series.pressure for series in COMPRESSED]
     context["commits"] = sorted({s.commit for s in samples})
-    return Finding(measurements(found), {"water": table(found)}, context=context)
+    return Finding(measurements(found), {"water": table(found), "durations": durations(found)}, context=context)
 
 
 STUDY = Study("water", "Water at constant pressure", 3600.0, measure, find)

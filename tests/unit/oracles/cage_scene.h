@@ -1,6 +1,6 @@
-/* The paper's scene: one body of four sites in a cage of 26 fixed spheres (Pratt & Bin Mohamad
-   Zaini, Tables 3 to 6).  The charges of the cage are not printed: the pattern here is
-   RECONSTRUCTED; it reproduces both total energies the paper prints. */
+/* The paper's test system: one body of four sites in a cage of 26 fixed spheres (Pratt & Bin
+   Mohamad Zaini, Tables 3 to 6).  The paper does not list the charges of the cage: the pattern here
+   is RECONSTRUCTED; it reproduces both total energies in the paper. */
 
 #pragma once
 
@@ -14,7 +14,7 @@ using namespace LAMMPS_NS::GearQuat;
 struct CageScene {
   RigidBody body;
   BodyState start;
-  double site_body[4][3];    ///< along the axes the moments belong to, from the center of mass
+  double site_body[4][3];    ///< along the axes of the moments, from the center of mass
   double site_charge[4] = {-0.25, -0.25, -0.5, 1.0};
   double site_sigma[4] = {1.0, 1.0, 4.0, 10.0};
   double site_epsilon[4] = {0.0, 0.0, 0.0, 10.0};
@@ -88,7 +88,7 @@ struct CageScene {
     return energy;
   }
 
-  /// Sites from their center of mass, in the axes they are listed in, and their tensor of inertia.
+  /// Sites from their center of mass, in the axes of the list, and their inertia tensor.
   static void listed_sites(double offset[4][3], double tensor[9])
   {
     const double site[4][3] = {{3, -4, 0}, {-3, -4, 0}, {0, 0, 0}, {0, 0, 12}};
@@ -112,7 +112,7 @@ struct CageScene {
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-          const int sign = z ? z : (y ? y : -x);    // the first of (z, y, -x) that is not zero
+          const int sign = z ? z : (y ? y : -x);    // the first of (z, y, -x) that is nonzero
           if (sign == 0) continue;
           cage[n][0] = 100.0 * x;
           cage[n][1] = 100.0 * y;
@@ -121,7 +121,7 @@ struct CageScene {
         }
   }
 
-  /// axes: rows are the axes of site_body in those the sites are listed in.
+  /// axes: rows are the axes of site_body, in the axes of the list.
   void build_body(bool consistent, double axes[9])
   {
     double offset[4][3], tensor[9];

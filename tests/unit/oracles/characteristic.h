@@ -1,14 +1,15 @@
 /* The characteristic equation of a corrector for y' = s y or y'' = s^2 y with the step 1, as a
-   power series in s, where the principal root is e^s; exact with an exact R, or in floating point.
+   power series in s whose principal root is e^s; exact if R is exact, or in floating point.
 
-   With rows Y lambda^n and forces at the predicted y, (lambda - P) Y = c r, r the residual, P Pascal's
-   triangle.  Elimination of r leaves, with R = (lambda - P)^-1 and e_j the unit rows,
+   With rows Y lambda^n and forces at the predicted y, (lambda - P) Y = c r, where r is the residual
+   and P Pascal's triangle.  Eliminating r gives, with R = (lambda - P)^-1 and the unit rows e_j,
 
      y'  = s y      s c_0 + lambda (e_1 - s e_0) R c = 0
      y'' = s^2 y    s^2/2 c_0 + lambda (e_2 - s^2/2 e_0) R c = 0
 
-   and R = sum_k (P - 1)^k / (lambda - 1)^(k+1), which a factor (lambda - 1)^N makes a power series.
-   A method of order p leaves s^(p+1) and higher powers (y'), or s^(p+2) and higher ones (y''). */
+   and R = sum_k (P - 1)^k / (lambda - 1)^(k+1), which becomes a power series with a factor (lambda
+   - 1)^N. For a method of order p, s^(p+1) and higher powers remain (y'), or s^(p+2) and higher
+   ones (y''). */
 
 #pragma once
 
@@ -17,7 +18,7 @@
 
 namespace Oracle {
 
-/// Power series in s, ascending, cut off behind `terms`.
+/// Power series in s, ascending, truncated after `terms`.
 template <class R> std::vector<R> product(const std::vector<R> &a, const std::vector<R> &b)
 {
   std::vector<R> c(a.size());
@@ -26,7 +27,7 @@ template <class R> std::vector<R> product(const std::vector<R> &a, const std::ve
   return c;
 }
 
-/// e^s to `terms` terms, from the given constant one on.
+/// e^s to `terms` terms, from the given constant term on.
 template <class R> std::vector<R> exponential(R constant, int terms)
 {
   std::vector<R> e = {constant};
@@ -70,8 +71,8 @@ template <class R> std::vector<R> characteristic(const std::vector<R> &c, int or
   return found;
 }
 
-/// N coefficients with the rows from `order` on given, and those below as order asks: powers up to
-/// s^N (y') or s^(N+1) (y'') vanish.
+/// N coefficients with the rows from `order` on given, and the lower ones determined by the order:
+/// powers up to s^N (y') or s^(N+1) (y'') vanish.
 template <class R> std::vector<R> with_head(std::vector<R> c, int order)
 {
   const int n = int(c.size());

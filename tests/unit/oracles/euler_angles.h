@@ -28,7 +28,7 @@ inline Matrix transposed(const Matrix &a)
   return t;
 }
 
-/// Components of a fixed vector in axes turned by `angle` about axis 0, 1 or 2.
+/// Components of a fixed vector in axes rotated by `angle` about axis 0, 1 or 2.
 inline Matrix turned_axes(int axis, long double angle)
 {
   const int j = (axis + 1) % 3, k = (axis + 2) % 3;

@@ -1,6 +1,7 @@
-/* Where a body is after a time h, from any state and under any load, to the digits of the load:
-   modified midpoint steps extrapolated to none (Gragg, Bulirsch & Stoer), extended precision.  The
-   equations of motion are written down here once more; nothing of the kernel integrates. */
+/* The state of a body after a time h, from any state and under any load, to the accuracy of the
+   load: modified midpoint steps extrapolated to zero (Gragg, Bulirsch & Stoer), in extended
+   precision.  The equations of motion are implemented independently; no integrator of the kernel is
+   used. */
 
 #pragma once
 
@@ -22,7 +23,7 @@ class ExactFlow {
 
   ExactFlow(const RigidBody &body, const LoadOf &load) : body(body), load(load) {}
 
-  /// Good while h is a fraction of a radian of the fastest motion.
+  /// Accurate while h is a fraction of a radian of the fastest motion.
   BodyState operator()(const BodyState &start, double h) const
   {
     const Vector y0 = packed(start);
@@ -90,7 +91,7 @@ class ExactFlow {
     return d;
   }
 
-  /// n steps of h/n, without the final smoothing: errors in even powers of h/n.
+  /// n steps of h/n, without the final smoothing: errors are even powers of h/n.
   Vector midpoint(const Vector &y0, long double h, int n) const
   {
     const long double step = h / n;

@@ -3,8 +3,8 @@
    section 37; Goldstein, x-convention).  Extended precision; moments all different, separatrix
    (2 E I_middle = L^2) excluded.  Kernel headers are not used.
 
-   Roles: a = the extreme axis omega never leaves (dn), b = the other extreme (cn), m = the middle
-   one (sn).  2 E I_m < L^2: a is the largest moment; otherwise the smallest. */
+   Roles: a = the extreme axis that omega stays close to (dn), b = the other extreme (cn), m = the
+   middle one (sn).  If 2 E I_m < L^2, a has the largest moment; otherwise the smallest. */
 
 #pragma once
 

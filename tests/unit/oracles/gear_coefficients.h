@@ -1,11 +1,11 @@
-/* Gear's corrector coefficients derived from what they are for, in exact fractions.
+/* Gear's corrector coefficients, derived from their conditions, in exact fractions.
 
-   The higher rows come from the roots of the corrector's polynomial: -1, -2, ..., -(N-2) for the
-   first-order equation.  Row 0 (and, for the second-order equation, row 1) comes from weights of
+   The higher rows follow from the roots of the corrector's polynomial: -1, -2, ..., -(N-2) for the
+   first-order equation.  Row 0 (and, for the second-order equation, row 1) follows from weights of
    integration: Adams-Bashforth's, Stoermer's (positions alone, two steps) and Nystroem's (position
-   from the velocity at hand, one step).
+   from the present velocity, one step).
 
-   What a set of coefficients must do is stated apart from these closed forms: predict_correct.h. */
+   The conditions for a set of coefficients are tested separately, in predict_correct.h. */
 
 #pragma once
 
@@ -75,30 +75,31 @@ inline Rational weighted(Exact p, int sign)
   return -integral_to_zero(multiply({1, -1}, p), 1);
 }
 
-/// c_0 where the right side sees positions only: twice Stoermer's weight, that of
-/// x(h) - 2 x(0) + x(-h) = h^2 sum_k sigma_k (backward difference of order k).
+/// c_0 for right-hand sides of positions alone: twice Stoermer's weight in x(h) - 2 x(0) + x(-h) =
+/// h^2 sum_k sigma_k (backward difference of order k).
 inline Rational position_c0(int values)
 {
   const Exact p = backward_difference(values - 1);
   return Rational(2) * (weighted(p, 1) + weighted(p, -1));
 }
 
-/// c_0 where the velocity row must hold its own: twice Nystroem's weight, that of
-/// x(h) = x(0) + h v(0) + h^2 sum_k nu_k (backward difference of order k), of one order less.
+/// c_0 for right-hand sides of velocities: twice Nystroem's weight, of one order less, in x(h) =
+/// x(0) + h v(0) + h^2 sum_k nu_k (backward difference of order k).
 inline Rational velocity_c0(int values)
 {
   return Rational(2) * weighted(backward_difference(values - 2), 1);
 }
 
-/// What a residual says of the error of row 0, first-order equation: by how much c_0 differs from that
-/// of one value less, as one integral: Adams-Bashforth's weight of order N - 2 less that of N - 1.
+/// Weight of a residual in the error of row 0, first-order equation: the difference between c_0 and
+/// the one for one value less, as one integral, Adams-Bashforth's weight of order N - 2 minus order
+/// N - 1.
 inline Rational first_order_error(int values)
 {
   return integral_to_zero(multiply(rising(values - 2), {0, Rational(-1, values - 1)}), -1);
 }
 
-// What a step with N values adds to row 0 beyond the exact motion from where it began, as long as the
-// highest derivatives are steady.
+// The change of row 0 in a step with N values minus the exact change from the same initial values,
+// if the highest derivatives are constant.
 
 /// First-order equation: this times h^(N + 1) y^(N + 1), Moulton's weight of order N.
 inline Rational first_order_local_error(int values)
@@ -106,8 +107,8 @@ inline Rational first_order_local_error(int values)
   return first_order(values)[0] - first_order(values + 1)[0];
 }
 
-/// Second-order equation: this times h^N y^(N)/2, by way of the velocity row; twice Moulton's weight
-/// of order N - 1.  The residual is h^N y^(N)/2 itself, so this is its weight too.
+/// Second-order equation: this times h^N y^(N)/2, through the velocity row; twice Moulton's weight
+/// of order N - 1.  The residual is h^N y^(N)/2 itself, so this is also its weight.
 inline Rational second_order_local_error(int values)
 {
   return Rational(2) * first_order_local_error(values - 1);

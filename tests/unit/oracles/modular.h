@@ -1,5 +1,6 @@
-/* Fractions modulo the prime 2^61 - 1.  What is not zero here is not zero: unlike exact fractions
-   they never grow, so a wrong set of coefficients can be refuted after any number of steps. */
+/* Fractions modulo the prime 2^61 - 1.  A number that is nonzero here is nonzero: unlike exact
+   fractions they never grow, so a wrong set of coefficients can be rejected after any number of
+   steps. */
 
 #pragma once
 

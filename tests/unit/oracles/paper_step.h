@@ -1,7 +1,7 @@
-/* One step of the paper, literally: derivatives instead of a Nordsieck history, Taylor's series
-   with factorials (Eq. 11), corrections as printed (Eqs. 13 to 18 and the lines below them), W and
-   A as matrices.  Further passes begin from what is corrected so far, with the force and the torque
-   along the body axes of the first.  Extended precision, no kernel header. */
+/* One step of the paper, literally: derivatives instead of a Nordsieck history, Taylor series with
+   factorials (Eq. 11), corrections as printed (Eqs. 13 to 18 and the lines below them), W and A as
+   matrices.  Further passes start from the corrected values, with the force and the body-frame
+   torque of the first pass.  Extended precision, no kernel header. */
 
 #pragma once
 
@@ -68,7 +68,7 @@ struct PaperStep {
             x * z + y * s,         y * z - x * s,         z * z + s * s - n / 2};
   }
 
-  /// Eqs. 8, 10 and 7; q: the pose at which the torque was met.
+  /// Eqs. 8, 10 and 7; q: the pose at which the torque was evaluated.
   void angular_acceleration(const Real *q, const Real *w, Real *wdot) const
   {
     const Real n = norm2(q);

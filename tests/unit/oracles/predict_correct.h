@@ -1,11 +1,11 @@
-/* Predict-correct in exact fractions: what a set of corrector coefficients does, and the judgement
-   whether it does what the method promises.  Nothing here knows the right coefficients.
+/* The predictor-corrector in exact fractions, for any set of coefficients, and a test of the
+   properties of the method.  The correct coefficients are not used here.
 
-   Fed with exact right sides on y = t^d (step 1), the errors of the rows obey
+   With exact right-hand sides for y = t^d (step 1), the errors of the rows obey
      e(n+1) = (I - c e_k^T) (P e(n) - b(n)),
-   k the order of the equation, P Pascal's triangle, b the part of y that N rows cannot hold.
+   with the order k of the equation, Pascal's triangle P, and the part b of y beyond N rows.
 
-   R: Rational proves what holds; Modular proves what does not, where fractions grow too long. */
+   R: Rational proves equality; Modular proves inequality, where fractions become too long. */
 
 #pragma once
 
@@ -42,7 +42,8 @@ template <class R> R power_row(int degree, int j, int t)
   return row;
 }
 
-/// The errors of the rows after one step from time t, exact right side, y = t^degree.
+/// The errors of the rows after one step from time t, with an exact right-hand side and y =
+/// t^degree.
 template <class R>
 Row<R> error_step(const Row<R> &c, int order, int degree, int t, const Row<R> &error)
 {
@@ -62,8 +63,9 @@ Row<R> error_after(const Row<R> &c, int order, int degree, int from, int steps, 
   return error;
 }
 
-/// Does an error of the rows from `order` upwards vanish in as many steps as there are such rows?
-/// A characteristic polynomial has as many coefficients as there are such c_j: one set alone fits.
+/// True if an error of the rows from `order` on vanishes in as many steps as there are such rows.
+/// A characteristic polynomial has as many coefficients as there are such c_j, so only one set
+/// fits.
 template <class R> bool higher_rows_are_nilpotent(const Row<R> &c, int order)
 {
   const int n = int(c.size());
@@ -74,7 +76,7 @@ template <class R> bool higher_rows_are_nilpotent(const Row<R> &c, int order)
       e = pascal_predict(e);
       const R residual = -e[order];
       for (int j = 0; j < n; ++j) e[j] = e[j] + c[j] * residual;
-      for (int j = 0; j < order; ++j) e[j] = 0;    // watch the higher rows alone
+      for (int j = 0; j < order; ++j) e[j] = 0;    // only the higher rows
     }
     for (const R &left : e)
       if (left != R(0)) return false;
@@ -82,7 +84,7 @@ template <class R> bool higher_rows_are_nilpotent(const Row<R> &c, int order)
   return true;
 }
 
-/// First-order equation: after the higher rows have settled, y = t^N gathers no error.
+/// First-order equation: after the higher rows have settled, y = t^N accumulates no error.
 template <class R> bool first_order_keeps_degree_n(const Row<R> &c)
 {
   const int n = int(c.size());
@@ -90,8 +92,8 @@ template <class R> bool first_order_keeps_degree_n(const Row<R> &c)
   return error_step(c, 1, n, n, settled) == settled;
 }
 
-/// Second-order equation: after the higher rows have settled, the velocity row of y = t^N gathers
-/// no error.
+/// Second-order equation: after the higher rows have settled, the velocity row of y = t^N
+/// accumulates no error.
 template <class R> bool velocity_row_keeps_degree_n(const Row<R> &c)
 {
   const int n = int(c.size());
@@ -99,8 +101,8 @@ template <class R> bool velocity_row_keeps_degree_n(const Row<R> &c)
   return error_step(c, 2, n, n, settled)[1] == settled[1];
 }
 
-/// c_0 of the position kind: on y = t^(N+1) the error of the position row grows no faster than the
-/// error of one step does (its second difference vanishes), with the velocity row left to itself.
+/// c_0 for positions: for y = t^(N+1) the error of the position row grows no faster than the error
+/// of one step (its second difference vanishes), while the velocity row is free.
 template <class R> bool position_row_keeps_degree_n_plus_1(const Row<R> &c)
 {
   const int n = int(c.size());
@@ -109,7 +111,7 @@ template <class R> bool position_row_keeps_degree_n_plus_1(const Row<R> &c)
   return d[0] - b[0] == b[0] - a[0];
 }
 
-/// c_0 of the velocity kind: with the velocity row exact, y = t^N gathers no error of position.
+/// c_0 for velocities: if the velocity row is exact, y = t^N accumulates no error of position.
 template <class R> bool exact_velocity_keeps_degree_n(const Row<R> &c)
 {
   const int n = int(c.size());

@@ -1,4 +1,4 @@
-/* Exact fractions of 128-bit integers.  An overflow throws: a result is exact or there is none. */
+/* Exact fractions of 128-bit integers.  An overflow throws: a result is either exact or missing. */
 
 #pragma once
 
@@ -19,7 +19,7 @@ class Rational {
     den = sign * d / g;
   }
 
-  // cross factors are taken out first, so that only a result that is truly too large overflows
+  // cancels common factors first, so that an overflow occurs only if the result is too large
 
   Rational operator*(const Rational &o) const
   {

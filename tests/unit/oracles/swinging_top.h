@@ -1,5 +1,5 @@
-/* A free asymmetric top whose center of mass swings, x'' = -x: everything about it is known, and so
-   are the exact rows of a history. */
+/* A free asymmetric top whose center of mass oscillates, x'' = -x.  The exact motion is known, and
+   so are the exact rows of a history. */
 
 #pragma once
 
@@ -16,7 +16,7 @@ using namespace LAMMPS_NS::GearQuat;
 constexpr long double MOMENTS[3] = {3.0L, 2.0L, 1.2L};
 inline const RigidBody TOP = {2.0, {3.0, 2.0, 1.2}};
 
-/// A top that swings as a whole: x'' = -x, free rotation.  Everything about it is known.
+/// An oscillating free top: x'' = -x, free rotation, with a known solution.
 inline BodyState top_state(double t)
 {
   const double q0[4] = {0.1, -0.3, 0.5, 0.8}, w0[3] = {1.0, 0.4, 0.5};

@@ -1,5 +1,5 @@
-/* Taylor coefficients of a free body's attitude and angular velocity, from the recurrences that
-   Euler's equations and qdot = 1/2 q omega give; extended precision, no kernel header. */
+/* Taylor coefficients of a free body's attitude and angular velocity, from the recurrences of
+   Euler's equations and qdot = 1/2 q omega; extended precision, no kernel header. */
 
 #pragma once
 
