@@ -124,7 +124,7 @@ def calibration(results):
         rates, errors = np.transpose([pair for pair in found if math.isfinite(pair[0])])
         ratios.append(np.sum(rates**2) / np.sum(errors**2))
     return Measurement(
-        f"{NAMES[NVE_SMALL]}, all liquids: size of drift by standard error, root mean squares",
+        f"{NAMES[NVE_SMALL]}, all liquids: size of drift over standard error, root mean squares",
         float(np.sqrt(np.mean(ratios))),
         spec=".1f",
     )
