@@ -201,6 +201,17 @@ def test_every_link_leads_somewhere(page):
     assert [link for link in links if not (path.parent / link).exists()] == []
 
 
+def test_numbers_at_the_head_of_the_readme_are_on_the_pages_that_it_links():
+    head = (ROOT / "README.md").read_text().partition("\n## ")[0]
+    claims = re.findall(r"^- \*\*.*?\(\[[^]]*\]\((doc/[^)#]*)[^)]*\)\)", head, re.M | re.S)
+    texts = re.findall(r"^- \*\*.*?(?=\n\n|\n- \*\*)", head, re.M | re.S)
+    assert len(claims) == len(texts) == 3
+    for page, text in zip(claims, texts):
+        numbers = re.findall(r"[-+]?\d+(?: \d{3})*\.?\d*(?:e-\d+)?", re.sub(r"\(doc/.*|\d+ fs and 1 atm", "", text))
+        on_page = (ROOT / page).read_text().replace("1e-07", "1e-7")
+        assert numbers and [number for number in numbers if number not in on_page] == [], page
+
+
 def test_every_file_that_a_page_names_exists():
     """Tests and sources; names without a folder are of tests/lammps or of the package."""
     folders = [ROOT, ROOT / "tests" / "lammps", SOURCES, tree_source() / "src"]
