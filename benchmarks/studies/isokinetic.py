@@ -1,8 +1,7 @@
-"""Constant kinetic energy: how well it is kept, and what configurations come of it.
+"""Constant kinetic energy: its conservation, and the configurations of water.
 
-Long runs of a few tied bodies (``examples/isokinetic/in.tethered``) show how well the kinetic energy
-is kept; short ones of rigid water (``in.isokinetic``) show what configurations come of it, beside
-fix rigid/nvt/small.
+Long runs of a few tethered bodies (``examples/isokinetic/in.tethered``) show the conservation of the kinetic energy.
+Short runs of rigid water (``in.isokinetic``) compare configurations with fix rigid/nvt/small.
 """
 
 import itertools
@@ -31,9 +30,9 @@ KILOJOULES = 4.184 / MOLECULES
 
 #: largest relative change of a rescaled kinetic energy
 MOST_RESCALED = 1e-13
-#: by how much the order of the drift may fall short of the number of values
+#: the order of the drift may be smaller than the number of values by this
 ORDER_SLACK = 0.5
-#: bins with less are empty: no pair of oxygens comes as close
+#: bins with smaller g(r) are empty, because no pair of oxygens is so close
 LEAST_DISTRIBUTION = 0.05
 
 
@@ -52,7 +51,7 @@ class Plan:
 
     @property
     def block(self):
-        """Steps of water in a block; as many come before the first."""
+        """Steps of water in a block, and steps of equilibration."""
         return self.water_steps // self.blocks
 
     @property
@@ -66,11 +65,10 @@ QUICK = Plan(drift_steps=20_000, dts=(0.05, 0.1), water_steps=400, every=10, see
 
 @dataclass(frozen=True)
 class Kept:
-    """Kinetic energy of a long run: ``time`` (n,); ``error`` (n,), relative to the start's.
+    """Kinetic energy of a long run: ``time`` (n,); ``error`` (n,), relative to the start.
 
-    ``total``: the whole kinetic energy; ``separate``: of translation and rotation whichever is
-    further off.  ``balance`` (n,): error of potential + kinetic energy + heat, relative to the
-    kinetic energy at the start.
+    With ``total`` it is the error of the total kinetic energy, with ``separate`` the larger error of translation and
+    rotation.  ``balance`` (n,): error of potential + kinetic energy + heat, relative to the initial kinetic energy.
     """
 
     time: np.ndarray
@@ -103,14 +101,14 @@ class Water:
 
 @dataclass(frozen=True)
 class Results:
-    """``kept``: (constraint, whether rescaled, step) -> Kept; ``water``: (method, seed) -> Water."""
+    """``kept``: (constraint, True if rescaled, step) -> Kept; ``water``: (method, seed) -> Water."""
 
     plan: Plan
     kept: dict
     water: dict
 
     def order(self, constraint):
-        """Power of the step with which the drift of the kinetic energy falls."""
+        """Observed order of the drift of the kinetic energy."""
         rates = [abs(self.kept[constraint, False, dt].drift[0]) for dt in self.plan.dts]
         return statistics.order(self.plan.dts, rates)
 
@@ -123,7 +121,7 @@ class Results:
         return mean_of_series([water.potential for water in self.waters(method)], self.plan.blocks)
 
     def kinetic(self, method):
-        """Mean kinetic energy of all molecules and standard deviation of one configuration's."""
+        """Mean and standard deviation of the kinetic energy of all molecules in a configuration."""
         values = np.concatenate([water.kinetic for water in self.waters(method)])
         return float(values.mean()), float(values.std())
 
@@ -152,7 +150,7 @@ def read_kept(finished, constraint):
 
 
 def read_distribution(path):
-    """Distances (bins,) and g (blocks, bins) of a file that fix ave/time wrote in mode vector.
+    """Distances (bins,) and g (blocks, bins) from a file of fix ave/time in mode vector.
 
     Raises ValueError if the file has no blocks, or blocks of unequal length.
     """
@@ -181,7 +179,7 @@ def measure_water(lab, plan):
 
 
 def measure_kept(lab, plan):
-    """(constraint, whether rescaled, step) -> Kept: every step without rescaling, the largest with."""
+    """(constraint, True if rescaled, step) -> Kept: every step without rescaling, and the largest with rescaling."""
     steps = {"values": plan.values, "steps": plan.drift_steps}
     steps["every"] = max(1, plan.drift_steps // SAMPLES)
     settings = [(False, dt) for dt in plan.dts] + [(True, plan.rescaled_dt)]
@@ -205,14 +203,14 @@ def measure(lab, plan=None):
 
 # --- judging ------------------------------------------------------------------------------------
 def energy_deviation(results, constraint):
-    """Mean energy less that of the thermostat, in standard errors; what is allowed."""
+    """Deviation of the mean energy from the thermostat, in standard errors, and its bound."""
     ours, theirs = results.energy(constraint), results.energy(THERMOSTAT)
     most = statistics.largest_deviation(ours, theirs, len(CONSTRAINTS))
     return float(deviation(ours, theirs)), most
 
 
 def compare_distributions(results, constraint):
-    """g(r) less that of the thermostat where there are pairs, (bins,); in standard errors; allowed."""
+    """Deviation of g(r) from the thermostat (bins,) in bins with pairs; the same in standard errors; its bound."""
     (_, ours), (_, theirs) = (results.distribution(of) for of in (constraint, THERMOSTAT))
     there = np.minimum(ours.value, theirs.value) > LEAST_DISTRIBUTION
     ours, theirs = (Mean(m.value[there], m.error[there], m.freedoms) for m in (ours, theirs))
@@ -256,7 +254,7 @@ def measurements(results):
 
 
 def kinetic_table(results):
-    """Drift, largest change and balance of the tied bodies by step."""
+    """Drift, largest change and balance of the tethered bodies by step."""
     plan = results.plan
     keys = [(False, dt) for dt in plan.dts] + [(True, plan.rescaled_dt)]
     columns = {

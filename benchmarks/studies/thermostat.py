@@ -1,7 +1,7 @@
-"""Averages of water at constant temperature against the step: chains in the histories, and fix rigid/nvt/small.
+"""Averages of water at constant temperature against the step, with the chains of the fix and with fix rigid/nvt/small.
 
-Long runs of two models of water with PPPM (``examples/water_nvt/in.models``) show how temperatures, pressure
-and potential energy depend on the step, how the conserved energy drifts, and what an answer costs.
+Long runs of two models of water with PPPM (``examples/water_nvt/in.models``) show the dependence of temperatures,
+pressure and potential energy on the step, the drift of the conserved energy, and the cost.
 """
 
 import itertools
@@ -31,7 +31,7 @@ QUANTITIES = {
     "potential": "potential energy, kJ/mol",
 }
 DRIFT = "drift, kT/ns/dof"
-#: equal temperatures, which is exact
+#: exact value for equal temperatures
 EQUIPARTITION = Mean(np.array(0.0), np.array(0.0), 0)
 
 
@@ -39,9 +39,9 @@ EQUIPARTITION = Mean(np.array(0.0), np.array(0.0), 0)
 class Plan:
     """Sizes of all runs; times in fs.
 
-    ``times``: length of the runs at each of ``dts``.  A short step costs more for the same time, so its
-    runs are shorter.  ``start``: length of the run of a model that leaves the start of all others, which
-    ``equilibrate`` for a while with velocities of their own.
+    ``times``: length of the runs for each of ``dts``; runs with a short step are shorter, because they cost more.
+    ``start``: length of the run of a model that provides the start of all others.  ``equilibrate``: equilibration of
+    the others, with new velocities.
     """
 
     models: tuple = tuple(MODELS)
@@ -61,12 +61,12 @@ class Plan:
 
     @property
     def finest(self):
-        """The step that the other method's answer is taken from."""
+        """The step of the other method in the comparison of averages."""
         return self.dts[0]
 
     @property
     def longest(self):
-        """The step at which an answer is compared with it."""
+        """The step of fix gear/quat in the comparison of averages."""
         return self.dts[-1]
 
 
@@ -89,7 +89,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Results:
-    """``runs``: (model, method, step, seed) -> Run; ``seconds``: (model, method, step) -> of a step, by round."""
+    """``runs``: (model, method, step, seed) -> Run; ``seconds``: (model, method, step) -> seconds per step, by round."""
 
     plan: Plan
     runs: dict
@@ -111,7 +111,7 @@ class Results:
         return unit * np.mean(rates), unit * math.hypot(*errors) / len(errors)
 
     def seconds_per_ns(self, model, method, dt):
-        """Seconds of computing for a ns: the least of all rounds, for other work on a machine only adds."""
+        """Computing time in seconds per ns: the shortest of all rounds, because other work on a machine only adds time."""
         return 1e6 / dt * min(self.seconds[model, method, dt])
 
 
@@ -124,7 +124,7 @@ def read(finished):
 
 
 def measure_starts(lab, plan):
-    """Model -> data file in which all its other runs start."""
+    """Model -> data file with the start of all its other runs."""
     sizes = {"equilibrate": 0, "dt": plan.longest, "steps": round(plan.start / plan.longest)}
 
     def read_place(finished):
@@ -134,7 +134,7 @@ def measure_starts(lab, plan):
 
 
 def measure_times(lab, plan, starts):
-    """(model, method, step) -> seconds of a step, by round."""
+    """(model, method, step) -> seconds per step, by round."""
     steps, jobs = plan.timed_steps, {}
     for model, method, dt in itertools.product(plan.models, METHODS, plan.dts):
         setting = {"model": model, "method": method, "dt": dt, "start": starts[model]}
@@ -169,9 +169,9 @@ def measure(lab, plan=None):
 
 # --- judging ------------------------------------------------------------------------------------
 def farthest(results, model, method, quantity):
-    """The largest deviation at any step, in standard errors, and what is allowed.
+    """The largest deviation at any step, in standard errors, and its bound.
 
-    It is from equal temperatures, or from the value at the shortest step.
+    It is the deviation from equal temperatures, or from the value at the shortest step.
     """
     means = [results.mean(model, method, dt, quantity) for dt in results.plan.dts]
     right = EQUIPARTITION if quantity == "difference" else means.pop(0)
@@ -180,14 +180,14 @@ def farthest(results, model, method, quantity):
 
 
 def answer(results, model, quantity):
-    """Ours at the longest step less rigid's at the shortest, in standard errors."""
+    """Average of ours at the longest step minus rigid's at the shortest, in standard errors."""
     plan = results.plan
     ours = results.mean(model, OURS, plan.longest, quantity)
     return float(deviation(ours, results.mean(model, RIGID, plan.finest, quantity)))
 
 
 def cost_ratio(results, model):
-    """How many times longer a ns takes with rigid's shortest step than with our longest."""
+    """Ratio of times per ns: rigid's shortest step over our longest."""
     plan = results.plan
     theirs = results.seconds_per_ns(model, RIGID, plan.finest)
     return theirs / results.seconds_per_ns(model, OURS, plan.longest)
@@ -201,7 +201,7 @@ def measurements(results):
         name = MODELS[model]
         for quantity, title in QUANTITIES.items():
             what = f"{name}, {title.partition(',')[0]}"
-            right = "0" if quantity == "difference" else f"that at {plan.finest:g} fs"
+            right = "0" if quantity == "difference" else f"the value at {plan.finest:g} fs"
             shift, most = farthest(results, model, RIGID, quantity)
             least = most if quantity == "difference" else None
             ours = farthest(results, model, OURS, quantity)[0]
@@ -212,7 +212,7 @@ def measurements(results):
             rows.append(Measurement(f"{what}, difference of {same}", apart, most=2.0, **errors))
         times = f"{plan.finest:g} fs of `rigid/nvt/small` over {plan.longest:g} fs of ours"
         ratio = cost_ratio(results, model)
-        rows.append(Measurement(f"{name}, ratio of times to that answer, {times}", ratio, spec=".1f"))
+        rows.append(Measurement(f"{name}, ratio of times per ns, {times}", ratio, spec=".1f"))
     return rows
 
 
@@ -223,7 +223,7 @@ def deviations_table(results):
         largest = [farthest(results, model, method, quantity)[0] for method in (RIGID, OURS)]
         numbers = [f"{number:.1f}" for number in (*largest, answer(results, model, quantity))]
         rows.append([f"{MODELS[model]}: {title.partition(',')[0]}", *numbers])
-    both = f"{plan.longest:g} fs of {METHODS[OURS]} less {plan.finest:g} fs of {METHODS[RIGID]}"
+    both = f"{plan.longest:g} fs of {METHODS[OURS]} minus {plan.finest:g} fs of {METHODS[RIGID]}"
     header = ("deviation in standard errors", f"{METHODS[RIGID]}, largest", f"{METHODS[OURS]}, largest", both)
     return Table(header, rows)
 

@@ -114,7 +114,7 @@ def test_axes_of_equal_moments_are_arbitrary(moments, turn, expected):
 
 
 def test_the_axis_of_some_is_arbitrary():
-    """Among others that have three: names are those of three axes, and a symmetric top counts alike for two of them."""
+    """A symmetric top among bodies with three different moments: three axes are named, and two of them share the top."""
     poses = thermal(moments=np.array([[3.0, 2.0, 2.0 - (body % 2)] for body in range(BODIES)]), axes=(1.0, 1.1, 1.2))
     found = averages.temperatures(poses)
     expected = {"axis 1": 1.0, "axis 2": (1.1 + 1.15) / 2.0, "axis 3": (1.2 + 1.15) / 2.0}
@@ -145,7 +145,7 @@ def test_uneven_times():
     hot = np.arange(FRAMES) < FRAMES // 2
     results.time = np.cumsum(np.where(hot, 0.1, 1.0))
     results.ke_translation = results.ke_translation * np.where(hot, 2.0, 1.0)[:, None]
-    with pytest.warns(UserWarning, match="no averages but temperatures: .* the time after frame 0 at 0.1 is 0.2"):
+    with pytest.warns(UserWarning, match="no diffusion coefficients .* times: .* the time after frame 0 at 0.1 is 0.2"):
         found = averages.averages(poses)
     assert [one.name for one in found] == [one.name for one in even if one.name.startswith("temperature")]
     assert found[0].value == pytest.approx(1.3 * (2.0 * 0.1 + 1.0) / 1.1, rel=0.01)
@@ -177,7 +177,7 @@ def test_energies_are_weighted_as_temperatures(tmp_path):
 
 
 def test_the_error_of_weighted_samples():
-    """Of weights 1 and 3 it is sqrt(5 / 4) of that of as many equal ones."""
+    """With weights 1 and 3 it is sqrt(5 / 4) times the error with equal weights."""
     values = np.random.default_rng(6).normal(size=(400, 1000))
     weights = np.where(np.arange(1000) % 2, 1.0, 3.0)
     errors = [averages.of_series(one, weights=weights)[1] for one in values]
@@ -249,7 +249,7 @@ def turning_about_z(angles):
 
 
 def test_correlation_times_without_an_exponential_tail():
-    """Free rotors, and turns of which a tenth of the bodies makes slow ones, have none; all alike they have one."""
+    """Free rotors have none, nor bodies of which a tenth turn slowly; bodies that are all alike have one."""
     rng = np.random.default_rng(5)
     steps = 0.5 * rng.normal(size=(1000, 100))
     for slow, expected in ((1.0, True), (0.2, False)):

@@ -1,4 +1,4 @@
-"""Dumps of the scenes: analysis against the fix's own numbers; the command and what it leaves."""
+"""Dumps of the scenes: analysis against the fix's own numbers; the command and its output."""
 
 import csv
 import re
@@ -42,14 +42,14 @@ def test_energies_are_those_of_the_fix(dumped):
     assert found.ke_rotation[:, 0] == pytest.approx(values.rotation, rel=1e-11)
     assert found.ke_rotation[:, 0] != pytest.approx(values.rotation * 1.01, rel=1e-11)
     assert found.residual.max() < 1e-12 and found.velocity_residual.max() < 1e-12
-    # whatever the start was: the shape is that of the paper
+    # the paper's shape, for any start
     assert Poses(atoms, reference=SITES).run().results.residual.max() < 1e-12
     assert poses.bodies.moments[0] == pytest.approx(BODIES.moments[0], rel=1e-13)
 
 
 @pytest.mark.parametrize("formulation", ["first", "second"])
 def test_energy_belongs_to_the_dumped_pose(run_case, tmp_path, formulation):
-    """Potential energy of the dumped sites, computed anew, is the one that thermo prints."""
+    """The potential energy recomputed from the dumped sites agrees with thermo output."""
     steps = {"dt": 0.05, "steps": 1000, "every": 100, "dump": 100}
     values = run_case(1, formulation=formulation, **steps)
     cage = paper_problem(1, dtype=np.float64).field
@@ -113,7 +113,7 @@ def test_poses_are_those_of_the_fixs_own_array(water):
 
 
 def test_units_are_those_of_lammps():
-    """The factors are what LAMMPS itself uses."""
+    """The factors are LAMMPS' own."""
     lmp = _open_lammps(["-screen", "none", "-log", "none"])
     try:
         for style, units in UNITS.items():
@@ -147,9 +147,9 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     assert len(rows) == 500 and rows[0]["kind"] == "general" and float(rows[0]["mass"]) > 18.0
     for name in ("totals.png", "correlations.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
-    # files that another analysis does not write are not those of the one before
+    # files of the earlier analysis that this one does not write are gone
     result = analyze(water / "water.dump", tmp_path, "--units", "real")
-    assert result.exit_code == 0 and "The earlier analysis in" in result.output
+    assert result.exit_code == 0 and "replaces the earlier one in" in result.output
     assert not (tmp_path / "poses.csv").exists() and (tmp_path / "averages.csv").exists()
     few = tmp_path / "few"
     result = analyze(water / "water.dump", few, "--units", "real", "--frames", ":2")
@@ -183,7 +183,7 @@ def test_an_analysis_of_other_settings_is_kept(tmp_path, arguments, text):
     assert analyze(path, tmp_path / "other", *arguments).exit_code == 0  # the advice
     path.write_text(path.read_text() + dumps.frame(8, motion.rows(8.0)))
     result = analyze(path, out, "--csv")
-    assert result.exit_code == 0 and "The earlier analysis in" in result.output
+    assert result.exit_code == 0 and "replaces the earlier one in" in result.output
     assert len(columns(out / "totals.csv")) == 9
 
 
@@ -196,7 +196,7 @@ def test_an_analysis_of_another_dump_is_kept(tmp_path):
     before = files(out)
     assert "other settings (the dump): another --out is required" in analyze(other, out).output
     path.write_text(other.read_text())
-    assert "(the dump was written anew): another --out is required" in analyze(path, out).output
+    assert "(the dump was rewritten): another --out is required" in analyze(path, out).output
     assert files(out) == before
     (out / "settings.json").unlink()
     assert "out has bodies.csv of another analysis: another --out" in analyze(path, out).output
@@ -204,7 +204,7 @@ def test_an_analysis_of_another_dump_is_kept(tmp_path):
 
 @pytest.mark.filterwarnings("ignore:::MDAnalysis")
 def test_files_of_others_are_not_written_over(tmp_path):
-    """Neither the trajectory nor the topology beside it; those of the same analysis are."""
+    """Neither the trajectory nor its topology is overwritten; files of the same analysis are."""
     path = dumps.write(tmp_path / "made.dump", dumps.Motion([3]), np.arange(8.0))
     options = ["--units", "real", "--timestep", "1", "--convert", tmp_path / "made.dcd"]
     for name in ("made.dcd", "made.pdb"):
@@ -220,9 +220,9 @@ def test_files_of_others_are_not_written_over(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (["--data", __file__], "leave out what is about atoms: data"),
-        (["--body", "i_body"], "leave out what is about atoms: body"),
-        (["--reference", "first"], "--reference is about atoms"),
+        (["--data", __file__], "leave out the options for atoms: data"),
+        (["--body", "i_body"], "leave out the options for atoms: body"),
+        (["--reference", "first"], "--reference needs atoms"),
     ],
 )
 def test_options_about_atoms_are_refused_with_a_table(water, tmp_path, arguments, text):
@@ -238,7 +238,7 @@ def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path
     path.write_text("".join(frames) + "ITEM: TIME\n3.0\n" + dumps.frame(3, rows))
     result = analyze(path, tmp_path)
     assert result.exit_code == 0, result.output
-    assert "Warning: there are no averages but temperatures" in result.output
+    assert "Warning: there are no diffusion coefficients and correlation times" in result.output
     assert "made.dump: body 1 is not rigid: at step 3" in result.output
     assert (tmp_path / "averages.csv").exists() and not (tmp_path / "correlations.csv").exists()
     result = analyze(path, tmp_path / "one", "--frames", ":1")
@@ -300,7 +300,7 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         path = dumps.write(tmp_path / "far.dump", dumps.Motion([4], omega=omega), np.arange(8.0))
         result = analyze(path, tmp_path / str(omega))
         assert result.exit_code == 0, result.output
-        assert ("trust the mean-square" in result.output) == said
+        assert ("the mean-square rotation is not" in result.output) == said
 
 
 @pytest.mark.parametrize(
@@ -311,8 +311,8 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--reference", "nofile"], "--reference nofile: 'principal', 'first' or a file with x"),
         (["--timestep", "0"], "'--timestep': 0.0 is not in the range x>0"),
         (["--near", __file__, "--radius", "1"], f"--near {__file__}: a file with x y z in each"),
-        (["--wrap"], "--wrap needs --convert"),
-        (["--frames", "99:"], "no frame is left to analyze"),
+        (["--wrap"], "--wrap works only with --convert"),
+        (["--frames", "99:"], "no frame is selected"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
         (["--near", __file__], "should be provided together"),
         (

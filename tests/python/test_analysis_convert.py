@@ -76,7 +76,7 @@ def flights(tmp_path_factory):
 
 
 def written(atoms, path, units, **options):
-    """The universe of what was written."""
+    """The universe of the written trajectory."""
     files = convert(atoms, path, units, **options)
     return MDAnalysis.Universe(str(files[-1]), str(path))
 
@@ -175,7 +175,7 @@ def test_formats_without_times_need_none(flights, tmp_path):
     path = tmp_path / "x.xyz"
     said = dumps.analyze(flights / "real.plain", tmp_path, "--units", "real", "--convert", path)
     assert said.exit_code == 0 and path.exists(), said.output
-    assert "numbers of steps stand for them" in said.output
+    assert "numbers of steps are used instead" in said.output
 
 
 def test_times_of_the_dump_are_the_ones_that_count(flights, tmp_path):
@@ -205,14 +205,14 @@ def test_uneven_times(tmp_path):
     """Of a run with a step that follows the error: xtc and trr hold them, dcd is refused."""
     atoms = made(tmp_path / "x.dump", [0.0, 1.0, 2.5])
     assert [ts.time for ts in written(atoms, tmp_path / "x.trr", "metal").trajectory] == [0, 1, 2.5]
-    with pytest.raises(ValueError, match="one distance of time for all frames.*xtc and trr keep"):
+    with pytest.raises(ValueError, match="needs frames that are evenly spaced in time.*xtc and trr store"):
         convert(atoms, tmp_path / "x.dcd", "metal")
     assert len(written(atoms, tmp_path / "one.dcd", "metal", frames=slice(1)).trajectory) == 1
 
 
 def test_sizes_that_xtc_and_pdb_do_not_hold(tmp_path):
     atoms = made(tmp_path / "x.dump", [0.0, 1.0])
-    with pytest.raises(ValueError, match="xtc holds positions up to 2e\\+07 Å"):
+    with pytest.raises(ValueError, match="xtc stores positions up to 2e\\+07 Å"):
         convert(atoms, tmp_path / "x.xtc", "si")
     large = written(atoms, tmp_path / "x.trr", "si")
     assert (tmp_path / "x.xyz").exists() and not (tmp_path / "x.pdb").exists()

@@ -74,7 +74,7 @@ def test_rotation_is_not_bounded(held):
 
 @pytest.mark.parametrize(("moments", "first", "number"), [([3, 2, 2], 1, 3), ([3, 3, 1], 0, 3), ([2, 2, 2], 0, 6)])
 def test_directions_stand_for_all(moments, first, number):
-    """P1 and P2 of few directions are those of many in the plane, or in space, of the axes with equal moments."""
+    """P1 and P2 of few directions agree with many directions in the plane (or space) of axes with equal moments."""
     q, _, _ = rotating(RNG.normal(size=(BODIES, 3)))
     few = directions(np.tile(moments, (BODIES, 1)), np.tile(np.eye(3), (BODIES, 1, 1)), first)
     assert few.shape == (number, BODIES, 3) and np.linalg.norm(few, axis=2) == pytest.approx(np.ones((number, BODIES)))
@@ -124,13 +124,13 @@ def test_rotation_of_linear_bodies_is_that_of_their_axes(tmp_path):
 
 
 def test_what_cannot_be_correlated():
-    with pytest.raises(ValueError, match="frames at equal distances of time"):
+    with pytest.raises(ValueError, match="frames that are evenly spaced in time"):
         correlations.lags([0.0, 1.0, 3.0])
     assert correlations.lags([2.0, 2.5, 3.0]).tolist() == [0.0, 0.5, 1.0]
     q = np.tile([1.0, 0, 0, 0], (3, 1, 1))
     with pytest.raises(ValueError, match="order 3: 1 or 2 is required"):
         correlations.orientation_correlation(q, [0, 0, 1], 3)
-    with pytest.raises(ValueError, match="an axis needs a length"):
+    with pytest.raises(ValueError, match="an axis must not have zero length"):
         correlations.orientation_correlation(q, [0, 0, 0])
 
 
@@ -164,7 +164,7 @@ def test_stays_at_uneven_times():
     expected = np.array([0.1 + 0.1 + 0.1 + 0.55, 1.0 + 1.0]) / (0.1 + 0.1 + 0.1 + 0.55 + 1.0 + 1.0 + 1.0)
     assert found.fraction() == pytest.approx(expected, rel=1e-12)
     assert found.fraction() != pytest.approx(1.01 * expected, rel=5e-3)
-    with pytest.raises(ValueError, match="frames at equal distances of time"):
+    with pytest.raises(ValueError, match="frames that are evenly spaced in time"):
         found.survival()
 
 

@@ -132,7 +132,7 @@ def test_masses_and_molecules_of_a_data_file(write, tmp_path):
     poses = Poses(universe.atoms).run()
     assert "velocity" not in poses.results and poses.results.residual.max() < 1e-13
     data.write_text(DATA + "\n".join(rows.splitlines()[1:]) + "\n")
-    with pytest.raises(DumpError, match="no atom 12, which the dump has"):
+    with pytest.raises(DumpError, match="atom 12 of the dump is missing"):
         open_dump(path, data=data)
 
 
@@ -149,7 +149,7 @@ PROPERTY = "\ni_body\n\n" + "".join(f"{k + 1} 7\n" for k in range(12))
 
 
 def test_a_data_file_with_sections_of_fixes(write, tmp_path):
-    """Behind velocities they do no harm; elsewhere the file is named, and what it must not have."""
+    """After velocities they do no harm; elsewhere the message has the file and the forbidden sections."""
     path = write(MOTION, TIMES, lambda t, r: r[:, [0, 4, 5, 6]], columns="id xu yu zu")
     atoms = open_dump(path, data=data_of(tmp_path, VELOCITIES + PROPERTY)).atoms
     assert atoms.masses.tolist() == [2.5] * 12 and atoms.resids.tolist() == (MOTION.of + 1).tolist()
@@ -159,7 +159,7 @@ def test_a_data_file_with_sections_of_fixes(write, tmp_path):
     style = "id type x y z"  # all atoms are one residue to MDAnalysis, which is no body
     atomic = data_of(tmp_path)
     atomic.write_text(re.sub(r"(?m)^(\d+) \d+ 1 0 0 0$", r"\1 1 0 0 0", atomic.read_text()))
-    with pytest.raises(DumpError, match="no column mol; .*a data file with molecules"):
+    with pytest.raises(DumpError, match="no column mol, .*a data file with molecules"):
         open_dump(path, data=atomic, atom_style=style)
     bare = data_of(tmp_path)
     bare.write_text(bare.read_text().replace("Masses\n\n1 2.5\n", ""))
@@ -169,7 +169,7 @@ def test_a_data_file_with_sections_of_fixes(write, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "column", "wrong", "text"),
-    [("type", 2, 2, "type 1 of atom 4, which has 2 in the dump"), ("mass", 3, 2.525, "mass 2.5 of atom 4, .* 2.525 in the")],
+    [("type", 2, 2, "type 1 of atom 4, but 2 in the dump"), ("mass", 3, 2.525, "mass 2.5 of atom 4, .* 2.525 in the")],
 )
 def test_a_data_file_of_another_run(write, tmp_path, name, column, wrong, text):
     """Types or masses disagree, here by 1 %; six digits of a mass are enough."""
@@ -205,7 +205,7 @@ def test_atoms_in_no_body_are_left_out(write):
 
 @pytest.mark.parametrize("stated", [True, False])
 def test_the_distance_of_frames(tmp_path, stated):
-    """dt and totaltime are those of the times of frames: 20 steps of 0.5 are 10; of uneven ones dt is the mean."""
+    """dt and totaltime follow from the times of frames: 20 steps of 0.5 are 10; dt is the mean if frames are uneven."""
     for steps in ([100, 120, 140, 160], [100, 120, 150, 160]):
         text = [dumps.frame(step, MOTION.rows(step)) for step in steps]
         if stated:
@@ -220,7 +220,7 @@ def test_the_distance_of_frames(tmp_path, stated):
 
 @pytest.mark.parametrize("suffix", ["", ".gz", ".bz2"])
 def test_compressed_dumps_are_read_forward(tmp_path, monkeypatch, suffix):
-    """Frames are those of the plain file in any order, and a compressed file is not unpacked anew for each of them."""
+    """Frames agree with the plain file in any order, and a compressed file is not unpacked again for each frame."""
     import bz2
     import gzip
 
@@ -265,8 +265,8 @@ def test_parts_of_bodies_are_refused(write, tmp_path):
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("id", "no column id; without it a row cannot be followed"),
-        ("mol", "no column mol; it says which atoms make which body"),
+        ("id", "no column id; it is required to identify atoms"),
+        ("mol", "no column mol, which has the IDs of bodies"),
         ("mass", "no column mass; dump it, or give a data file .--data."),
         ("yu", "no positions; columns xu yu zu or x y z are required"),
     ],
@@ -303,7 +303,7 @@ def test_a_last_frame_that_is_cut_off(write, lost):
     path = write(MOTION, TIMES)
     text = path.read_text()
     path.write_text(text[:-lost])
-    with pytest.warns(UserWarning, match="poses.dump: the last frame is not whole, and is left out"):
+    with pytest.warns(UserWarning, match="poses.dump: the last frame is incomplete and is left out"):
         trajectory = open_dump(path).trajectory
     assert trajectory.cut_off and len(trajectory) == 2 and len(list(trajectory)) == 2
     assert not open_dump(write(MOTION, TIMES)).trajectory.cut_off
@@ -359,12 +359,12 @@ def test_what_is_not_finite(write, column):
 @pytest.mark.parametrize(
     ("old", "new", "text"),
     [
-        (b"ITEM: TIMESTEP", b"ITEM: LABEL\nlj\nITEM: TIMESTEP", "no frame of a LAMMPS dump begins"),
-        (b"ITEM: TIMESTEP", b"thermo", "no frame of a LAMMPS dump begins where one should"),
+        (b"ITEM: TIMESTEP", b"ITEM: LABEL\nlj\nITEM: TIMESTEP", "the header of a frame of a LAMMPS dump is required"),
+        (b"ITEM: TIMESTEP", b"thermo", "the header of a frame of a LAMMPS dump is required"),
         (b"ITEM: ATOMS", b"ITEM: GRID", "a dump custom or dump local is required"),
-        (b"ITEM: BOX BOUNDS pp pp pp", b"ITEM: BOX BOUNDS", "a box that is not orthogonal or"),
+        (b"ITEM: BOX BOUNDS pp pp pp", b"ITEM: BOX BOUNDS", "an orthogonal or restricted triclinic box"),
         (b"\n1 1 1 ", b"\n1 1 1 oops", "step 0: .*could not convert string"),
-        (b"ITEM: TIMESTEP", b"\xff\xfe\0", "a dump of text is required, and this is a binary file"),
+        (b"ITEM: TIMESTEP", b"\xff\xfe\0", "this is a binary file; a text dump is required"),
     ],
 )
 def test_other_files(write, old, new, text):

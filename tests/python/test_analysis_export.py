@@ -34,7 +34,7 @@ def test_units_of_results(poses, dump):
 
 
 def test_without_times_only_what_is_found_from_frames_is_in_steps(dump):
-    """A velocity is that of the dump: 5 times the slope of the center by the step, if a step is 5 fs long."""
+    """Velocities are from the dump: a step of 5 fs makes the slope of the center per step 5 times the velocity."""
     poses = Poses(open_dump(dump).atoms, units="real").run()
     units = {"velocity": "Å/fs", "omega_space": "rad/fs", "angular_momentum_space": "g/mol Å²/fs", "momentum": "g/mol Å/fs"}
     units |= {"velocity_autocorrelation": "Å²/fs²", "time": "step", "lag": "step", "correlation time": "step"}
@@ -99,7 +99,7 @@ def test_table_of_averages(poses):
 @pytest.mark.parametrize(("package", "export"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
 def test_without_the_package_it_is_named(poses, monkeypatch, package, export):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ModuleNotFoundError, match=rf"needs {package}, which the extra \[frames\]"):
+    with pytest.raises(ModuleNotFoundError, match=rf"needs {package}, which comes with the extra \[frames\]"):
         getattr(poses, export)()
 
 
@@ -154,6 +154,6 @@ def test_motion_of_one_body(tmp_path):
     assert [list(poses.motion(body)[1]) for body in (1, 2, 3)] == [[1, 2, 3], [3], []]
     assert [len(pictures.draw_motion(poses, body).axes) for body in (1, 2, 3)] == [2, 2, 1]
     said = dumps.analyze(tmp_path / "x.dump", tmp_path, "--follow", 4)
-    assert said.exit_code == 1 and "no body has the ID 4; the first is 1, and the last 3" in said.output
+    assert said.exit_code == 1 and "no body has the ID 4; the first ID is 1, and the last 3" in said.output
     assert dumps.analyze(tmp_path / "x.dump", tmp_path, "--follow", 2).exit_code == 0
     assert (tmp_path / "motion.png").read_bytes().startswith(b"\x89PNG")

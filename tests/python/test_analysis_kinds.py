@@ -78,7 +78,7 @@ def names(path):
 
 
 def test_names(tmp_path):
-    """Masses of no element leave types; isomers, of which here one is 5 % larger, are numbered."""
+    """Names consist of types if masses are not of elements; isomers (one is 5 % larger here) are numbered."""
     assert names(mixture(tmp_path / "a.dump", scale=1.1))[0] == ["T1(T2)2", "(T2)4T3"]
     assert names(mixture(tmp_path / "b.dump", shape=1.05))[0] == ["H2O-1", "H2O-2", "CH4-1", "CH4-2"]
     assert names(mixture(tmp_path / "c.dump", shape=1.005))[0] == ["H2O", "CH4"]
@@ -87,5 +87,5 @@ def test_names(tmp_path):
 def test_bodies_that_are_all_different(tmp_path):
     path = dumps.write(tmp_path / "many.dump", dumps.Motion([4] * 12), np.arange(120.0))
     assert names(path) == ([""], True)
-    with pytest.warns(UserWarning, match="bodies are of many kinds: diffusion and correlation times are those of all"):
+    with pytest.warns(UserWarning, match="too many kinds of bodies: diffusion and correlation times are averages over all"):
         averages.averages(Poses(open_dump(path).atoms).run())

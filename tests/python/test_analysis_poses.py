@@ -94,7 +94,7 @@ def test_residuals_see_what_is_not_rigid(tmp_path):
 
 
 def test_reference_that_is_given(dump):
-    """The quaternion is then that from the given coordinates."""
+    """The quaternion is relative to the given coordinates."""
     universe = open_dump(dump)
     found = Poses(universe.atoms, reference=MOTION.shape + 5.0).run().results
     for k, time in enumerate(TIMES):
@@ -152,7 +152,7 @@ def test_some_of_the_frames(dump, poses, tmp_path, file, span):
     found = Poses(open_dump(dump).atoms, out=out).run(**span).results
     chosen = span.get("frames", [1, 3, 5])
     assert found.step.tolist() == chosen
-    # signs are those of the frame before, so may differ
+    # signs follow the frame before, so they may differ
     assert np.array_equal(found.center, poses.results.center[chosen])
     assert np.abs(found.q) == pytest.approx(np.abs(poses.results.q[chosen]), abs=1e-15)
 
@@ -164,7 +164,7 @@ def test_some_of_the_frames(dump, poses, tmp_path, file, span):
         ({"reference": "last"}, "first, principal or positions are required"),
         ({"units": "imperial"}, "units imperial: one of lj, real"),
         ({"potential": "c_pe"}, "no column c_pe was read with the dump"),
-        ({}, "no frame is left"),
+        ({}, "no frame is selected"),
     ],
 )
 def test_impossible_arguments(dump, arguments, text):
@@ -187,7 +187,7 @@ def test_memory_does_not_grow_with_frames(tmp_path):
         tracemalloc.stop()
     grown = poses.results.table.nbytes * 5 / 6  # what a table in memory needs more
     assert peaks[1] - peaks[0] < 0.1 * grown
-    # and what is measured would see it
+    # and the measurement would detect it
     tracemalloc.start()
     Poses(open_dump(path).atoms).run()
     assert tracemalloc.get_traced_memory()[1] - peaks[1] > grown
@@ -249,7 +249,7 @@ def resident():
 
 
 def test_pages_of_a_mapped_file_are_let_go(tmp_path):
-    """Nothing that was written is lost, and what is held does not grow with what is gone over."""
+    """No data are lost, and memory does not grow with the number of rows processed."""
     from gearquat_analysis import mapped
 
     table = np.lib.format.open_memmap(tmp_path / "t.npy", "w+", [("a", float)], (400, 20000))
@@ -273,14 +273,14 @@ def test_a_universe_will_do(dump, poses):
 
 def test_atoms_that_are_there_twice(dump, poses):
     atoms = open_dump(dump).atoms
-    with pytest.raises(ValueError, match="an atom is in the group twice; .* atoms.unique"):
+    with pytest.raises(ValueError, match="an atom is in the group twice; .*atoms.unique"):
         Poses(atoms + atoms[3:4])
     assert np.array_equal(Poses((atoms + atoms[3:4]).unique).bodies.mass, poses.bodies.mass)
 
 
 @pytest.mark.parametrize("use", [averages.averages, Poses.totals, Poses.to_dataframe, lambda poses: poses.results.q])
 def test_results_need_a_run(dump, use):
-    with pytest.raises(NoDataError, match="there is no results.* yet: call run"):
+    with pytest.raises(NoDataError, match="results.* does not exist yet: call run"):
         use(Poses(open_dump(dump)))
 
 
@@ -292,7 +292,7 @@ def test_bodies_that_are_not_rigid(tmp_path):
         return rows
 
     path = dumps.write(tmp_path / "bent.dump", MOTION, TIMES, bent)
-    with pytest.warns(UserWarning, match="bent.dump: body 1 is not rigid: at step 4 a site is 0.* of the body's size"):
+    with pytest.warns(UserWarning, match="bent.dump: body 1 is not rigid: at step 4 a site deviates by 0.* of the body's size"):
         Poses(open_dump(path)).run()
     for spread in (10.0, 1e3, 1e5):
         far = dumps.Motion(COUNTS, linear=[3], spread=spread)

@@ -32,7 +32,7 @@ def made(formulation):
 
 
 def one_percent_off(corrector):
-    """The Corrector with one entry wrong, for every entry but the one that is 1 by definition."""
+    """The Corrector with one wrong entry, for every entry except the entry that is 1 by definition."""
     for which in range(3 - corrector.order):
         for j in range(corrector.values):
             if j != corrector.order:

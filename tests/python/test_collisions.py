@@ -18,7 +18,7 @@ def near(scene, random):
 
 
 def power(scene, y, rates, d=1e-5):
-    """Rate of change of the energy, by differences, and what its potential part alone changes by."""
+    """Rate of change of the energy by differences, and of its potential part alone."""
     there, back = (scene.energies(State.of(y + s * d * rates)) for s in (1, -1))
     change = (there - back) / (2 * d)
     return change.sum(), abs(change[0])

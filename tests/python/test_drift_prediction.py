@@ -43,7 +43,7 @@ def test_a_body_in_wells_loses_what_the_response_says(corrector, omega_h):
 
 # --- spectra --------------------------------------------------------------------------------------
 def oscillations(omega, axes=3, bodies=5, dt=1.0):
-    """Velocities (samples, bodies, 3) that oscillate with ``omega``, those of further axes zero to rounding."""
+    """Velocities (samples, bodies, 3) that oscillate with ``omega``; other axes are zero within round-off."""
     random = np.random.default_rng(1)
     phases = random.uniform(0, 2 * np.pi, (bodies, 3))
     series = np.cos(omega * dt * np.arange(3 * SEGMENT)[:, None, None] + phases)

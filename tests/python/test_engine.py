@@ -61,7 +61,7 @@ def test_tables_of_a_log_that_ends_early(tmp_path):
 
 # --- one run ------------------------------------------------------------------------------------
 def gone(pid):
-    """Whether a process ends within two seconds."""
+    """True if a process ends within two seconds."""
     for _ in range(100):
         status = Path(f"/proc/{pid}/stat")
         if not status.exists() or status.read_text().split()[2] == "Z":

@@ -46,7 +46,7 @@ def test_error_of_a_drift_is_from_the_scatter_of_the_starts():
 
 @pytest.mark.parametrize("liquid", plan.LIQUIDS, ids=lambda liquid: liquid.key)
 def test_one_percent_of_rotation_is_seen(liquid):
-    """The temperatures are those of equipartition, and cold rotation counts as such."""
+    """Temperatures agree with equipartition, and cold rotation is detected."""
     for ratio in (1.0, 0.99):
         several = [made_up(liquid=liquid, ratio=ratio, seed=seed) for seed in range(5)]
         mean = quantities.warmer(several, liquid)
@@ -59,7 +59,7 @@ DRIFT, LOSS, BEST, WRONG = ": drift", "without loss", "best number", "predicted 
 
 
 def spectrum(axes=3):
-    """A Spectrum of which all predicted drifts are small."""
+    """A Spectrum with small predicted drifts only."""
     omega = np.linspace(0.001, 0.05, 50)
     return prediction.Spectrum(omega, np.full(50, 0.02), np.full(50, 0.02), axes)
 
@@ -89,7 +89,7 @@ def results(rates=(), lost=(), ratio=1.0):
 
 
 def refused(data):
-    """What the measurements that do not hold are about; the noise of made-up temperatures is none of it."""
+    """Subjects of the measurements outside of their bounds, without the noise of made-up temperatures."""
     return [m.what for m in judging.measurements(data) if not m.holds and "T trans" not in m.what]
 
 
@@ -161,7 +161,7 @@ def test_methods_agree_at_a_short_step(small, key):
     for name in ("translation", "rotation"):
         ours, theirs = getattr(own, name)[-1], getattr(other, name)[-1]
         assert ours == pytest.approx(theirs, rel=2e-3)
-    for run in (own, other):  # energies of bodies are those of their atoms
+    for run in (own, other):  # energies of bodies agree with their atoms
         np.testing.assert_allclose(run.translation + run.rotation, run.kinetic, rtol=1e-9)
     assert abs(own.pressure[-1] - other.pressure[-1]) < 0.02 * np.ptp(own.pressure) + 10
     assert np.ptp(own.total) < 2e-2 * np.ptp(own.potential)

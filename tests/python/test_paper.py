@@ -1,4 +1,4 @@
-"""paper/: the paper builds, every citation resolves, and its numbers are those of README."""
+"""paper/: the paper builds, every citation resolves, and its numbers agree with README."""
 
 import re
 import runpy

@@ -83,7 +83,7 @@ def small(write_deck):
 
 
 def agrees(field, positions, wrong=1.0):
-    """Whether LAMMPS and the loop over all pairs find the same."""
+    """True if LAMMPS and the loop over all pairs agree."""
     energy, forces = field.energy_and_forces(positions)
     expected_energy, expected = brute_force(positions)
     near = np.abs(forces - wrong * expected).max() < 1e-11 * np.abs(expected).max()

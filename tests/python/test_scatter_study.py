@@ -1,4 +1,4 @@
-"""Flights of ``gearquat scatter`` beside DOP853 with forces of its own, and what the study makes of its data."""
+"""Flights of ``gearquat scatter`` compared with DOP853 with its own forces, and the results of the study."""
 
 
 import numpy as np
@@ -43,7 +43,7 @@ def test_rates_keep_energy_momentum_and_angular_momentum(seed):
 
 @pytest.mark.parametrize("deck, temperature, largest", [("in.dumbbells", 2.0, 3.5), ("in.nitrogen", 300.0, 8.0)])
 def test_flights_are_those_of_dop853(deck, temperature, largest):
-    """Velocities and angular momenta after the encounter to 1e-8; flown back, they return."""
+    """Velocities and angular momenta after the encounter agree to 1e-8; reversed flights return."""
     rows = flown.beside_reference(deck, temperature, largest, 4, lambda: None)
     once = rows[rows[:, 2] <= 1]
     assert len(once) >= 3

@@ -47,7 +47,7 @@ def test_initial_energy(run_case, case, formulation, body):
 
 @pytest.mark.parametrize("charge", [1.01, 0.99])
 def test_initial_energy_refuses_another_cage(lmp_wheel, examples, tmp_path, charge):
-    """One cage charge wrong by 1 % does not go unnoticed."""
+    """An error of 1 % in one charge of the cage is detected."""
     for name in ("case1", "common"):
         (tmp_path / name).symlink_to(examples / name)
     scene = (examples / "common" / "in.scene").read_text()
@@ -83,7 +83,7 @@ def top(examples):
 
 
 def test_top_is_a_rigid_body_at_rest(top):
-    """Moments from the sites; momentum zero; every velocity that of one angular velocity."""
+    """Moments follow from the sites, the momentum is zero, and all velocities belong to one angular velocity."""
     mass, x, v = top
     assert mass @ x == pytest.approx(0.0, abs=1e-14)
     assert mass @ v == pytest.approx(0.0, abs=1e-14)

@@ -111,7 +111,7 @@ def test_trials_of_a_deck_whose_step_follows_the_error(make_deck):
     """Its own line is tried without, for the trials end at the same time; and that is said."""
     plain = "fix 1 all gear/quat group 3 clump1 clump2 clump3 values 9"
     gears = "corrector gear"  # the default with tolerance
-    # and what only such a fix has is not asked for
+    # and keywords that only such a fix has are not requested
     changes = {FIX: plain + " tolerance 1e-6 dtmax 0.01", " temp f_1": " temp f_1[14]"}
     with Deck(make_deck(**changes, **FOR_GEAR)) as deck:
         assert deck.fix_lines(None) == [f"{plain} {gears}"]
@@ -190,7 +190,7 @@ def test_trials_that_hang_or_crash_do_no_harm_to_the_next(make_deck):
 
 # --- the checkpoint -------------------------------------------------------------------------------------
 def ran_again(deck):
-    """Whether the last trial repeated the runs that come before the measured one."""
+    """True if the last trial repeated the runs before the measured run."""
     return "for 30 steps" in deck.log.read_text()
 
 
@@ -211,7 +211,7 @@ def test_earlier_runs_are_repeated_where_more_than_atoms_has_changed(make_deck):
 
 
 def is_running(pid):
-    """Whether there is such a process, and more of it than an entry in the table of processes."""
+    """True if the process exists and is not a zombie."""
     path = Path(f"/proc/{pid}/cmdline")
     return path.exists() and path.read_bytes() != b""
 

@@ -1,4 +1,4 @@
-"""The drift of the energy beside what gearquat cost recommends, and prices from times that are noisy."""
+"""The energy drift of settings that gearquat cost recommends, and costs from noisy times."""
 
 import math
 import types
@@ -90,7 +90,7 @@ def test_what_is_conserved_with_each_keyword_is_watched(make_deck, keywords, bou
     assert abs(drift.of_trial(trial, 1.0).rate) < bound
 
 
-#: those of the rotation of sites of finite size are subtracted and not counted
+#: degrees of freedom of the rotation of sites of finite size are subtracted and not counted
 FREEDOMS = "compute_modify thermo_temp extra/dof -100"
 #: the sites are spheres that rotate with their bodies
 SPHERES = {"atom_style atomic": "atom_style sphere", "mass 1 1.0": "set group all diameter 1.0 mass 1.0"}
@@ -147,7 +147,7 @@ def test_a_step_that_drifts_is_not_recommended(said):
 
 
 def test_a_step_that_fails_in_a_longer_run_is_not_recommended(said):
-    """As in rigid water at 4 fs, which holds an error of 0.001 Å for 100 fs and blows up after 260 fs."""
+    """As in rigid water at 4 fs, whose error stays below 0.001 Å for 100 fs and which blows up after 260 fs."""
     found = Drift(reason="no run was long enough", failure="blow-up in step 65: use a smaller time step")
     assert found.fails and found.refused and not Drift(failure="molecules left the box", gone=True).refused
     text = said(found)
@@ -211,7 +211,7 @@ def costs_from(seconds):
 
 
 def test_the_shortest_time_counts():
-    """What else a machine does makes no step cheaper."""
+    """Other work on a machine makes no step cheaper."""
     rows = costs_from([[9.0, 1.0, 9.0], [2.0, 9.0, 9.0], [9.0, 9.0, 4.0]]).rows
     assert [row.best.seconds for row in rows] == [1.0, 2.0, 4.0]
     assert [row.best.dt for row in rows] == [0.1, 0.05, 0.025]

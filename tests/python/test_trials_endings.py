@@ -1,4 +1,4 @@
-"""How trials end before their time: bodies that leave the box, Ctrl-C, signals; and what a batch log has of them."""
+"""Early ends of trials: bodies that leave the box, Ctrl-C, signals; and their lines in a batch log."""
 
 import os
 import re
@@ -44,7 +44,7 @@ def test_bodies_that_leave_the_box(make_deck, tmp_path, style):
 
 
 def test_cost_of_bodies_that_leave_the_box_later(make_deck, tmp_path):
-    """What happens after --time does not matter."""
+    """Events after --time do not matter."""
     words = ["--budget", 12, "--time", 0.2, "--error", 1e-5, "--timings", 1, "--out", tmp_path / "out"]
     found = runs(cost_command, make_deck(**SMALL, **FOR_GEAR), *words)
     assert found.exit_code == 0, found.output
@@ -112,7 +112,7 @@ def started(make_deck, tmp_path):
 @pytest.mark.parametrize("name", ["cost", "horizon"])
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_command_that_is_interrupted(started, tmp_path, name, sent):
-    """It says what is kept, in one line, and leaves no process and no folder."""
+    """It prints one line about stored results, and leaves no process and no folder."""
     process = started(name)
     process.send_signal(sent)
     _, said = process.communicate(timeout=60)

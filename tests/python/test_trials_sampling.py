@@ -23,7 +23,7 @@ KELVIN = 300.0
 
 
 class MadeUpLiquid:
-    """A deck of many bodies whose trials take time on a clock of their own, and drift by what ``drifts`` says.
+    """A deck of many bodies whose trials have a simulated clock, and drift according to ``drifts``.
 
     ``drifts``: keywords, step -> kT per ns and degree of freedom; ``blown``: the step from which on a run ends with an
     error, after ``lasts`` fs; ``apart``: step -> T translation - T rotation; ``noise``: of the energy, in kT and degree of
@@ -98,7 +98,7 @@ def answer_of(monkeypatch, deck, seconds=180.0, **options):
 @pytest.mark.parametrize("noise", [1e-5, 1e-4])
 @pytest.mark.parametrize("seed", range(5))
 def test_a_method_that_drifts_is_never_recommended(monkeypatch, seed, noise, tries):
-    """And the one that holds at the longest step is, after a run of 100 ps, within the budget, though short runs say little."""
+    """The method that works at the longest step is within the budget after a run of 100 ps, although short runs show little."""
     only = lambda keywords, dt: 5.0 if keywords is None else steep(keywords, dt)
     deck = MadeUpLiquid(only, seed, noise=noise)
     found = answer_of(monkeypatch, deck, tries=tries)
@@ -133,7 +133,7 @@ def test_a_budget_that_is_too_small_is_told(monkeypatch, pace):
 
 
 def test_what_the_script_has_already_is_not_tried_again(monkeypatch):
-    """A script with the fix and its defaults gets a longer step; what else is tried is what the user asks for."""
+    """A script with the fix and its defaults gets a longer step; further trials are only at the user's request."""
     found = answer_of(monkeypatch, MadeUpLiquid(lambda keywords, dt: steep(keywords or "", dt), own=""))
     assert {run.keywords for run in found.runs} == {None} and found.recommended == (None, 4.0)
     found = answer_of(monkeypatch, MadeUpLiquid(steep), tries=[LONGEST])
@@ -280,7 +280,7 @@ def test_bodies_that_keep_their_angular_momentum_are_in_no_equilibrium_of_temper
 
 @pytest.mark.parametrize("style", ["rigid", "gear/quat"])
 def test_translation_and_rotation_are_those_of_the_bodies(make_deck, style):
-    """Their sum is the kinetic energy without that of all bodies together; three bodies of three sites have 6 and 9 freedoms."""
+    """Their sum is the kinetic energy without the total momentum; three bodies of three sites have 6 and 9 degrees of freedom."""
     push = "velocity all set 0.3 0.0 0.0 sum yes units box"
     with Deck(make_deck(push, **FOR_GEAR, **PERIODIC), [("style", style)]) as deck:
         assert deck.freedoms == (6, 9) and deck.scene.ranges == ["1:9"]
@@ -294,7 +294,7 @@ def test_translation_and_rotation_are_those_of_the_bodies(make_deck, style):
 
 @pytest.mark.parametrize(("standard", "repeated"), [("9 (second), 8 (first)", True), ("auto", False)])
 def test_what_only_repeats_the_default_is_tried_once(monkeypatch, standard, repeated):
-    """Whether the fix has a number of values by default or chooses it."""
+    """For a fix with a default number of values, and for a fix that chooses it."""
     table = {"formulation": "second", "values": standard}
     rows = {name: types.SimpleNamespace(standard=lambda value=value: value) for name, value in table.items()}
     monkeypatch.setattr(methods.keywords, "table", lambda: rows)

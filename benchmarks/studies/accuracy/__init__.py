@@ -1,13 +1,13 @@
-"""What accuracy costs: error of a trajectory against force evaluations and against wall time.
+"""The cost of accuracy: error of a trajectory against force evaluations and against wall time.
 
-plan.py      what is run: scenes, methods, steps
-runs.py      references, errors of runs, and everything that is run, in order
-peers.py     other methods: SciPy's, splittings, compositions
-heldout.py   scenes that no coefficient was chosen on
-choice.py    scenes that the rule of `values auto` was not made with
+plan.py      scenes, methods and steps
+runs.py      references, errors of runs, and the sequence of all runs
+peers.py     other methods: SciPy's solvers, splittings, compositions
+heldout.py   scenes that were not used to choose coefficients
+choice.py    scenes that were not used for the rule of `values auto`
 evaluate.py  fitted orders, costs of given errors; arrays in, numbers out
 tables.py    tables and measurements
-strongest.py evaluations beside those of the strongest of the other methods
+strongest.py comparison of evaluations with the strongest of the other methods
 figures.py   the pictures
 """
 
@@ -16,9 +16,9 @@ from benchmarks.engine.session import Session
 
 from . import choice, evaluate, figures, heldout, plan, runs, strongest, tables
 
-#: errors the sentences speak of
+#: errors that the sentences of the page use
 SAMPLE, FINE = 1e-6, 1e-8
-#: the parts of the study that run the scenes of heldout.py and choice.py, and their share of the work
+#: parts of the study with the scenes of heldout.py and choice.py, and their share of the work
 HELD_OUT, CHOICE = "heldout", "choice"
 SHARE = 0.05
 
@@ -28,7 +28,7 @@ def _milliseconds(cost):
 
 
 def _of_case1(results):
-    """Tables, measurements and names of the template from test case 1."""
+    """Tables, measurements and variables of the template from test case 1."""
     shown, measurements = strongest.case1(results)
     speedups, found = tables.case1(results)
     shown, measurements = shown | speedups, measurements + found
@@ -57,7 +57,7 @@ def _of_case1(results):
 
 
 def measure(lab):
-    """Results of the parts that were asked for."""
+    """Results of the requested parts."""
     apart, results = {HELD_OUT, CHOICE}, runs.Results(lab.quick)
     asked = {part for part in apart if part in lab.parts or not lab.parts}
     with Session(lab.out / "logs") as session:
@@ -96,7 +96,7 @@ def find(results):
     names = {"starts": "STARTS", "seed": "SEED", "coarse": "COARSE", "above": "ABOVE_FLOOR"}
     context["held_out"] = {key: getattr(heldout, name) for key, name in names.items()}
     context |= {"choice_target": tables.power(choice.TARGET), "choice_most": choice.MOST}
-    # the fix reports as zero what is rounding
+    # the fix reports round-off as zero
     context["norm"], context["tangency"] = (max(x, 1e-15) for x in tables.constraints(results))
     shown["runs"] = tables.of_runs(results)
     context["rule"] = {name: getattr(evaluate, name) for name in dir(evaluate) if name.isupper()}

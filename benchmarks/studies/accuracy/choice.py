@@ -1,10 +1,9 @@
-"""Scenes that the rule of `values auto` was not made with: its evaluations beside those of the best number.
+"""Scenes that were not used for the rule of `values auto`: its force evaluations compared with the best number of values.
 
-Ten starts, chosen before any of them was run (the dumbbells only stop earlier: no run of twice that time
-reached the error): test case 1 from other places, pairs of molecules, rings of water, bodies in smooth potentials,
-and fast rotations beside slow translations.  The error is the root
-mean square displacement of the sites at the end, in the units of length of the scene.  Costs are
-evaluations of the forces, start included.
+Ten starts were chosen before any of them was run; only the dumbbells were shortened later, because no run of twice the
+time reached the error.  They are test case 1 from other places, pairs of molecules, rings of water, bodies in smooth
+potentials, and fast rotation with slow translation.  The error is the root mean square displacement of the sites at the
+end, in the unit of length of the scene.  Costs are force evaluations, start included.
 """
 
 from dataclasses import dataclass
@@ -20,10 +19,10 @@ from .heldout import data_text, turned_start
 
 SEED = 28
 TARGET = 1e-6
-#: evaluations of the choice over those of the best number of values
+#: largest ratio of evaluations, chosen number of values over the best number
 MOST = 1.3
 VALUES, AUTO = (5, 6, 7, 8, 9, 10, 11, 12), 0
-#: of the reference: its number of values, and how much shorter its step is than the shortest one
+#: number of values of the reference, and the factor by which its step is shorter than the shortest step
 REFERENCE, FINER = 9, 2
 RUNS, RATIO = 14, 1.2
 
@@ -86,7 +85,7 @@ fix field all efield 20.0 0.0 0.0
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene with so many steps in its longest run, and its deck, empty for that of test case 1."""
+    """A scene, the number of steps of its longest run, and its deck; an empty deck means test case 1."""
 
     title: str
     end: float
@@ -97,7 +96,7 @@ class Scene:
 
 # --- scenes ---------------------------------------------------------------------------------------
 def _atoms(random, bodies, kinds, speed, spin):
-    """Commands that make ``bodies``, arrays (n, 3) of sites, with random velocities of rigid bodies."""
+    """Commands that create ``bodies``, arrays (n, 3) of sites, with random rigid-body velocities."""
     lines, number = [], 0
     for molecule, sites in enumerate(bodies, 1):
         middle = sites.mean(axis=0)
@@ -112,7 +111,7 @@ def _atoms(random, bodies, kinds, speed, spin):
 
 
 def _turned(random, sites, center):
-    """``sites`` about their mean, turned at random, around ``center``."""
+    """``sites`` in a random orientation, with their mean at ``center``."""
     sites = np.asarray(sites) - np.mean(sites, axis=0)
     return Rotation.random(random_state=random).apply(sites) + center
 
@@ -135,7 +134,7 @@ def _scene(title, end, steps, units, forces, atoms):
 
 
 def scenes():
-    """name -> Scene of all."""
+    """All scenes, name -> Scene."""
     random, found = np.random.default_rng(SEED), {}
     base = paper_problem(1)
     for number in (1, 2):
@@ -172,7 +171,7 @@ def scenes():
 
 # --- running --------------------------------------------------------------------------------------
 def _deck(folder, name, scene):
-    """(path of the deck, further variables) of a scene; ``folder`` gets what it reads."""
+    """(path of the deck, further variables) of a scene; files that it reads are written to ``folder``."""
     place = folder.resolve() / name
     place.mkdir(parents=True, exist_ok=True)
     if scene.start is None:
@@ -185,7 +184,7 @@ def _deck(folder, name, scene):
 
 
 def measure(lab):
-    """(title, values; AUTO for the choice) -> list of (evaluations, error, values that were taken)."""
+    """(title, values; AUTO for the choice of the fix) -> list of (evaluations, error, number of values used)."""
     jobs, planned = {}, scenes()
     counts = [1 / RATIO**n for n in range(0, RUNS, 3 if lab.quick else 1)]
     for name, scene in planned.items():
@@ -219,7 +218,7 @@ def measure(lab):
 
 # --- judging --------------------------------------------------------------------------------------
 def price(rows):
-    """Evaluations to TARGET, None where no run reaches it, of rows as ``measure`` returns them."""
+    """Evaluations for the error TARGET, None if no run reaches it; rows from ``measure``."""
     cost = evaluate.cost_of(*zip(*((n, error) for n, error, _ in rows)), TARGET)
     return cost and cost.value
 
@@ -237,5 +236,5 @@ def find(results):
         table.append([title, *row, f"{own:.0f}" if own else "–", f"{ratios[title]:.2f}", f"{took}"])
     worst = max(ratios, key=ratios.get)
     header = ["scene", *(f"N = {values}" for values in VALUES), "auto", "auto / best", "took"]
-    what = f"held-out starts: evaluations of `values auto` to {tables.power(TARGET)} over those of the best N"
+    what = f"held-out starts: evaluations of `values auto` to {tables.power(TARGET)} over the evaluations of the best N"
     return Table(header, table), [Measurement(what, ratios[worst], spec=".2f", remark=worst, most=MOST)]

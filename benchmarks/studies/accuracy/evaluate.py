@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import theilslopes
 
-#: the part of a curve that its order is fitted on (see ``asymptotic``)
+#: limits of the part of a curve from which its order is fitted (see ``asymptotic``)
 FINEST, ABOVE_FLOOR, DECADES, FINER, PAST = 5, 3.0, 3, 1.25, 2.0
 FEWEST_POINTS = 3
-#: part of all slopes that the uncertainty of an order holds, that of one standard error
+#: fraction of all slopes within the uncertainty of an order; it corresponds to one standard error
 CONFIDENCE = 0.683
 
 
@@ -27,7 +27,7 @@ class Fit:
 
 
 def rounding_floor(steps, errors):
-    """Error that rounding makes: the worst of the FINEST finest runs; 0 if their errors still fall."""
+    """Round-off error: the largest error of the FINEST finest runs; 0 if their errors still fall."""
     finest = np.asarray(errors, dtype=float)[np.argsort(steps)][:FINEST]
     return 0.0 if (finest[1:] > finest[:-1]).all() else float(finest.max())
 
@@ -35,10 +35,10 @@ def rounding_floor(steps, errors):
 def asymptotic(steps, errors, limit=np.inf):
     """Mask of the points that show the order of a method.
 
-    Not rounding: error at least ABOVE_FLOOR times ``rounding_floor``, at this and at every larger
-    step.  Not too coarse: of those, the ones within DECADES decades of the smallest, a step at least
-    FINER times smaller than ``limit``, the largest usable one, and PAST times smaller than one at
-    which leading terms cancel (``sign_change``).
+    Above round-off: the error is at least ABOVE_FLOOR times ``rounding_floor``, at this and every larger step.
+    Not too coarse: the error is within DECADES decades of the smallest of these errors, and the step is at least
+    FINER times smaller than the largest usable step ``limit`` and PAST times smaller than a step at which leading
+    terms cancel (``sign_change``).
     """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)
     rounding = ~(errors > ABOVE_FLOOR * rounding_floor(steps, errors))
@@ -53,9 +53,9 @@ def asymptotic(steps, errors, limit=np.inf):
 
 
 def fitted_order(steps, errors, limit=np.inf):
-    """Fit in log-log over the asymptotic part, by Theil and Sen; None with too few points.
+    """Log-log fit of the asymptotic part by the method of Theil and Sen; None with too few points.
 
-    Theil and Sen: the median of the slopes between all pairs, which one lucky error cannot bend.
+    The slope is the median of the slopes between all pairs of points, which is robust against a single small error.
     """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)
     used = asymptotic(steps, errors, limit)
@@ -67,9 +67,9 @@ def fitted_order(steps, errors, limit=np.inf):
 
 
 def sign_change(steps, errors):
-    """The smallest step, before rounding, at which the error is smaller than at the next finer one.
+    """The smallest step, above round-off, at which the error is smaller than at the next finer step; None if there is none.
 
-    There the leading terms of the error cancel, and close to it slopes mean little; None without.
+    The leading terms of the error cancel there, so slopes close to it are not meaningful.
     """
     order = np.argsort(steps)
     steps, errors = np.asarray(steps, float)[order], np.asarray(errors, float)[order]
@@ -80,7 +80,7 @@ def sign_change(steps, errors):
 
 @dataclass(frozen=True)
 class Cost:
-    """What an error costs; ``kind`` is measured, extrapolated, or "at most": any run is enough.
+    """The cost of an error; ``kind`` is measured, extrapolated, or "at most" if every run reaches the error.
 
     ``error``: standard error relative to the value.
     """
@@ -90,17 +90,17 @@ class Cost:
     error: float = 0.0
 
     def over(self, other):
-        """This cost over another one; None if one of them is.  A ratio may be "at least", too."""
+        """This cost divided by another; None if either is None.  The kind of a ratio may also be "at least"."""
         kinds = {"measured": "at least", "extrapolated": "at most", "at most": "at most"}
         kind = kinds[self.kind] if other.kind == "at most" else self.kind
         return Cost(self.value / other.value, kind, float(np.hypot(self.error, other.error)))
 
 
 def cost_of(costs, errors, target):
-    """Cost beyond which all errors are at most ``target``; None if the dearest run misses it.
+    """Cost above which all errors are at most ``target``; None if the most expensive run misses it.
 
-    Log-log between the dearest run that misses the target and the next dearer one, which reaches it.
-    A lost run has the error inf, and the cost NaN where that is not known.
+    It is interpolated log-log between the most expensive run that misses the target and the next one, which reaches it.
+    A lost run has the error inf, and the cost NaN if the cost is not known.
     """
     costs, errors = np.asarray(costs, float), np.asarray(errors, float)
     known = ~np.isnan(costs)
@@ -121,7 +121,7 @@ def cost_of(costs, errors, target):
 
 
 def extrapolated_cost(costs, errors, target):
-    """Cost of an error that no run has: by the line through the asymptotic part; None without."""
+    """Cost of an error that no run reaches, from the line through the asymptotic part; None without a line."""
     fit = fitted_order(1.0 / np.asarray(costs, float), errors)
     if fit is None:
         return None
@@ -129,7 +129,7 @@ def extrapolated_cost(costs, errors, target):
 
 
 def cheapest(costs_by_name):
-    """(name, Cost) of the lowest cost of a dictionary name -> Cost or None; twice None if all are."""
+    """(name, Cost) of the lowest cost in a dict name -> Cost or None; (None, None) if all are None."""
     known = [item for item in costs_by_name.items() if item[1] is not None]
     return min(known, key=lambda item: item[1].value, default=(None, None))
 
@@ -137,7 +137,7 @@ def cheapest(costs_by_name):
 def price(results, scene, method, target, unit="seconds", extrapolate=False):
     """Cost of an error with one method, with the uncertainty of its timings.
 
-    ``unit``: evaluations or seconds; ``extrapolate``: where no run gets there and forces are smooth.
+    ``unit``: evaluations or seconds; ``extrapolate``: allow extrapolation if no run reaches the error and forces are smooth.
     """
     _, errors = results.errors(scene, method)
     costs = results.column(scene, method, unit)
@@ -152,8 +152,8 @@ def price(results, scene, method, target, unit="seconds", extrapolate=False):
 
 
 def expected_order(formulation, values):
-    """Order of the error of positions with the tuned coefficients for so many values.
+    """Order of the error of positions with the tuned coefficients of N values.
 
-    N; in the second formulation N - 1 for odd N (see Scheme::order() of the kernel).
+    It is N, except N - 1 in the second formulation with odd N (see Scheme::order() of the kernel).
     """
     return values - values % 2 if formulation == "second" else values

@@ -1,4 +1,4 @@
-"""The pictures.  Nothing is computed here but where labels go."""
+"""The pictures.  Only positions of labels are computed here."""
 
 from functools import partial
 
@@ -18,7 +18,7 @@ from .evaluate import fitted_order, price
 PEER = {"DOP853": "#009e73", "LSODA": "#cc79a7", "RKN4, 6 stages": "#e69f00"}
 PEER |= {"RKN6, 11 stages": "#9467bd", "Kahan–Li 8, 17 stages": "#8c564b"}
 AXIS = {"seconds": "wall time of the run, ms", "evaluations": "force evaluations, start included"}
-#: the least that a logarithmic panel shows
+#: smallest value in a logarithmic panel
 TINY = 1e-17
 
 
@@ -32,14 +32,14 @@ def points(results, scene, method, unit, quantity):
 
 # --- the main picture -----------------------------------------------------------------------------
 def _label(axis, x, y, level, text, color, offset):
-    """A label beside the first point of a line whose value is at most ``level``."""
+    """Write a label beside the first point of a line with a value of at most ``level``."""
     for at in np.flatnonzero(y <= level)[:1]:
         look = {"color": color, "fontsize": 9.5, "textcoords": "offset points"}
         axis.annotate(text, (x[at], y[at]), xytext=offset, **look)
 
 
 def _arrow(axis, results, target):
-    """The speed-up at one error, as an arrow from fix rigid/nve/small to the cheapest settings."""
+    """Draw the speed-up at one error as an arrow from fix rigid/nve/small to the cheapest settings."""
     _, best = tables.cheapest_setting(results, "case1", target)
     theirs = price(results, "case1", plan.RIGID_NVE, target)
     if best and theirs:
@@ -85,7 +85,7 @@ def draw_main(path, results):
 
 # --- panels ---------------------------------------------------------------------------------------
 def _few(scene):
-    """Method -> color, marker and line, the same in all scenes, of those that its panels show."""
+    """Method -> color, marker and line, the same in all scenes, for the methods in the panels."""
     few = {*plan.FEW_METHODS, *plan.ROUGH_METHODS, plan.setting("second", 12)}
     look = looks([method for method in plan.ALL_METHODS if method in few])
     look[plan.RIGID_SMALL]["line"] = ":"
@@ -177,7 +177,7 @@ def cutoff_panels(results):
 
 
 def pictures(results):
-    """Name -> picture, all that the results allow."""
+    """Name -> picture, for all pictures that can be drawn from the results."""
     found, scenes = {}, results.scenes
     if "case1" in scenes:
         found["main"] = partial(draw_main, results=results)

@@ -1,7 +1,7 @@
-"""Scenes that no coefficient was chosen on: errors beside those of Gear's coefficients.
+"""Scenes that were not used to choose coefficients: errors compared with Gear's coefficients.
 
-Ten seeded starts near that of test case 1, turned at random; the body that the paper may have meant;
-test cases 2 and 3; the free top.  Costs are evaluations of the forces, start included.
+They are ten seeded starts near test case 1 in random orientations, the other body that the paper may have used, test
+cases 2 and 3, and the free top.  Costs are force evaluations, start included.
 """
 
 from pathlib import Path
@@ -18,20 +18,20 @@ from . import plan
 from .runs import Reference, judged
 
 SEED, STARTS = 2026, 10
-#: how far a start may lie from that of test case 1, along each axis
+#: largest distance of a start from test case 1 along each axis
 AWAY = 4.0
-#: errors that are compared: at most, and at least so many times the smallest one; errors that rounding
-#: makes are between these
+#: errors are compared from ABOVE_FLOOR times the smallest error up to COARSE; round-off errors have the last two numbers
+#: as bounds
 COARSE, ABOVE_FLOOR, LEAST_ROUNDING, ROUNDING = 1e-3, 1e3, 1e-14, 1e-11
-#: error with Gear's coefficients over error with the defaults: geometric mean, and worst scene
+#: bounds for the ratio of errors, Gear's coefficients over defaults: geometric mean, and worst scene
 LEAST_MEAN, LEAST = 25.0, 1.0
-#: fewest and most steps, and how much finer each run is than the one before
+#: smallest and largest number of steps, and the ratio from one run to the next
 STEPS = 50, 2400, 2**0.5
 
 
 # --- scenes ---------------------------------------------------------------------------------------
 def turned_start(base, random, away, name):
-    """The Problem ``base`` near its start, up to ``away`` along each axis, turned at random."""
+    """The Problem ``base`` displaced by up to ``away`` along each axis, in a random orientation."""
     length = np.linalg.norm(base.start.omega_body.astype(float))
     center = base.start.center + random.uniform(-away, away, (1, 3))
     directions = random.normal(size=(2, 1, 3))
@@ -42,13 +42,13 @@ def turned_start(base, random, away, name):
 
 
 def random_starts():
-    """Problems of the consistent body in the cage, near test case 1 and turned at random."""
+    """Problems of the consistent body in the cage, near test case 1 in random orientations."""
     base, random = paper_problem(1), np.random.default_rng(SEED)
     return [turned_start(base, random, AWAY, f"start {n}") for n in range(1, STARTS + 1)]
 
 
 def data_text(problem):
-    """The data file of test case 1 with its atoms 1 to 4, the body, where a Problem has them."""
+    """The data file of test case 1, with atoms 1 to 4 (the body) at their positions in a Problem."""
     state = problem.start
     rotation = qt.rotation_space_body(state.q)
     spin = (rotation @ state.omega_body[..., None])[..., 0]
@@ -64,7 +64,7 @@ def data_text(problem):
 
 
 def scenes(folder, quick=False):
-    """(Scene, Problem) of all; ``folder`` gets the data files of the starts."""
+    """(Scene, Problem) of all scenes; data files of the starts are written to ``folder``."""
     folder = Path(folder).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     facts = {"samples": 1, "methods": (), "end": 100.0, "rigid_blocks": ()}
@@ -78,7 +78,7 @@ def scenes(folder, quick=False):
     title = "test case 1, unrotated body"
     scene = plan.Scene("case1-unrotated", title, variables=unrotated, **facts)
     yield scene, paper_problem(1, "unrotated")
-    # test case 2 is the start of test case 1 at a larger step: it goes on where that ends
+    # test case 2 is test case 1 with a larger step, so it starts here from the end of test case 1
     longer = facts | {"end": 300.0, "gear_blocks": tuple(3 * n for n in facts["gear_blocks"])}
     yield plan.Scene("case2", "test case 2", **longer), paper_problem(2)
     yield plan.Scene("case3", "test case 3", **facts), paper_problem(3)
@@ -90,7 +90,7 @@ def scenes(folder, quick=False):
 
 # --- running --------------------------------------------------------------------------------------
 def measure(lab, session):
-    """(title of the scene, key of the method) -> list of (evaluations, error), from large steps on."""
+    """(title of the scene, key of the method) -> list of (evaluations, error), large steps first."""
     methods, found = [*DEFAULTS.values(), *GEARS.values()], {}
     planned = list(scenes(lab.out / "heldout", lab.quick))
     for scene, problem in planned:
@@ -110,11 +110,11 @@ def measure(lab, session):
 
 # --- judging --------------------------------------------------------------------------------------
 def gains(gears, ours):
-    """Errors with Gear's coefficients over errors of ``ours`` at as many evaluations, (n,).
+    """Ratios (n,) of errors at equal evaluations, Gear's coefficients over ``ours``.
 
-    ``gears``, ``ours``: lists of (evaluations, error).  They are compared at the runs of ``gears`` whose
-    error is at most COARSE and at least ABOVE_FLOOR times that of rounding, the smallest of all: log-log
-    between runs of ``ours``.  Zero where ``ours`` are lost.
+    ``gears``, ``ours``: lists of (evaluations, error).  They are compared at the runs of ``gears`` with an error of at
+    most COARSE and at least ABOVE_FLOOR times the round-off (smallest) error; ``ours`` are interpolated log-log.  The
+    ratio is zero if ``ours`` are lost.
     """
     gears, ours = np.array(gears, dtype=float), np.array(ours, dtype=float)
     ended = np.isfinite(ours[:, 1])
@@ -123,7 +123,7 @@ def gains(gears, ours):
     smallest = min(ROUNDING, max(min(gears[:, 1].min(), ours[:, 1].min()), LEAST_ROUNDING))
     used = (gears[:, 1] <= COARSE) & (gears[:, 1] >= ABOVE_FLOOR * smallest)
     used &= gears[:, 0] <= ours[ended, 0].max()
-    if ended.all():  # fewer evaluations than ours were tried with
+    if ended.all():  # fewer evaluations than any run of ours
         used &= gears[:, 0] >= ours[:, 0].min()
     costs, errors = gears[used].T
     found = np.exp(np.interp(np.log(costs), *np.log(ours[ended]).T, left=np.inf))
@@ -131,7 +131,7 @@ def gains(gears, ours):
 
 
 def _mean(values):
-    """Geometric mean; NaN of nothing."""
+    """Geometric mean; NaN without values."""
     with np.errstate(divide="ignore"):
         return float(np.exp(np.log(values).mean())) if len(values) else np.nan
 
@@ -146,8 +146,8 @@ def find(results):
             means[title] = _mean(own)
             row += [f"{value:.3g}" for value in (means[title], own.min(initial=np.inf))]
         worst = min(means, key=lambda title: np.nan_to_num(means[title], nan=-1.0))
-        what = f"held-out scenes, {formulation} formulation: error with Gear's coefficients over that"
-        what += " of the defaults at equal evaluations"
+        what = f"held-out scenes, {formulation} formulation: error with Gear's coefficients over the error"
+        what += " with the defaults at equal evaluations"
         least = LEAST_MEAN if formulation == "second" else LEAST
         mean = _mean(np.array(list(means.values())))
         found.append(Measurement(f"{what}, geometric mean", mean, spec=".3g", least=least))

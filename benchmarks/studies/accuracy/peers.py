@@ -1,8 +1,8 @@
 """The methods that the fix is compared with, counted in evaluations of the forces.
 
-SciPy's solvers; splittings with exact free rotation; fix rigid/nve/small; and compositions of its steps,
-which LAMMPS makes itself: a step may be negative, and ``run 1 pre no`` goes on where the last one ended.
-M. Suzuki, Phys. Lett. A 146, 319 (1990), has the composition of order 4.
+These are SciPy's solvers, splittings with exact free rotation, fix rigid/nve/small, and compositions of its steps.
+LAMMPS runs the compositions itself: a step may be negative, and ``run 1 pre no`` continues the last run.
+The composition of order 4 is from M. Suzuki, Phys. Lett. A 146, 319 (1990).
 """
 
 from functools import partial
@@ -26,7 +26,7 @@ NAMES = (*solvers.METHODS, *(own.label for own in SPLITTINGS), *COMPOSITIONS)
 
 
 def _composed(session, scene, reference, parts, numbers):
-    """A WorkPoint of a composition for each of ``numbers`` of steps that LAMMPS carries to the end."""
+    """WorkPoints of a composition, one for each of the ``numbers`` of steps with which LAMMPS reaches the end."""
     points = []
     for steps in numbers:
         variables = plan.Run(scene, plan.RIGID_NVE, steps).variables(False)
@@ -42,7 +42,7 @@ def _composed(session, scene, reference, parts, numbers):
 
 
 def _jobs(session, scene, reference):
-    """(name, tolerance or number of steps, function that makes WorkPoints of a list of these)."""
+    """(name, tolerances or numbers of steps, function from a list of these to WorkPoints)."""
     task = reference.problem, scene.end, reference.state
     for name in solvers.METHODS:
         for tolerance in scene.tolerances:

@@ -1,7 +1,7 @@
-"""What is run: methods, scenes, and the numbers of steps of each.
+"""Methods, scenes and their numbers of steps.
 
-A method is a set of variables of the decks under ``examples``, so that every run can be repeated by
-``lmp -in DECK -var ...``.  A scene is a deck, how long it runs and with how many steps.
+A method is a set of variables of the decks in ``examples``, so that every run can be repeated by
+``lmp -in DECK -var ...``.  A scene is a deck with a duration and numbers of steps.
 """
 
 import itertools
@@ -20,17 +20,17 @@ from benchmarks.engine.methods import (
 )
 
 PASSES = 1, DEFAULT_PASSES
-#: columns of the log of every scene (examples/common/in.motion), and the further one asked for
+#: columns in the log of every scene (examples/common/in.motion), and an additional one
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
 VALUES = {"second": range(4, 13), "first": range(3, 9)}
 
 
 def setting(formulation, values, passes=DEFAULT_PASSES, **more):
-    """A setting of fix gear/quat whose name says the passes, unless they are as many as converge."""
+    """A setting of fix gear/quat; its name has the number of passes, unless passes are repeated until convergence."""
     return gear(formulation, values, passes=passes, **more)
 
 
-#: the fix as it is without a keyword
+#: the fix without keywords
 DEFAULT = AUTOMATIC
 RIGID_NVE, RIGID_SMALL = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
 ALL_METHODS = (
@@ -48,7 +48,7 @@ def _few(*settings):
     return tuple(dict.fromkeys((*settings, *DEFAULTS.values(), DEFAULT, RIGID_NVE, RIGID_SMALL)))
 
 
-#: methods of the scenes where a step costs milliseconds, and of a first look; and where forces jump
+#: methods of scenes with steps of milliseconds and of quick runs, and of scenes with discontinuous forces
 FEW_METHODS = _few(
     *(setting("second", n) for n in (7, 11)),
     setting("first", 6),
@@ -59,7 +59,7 @@ ROUGH_METHODS = _few(setting("second", 7), setting("first", 6), GEARS["second"])
 
 
 def geometric(first, last, ratio):
-    """Whole numbers from ``first`` to ``last``, each about ``ratio`` times the one before."""
+    """Integers from ``first`` to ``last``, each about ``ratio`` times the one before."""
     numbers, x = [], float(first)
     while x < last * ratio**0.5:
         numbers.append(min(round(x), last))
@@ -74,14 +74,16 @@ def half_decades(first, last):
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A deck and how it is run.
+    """A deck and the parameters of its runs.
 
-    Every run ends at ``end``; it is sampled ``samples`` times, and its number of steps is a multiple
-    of that.  ``gear_blocks``, ``rigid_blocks``: steps between two samples, ascending; ``far``: those
-    of fix rigid/nve/small if it has others.  ``measure``: the error that prices are for, position or
-    orientation.  ``time``: its unit, "" for reduced ones.  ``cost``: seconds per step, and ``minutes``:
-    of all runs, both roughly; ``tolerances``: those of SciPy's solvers, and ``evaluations``: of the
-    splittings, roughly; ``smooth``: whether forces have no jump.
+    * ``end``: end of every run; ``samples``: number of samples, which divides the number of steps
+    * ``gear_blocks``, ``rigid_blocks``: steps between two samples, ascending; ``far``: the same for
+      fix rigid/nve/small, if different
+    * ``measure``: the error for which costs are given, position or orientation
+    * ``time``: unit of time, "" for reduced units
+    * ``cost``: approximate seconds per step; ``minutes``: approximate duration of all runs
+    * ``tolerances`` of SciPy's solvers; ``evaluations``: approximate numbers for the splittings
+    * ``smooth``: True if forces have no jump
     """
 
     key: str
@@ -108,12 +110,12 @@ class Scene:
 
     @property
     def heading(self):
-        """What the scene is and how long its runs are."""
+        """Description of the scene and the duration of its runs."""
         time = f"{self.end:g} {self.time}" if self.time else f"t = {self.end:g}"
         return f"{self.title}, {time}"
 
     def steps(self, method):
-        """Numbers of steps that a method is run with, ascending."""
+        """Numbers of steps of the runs of a method, ascending."""
         blocks = self.gear_blocks if method.gear else self.rigid_blocks
         if method == RIGID_NVE and self.far:
             blocks = self.far
@@ -135,7 +137,7 @@ class Run:
 
     @property
     def cost(self):
-        """Seconds that it takes, roughly, with LAMMPS started and the scene read."""
+        """Approximate duration in seconds, with the start of LAMMPS and reading the scene."""
         return 0.006 + self.scene.cost * self.steps
 
     @property
@@ -146,8 +148,8 @@ class Run:
     def variables(self, sampled, timers=False):
         """Variables of the deck, name -> value.
 
-        ``sampled``: with the samples of the scene, else with output at start and end only;
-        ``timers``: with LAMMPS' timers inside the step.
+        ``sampled``: output at the samples of the scene, instead of at start and end only;
+        ``timers``: use LAMMPS' timers inside the step.
         """
         own = dict(self.scene.variables) | self.method.variables
         own |= {"dt": f"{self.dt:.17g}", "steps": self.steps, "every": self.steps}
@@ -166,13 +168,13 @@ class Run:
 
 # --- scenes ---------------------------------------------------------------------------------------
 def _one_body(quick, **facts):
-    """A scene of one body, whose steps cost microseconds."""
+    """A scene of one body, with steps of microseconds."""
     facts |= {"end": 200.0, "samples": 40, "methods": FEW_METHODS if quick else ALL_METHODS}
     if quick:
         blocks, rigid_blocks, far = geometric(8, 256, 2.0), geometric(16, 1 << 10, 2.0), ()
     else:
         blocks, rigid_blocks = geometric(8, 1000, 2 ** (1 / 3)), geometric(16, 1 << 14, 2.0)
-        far = geometric(16, 1 << 17, 2.0)  # to where rounding stops it
+        far = geometric(16, 1 << 17, 2.0)  # down to the round-off error
     facts |= {"gear_blocks": blocks, "rigid_blocks": rigid_blocks, "far": far}
     return Scene(tolerances=half_decades(4, 12) if quick else half_decades(2, 13), **facts)
 
@@ -202,7 +204,7 @@ def scenes(quick):
 
 
 # --- further runs, test case 1 only ---------------------------------------------------------------
-#: steps of the runs that show rounding, and of those that time the fix itself
+#: steps of the runs for round-off, and of the runs that time the fix
 ROUNDING_STEPS = (0.02, 0.01, 0.005, 0.002, 0.001)
 MODIFY_STEPS, MODIFY_DT = 200_000, 0.02
 MODIFY = (RIGID_NVE, DEFAULT, DEFAULTS["first"], RIGID_SMALL)
@@ -214,7 +216,7 @@ def scene_runs(scene):
 
 
 def order_runs(scene, quick):
-    """(formulation, N) -> runs with compensated sums, so that rounding hides as little as possible."""
+    """(formulation, N) -> runs with compensated sums, to reduce round-off."""
     runs, blocks = {}, geometric(20, 400, 2**0.5 if quick else 2**0.125)
     for name, n in ((name, n) for name in VALUES for n in VALUES[name]):
         method = setting(name, n, compensate=True)
@@ -223,7 +225,7 @@ def order_runs(scene, quick):
 
 
 def rounding_runs(scene, quick):
-    """(formulation, whether sums are compensated) -> runs with small steps."""
+    """(formulation, True for compensated sums) -> runs with small steps."""
     runs, steps = {}, ROUNDING_STEPS[:2] if quick else ROUNDING_STEPS
     for name, compensate in itertools.product(DEFAULT_VALUES, (False, True)):
         method = setting(name, DEFAULT_VALUES[name], compensate=compensate)
@@ -232,6 +234,6 @@ def rounding_runs(scene, quick):
 
 
 def modify_runs(scene, quick):
-    """Long runs that time the fix itself."""
+    """Long runs for the time in the fix."""
     steps = MODIFY_STEPS // 20 if quick else MODIFY_STEPS
     return [Run(replace(scene, end=steps * MODIFY_DT), method, steps) for method in MODIFY]

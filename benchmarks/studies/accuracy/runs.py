@@ -1,4 +1,4 @@
-"""The references, the errors of runs, and everything that is run, in order."""
+"""The references, the errors of runs, and the sequence of all runs."""
 
 import math
 from dataclasses import astuple, dataclass, field
@@ -13,25 +13,26 @@ from benchmarks.reference.lammps_forces import deck_problem
 
 from . import peers, plan
 
-#: timings of every run, at least
+#: smallest number of timings of every run
 ROUNDS, QUICK_ROUNDS = 5, 2
-#: a step is usable while the total energy stays within this part of the kinetic energy at the start,
-#: every |q|^2 within it of 1, and the change of |q|^2 / 2 over a step below it
+#: limit for a usable step: of the energy error relative to the initial kinetic energy, of every | |q|^2 - 1 |, and of the
+#: change of |q|^2 / 2 in a step
 USABLE = 0.1
-#: how much finer the run is that judges the others where nothing better is known
+#: factor by which the reference run has a smaller step, if there is no better reference
 FINER = 16
 
 
 # --- what is kept ---------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Errors:
-    """Errors of a run, in the units of its deck; infinite where the run was lost.
+    """Errors of a run, in the units of its deck; infinite if the run was lost.
 
-    ``position``: distance of the centers of mass at the end, ``orientation``: angle of the rotation
-    from the reference to the run, radians; both root mean square over the bodies.  ``energy``: largest
-    deviation of the total energy from its start over the samples; ``drift``: magnitude of its slope,
-    least squares over the samples, per unit of time.  ``norm``: largest | |q|^2 - 1 |, ``tangency``:
-    largest | q.qdot | over the samples; NaN where the method has no quaternion of its own.
+    * ``position``: distance of the centers of mass at the end, root mean square over the bodies
+    * ``orientation``: angle of the rotation from the reference to the run, radians, root mean square over the bodies
+    * ``energy``: largest change of the total energy since the start, over the samples
+    * ``drift``: magnitude of the least-squares slope of the total energy, per unit of time
+    * ``norm``: largest | |q|^2 - 1 |, ``tangency``: largest | q.qdot |, over the samples; NaN if the method has no
+      quaternion of its own
     """
 
     position: float
@@ -47,11 +48,11 @@ LOST = Errors(*[np.inf] * 4, np.nan, np.nan)
 
 @dataclass(frozen=True)
 class Point(Errors):
-    """One run: its errors and what it cost.
+    """One run: its errors and its cost.
 
-    ``scene``, ``method``: keys; ``start``: force evaluations of the method's own start, ``evaluations``:
-    all, with those of the set-up; ``low``, ``seconds``, ``high``: quartiles of so many ``timings`` of
-    the ``run`` command, NaN if it was not timed.
+    * ``scene``, ``method``: keys
+    * ``start``: force evaluations of the method's own start; ``evaluations``: all, including the set-up
+    * ``low``, ``seconds``, ``high``: quartiles of the ``timings`` of the ``run`` command, NaN if it was not timed
     """
 
     scene: str
@@ -68,14 +69,16 @@ class Point(Errors):
 
 @dataclass
 class Results:
-    """Everything that was measured.
+    """All measurements.
 
-    ``runs``: list of Point.  ``peers``: (scene, name) -> list of (tolerance or number of steps,
-    evaluations, error of position, of orientation).  ``limits``: (scene, method) -> largest usable step, 0 if none was found.
-    ``orders``: (formulation, N) and ``rounding``: (formulation, whether compensated) -> list of (step,
-    error of position) in test case 1.  ``modify``: method -> Timing of a step inside the fix.
-    ``heldout``: (scene, method) -> list of (evaluations, error) of the scenes of heldout.py.
-    ``choice``: scene -> costs of the scenes of choice.py.
+    * ``runs``: list of Point
+    * ``peers``: (scene, name) -> list of (tolerance or number of steps, evaluations, error of position, of orientation)
+    * ``limits``: (scene, method) -> largest usable step, 0 if none was found
+    * ``orders``: (formulation, N) and ``rounding``: (formulation, True if compensated) -> list of (step, error of
+      position) in test case 1
+    * ``modify``: method -> Timing of a step inside the fix
+    * ``heldout``: (scene, method) -> list of (evaluations, error) for the scenes of heldout.py
+    * ``choice``: scene -> costs for the scenes of choice.py
     """
 
     quick: bool
@@ -90,7 +93,7 @@ class Results:
 
     @property
     def scenes(self):
-        """Key -> Scene of the scenes that were run."""
+        """Key -> Scene for all scenes of the runs."""
         keys = dict.fromkeys(point.scene for point in self.runs)
         return {key: plan.scenes(self.quick)[key] for key in keys}
 
@@ -118,9 +121,9 @@ class Results:
 # --- references -----------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Reference:
-    """``problem`` and its ``state`` at the end; ``ids`` (S,) of the sites and their ``sites`` (S, 3).
+    """``problem`` and its ``state`` at the end; ``ids`` (S,) of the sites and their positions ``sites`` (S, 3).
 
-    ``problem`` is None where the reference is itself a run of LAMMPS.
+    ``problem`` is None if the reference is a LAMMPS run.
     """
 
     problem: object
@@ -129,18 +132,18 @@ class Reference:
     sites: np.ndarray
 
     def positions(self, outcome):
-        """Positions (n, 3) of all atoms of an Outcome; those in no body stay."""
+        """Positions (n, 3) of all atoms of an Outcome; atoms outside of bodies do not move."""
         positions = outcome.before.copy()
         positions[np.searchsorted(outcome.ids, self.ids)] = self.sites
         return positions
 
 
 def reference_of(scene, folder, session):
-    """Where the sites of a scene are at its end, independent of the fix.
+    """Positions of the sites of a scene at its end, independent of the fix.
 
-    Test case 1 is written down a second time, in extended precision; a free top is exact; water is
-    extrapolated with LAMMPS' forces.  Where forces jump, it is fix rigid/nve/small at a step FINER times
-    smaller than its finest one: no more is known.  ``folder`` keeps the states.
+    Test case 1 has an independent implementation in extended precision, the free top an exact solution, and water an
+    extrapolation with LAMMPS' forces.  If forces are discontinuous, the reference is fix rigid/nve/small with a step
+    FINER times smaller than its finest one, because nothing better is available.  States are stored in ``folder``.
     """
     if not scene.smooth:
         run = plan.Run(scene, plan.RIGID_NVE, FINER * scene.steps(plan.RIGID_NVE)[-1])
@@ -160,7 +163,7 @@ def reference_of(scene, folder, session):
 
 # --- errors of one run ----------------------------------------------------------------------------
 def energy_errors(time, total):
-    """(energy, drift) as in Errors."""
+    """(energy, drift), see Errors."""
     deviation = np.abs(total - total[0])
     if not np.isfinite(deviation).all():
         return np.inf, np.inf
@@ -180,7 +183,7 @@ def errors_of(outcome, reference):
 
 
 def judged(session, run, reference):
-    """(Outcome, Errors) of a sampled run; the Outcome of one that LAMMPS ended is its RunError."""
+    """(Outcome, Errors) of a sampled run; if LAMMPS ended the run, the RunError replaces the Outcome."""
     try:
         outcome = run.perform(session, sampled=True)
     except RunError as error:
@@ -189,7 +192,7 @@ def judged(session, run, reference):
 
 
 def is_usable(session, run):
-    """Whether a run ends, and holds energy and quaternions within USABLE."""
+    """True if a run reaches its end with errors of energy and quaternions within USABLE."""
     try:
         thermo = run.perform(session, sampled=True).thermo
     except RunError:
@@ -202,10 +205,10 @@ def is_usable(session, run):
 
 
 def fewest_steps(usable, start, most, ratio=1.02):
-    """Fewest steps n for which ``usable(n)``; None if not even ``most`` are enough.
+    """Smallest number n of steps for which ``usable(n)`` is true; None if ``most`` steps are not enough.
 
-    Doubles or halves from ``start``, then halves the gap in log n until it is below ``ratio``.  Assumes
-    that more steps are usable if fewer are.
+    The search doubles or halves ``start``, then bisects log n down to ``ratio``.  It assumes that more steps are usable
+    if fewer are.
     """
     high = start
     while not usable(high):
@@ -229,7 +232,7 @@ def largest_step(session, scene, method):
 
 
 def timed(session, run, outcome):
-    """Wall time of a run; refuses one that does not repeat the Outcome of the sampled run to the bit."""
+    """Wall time of a run; raises an error unless the Outcome agrees with the sampled run to the last bit."""
     again = run.perform(session)
     if not np.array_equal(again.after, outcome.after, equal_nan=True):
         raise LammpsError(f"log.{run.name}: the timed run does not repeat the sampled one")
@@ -246,7 +249,7 @@ def point_of(run, outcome, errors, timing=None):
 
 # --- everything -----------------------------------------------------------------------------------
 def judge_all(lab, session, scene, reference):
-    """Run -> (Outcome, Errors) of all runs; refuses a scene in which no run of the fix ends."""
+    """Run -> (Outcome, Errors) of all runs; raises an error if no run of the fix reaches the end of a scene."""
     runs, outcomes = plan.scene_runs(scene), {}
     for run in runs:
         outcomes[run] = judged(session, run, reference)
@@ -258,7 +261,7 @@ def judge_all(lab, session, scene, reference):
 
 
 def time_all(lab, session, outcomes):
-    """Run -> Timing of all runs that have ended."""
+    """Run -> Timing of all runs that reached their end."""
     ended = [run for run, (outcome, _) in outcomes.items() if not isinstance(outcome, RunError)]
     rounds, total = QUICK_ROUNDS if lab.quick else ROUNDS, sum(run.cost for run in ended)
 
@@ -270,7 +273,7 @@ def time_all(lab, session, outcomes):
 
 
 def run_scene(lab, session, results, scene, reference):
-    """Errors of all methods, their largest steps, timings in turn, and the peers."""
+    """Errors, largest usable steps and timings of all methods, and the other methods."""
     with lab.share(0.1):
         outcomes = judge_all(lab, session, scene, reference)
     with lab.share(0.1):
@@ -286,7 +289,7 @@ def run_scene(lab, session, results, scene, reference):
 
 
 def run_further(lab, session, results, scene, reference):
-    """Orders, rounding and time in the fix, all in test case 1."""
+    """Orders, round-off and time in the fix, all in test case 1."""
 
     orders, rounding = (f(scene, lab.quick) for f in (plan.order_runs, plan.rounding_runs))
     for kept, planned in ((results.orders, orders), (results.rounding, rounding)):
@@ -303,7 +306,7 @@ def run_further(lab, session, results, scene, reference):
 
 
 def measure(lab, session):
-    """Results of all scenes of the plan.  One runs at a time, because runs are timed."""
+    """Results of all scenes of the plan.  Runs are timed, so there is one run at a time."""
     scenes = [s for key, s in plan.scenes(lab.quick).items() if key in lab.parts or not lab.parts]
     results = Results(lab.quick)
     for scene in scenes:

@@ -1,4 +1,4 @@
-"""Evaluations of the forces in test case 1 beside those of the strongest of the other methods."""
+"""Force evaluations in test case 1, compared with the strongest of the other methods."""
 
 import numpy as np
 
@@ -9,27 +9,27 @@ from . import peers, plan
 from .evaluate import cheapest, cost_of, price
 from .tables import NONE, TARGETS, cheapest_setting, count_text, power, ratio_text
 
-#: evaluations by error in test case 1, at most
+#: largest number of evaluations for each error in test case 1
 MOST_DEFAULT = dict(zip(TARGETS, (650, 800, 1250, 2050)))
 MOST_CHEAPEST = dict(zip(TARGETS, (500, 650, 1000, 1600)))
-#: error of the first formulation's defaults at this step, at most
+#: a step, and the largest error with the defaults of the first formulation
 FIRST_STEP, MOST_FIRST = 0.1, 3e-7
 
 
 def prices(results, target):
-    """Name -> Cost in evaluations, or None, of an error in test case 1, fix rigid/nve/small included."""
+    """Name -> Cost in evaluations, or None, for an error in test case 1, with fix rigid/nve/small."""
     found = {name: cost_of(*results.peer("case1", name), target) for name in peers.NAMES}
     task = results, "case1", plan.RIGID_NVE, target, "evaluations"
     return found | {plan.RIGID_NVE.label: price(*task, extrapolate=True)}
 
 
 def strongest(results, target):
-    """(name, Cost) of the peer that takes the fewest evaluations; twice None if none gets there."""
+    """(name, Cost) of the other method with the fewest evaluations; (None, None) if none reaches the error."""
     return cheapest(prices(results, target))
 
 
 def error_at(steps, errors, step):
-    """Error at a step between those that were run, log-log; arrays (n,)."""
+    """Error at a step between measured ones, interpolated log-log; arrays (n,)."""
     order = np.argsort(steps)
     steps, errors = np.log(np.asarray(steps)[order]), np.log(np.asarray(errors)[order])
     return float(np.exp(np.interp(np.log(step), steps, errors)))
@@ -44,7 +44,7 @@ def _of_ours(results, target):
 
 
 def columns(results, target):
-    """Label -> cell of one error, for the page and for README."""
+    """Label -> cell for one error, for the page and for README."""
     others, (name, peer) = prices(results, target), strongest(results, target)
     ours = list(_of_ours(results, target))
     counts = {f"`fix gear/quat`, {words} settings": count_text(cost) for words, _, cost, _ in ours}
@@ -65,7 +65,7 @@ def columns(results, target):
 
 
 def case1(results):
-    """Tables evaluations and readme of test case 1, and their measurements."""
+    """The tables "evaluations" and "readme" of test case 1, and their measurements."""
     found = []
     for target in TARGETS:
         at, (name, peer) = f"test case 1, error {power(target)}", strongest(results, target)
@@ -74,7 +74,7 @@ def case1(results):
             what = f"{at}: force evaluations with the {words} settings"
             found.append(Measurement(what, value, spec=",.0f", most=most))
             factor = peer.value / value if peer else np.nan
-            what = f"{at}: force evaluations of the strongest other method over those"
+            what = f"{at}: ratio of force evaluations, strongest other method over these settings"
             found.append(Measurement(what, factor, None, ".3g", "times", name or "", least=1.0))
     error = error_at(*results.errors("case1", plan.DEFAULTS["first"]), FIRST_STEP)
     what = f"test case 1, first formulation, default settings, step {FIRST_STEP:g}: error"

@@ -1,6 +1,6 @@
-"""Prices of errors, and the tables and measurements of the page.
+"""Costs of errors, and the tables and measurements of the page.
 
-Bounds stand here and nowhere else; every other number is measured.
+All bounds are defined here; every other number is measured.
 """
 
 from dataclasses import astuple, fields
@@ -18,11 +18,11 @@ from .evaluate import cheapest, expected_order, fitted_order, price, sign_change
 from .runs import Point
 
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
-#: speed-up over fix rigid/nve/small in test case 1, by error
+#: least speed-up over fix rigid/nve/small in test case 1 for each error
 LEAST_SPEEDUP = {1e-4: 5.0, 1e-6: 30.0, 1e-8: 150.0}
-#: slopes may be so much less than the order, from so many values on
+#: slopes may be smaller than the order by this much; they are judged from this number of values on
 ORDER_MARGIN, LEAST_VALUES = 0.4, 5
-#: error of position at the smallest step of plain and of compensated sums; time in the fix
+#: bounds: error of position at the smallest step with plain and with compensated sums; time in the fix
 MOST_ROUNDING, MOST_MODIFY = {False: 5e-11, True: 1e-12}, 1.0
 NONE = "–"
 GEAR = {method.key for method in plan.ALL_METHODS if method.gear}
@@ -36,15 +36,15 @@ def power(number):
 
 
 def significant(number, digits=2):
-    """A number with a few significant digits, without exponent, thousands apart."""
+    """A number with a few significant digits, without exponent, with thousands separated."""
     rounded = float(f"{number:.{digits - 1}e}")
     return grouped(rounded) if rounded >= 10 else f"{rounded:g}"
 
 
 def cheapest_setting(results, scene, target, unit="seconds", passes=None):
-    """(Method, Cost) of the cheapest setting of fix gear/quat; (None, None) if none gets there.
+    """(Method, Cost) of the cheapest setting of fix gear/quat; (None, None) if none reaches the error.
 
-    ``passes``: only settings with so many, 0 for as many as converge.
+    ``passes``: only settings with this number of passes, 0 for passes until convergence.
     """
     ours = [m for m in results.scenes[scene].methods if m.gear]
     ours = [m for m in ours if passes in (None, m.variables.get("passes", 0))]
@@ -52,9 +52,9 @@ def cheapest_setting(results, scene, target, unit="seconds", passes=None):
 
 
 def speedups(results, scene, target):
-    """Wall time of fix rigid/nve/small over that of the defaults, and of the cheapest setting.
+    """Ratios of wall times: fix rigid/nve/small over the defaults, and over the cheapest setting.
 
-    Two Costs, either None where a side is missing, and the cheapest Method or None.
+    Returns two Costs, each None if a time is missing, and the cheapest Method or None.
     """
     theirs = price(results, scene, plan.RIGID_NVE, target, extrapolate=True)
     default = price(results, scene, plan.DEFAULT, target)
@@ -111,9 +111,9 @@ def other_speedups(results):
 
 # --- order, stability, rounding, time in the fix --------------------------------------------------
 def limit_of(formulation, n, made=kernel.tuned):
-    """Largest omega h of the linear test equation, for positions and quaternions.
+    """Largest stable omega h of the linear test equation, for positions and quaternions.
 
-    ``made``: which Corrector, kernel.tuned or kernel.gear.
+    ``made``: kernel.tuned or kernel.gear, which return the Corrector.
     """
     corrector = made(formulation, n)
     return linear_limit(corrector.step)
@@ -126,7 +126,7 @@ def order_fits(results):
 
 
 def orders(results):
-    """Slope of each N beside the order, and the largest stable steps; table and measurements."""
+    """Order and slope of each N, and the largest stable steps; table and measurements."""
     header = ["formulation", "N", "order", "slope", "ω Δt, linear", "ω Δt, Gear's"]
     header += ["largest usable step, 1 pass", "largest usable step, `passes auto`"]
     rows, found = [], []
@@ -157,7 +157,7 @@ def rounding(results):
 
 
 def modify(results):
-    """Time inside the fix, beside that of fix rigid/nve/small; table and measurements."""
+    """Time inside the fix, compared with fix rigid/nve/small; table and measurements."""
     yard, rows, found = results.modify[plan.RIGID_NVE.key], [], []
     relative = f"relative to {plan.RIGID_NVE.label}"
     for method in plan.MODIFY:
@@ -186,13 +186,13 @@ def constraints(results):
 
 
 def closest(results, methods):
-    """The Point of test case 1 with the smallest error of methods, of which these are the keys."""
+    """The Point of test case 1 with the smallest error among the methods with these keys."""
     points = [p for p in results.runs if p.scene == "case1" and p.method in methods]
     return min(points, key=lambda p: p.position)
 
 
 def cutoff(results):
-    """Powers of the step with which errors in water fall, by scene; and errors with a plain cutoff."""
+    """Observed orders of errors in water for each scene, and errors with a plain cutoff."""
     powers, methods = {}, (plan.DEFAULT, plan.RIGID_NVE)
     for scene in ("water", "water-plain"):
         for method in methods:

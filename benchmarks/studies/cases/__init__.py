@@ -1,7 +1,7 @@
 """The paper's three test cases, and its claims about them.
 
-plan.py (what is run), claims.py (the paper's claims, and how the measurement decides on them),
-accuracy.py (errors by step), figures.py (the paper's figures, and two of our own).
+plan.py (runs), claims.py (the paper's claims and their verdicts), accuracy.py (errors by step), figures.py (the paper's
+figures and two others).
 """
 
 import textwrap
@@ -14,7 +14,7 @@ from .figures import pictures
 from .plan import ACCURACY_END, ACCURACY_STEPS, ACCURATE, AS_PRINTED, END, ROWS, measure
 
 PAPER_TIMES = ("1300", "250 to 300", "800")
-#: what --check demands: of how many claims, and of the errors with the defaults of the fix
+#: bounds of --check: numbers of claims, and errors with the defaults of the fix
 LEAST, MOST_NOT, MOST_ERROR = 15, 2, 1e-9
 CHECKED_STEP = 0.02
 
@@ -32,9 +32,9 @@ def claim_table(claims):
 
 
 def table7(results):
-    """Times at which the formulations part, for every start and threshold.
+    """Times at which the formulations diverge, for every start and threshold.
 
-    The last row is for comparison: when fix rigid/nve/small parts from the second formulation with the
+    The last row is for comparison: the times at which fix rigid/nve/small diverges from the second formulation with the
     defaults of the fix.
     """
     step = results.step
@@ -59,7 +59,7 @@ def error_table(first, steps, errors):
 
 # --- finding ------------------------------------------------------------------------------------
 def measurements(position, energy, steps, count):
-    """Errors of all methods with all digits, and how many claims got which verdict."""
+    """Errors of all methods with all digits, and the number of claims with each verdict."""
     found = [
         Measurement(f"claims that are {REPRODUCED}", count[REPRODUCED], spec="d", least=LEAST),
         Measurement(f"claims that are {NOT}", count[NOT], spec="d", most=MOST_NOT),
@@ -79,7 +79,7 @@ def measurements(position, energy, steps, count):
 
 
 def listed(numbers):
-    """Numbers as words of a sentence, "" if there are none."""
+    """Numbers joined for a sentence, "" if there are none."""
     *others, last = [f"{number:g}" for number in numbers] or [""]
     return f"{', '.join(others)} and {last}" if others else last
 

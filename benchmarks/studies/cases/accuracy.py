@@ -1,6 +1,6 @@
-"""What accuracy costs: error of the trajectory against the step, and of the energy over long runs.
+"""The cost of accuracy: error of the trajectory against the step, and of the energy over long runs.
 
-Everything is measured in the paper's scene with the consistent body.
+All measurements are for the paper's scene with the consistent body.
 """
 
 import functools
@@ -44,14 +44,14 @@ def position_errors(results):
 
 
 def energy_steps(results):
-    """Steps of the long runs of one and the same motion: test cases 1 and 2, and two larger ones."""
+    """Steps of the long runs of the same motion: test cases 1 and 2, and two larger steps."""
     return (results.step[1], results.step[2], *COARSE_STEPS)
 
 
 def energy_errors(results):
-    """Label -> largest deviations of the total energy from its start, one for each of energy_steps.
+    """Label -> largest changes of the total energy since the start, one for each of energy_steps.
 
-    The samples are one unit of time apart.
+    There is one sample per unit of time.
     """
 
     def largest(method, dt):

@@ -1,10 +1,10 @@
 """Every claim of the paper, the condition under which it counts as reproduced, and the measurement.
 
-A verdict is never typed; it follows from the readings of a claim:
+A verdict is computed from the readings of a claim:
 
-reproduced        the claim holds in runs made as the paper made them (zero start, nothing projected),
-                  with one of the two bodies, or with both where the claim asks for that
-explained         it does not, but the readings show where it comes from
+reproduced        the claim is true in runs with the paper's choices (zero start, no projection), with one of the two
+                  bodies, or with both if the claim requires it
+explained         the claim is not true, but the readings show its origin
 not reproducible  neither
 """
 
@@ -22,8 +22,8 @@ from .plan import ACCURATE, AS_PRINTED, FORMULATIONS, OMEGA_END, OMEGA_STEP, ROW
 
 REPRODUCED, EXPLAINED, NOT = "reproduced", "explained", "not reproducible"
 THRESHOLDS = (0.1, 1.0, 3.0)
-TIME_TOLERANCE = 0.2  # relative: the paper's times are read off figures
-VISIBLE = 0.02  # fraction of a figure's height that an eye sees
+TIME_TOLERANCE = 0.2  # relative, because the paper's times are read from figures
+VISIBLE = 0.02  # visible fraction of a figure's height
 
 CAGE = Cage(float)
 
@@ -32,8 +32,8 @@ CAGE = Cage(float)
 class Reading:
     """One measured value as ``text``; ``label``: the run.
 
-    ``holds``: whether the claim holds there, None if the run is shown for comparison only;
-    ``explains``: whether the value shows where the claim comes from.
+    ``holds``: True if the claim is true in this run, None if the run is for comparison only;
+    ``explains``: True if the value shows the origin of the claim.
     """
 
     label: str
@@ -44,10 +44,10 @@ class Reading:
 
 @dataclass(frozen=True)
 class Claim:
-    """``source``: where the paper says it; ``paper``: what it says; ``measure``: Results -> Readings.
+    """``source``: place in the paper; ``paper``: the claim; ``measure``: Results -> Readings.
 
-    ``condition`` completes "it is reproduced if"; ``need``: any or all of the readings must hold;
-    ``lead``: words before the readings; ``reason``: what the readings tell of an explained claim.
+    ``condition`` completes "it is reproduced if"; ``need``: any or all of the readings must be true;
+    ``lead``: words before the readings; ``reason``: the explanation of an explained claim.
     """
 
     source: str
@@ -61,7 +61,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Judged:
-    """A claim with its readings and the verdict that follows from them."""
+    """A claim with its readings and its verdict."""
 
     claim: Claim
     readings: tuple
@@ -81,7 +81,7 @@ class Judged:
 
     @property
     def why(self):
-        """What the verdict rests on; "" if the claim holds in all runs."""
+        """Remark on the verdict; "" if the claim is true in all runs."""
         failing = [reading.label for reading in self.readings if reading.holds is False]
         if self.verdict == REPRODUCED and failing:
             return "but not with the " + " and ".join(failing) + " body"
@@ -94,30 +94,30 @@ def show_time(time):
 
 
 def parting_times(results, case, row, names=FORMULATIONS):
-    """Times at which two runs of a row part, one for each of THRESHOLDS."""
+    """Times at which two runs of a row diverge, one for each of THRESHOLDS."""
     pair = [results.get(case, row, name) for name in names]
     return tuple(dv.parting_time(*pair, threshold) for threshold in THRESHOLDS)
 
 
 def show_times(times):
-    """Parting times as text."""
+    """Times of divergence as text."""
     return " / ".join(map(show_time, times))
 
 
 def is_near(time, low, high):
-    """Whether a measured time is that of the paper, ``low`` to ``high``."""
+    """True if a measured time agrees with the paper's, ``low`` to ``high``."""
     return low * (1 - TIME_TOLERANCE) <= time <= high * (1 + TIME_TOLERANCE)
 
 
 def is_between(times, low, high):
-    """Whether a time of the paper, ``low`` to ``high``, lies among measured ones."""
+    """True if a time of the paper, ``low`` to ``high``, is within the range of measured times."""
     return min(times) <= high and max(times) >= low
 
 
 def printed(results, case, *formulations, dt=None):
-    """[(body, Series)] of the runs made as the paper made them in one of the formulations.
+    """[(body, Series)] of the runs with the paper's choices in one formulation.
 
-    Without ``formulations`` in both: [(body and formulation, Series)].
+    Without ``formulations``, of both: [(body and formulation, Series)].
     """
     return [
         (ROWS[row].body + f" {name}" * (not formulations), results.get(case, row, name, dt))
@@ -128,7 +128,7 @@ def printed(results, case, *formulations, dt=None):
 
 # --- readings -----------------------------------------------------------------------------------
 def initial_energy(results, case, energy, digits):
-    """The total energy at the start, against the one printed with so many ``digits``."""
+    """The total energy at the start, compared with the printed one, which has ``digits`` digits."""
     for body, values in printed(results, case, "second"):
         start = values.total[0]
         yield Reading(body, f"{start:+.8f}", bool(abs(start - energy) <= 0.5 * 10**-digits))
@@ -147,7 +147,7 @@ def energy_error(results, case, formulation, fine=False):
 
 
 def late_drift(results):
-    """Case 2, first formulation: from when on the energy has drifted, and how far at the end."""
+    """Case 2, first formulation: the time from which the energy has drifted, and the drift at the end."""
     for body, values in printed(results, 2, "first"):
         onset, sign = dv.drift_onset(values, VISIBLE)
         drift = {1: "upward", -1: "downward", 0: "no drift"}[sign]
@@ -165,7 +165,7 @@ def no_late_drift(results):
 
 
 def parting(results, case, low, high):
-    """When the formulations part; the claim gives a time of ``low`` to ``high``."""
+    """The time at which the formulations diverge; the claim gives a time of ``low`` to ``high``."""
     times = {row: parting_times(results, case, row) for row in ROWS}
     among = is_between([time for row in times.values() for time in row], low, high)
     for row in AS_PRINTED:
@@ -184,7 +184,7 @@ def observable(results):
 
 
 def same_solution(results, case, until, other=None):
-    """When a run parts by 1 from that of the ``other`` case, or from that with another step."""
+    """The time at which a run is at a distance of 1 from the run of the ``other`` case, or with another step."""
     dt = None if other else results.other_step(case)
     pairs = zip(printed(results, case), printed(results, other or case, dt=dt))
     for (label, one), (_, another) in pairs:
@@ -194,7 +194,7 @@ def same_solution(results, case, until, other=None):
 
 
 def similar_curve(results):
-    """Cases 1 and 2, first formulation: when x differs by a quarter of its range."""
+    """Cases 1 and 2, first formulation: the time at which x differs by a quarter of its range."""
     times = {}
     for (body, one), (_, other) in zip(*(printed(results, case, "first") for case in (1, 2))):
         gap = np.abs(one.center[:, 0] - other.center[:, 0])
@@ -214,7 +214,7 @@ def bounded(results):
 
 
 def translation_begins(results, time=20.0):
-    """Case 3: the translational part of the kinetic energy at ``time``, and when it is visible."""
+    """Case 3: the translational part of the kinetic energy at ``time``, and the time at which it is visible."""
     for body, values in printed(results, 3, "second"):
         part = values.translation / values.kinetic
         at = float(part[values.at(time)])
@@ -224,7 +224,7 @@ def translation_begins(results, time=20.0):
 
 
 def potential_vanishes(results):
-    """Case 3: when the body has left the cage, and the energies at the end."""
+    """Case 3: the time at which the body has left the cage, and the energies at the end."""
     for label, values in printed(results, 3):
         left, end = dv.leaving_time(values), values.potential[-1]
         out = math.isfinite(left) and bool(abs(end / values.total[0]) < 0.05)
@@ -246,7 +246,7 @@ def leaving_direction(results):
 
 
 def omega_first(results):
-    """Case 1: errors with Eq. 5 fed by the corrected and by the predicted omega."""
+    """Case 1: errors with the corrected and with the predicted omega in Eq. 5."""
     best = results.get(1, ACCURATE, "second").center[int(OMEGA_END)]
     ends = [
         results.get(1, ACCURATE, "first", OMEGA_STEP, omega).center[-1]
@@ -339,7 +339,7 @@ CLAIMS = (
         f"the energy stays {PERCENT} of the swing above its start from t = 4000 ± {WITHIN} on;"
         " it is explained if it does from another time on",
         late_drift,
-        reason="chaos decides when the body comes close to a sphere, where the step is too large",
+        reason="the time at which the body comes close to a sphere, where the step is too large, is chaotic",
     ),
     Claim(
         "test case 2, Fig. 6",
@@ -351,8 +351,8 @@ CLAIMS = (
     step_does_not_matter(1, "test case 2", "with the steps of cases 1 and 2", 250, other=2),
     Claim(
         "test case 2, Fig. 7",
-        "x of the first formulation is similar to that of test case 1 until about t = 1000",
-        f"the time is within {WITHIN} with one body; it is explained if those of the two enclose it",
+        "x of the first formulation is similar to x of test case 1 until about t = 1000",
+        f"the time is within {WITHIN} with one body; it is explained if the times of the two bodies enclose it",
         similar_curve,
         lead="time until x differs by a quarter of its range: ",
     ),
@@ -371,7 +371,7 @@ CLAIMS = (
         " run; it is explained if it does in some",
         potential_vanishes,
         all,
-        reason="some bodies are still inside at the end, since chaos decides when they leave",
+        reason="some bodies are still inside at the end, because the time at which they leave is chaotic",
     ),
     formulations_part(3, "test case 3, Table 7", "they differ after t = 800", 800, 800),
     Claim(
@@ -380,7 +380,7 @@ CLAIMS = (
         "it does so in a run with the choices of the paper; it is explained if the formulations differ",
         leaving_direction,
         lead="first and second formulation: ",
-        reason="where the formulations part before the body leaves, its direction is chaotic",
+        reason="if the formulations diverge before the body leaves, its direction is chaotic",
     ),
     step_does_not_matter(1, "discussion, point 3", "in case 1 with half the step", 1300),
     step_does_not_matter(3, "discussion, point 3", "in case 3 with a fifth of the step", 800),
@@ -392,14 +392,14 @@ CLAIMS = (
         "the ratio of the two errors is above 2; it is explained if above 1.05",
         omega_first,
         lead=f"error at t = {OMEGA_END:g} with a step of {OMEGA_STEP:g}: ",
-        reason="the corrected omega is better, but both converge: the predicted one is no error",
+        reason="the corrected omega is better, but both converge: the predicted omega is not an error",
     ),
 )
-#: judged as well where the 50 million steps of --full were run
+#: additional claims for the 50 million steps of --full
 FINE_CLAIMS = (energy_held(1, "first", "Fig. 2", True), energy_held(1, "second", "Fig. 3", True))
 
 
 def all_claims(results):
-    """Every claim of the paper, judged: list of Judged."""
+    """Every claim of the paper with its verdict: list of Judged."""
     claims = CLAIMS + (FINE_CLAIMS if results.fine else ())
     return [Judged(claim, tuple(claim.measure(results))) for claim in claims]

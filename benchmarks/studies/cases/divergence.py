@@ -1,7 +1,6 @@
-"""How long two runs agree, how well one keeps its energy, and where a body goes.
+"""The time for which two runs agree, the energy conservation of a run, and the direction in which a body leaves.
 
-Arrays in, numbers out; nothing is drawn or printed here.  Lengths, times and energies in the units
-of the run.
+Arrays in, numbers out; nothing is drawn or printed here.  Lengths, times and energies are in the units of the run.
 """
 
 import numpy as np
@@ -13,7 +12,7 @@ OUTSIDE = 200.0
 def separation(first, second):
     """Distance between the centers of mass of two series, shape (n,) of their common times.
 
-    Both have to be sampled at the same times from the start on; the longer one is cut.
+    Both must be sampled at the same times from the start on; the longer one is truncated.
     """
     n = min(len(first.time), len(second.time))
     if not np.allclose(first.time[:n], second.time[:n], rtol=1e-9, atol=1e-9):
@@ -22,12 +21,12 @@ def separation(first, second):
 
 
 def first_time(time, condition):
-    """First of the times (n,) at which a condition (n,) holds; infinite if it never does."""
+    """First of the times (n,) at which a condition (n,) is true; infinite if it never is."""
     return float(time[condition.argmax()]) if condition.any() else float("inf")
 
 
 def lasting_from(time, condition):
-    """First of the times (n,) from which a condition (n,) holds to the end; infinite if none."""
+    """First of the times (n,) from which a condition (n,) is true until the end; infinite if there is none."""
     begin = len(time) - condition[::-1].cumprod().sum()
     return float(time[begin]) if begin < len(time) else float("inf")
 
@@ -44,14 +43,14 @@ def energy_error(series):
 
 
 def energy_scale(series):
-    """Swing of the potential energy, the height of the figures that show the energies."""
+    """Range (largest minus smallest value) of the potential energy, the height of the figures with energies."""
     return float(np.ptp(series.potential))
 
 
 def drift_onset(series, fraction=0.02):
     """Time from which the total energy differs from its start by more than ``fraction`` of the swing.
 
-    Returns (time, sign): infinite and 0 if the last sample lies within it.  The swing is that of
+    Returns (time, sign): infinite and 0 if the last sample is within this limit.  The swing is the range of
     the potential energy, the height of the paper's figures.
     """
     error = energy_error(series)

@@ -1,7 +1,7 @@
-"""The paper's Figures 2 to 13, and two of our own.  Nothing is computed here.
+"""The paper's Figures 2 to 13, and two others.  Nothing is computed here.
 
 Each figure of the paper has the consistent body on the left and the unrotated body on the right, both
-as the paper ran them (zero start, nothing projected).
+with the paper's choices (zero start, no projection).
 """
 
 from functools import partial
@@ -26,7 +26,7 @@ KINETIC = {"translation": "translational", "rotation": "rotational", "kinetic": 
 X = "x of the center of mass"
 PLUS, MINUS, EDGE = "#d55e00", "#0072b2", "#c4c4c4"
 CAGE, SPACING, CAGE_RADIUS = Cage(float), 100.0, 5.0
-#: number in the paper -> (what is shown, axis, test case, formulation, None for both)
+#: number in the paper -> (quantity, axis, test case, formulation or None for both)
 FIGURES = {
     2: ("energies", "energy", 1, "first"),
     3: ("energies", "energy", 1, "second"),

@@ -1,4 +1,4 @@
-"""The paper's three test cases: what is run, and where each result is found again.
+"""The paper's three test cases: the runs and their results.
 
 Source: R. M. Pratt and K. M. Bin Mohamad Zaini, "General Algorithms for 3-D Motion of a Non-Planar
 Body in a Steady-State Force Field".  Every run is sampled once per unit of time.
@@ -14,7 +14,7 @@ FORMULATIONS = ("first", "second")
 
 @dataclass(frozen=True)
 class Row:
-    """One way to read the paper, a row of Table 7: a body, a start and what is projected."""
+    """One interpretation of the paper, a row of Table 7: a body, a start and a projection."""
 
     key: str
     body: str
@@ -33,7 +33,7 @@ ROWS = {
         ("consistent-accurate", "consistent", "accurate start, projected", {}),
     )
 }
-#: rows with the paper's own choices throughout, and the row with the defaults of the fix
+#: rows with the paper's choices, and the row with the defaults of the fix
 AS_PRINTED, ACCURATE = ("consistent-zero-free", "unrotated-zero-free"), "consistent-accurate"
 
 STEP = {1: 0.001, 2: 0.125, 3: 0.005}  # of Table 7
@@ -41,13 +41,13 @@ QUICK_STEP = {1: 0.005, 2: 0.125, 3: 0.025}
 END = 5000.0
 FINE_STEP = 0.0001  # --full: the 50 million steps of Figs. 2 to 4
 
-#: case: (part of the step of Table 7, end) of the runs that ask whether the step matters
+#: case: (fraction of the step of Table 7, end) of the runs that test the effect of the step
 OTHER_STEP = {1: (1 / 2, 1500.0), 3: (1 / 5, 1500.0)}
 
-#: which omega feeds Eq. 5: short runs with an accurate start at this step
+#: short runs with an accurate start at this step, for the choice of omega in Eq. 5
 OMEGA_STEP, OMEGA_END = 0.05, 200.0
 
-#: error against step (accuracy.py): short runs of case 1, to where its trajectory is known
+#: error against step (accuracy.py): short runs of case 1, while its trajectory is known
 ACCURACY_STEPS, ACCURACY_END = (0.1, 0.05, 0.02, 0.01), 200.0
 #: energy against step: long runs of case 1 at steps that are too large for it
 COARSE_STEPS = (0.25, 1.0)
@@ -77,18 +77,18 @@ class Run:
 
     @property
     def job(self):
-        """What the Lab runs."""
+        """The Job for the Lab."""
         steps = round(self.end / self.dt)
         variables = {"formulation": self.formulation, "dt": f"{self.dt:.17g}"}
         variables |= {"steps": steps, "every": round(1.0 / self.dt)} | ROWS[self.row].variables
         if self.omega:
-            # as the paper corrects: a second pass would use the corrected one in any case
+            # one pass as in the paper: a second pass would use the corrected omega in any case
             variables |= {"omega": self.omega, "values": 5, "passes": 1, "corrector": "gear"}
         return Job(deck(f"case{self.case}"), variables, steps)
 
 
 def planned_runs(step, full=False):
-    """All runs behind the tables and the figures; ``step``: that of each case."""
+    """All runs for the tables and the figures; ``step``: case -> its step."""
     rigid, runs = (ACCURATE, "rigid"), []
     every = [*itertools.product(ROWS, FORMULATIONS), rigid]
     both = list(itertools.product(AS_PRINTED, FORMULATIONS))
@@ -119,7 +119,7 @@ class Results:
         return self.series[name_of(case, row, formulation, dt or self.step[case], omega)]
 
     def other_step(self, case):
-        """The step of the case's runs that ask whether the step matters."""
+        """The step of the case's runs that test the effect of the step."""
         return self.step[case] * OTHER_STEP[case][0]
 
     @property
@@ -129,7 +129,7 @@ class Results:
 
 
 def measure(lab):
-    """Run everything: Results.  Leaves each series as CSV in the folder ``series``."""
+    """Run everything and return Results.  Writes each series as CSV to the folder ``series``."""
     step = QUICK_STEP if lab.quick else STEP
     found = lab.many({run.name: run.job for run in planned_runs(step, lab.full)})
     results = Results(step, {name: series.of_log(run.log) for name, run in found.items()})

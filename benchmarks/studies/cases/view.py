@@ -49,10 +49,10 @@ def sphere_image(color, fade=0.0, pixels=96):
 
 @dataclass
 class Stage:
-    """Everything that a camera sees: gathered, then drawn from far to near."""
+    """All objects in view of a camera: collected, then drawn from far to near."""
 
     camera: Camera
-    haze: tuple = (1e9, 2e9)  # depths behind the target between which things fade away
+    haze: tuple = (1e9, 2e9)  # depths behind the target between which objects fade
     _things: list = field(default_factory=list)
 
     def _fade(self, depth):
@@ -65,7 +65,7 @@ class Stage:
             self._things.append((depth, self._draw_sphere, (at, radius * scale, color, depth)))
 
     def lines(self, points, color, width, pieces=1, alpha=1.0):
-        """A path (n, 3), cut into pieces that are sorted by depth on their own; ``color`` one or one each."""
+        """A path (n, 3), cut into pieces that are sorted by depth; ``color``: one for all, or one for each piece."""
         at, depth, _ = self.camera.project(points)
         colors = [color] * pieces if isinstance(color, str) else color
         for part, own in zip(np.array_split(np.arange(len(points) - 1), pieces), colors):
@@ -96,7 +96,7 @@ class Stage:
         )
 
     def draw(self, axis, half_width, half_height):
-        """Everything on ``axis``, which shows these distances from the target."""
+        """Draw everything on ``axis``, with limits at these distances from the target."""
         for order, (_, draw, what) in enumerate(sorted(self._things, key=lambda t: t[0])):
             draw(axis, 2.0 + order, *what)
         axis.set(xlim=(-half_width, half_width), ylim=(-half_height, half_height), aspect="equal")

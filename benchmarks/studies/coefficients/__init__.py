@@ -1,8 +1,8 @@
-"""Coefficients of the corrector: the search for them, and what they do, Gear's beside them.
+"""Coefficients of the corrector: the search for them, and their properties compared with Gear's coefficients.
 
-search.py and spectral.py (parameters and what is minimized), kernel.cpp and kernel.py (motions with the
-kernel itself and any coefficients), properties.py (model equations and motions), prediction.py (the drift in
-liquids, from spectra).  Coefficients are those of src/GEARQUAT/gear_quat_tuned.h.
+search.py and spectral.py (parameters and cost functions), kernel.cpp and kernel.py (motions with the kernel of the fix
+and any coefficients), properties.py (model equations and motions), prediction.py (the drift in liquids, from spectra).
+The coefficients are in src/GEARQUAT/gear_quat_tuned.h.
 """
 
 from dataclasses import dataclass
@@ -21,27 +21,30 @@ from .kernel import LOST, NO_PROJECTION, VALUES, gear, tuned
 from .properties import Flights, Linear, Motions
 
 TUNED, GEAR, FREE = "tuned", "Gear's", "tuned, no projection"
-#: by how many times errors of free tops and librations have to be smaller without a projection
+#: least ratio of errors of free tops and librations, with a projection over without
 LEAST_GAIN = 5.0
 #: steps in fs at which drifts are predicted
 STEPS = (2.0, 2.5, 3.0, 4.0)
-#: omega h, and radians a step, of the picture
+#: omega h, and radians per step, of the picture
 RANGE = np.arange(0.06, 1.2001, 0.02)
-#: (formulation, values, color) of the picture: the defaults, and one number more
+#: (formulation, values, color) of the picture: the defaults and another number
 SHOWN = (
     ("second", DEFAULT_VALUES["second"], "second"),
     ("second", 7 if DEFAULT_VALUES["second"] == 9 else 9, "translation"),
     ("first", DEFAULT_VALUES["first"], "first"),
 )
-#: wave numbers of the librations of liquid water in 1/cm, roughly, and a large step for it
+#: approximate wave numbers of the librations of liquid water in 1/cm, and a large step for them
 BAND, FEMTOSECONDS = (600, 850), 2.5
 
 
 @dataclass(frozen=True)
 class Results:
-    """(formulation, values, TUNED, GEAR or FREE) -> ``linear``: Linear, ``motions``: Motions, ``moved``:
-    Motions.starts with another c_0; and of SHOWN, ``curves``: see properties.py.  ``drifts``: (number of
-    values, name of liquid) -> drift at STEPS, in kT/ns/dof."""
+    """Dicts with keys (formulation, values, TUNED, GEAR or FREE), except ``drifts``.
+
+    * ``linear``: Linear; ``motions``: Motions; ``moved``: Motions.starts with another c_0
+    * ``curves``, for SHOWN only: see properties.py
+    * ``drifts``: (number of values, name of liquid) -> drift at STEPS, in kT/ns/dof
+    """
 
     linear: dict
     motions: dict
@@ -51,7 +54,7 @@ class Results:
 
 
 def correctors():
-    """(formulation, values, TUNED, GEAR or FREE) -> Corrector, of numbers that have the first two."""
+    """(formulation, values, TUNED, GEAR or FREE) -> Corrector, for numbers of values with tuned and Gear's coefficients."""
     every = {}
     for formulation, numbers in VALUES.items():
         for values in numbers:
@@ -65,7 +68,7 @@ def correctors():
 
 
 def add(results, key, corrector, flights):
-    """Put what a Corrector does into Results, but for its curves."""
+    """Add the properties of a Corrector, without its curves, to Results."""
     results.linear[key] = Linear.of(corrector)
     results.motions[key] = Motions.of(corrector, flights)
     results.moved[key] = flights.others(corrector.moved(properties.MOVED))
@@ -88,12 +91,12 @@ def measure(lab):
 
 # --- tables ---------------------------------------------------------------------------------------
 def cell(value, spec=".1e"):
-    """A number as text, "lost" where the motion did not stay finite."""
+    """A number as text, "lost" if the motion did not stay finite."""
     return "lost" if abs(value) >= LOST else format(value, spec)
 
 
 def with_order(errors):
-    """The smaller of the errors at START_STEPS, and the order at which they fall."""
+    """The smaller of the errors at START_STEPS, and their observed order."""
     ratio = np.divide(*properties.START_STEPS)
     return cell(errors[1]), format(np.log(errors[0] / errors[1]) / np.log(ratio), ".1f")
 
@@ -160,7 +163,7 @@ def tables(results):
 
 
 def free_gains(motions):
-    """Number of values -> by how many times errors are smaller without a projection, at TOPS and LIBRATIONS."""
+    """Number of values -> ratios of errors, with a projection over without, at TOPS and LIBRATIONS."""
     found = {}
     for key, own in motions.items():
         if key[2] == FREE:
@@ -171,7 +174,7 @@ def free_gains(motions):
 
 
 def gains(linear):
-    """(formulation, values) -> how many times the error constant is smaller than Gear's."""
+    """(formulation, values) -> ratio of error constants, Gear's over tuned."""
     return {
         key[:2]: linear[(*key[:2], GEAR)].error / own.error
         for key, own in linear.items()
@@ -180,7 +183,7 @@ def gains(linear):
 
 
 def motion_gains(motions):
-    """Table: how many times errors are smaller than Gear's, over all numbers of values and steps."""
+    """Table of ratios of errors, Gear's over tuned, over all numbers of values and steps."""
     kinds = {
         "librations": "librations",
         "tops": "free tops",
@@ -206,7 +209,7 @@ def motion_gains(motions):
 
 
 def mean_gain(linear, formulation, parity=None):
-    """Geometric mean of ``gains`` over numbers of values of a ``parity`` (0 or 1), or all."""
+    """Geometric mean of ``gains`` over numbers of values with this ``parity`` (0 or 1), or over all."""
     logs = [
         np.log(gain)
         for (of, values), gain in gains(linear).items()
@@ -225,7 +228,7 @@ def panels(results):
             if key not in results.curves:
                 continue
             damping, phase, root, of_force = results.curves[key]
-            # beyond its limit a method is not used
+            # a method is not used beyond its limit
             stable = RANGE <= results.linear[key].limit
             label, look = f"{formulation}, N = {values}, {name}", {"color": color, "line": line}
             for curves, x, y in zip(
@@ -288,7 +291,7 @@ def written(corrector, free_c0):
 
 
 def searched(formulation, values, seed, iterations):
-    """What --search prints.  Raises ValueError where there is nothing to search for.
+    """The output of --search.  Raises ValueError if there is no search for these ``values``.
 
     ``formulation``: first, second, or "spectral" for the coefficients of the second without a projection.
     """

@@ -22,7 +22,7 @@ from benchmarks.reference.stability import (
 LOST = 1e3
 MOST = 12
 VALUES = {"first": range(3, 9), "second": range(4, 13)}
-#: numbers of values of the second formulation that do without a projection
+#: numbers of values of the second formulation for runs without a projection
 NO_PROJECTION = (5, 7, 9)
 _ROWS = ctypes.c_double * MOST
 
@@ -52,10 +52,10 @@ def library():
 class Corrector:
     """Two ``sets`` of coefficients c_0 ... c_(N-1) of a ``formulation``, fractions or numbers.
 
-    The first is of rows that forces drive, the second of rows that integrate these; in the second
-    formulation both are the same.  The motions return LOST where they do not stay finite; the rotation is
-    corrected in so many ``passes``, 0 for as many as converge.  ``any_norm``: without a projection, for which
-    the second formulation has 5, 7 or 9 values.
+    The first set is for rows that forces drive, the second for rows that integrate these; in the second
+    formulation both are equal.  The motions return LOST if they do not stay finite.  ``passes``: number of corrections of
+    the rotation, 0 for corrections until convergence.  ``any_norm``: without a projection; the second formulation
+    then has 5, 7 or 9 values.
     """
 
     formulation: str
@@ -81,7 +81,7 @@ class Corrector:
         return first_step(*sets, omega_h, rate=rate, passes=passes)
 
     def moved(self, by):
-        """The Corrector with c_0 of both kinds of rows larger by a number."""
+        """The Corrector with a number added to c_0 of both sets."""
         return replace(self, sets=tuple((c[0] + by, *c[1:]) for c in self.sets))
 
     @property
@@ -95,24 +95,24 @@ class Corrector:
         return ctypes.byref(_Corrector(*words, sets))
 
     def libration(self, h, frequency, amplitude, steps):
-        """Change of the energy of a body in wells, by its kinetic energy at the start."""
+        """Energy change of a body in potential wells, relative to its initial kinetic energy."""
         return library().libration(
             self._passed(), h, steps, (ctypes.c_double * 3)(*frequency), amplitude
         )
 
     def free_top(self, h, time):
-        """Relative change of the energy of a free top that turns by 1.2 per unit of time."""
+        """Relative energy change of a free top with an angular velocity of 1.2."""
         return library().free_top(self._passed(), h, time)
 
     def cage(self, h, seed=0, time=200.0, compensate=False):
-        """Center of mass (3,) in the paper's cage; ``seed``: of another start, 0 for the paper's."""
+        """Center of mass (3,) in the paper's cage; ``seed``: seed of another start, 0 for the paper's start."""
         center = (ctypes.c_double * 3)()
         library().cage(self._passed(compensate), time / round(time / h), seed, time, center)
         return np.array(center)
 
     @property
     def noise(self):
-        """What random forces do to the velocity, by the mean square of what they should do."""
+        """Noise gain: mean square effect of random forces on the velocity, relative to the exact one."""
         return library().noise(self._passed())
 
 
@@ -130,7 +130,7 @@ def tuned(formulation, values, any_norm=False):
         length = library().tuned_tail(order == 2, values, which, any_norm, tail, ctypes.byref(c0))
         if not length:
             return None
-        # the shortest decimal of a number is the one in the header
+        # the header has the shortest decimal of a number
         c = completed(order, [Fraction(1), *(Fraction(repr(x)) for x in tail[:length])])
         c[0] = c[0] if math.isnan(c0.value) else Fraction(repr(c0.value))
         sets.append(tuple(c))

@@ -1,15 +1,15 @@
-"""The drift of the energy that a method will have, from its coefficients and a spectrum of the motion.
+"""Prediction of the energy drift of a method from its coefficients and a spectrum of the motion.
 
-A coordinate that oscillates with omega is driven by the force at its predicted value, which is H(omega h)
+For a coordinate that oscillates with omega, the force is evaluated at the predicted value, which is H(omega h)
 times the true one.  H follows from the coefficients c: predict, then correct row j by c_j times the
-residual, in one pass.  The imaginary part of H does work, so that the energy of the oscillation, kT
-in equilibrium, changes by -omega Im H of itself per unit of time.  Averaged over the normalized power
-spectrum rho of velocities, for rotation of those in the body frame, the drift per degree of freedom is
+residual, in one pass.  The imaginary part of H does work, so the energy of the oscillation, kT in equilibrium, changes
+at the relative rate -omega Im H.  Averaged over the normalized power spectrum rho of velocities (for rotation, of
+angular velocities in the body frame), the drift per degree of freedom is
 
     -sum over omega of rho(omega) omega Im H(omega h) kT.
 
-With forces, no quantity is fitted.  The equations are linear in it: it knows nothing of stability, of
-projections, of passes and of rough forces.
+No quantity is fitted.  The theory is linear: it does not include instability, projections, passes, and forces that are
+not smooth.
 """
 
 import csv
@@ -22,9 +22,9 @@ from scipy.signal import welch
 
 #: of a nanosecond
 FEMTOSECONDS = 1e6
-#: samples of a window; its side lobes are far below what long steps make of high frequencies
+#: samples of a window; its side lobes are far below the drift from high frequencies at long steps
 SEGMENT, WINDOW = 1024, "blackmanharris"
-#: an axis with less than this part of the power of all is one without a moment of inertia
+#: an axis with less than this fraction of the total power has no moment of inertia
 AT_REST = 1e-9
 
 
@@ -35,7 +35,7 @@ def open_loop(c, order):
 
 
 def response(corrector, omega_h):
-    """H at each omega h (n,): predicted by true value for the force exp(i omega t), complex (n,).
+    """H at each omega h (n,): ratio of predicted to true value for the force exp(i omega t), complex (n,).
 
     An oscillation has the root exp(i y) with y^2 = (omega h)^2 H(y).
     """
@@ -56,7 +56,7 @@ def response(corrector, omega_h):
 class Spectrum:
     """Normalized power spectra of a liquid: ``omega`` (n,) in 1/fs, ``translation`` and ``rotation`` (n,).
 
-    The sum of each is 1.  ``axes``: about how many a molecule rotates.
+    The sum of each is 1.  ``axes``: number of axes about which a molecule rotates.
     """
 
     omega: np.ndarray
@@ -68,8 +68,8 @@ class Spectrum:
     def of(cls, velocities, rotations, dt):
         """Spectrum of velocities and angular velocities in the body frame, each (samples, bodies, 3).
 
-        ``dt``: time between samples, fs.  Each axis counts alike, as equipartition has it; about one
-        without a moment of inertia the angular velocity is zero to rounding, and it does not count.
+        ``dt``: time between samples, fs.  All axes have equal weight because of equipartition.  An axis without a moment
+        of inertia, where the angular velocity is zero within round-off, is left out.
         """
         omega, translation = _power(velocities, dt)
         _, rotation = _power(rotations, dt)
@@ -77,7 +77,7 @@ class Spectrum:
 
     @property
     def density(self):
-        """Mean spectrum of a degree of freedom (n,)."""
+        """Mean spectrum (n,) of a degree of freedom."""
         return np.average([self.translation, self.rotation], axis=0, weights=(3, self.axes))
 
     def drift(self, corrector, dt):
@@ -89,7 +89,7 @@ class Spectrum:
 
 
 def _power(series, dt):
-    """omega (n,), and for each axis that moves the normalized power (n, axes), without omega = 0."""
+    """omega (n,), without omega = 0, and the normalized power (n, axes) for each axis with motion."""
     options = {"window": WINDOW, "nperseg": SEGMENT, "detrend": False, "axis": 0}
     frequency, power = welch(series, 1 / dt, **options)
     power = power.sum(axis=1)[1:]
@@ -98,7 +98,7 @@ def _power(series, dt):
 
 
 def read(path, dt):
-    """Spectrum of the file that in.liquid writes with ``bodies`` = yes; ``dt``: its step, fs."""
+    """Spectrum from the file that in.liquid writes with ``bodies`` = yes; ``dt``: step of the run, fs."""
     lines = (line for line in path.open(encoding="utf-8") if not line.startswith("#"))
     first = next(lines).split()
     rows, columns = int(first[1]), 7
@@ -110,12 +110,12 @@ def read(path, dt):
 # --- the spectra that searches use ----------------------------------------------------------------
 #: table of the study liquids
 RECORDED = Path(__file__).with_name("spectra.csv")
-#: of spectra that are recorded, 1/fs; beyond it there is nothing that a step of 2 fs or more would feel
+#: largest omega of recorded spectra, 1/fs; higher frequencies have no effect at steps of 2 fs or more
 FASTEST = 0.95
 
 
 def table(spectra):
-    """Header and rows of the table of ``spectra``, name of liquid -> Spectrum with the same omega."""
+    """Header and rows of the table of ``spectra``, name of liquid -> Spectrum; all have the same omega."""
     header, columns = ["omega, 1/fs"], []
     for name, own in spectra.items():
         columns = columns or [own.omega]

@@ -1,4 +1,4 @@
-"""What coefficients do: model equations, responses and changing steps, linear; motions of bodies."""
+"""Properties of coefficients: linear ones (model equations, responses, changing steps) and motions of bodies."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,17 +14,17 @@ from .search import Search, spectrum
 
 #: omega h at which single numbers are given, and decimal digits of the principal root
 AT, DIGITS = 0.3, 40
-#: damping of the damped oscillation, frequency of the driven one, both by that of the oscillation
+#: damping of the damped oscillation, and frequency of the driven one, relative to the frequency of the oscillation
 DAMPED, DRIVEN = 0.1, 0.5
-#: steps by the step before
+#: ratios of a step to the step before
 RATIOS = (0.8, 0.9, 1.1, 1.25)
-#: radians a step of forces whose response is given
+#: radians per step at which responses are given
 RESPONSES = (0.8, 1.0, 1.2)
 #: steps of the librations, free tops and bodies in the cage
 LIBRATIONS, TOPS, CAGES = (0.2, 0.35), (0.1, 0.2), (0.4, 0.2, 0.1)
 #: other starts in the cage: their seeds, time and step
 SEEDS, SHORT, START_STEPS = range(1001, 1009), 40.0, (0.4, 0.2)
-#: how far c_0 is moved to see what it is good for
+#: change of c_0 that shows its effect
 MOVED = Fraction(1, 20)
 
 
@@ -50,8 +50,8 @@ def radius(corrector, ratio):
 def models(corrector, z=AT):
     """Errors of damped and driven oscillation and of gyroscopic motion, with steps of z radians.
 
-    x'' = -x - 2 DAMPED x' and x'' = i x': of the root, |lambda - exact|, with the term of the velocity
-    found in two passes.  x'' = -x + exp(i DRIVEN t): of the steady motion, relative.
+    For x'' = -x - 2 DAMPED x' and x'' = i x' it is the error of the root, |lambda - exact|, with the velocity term
+    computed in two passes.  For x'' = -x + exp(i DRIVEN t) it is the relative error of the steady motion.
     """
     decay = np.exp(z * (-DAMPED + 1j * np.sqrt(1 - DAMPED**2)))
     damped = np.linalg.eigvals(corrector.step(z, -2 * DAMPED * z, passes=2))
@@ -63,10 +63,13 @@ def models(corrector, z=AT):
 
 @dataclass(frozen=True)
 class Linear:
-    """Properties of a Corrector: ``error``, largest (|damping| + PHASE |phase|)/(omega h)^N of the range
-    that the search covers; ``damping`` and ``phase`` at AT; ``memory``, largest spurious root without
-    forces; ``limit``, largest stable omega h; ``noise``, see Corrector; ``radii`` at RATIOS; ``models``;
-    ``responses``, imaginary parts at RESPONSES.
+    """Linear properties of a Corrector.
+
+    * ``error``: largest (|damping| + PHASE |phase|)/(omega h)^N in the range of the search
+    * ``damping``, ``phase``: at AT
+    * ``memory``: largest spurious root without forces; ``limit``: largest stable omega h
+    * ``noise``: see Corrector; ``radii``: at RATIOS; ``models``: errors of the model equations
+    * ``responses``: imaginary parts at RESPONSES
     """
 
     error: float
@@ -97,7 +100,7 @@ class Linear:
 
 def curves(corrector, z):
     """Arrays (n,) at each omega h: damping, phase error / (omega h)^N, largest spurious root, and the
-    imaginary part of the response at as many radians a step."""
+    imaginary part of the response at the same radians per step."""
     damping, phase = np.array([principal(corrector, x) for x in z]).T
     of_force = response(corrector, z).imag
     return damping, phase / z**corrector.values, spectrum(corrector, z)[:, 2], of_force
@@ -105,7 +108,7 @@ def curves(corrector, z):
 
 # --- motions --------------------------------------------------------------------------------------
 class Flights:
-    """Errors of bodies in the cage, against Gear's method with eleven values at a short step."""
+    """Errors of bodies in the cage, relative to a run of Gear's method with eleven values and a short step."""
 
     def __init__(self):
         exact = gear("second", 11)
@@ -127,8 +130,8 @@ class Flights:
 
 @dataclass(frozen=True)
 class Motions:
-    """``librations`` and ``tops``: changes of the energy at LIBRATIONS and TOPS; ``cages``: errors of
-    test case 1 at CAGES; ``starts``: those of the other starts at START_STEPS."""
+    """``librations`` and ``tops``: energy changes at LIBRATIONS and TOPS; ``cages``: errors of test case 1 at CAGES;
+    ``starts``: errors of the other starts at START_STEPS."""
 
     librations: tuple
     tops: tuple

@@ -1,8 +1,8 @@
 """The search for tuned coefficients: differential evolution over spurious roots, then Nelder-Mead.
 
-Parameters are the spurious roots without forces, inside of the circle of radius INNER.  All other
-coefficients follow from order, but for c_0 in the second formulation with an odd number of values: it
-is the one for which an oscillation keeps its energy.
+Parameters are the spurious roots without forces, inside the circle of radius INNER.  All other coefficients follow from
+the order conditions, except c_0 in the second formulation with an odd number of values: c_0 is chosen such that an
+oscillation keeps its energy.
 """
 
 from dataclasses import dataclass, replace
@@ -15,25 +15,25 @@ from benchmarks.reference.correctors import completed, decimals, placed
 
 from .kernel import LOST, VALUES, Corrector
 
-#: roots without forces, and roots with forces up to MARGIN beyond the largest omega h that counts
+#: limits of roots without forces, and of roots with forces up to MARGIN beyond the range of omega h
 INNER, OUTER, MARGIN = 0.94, 0.955, 0.1
-#: how far c_0 goes at most from the one that order would determine, where it is free
+#: largest distance of a free c_0 from the value of highest order
 C0_RANGE, C0_TRIED, SECANTS = 0.2, (-0.06, -0.1), 4
-#: number of values -> (omega h, amplitude in radians) of the libration that keeps its energy; it is for
-#: long steps.  With other numbers, a harmonic oscillation keeps its energy at half of the reach.
+#: number of values -> (omega h, amplitude in radians) of the libration that keeps its energy, for long steps.
+#: With other numbers, a harmonic oscillation keeps its energy at half of the reach.
 LONG_STEPS = {7: (0.5, 0.2)}
-#: weight of the phase error against damping
+#: weight of the phase error relative to damping
 PHASE = 0.05
-#: largest omega h that counts: formulation -> number of values -> omega h
+#: formulation -> number of values -> largest omega h of the search
 REACH = {
     "second": dict(zip(VALUES["second"], (0.9, 0.8, 0.7, 0.6, 0.55, 0.42, 0.45, 0.4, 0.36))),
     "first": dict(zip(VALUES["first"], (0.8, 0.7, 0.6, 0.5, 0.45, 0.38))),
 }
-#: largest gain of noise, and the part of a momentum that friction takes in a step
+#: largest noise gain, and the fraction of a momentum that friction removes in a step
 NOISE, FRICTION = 8.0, 0.05
-#: omega h beside this friction: of a free body, almost, and of an oscillation
+#: omega h with this friction: almost a free body, and an oscillation
 DAMPED = (0.02, 0.2)
-#: omega h by the reach: of the librations, and of the free top
+#: omega h relative to the reach, for the librations and for the free top
 LIBRATIONS = np.array([0.2, 0.35, 0.5, 0.65, 0.8, 0.9])
 TOPS = 1.2 * np.array([0.12, 0.25, 0.4, 0.6, 0.8])
 #: (factor of the step, frequencies, amplitude in radians) of the librations
@@ -53,7 +53,7 @@ def spectrum(corrector, omega_h):
 
 @dataclass(frozen=True)
 class Search:
-    """What is searched for: N ``values`` of a ``formulation``."""
+    """A search for coefficients with N ``values`` of a ``formulation``."""
 
     formulation: str
     values: int
@@ -65,12 +65,12 @@ class Search:
 
     @property
     def free_c0(self):
-        """Whether c_0 is a parameter: order does not need it."""
+        """True if c_0 is a parameter, because the order conditions leave it free."""
         return self.order == 2 and self.values % 2 == 1
 
     @property
     def reach(self):
-        """Largest omega h that counts."""
+        """Largest omega h of the search."""
         return REACH[self.formulation][self.values]
 
     @property
@@ -81,7 +81,7 @@ class Search:
         return one * (3 - self.order)
 
     def placed(self, x):
-        """Corrector of all order with the spurious roots ``x``."""
+        """Corrector of full order with the spurious roots ``x``."""
         count, sets = self.values - self.order - 1, []
         for part in np.reshape(x, (3 - self.order, count)):
             pairs = part[: count - count % 2].reshape(-1, 2)
@@ -115,7 +115,7 @@ class Search:
         return corrector.moved(by)
 
     def written(self, corrector):
-        """The Corrector of the decimals: c_0 and c_1 follow from the tail anew, exactly."""
+        """The Corrector with rounded decimals; c_0 and c_1 are recomputed exactly from the other coefficients."""
         sets = []
         for c in corrector.sets:
             exact = completed(self.order, decimals(c[self.order :]))
@@ -136,7 +136,7 @@ class Search:
         return np.log10(error.max() + 1e-30), found[:, 2].max()
 
     def librations(self, corrector):
-        """log10 of the changes of energy by what is usual at each step."""
+        """log10 of the energy changes of librations, relative to a typical change at each step."""
         usual = 10.0 ** (1 - self.values) * (LIBRATIONS * self.reach / 0.1) ** (self.values + 1)
         usual *= 30 if self.order == 1 else 1
         changes = [
@@ -162,13 +162,13 @@ class Search:
         return _levels(np.array(changes), usual)
 
     def disturbances(self, corrector):
-        """Octaves of the gain of noise above NOISE; by how much the largest root with FRICTION is above 1."""
+        """log2 of the noise gain over NOISE; excess of the largest root with FRICTION over 1."""
         roots = [np.linalg.eigvals(corrector.step(z, -FRICTION)) for z in DAMPED]
         gain = np.log2(corrector.noise / NOISE)
         return max(0.0, gain), max(0.0, np.abs(roots).max() - 1.0)
 
     def cost(self, corrector):
-        """What is minimized."""
+        """Cost function."""
         error, root = self.oscillation(corrector)
         if root > OUTER + 0.05:
             return 20.0 + 50.0 * (root - OUTER)
@@ -180,7 +180,7 @@ class Search:
         return error + motions + 50.0 * max(0.0, root - OUTER)
 
     def run(self, seed=1, iterations=60):
-        """The best Corrector found, in decimals, and its cost."""
+        """The best Corrector found, with rounded decimals, and its cost."""
 
         def of(x):
             corrector = self.corrector(x)

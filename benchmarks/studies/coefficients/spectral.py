@@ -1,8 +1,8 @@
 """The search for coefficients without a projection: the least drift in liquids.
 
-Parameters are the spurious roots without forces, of a modulus of at most INNER, and c_0.  What is minimized is
-the drift that prediction.py foresees from recorded spectra of liquids.  It would favor roots that let noise,
-friction or fast vibrations grow, so these are constraints.
+Parameters are the spurious roots without forces, with a modulus of at most INNER, and c_0.  The search minimizes
+the drift that prediction.py computes from recorded spectra of liquids.  The drift alone would favor roots with which
+noise, motion with friction or fast vibrations grow, so these are constraints.
 """
 
 from dataclasses import dataclass, replace
@@ -13,30 +13,30 @@ import numpy as np
 from . import prediction
 from .search import DAMPED, FRICTION, Search, spectrum
 
-#: kernel and search of quaternions of any length: numbers of values
+#: numbers of values in the kernel and the search without a projection
 VALUES = (5,)
-#: largest modulus of a root without forces, and largest gain of noise
+#: largest modulus of a root without forces, and largest noise gain
 INNER, NOISE = 0.98, 5.0
-#: oscillations with up to so many radians in a step are stable
+#: oscillations are stable up to this number of radians per step
 REACH = 0.96
-#: step in fs -> drift that counts as much as those at the other steps, kT/ns/dof
+#: step in fs -> typical drift, kT/ns/dof; drifts are divided by it before they are compared
 USUAL = {2.5: 0.01, 3.0: 0.015, 4.0: 0.5}
 #: largest c_0
 MOST_C0 = 0.05
-#: weight of what is beyond a constraint, by the constraint
+#: weight of a violation of a constraint, relative to the constraint
 WEIGHT = 100.0
 
 
 @dataclass(frozen=True)
 class SpectralSearch(Search):
-    """What is searched for: N ``values``, an odd number, of the second formulation."""
+    """A search for coefficients with N ``values``, an odd number, in the second formulation."""
 
     formulation: str = "second"
     values: int = 5
 
     @property
     def reach(self):
-        """Largest omega h that counts."""
+        """Largest omega h of the search."""
         return REACH
 
     @property
@@ -58,13 +58,13 @@ class SpectralSearch(Search):
         return np.array([[own.drift(corrector, dt) for dt in USUAL] for own in self._spectra])
 
     def excess(self, corrector):
-        """By how much noise, friction and vibrations are beyond what is allowed, as parts of it."""
+        """Relative violation of the constraints on noise, friction and vibrations."""
         damped = [np.linalg.eigvals(corrector.step(z, -FRICTION)) for z in DAMPED]
         roots = spectrum(corrector, np.linspace(0.5 * self.reach, self.reach, 4))[:, 2]
         sizes = corrector.noise / NOISE, np.abs(damped).max(), roots.max()
         return [max(0.0, size - 1.0) for size in sizes]
 
     def cost(self, corrector):
-        """What is minimized: the largest drift by the usual one at the step."""
+        """Cost function: the largest drift relative to the typical drift at the step."""
         drift = abs(self.drifts(corrector)) / list(USUAL.values())
         return float(drift.max() + WEIGHT * sum(self.excess(corrector)))

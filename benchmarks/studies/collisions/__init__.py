@@ -1,6 +1,6 @@
-"""Random collisions of rigid bodies: evaluations of the forces against the error of the energy.
+"""Random collisions of rigid bodies: force evaluations against the energy error.
 
-The step control of the kernel beside SciPy's solvers and CVODE; scene.py and kernel.cpp are one scene.
+The step control of the kernel is compared with SciPy's solvers and CVODE; scene.py and kernel.cpp have one scene.
 """
 
 import warnings
@@ -14,7 +14,7 @@ from benchmarks.reference import solvers
 
 from .scene import Scene
 
-#: label -> (formulation, whether eps is an energy)
+#: label -> (formulation, True if eps is an energy)
 OURS = {
     f"{formulation}, eps {words}": (formulation, energy)
     for formulation in ("second", "first")
@@ -26,23 +26,23 @@ LOOKS = {name: (which, "-" if energy else "--") for name, (which, energy) in OUR
 LOOKS |= {name: (("total", "rotation")[k // 2], ("-", "--")[k % 2]) for k, name in enumerate(PEERS)}
 EPS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 3e-14)
-#: errors of the energy by the depth at which evaluations are compared
+#: energy errors, relative to the depth, at which evaluations are compared
 LEVELS = 10.0 ** -np.arange(6, 12)
-#: number of scenes: of five minutes on one core, of --full (an hour), and of --quick
+#: number of scenes: by default (five minutes on one core), with --full (an hour), and with --quick
 SCENES, FULL, QUICK = 75, 1000, 20
 
 
 @dataclass(frozen=True)
 class Results:
-    """``points``: label -> array (scenes, tolerances, 2) of evaluations, and the largest error of the energy
-    on the way by the depth; NaN where the scene is lost."""
+    """``points``: label -> array (scenes, tolerances, 2) of evaluations and the largest energy error relative to the
+    depth; NaN if the scene is lost."""
 
     points: dict
 
 
 # --- measuring ----------------------------------------------------------------------------------
 def of_peer(scene, name, tolerance):
-    """(evaluations, error of the energy) of a solver; NaN where it gives up."""
+    """(evaluations, energy error) of a solver; NaN if it gives up."""
     try:
         return solvers.largest_energy_error(scene, scene.time, name, tolerance)
     except RuntimeError:
@@ -50,7 +50,7 @@ def of_peer(scene, name, tolerance):
 
 
 def points_of(scene):
-    """Label -> array (tolerances, 2), as Results have it."""
+    """Label -> array (tolerances, 2), see Results."""
     runs = {name: [scene.follow(own[0], eps, own[1]) for eps in EPS] for name, own in OURS.items()}
     depth = next(iter(runs.values()))[-1].depth
     points = {name: [run[:2] for run in own] for name, own in runs.items()}
@@ -63,7 +63,7 @@ def measure(lab):
     """Results."""
     count, every = QUICK if lab.quick else FULL if lab.full else SCENES, []
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of solvers that give up, which is counted
+        warnings.simplefilter("ignore")  # solvers that give up warn; these runs are counted
         for which in range(count):
             every.append(points_of(Scene(which)))
             lab.advance(1 / count)
@@ -72,15 +72,15 @@ def measure(lab):
 
 # --- judging ------------------------------------------------------------------------------------
 def lost(points):
-    """Of points (..., 2): whether the energy is not finite, or wrong by more than the depth."""
+    """True for points (..., 2) whose energy is not finite, or has an error above the depth."""
     return ~(points[..., 1] <= 1.0)
 
 
 def evaluations(points, levels=LEVELS):
-    """Fewest evaluations for errors of at most ``levels`` (n,), from ``points`` (tolerances, 2): shape (n,).
+    """Fewest evaluations (n,) for errors of at most ``levels`` (n,), from ``points`` (tolerances, 2).
 
-    Logarithms are interpolated between points that no other one beats in both.  Infinite where no point
-    is as good; a level above all errors takes the fewest evaluations.
+    Logarithms are interpolated between points that are not worse in both numbers than another point.  Infinite if no
+    point reaches the level; for a level above all errors, the fewest evaluations of all points.
     """
     points = points[~lost(points)]
     points = points[np.lexsort(points.T[::-1])]
@@ -97,22 +97,22 @@ def counted(results):
 
 
 def ratios(counts, name):
-    """Evaluations by those of the best solver (scenes, levels).
+    """Ratio of evaluations to the best solver (scenes, levels).
 
-    NaN where neither has so small an error; infinite where only the solver has it, and 0 where only ours has.
+    NaN if neither reaches the error, infinite if only the solver does, and 0 if only ours does.
     """
     with np.errstate(invalid="ignore"):
         return counts[name] / np.min([counts[peer] for peer in PEERS if peer in counts], axis=0)
 
 
 def median(values):
-    """Of what is a number; NaN if nothing is."""
+    """Median of the values that are not NaN; NaN if all are."""
     values = values[~np.isnan(values)]
     return float(np.median(values)) if len(values) else np.nan
 
 
 def tables(results, counts):
-    """Medians of evaluations and ratios at every level, and how many runs are lost."""
+    """Medians of evaluations and ratios at every level, and the number of lost runs."""
     levels, every = [f"{level:.0e}" for level in LEVELS], {name: ratios(counts, name) for name in OURS}
     gone = {name: lost(own) for name, own in results.points.items()}
     work = [
@@ -125,7 +125,7 @@ def tables(results, counts):
 
 
 def panels(counts):
-    """Median evaluations of every method, and how the ratios are distributed."""
+    """Median evaluations of every method, and the distribution of the ratios."""
     work = [Curve(name, LEVELS, np.median(own, axis=0), *LOOKS[name]) for name, own in counts.items()]
     spread = []
     for name in OURS:

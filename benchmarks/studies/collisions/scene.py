@@ -10,13 +10,13 @@ import numpy as np
 from benchmarks.engine import compiled
 from benchmarks.reference.equations import State
 
-#: columns of a packed State that the kernel's are, and the other way round
+#: permutations of columns from the kernel to a packed State, and back
 KERNEL = np.r_[0:3, 6:10, 3:6, 10:13]
 STATE = np.argsort(KERNEL)
-#: a collision that takes more steps is lost
+#: a collision with more steps is lost
 MOST_STEPS = 100_000
-#: ``error``: largest one of the energy on the way, NaN if the scene is lost; ``depth``: largest potential
-#: energy, or kinetic energy at the start if that is larger; and whole numbers
+#: ``error``: largest energy error, NaN if the scene is lost; ``depth``: largest potential energy, or initial kinetic
+#: energy if it is larger; the others are integers
 Followed = namedtuple("Followed", "evaluations error depth steps repeated")
 
 
@@ -36,7 +36,7 @@ def library():
 class Scene:
     """Collision number ``which`` in reduced units, from ``start``, a State, until ``time``.
 
-    It has what solvers.py asks of a Problem, in double precision.
+    It has the interface of a Problem of solvers.py, in double precision.
     """
 
     def __init__(self, which):
@@ -53,7 +53,7 @@ class Scene:
 
     @property
     def calls(self):
-        """How often forces or energies have been asked for."""
+        """Number of evaluations of forces or energies."""
         return library().calls(self._own)
 
     def rates(self, _time, y):
@@ -69,11 +69,11 @@ class Scene:
         return found
 
     def scales(self, y):
-        """Units of absolute tolerances, shape (13,): not the distance, at which nothing acts."""
+        """Units of absolute tolerances, shape (13,), without the initial distance, at which there is no force."""
         return np.ones(y.shape[1])
 
     def follow(self, formulation, eps, energy):
-        """Followed, of a run under a tolerance ``eps``, an ``energy`` or a length."""
+        """Followed of a run with the tolerance ``eps``, which is an ``energy`` or a length."""
         found = np.empty(5)
         task = (formulation == "second", eps, energy, MOST_STEPS, found.ctypes.data)
         library().follow(self._own, *task)

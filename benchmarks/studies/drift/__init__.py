@@ -1,10 +1,10 @@
 """Energy over very long runs.
 
-Two scenes of ``examples`` that no method has to lose: the body without bare charges in the paper's
-cage, bound because its energy is below zero, and the free asymmetric top.  Every method runs the
-same number of steps at the same few steps, from one that is small for all of them to one that is
-usual with fix rigid/nve/small.  Samples are sparse; the largest error is that of the samples.
-In test case 1, peers.py compares further methods at equal numbers of force evaluations.
+There are two scenes of ``examples`` that all methods can simulate: the body without bare charges in the paper's
+cage, bound because its energy is negative, and the free asymmetric top.  Every method runs the same number of steps
+with the same few step sizes, from one that is small for all methods to one that is common with fix rigid/nve/small.
+Samples are sparse; the largest error is taken over the samples.  In test case 1, peers.py compares further methods at
+equal numbers of force evaluations.
 """
 
 import math
@@ -22,11 +22,11 @@ from benchmarks.engine.statistics import slope
 from . import peers
 
 STEPS, QUICK_STEPS, SAMPLES = 10_000_000, 100_000, 2000
-#: LAMMPS' word for coordinates and energies that are not finite any more, and the fix's own
+#: messages of LAMMPS and of the fix for coordinates and energies that are no longer finite
 NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up", "values can follow")
-#: a slope of less than so many standard errors, which are themselves estimates, is no drift
+#: a slope below this number of standard errors, which are estimates themselves, is not a drift
 SIGNIFICANT = 4.0
-#: an error of more than this part of the kinetic energy at the start spoils a run
+#: an error above this fraction of the initial kinetic energy spoils a run
 SPOILS = 0.1
 
 DEFAULT, DEFAULT_COMPENSATED = (
@@ -57,9 +57,9 @@ SCENES = {
 
 @dataclass(frozen=True)
 class Run:
-    """A run: ``time`` and ``total`` energy (n,) of its samples, ``kinetic`` energy at the start.
+    """A run: ``time`` and ``total`` energy (n,) of its samples, initial ``kinetic`` energy.
 
-    ``lost``: the time by which numbers were no longer finite, None if they always were.
+    ``lost``: the time at which numbers were no longer finite, None if all are finite.
     """
 
     time: np.ndarray
@@ -84,20 +84,20 @@ class Run:
 
     @property
     def spoiled(self):
-        """Whether the largest error is more than SPOILS of the kinetic energy at the start."""
+        """True if the largest error is above SPOILS times the initial kinetic energy."""
         return self.largest > SPOILS * self.kinetic
 
 
 # --- measuring ----------------------------------------------------------------------------------
 def is_lost(text):
-    """Whether LAMMPS' words say that a run ended because its numbers did."""
+    """True if LAMMPS' message says that a run ended because of numbers that are not finite."""
     return any(words in text for words in NOT_FINITE)
 
 
 def read(finished, steps, interval):
     """Run of a log; ``interval``: time between samples.
 
-    A run may have been refused before its first sample, and then was lost at once.
+    A run that was refused before its first sample counts as lost at the start.
     """
     if not finished.log.tables or not len(finished.thermo["Step"]):
         return Run(np.zeros(0), np.zeros(0), math.nan, interval)
@@ -127,14 +127,14 @@ def measure(lab, scenes=SCENES, methods=METHODS, steps=None):
 
 # --- judging ------------------------------------------------------------------------------------
 def show_largest(run):
-    """Largest error as text, with a star where it spoils the run."""
+    """Largest error as text, with a star if it spoils the run."""
     if run.lost is not None:
         return f"lost, t = {run.lost:.0f}"
     return f"{run.largest:.1e}" + ("*" if run.spoiled else "")
 
 
 def show_slope(run):
-    """Slope as text, in parentheses where it is not significant."""
+    """Slope as text, in parentheses if it is not significant."""
     if run.lost is not None:
         return "lost"
     rate, error = run.slope
@@ -145,7 +145,7 @@ def show_slope(run):
 SQUISH_NAME = "NO_SQUISH (`fix rigid/nve/small`, `fix rigid/nve`)"
 SQUISH = [m.label for m in METHODS.values() if not m.gear and m is not VERLET]
 GEAR = [m.label for m in METHODS.values() if m.gear]
-#: ratios of errors that are shown: words -> (labels, labels they are compared with)
+#: ratios of errors in the tables: words -> (labels, labels for comparison)
 CONTESTS = {
     f"default of `fix gear/quat` over {SQUISH_NAME}": ([DEFAULT.label], SQUISH),
     f"best setting of `fix gear/quat` over {SQUISH_NAME}": (GEAR, SQUISH),
@@ -155,7 +155,7 @@ CONTESTS = {
 
 
 def ratios(runs, dts):
-    """Rows of CONTESTS between methods that were run: the best of some over the best of others."""
+    """Rows of CONTESTS, for the methods that were run: the best of some over the best of others."""
     rows, labels = [], {label for label, _ in runs}
     for words, pair in CONTESTS.items():
         ours, theirs = (labels.intersection(some) for some in pair)
@@ -164,7 +164,7 @@ def ratios(runs, dts):
                 np.array([min(runs[label, dt].largest for label in some) for dt in dts])
                 for some in (ours, theirs)
             )
-            with np.errstate(invalid="ignore"):  # no ratio where all are lost
+            with np.errstate(invalid="ignore"):  # no ratio if all are lost
                 rows.append([words, *(f"{ratio:.1e}" for ratio in own / other)])
     return rows
 
@@ -185,7 +185,7 @@ def tables(scene, runs, dts):
 
 
 def find(results):
-    """Finding of what ``measure`` returns."""
+    """Finding of the results of ``measure``."""
     scenes, measurements, shown, panels = {}, [], {}, ()
     for scene in dict.fromkeys(scene for scene, *_ in results):
         runs = {key[1:]: run for key, run in results.items() if key[0] == scene}
@@ -208,7 +208,7 @@ def find(results):
 
 @dataclass(frozen=True)
 class Results:
-    """``runs``: what ``measure`` returns; ``peers``: what peers.measure returns."""
+    """``runs``: results of ``measure``; ``peers``: results of peers.measure."""
 
     runs: dict
     peers: dict

@@ -1,8 +1,8 @@
-"""The largest error of the energy in test case 1 at equal numbers of force evaluations.
+"""The largest energy error in test case 1 at equal numbers of force evaluations.
 
-Splittings with exact free rotation and SciPy's solvers beside the fix and LAMMPS' own fixes.  A step of
-the fix is one evaluation; a step of a splitting has as many as it has stages; of a solver the tolerance
-is chosen, and its error lies between those of two runs.  Close encounters with bare charges decide.
+Splittings with exact free rotation and SciPy's solvers are compared with the fix and LAMMPS' own fixes.  A step of
+the fix has one evaluation, a step of a splitting one per stage.  The error of a solver is interpolated between two
+tolerances.  Close encounters with bare charges determine the errors.
 """
 
 import multiprocessing
@@ -60,7 +60,7 @@ def _others(lab, end):
 def measure(lab, read, may_fail):
     """Label -> list of (time per evaluation, largest error of the energy).
 
-    ``read(finished, steps, interval)`` makes the Run of a log, ``may_fail`` tells a lost one.
+    ``read(finished, steps, interval)`` returns the Run of a log, ``may_fail`` is true for a lost run.
     """
     end, jobs, keys = QUICK_END if lab.quick else END, {}, {}
     for method in METHODS:
@@ -81,7 +81,7 @@ def measure(lab, read, may_fail):
 
 # --- judging --------------------------------------------------------------------------------------
 def error_at(rows, spacing):
-    """Error at a time per evaluation, log-log between runs; NaN beyond them, and infinite where lost."""
+    """Error at a time per evaluation, interpolated log-log between runs; NaN outside of them, infinite if lost."""
     x, y = np.transpose(sorted(rows))
     if not 0.99 * x[0] <= spacing <= 1.01 * x[-1]:
         return np.nan
@@ -91,7 +91,7 @@ def error_at(rows, spacing):
 
 
 def find(rows):
-    """Table of errors by time per evaluation, and its measurements."""
+    """Table of errors against time per evaluation, and its measurements."""
     table, found = [], []
     for label, own in rows.items():
         errors = [error_at(own, spacing) for spacing in SPACINGS]

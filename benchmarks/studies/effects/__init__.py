@@ -1,7 +1,7 @@
-"""What each effect costs: instructions counted by valgrind, and time.
+"""The cost of each effect: instructions counted by valgrind, and time.
 
-scenes.py (bodies on a lattice, one deck for many scenes), plan.py (effects and rungs of the ladder:
-a row each), count.py (valgrind's tool callgrind), runs.py (all that is measured).
+scenes.py (bodies on a lattice, one deck for many scenes), plan.py (effects and rungs of the ladder, one row each),
+count.py (valgrind's tool callgrind), runs.py (all measurements).
 """
 
 import re
@@ -13,7 +13,7 @@ from benchmarks.engine import Bars, Finding, Measurement, Panel, Study, Table
 from . import plan
 from .runs import measure
 
-#: functions of the output, which are no work of a step
+#: functions for output, which are not part of the work of a step
 _ASIDE = re.compile(r"BodyTable::|::(forces_changed|rounding|last_error)\(")
 #: largest relative difference between the cost of an effect on the ladder and its cost alone.  It is not zero, because
 #: the control of the step takes branches that depend on the data: repeated runs gave 0.0098 to 0.0101.
@@ -21,43 +21,43 @@ MOST_APART = 1.5e-2
 
 
 def number(value):
-    """A count as text: whole, or with its fraction."""
+    """A count as text, with decimals if it is not an integer."""
     return f"{value:.0f}" if abs(value - round(value)) < 5e-4 else f"{value:.3f}"
 
 
 def row_of(rung):
-    """The effect that a rung adds, None if no row measures it alone."""
+    """The effect of a rung, None if no row measures it alone."""
     return next((effect for effect in plan.EFFECTS if effect.name == rung.row), None)
 
 
 # --- measurements -------------------------------------------------------------------------------
 def idle_measurements(results):
-    """What is left of the effects where they are off."""
+    """Remaining cost of effects that are off."""
     measurements, free = [], {"spec": ".6g", "least": 0.0, "most": 0.0}
     for effect in plan.EFFECTS:
         if effect.own:
             what = f"{effect.name}, off: instructions of its own functions per body and step"
             measurements.append(Measurement(what, results.idle(effect), **free))
         if effect.never:
-            what = f"{effect.name}, off: instructions more than where it is impossible"
+            what = f"{effect.name}, off: additional instructions compared with a scene where it is impossible"
             measurements.append(Measurement(what, results.fix(effect.off, effect.never), **free))
     return measurements
 
 
 def apart(results):
-    """Largest relative difference of what an effect adds on the ladder and what it adds alone."""
+    """Largest relative difference between the cost of an effect on the ladder and alone."""
     gaps = [0.0]
     for rung in plan.LADDER:
         effect = row_of(rung)
         alone = results.fix(effect.on, effect.base) if effect else 0.0
-        if alone:  # some versions of LAMMPS ask for the virial whenever they print
+        if alone:  # some versions of LAMMPS compute the virial at every output
             gaps.append(abs(results.fix(rung.on, rung.base) - alone) / alone)
     return max(gaps)
 
 
 # --- tables -------------------------------------------------------------------------------------
 def effects_table(results):
-    """Effects: what they add where they are on, what is left of them where they are not."""
+    """Effects: cost if they are on, and remaining cost if they are off."""
     rows = []
     for effect in plan.EFFECTS:
         on = ("needs several ranks", "")
@@ -67,12 +67,12 @@ def effects_table(results):
         own = number(results.idle(effect)) if effect.own else "none of its own"
         twin = number(results.fix(effect.off, effect.never)) if effect.never else ""
         rows.append([effect.name, *on, own, twin])
-    off = ("off: instructions of its own functions", "off: instructions more than where impossible")
+    off = ("off: instructions of its own functions", "off: additional instructions compared with an impossible effect")
     return Table(("effect", "on: instructions", "on: ns", *off), rows)
 
 
 def ladder_table(results):
-    """Rungs: what a body costs, beside the scene without the effect, and what the effect adds alone."""
+    """Rungs: cost of a body, difference from the scene without the effect, and cost of the effect alone."""
     rows = []
     for rung in plan.LADDER:
         effect = row_of(rung)
@@ -87,12 +87,12 @@ def ladder_table(results):
 
 
 def short(name):
-    """A function's name without namespaces, arguments and spaces that mean nothing."""
+    """A function's name without namespaces, arguments and redundant spaces."""
     return re.sub(r"LAMMPS_NS::|\bGearQuat::|\bvoid |\(.*", "", name)
 
 
 def function_table(results, scene=plan.MOVED):
-    """Own instructions of the functions that a full body's step is made of, the largest first."""
+    """Own instructions of the functions in a step of a body with translation and rotation, the largest first."""
     names = results.profiles[scene, results.sizes.counted[1]].own
     counts = {
         name: results.per_body(scene, lambda profile, name=name: profile.own[name])

@@ -1,7 +1,7 @@
 """Instructions of the steps of many scenes, counted by callgrind in one run of LAMMPS.
 
-Instructions are counted inside ``Verlet::run`` alone, and every set-up of a run begins a new part
-of the profile: the second run of a scene is its steps and nothing else.
+Instructions are counted only inside ``Verlet::run``, and every set-up of a run begins a new part of the profile, so
+the second run of a scene contains only its steps.
 """
 
 import os
@@ -17,7 +17,7 @@ from .scenes import write_molecules
 
 INSTALL = "install it by\n  sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
 HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
-#: what the fix does for output, before the first step, and once a step however many bodies there are
+#: work of the fix for output, before the first step, and once per step for any number of bodies
 FIX = re.compile(r"LAMMPS_NS::(FixGearQuat|GearQuat::(Motion|Step))::")
 ASIDE = re.compile(
     r"FixGearQuat::show_bodies\(|GearQuat::Motion::begin_steps\(|Comm\w+::forward_comm\(int\)"
@@ -29,33 +29,33 @@ FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")
 
 @dataclass(frozen=True)
 class Profile:
-    """Instructions of one part: ``own`` by function; ``called`` by caller and function with all it calls."""
+    """Instructions of one part: ``own`` by function; ``called`` by caller and function, including all nested calls."""
 
     own: Counter
     called: Counter
 
     @property
     def fix(self):
-        """In the fix, without what is no work of a step on a body."""
+        """Instructions in the fix for the bodies in a step."""
         return self.inclusive(HOOKS) - self.inclusive(ASIDE, FIX)
 
     @property
     def forces(self):
-        """In the pair style."""
+        """Instructions in the pair style."""
         return self.inclusive(FORCES)
 
     def inclusive(self, pattern, by=re.compile("")):
-        """With all they call, of functions that match and are called by one that matches ``by``."""
+        """Instructions, including nested calls, of functions that match and whose caller matches ``by``."""
         called = self.called.items()
         return sum(n for (caller, name), n in called if pattern.search(name) and by.search(caller))
 
     def of(self, pattern):
-        """Own instructions of functions that match a pattern."""
+        """Own instructions of functions whose names match a pattern."""
         return sum(count for name, count in self.own.items() if re.search(pattern, name))
 
 
 def parse(text):
-    """Profile of one part, as callgrind writes it without compression of names."""
+    """Profile of one part, from callgrind's output without compression of names."""
     own, called = Counter(), Counter()
     function = callee = None
     for line in text.splitlines():
@@ -72,7 +72,7 @@ def parse(text):
 
 
 def _without_stubs(called):
-    """``called`` as if functions called each other directly: stubs of the linker have addresses for names."""
+    """``called`` without the linker's stubs, whose names are addresses, so that functions call each other directly."""
     callees = Counter(caller for caller, _ in called)
     behind = {stub: name for stub, name in called if ADDRESS.fullmatch(stub) and callees[stub] == 1}
     direct = Counter()
@@ -83,7 +83,7 @@ def _without_stubs(called):
 
 
 def find_valgrind():
-    """The program, or an error with the line that installs it."""
+    """The program; raises an error with the command to install it if it is missing."""
     program = shutil.which("valgrind")
     if not program:
         raise LammpsError(f"valgrind, which counts instructions, is missing; {INSTALL}")
@@ -91,7 +91,7 @@ def find_valgrind():
 
 
 def command_line(lmp, deck, folder, variables=None, parts=True):
-    """What counts the instructions of a deck into ``folder``; ``parts``: apart for each set-up of fix gear/quat."""
+    """Command line that counts the instructions of a deck; output in ``folder``; ``parts``: a part for each set-up of fix gear/quat."""
     settings = [word for name, value in (variables or {}).items() for word in ("-var", name, str(value))]
     return [
         find_valgrind(),
@@ -107,7 +107,7 @@ def command_line(lmp, deck, folder, variables=None, parts=True):
 
 
 def valgrind(command, folder):
-    """Run a command_line() in the folder of its deck; raise LammpsError if it fails."""
+    """Run a command_line() in the folder of its deck; raises LammpsError if it fails."""
     done = subprocess.run(
         command,
         cwd=folder,
@@ -123,7 +123,7 @@ def valgrind(command, folder):
 
 
 def whole(folder, deck, variables, lmp):
-    """Profile of all steps of a deck, with any fix.  ``folder``, which is made, gets log and profile."""
+    """Profile of all steps of a deck, with any fix.  ``folder`` is created for log and profile."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("callgrind.*"):
@@ -134,7 +134,7 @@ def whole(folder, deck, variables, lmp):
 
 
 def _parts(folder):
-    """Files of the process that has stepped, in the order of the parts."""
+    """Files of the process that ran the steps, in the order of the parts."""
     files = list(folder.glob("callgrind.*"))
     number = {file: [int(n) for n in file.name.split(".")[1:]] for file in files}
     several = {n[0] for n in number.values() if len(n) > 1}
@@ -148,7 +148,7 @@ def _parts(folder):
 
 
 def count(folder, scenes, sides, steps, lmp):
-    """Profiles of ``steps`` steps: (scene, side) -> Profile.  ``folder`` gets deck, log, profiles."""
+    """Profiles of ``steps`` steps: (scene, side) -> Profile.  Deck, log and profiles are written to ``folder``."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("callgrind.*"):

@@ -1,6 +1,6 @@
-"""What is measured: effects, each a row, and the rungs of the ladder, each a step up.
+"""The measured effects, one row each, and the rungs of the ladder.
 
-An effect that the fix learns is one more Effect here, and one more Rung if it belongs on the ladder.
+A new effect of the fix needs another Effect here, and another Rung if it belongs on the ladder.
 """
 
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from functools import partial
 
 from .scenes import Scene
 
-FULL = Scene()  # nothing acts on the bodies
+FULL = Scene()  # no force on the bodies
 MOVED = replace(FULL, forces="neutral")
 POINTS = replace(MOVED, shape="point")
 LINEAR = replace(MOVED, shape="linear")
@@ -16,14 +16,14 @@ CHARGED = replace(MOVED, forces="charged")
 EACH, CHARGED_EACH = replace(MOVED, each=True), replace(CHARGED, each=True)
 #: MOVED, and everything on the ladder from the virial on, with further settings
 moved, charged_each = partial(replace, MOVED), partial(replace, CHARGED_EACH)
-#: control of the error with all its work, but nothing that changes: the same steps are compared
+#: step control that does all its work but never changes the step, so that equal steps are compared
 FIXED = "values 5"
 TOLERANCE = f"{FIXED} tolerance 1.0 dtmin 0.0005 dtmax 0.0005"
-#: Gauss's principle needs the first formulation, and a step of its own
+#: Gauss's principle needs the first formulation and its own step
 FIRST = "formulation first"
 ISOKINETIC = f"{FIRST} isokinetic total"
 TEMP = "temp 300.0 300.0 0.1"
-#: functions that solve a chain once a step: their instructions depend on the motion, not on the number of bodies
+#: functions that solve a chain once per step: their instructions depend on the motion, not on the number of bodies
 ONCE_A_STEP = r"GearQuat::Chain(Drive)?::"
 #: functions that correct all bodies together
 TOGETHER = r"|GearQuat::(Step::correct_together|Coupling::correct_by_passes<)"
@@ -37,10 +37,10 @@ UNSIZED, SIZED = (
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect: ``on`` differs from ``base`` by it alone; no ``on``: one rank cannot have it.
+    """An effect: ``on`` differs from ``base`` only by the effect; without ``on`` it is impossible on one rank.
 
-    ``own``: pattern of the names of functions that belong to it alone, "" for none.  ``off``: a scene
-    where it could be but is not called for, ``never``: one where it cannot be, equal otherwise.
+    ``own``: pattern of the names of functions only for this effect, "" for none.  ``off``: a scene in which the effect
+    is possible but not needed; ``never``: the same scene with the effect impossible.
     """
 
     name: str
@@ -52,16 +52,16 @@ class Effect:
 
     @property
     def idle(self):
-        """The scene in which its own functions must not run."""
+        """The scene in which the effect's own functions must not run."""
         return self.off or self.base
 
 
 @dataclass(frozen=True)
 class Rung:
-    """A rung: ``on`` is one effect more than ``base``, both with all that is below them.
+    """A rung: ``on`` has one effect more than ``base``; both have all effects of the rungs below.
 
-    ``row``: name of the Effect that measures the same without what is below, "" if there is none.
-    ``against``: what ``base`` is, in words.
+    ``row``: name of the Effect that measures the same without the rungs below, "" if there is none.
+    ``against``: description of ``base``.
     """
 
     name: str
@@ -153,7 +153,7 @@ LADDER = (
 
 
 def scenes():
-    """Every scene once, in their order."""
+    """All scenes, each once, in order."""
     every = [(effect.on, effect.base, effect.off, effect.never) for effect in EFFECTS]
     every += [(rung.on, rung.base) for rung in LADDER]
     return list(dict.fromkeys(scene for row in every for scene in row if scene))

@@ -1,4 +1,4 @@
-"""All that the study measures: instructions, times, and the paper's cage."""
+"""All measurements of the study: instructions, times, and the paper's cage."""
 
 import re
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from .scenes import write_molecules
 
 @dataclass(frozen=True)
 class Sizes:
-    """How much is run: bodies along an edge and steps, for counts, for times, and of the cage."""
+    """Sizes of the runs: bodies along an edge and steps, for counts, for times, and for the cage."""
 
     counted: tuple = (3, 4)
     counted_steps: int = 60
@@ -35,7 +35,7 @@ class Cage:
 
     @property
     def speedup(self):
-        """Ratio of the least times."""
+        """Ratio of the shortest times."""
         return min(self.plain) / min(self.mended)
 
 
@@ -51,7 +51,7 @@ class Results:
     cage: Cage
 
     def per_body(self, scene, of):
-        """Instructions per body and step: what more bodies add, so nothing that is done once per step.
+        """Instructions per body and step, from the difference of two numbers of bodies, without work done once per step.
 
         ``of``: a function of a Profile.
         """
@@ -60,7 +60,7 @@ class Results:
         return more / (high**3 - low**3) / self.sizes.counted_steps
 
     def fix(self, scene, base=None):
-        """Instructions per body and step in the fix, or by how many they are more than in ``base``."""
+        """Instructions per body and step in the fix, or their difference from ``base``."""
         more = self.per_body(scene, lambda profile: profile.fix - profile.of(plan.ONCE_A_STEP))
         return more - (self.fix(base) if base else 0)
 
@@ -70,20 +70,20 @@ class Results:
         return self.profiles[scene, high].forces / high**3 / self.sizes.counted_steps
 
     def idle(self, effect):
-        """Instructions per body and step of an effect's own functions where it is off."""
+        """Instructions per body and step of an effect's own functions if it is off."""
         return self.per_body(effect.idle, lambda profile: profile.of(effect.own))
 
     def nanoseconds(self, scene, base=None, part=0):
-        """Time per body and step in the fix, or in the pair style (part 1): the least of all rounds.
+        """Time per body and step in the fix, or in the pair style (part 1): the shortest of all rounds.
 
-        Whatever else a machine does only adds to a time.  With ``base``: by how much it is more.
+        The shortest is taken because other work on the machine only adds time.  With ``base``: the difference from it.
         """
         least = 1e9 / self.sizes.timed**3 * min(pair[part] for pair in self.seconds[scene])
         return least - (self.nanoseconds(base, part=part) if base else 0.0)
 
 
 def time_scenes(lab, sizes):
-    """Scene -> [(seconds per step in the fix, in the pair style), ...], all scenes in turn."""
+    """Scene -> [(seconds per step in the fix, in the pair style), ...]; scenes take turns."""
     folder, scenes, jobs = lab.out / "time", {}, {}
     folder.mkdir(parents=True, exist_ok=True)
     write_molecules(folder)
@@ -105,7 +105,7 @@ _EXCLUSIONS = " exclude group cage cage exclude molecule/intra body"
 
 
 def cage_deck(folder):
-    """Test case 1 with ``exclusions``, a variable, in place of those of the scene."""
+    """Test case 1 with the variable ``exclusions`` instead of the scene's exclusions."""
     common = EXAMPLES / "common"
     scene = (common / "in.scene").read_text(encoding="utf-8")
     if _EXCLUSIONS not in scene:
@@ -136,7 +136,7 @@ def time_cage(lab, sizes):
 
 
 def measure(lab):
-    """Results.  LAMMPS of the tree is preferred: names of functions are needed to count."""
+    """Results.  LAMMPS built in the tree is preferred, because counting needs the names of functions."""
     lab.prefer(ROOT / "build" / "tree" / "lmp")
     sizes = QUICK if lab.quick else Sizes()
     steps, scenes = sizes.counted_steps, plan.scenes()

@@ -1,4 +1,4 @@
-"""Scenes that differ in one effect: equal bodies on a cubic lattice.  Units: metal."""
+"""Scenes that differ by one effect: equal bodies on a cubic lattice.  Units: metal."""
 
 from dataclasses import dataclass
 
@@ -47,11 +47,11 @@ _FORCES = {
 
 @dataclass(frozen=True)
 class Scene:
-    """One scene, with two passes and a given number of values: instructions do not depend on the motion.
+    """One scene, with two passes and a given number of values, so that instructions do not depend on the motion.
 
     ``words``: keywords of the fix; ``before``, ``after``: lines around it;
-    ``columns``: of the output besides the step; ``each``: output in every step, not at the end only;
-    ``crossing``: bodies lie across the boundaries of the box.
+    ``columns``: columns of the output besides the step; ``each``: output in every step, not only at the end;
+    ``crossing``: bodies cross the boundaries of the box.
     """
 
     shape: str = "triangle"
@@ -66,7 +66,7 @@ class Scene:
     crossing: bool = False
 
     def deck(self, side, steps):
-        """Script with side^3 bodies; its second run has ``steps`` steps, the first one the start."""
+        """Script with side^3 bodies; its first run has the start, its second run ``steps`` steps."""
         values = DEFAULT_VALUES["first" if "formulation first" in self.words else "second"]
         return _DECK.format(
             scene=self,

@@ -1,8 +1,8 @@
-"""Real liquids: energy, temperatures and pressure against the step, and what in the forces limits them.
+"""Real liquids: energy, temperatures and pressure against the step, and the limits from the forces.
 
-plan.py (what is run), runs.py (LAMMPS' runs), heavier.py (bodies with larger inertia), quantities.py (what
-follows from runs), judging.py (measurements and bounds), and here the tables and panels.  The drift from a
-spectrum is coefficients/prediction.py.
+plan.py (scenes and sizes), runs.py (LAMMPS' runs), heavier.py (bodies with larger inertia), quantities.py (results
+from runs), judging.py (measurements and bounds), and here the tables and panels.  The drift from a spectrum is computed
+by coefficients/prediction.py.
 """
 
 import math
@@ -23,16 +23,16 @@ from .plan import DEFAULT, FAMILIES, FLOOR_STEP, FLOORS, FORESEEN, HEAVY, LIQUID
 from .plan import NVE_SMALL, SCENES, SINGLE, STEPS, VALUES
 from .runs import measure
 
-#: the drift is drawn linearly below this size
+#: the axis of drifts is linear below this size
 LINEAR = 0.01
-#: and is a cross above this one
+#: drifts above this size are drawn as crosses
 LARGEST = 100.0
-#: the darker of a kind come last
+#: darker colors of a kind come last
 LOOKS = looks(METHODS[::-1])
 
 
 def lost_text(runs):
-    """How many of some Runs were lost, and when the first was."""
+    """Number of lost Runs, and the time of the first loss."""
     ends = [run.time[-1] / 1000 if len(run.time) else 0.0 for run in lost(runs)]
     return f"{len(ends)} of {len(runs)} lost, after {min(ends):.1f} ps"
 
@@ -43,7 +43,7 @@ def show_drift(runs, liquid):
 
 
 def show_state(runs, liquid):
-    """Fluctuation, temperatures, their difference and pressure as texts."""
+    """Fluctuation, temperatures, their difference and pressure as text."""
     if lost(runs):
         return [lost_text(runs), *[""] * 4]
     means = [of.mean(runs, lambda run, k=k: of.temperatures(run, liquid)[k]) for k in (0, 1)]
@@ -54,7 +54,7 @@ def show_state(runs, liquid):
 
 # --- tables ---------------------------------------------------------------------------------------
 def scene_tables(results, scene):
-    """Table of drifts, one step per column, and table of everything else, one method and step per row."""
+    """Table of drifts with a column per step, and table of other quantities with a row per method and step."""
 
     def cell(method, dt):
         runs = results.runs.get((scene.key, method.key, dt))
@@ -87,13 +87,13 @@ def prediction_table(results):
 
 
 def spectra_table(results):
-    """Spectra of the liquids, of which coefficients/spectra.csv is a copy."""
+    """Spectra of the liquids; coefficients/spectra.csv is a copy of this table."""
     spectra = {scene.liquid.title: results.spectra[scene.liquid.key] for scene in SCENES}
     return Table(*prediction.table(spectra))
 
 
 def chosen_table(results):
-    """How many values the fix begins with by itself, by liquid and step."""
+    """Number of values that the fix chooses, for each liquid and step."""
     rows = []
     for scene in SCENES:
         chosen = [{run.values for run in results.runs[scene.key, DEFAULT.key, dt]} for dt in STEPS]
@@ -113,7 +113,7 @@ def averages(runs, pairs):
 
 
 def heavy_table(results):
-    """Static averages of the model, and by how much they differ, start by start, with larger inertia."""
+    """Static averages of the model, and their differences, start by start, with larger inertia."""
     columns = ["inertia", "step, fs", f"drift, {UNIT}", "T translation − T rotation, K"]
     columns += ["potential energy, kcal/mol per molecule", "first maximum of g(r), O–O", "O–H"]
     rows, model = [], None
@@ -152,7 +152,7 @@ def floor_table(results):
 
 
 def floors(results):
-    """Fluctuations with the default that the sentences name, kcal/mol."""
+    """Fluctuations with the default, for the sentences of the page, kcal/mol."""
     words = {"plain": "plain cut-off", "shifted": "energy shifted", "switched": "energy switched"}
     named = {
         word + suffix: next(f for f in FAMILIES[family] if f.accuracy == accuracy)
@@ -166,7 +166,7 @@ def floors(results):
 
 
 def advice(results):
-    """The cheaper of two ways to the same fine forces."""
+    """The cheaper of two settings with equally accurate forces."""
     ways = FAMILIES["energy shifted"][-2], SINGLE[2]
     return min(ways, key=lambda forces: results.floors[forces.text, DEFAULT.key].seconds)
 
@@ -180,8 +180,8 @@ def plain_name(method):
 def panel(results, scene, title, ylabel, read, methods=METHODS, apart=0.0, most=math.inf, **more):
     """Panel of a quantity against the step; ``read(runs)``: value and error.
 
-    ``apart``: distance of error bars at the same step, as a part of the largest step.  Runs that were
-    lost, or whose value is beyond ``most``, are crosses.
+    ``apart``: distance of error bars at the same step, as a fraction of the largest step.  Lost runs, and runs with a
+    value above ``most``, are crosses.
     """
     curves, crosses = [], []
     for k, method in enumerate(methods):
@@ -237,7 +237,7 @@ def state_panels(results):
 
 
 def floor_panels(results):
-    """Fluctuation against the accuracy of kspace, by way to cut off."""
+    """Fluctuation against the accuracy of kspace, for each treatment of the cut-off."""
     curves = []
     for mark, (name, family) in zip("so^", FAMILIES.items()):
         for method in FLOORS[family[0]]:
@@ -251,7 +251,7 @@ def floor_panels(results):
 
 
 def heavy_panels(results):
-    """Radial distribution functions with larger inertia and with that of the model."""
+    """Radial distribution functions with larger inertia and with the inertia of the model."""
     panels = []
     for column, name in ((1, "O–O"), (2, "O–H")):
         curves = []

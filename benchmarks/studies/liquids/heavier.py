@@ -1,9 +1,9 @@
-"""Bodies with larger moments of inertia and the same masses, as an ``infile`` states them.
+"""Bodies with larger moments of inertia and the same masses, written to an ``infile``.
 
-Other masses of the sites cannot do this for SPC/E water: with the same sum, the moment about the axis from
-hydrogen to hydrogen is at most 2.5 times larger, where the oxygen has half of the mass.
-The angular momenta are larger by the root of the factor, so that the kinetic energy stays, and with it the
-equilibrium: positions and momenta are distributed as Boltzmann has it for both.
+Other masses of the sites cannot do this for SPC/E water: with the same total mass, the moment about the axis from
+hydrogen to hydrogen is at most 2.5 times larger, if the oxygen has half of the mass.
+The angular momenta are larger by the square root of the factor, which keeps the kinetic energy and the equilibrium:
+positions and momenta follow the Boltzmann distribution with both inertias.
 """
 
 import numpy as np
@@ -12,14 +12,14 @@ HEADER = "# ID mass x y z ixx iyy izz ixy ixz iyz vx vy vz lx ly lz ix iy iz"
 
 
 def tensors(masses, positions):
-    """Tensors of inertia (n, 3, 3) of bodies about their centers of mass; ``positions`` (n, sites, 3) from there."""
+    """Inertia tensors (n, 3, 3) of bodies about their centers of mass; ``positions`` (n, sites, 3) relative to these."""
     squares = np.einsum("s,nsi,nsi->n", masses, positions, positions)
     products = np.einsum("s,nsi,nsj->nij", masses, positions, positions)
     return squares[:, None, None] * np.eye(3) - products
 
 
 def bodies(sites, scene):
-    """Rows (n, 20) of an infile: the molecules of the first frame of Sites, in the box of the Scene."""
+    """Rows (n, 20) of an infile for the molecules in the first frame of Sites, in the box of the Scene."""
     liquid = scene.liquid
     count, masses = liquid.molecules, sites.masses.reshape(liquid.molecules, -1)[0]
     positions, velocities = (

@@ -1,6 +1,6 @@
-"""What the study of liquids asks of fix gear/quat: measurements with their bounds.
+"""Requirements of the study of liquids on fix gear/quat: measurements with their bounds.
 
-Where errors decide, there are bounds only if the errors are from several starts.
+Bounds that depend on statistical errors apply only if the errors are from several starts.
 """
 
 import math
@@ -15,20 +15,20 @@ from . import quantities as of
 from .plan import DEFAULT, FORESEEN, MAIN, NAMES, NVE_SMALL, SCENES, STEPS, TEMPERED, VALUES, WATERS
 
 UNIT = "kT/ns/dof"
-#: step in fs -> largest size of the drift of water, to which WITHIN standard errors are added
+#: step in fs -> largest size of the drift of water, plus WITHIN standard errors
 MOST_DRIFT = {2.5: 0.02, 3.0: 0.03, 4.0: 0.25}
 WITHIN = 2.0
-#: a prediction may be wrong by this, or by this part of the drift, and by WITHIN standard errors
+#: a prediction may be wrong by the first number, or by this fraction of the drift, plus WITHIN standard errors
 PREDICTED, PART = 0.03, 0.3
 
 
 def lost(runs):
-    """Those of some Runs that were lost."""
+    """The lost Runs."""
     return [run for run in runs if run.lost]
 
 
 def several(results):
-    """Whether errors are from the scatter among starts."""
+    """True if errors are from the scatter among starts."""
     return results.plan.starts > 1
 
 
@@ -39,12 +39,12 @@ def drift_of(results, scene, method, dt):
 
 
 def predicted(results, scene, values, dt):
-    """Drift that the spectrum of a liquid predicts with so many values."""
+    """Drift predicted from the spectrum of a liquid, for a number of values."""
     return results.spectra[scene.liquid.key].drift(tuned("second", values, any_norm=True), dt)
 
 
 def drifts(results):
-    """The drift in water, bounded."""
+    """The drift in water, with bounds."""
     for scene in SCENES:
         for dt in STEPS[:-1] if scene.liquid in WATERS else ():
             rate, error = drift_of(results, scene, DEFAULT, dt)
@@ -58,7 +58,7 @@ def drifts(results):
 
 
 def survivals(results):
-    """How long all runs lasted at the longest step."""
+    """The time that all runs reached at the longest step."""
     for scene in SCENES:
         runs = results.runs[scene.key, DEFAULT.key, STEPS[-1]]
         last = min(run.time[-1] if len(run.time) else 0.0 for run in runs) / 1000
@@ -68,10 +68,10 @@ def survivals(results):
 
 
 def equipartition(results):
-    """Translation less rotation, of the fix within its errors, and of rigid/nve/small beside it."""
+    """Temperature of translation minus rotation: of the fix, zero within errors, and of rigid/nve/small for comparison."""
     for dt in TEMPERED:
         both = [results.runs[MAIN.key, method.key, dt] for method in (DEFAULT, NVE_SMALL)]
-        if any(map(lost, both)):  # which drifts() refuses
+        if any(map(lost, both)):  # drifts() already reports these
             continue
         own, other = (of.warmer(runs, MAIN.liquid) for runs in both)
         remark, most = f"{NVE_SMALL.label}: {with_error(other.value, other.error, '+')}", WITHIN * own.error
@@ -81,7 +81,7 @@ def equipartition(results):
 
 
 def beside_the_best(results):
-    """In the other liquids, the drift of no keyword less that of the best number of values."""
+    """In the other liquids, the drift without keywords minus the drift with the best number of values."""
     others = [scene for scene in SCENES if scene.liquid not in WATERS]
     freedoms = 2 * results.plan.few - 2
     most = allowed(len(others) * len(FORESEEN), freedoms) if several(results) else None
@@ -94,12 +94,12 @@ def beside_the_best(results):
             noise = math.hypot(error, scatter)
             excess.append(((abs(rate) - abs(best)) / noise if noise else math.inf, dt))
         worst, dt = max(excess)
-        what = f"{scene.title}: size of the drift less that of the best number of values, in standard errors"
+        what = f"{scene.title}: size of the drift minus the size with the best number of values, in standard errors"
         yield Measurement(what, worst, spec=".1f", remark=f"at {dt:g} fs", most=most)
 
 
 def predictions(results):
-    """By how much the drift is not the predicted one, by what may be."""
+    """Deviation of the drift from the prediction, relative to its bound."""
     for scene in SCENES:
         ratios = []
         for dt in FORESEEN:
@@ -109,14 +109,14 @@ def predictions(results):
             most = max(PREDICTED, PART * abs(rate)) + WITHIN * error
             ratios.append((wrong / most if math.isfinite(rate) else math.inf, dt))
         worst, dt = max(ratios)
-        what = f"{scene.title}: error of the predicted drift by what is allowed"
+        what = f"{scene.title}: error of the predicted drift relative to its bound"
         yield Measurement(what, worst, spec=".2f", remark=f"at {dt:g} fs", most=1.0 if several(results) else None)
 
 
 def calibration(results):
-    """Size of drift by its error with NO_SQUISH; near 1 if errors are right, as it has none.
+    """Drift of NO_SQUISH relative to its error; near 1 if errors are correct, because this method does not drift.
 
-    Root mean squares over the steps of a liquid are compared, for errors from few starts scatter.
+    Root mean squares over the steps of a liquid are compared, because errors from few starts scatter.
     """
     ratios = []
     for scene in SCENES:
@@ -124,7 +124,7 @@ def calibration(results):
         rates, errors = np.transpose([pair for pair in found if math.isfinite(pair[0])])
         ratios.append(np.sum(rates**2) / np.sum(errors**2))
     return Measurement(
-        f"{NAMES[NVE_SMALL]}, all liquids: size of drift by standard error, root mean squares",
+        f"{NAMES[NVE_SMALL]}, all liquids: size of drift over standard error, root mean squares",
         float(np.sqrt(np.mean(ratios))),
         spec=".1f",
     )

@@ -1,6 +1,6 @@
-"""What is run: liquids, forces, methods, steps, durations.
+"""Liquids, forces, methods, steps and durations of the runs.
 
-Another liquid needs an entry of LIQUIDS, its files ``liquid.KEY`` and ``molecule.KEY``, and a Scene.
+Another liquid needs an entry in LIQUIDS, its files ``liquid.KEY`` and ``molecule.KEY``, and a Scene.
 """
 
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ from benchmarks.engine.methods import AUTOMATIC, gear, rigid
 
 NVE_SMALL = rigid("rigid/nve/small", "rigid")
 DEFAULT = AUTOMATIC
-#: number of values -> the method that is told to take so many
+#: number of values -> the method with this keyword
 VALUES = {n: gear("second", n) for n in (5, 7, 9)}
-#: how the page calls them
+#: names on the page
 NAMES = {
     DEFAULT: "`fix gear/quat`",
     **{method: f"`fix gear/quat`, `values {n}`" for n, method in VALUES.items()},
@@ -24,18 +24,18 @@ METHODS = tuple(NAMES)
 CUTOFF = 9.0
 PLAIN, CHECKED = f"lj/cut/coul/long {CUTOFF:g}", "every 1 delay 0 check yes"
 TIP4P = f"lj/cut/tip4p/long 1 2 1 1 0.1546 {CUTOFF:g}"
-#: the Lennard-Jones energy goes to zero between two distances
+#: the Lennard-Jones energy is switched to zero between two distances
 SWITCHED = f"lj/charmm/coul/long 7 {CUTOFF:g}"
 
 
 def power(accuracy):
-    """A power of ten as people write it: 1e-5."""
+    """A power of ten as text: 1e-5."""
     return f"{accuracy:.0e}".replace("e-0", "e-")
 
 
 @dataclass(frozen=True)
 class Forces:
-    """How forces are computed, in the words of LAMMPS' commands; see in.liquid.  ``skin`` in Angstrom."""
+    """Settings of the forces as arguments of LAMMPS' commands; see in.liquid.  ``skin`` in Angstrom."""
 
     pair: str = PLAIN
     modify: str = "shift yes"
@@ -53,7 +53,7 @@ class Forces:
 
     @property
     def lines(self):
-        """What a user writes, where it is not LAMMPS' default."""
+        """The lines of an input script that differ from LAMMPS' defaults."""
         lines = [f"pair_style {self.pair}", f"kspace_style {self.kspace} {power(self.accuracy)}"]
         if self.modify != "shift no":
             lines.insert(1, f"pair_modify {self.modify}")
@@ -65,15 +65,15 @@ class Forces:
 
     @property
     def text(self):
-        """The lines in one."""
+        """The lines joined to one."""
         return "; ".join(self.lines)
 
 
-#: steps in fs; at the last one it is seen whether bodies are lost
+#: steps in fs; the last one shows whether bodies are lost
 STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0)
-#: those at which drifts are predicted, and temperatures compared
+#: steps at which drifts are predicted, and steps at which temperatures are compared
 FORESEEN, TEMPERED = (2.0, 2.5, 3.0, 4.0), (2.0, 2.5, 3.0)
-#: time between samples in fs, a multiple of all steps, and with the short step of the floor
+#: time between samples in fs, a multiple of all steps; and the same for the short step of the floor
 INTERVAL, FLOOR_INTERVAL = 60.0, 10.0
 
 
@@ -81,8 +81,8 @@ INTERVAL, FLOOR_INTERVAL = 60.0, 10.0
 class Liquid:
     """A liquid of ``edge``^3 rigid molecules at a ``density`` in g/cm^3 and a ``temperature`` in K.
 
-    ``mass`` of a molecule in g/mol; ``types``: of atoms; ``axes``: about how many it rotates; ``pair``,
-    ``kspace``: words of LAMMPS, and ``accuracy`` of the latter.
+    ``mass`` of a molecule in g/mol; ``types``: number of atom types; ``axes``: number of axes of rotation; ``pair``,
+    ``kspace``: LAMMPS' styles; ``accuracy`` of kspace.
     """
 
     key: str
@@ -109,7 +109,7 @@ class Liquid:
 
     @property
     def freedoms(self):
-        """Degrees of freedom of translation, without total momentum, and of rotation."""
+        """Degrees of freedom of translation (without the total momentum) and of rotation."""
         return 3 * self.molecules - 3, self.axes * self.molecules
 
 
@@ -118,7 +118,7 @@ WATER4 = Liquid(
     "tip4p", "TIP4P/2005 water", 5, 0.997, 298.15, 18.0154, pair=TIP4P, kspace="pppm/tip4p"
 )
 CO2 = Liquid("co2", "TraPPE carbon dioxide", 5, 1.046, 250.0, 44.0098, axes=2)
-# small charges, of which pppm 1e-5 leaves so much in real space that energies jump at the cut-off
+# small charges: with pppm 1e-5 their real-space part is so large at the cut-off that energies jump there
 BENZENE = Liquid("benzene", "OPLS-AA benzene", 4, 0.876, 298.15, 78.114, accuracy=1e-6)
 NITROGEN = Liquid("nitrogen", "TraPPE nitrogen", 5, 0.807, 77.0, 28.0134, axes=2)
 METHANOL = Liquid("methanol", "TraPPE-UA methanol", 5, 0.787, 298.15, 32.0419, types=3)
@@ -128,7 +128,7 @@ WATERS = (SPCE, WATER4)
 
 @dataclass(frozen=True)
 class Extent:
-    """What of a method is run: its ``steps`` in fs; ``many``: from all starts and for the full time."""
+    """Extent of the runs of a method: its ``steps`` in fs; ``many``: from all starts and for the full time."""
 
     steps: tuple = STEPS
     many: bool = True
@@ -136,9 +136,9 @@ class Extent:
 
 @dataclass(frozen=True)
 class Scene:
-    """A liquid that methods follow, Method -> Extent, with moments of ``inertia`` larger by a factor.
+    """A liquid and the methods that simulate it, Method -> Extent; ``inertia``: factor of the moments of inertia.
 
-    ``pairs``: steps in fs at which DEFAULT leaves radial distribution functions.
+    ``pairs``: steps in fs at which DEFAULT writes radial distribution functions.
     """
 
     key: str
@@ -159,7 +159,7 @@ class Scene:
         return f"{self.liquid.title}, {self.liquid.kspace} {power(self.forces.accuracy)}"
 
 
-#: the step in fs with the moments of the model that heavier bodies are compared with
+#: step in fs, with the moments of the model, for comparison with heavier bodies
 NORMAL_STEP = 2.0
 
 
@@ -172,21 +172,21 @@ def _scene(liquid):
 
 SCENES = tuple(map(_scene, LIQUIDS))
 MAIN = SCENES[0]
-#: moments of inertia that are larger by this factor, with the same masses
+#: factor of the moments of inertia, with the same masses
 HEAVIER = 4.0
 HEAVY_STEPS = (3.0, 4.0, 5.0)
 HEAVY = Scene("heavy", SPCE, {DEFAULT: Extent(HEAVY_STEPS)}, HEAVIER, HEAVY_STEPS)
 
-#: what limits accuracy, with SPC/E water at a step in fs that is short enough to see it
+#: limits from the forces: SPC/E water with a step in fs that is short enough to show them
 FLOOR_STEP = 0.5
 ACCURACIES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
-#: words of a curve -> forces at each accuracy; a finer mesh would not lower the floor of the first one
+#: label of a curve -> forces at each accuracy; a finer mesh would not improve the first one
 FAMILIES = {
     "plain cut-off": [Forces(modify="shift no", accuracy=a) for a in ACCURACIES[:-1]],
     "energy shifted": [Forces(accuracy=a) for a in ACCURACIES],
     "energy switched": [Forces(SWITCHED, "shift no", accuracy=a) for a in ACCURACIES],
 }
-#: further settings, each a change of a fine one above
+#: further settings, each with one change of an accurate setting above
 SINGLE = (
     Forces(SWITCHED, "table 0", accuracy=1e-7),
     Forces(f"{PLAIN} 12", accuracy=1e-6),
@@ -194,19 +194,20 @@ SINGLE = (
     Forces(kspace="ewald", accuracy=1e-6),
     Forces(accuracy=1e-6, skin=1.0, neighbors="every 40 delay 0 check no"),
 )
-#: Forces -> methods that are run with them
+#: Forces -> methods that run with them
 FLOORS = {f: (DEFAULT,) for family in FAMILIES.values() for f in family}
 FLOORS |= {f: (DEFAULT, NVE_SMALL) for f in (*FAMILIES["energy shifted"], *SINGLE)}
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is run: numbers of starts, durations in ps, steps of equilibration.
+    """Sizes of the runs: numbers of starts, durations in ps, steps of equilibration.
 
-    ``starts`` and ``duration`` are of an Extent of many, ``few`` and ``short`` of the others and of the
-    shortest step, which takes longest;
-    ``temperatures``: of many in MAIN at the steps where temperatures are compared; ``floor``: of the
-    floor; ``spectrum``: of the run for the spectra of a liquid.
+    * ``starts``, ``duration``: for an Extent with ``many``
+    * ``few``, ``short``: for the others, and for the shortest step, which takes longest
+    * ``temperatures``: duration in MAIN, with ``many``, at the steps at which temperatures are compared
+    * ``floor``: duration for the limits from the forces
+    * ``spectrum``: duration for the spectrum of a liquid
     """
 
     starts: int = 5
@@ -227,5 +228,5 @@ class Plan:
 
 
 QUICK = Plan(1, 1, 1.26, 1.26, 1.26, 0.3, 1.1, equilibration=500)
-#: temperatures to half a kelvin
+#: for temperatures within half a kelvin
 FULL = Plan(temperatures=200.0)

@@ -1,4 +1,4 @@
-"""What follows from the samples of Runs: drift, fluctuation, temperatures, pressure."""
+"""Quantities computed from the samples of Runs: drift, fluctuation, temperatures, pressure."""
 
 import numpy as np
 
@@ -17,9 +17,8 @@ def unit(liquid):
 def drift(runs, liquid):
     """Mean slope of the total energy of some Runs and its standard error, kT per ns and degree of freedom.
 
-    The slopes are those of least-squares lines through all samples, and the error follows from their
-    scatter.  That of a single run is from the scatter of its samples about the line.  kT is that of the
-    liquid's temperature, whatever becomes of it.
+    Slopes are from least-squares lines through all samples, and the error is from their scatter.  The error of a single
+    run is from the scatter of its samples about the line.  kT is for the nominal temperature of the liquid.
     """
     rates, errors = np.transpose([slope(run.time, run.total) for run in runs]) / unit(liquid)
     if len(runs) == 1:
@@ -40,12 +39,12 @@ def temperatures(run, liquid):
 
 
 def mean(runs, read) -> Mean:
-    """Mean of the series ``read(run)`` of some Runs without their first samples, its error from blocks."""
+    """Mean of the series ``read(run)`` of Runs without their first samples, with an error from blocks."""
     return mean_of_series([read(run) for run in runs], BLOCKS)
 
 
 def warmer(runs, liquid) -> Mean:
-    """Temperature of translation less that of rotation, kelvin."""
+    """Temperature of translation minus temperature of rotation, kelvin."""
 
     def difference(run):
         translation, rotation = temperatures(run, liquid)
@@ -55,6 +54,6 @@ def warmer(runs, liquid) -> Mean:
 
 
 def of_starts(values):
-    """Mean of a number of each start and its standard error, NaN for a single start."""
+    """Mean over the starts and its standard error, NaN for a single start."""
     n = len(values)
     return float(np.mean(values)), float(np.std(values, ddof=1) / np.sqrt(n)) if n > 1 else np.nan

@@ -1,4 +1,4 @@
-"""LAMMPS runs of the liquids, and what they leave."""
+"""LAMMPS runs of the liquids, and their results."""
 
 import math
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from .heavier import write_bodies
 from .plan import DEFAULT, FLOOR_INTERVAL, FLOOR_STEP, FLOORS, FULL, HEAVY, INTERVAL, LIQUIDS
 from .plan import QUICK, SCENES, SPCE, Plan
 
-#: what LAMMPS says, besides numbers that are not finite, where atoms fly away
+#: LAMMPS' messages, in addition to numbers that are not finite, if atoms move too far
 FLOWN = ("Out of range atoms", "Lost atoms", "Rigid body atoms", "Bond atoms missing")
 #: step of the runs for spectra, fs
 SPECTRUM_STEP = 1.0
@@ -26,9 +26,9 @@ SPECTRUM_STEP = 1.0
 class Run:
     """A run of one method: samples (n,) at ``time`` in fs, energies in kcal/mol, ``pressure`` in atm.
 
-    ``kinetic``: that of the atoms, which is that of the bodies unless their inertia is another one.
-    ``duration``: what was asked for, fs.  ``seconds``: per step, NaN if the run failed.  ``values``: how
-    many fix gear/quat has, 0 for another fix.
+    ``kinetic``: kinetic energy of the atoms, equal to the energy of the bodies unless their inertia is changed.
+    ``duration``: requested duration, fs.  ``seconds``: per step, NaN if the run failed.  ``values``: number of values of
+    fix gear/quat, 0 for another fix.
     """
 
     time: np.ndarray
@@ -43,7 +43,7 @@ class Run:
 
     @property
     def lost(self):
-        """Whether it ended early, or numbers are not finite."""
+        """True if the run ended early or has numbers that are not finite."""
         return not len(self.time) or self.time[-1] < 0.999 * self.duration
 
     @property
@@ -54,12 +54,13 @@ class Run:
 
 @dataclass(frozen=True)
 class Results:
-    """What was measured.
+    """All measurements.
 
-    ``runs``: (key of scene, key of method, step) -> list of Run, one for each start.  ``floors``: (text of
-    Forces, key of method) -> Run.  ``spectra``: key of liquid -> Spectrum.  ``pairs``: (key of scene, step) ->
-    radial distribution functions (starts, bins, 3): distance in Angstrom, and between sites of the first
-    type, and of the first and the second.
+    * ``runs``: (key of scene, key of method, step) -> list of Run, one for each start
+    * ``floors``: (text of Forces, key of method) -> Run
+    * ``spectra``: key of liquid -> Spectrum
+    * ``pairs``: (key of scene, step) -> radial distribution functions (starts, bins, 3): distance in Angstrom, g(r)
+      between sites of the first type, and g(r) between sites of the first and the second type
     """
 
     plan: Plan
@@ -70,7 +71,7 @@ class Results:
 
 
 def is_lost(text):
-    """Whether LAMMPS' words say that a run ended because its numbers did, or its atoms were gone."""
+    """True if LAMMPS' message says that a run ended because numbers were not finite or atoms were lost."""
     return drift.is_lost(text) or any(words in text for words in FLOWN)
 
 
@@ -79,16 +80,16 @@ def _deck(name):
 
 
 def template(liquid):
-    """File of a molecule of the liquid; examples/water has that of SPC/E."""
+    """Molecule file of the liquid; the one for SPC/E is in examples/water."""
     name = f"molecule.{liquid.key}"
     own = Path(__file__).with_name(name)
     return own if own.is_file() else EXAMPLES / "water" / name
 
 
 def equilibrate(lab, plan, liquids=LIQUIDS, numbers=None):
-    """(key of liquid, number of start) -> path of its data file; beside it a dump, with suffix .start.
+    """(key of liquid, number of start) -> path of its data file; a dump with suffix .start is next to it.
 
-    ``numbers``: of the starts, by default all that the Plan has.
+    ``numbers``: numbers of the starts, by default all starts of the Plan.
     """
     jobs, data = {}, {}
     names = "types", "edge", "density", "mass", "temperature", "pair", "kspace"
@@ -113,14 +114,14 @@ def job(liquid, data, forces, method, dt, duration, interval=INTERVAL, **more):
 
 
 def values_of(log, method):
-    """Number of values of a method that has left a Log: the one it chose last, or was told, or the default."""
+    """Number of values of a method from its Log: the last choice of the fix, or the keyword, or the default."""
     if not method.gear:
         return 0
     return [method.variables.get("values", DEFAULT_VALUES[method.kind]), *log.chosen_values][-1]
 
 
 def read(finished, steps, dt, method):
-    """Run of a method from its log.  It may have been refused before its first sample."""
+    """Run of a method from its log; the run may have been refused before its first sample."""
     if not finished.log.tables or not len(finished.thermo["Step"]):
         return Run(*np.zeros((6, 0)), steps * dt, math.nan)
     names = "Time", "v_total", "v_ketrans", "v_kerot", "KinEng", "Press"
@@ -176,7 +177,7 @@ def read_pairs(path):
 
 
 def measure(lab, plan=None, scenes=SCENES, heavy=HEAVY, floors=FLOORS):
-    """Results.  What a call with the same input has finished is not run again."""
+    """Results.  Finished runs of an earlier call with the same input are not repeated."""
     plan = plan or (QUICK if lab.quick else FULL if lab.full else Plan())
     with lab.share(0.08):
         data = equilibrate(lab, plan, [scene.liquid for scene in scenes])

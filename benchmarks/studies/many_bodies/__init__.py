@@ -1,7 +1,6 @@
-"""Many bodies: time, memory, pressure and temperature in water beside LAMMPS' own fixes.
+"""Many bodies: time, memory, pressure and temperature in water, compared with LAMMPS' own fixes.
 
-runs.py (what is run, and what is read from logs), quantities.py (what follows from it), and here the
-measurements, tables and panels.
+runs.py (runs and their logs), quantities.py (results from runs), and here the measurements, tables and panels.
 """
 
 from dataclasses import replace
@@ -17,9 +16,9 @@ from . import quantities as of
 from .runs import COMPARED, FROZEN, GEAR, MOLECULES, NVE_SMALL, RACE, SAMPLED, SMALL, TIMED
 from .runs import bodies_of, measure
 
-#: time in the fix and memory, relative to fix rigid/nve/small; deviation from linear growth
+#: bounds: time in the fix and memory, relative to fix rigid/nve/small; deviation from linear growth
 MOST_TIME, MOST_MEMORY, MOST_GROWTH = 1.0, 1.5, 0.10
-#: relative differences below it are rounding
+#: relative differences below this are round-off
 ROUNDING = 1e-9
 OVER = f"relative to {NVE_SMALL.label}"
 #: method -> color, marker
@@ -53,7 +52,7 @@ def timing_measurements(results, method):
 
 
 def pressure_measurements(results, method):
-    """The mean pressure is the same at every step, and that of one configuration even more so."""
+    """The mean pressure does not depend on the step; the pressure of one configuration tests this more precisely."""
     dts, interval = results.plan.pressure_dts, results.plan.interval
     steps = f"steps of {', '.join(f'{dt:g}' for dt in dts)} fs"
     value = of.largest_deviation(of.mean_pressures(results, method).values())
@@ -81,12 +80,12 @@ def temperature_measurements(results, method):
     yield Measurement(what, of.kinetic_mismatch(thermo), spec=".0e", most=ROUNDING)
     off = of.warmer(results, method)
     most = allowed(1, off.freedoms) * off.error
-    what = f"mean temperature less that of {NVE_SMALL.label}"
+    what = f"difference of the mean temperature from {NVE_SMALL.label}"
     yield Measurement(what, off.value, off.error, ".1f", "K", least=-most, most=most)
 
 
 def measurements_of(results):
-    """All of them, in the order of the page."""
+    """All measurements, in the order of the page."""
     return [
         replace(measurement, what=f"{method.label}, {measurement.what}")
         for part in (timing_measurements, pressure_measurements, temperature_measurements)
@@ -97,7 +96,7 @@ def measurements_of(results):
 
 # --- tables ---------------------------------------------------------------------------------------
 def ranged(values, digits=2):
-    """Median (least to largest) as text."""
+    """Median (smallest to largest) as text."""
     return "{0:.{n}f} ({1:.{n}f} to {2:.{n}f})".format(*of.spread(values), n=digits)
 
 
@@ -107,7 +106,7 @@ def shown(mean, spec=".1f"):
 
 
 def time_table(results):
-    """Milliseconds per step in the fix and altogether, by ranks."""
+    """Milliseconds per step in the fix and in total, by ranks."""
     cells, header, rows = results.plan.headline, ["ms per step"], []
     for ranks in results.plan.ranks:
         header += [f"in the fix, {ranks_text(ranks)}", f"whole step, {ranks_text(ranks)}"]
@@ -122,7 +121,7 @@ def time_table(results):
 
 
 def start_table(results):
-    """What the start of fix gear/quat costs."""
+    """Cost of the start of fix gear/quat."""
     rows, cells = [], results.plan.headline
     for method in GEAR:
         for ranks in results.plan.ranks:
@@ -162,7 +161,7 @@ def pressure_tables(results):
     def instant(k):
         return lambda method: of.instants(results, method)[:, k]
 
-    shift = f"mean pressure less that at step {dts[0]:g} fs, same times, atm"
+    shift = f"difference of the mean pressure from step {dts[0]:g} fs, same times, atm"
     after, digits = f"pressure after {results.plan.interval:g} fs, atm", "{:.4f}".format
     return {
         "pressure": table("mean pressure, atm", dts, means(of.mean_pressures), shown),
@@ -173,7 +172,7 @@ def pressure_tables(results):
 
 
 def temperature_table(results):
-    """Means with errors of every part."""
+    """Mean temperatures with errors, of all and of each part."""
     names = ["all", "translation", "rotation", *(f"axis {name}" for name in of.AXES)]
     rows = []
     for method in SAMPLED:
@@ -185,7 +184,7 @@ def temperature_table(results):
 
 # --- picture --------------------------------------------------------------------------------------
 def _bars(samples):
-    """Medians (n,) and error bars (2, n) to the least and the largest, of n lists of values."""
+    """Medians (n,) and error bars (2, n) to the smallest and largest value, for n lists of values."""
     median, least, largest = np.transpose([of.spread(values) for values in samples])
     return median, np.array([median - least, largest - median])
 

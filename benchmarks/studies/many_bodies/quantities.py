@@ -1,4 +1,4 @@
-"""What follows from the results: ratios, means with standard errors, deviations, temperatures."""
+"""Quantities computed from the results: ratios, means with standard errors, deviations, temperatures."""
 
 import math
 
@@ -21,12 +21,12 @@ AXES = ("normal to the plane", "along the dipole", "from H to H")
 
 
 def block_mean(series):
-    """Mean of a series (n,) whose first sample, the start that all runs share, is left out."""
+    """Mean of a series (n,) without its first sample, which all runs have in common."""
     return mean_of_series([series], BLOCKS)
 
 
 def spread(values):
-    """Median, least and largest."""
+    """Median, smallest and largest value."""
     return float(np.median(values)), float(np.min(values)), float(np.max(values))
 
 
@@ -40,9 +40,9 @@ def largest_deviation(means, expected=None):
 
 # --- time and memory ------------------------------------------------------------------------------
 def time_ratio(results, method, ranks):
-    """Time in the fix over that of fix rigid/nve/small: of the medians, least and largest of a round.
+    """Time in the fix relative to fix rigid/nve/small: ratio of the medians, smallest and largest ratio of a round.
 
-    NaN where noise in the communication has made one of the times negative.
+    NaN if noise in the communication makes one of the times negative.
     """
     cells = results.plan.headline
     own, other = (results.fix_seconds(m, cells, ranks) for m in (method, NVE_SMALL))
@@ -59,7 +59,7 @@ def memory(results, method):
 
 
 def memory_ratios(results, method):
-    """Memory of a body over that with fix rigid/nve/small, for each size and both ways to count."""
+    """Memory per body relative to fix rigid/nve/small, for each size and both ways to count."""
     own, other = (memory(results, m) for m in (method, NVE_SMALL))
     return [own[key] / other[key] for key in own]
 
@@ -85,7 +85,7 @@ def mean_pressures(results, method):
 
 
 def pressure_shifts(results, method):
-    """dt -> Mean of the pressure minus that with the smallest step at the same times, atm."""
+    """dt -> Mean of the pressure minus the pressure with the smallest step at the same times, atm."""
     first, *others = results.plan.pressure_dts
     reference = results.pressures[method.key, first]
     return {dt: block_mean(results.pressures[method.key, dt] - reference) for dt in others}
@@ -107,8 +107,8 @@ def moments():
 def temperatures(thermo):
     """Temperatures of a sampled run, kelvin: name -> series (n,).
 
-    "all" is that of compute temp; the others follow from k_B T / 2 for each degree of freedom, of
-    which the translation of N molecules without total momentum has 3N - 3 and each axis N.
+    "all" is from compute temp; the others follow from k_B T / 2 for each degree of freedom.  The translation of N
+    molecules without total momentum has 3N - 3 degrees of freedom, and each axis has N.
     """
     series, translation = {"all": thermo["Temp"]}, (3 * MOLECULES - 3) * BOLTZMANN
     if "f_move[1]" not in thermo:
@@ -124,7 +124,7 @@ def temperatures(thermo):
 def kinetic_mismatch(thermo):
     """Largest relative difference between compute temp and the squares of all velocities.
 
-    It is zero if degrees of freedom, moments and the rows of the fix belong together.
+    It is zero if degrees of freedom, moments and the rows of the fix are consistent.
     """
     series = temperatures(thermo)
     energy = (3 * MOLECULES - 3) * series["translation"]
@@ -133,14 +133,14 @@ def kinetic_mismatch(thermo):
 
 
 def partition(thermo):
-    """Name -> Mean of its temperature minus that of all, kelvin."""
+    """Name -> Mean of its temperature minus the temperature of all, kelvin."""
     series = temperatures(thermo)
     whole = series.pop("all")
     return {name: block_mean(own - whole) for name, own in series.items()}
 
 
 def warmer(results, method):
-    """Mean temperature less that with fix rigid/nve/small, a Mean in kelvin."""
+    """Difference of the mean temperature from fix rigid/nve/small, a Mean in kelvin."""
     own, other = (block_mean(results.temperatures[m.key]["Temp"]) for m in (method, NVE_SMALL))
     error = math.hypot(own.error, other.error)
     return Mean(own.value - other.value, error, own.freedoms + other.freedoms)

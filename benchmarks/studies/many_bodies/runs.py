@@ -1,4 +1,4 @@
-"""What is run to compare fix gear/quat with LAMMPS' own fixes in water, and what it leaves."""
+"""Runs of water that compare fix gear/quat with LAMMPS' own fixes, and their results."""
 
 import itertools
 import math
@@ -13,7 +13,7 @@ from benchmarks.engine.methods import Method
 
 #: molecules in examples/water/data.water, before it is replicated
 MOLECULES = 500
-#: columns of the log with the kinetic energies, by whether the fix is gear/quat; see in.sampling
+#: columns of the log with the kinetic energies, for fix gear/quat (True) and for other fixes; see in.sampling
 KINETIC = {
     True: "temp f_move[1] " + " ".join(f"c_squares[{k}]" for k in range(1, 7)),
     False: "temp c_trans c_rot",
@@ -36,16 +36,16 @@ SAMPLED, COMPARED = (*GEAR, NVE_SMALL), (*GEAR, NVE_SMALL, SMALL)
 
 
 def bodies_of(cells):
-    """Molecules in so many copies of the box along x, y, z."""
+    """Number of molecules in copies of the box along x, y, z."""
     return math.prod(cells) * MOLECULES
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is run.  ``cells`` are copies of the box along x, y, z; times are in fs.
+    """Sizes of the runs.  ``cells`` are copies of the box along x, y, z; times are in fs.
 
-    ``headline``: cells of the comparison, which has every number of ``ranks``; ``growth``: cells ->
-    timed steps on one rank; ``pressure_dts``: from small to large.
+    ``headline``: cells of the main comparison, with every number of ``ranks``; ``growth``: cells -> timed steps on one
+    rank; ``pressure_dts``: from small to large.
     """
 
     rounds: int = 5
@@ -66,7 +66,7 @@ class Plan:
 
     @property
     def interval(self):
-        """Time between samples of the pressure: the largest step, so all runs share the samples."""
+        """Time between samples of the pressure: the largest step, so that all runs have samples at the same times."""
         return self.pressure_dts[-1]
 
     @property
@@ -91,8 +91,8 @@ QUICK = Plan(
 class Timing:
     """One timed run: seconds of the slowest rank in all steps, in messages and in fixes.
 
-    ``reported`` and ``allocated``: MiB per rank, as LAMMPS adds them up and as the heap has them in
-    use.  ``evaluations`` and ``seconds``: those of the start of the method, None if it has none.
+    ``reported`` and ``allocated``: MiB per rank, from LAMMPS' sum and from the heap in use.  ``evaluations`` and
+    ``seconds``: cost of the start of the method, None if it has none.
     """
 
     steps: int
@@ -107,7 +107,7 @@ class Timing:
 
 @dataclass(frozen=True)
 class Results:
-    """Everything that was measured.
+    """All measurements.
 
     ``timings``: (key of the method, cells, ranks) -> list of Timing by round.  ``pressures``: (key,
     dt) -> samples (n,) in atm.  ``temperatures``: key -> {column of the log: samples (n,)}.
@@ -121,8 +121,8 @@ class Results:
     def fix_seconds(self, method, cells, ranks=1):
         """Seconds per step in the fix, shape (rounds,).
 
-        These are LAMMPS' "Modify", which has what the fix sends itself, and by how much "Comm" is
-        more than without a fix, which is what the fix adds to LAMMPS' messages.
+        It is the sum of LAMMPS' "Modify", which includes the communication of the fix itself, and the increase of "Comm"
+        relative to a run without a fix, which is the time that the fix adds to LAMMPS' own communication.
         """
         bare = np.median([t.comm / t.steps for t in self.timings[FROZEN.key, cells, ranks]])
         own = self.timings[method.key, cells, ranks]
@@ -133,7 +133,7 @@ class Results:
         return np.array([t.loop / t.steps for t in self.timings[method.key, cells, ranks]])
 
     def bytes_per_body(self, method, cells, kind):
-        """Memory that a body takes on one rank beyond that without a fix; ``kind``: field of Timing."""
+        """Memory per body on one rank, minus the memory without a fix; ``kind``: field of Timing."""
         own, bare = (
             np.median([getattr(t, kind) for t in self.timings[m.key, cells, 1]])
             for m in (method, FROZEN)
@@ -154,7 +154,7 @@ def _only(pattern, log, what):
 
 
 def read_timing(log, steps, ranks, started):
-    """Timing of a log of in.timing; ``started``: whether it holds the start of fix gear/quat.
+    """Timing from a log of in.timing; ``started``: True if it includes the start of fix gear/quat.
 
     Raises LammpsError if anything is missing.
     """
@@ -180,9 +180,9 @@ def _deck(name):
 
 
 def time_all(lab, plan):
-    """``timings`` of Results: one run at a time, every round in another order.
+    """``timings`` of Results: one run at a time, every round in a different order.
 
-    For growth, where only steps count, the start of fix gear/quat is left out.
+    For growth, which needs only steps, the start of fix gear/quat is left out.
     """
     jobs, keys, timings = {}, {}, {}
     for (cells, ranks), method in itertools.product(plan.scenes, TIMED):
@@ -224,7 +224,7 @@ def sample_all(lab, plan):
 
 
 def measure(lab, plan=None):
-    """Results.  Timings come first, one run at a time; samples follow, side by side."""
+    """Results.  Timings come first, one run at a time; samples follow in parallel."""
     plan = plan or (QUICK if lab.quick else Plan())
     with lab.share(0.75):
         timings = time_all(lab, plan)

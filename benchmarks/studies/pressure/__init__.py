@@ -1,7 +1,7 @@
-"""Constant pressure: a box with a history beside fix rigid/npt/small and fix shake with fix npt.
+"""Constant pressure: the barostat of the fix compared with fix rigid/npt/small, and with fix shake and fix npt.
 
-Water with PPPM (``examples/water_npt``) shows how the conserved energy drifts and what a step costs.  A crystal of dumbbells under a different pressure along each axis
-(``in.crystal``) shows whether each component is the one that was asked for.
+Water with PPPM (``examples/water_npt``) shows the drift of the conserved energy and the cost of a step.  A crystal of
+dumbbells under a different pressure along each axis (``in.crystal``) shows whether each component reaches its target.
 """
 
 import itertools
@@ -23,7 +23,7 @@ WATER, CRYSTAL = EXAMPLES / "water_npt" / "in.water_npt", Path(__file__).parent 
 MOLECULES, TEMPERATURE, BOLTZMANN = 216, 300.0, 0.0019872067
 FREEDOMS = 6 * MOLECULES - 3
 DUMBBELLS_KT, TARGETS = 0.5, (0.5, 0.5, 1.5)
-#: target of xy in a crystal that shears; in that of a few dumbbells for the energies of the box, cells along an edge and Pdamp
+#: target of xy in a crystal that shears; cells along an edge and Pdamp of the small crystal for the energies of the box
 SHEAR, FEW, PDAMP = 0.3, 2, 2.0
 #: kT/ns per degree of freedom
 DRIFT = 0.05
@@ -32,7 +32,7 @@ COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 
 @dataclass(frozen=True)
 class Plan:
-    """Sizes of all runs.  Times of water in fs; ``copies`` along each edge and steps of what is counted."""
+    """Sizes of all runs.  Times of water in fs; ``copies`` along each edge and steps for counts of instructions."""
 
     dts: tuple = (1.0, 2.0)
     time: float = 5_000.0
@@ -54,8 +54,8 @@ FULL = Plan(time=30_000.0, seeds=(1, 2, 3, 4), crystal=200_000, blocks=20)
 
 @dataclass(frozen=True)
 class Results:
-    """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns, of a crystal that
-    may shear, too, for SHEARED, and of few dumbbells for SMALL; ``counted``: method -> Instructions."""
+    """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns; the key SHEARED has a crystal
+    that may shear, and SMALL a crystal of few dumbbells; ``counted``: method -> Instructions."""
 
     plan: Plan
     water: dict
@@ -70,7 +70,7 @@ class Results:
         return unit * np.mean(rates), unit * math.hypot(*errors) / len(errors)
 
     def shares(self):
-        """W times the mean square of each strain rate over kT, in the crystal of few dumbbells, (3,): 1 each."""
+        """W times the mean square of each strain rate over kT in the small crystal, (3,); exact value 1 each."""
         run, dumbbells = self.crystal[SMALL], 4 * FEW**3
         mass = 3 * dumbbells * DUMBBELLS_KT * PDAMP**2 / 3
         means = [mean_of_series([mass * run[f"f_move[{23 + k}]"] ** 2 / DUMBBELLS_KT], self.plan.blocks) for k in range(3)]
@@ -82,17 +82,17 @@ class Results:
         return gathered([mean_of_series([run[f"f_move[{16 + k}]"]], self.plan.blocks) for k in range(6)])
 
     def expected_sheared(self):
-        """What these are: a stretch along x changes three elements of the box, along y two, along z one, of a
-        measure with the volume to the power -2."""
+        """The exact means: a stretch along x changes three elements of the box, along y two, along z one, and the
+        measure contains the volume to the power -2."""
         per_volume = DUMBBELLS_KT / self.crystal[SHEARED]["Volume"].mean()
         return np.array([*TARGETS, SHEAR, 0.0, 0.0]) - per_volume * np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0])
 
     def share_of_box(self):
-        """Twice the kinetic energy of the box in the crystal over kT, for its three degrees of freedom: 3."""
+        """Twice the kinetic energy of the box in the crystal over kT; exact value 3, for three degrees of freedom."""
         return mean_of_series([2.0 * self.crystal[OURS]["f_move[26]"] / DUMBBELLS_KT], self.plan.blocks)
 
     def work(self):
-        """Mean of (P_aa - P_a) V over kT in the crystal, (3,): -1 each."""
+        """Mean of (P_aa - P_a) V over kT in the crystal, (3,); exact value -1 each."""
         run = self.crystal[OURS]
         series = [(run[f"f_move[{16 + k}]"] - TARGETS[k]) * run["Volume"] / DUMBBELLS_KT for k in range(3)]
         means = [mean_of_series([one], self.plan.blocks) for one in series]
@@ -104,12 +104,12 @@ class Results:
         return gathered([mean_of_series([run[name]], self.plan.blocks) for name in ("Pxx", "Pyy", "Pzz")])
 
     def expected(self):
-        """What these are (3,): the targets less kT/V, by which a box that moves alone differs."""
+        """The exact means (3,): the targets minus kT/V, because each edge moves independently."""
         return np.array(TARGETS) - DUMBBELLS_KT / self.crystal[OURS]["Volume"].mean()
 
 
 def gathered(means):
-    """A Mean of arrays from some Means of numbers."""
+    """One Mean of arrays from several Means of numbers."""
     return Mean(*(np.array([getattr(m, name) for m in means]) for name in ("value", "error")), means[0].freedoms)
 
 
@@ -144,7 +144,7 @@ def measure(lab, plan=None):
 
 # --- judging ------------------------------------------------------------------------------------
 def largest(mean, right):
-    """Largest deviation of a Mean (n,) from what is right, in standard errors, and how large it may be."""
+    """Largest deviation of a Mean (n,) from the exact value, in standard errors, and its bound."""
     return float(np.abs((mean.value - right) / mean.error).max()), allowed(np.size(mean.value), mean.freedoms)
 
 
@@ -154,7 +154,7 @@ def measurements(results):
     for dt in plan.dts:
         for method, words in METHODS.items():
             drift, error = results.drift(method, dt)
-            # for sure: beyond two standard errors
+            # significant: beyond two standard errors
             most = {"most": DRIFT + 2.0 * error, "least": -DRIFT - 2.0 * error} if method == OURS else {}
             what = f"drift of the conserved energy of water at {dt:g} fs, {words}"
             rows.append(Measurement(what, drift, error, ".2g", "kT/ns/dof", **most))
@@ -169,7 +169,7 @@ def measurements(results):
     shares = results.shares()
     shift, most = largest(shares, 1.0)
     rows.append(Measurement("small crystal, largest deviation of a share of the box from kT/2", shift, most=most, **errors))
-    what = "the same as a part of kT/2"
+    what = "the same as a fraction of kT/2"
     rows.append(Measurement(what, float(np.abs(shares.value - 1.0).max()), float(shares.error.max()), ".3f"))
     shift, most = largest(results.sheared(), results.expected_sheared())
     what = "crystal under a shear stress, largest deviation of one of six components of the pressure"
@@ -177,8 +177,8 @@ def measurements(results):
     ours = results.counted[OURS]
     for method in (RIGID, SHAKE):
         theirs, words = results.counted[method], METHODS[method]
-        rows.append(Measurement(f"instructions of a step over those with {words}", ours.step / theirs.step, spec=".3f"))
-        what = f"instructions in the fix over those in {words}, without the mesh"
+        rows.append(Measurement(f"ratio of instructions per step to {words}", ours.step / theirs.step, spec=".3f"))
+        what = f"ratio of instructions in the fix to {words}, without the mesh"
         rows.append(Measurement(what, ours.fixes / theirs.fixes, spec=".2f"))
     return rows
 
@@ -205,7 +205,7 @@ def crystal_table(results):
     for k, name in enumerate(COMPONENTS[:3]):
         cells = [with_error(mean.value[k], mean.error[k]) for mean in (ours, rigid, work)]
         rows.append([name, f"{TARGETS[k]:g}", f"{expected[k]:.4f}", *cells])
-    header = ("component", "target", "mean that belongs to it", METHODS[OURS], METHODS[RIGID], "(P − P₀) V/kT")
+    header = ("component", "target", "exact mean", METHODS[OURS], METHODS[RIGID], "(P − P₀) V/kT")
     return Table(header, rows)
 
 
@@ -217,7 +217,7 @@ def shear_table(results):
         [name, f"{targets[k]:g}", f"{right[k]:.4f}", with_error(found.value[k], found.error[k])]
         for k, name in enumerate(COMPONENTS)
     ]
-    return Table(("component", "target", "mean that belongs to it", "molecular pressure"), rows)
+    return Table(("component", "target", "exact mean", "molecular pressure"), rows)
 
 
 def find(results):

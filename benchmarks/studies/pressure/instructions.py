@@ -5,25 +5,25 @@ from dataclasses import dataclass
 
 from benchmarks.studies.effects import count
 
-#: what LAMMPS calls in the fixes at a step
+#: functions of fixes that LAMMPS calls in a step
 FIXES = re.compile(r"LAMMPS_NS::Fix\w+::")
 MODIFY = re.compile(r"LAMMPS_NS::Modify::(initial_integrate|pre_\w+|post_\w+|final_integrate|end_of_step)\(")
-#: what a step does only now and then
+#: functions that are not called in every step
 RENEWED = re.compile(r"LAMMPS_NS::(Neighbor::build|Comm\w*::(exchange|borders))\(")
-#: who makes the mesh of PPPM anew for the new box of a step, by whom it is called
+#: functions that set up the mesh of PPPM for the new box of a step, and their callers
 MESH = (
     (re.compile(r"LAMMPS_NS::PPPM::setup\("), FIXES),
     (re.compile(r"LAMMPS_NS::GearQuat::Box::show\("), re.compile(r"::predict\(")),
 )
-#: evaluations of the start, which belong to no step
+#: evaluations of the start, which are not part of a step
 START = re.compile(r"LAMMPS_NS::GearQuat::Motion::begin_steps\(")
 RUN = re.compile(r"LAMMPS_NS::Verlet::run\(")
 
 
 @dataclass(frozen=True)
 class Instructions:
-    """Per molecule and step: in the ``fixes`` but for the ``mesh`` of PPPM, which they make anew for the new box, and
-    of the ``step`` without the building of neighbor lists."""
+    """Instructions per molecule and step: in the ``fixes`` without the ``mesh`` of PPPM, in setting up this ``mesh`` for the
+    new box, and in the ``step`` without the building of neighbor lists."""
 
     fixes: float
     mesh: float
@@ -31,7 +31,7 @@ class Instructions:
 
 
 def measure(lab, deck, variables, methods, molecules, steps):
-    """Method -> Instructions of a deck whose only steps are these."""
+    """Method -> Instructions of a deck that runs only these steps."""
     found = {}
     for method in methods:
         own = variables | {"method": method, "steps": steps, "every": steps}

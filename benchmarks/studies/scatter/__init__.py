@@ -1,4 +1,4 @@
-"""Collisions in the gas: results of ``gearquat scatter`` beside quadrature, measurements and other methods."""
+"""Collisions in the gas: results of ``gearquat scatter`` compared with quadrature, experiment and other methods."""
 
 from dataclasses import dataclass
 from functools import cache, partial
@@ -12,21 +12,21 @@ from benchmarks.studies.collisions import evaluations as work_at
 from . import errors, flown, rivals
 
 PARTS = ("integrals", "molecules", "conservation", "reference", "methods", "errors")
-#: reduced temperatures; in.argon has this diameter, well depth and these ends of the cut-off
+#: reduced temperatures; diameter, well depth and ends of the cut-off in in.argon
 REDUCED = (0.5, 1.0, 2.0, 5.0, 10.0)
 SIGMA, WELL, CUT = 3.405, 119.8, (12.0, 30.0)
-#: standard errors that are asked for, relative: of the whole study, and of --quick
+#: requested relative standard errors: of the whole study, and with --quick
 ERRORS = {"argon": (0.0018, 0.03), "nitrogen": (0.01, 0.04), "helium": (0.01, 0.04), "ion": (0.03, 0.1)}
-#: flights of the test of conservation, beside DOP853 (of each deck), and of each method
+#: numbers of flights: for conservation, for the comparison with DOP853 (of each deck), and of each method
 FLIGHTS = {"conservation": (100_000, 1000), "reference": (100, 3), "methods": (10, 2)}
-#: seeds of the part on errors, of atoms and of molecules, and the errors that are asked for
+#: seeds of the part on errors, for atoms and for molecules, and the requested errors
 SEEDS = {"atoms": (errors.ATOMS, 3), "molecules": (errors.MOLECULES, 3), "asked": (errors.ASKED, errors.ASKED[:1])}
 EPS, STEPS = 10.0 ** -np.arange(5.0, 13.0), (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
 SOLVERS = dict.fromkeys(("DOP853", "LSODA"), 10.0 ** -np.arange(4.0, 14.0))
 QUICK_STEPS = STEPS[:3]
-#: errors of the energy at which methods are compared
+#: energy errors at which methods are compared
 LEVELS = 10.0 ** -np.arange(4, 11)
-#: those of the summary; at the last one the fix has to be ten times as fast
+#: energy errors in the summary; at the last one the fix must be ten times as fast
 COMPARED = (1e-7, 1e-9)
 #: published: viscosity of nitrogen at 300 K without pressure (E. W. Lemmon and R. T Jacobsen, Int. J. Thermophys.
 #: 25, 21 (2004), Eqs. 2 and 3, with an uncertainty of 0.5 %), and computed cross sections of choline at 301 K with
@@ -43,11 +43,11 @@ LOOKS = {
 
 @dataclass(frozen=True)
 class Results:
-    """Each part is None if it was not asked for.
+    """Results; a part that was not requested is None.
 
     ``integrals``: reduced temperature -> Run; ``molecules``: name -> Run; ``conservation``: a Run;
     ``reference``: deck -> array (n, 4), see ``flown.beside_reference``; ``methods``: label -> array
-    (settings, 3), see ``rivals.points``; ``errors``: pair and error that was asked for -> rows of errors.py.
+    (settings, 3), see ``rivals.points``; ``errors``: (pair, requested error) -> rows of errors.py.
     """
 
     integrals: dict = None
@@ -111,7 +111,7 @@ def _errors(lab, sized):
 
 
 def measure(lab):
-    """Results of the parts that were asked for."""
+    """Results of the requested parts."""
     parts = lab.parts or PARTS
     found = {}
     for part in parts:
@@ -123,12 +123,12 @@ def measure(lab):
 # --- judging ------------------------------------------------------------------------------------
 @cache
 def _quadratures():
-    """Of the whole potential, and of that with the cut-off of the deck."""
+    """Integrals with the full potential, and with the cut-off of the deck."""
     return CollisionIntegrals(), CollisionIntegrals(Gromacs(*(end / SIGMA for end in CUT)))
 
 
 def _of_integrals(runs):
-    """Measurements and Table: Omega* beside quadrature, with and without the cut-off of the deck."""
+    """Measurements and Table: Omega* compared with quadrature, with and without the cut-off of the deck."""
     whole, cut = _quadratures()
     rows, cells, worst, left, largest = [], [], 0.0, 0.0, 0.0
     for reduced, run in runs.items():
@@ -144,23 +144,23 @@ def _of_integrals(runs):
     words = "Ω*: largest deviation from quadrature, in standard errors"
     rows.append(Measurement(words, worst, spec=".1f", most=3.5))
     rows.append(Measurement("Ω*(1,1), Ω*(2,2): largest standard error, relative", largest, most=0.002))
-    words = "Ω*: what the cut-off of the deck changes at most, relative, by quadrature"
+    words = "Ω*: largest relative effect of the deck's cut-off, by quadrature"
     rows.append(Measurement(words, left, most=1e-4))
     header = ("T*", "integral", "mean over flights", "standard error", "quadrature", "deviation / standard error")
     return rows, {"integrals": Table(header, cells)}
 
 
 def _of_molecules(runs):
-    """Measurements: viscosity and cross sections beside published values."""
+    """Measurements: viscosity and cross sections compared with published values."""
     value, error = runs["nitrogen"].quantities["viscosity"]
     rows = [
         Measurement("viscosity of nitrogen at 300 K", value, error, ".2f", "µPa s"),
-        _near("its deviation from the measured one, relative", value, error, VISCOSITY[0]),
+        _near("its relative deviation from the measured value", value, error, VISCOSITY[0]),
     ]
     for name, gas in (("helium", "helium"), ("ion", "nitrogen")):
         value, error = runs[name].quantities["cross section"]
         rows.append(Measurement(f"cross section of choline in {gas} at 301 K", value, error, ".2f", "Å²"))
-        rows.append(_near("its deviation from the published computed one, relative", value, error, CHOLINE[gas][0]))
+        rows.append(_near("its relative deviation from the published computed value", value, error, CHOLINE[gas][0]))
     kinds = ("flights", "orbiting", "unparted", "lost")
     counts = [(PAIRS[name], *(run.counts[kind] for kind in kinds)) for name, run in runs.items()]
     return rows, {"molecules": Table(("pair", *kinds), counts)}
@@ -173,12 +173,12 @@ def _near(what, value, error, published):
 
 
 def _of_conservation(run):
-    """Measurements: what 100 000 flights keep, and no net transfer at equal temperatures."""
+    """Measurements: conservation in 100 000 flights, and no net transfer at equal temperatures."""
     counts = run.counts
     gone = counts["lost"] + counts["unparted"]
     rows = [
         Measurement("dumbbell flights", counts["flights"], spec=".0f"),
-        Measurement("dumbbell flights that were lost or did not part", gone, spec=".0f", most=0),
+        Measurement("dumbbell flights that were lost or did not separate", gone, spec=".0f", most=0),
         Measurement("dumbbell flights with a repeated step", counts["repeated"], spec=".0f"),
         Measurement("dumbbell flights that orbited", counts["orbiting"], spec=".0f"),
     ]
@@ -191,17 +191,17 @@ def _of_conservation(run):
 
 
 def _of_reference(arrays):
-    """Measurements: deviations from DOP853 with forces of its own, and of flights that are flown back."""
+    """Measurements: deviations from DOP853 with its own forces, and from the start after reversed flights."""
     every = np.concatenate(list(arrays.values()))
     simple = every[every[:, 2] <= 1]
     rows = [
-        Measurement("flights beside DOP853", len(every), spec=".0f"),
-        Measurement("flights beside DOP853 that orbited", len(every) - len(simple), spec=".0f"),
+        Measurement("flights compared with DOP853", len(every), spec=".0f"),
+        Measurement("flights compared with DOP853 that orbited", len(every) - len(simple), spec=".0f"),
         Measurement("largest deviation of a velocity (not orbiting)", simple[:, 0].max(), most=1e-8),
         Measurement("largest deviation of an angular momentum (not orbiting)", simple[:, 1].max(), most=1e-8),
-        Measurement("largest deviation of a velocity after the way back (not orbiting)", simple[:, 3].max(), most=1e-7),
+        Measurement("largest deviation of a velocity after the reversed flight (not orbiting)", simple[:, 3].max(), most=1e-7),
     ]
-    header = ("deck", "flight", "turnings", "velocity", "angular momentum", "velocity, flown back")
+    header = ("deck", "flight", "turnings", "velocity", "angular momentum", "velocity, reversed flight")
     orbiting = [
         (deck, number, f"{own[2]:.0f}", *(f"{own[k]:.0e}" for k in (0, 1, 3)))
         for deck, values in arrays.items()
@@ -212,7 +212,7 @@ def _of_reference(arrays):
 
 
 def _of_methods(points):
-    """Measurements, tables: flights per second and evaluations at equal errors of the energy."""
+    """Measurements, tables: flights per second and evaluations at equal energy errors."""
     seconds = {label: work_at(own[:, [0, 2]], LEVELS) for label, own in points.items()}
     calls = {label: work_at(own[:, [1, 2]], LEVELS) for label, own in points.items()}
     header = ("method", *(f"{level:.0e}" for level in LEVELS))
@@ -228,14 +228,14 @@ def _of_methods(points):
         rows.append(Measurement(words, 1 / ours, spec=".0f"))
         for label in points:
             if label != "fix gear/quat":
-                words = f"time of {label} over that of the fix at {level:.0e}"
+                words = f"time of {label} relative to the fix at {level:.0e}"
                 least = 10.0 if level == COMPARED[-1] else None
                 rows.append(Measurement(words, seconds[label][at] / ours, spec=".1f", least=least))
     return rows, tables
 
 
 def _of_errors(found):
-    """Measurements, table: deviations by the errors that were stated, over all seeds."""
+    """Measurements, table: deviations divided by stated errors, over all seeds."""
     cells, squares, outside = [], [], 0
     for (name, asked), values in found.items():
         exact = errors.reference(name, values)
@@ -277,7 +277,7 @@ def find(results):
 
 
 def panels(points):
-    """Time and evaluations of a flight against the error of the energy."""
+    """Time and evaluations of a flight against the energy error."""
     found = []
     for column, title, words in ((0, "Time of a flight", "seconds"), (1, "Evaluations in a flight", "evaluations")):
         curves = [

@@ -1,4 +1,4 @@
-"""Flights of two atoms by quadrature instead of LAMMPS, drawn and averaged by the code of ``gearquat scatter``."""
+"""Flights of two atoms by quadrature instead of LAMMPS; the code of ``gearquat scatter`` draws and averages them."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,7 +21,7 @@ class Atoms:
 
     @cached_property
     def facts(self):
-        """What ``gearquat scatter`` knows of such a pair."""
+        """The Pair of ``gearquat scatter`` for two atoms."""
         from lammps_gearquat.scatter.pool import Facts
 
         none, zeros = [0, 0], [[0.0] * 3] * 2
@@ -48,7 +48,7 @@ class Atoms:
         return known | dict.fromkeys(names, nothing) | counts | {"fate": np.full(len(b), "parted"), "message": words}
 
     def plan(self, seed, temperatures, error, energy=None):
-        """(Plan, Largest) that the pilots of this seed find."""
+        """(Plan, Largest) from the pilot flights with this seed."""
         from lammps_gearquat.scatter import conduct, pilots
         from lammps_gearquat.scatter.sampling import Plan
 
@@ -58,13 +58,13 @@ class Atoms:
         return pilots.settle(plan, self.facts, places, columns, 1.0, conduct.LEFT_OUT * error)
 
     def flights(self, plan, number):
-        """Columns of the first so many flights of a Plan."""
+        """Columns of the first flights of a Plan."""
         from lammps_gearquat.scatter.sampling import uniform
 
         return self.columns(*plan.drawn(uniform(plan.seed, np.arange(number), DIMENSIONS), 1.0))
 
     def results(self, plan, farthest, columns, number):
-        """Results of the first so many of the flights."""
+        """Results of the first ``number`` flights."""
         from lammps_gearquat.scatter.results import results
 
         return results({name: own[:number] for name, own in columns.items()}, plan, self.facts, 1.0, farthest.left)

@@ -1,7 +1,7 @@
-"""Whether the errors that ``gearquat scatter`` states hold: many seeds, each until its errors are as small as asked for.
+"""Test of the errors that ``gearquat scatter`` states, with many seeds; each seed runs until its errors reach the request.
 
-Flights of atoms are those of atoms.py, and the reference is a quadrature; molecules have flights in LAMMPS, and
-the reference is the mean over all seeds.  Every seed is kept when it is done, so that a study which was ended continues.
+Flights of atoms are from atoms.py, and the reference is a quadrature.  Flights of molecules are LAMMPS runs, and the
+reference is the mean over all seeds.  Every finished seed is stored, so that an interrupted study can continue.
 """
 
 import json
@@ -16,9 +16,9 @@ from benchmarks.reference.central import LennardJones, TwelveFour
 from .atoms import Atoms
 from .flown import BOLTZMANN, DECKS
 
-#: seeds begin with this number, and there are so many of atoms and of molecules
+#: first seed, and numbers of seeds of atoms and of molecules
 FIRST, ATOMS, MOLECULES = 1001, 200, 40
-#: relative errors that are asked for
+#: requested relative errors
 ASKED = (0.1, 0.03, 0.01)
 AIMS = ("Omega(1,1)", "Omega(2,2)")
 #: a cutoff of 30 Å of argon; an ion with a well of 0.2 kcal/mol and a diameter of 2.8 Å, with cutoffs of 25 and 60 Å
@@ -34,7 +34,7 @@ PAIRS = {
 
 
 class Kept:
-    """Rows [seed, flights, value, error, value, error] of one pair and error that was asked for, in a file."""
+    """Rows [seed, flights, value, error, value, error] of one pair and one requested error, in a file."""
 
     def __init__(self, folder, name, asked):
         self.path = folder / f"{name.replace(' ', '_').replace('*', '').replace(',', '')}_{asked:g}.json"
@@ -42,12 +42,12 @@ class Kept:
         self.rows = json.loads(self.path.read_text()) if self.path.is_file() else []
 
     def missing(self, seeds):
-        """Those of ``seeds`` that have no row, in order."""
+        """The ``seeds`` without a row, in order."""
         done = {row[0] for row in self.rows}
         return [seed for seed in seeds if seed not in done]
 
     def add(self, seed, number, answer, names):
-        """Keep the estimates ``names`` of an Answer."""
+        """Store the estimates ``names`` of an Answer."""
         cells = [x for name in names for x in (answer.estimates[name].value, answer.estimates[name].error)]
         self.rows.append([seed, number, *cells])
         self.path.write_text(json.dumps(self.rows))
@@ -68,7 +68,7 @@ def of_atoms(folder, count, asked, tick):
 
 
 def until(atoms, temperature, seed, error, most=1_000_000):
-    """(number of flights, Answer) where the command would stop."""
+    """(number of flights, Answer) at which the command would stop."""
     from lammps_gearquat.scatter.conduct import rounds
 
     plan, farthest = atoms.plan(seed, (temperature,), error)
@@ -80,7 +80,7 @@ def until(atoms, temperature, seed, error, most=1_000_000):
 
 
 def of_molecules(folder, count, asked, jobs, tick, pairs=PAIRS):
-    """Rows of all ``pairs``: (name, asked) -> array (count, 6), with flights in LAMMPS."""
+    """Rows of all ``pairs``: (name, asked) -> array (count, 6), from LAMMPS runs."""
     from lammps_gearquat.scatter.pool import Pool
 
     found = {}
@@ -98,7 +98,7 @@ def of_molecules(folder, count, asked, jobs, tick, pairs=PAIRS):
 
 
 def _simulated(pool, temperature, seed, error, out, kept):
-    """One seed of a molecule."""
+    """Results for one seed of a molecule."""
     from lammps_gearquat.scatter import conduct, flights, store
     from lammps_gearquat.scatter.results import results
 
@@ -121,19 +121,21 @@ def reference(name, rows):
 
 
 def squares(value, error, exact, mean):
-    """Squares (n,) of deviations by the stated errors; ``mean``: ``exact`` is the mean of the values, so that they are
-    smaller by (n - 1) / n than those from the truth."""
+    """Squares (n,) of deviations divided by the stated errors.
+
+    ``mean``: ``exact`` is the mean of the values, so the squares are smaller by (n - 1) / n than with the true value.
+    """
     number = len(value)
     return ((value - exact) / error) ** 2 * (number / (number - 1.0) if mean else 1.0)
 
 
 def interval(number, part=0.999):
-    """Where the root mean square of so many normal numbers is with this probability."""
+    """Interval of the root mean square of normal random numbers with this probability."""
     tails = 0.5 * (1.0 - part), 0.5 * (1.0 + part)
     return tuple(float(np.sqrt(chi2.ppf(tail, number) / number)) for tail in tails)
 
 
 class _Silent:
-    """A Progress that tells nothing."""
+    """A Progress without output."""
 
     begin = advance = tell = staticmethod(lambda *_: None)

@@ -1,4 +1,4 @@
-"""Runs of the command ``gearquat scatter``, and flights beside those of encounters.py."""
+"""Runs of the command ``gearquat scatter``, and comparison of flights with encounters.py."""
 
 import json
 import subprocess
@@ -19,8 +19,8 @@ BOLTZMANN, COULOMB = 0.0019872067, 332.06371
 
 @dataclass(frozen=True)
 class Run:
-    """What the command left: ``quantities``: name -> (value, standard error), ``unit``: name -> its unit;
-    ``counts`` of flights by what became of them, and ``errors``: name -> largest of all flights."""
+    """Results of the command: ``quantities``: name -> (value, standard error); ``unit``: name -> its unit;
+    ``counts``: numbers of flights by outcome; ``errors``: name -> largest error of all flights."""
 
     quantities: dict
     unit: dict
@@ -29,7 +29,7 @@ class Run:
 
 
 def command(lab, name, deck, *options):
-    """Run of ``gearquat scatter`` on a deck of the examples; what it writes is in the folder ``name``.
+    """Run of ``gearquat scatter`` on a deck of the examples; its output is in the folder ``name``.
 
     Raises LammpsError.
     """
@@ -67,14 +67,17 @@ def encounter_of(deck, pair):
 
 
 def packed(state):
-    """Start or End of the command as a state (26,) of encounters.py."""
+    """Start or End from the command as a state (26,) of encounters.py."""
     return np.concatenate([state.center, state.velocity, state.quaternion, state.momentum], axis=1).ravel()
 
 
 def beside_reference(deck, temperature, largest, count, tick):
-    """Array (count, 4): deviations of velocities, by the relative speed at the start, and of angular momenta, by
-    the largest at the end, from DOP853; the turnings of the radial velocity; and the deviation of the
-    relative velocity, by itself, when the flight is flown back."""
+    """Array (count, 4) with the comparison of flights with DOP853.
+
+    The columns are the deviation of velocities relative to the initial relative speed, the deviation of angular momenta
+    relative to the largest final one, the number of sign changes of the radial velocity, and the relative deviation of
+    the relative velocity after the reversed flight.
+    """
     from lammps_gearquat.scatter.pair import open_pair
     from lammps_gearquat.scatter.sampling import Plan
 

@@ -1,4 +1,4 @@
-"""The same flights by other methods: what a flight costs, and the largest error of its energy on the way."""
+"""The same flights by other methods: cost of a flight, and its largest energy error."""
 
 import time
 
@@ -8,9 +8,9 @@ import numpy as np
 from .flown import DECKS, encounter_of, packed
 
 DECK, TEMPERATURE, LARGEST = "in.dumbbells", 2.0, 3.5
-#: steps between two looks at the distance, as in the command
+#: steps between two checks of the distance, as in the command
 LOOK = 20
-#: looks at the energy on the way of a flight with a fixed step
+#: samples of the energy in a flight with a fixed step
 SAMPLES = 2000
 #: force evaluations of the start of fix gear/quat in free flight
 START = 2
@@ -24,7 +24,7 @@ class Driver:
         self.end = 0.0
 
     def fly(self, start, fix, step, every, look=lambda: None):
-        """Steps of the flight from a Start; ``look()`` is called every so many steps."""
+        """Number of steps of the flight from a Start; ``look()`` is called every ``every`` steps."""
         pair, command = self.pair, self.pair.lammps.command
         command(f"unfix {pair.line.id}")
         command("reset_timestep 0 time 0.0")
@@ -32,7 +32,7 @@ class Driver:
         command(f"timestep {step or pair._first_step(start, omega):.17g}")
         command(fix)
         command(f"run {every} post no")
-        # these stay where they are: no atom leaves
+        # views of LAMMPS' arrays, which are not reallocated because no atom leaves
         positions, velocities = (self._local(name) for name in "xv")
         steps, run = every, f"run {every} pre no post no"
         while True:
@@ -49,7 +49,7 @@ class Driver:
         return self.pair.lammps.numpy.extract_atom(name)[: len(self.pair.bodies.index)]
 
     def energy(self):
-        """Of the sites as LAMMPS has them, by forces that are not LAMMPS'."""
+        """Energy of the sites from LAMMPS, with an independent potential."""
         bodies = self.pair.bodies
         x, v = (self._local(name)[bodies.index] for name in "xv")
         apart = x[bodies.of == 1][None] - x[bodies.of == 0][:, None]
@@ -58,8 +58,8 @@ class Driver:
         return potential + 0.5 * self.encounter.factor * (bodies.masses[:, None] * v * v).sum()
 
     def cost(self, starts, fix, step=None):
-        """(seconds, evaluations, error): means of the first two over the starts, and the median of the largest errors
-        of the energy on the way, by the energy at the start."""
+        """(seconds, evaluations, error): means of the first two over the starts, and the median of the largest energy
+        errors relative to the initial energy."""
         before, evaluations = time.process_time(), 0
         for start in starts:
             evaluations += self.fly(start, fix, step, LOOK) + START
@@ -75,7 +75,7 @@ class Driver:
         return seconds / len(starts), evaluations / len(starts), float(np.median(errors))
 
     def cost_of_solver(self, starts, ends, method, tolerance):
-        """The same of a solver of SciPy, whose forces are those of encounters.py."""
+        """The same for a solver of SciPy with the forces of encounters.py."""
         seconds, errors, self.encounter.evaluations = 0.0, [], 0
         states = []
         for start, end in zip(starts, ends):
@@ -90,7 +90,7 @@ class Driver:
 
 
 def points(count, tolerances, steps, solvers, tick):
-    """Label -> array (settings, 3) of ``Driver.cost``.  ``solvers``: name -> tolerances; ``steps``: fixed ones."""
+    """Label -> array (settings, 3) of ``Driver.cost``.  ``solvers``: name -> tolerances; ``steps``: fixed steps."""
     from lammps_gearquat.scatter.pair import open_pair
     from lammps_gearquat.scatter.sampling import Plan
 

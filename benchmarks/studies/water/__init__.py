@@ -1,6 +1,6 @@
-"""Water at constant pressure: density, temperatures and compressibility, and how they depend on the time step.
+"""Water at constant pressure: density, temperatures and compressibility, and their dependence on the time step.
 
-plan.py (what is run), runs.py (LAMMPS' runs and the samples that are kept), and here what follows from samples.
+plan.py (sizes of the runs), runs.py (LAMMPS' runs and the stored samples), and here the results from samples.
 """
 
 import math
@@ -15,14 +15,14 @@ from .runs import BOLTZMANN, measure
 
 #: 1/atm in 1/GPa, and kcal/mol/A^3 in atm
 PER_GPA, ATMOSPHERES = 1.0 / 1.01325e-4, 68568.415
-#: energy that is constant because molecules are rigid, which the scene of SPC/E leaves in, kcal/mol: two O-H of 1 A and one H-H
+#: constant energy within rigid molecules, which the scene of SPC/E includes, kcal/mol: two O-H of 1 A and one H-H
 WITHIN_MOLECULE = {
     "spce": 332.06371 * 0.4238**2 * (1 / (2 * math.sin(math.radians(109.47) / 2)) - 4),
     "tip4p": 0.0,
 }
 #: standard errors that a comparison of time steps needs: K, g/mL (3e-4 of the density), kcal/mol (0.02 kJ/mol)
 NEEDED = {"T translation − T rotation": 0.3, "density": 3e-4, "potential energy": 0.02 / 4.184}
-#: how many values are compared with what they should be, which decides how far off the worst may be
+#: number of values that are compared with expected ones; it determines the largest deviation allowed
 COMPARED = 6
 
 
@@ -74,7 +74,7 @@ def difference(one, other):
 
 
 def widest(error, *groups):
-    """How far from what it should be a value with this standard error may be, from so many groups of samples."""
+    """Largest allowed deviation of a value with this standard error, from this number of groups of samples."""
     freedoms = sum(len(samples) - 1 for samples in groups)
     return error * allowed(COMPARED, freedoms) if freedoms > 1 else math.nan
 
@@ -85,12 +85,12 @@ def density(sample):
 
 
 def energy(sample):
-    """Potential energy of a molecule among the others, kcal/mol."""
+    """Potential energy per molecule without the energy within it, kcal/mol."""
     return sample.energy - WITHIN_MOLECULE[sample.model]
 
 
 def warmer(sample):
-    """Temperature of translation less that of rotation."""
+    """Temperature of translation minus temperature of rotation."""
     return sample.translation - sample.rotation
 
 
@@ -114,7 +114,7 @@ def duration(samples, read, error):
 
 
 def durations(found):
-    """How long each series at 1 atm has to be for the errors NEEDED."""
+    """Length of each series at 1 atm that is required for the errors NEEDED, in ns."""
     rows = []
     for series, samples in found.items():
         if series.pressure == 1.0 and samples:
@@ -138,12 +138,12 @@ def measurements(found):
         both = [found[series] for series in (LONG["tip4p"], SHORT)]
         apart = difference(*(mean(samples, read) for samples in both))
         most = widest(apart[1], *both)
-        words = f"{what} of {MODELS['tip4p'].title}, {LONG['tip4p'].text}, less that of {SHORT.text}"
+        words = f"{what} of {MODELS['tip4p'].title}, {LONG['tip4p'].text}, minus {SHORT.text}"
         rows.append(Measurement(words, *apart, ".5f", unit, least=-most, most=most))
     squeezed = [found[series] for series in COMPRESSED]
     apart = difference(jackknife(found[LONG["spce"]], fluctuating), by_two_pressures(*squeezed))
     most, remark = widest(apart[1], *squeezed), f"the latter: {text(by_two_pressures(*squeezed))}"
-    words = "compressibility of SPC/E water from fluctuations less that from two pressures"
+    words = "compressibility of SPC/E water from fluctuations minus compressibility from two pressures"
     rows.append(Measurement(words, *apart, ".3f", "1/GPa", remark, least=-most, most=most))
     for series, samples in found.items():
         value, error = mean(samples, warmer)

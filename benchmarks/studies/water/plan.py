@@ -1,4 +1,4 @@
-"""What is run: models of water, methods, steps and pressures."""
+"""Models of water, methods, steps and pressures of the runs."""
 
 from dataclasses import dataclass, replace
 
@@ -26,7 +26,7 @@ class Series:
 
     @property
     def name(self):
-        """In names of files."""
+        """Name in file names."""
         return f"{self.model}_{self.method}_{self.dt:g}fs_{self.pressure:g}atm"
 
     @property
@@ -38,10 +38,10 @@ class Series:
 #: pressures whose densities give the compressibility at 1 atm
 APART = 500.0
 COMPRESSED = tuple(Series("spce", OURS, 2.0, pressure) for pressure in (1.0 - APART, 1.0 + APART))
-#: what is compared: the long step, and the short one of a peer whose bias is small
+#: series for comparison: the long step, and the short step of another method with a small bias
 LONG = {model: Series(model, OURS, 2.0) for model in MODELS}
 SHORT = Series("tip4p", SHAKE, 0.5)
-#: Series -> how many runs each round adds
+#: Series -> number of runs in each round
 ROUND = {
     LONG["tip4p"]: 2,
     LONG["spce"]: 2,
@@ -57,7 +57,7 @@ ROUND = {
 class Plan:
     """Durations in ps of a run: ``settle`` before samples, ``duration`` of ``blocks`` samples, ``every`` between rows.
 
-    ``hours``: after so many no further round begins.  ``equilibration``: of a start, in steps.
+    ``hours``: no further round begins after this time.  ``equilibration``: steps for a start.
     """
 
     hours: float = 1.0

@@ -1,8 +1,8 @@
-"""Runs of water, and the samples that they leave.
+"""Runs of water, and their samples.
 
-A sample is a part of a run from a start of its own, much longer than anything in water remembers.  Samples are kept in
-``samples.csv`` of this folder, so that later calls add to them.  Samples of another trajectory are not mixed in: each has the energy after a few steps of a fixed
-scene, which changes if the motion does.
+A sample is a part of a run with its own start, much longer than correlation times of water.  Samples are stored in
+``samples.csv`` of this folder, and later calls add to them.  Samples of other versions of the fix are not mixed: each has
+the energy after a few steps of a fixed scene, which changes if the trajectory does.
 """
 
 import csv
@@ -24,7 +24,7 @@ SAMPLES = FOLDER / "samples.csv"
 BOLTZMANN = 0.0019872067  # kcal/mol/K
 #: 1 atm A^3 in kcal/mol
 PRESSURE_VOLUME = 1.0 / 68568.415
-#: steps of the scene that tells trajectories apart
+#: steps of the scene that distinguishes trajectories
 TOLD_AFTER = 20
 
 
@@ -32,9 +32,9 @@ TOLD_AFTER = 20
 class Sample:
     """Means over a part of a run.
 
-    ``start``: the number of its start; ``block``: which part, from 0.  ``trajectory``: see the head of this file.  ``ps``: its duration.
-    ``rows``: how many were averaged.  ``density`` in g/mL, ``volume`` in A^3 and ``volume2``, its square;
-    ``energy``: potential energy in kcal/mol of a molecule; temperatures in kelvin; ``drift`` of the
+    ``start``: number of its start; ``block``: number of the part, from 0.  ``trajectory``: see the docstring of this
+    module.  ``ps``: duration.  ``rows``: number of averaged rows.  ``density`` in g/mL, ``volume`` in A^3 and ``volume2``,
+    its square; ``energy``: potential energy in kcal/mol per molecule; temperatures in kelvin; ``drift`` of the
     conserved energy in kcal/mol/ps.
     """
 
@@ -73,7 +73,7 @@ def read_samples(path):
 
 
 def write_samples(samples, path):
-    """Leave a list of Sample."""
+    """Write a list of Sample to a file."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([field.name for field in fields(Sample)])
@@ -91,7 +91,7 @@ def job(series, data, number, plan):
 
 
 def read(finished, series, number, origin, blocks):
-    """List of the Samples of a finished run; ``origin``: commit, and what tells its trajectory."""
+    """List of the Samples of a finished run; ``origin``: commit, and the identifier of its trajectory."""
     thermo = {name: np.array(column)[1:] for name, column in finished.thermo.items()}
     length = len(thermo["Time"]) // blocks
     parts = [{name: column[k * length :][:length] for name, column in thermo.items()} for k in range(blocks)]
@@ -109,9 +109,9 @@ def _sample(thermo, series, origin):
 
 
 def trajectory(lab, method):
-    """What tells a method's trajectories from others: a potential energy after a few steps.
+    """Identifier of a method's trajectory: a potential energy after a few steps.
 
-    It has as many digits as machines agree on.
+    It has the digits on which machines agree.
     """
     variables = {"method": method, "dt": 2.0, "steps": TOLD_AFTER, "every": TOLD_AFTER}
     found = lab.many({f"told_{method}": Job(EXAMPLES / "water_npt" / "in.water_npt", variables, TOLD_AFTER)})
@@ -119,7 +119,7 @@ def trajectory(lab, method):
 
 
 def measure(lab, plan=None):
-    """List of all samples that belong together, those of earlier calls first."""
+    """List of all samples with the same trajectory, samples of earlier calls first."""
     plan = plan or (QUICK if lab.quick else Plan(hours=lab.hours))
     kept = [] if lab.quick else read_samples(SAMPLES)
     told = {method: trajectory(lab, method) for method in (OURS, SHAKE)}

@@ -1,8 +1,8 @@
-"""Analysis of rigid bodies with MDAnalysis: poses, motion, correlations.  Nothing here draws.
+"""Analysis of rigid bodies with MDAnalysis: poses, motion, correlations.
 
-``dump``: LAMMPS dumps as universes; ``poses``: Poses and TablePoses, the analyses; ``correlations``: mean
-squares and autocorrelations of their results; ``residence``: stays near given places; ``convert``:
-trajectories for other viewers.  Beneath them ``bodies`` (who is in which body) and ``superposition``.
+``dump`` reads LAMMPS dumps as universes.  ``poses`` has the analyses Poses and TablePoses, ``correlations`` the mean
+squares and autocorrelations of their results, ``residence`` stays near given places, and ``convert`` trajectories for
+other viewers.  They use ``bodies`` (assignment of sites to bodies) and ``superposition``.
 
     from gearquat_analysis import Poses, correlations, open_dump
 
@@ -18,7 +18,7 @@ __all__ = list(_HOME)
 
 
 def __getattr__(name):
-    """The names above, imported when asked for: ``bodies`` and ``superposition`` do not need MDAnalysis."""
+    """Import the names above on first use: ``bodies`` and ``superposition`` do not need MDAnalysis."""
     if name in _HOME:
         return getattr(importlib.import_module(_HOME[name], __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

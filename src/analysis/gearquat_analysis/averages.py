@@ -1,8 +1,8 @@
 """Averages over a run with standard errors: temperatures, the volume, diffusion, rotational correlation times.
 
-Each error has assumptions, which are checked: samples in independent blocks for temperatures, a linear range of the
-mean-square displacement for diffusion, an exponential tail for correlation times.  Where one does not hold, there is
-no average, and its ``why`` says why.  All functions take finished ``Poses``, which know masses and moments.
+Each error rests on an assumption, which is checked: independent blocks for temperatures, a linear range of the
+mean-square displacement for diffusion, an exponential tail for correlation times.  If an assumption fails, the average
+is NaN, and ``why`` has the reason.  All functions take finished ``Poses``, which contain masses and moments.
 """
 
 import math
@@ -20,25 +20,27 @@ from .diffusion import diffusion
 from .fluctuations import compressibility, dielectric_constant
 from .kinds import kinds, of_kind, too_many
 
-#: blocks of a run, and groups of its bodies, whose scatter is the error of a correlation time
+#: numbers of blocks of a run and of groups of bodies; their scatter is the error of a correlation time
 LONG_BLOCKS, GROUPS = 5, 10
 #: fewest frames of a block
 FEWEST = 20
-#: a total momentum whose energy is below this part of that of a degree of freedom is at rest
+#: the total momentum counts as zero if its energy is below this fraction of the energy of a degree of freedom
 AT_REST = 1e-3
-#: angular velocities of another axis, by those about z, that are rounding in a run of dimension 2
+#: in a run of dimension 2, angular velocities about x and y up to this fraction of those about z are round-off
 IN_PLANE = 1e-6
-#: correlation at which its integral ends, lower ones for functions with another tail, and where the fit of a tail begins
+#: value of the correlation at which its sum ends, lower values if the tail is not exponential there, and the multiple of
+#: this value at which the fit of the tail begins
 TAIL, LOWER, BEFORE_TAIL = 0.1, (0.05, 0.02), 3.0
-#: fewest frames until then
+#: fewest frames up to the end of the sum
 RESOLVED = 3
-#: how far the tail is compared with the exponential, in times of its beginning and in blocks; differences that are
-#: significant, in standard errors, and that are too large, in correlation times
+#: the tail is compared with the exponential up to this multiple of the lag where it begins, and up to this fraction of a
+#: block; a difference is significant above this number of standard errors, and too large above this fraction of the
+#: correlation time
 LATER, OF_BLOCK, SIGNIFICANT, TOO_LARGE = 3, 0.8, 3.0, 0.05
 
 
 class Average(NamedTuple):
-    """A number of a run with its standard error; NaN if an assumption of the error does not hold, and ``why``.
+    """An average over a run with its standard error; NaN, with the reason in ``why``, if an assumption of the error fails.
 
     >>> from gearquat_analysis.averages import Average
     >>> Average("diffusion coefficient", 0.3124, 0.0153, "Å²/ps").text()
@@ -56,7 +58,7 @@ class Average(NamedTuple):
         return bool(np.isfinite([self.value, self.error]).all())
 
     def text(self):
-        """Value and error, the latter with two digits: 0.312 ± 0.015 Å²/ps, (2.74 ± 0.19)e-4 Å²/fs."""
+        """Value and error, the error with two digits: 0.312 ± 0.015 Å²/ps, (2.74 ± 0.19)e-4 Å²/fs."""
         if not self.known or not self.error > 0.0:
             return f"{self.value:.4g} ± {self.error:.2g} {self.unit}".rstrip()
         last = math.floor(math.log10(self.error)) - 1
@@ -83,10 +85,10 @@ class Averages(list):
 
 
 def weights_of(time):
-    """Weights (F,) of frames at ``time`` (F,): the time to the middle between a frame and those beside it.
+    """Weights (F,) of frames at ``time`` (F,): half of the time from the frame before to the frame after.
 
-    The first and the last count for the whole of it, so that even times have equal weights.  None, which is equal
-    weights, if times go back or all are the same.
+    The first and the last frame have the whole distance to their neighbor, so that evenly spaced frames have equal
+    weights.  Returns None, which means equal weights, if times decrease or are all the same.
     """
     gaps = np.diff(time)
     return np.gradient(time) if gaps.any() and (gaps >= 0.0).all() else None
@@ -97,7 +99,7 @@ def _boltzmann(poses):
 
 
 def dimension(results):
-    """2 if no center ever moves along z and no body turns about another axis, as in a run of dimension 2; else 3."""
+    """2 if no center moves along z and bodies rotate about z only, as in a run of dimension 2; else 3."""
     moved = np.zeros(3)
     for k in mapped.rows(results.center):
         moved = np.maximum(moved, np.abs(results.center[k] - results.center[0]).max(axis=0))
@@ -114,8 +116,8 @@ def dimension(results):
 
 
 def _sums(poses):
-    """Twice the kinetic energies of translation (F,), of rotation (F,) and of the total momentum (F,), those about the
-    principal axes (F, 3), of equal moments their mean, in units of energy."""
+    """Twice the kinetic energies of translation (F,), of rotation (F,), of the total momentum (F,) and of rotation about
+    each principal axis (F, 3), in units of energy.  Axes with equal moments have their mean."""
     bodies, results = poses.bodies, poses.results
     energy, frames = UNITS[poses.units or "lj"].energy, len(results.time)
     equal = equal_moments(bodies.moments)
@@ -134,11 +136,12 @@ def _sums(poses):
 def temperatures(poses):
     """Temperatures of all frames, name -> (F,): of translation, of rotation and about each principal axis.
 
-    Axes of equal moments are arbitrary, and each has their mean; if they are equal in all bodies, it is given once.
+    Axes with equal moments are arbitrary, so each has their mean temperature; if the moments are equal in all bodies,
+    the mean is given once.
 
-    The degrees of freedom of translation do not contain the total momentum if it is zero.  In two dimensions
-    (``dimension``) a body has two, and one of rotation.  Empty without velocities or masses.  In LAMMPS' units;
-    without ``units`` in those of mass x velocity^2.
+    The total momentum is not counted as a degree of freedom if it is zero.  In two dimensions (``dimension``) a body has
+    two degrees of freedom of translation and one of rotation.  Empty without velocities or masses.  In LAMMPS' units;
+    without ``units``, in units of mass x velocity^2.
     """
     bodies, results, k = getattr(poses, "bodies", None), poses.results, _boltzmann(poses)
     if bodies is None or "velocity" not in results:
@@ -156,7 +159,7 @@ def temperatures(poses):
         return found
     found["rotation"] = rotation / (turning.sum() * k)
     groups = [axes for axes in axis_groups(bodies.moments[turning[:, 0]]) if turning[:, axes[0]].any()]
-    if len(groups) > 1:  # one is that of rotation
+    if len(groups) > 1:  # a single group has the temperature of rotation
         for axes in groups:
             own = turning[:, axes[0]].sum()
             found[f"rotation about {axes_named(axes)}"] = about[:, axes[0]] / (own * k)
@@ -166,7 +169,7 @@ def temperatures(poses):
 def of_box(poses):
     """Volume and density of all frames, name -> (F,), in units of LAMMPS; empty if the box does not change or is not periodic.
 
-    The density is that of all atoms of the trajectory, if all of them are in bodies.
+    There is a density only if all atoms of the trajectory are in bodies.
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
     if mapped.own_motion(results) is results.center or not poses.periodic.all():
@@ -178,19 +181,19 @@ def of_box(poses):
 
 
 def _long_blocks(frames):
-    """Slices of the blocks in which functions of time are found; empty if these would be too short."""
+    """Slices of the blocks in which functions of time are computed; empty if the blocks would be too short."""
     length = frames // LONG_BLOCKS
     first = frames - length * LONG_BLOCKS
     return [slice(first + i * length, first + (i + 1) * length) for i in range(LONG_BLOCKS)] if length >= FEWEST else []
 
 
 def _end(correlation, tail):
-    """Number of the first lag in the first half at which a correlation function (F,) is below ``tail``; 0 without one."""
+    """Index of the first lag, within the first half, at which a correlation function (F,) is below ``tail``; 0 if none is."""
     return int(np.argmax(correlation[: len(correlation) // 2] < tail))
 
 
 def _decay(lag, correlation, end, tail):
-    """Time in which a correlation function decays by a factor e before lag ``end``, since it was three times ``tail``."""
+    """Decay time (factor e) of a correlation function between the lag where it is three times ``tail`` and lag ``end``."""
     before = min(int(np.argmax(correlation < BEFORE_TAIL * tail)), end - 1)
     if not correlation[end] > 0.0:
         return 0.0
@@ -198,10 +201,11 @@ def _decay(lag, correlation, end, tail):
 
 
 def integral_time(lag, correlation, tail=TAIL):
-    """Integral of a correlation function (F,) that begins with 1, over all times.
+    """Integral over all times of a correlation function (F,) that begins with 1.
 
-    It is summed until the function falls below ``tail``; the rest is that of the exponential which it follows since it
-    was three times that.  NaN if it does not fall so far within half of the lags.
+    The function is summed until it falls below ``tail``.  The rest is the integral of an exponential with the decay
+    time between three times ``tail`` and ``tail``.  NaN if the function does not fall below ``tail`` within half of the
+    lags.
     """
     if not (end := _end(correlation, tail)):
         return math.nan
@@ -210,7 +214,7 @@ def integral_time(lag, correlation, tail=TAIL):
 
 
 def _beyond(lag, correlation, tail, last):
-    """Integral from where the tail begins to lag number ``last``, less that of the exponential; NaN without a tail."""
+    """Integral of the function minus the exponential, from the beginning of the tail to lag number ``last``; NaN without a tail."""
     if not (end := _end(correlation, tail)):
         return math.nan
     decay = _decay(lag, correlation, end, tail)
@@ -221,11 +225,11 @@ def _beyond(lag, correlation, tail, last):
 def rotational_time(time, q, axis, order):
     """Estimate of the correlation time of a body's axis, the integral of ``orientation_correlation`` over all times.
 
-    ``integral_time`` finds it, with a tail below 0.1, or below 0.05 or 0.02 if the function is not exponential before.
-    Its statistical error is the larger one of the scatter of blocks of the run and that of groups of bodies (from 10
-    bodies on).  An error of the distance between frames is added to it in quadrature, and one of the tail.  NaN if
-    blocks are too short for the correlation to decay, if it decays within few frames, and if its tail is never
-    exponential, as that of a function that oscillates or has a slow part.  ``q`` (F, B, 4), ``time`` (F,), evenly spaced.
+    ``integral_time`` computes it, with a tail below 0.1, or below 0.05 or 0.02 if the function is not exponential below
+    0.1.  The statistical error is the larger of two: the scatter of blocks of the run and, from 10 bodies on, the
+    scatter of groups of bodies.  Errors from the spacing of frames and from the tail are added in quadrature.  NaN if
+    blocks are too short for the correlation to decay, if it decays within few frames, or if its tail is never
+    exponential, for example if the function oscillates or has a slow part.  ``q`` (F, B, 4); ``time`` (F,), evenly spaced.
     """
     blocks, lag = _long_blocks(len(time)), correlations.lags(time)
     if not blocks:
@@ -253,13 +257,13 @@ def _correlation_time(lag, whole, parts, without, tail):
     significant = abs(beyond) > SIGNIFICANT * uncertain
     if significant and abs(beyond) > TOO_LARGE * value:
         return Estimate.missing(f"the correlation does not decay as an exponential below {tail}")
-    # the rule of trapezoids has three times the error of this at half of the distance
+    # error of the trapezoidal rule from twice the spacing (Richardson)
     spacing = (integral_time(lag[::2], whole[::2], tail) - value) / 3.0
     return Estimate(value, math.hypot(statistical, spacing, beyond if significant else 0.0))
 
 
 def _without_groups(q, axis, order):
-    """Correlation of all bodies (F,), and of all but one of the groups; of the latter none if there are few bodies."""
+    """Correlation (F,) of all bodies, and a list of the correlations without each group, empty if there are few bodies."""
     number = q.shape[1]
     if number < GROUPS:
         return correlations.orientation_correlation(q, axis, order), []
@@ -274,7 +278,7 @@ def _without_groups(q, axis, order):
 
 
 def _with_error(find, lag, whole, blocks, without, *more):
-    """What ``find`` finds in a function (F,), with the error from those of blocks and of bodies without a group."""
+    """Result of ``find`` for a function (F,), and its error: the larger one from blocks and from leaving out groups of bodies."""
     errors = [float(scatter([find(lag[: len(one)], one, *more) for one in blocks]))]
     if without:
         values = np.array([find(lag, one, *more) for one in without])  # the jackknife
@@ -283,11 +287,12 @@ def _with_error(find, lag, whole, blocks, without, *more):
 
 
 def averages(poses):
-    """The Averages that finished ``Poses`` or ``TablePoses`` have the data for.
+    """All Averages that can be computed from finished ``Poses`` or ``TablePoses``.
 
-    A frame counts for the time it stands for (``weights_of``).  If the box changes, its volume and the density are averages,
-    and diffusion is that of the motion of bodies relative to the box.  Of frames that are not evenly spaced in time there are
-    only temperatures, with a warning.  Diffusion and correlation times of a mixture are those of each of its ``kinds``.
+    Frames are weighted by time (``weights_of``).  If the box changes, the Averages include volume and density, and the
+    diffusion coefficient describes motion relative to the box.  If frames are not evenly spaced in time, diffusion
+    coefficients and correlation times are left out with a warning.  In a mixture each of the ``kinds`` has its own
+    diffusion coefficient and correlation times.
     """
     results = poses.results
     times = results.time
@@ -311,10 +316,10 @@ def averages(poses):
     try:
         correlations.lags(times)
     except ValueError as error:
-        warnings.warn(f"there are no averages but temperatures: {error}", stacklevel=2)
+        warnings.warn(f"there are no diffusion coefficients and correlation times: {error}", stacklevel=2)
         return found
     if too_many(poses):
-        warnings.warn("bodies are of many kinds: diffusion and correlation times are those of all of them", stacklevel=2)
+        warnings.warn("there are too many kinds of bodies: diffusion and correlation times are averages over all bodies", stacklevel=2)
     dimensions = dimension(results)
     for kind in kinds(poses):
         found += _of_motion(of_kind(poses, kind), f" of {kind.name}" if kind.name else "", dimensions)
@@ -322,7 +327,7 @@ def averages(poses):
 
 
 def _of_motion(poses, of, dimensions):
-    """Averages of functions of time, of bodies of one kind, which ``of`` names."""
+    """Diffusion coefficient and correlation times of the bodies of one kind; ``of`` names it."""
     results, name = poses.results, "diffusion coefficient"
     value, error, why = diffusion(results.time, mapped.own_motion(results), dimensions)
     found = [Average(f"{name}{of}", value, error, poses.unit(name), why)]

@@ -1,4 +1,4 @@
-"""A backend of MDAnalysis with a progress bar: its own ones have none."""
+"""A backend of MDAnalysis with a progress bar; MDAnalysis' own backends have none."""
 
 import functools
 from multiprocessing import Pool
@@ -8,15 +8,15 @@ from MDAnalysis.analysis.backends import BackendBase
 
 
 def _outcome(function, part):
-    """What ``AnalysisBase.run`` takes from a part, without the universe it was found in."""
+    """The results of a part that ``AnalysisBase.run`` uses, without the universe, which is not sent back."""
     done = function(part)
     return SimpleNamespace(frames=done.frames, times=done.times, results=done.results)
 
 
 class Processes(BackendBase):
-    """Processes that share parts of a trajectory; ``progress(iterator, total)`` wraps finished parts.
+    """Processes that analyze parts of a trajectory; ``progress(iterator, total)`` wraps finished parts.
 
-    Only results come back from a process.
+    A process returns only results.
 
     >>> from gearquat_analysis import Poses, open_dump
     >>> from gearquat_analysis.backends import Processes

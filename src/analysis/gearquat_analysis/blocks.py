@@ -1,7 +1,7 @@
-"""Standard errors from blocks of a run, and whether blocks are long enough for them.
+"""Standard errors from blocks of a run, with a check that the blocks are long enough.
 
-A series is cut into blocks, and the scatter of what they give is its error (H. Flyvbjerg and H. G. Petersen, J. Chem.
-Phys. 91, 461 (1989)).  This is right if blocks are independent, so if they are longer than the memory of the series.
+A series is cut into blocks, and its error is the scatter of their means (H. Flyvbjerg and H. G. Petersen, J. Chem.
+Phys. 91, 461 (1989)).  This is correct if blocks are independent, that is, longer than correlations in the series.
 """
 
 import math
@@ -12,12 +12,12 @@ from scipy.stats import chi2
 
 #: fewest blocks, ratio of their numbers from level to level, and least length in statistical inefficiencies
 FEWEST_BLOCKS, FINER, INEFFICIENCIES = 8, 1.3, 5.0
-#: probability with which an error from longer blocks is still taken for the same
+#: quantile of its distribution up to which an error from longer blocks counts as equal to the chosen one
 PLATEAU = 0.9999
 
 
 class Estimate(NamedTuple):
-    """A value with its standard error, NaN if an assumption of the error does not hold; ``why`` says which one.
+    """A value with its standard error; NaN if an assumption of the error fails, with the reason in ``why``.
 
     >>> import numpy as np
     >>> from gearquat_analysis.blocks import of_series
@@ -35,9 +35,9 @@ class Estimate(NamedTuple):
 
 
 def widening(blocks):
-    """Factor for a standard error from the scatter of a few ``blocks``, more than three.
+    """Factor that widens a standard error from the scatter of a few ``blocks`` (more than three).
 
-    Deviations in units of such an error follow Student's distribution; with the factor their mean square is 1.
+    Deviations divided by such an error follow Student's distribution; with the factor their mean square is 1.
     """
     return math.sqrt((blocks - 1) / (blocks - 3))
 
@@ -51,14 +51,14 @@ def scatter(values):
 def of_series(series, weights=None):
     """Estimate of the mean of a series (F,) with ``weights`` (F,), equal unless given.
 
-    Blocks are five times as long as the statistical inefficiency, the factor by which correlations between samples make
-    the variance of the mean larger.  The error is NaN if there are fewer than 8 such blocks, or if it still grows with
-    the length of blocks; the value is known all the same.
+    Blocks are five times as long as the statistical inefficiency, the factor by which correlations between samples
+    increase the variance of the mean.  The error is NaN if there are fewer than 8 such blocks, or if it still grows with
+    the length of blocks; the value is given in any case.
     """
     series = np.asarray(series, dtype=float)
     weights = np.ones(len(series)) if weights is None else np.asarray(weights, dtype=float)
     mean = float(np.average(series, weights=weights))
-    # how much each sample, and then each block, moves the mean
+    # contribution of each sample to the deviation of the mean
     moves = (series - mean) * weights / weights.sum()
     numbers = _numbers_of_blocks(len(series))
     if not len(numbers):

@@ -1,4 +1,4 @@
-"""Which sites make which body, and what the bodies are: masses, shapes, principal axes."""
+"""Bodies and their sites: masses, shapes, principal axes."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -7,26 +7,27 @@ from scipy.spatial.transform import Rotation
 LINEAR_FRACTION = 1.0e-7
 #: a site nearer to a plane than this fraction of the body's size is on neither side, as in the fix
 ON_AXIS = 1.0e-6
-#: principal moments that differ by less than this fraction of the largest count as equal.  Six digits leave sites of a
-#: molecule about 1e-4 of its size uncertain, and its axes by about that divided by the relative difference of moments
+#: principal moments that differ by less than this fraction of the largest count as equal.  With six digits, the sites of a
+#: molecule are uncertain by about 1e-4 of its size, and its axes by about 1e-4 over the relative difference of moments
 EQUAL = 1.0e-3
-#: directions in a plane, and in space (the diagonals of an icosahedron), whose mean of P1 or P2 is that of all directions
+#: directions in a plane, and in space (the diagonals of an icosahedron), over which P1 or P2 has the same mean as over all
+#: directions
 PLANE = np.column_stack([np.cos(np.pi / 3.0 * np.arange(3)), np.sin(np.pi / 3.0 * np.arange(3))])
 _GOLDEN = (1.0 + np.sqrt(5.0)) / 2.0
 SPACE = np.array([np.roll([0.0, 1.0, sign * _GOLDEN], k) for k in range(3) for sign in (1, -1)]) / np.hypot(1.0, _GOLDEN)
 
 
 def places(ids, wanted):
-    """Index (m,) of each of the ``wanted`` (m,) among ``ids`` (n,), whole numbers; -1 if it is not there."""
+    """Index (m,) of each of the ``wanted`` (m,) among ``ids`` (n,), which are integers; -1 if it is not among them."""
     order = np.argsort(ids)
     nearest = np.append(order, -1)[np.searchsorted(ids, wanted, sorter=order)]
     return np.where(np.append(ids, -1)[nearest] == wanted, nearest, -1)
 
 
 def equal_moments(moments):
-    """Whether principal moments k and l of a body are equal, (B, 3, 3), of ``moments`` (B, 3), the largest first.
+    """True (B, 3, 3) where principal moments k and l of a body are equal; ``moments`` (B, 3), the largest first.
 
-    Axes of equal moments are arbitrary: any others in their plane (of three moments, in space) would do.
+    Axes with equal moments are arbitrary: two equal moments allow any axes in a plane, three any axes in space.
 
     >>> from gearquat_analysis.bodies import equal_moments
     >>> equal_moments([[3.0, 2.0001, 2.0]])[0].astype(int).tolist()
@@ -42,7 +43,7 @@ def equal_moments(moments):
 
 
 def axis_groups(moments):
-    """Principal axes, counted from 0, as tuples of those whose moments are equal in all bodies with ``moments`` (B, 3)."""
+    """Principal axes, counted from 0, in tuples; axes of a tuple have equal moments in all bodies; ``moments`` (B, 3)."""
     equal = equal_moments(moments).all(axis=0)
     return sorted({tuple(np.flatnonzero(row).tolist()) for row in equal})
 
@@ -54,10 +55,10 @@ def axes_named(axes):
 
 
 def directions(moments, axes, k):
-    """Unit vectors (N, B, 3) in the body frame whose mean of P1 or P2 is that of principal axis ``k`` (0 to 2).
+    """Unit vectors (N, B, 3) in the body frame over which P1 or P2 is averaged for principal axis ``k`` (0 to 2).
 
-    ``moments`` (B, 3) and ``axes`` (B, 3, 3) as of Bodies.  N is 1 if the axis is one in all bodies; if in some its
-    moment is equal to others, they stand for all directions in the plane or in space of these.
+    ``moments`` (B, 3) and ``axes`` (B, 3, 3) as in Bodies.  N is 1 if the axis is unique in all bodies.  If its moment is
+    equal to others in some bodies, the vectors represent all directions in the plane (or space) of their axes.
     """
     equal = equal_moments(moments)[:, k]
     count = equal.sum(axis=1)
@@ -73,15 +74,18 @@ def directions(moments, axes, k):
 
 
 class Bodies:
-    """B bodies of n sites, with a reference shape each.
+    """B bodies of n sites, each with a reference shape.
 
-    ``ids`` (B,); ``index`` (n,): the sites among the atoms they were made from, body by body and of
-    each by rising place; ``of`` (n,): the body of each; ``masses`` (n,), ``mass`` (B,);
-    ``shape`` (n, 3): sites in the body frame, from the center of mass; ``moments`` (B, 3): principal moments
-    of inertia of the sites as points, the largest first, vanishing ones exactly 0; ``axes`` (B, 3, 3):
-    principal axes as rows, in the body frame; ``point`` and ``linear`` (B,): whether a body is one.
+    * ``ids`` (B,): IDs of the bodies
+    * ``index`` (n,): indices of the sites among the atoms, body by body, ascending within a body
+    * ``of`` (n,): the number of each site's body
+    * ``masses`` (n,) of the sites, ``mass`` (B,) of the bodies
+    * ``shape`` (n, 3): sites in the body frame, relative to the center of mass
+    * ``moments`` (B, 3): principal moments of inertia of the sites as points, the largest first, vanishing ones exactly 0
+    * ``axes`` (B, 3, 3): principal axes as rows, in the body frame
+    * ``point``, ``linear`` (B,): True for a point, and for a linear body
 
-    Units are those of the run: moments in mass x length squared.
+    Units are the units of the run; moments have mass x length squared.
 
     >>> from gearquat_analysis import Poses, open_dump
     >>> bodies = Poses(open_dump("nitrogen.dump").atoms).bodies
@@ -117,7 +121,7 @@ class Bodies:
 
     def center(self, vectors):
         """Mass-weighted mean (B, 3) of vectors (n, 3)."""
-        # from the first site: far from the origin no digit of the arms is lost
+        # relative to the first site, so that no digits are lost far from the origin
         first = vectors[self._starts]
         rest = self.sum(self.masses[:, None] * (vectors - first[self.of]))
         return first + rest / self.mass[:, None]
@@ -125,17 +129,17 @@ class Bodies:
     def whole(self, positions, box, periodic=(True, True, True)):
         """Positions (n, 3) at the image nearest to the first site of their body.
 
-        ``box`` (3, 3): edges as rows.  Right for bodies smaller than half the box.
+        ``box`` (3, 3): edges as rows.  Correct for bodies smaller than half the box.
         """
         away = positions - positions[self._starts][self.of]
         images = np.round(away @ np.linalg.inv(box)) * np.asarray(periodic)
         return positions - images @ box
 
     def set_shape(self, positions, principal=False):
-        """Take sites at ``positions`` (n, 3) for the shape; the body frame has their axes.
+        """Set the shape from the sites at ``positions`` (n, 3); the body frame has the axes of the positions.
 
-        ``principal``: instead the principal axes, sorted and directed as by the fix, so that
-        quaternions become those of its array, except of bodies with equal moments, whose axes are arbitrary.
+        ``principal``: the body frame has the principal axes, sorted and directed as in the fix, so that quaternions agree
+        with the fix's array, except for bodies with equal moments, whose axes are arbitrary.
         """
         arms = positions - self.center(positions)[self.of]
         square = np.einsum("ij,ij->i", arms, arms)
@@ -159,9 +163,9 @@ class Bodies:
         self.shape, self.axes = arms, axes
 
     def divided_by_inertia(self, q, vectors):
-        """Vectors (B, 3) in space divided by the inertia of bodies turned by q (B, 4).
+        """Vectors (B, 3) in space divided by the inertia tensor of bodies turned by q (B, 4).
 
-        About an axis without inertia the result is 0.
+        The component about an axis without inertia is 0.
         """
         axes = self.axes_space(q)
         along = np.einsum("bij,bj->bi", axes, vectors)
@@ -175,10 +179,11 @@ class Bodies:
 
 
 def _direct(axes, arms, masses):
-    """Direct the principal axes (3, 3) of one body in place, by its sites (see the fix's manual).
+    """Choose the directions of the principal axes (3, 3) of one body, in place, from its sites (see the fix's manual).
 
-    The first and the third point to the side of the heaviest site that is on a side, of equals the
-    first; the second completes a right-handed frame, or one of them if all sites are in its plane.
+    The first and the third axis point to the side of the heaviest site that is off the plane perpendicular to the axis (of
+    equally heavy ones, the first).  The second axis completes a right-handed frame.  If all sites are in the plane
+    perpendicular to the first or the third axis, the second axis is directed by sites, and that axis completes the frame.
     """
     along = arms @ axes.T
     size = np.abs(along).max()

@@ -12,10 +12,10 @@ from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option
 from .units import UNITS, style_of
 
 
-#: files of the command beside poses.npy
+#: files that the command writes in addition to poses.npy
 LEAVES = ("bodies.csv", "totals.csv", "totals.png", "motion.png", "poses.csv", "correlations.csv", "correlations.png")
 LEAVES += ("averages.csv", "averages.png", "spectra.csv", "rdf.csv", "stays.csv", "survival.csv")
-#: options that decide results, with which a folder is known
+#: options that determine the results; a folder with results is identified by them
 DECIDE = ("data", "atom_style", "body", "select", "reference", "potential", "units", "timestep")
 
 
@@ -29,7 +29,7 @@ def _frames(_context, _option, text):
 
 @contextmanager
 def _telling_warnings():
-    """Decorator: warnings become lines of the command."""
+    """Decorator that prints warnings as lines of the command."""
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_: cloup.echo(f"Warning: {message}", err=True)
         yield
@@ -53,13 +53,13 @@ def _telling_warnings():
     cloup.option(
         "--reference",
         default="principal",
-        help="Frame of the body: 'principal', that of the fix; 'first', its first pose; or a file with x"
+        help="Frame of the body: 'principal', as in the fix; 'first', its first pose; or a file with x"
         " y z of the selected atoms by ID.",
     ),
     cloup.option("--data", type=FILE, help="Data file with masses and molecules, if not in the dump."),
     cloup.option(
         "--atom-style",
-        help="Columns of the data file, such as 'id type x y z', if not those of full or molecular.",
+        help="Columns of the data file, such as 'id type x y z', if its atom style is not full or molecular.",
     ),
     cloup.option("--potential", help="Column with potential energies of atoms."),
 )
@@ -68,19 +68,19 @@ def _telling_warnings():
     cloup.option(
         "--units",
         type=cloup.Choice(UNITS),
-        help="LAMMPS' units, unless the dump has them (dump_modify units yes); for energies and --convert.",
+        help="LAMMPS' units, for energies and --convert; not needed if the dump has them (dump_modify units yes).",
     ),
     cloup.option(
         "--timestep",
         type=POSITIVE,
-        help="LAMMPS' time step, unless the dump has times (dump_modify time yes).  Without either,"
-        " tables have numbers of steps for times.",
+        help="LAMMPS' time step, not needed if the dump has times (dump_modify time yes).  Without either,"
+        " tables have numbers of steps instead of times.",
     ),
     cloup.option("--frames", callback=_frames, metavar="START:STOP:STEP", help="Frames to read."),
 )
 @cloup.option_group(
     "Stays of bodies near given places, such as the sites of a cage",
-    cloup.option("--near", type=FILE, help="File with places, x y z a line."),
+    cloup.option("--near", type=FILE, help="File with places, x y z in each line."),
     cloup.option("--radius", type=POSITIVE, help="Distance within which a body is near a place."),
     constraint=all_or_none,
 )
@@ -91,12 +91,12 @@ def _telling_warnings():
         type=(str, str),
         multiple=True,
         metavar="SITES SITES",
-        help="Also radial distribution functions between two selections of sites, such as --rdf 'type 1' 'type 2';"
-        " may be given many times.",
+        help="Also compute the radial distribution function between two selections of sites, such as --rdf 'type 1' 'type 2';"
+        " may be given several times.",
     ),
 )
 @cloup.option_group(
-    "What it takes and leaves",
+    "Output and processes",
     out_option("gearquat-analyze", "tables and pictures"),
     cloup.option("--follow", type=int, metavar="ID", help="Also draw the motion of one body, motion.png."),
     cloup.option("--csv", "as_csv", is_flag=True, help="Also write every pose as text, poses.csv."),
@@ -107,7 +107,7 @@ def _telling_warnings():
         help="Also write the trajectory, in Å and ps: .dcd, .xtc, .trr, .nc, .xyz, .pdb, ...",
     ),
     cloup.option("--wrap", is_flag=True, help="With --convert, put bodies back into the box."),
-    cloup.option("--jobs", type=COUNT, default=1, metavar="N", help="Processes that read."),
+    cloup.option("--jobs", type=COUNT, default=1, metavar="N", help="Number of processes that read the dump."),
 )
 @failing_clearly(ValueError)
 @_telling_warnings()
@@ -115,9 +115,9 @@ def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follo
     """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
-    the table of fix gear/quat.  The command leaves poses.npy (poses and energies, by frame and body),
+    the table of fix gear/quat.  The command writes poses.npy (poses and energies, by frame and body),
     bodies.csv, totals.csv, correlations.csv, and averages.csv: temperatures, diffusion and rotational
-    correlation times with standard errors, which it also prints.  The last three have pictures.
+    correlation times with standard errors, which it also prints.  It draws pictures of the last three files.
     """
     from . import pictures, report
     from .convert import require_format, written_by
@@ -126,7 +126,7 @@ def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follo
     if converted:
         require_format(converted)
     if wrap and not converted:
-        raise ValueError("--wrap needs --convert, whose trajectory it is about")
+        raise ValueError("--wrap works only with --convert")
     places = near and _points("--near", near)
     asked = {name: options[name] for name in DECIDE} | {"near": near, "radius": radius}
     asked |= {"frames": [frames.start, frames.stop, frames.step], "rdf": [list(pair) for pair in rdf]}
@@ -135,7 +135,7 @@ def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follo
         folder.require_free(written_by(converted))
     poses = _run(dump, out, frames, converted, options)
     if folder.replaced:
-        cloup.echo(f"The earlier analysis in {out} is replaced.")
+        cloup.echo(f"This analysis replaces the earlier one in {out}.")
     folder.fill()
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
@@ -155,7 +155,7 @@ def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follo
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     memory += options["jobs"] * (resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
     cloup.echo(
-        f"The analysis took at most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}"
+        f"The analysis used at most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}"
     )
 
 
@@ -164,7 +164,7 @@ def _bar(what, unit):
 
 
 def _settle(trajectory, converted, options):
-    """Say which units and times are missing, and which option is not used."""
+    """Raise ValueError if units or times are missing for --convert; report an unused --timestep and missing times."""
     from .convert import has_times
 
     timestep = options["timestep"]
@@ -181,11 +181,11 @@ def _settle(trajectory, converted, options):
             f"--convert {converted} needs the times of the frames: give --timestep, or write the dump with"
             " dump_modify time yes"
         )
-    cloup.echo("Neither the dump nor --timestep gives times: numbers of steps stand for them.")
+    cloup.echo("Neither the dump nor --timestep gives times: numbers of steps are used instead.")
 
 
 def _points(option, path, others=""):
-    """The rows (n, 3) of the file that an option names; ``others`` is what it may name instead."""
+    """The rows (n, 3) of the file that an option names; ``others`` lists the other values of the option, for the message."""
     import numpy as np
 
     try:
@@ -217,8 +217,8 @@ def _run(dump, out, frames, converted, options):
     common = {"units": options["units"], "out": draft}
     if local:
         if options["reference"] != "principal":
-            raise ValueError("--reference is about atoms; a table of the fix has quaternions")
-        cloup.echo("The table does not tell kinds of bodies: averages are over all that are selected.")
+            raise ValueError("--reference needs atoms; a table of the fix has quaternions instead")
+        cloup.echo("The table does not distinguish kinds of bodies: averages are over all selected bodies.")
         poses = TablePoses(atoms, **common)
     else:
         reference = options["reference"]
@@ -234,7 +234,7 @@ def _run(dump, out, frames, converted, options):
 
 
 def _read(poses, frames, jobs, packed):
-    """Run the analysis of these frames; compressed dumps are unpacked from the beginning to each part."""
+    """Run the analysis of these frames; a compressed dump is unpacked from its beginning for each part."""
     span = {"start": frames.start, "stop": frames.stop, "step": frames.step}
     if jobs == 1:
         bar = {"desc": "reading", "unit": "frame", "disable": None}
@@ -249,7 +249,7 @@ def _read(poses, frames, jobs, packed):
 
 
 def _correlate(out, poses):
-    """Write correlations and averages with their pictures, as far as frames are enough and evenly spaced."""
+    """Write correlations and averages with their pictures, if there are enough frames and they are evenly spaced."""
     import numpy as np
 
     from . import averages, correlations, pictures, report
@@ -259,12 +259,12 @@ def _correlate(out, poses):
         return cloup.echo("There are fewer than three frames, so there are no correlations.")
     try:
         found = correlations.all_correlations(poses, _bar("correlating", "function"))
-    except ValueError:  # uneven times, of which averages tell
+    except ValueError:  # uneven times; averages() warns of them
         found = None
     if found and found.largest_turn > np.pi / 2:
         cloup.echo(
-            f"A body turned by {found.largest_turn:.2g} radians from one frame to the next: do not trust the mean-square"
-            " rotation, and dump more often."
+            f"A body turned by {found.largest_turn:.2g} radians from one frame to the next: the mean-square rotation is not"
+            " reliable; dump more often."
         )
     known = averages.averages(poses)
     report.write_averages(out / "averages.csv", known)
@@ -292,7 +292,7 @@ def _distribute(out, poses, pairs, frames):
 
 
 def _stay(out, poses, places, radius):
-    """Write stays.csv and survival.csv, and say how long bodies stay, of each kind of bodies."""
+    """Write stays.csv and survival.csv, and print how long bodies of each kind stay."""
     from . import report, residence
     from .kinds import kinds
     from .tables import write_columns
@@ -313,7 +313,7 @@ def _stay(out, poses, places, radius):
             f" {report.counted(len(places), 'place')}, in {some.fraction().sum():.1%} of the time."
         )
     if not columns:
-        return cloup.echo("There is no survival.csv, which needs frames at equal distances of time.")
+        return cloup.echo("survival.csv was not written: it needs frames that are evenly spaced in time.")
     return write_columns(out / "survival.csv", columns)
 
 

@@ -1,7 +1,7 @@
-"""Trajectories for other viewers: VMD, OVITO, PyMOL and whatever else reads what MDAnalysis writes.
+"""Trajectories for VMD, OVITO, PyMOL and other viewers, written by MDAnalysis.
 
-MDAnalysis counts in Å and ps and knows what each format counts in; LAMMPS' units are brought to the
-former.  Units *lj* have no such scale: 1 sigma becomes 1 Å and 1 tau 1 ps, and what is written says so.
+LAMMPS' units are converted to Å and ps; MDAnalysis converts these to the units of each format.  Units *lj* have no
+such scale: 1 sigma becomes 1 Å and 1 tau becomes 1 ps, and a remark in the file says so.
 """
 
 import warnings
@@ -16,30 +16,30 @@ from MDAnalysis.lib.util import guess_format
 from .units import UNITS, style_of
 from .bodies import Bodies
 
-#: formats that say themselves what their atoms are
+#: formats that contain the names of their atoms
 SELF_CONTAINED = {"PDB", "ENT", "XYZ"}
-#: formats with one distance of time for all frames
+#: formats with a single time between frames
 EVEN = {"DCD", "LAMMPS"}
-#: how a writer is told a line of text
+#: the writer's keyword for a line of text
 REMARK = {"XYZ": "remark", "TRZ": "title"}
 REMARK |= dict.fromkeys(["DCD", "LAMMPS", "PDB", "ENT"], "remarks")
-#: a frame may be off an even spacing by this part of it
+#: a frame may deviate from even spacing by this fraction of the spacing
 UNEVEN = 1e-4
-#: largest position in an xtc file, Å: thousandths of a nm are integers there, and wrap silently
+#: largest position in an xtc file, Å: positions are integers in thousandths of a nm, which overflow silently
 XTC_MOST = 2e7
 #: largest integer in the files
 MOST = 2**31 - 1
 
 
 def remark(units):
-    """What one unit of LAMMPS is in the files written."""
+    """A line of text with the length and time of one LAMMPS unit in the files written."""
     length, time = UNITS[units].angstrom, UNITS[units].ps
     length_name, time_name = ("1 sigma", "1 tau") if units == "lj" else ("length 1", "time 1")
     return f"LAMMPS units {units}: {length_name} is {length:g} Angstrom here, {time_name} is {time:g} ps"
 
 
 def has_times(path):
-    """Whether the format of ``path`` holds times; those that say what their atoms are do not."""
+    """True if the format of ``path`` stores times; formats with names of atoms do not."""
     return guess_format(str(path)) not in SELF_CONTAINED
 
 
@@ -53,21 +53,21 @@ def require_format(path):
 
 
 def written_by(path):
-    """Files that ``convert`` to ``path`` writes, if coordinates fit into a PDB file."""
+    """Files that ``convert`` writes for ``path`` if coordinates fit into a PDB file."""
     return [path] if not has_times(path) else [path, path.with_suffix(".pdb")]
 
 
 def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=None):
     """Write ``atoms`` in all frames to ``path``; its suffix names the format (dcd, xtc, pdb, ...).
 
-    ``atoms`` of a dump, in LAMMPS' ``units``.  Bodies are whole.  ``wrap`` puts their centers into the
-    box; otherwise they go on beyond it as far as the dump tells.  Along periodic directions the origin
-    is the corner of the box.  ``frames``: a slice; ``times`` (F,): of these frames, if known;
-    ``progress``: wraps the iterator, such as tqdm.  Formats that hold only positions get a file of the
-    first frame beside them: PDB, or XYZ where coordinates do not fit into PDB's columns.
+    ``atoms`` are atoms of a dump, in LAMMPS' ``units``.  Bodies are whole.  With ``wrap`` their centers are in the box;
+    otherwise positions are unwrapped as far as the dump allows.  Along periodic directions the origin is the corner of
+    the box.  ``frames``: a slice; ``times`` (F,): times of these frames, if known; ``progress`` wraps the iterator, as
+    tqdm does.  For formats without names of atoms, the first frame is also written to a file of the same name, as PDB, or
+    as XYZ if coordinates do not fit into PDB's columns.
 
     Returns the files written.  Raises ValueError for a format that MDAnalysis does not write, and for
-    frames that it cannot hold.
+    frames that the format cannot store.
 
     >>> from gearquat_analysis import open_dump
     >>> from gearquat_analysis.convert import convert
@@ -89,14 +89,14 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
     bodies = _bodies(atoms)
     written = [path]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of what a dump does not tell and a PDB file has room for
+        warnings.simplefilter("ignore")  # about fields of a PDB file that are missing in a dump
         try:
             with MDAnalysis.Writer(str(path), n_atoms=len(atoms), multiframe=True, **options) as writer:
                 for number, ts in enumerate(progress(iterator) if progress else iterator):
                     ts.positions = _placed(ts, bodies, wrap) * length
                     if kind == "XTC" and np.abs(ts.positions).max() > XTC_MOST:
                         raise ValueError(
-                            f"{path}: xtc holds positions up to {XTC_MOST:g} Å (2 mm); trr and dcd hold these"
+                            f"{path}: xtc stores positions up to {XTC_MOST:g} Å (2 mm) only; use trr or dcd"
                         )
                     _rescale(ts, length, time)
                     if number == 0 and kind not in SELF_CONTAINED:
@@ -108,7 +108,7 @@ def convert(atoms, path, units, wrap=False, frames=None, times=None, progress=No
 
 
 def _rescale(ts, length, time):
-    """Everything but the positions of a frame, to MDAnalysis' units."""
+    """Convert a frame, except its positions, to MDAnalysis' units."""
     if ts.dimensions is not None:
         ts.dimensions = ts.dimensions * ([length] * 3 + [1.0] * 3)
     if ts.has_velocities:
@@ -122,7 +122,7 @@ def _first_frame(atoms, path, units):
     pdb, xyz = path.with_suffix(".pdb"), path.with_suffix(".xyz")
     try:
         atoms.write(str(pdb), remarks=remark(units))
-    except ValueError:  # coordinates of more digits than its columns have
+    except ValueError:  # coordinates have more digits than PDB's columns
         pdb.unlink(missing_ok=True)
         atoms.write(str(xyz), remark=remark(units))
         return xyz
@@ -130,27 +130,27 @@ def _first_frame(atoms, path, units):
 
 
 def _spacing(times, path):
-    """Options of the writer of a format that keeps the time of its first frame and one distance; ps."""
+    """Options for the writer of a format that stores the time of its first frame and one spacing; ps."""
     dt = (times[-1] - times[0]) / (len(times) - 1) if len(times) > 1 else 1.0
     even = times[0] + dt * np.arange(len(times))
     if dt == 0.0 or np.abs(times - even).max() > UNEVEN * abs(dt):
         raise ValueError(
-            f"{path}: this format has one distance of time for all frames, and these are not evenly"
-            " spaced: xtc and trr keep the time of each"
+            f"{path}: this format needs frames that are evenly spaced in time, and these are not:"
+            " xtc and trr store the time of each frame"
         )
-    # the first time is istart / nsavc distances
+    # the first time is istart / nsavc spacings
     start = times[0] / dt
     start = Fraction(start).limit_denominator(max(1, min(10**6, int(MOST / (abs(start) + 1)))))
     return {"dt": dt, "istart": start.numerator, "nsavc": start.denominator}
 
 
 def _bodies(atoms):
-    """Bodies of all atoms of the universe; atoms that are in none are bodies of their own."""
+    """Bodies of all atoms of the universe; each atom outside of bodies is a body of its own."""
     everything = atoms.universe.atoms
     numbers = everything.resids.copy()
     alone = numbers == 0
     numbers[alone] = numbers.max() + 1 + np.arange(alone.sum())
-    # centers are only for wrapping: masses do not matter, and not all trajectories have them
+    # centers are only used for wrapping, so equal masses suffice; not all trajectories have masses
     return Bodies(numbers, np.ones(len(everything)))
 
 

@@ -1,9 +1,9 @@
 """Mean squares and autocorrelations of poses and motion, averaged over bodies and origins of time.
 
-All functions take arrays (F, B, ...) as ``Poses`` leaves them, also of a table in a file, and go over a
-few bodies at a time: memory does not grow with their number.  They return (F,): entry k belongs to a lag
-of k frames, see ``lags``; the last entries have few origins of time behind them.  Sums over origins are
-products of Fourier transforms (V. Calandrini et al., Collection SFN 12, 201 (2011), Sec. 4.2).
+All functions take arrays (F, B, ...) from ``Poses``, in memory or in a file, and process a few bodies at a time, so
+memory does not grow with the number of bodies.  They return (F,): entry k belongs to a lag of k frames, see ``lags``;
+the last entries are means over few origins of time.  Sums over origins are computed by Fourier transforms (V.
+Calandrini et al., Collection SFN 12, 201 (2011), Sec. 4.2).
 """
 
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from . import export, mapped
 from .bodies import axis_groups, directions
 from .kinds import kinds, of_kind
 
-#: numbers held at once in one array
+#: largest number of elements of an array in memory
 HELD = 1_000_000
 
 
 def lags(time):
-    """Times (F,) that belong to the lags.  Raises ValueError unless ``time`` (F,) is evenly spaced."""
+    """Lags (F,) in units of time.  Raises ValueError unless ``time`` (F,) is evenly spaced."""
     time = np.asarray(time, dtype=float)
     gaps = np.diff(time)
     if not len(gaps):
@@ -33,14 +33,14 @@ def lags(time):
     if usual <= 0.0 or uneven.any():
         k = int(np.argmax(uneven))
         raise ValueError(
-            "correlations and diffusion need frames at equal distances of time (dump_modify every/time), and these are"
+            "correlations and diffusion need frames that are evenly spaced in time (dump_modify every/time), and these are"
             f" not: the time after frame {k} at {time[k]:.9g} is {time[k + 1]:.9g}"
         )
     return time - time[0]
 
 
 def portions(values):
-    """Slices of the bodies of values (F, B, ...), of bounded size."""
+    """Slices of bodies such that values (F, b, ...) have a bounded size."""
     frames, bodies = values.shape[:2]
     width = max(1, HELD // (frames * max(1, int(np.prod(values.shape[2:])))))
     for begin in range(0, bodies, width):
@@ -71,10 +71,10 @@ def autocorrelation(values):
 
 def _square_displacements(x):
     """Sum over bodies and origins of |x(t + lag) - x(t)|^2 of x (F, b, 3), (F,)."""
-    x = x - x.mean(axis=0)  # products of distances, not of positions far away
+    x = x - x.mean(axis=0)  # against round-off far from the origin
     square = np.einsum("fbk,fbk->f", x, x)
     ends = np.concatenate([[0.0], np.cumsum(square)])
-    both = ends[-1] - ends[:-1] + ends[1:][::-1]  # sum of |x(t)|^2 over all second ends, and first
+    both = ends[-1] - ends[:-1] + ends[1:][::-1]  # sum of |x(t + lag)|^2 + |x(t)|^2 over origins
     return both - 2.0 * _products(_power(x), len(x))
 
 
@@ -89,8 +89,8 @@ def rotation_path(q, axis=None):
     """Rotation since the first frame, summed over turns from frame to frame, (F, b, 3), radians.
 
     Unlike an angle it is not bounded (S. Kaemmerer, W. Kob, R. Schilling, Phys. Rev. E 56, 5450 (1997),
-    Eq. 10).  Along space axes.  ``q`` (F, b, 4); ``axis`` (b, 3): axes in the body frame of linear
-    bodies, whose turn is the shortest one of the axis; NaN for the others.
+    Eq. 10).  Components are along space axes.  ``q`` (F, b, 4); ``axis`` (b, 3): axes of linear bodies in the body
+    frame, NaN for other bodies; a linear body turns by the shortest rotation of its axis.
     """
     frames, bodies = q.shape[:2]
     turn = Rotation.from_quat(q.reshape(-1, 4), scalar_first=True)
@@ -108,8 +108,8 @@ def rotation_path(q, axis=None):
 def mean_square_rotation(q, bodies=None):
     """Mean of ``|phi(t + lag) - phi(t)|^2``, (F,), radians squared; and the largest turn between frames.
 
-    phi is ``rotation_path``.  Above pi / 2 between frames turns are mistaken for shorter ones, sooner
-    or later.  ``q`` (F, B, 4); ``bodies`` (Bodies): needed if some are linear.
+    phi is ``rotation_path``.  If bodies turn by more than pi / 2 between frames, some turns may be taken for shorter
+    ones.  ``q`` (F, B, 4); ``bodies`` (Bodies): needed if some are linear.
     """
     frames, number = q.shape[:2]
     axis = None
@@ -125,10 +125,10 @@ def mean_square_rotation(q, bodies=None):
 
 
 def orientation_correlation(q, axis, order=1):
-    """Mean of P(u(t) . u(t + lag)), (F,), of a body's axis u; P is Legendre's polynomial of ``order``.
+    """Mean of P(u(t) . u(t + lag)), (F,), of a body's axis u; P is the Legendre polynomial of ``order``.
 
-    ``q`` (F, B, 4); ``axis`` (3,) or (B, 3), in the body frame; ``order`` 1 or 2.  Raises ValueError for
-    another order or an axis without length.  Of axes (N, B, 3), such as ``directions`` of Bodies gives, the mean.
+    ``q`` (F, B, 4); ``axis`` (3,) or (B, 3), in the body frame, or (N, B, 3) for a mean over N axes, such as
+    ``bodies.directions``; ``order`` 1 or 2.  Raises ValueError for another order or an axis of zero length.
     """
     if np.ndim(axis) == 3:
         return np.mean([orientation_correlation(q, single, order) for single in axis], axis=0)
@@ -137,7 +137,7 @@ def orientation_correlation(q, axis, order=1):
     axis = np.broadcast_to(np.asarray(axis, dtype=float), (q.shape[1], 3))
     length = np.linalg.norm(axis, axis=1, keepdims=True)
     if not (length > 0).all():
-        raise ValueError("an axis needs a length")
+        raise ValueError("an axis must not have zero length")
     axis, frames, power = axis / length, len(q), 0.0
     for own in portions(q):
         turn = Rotation.from_quat(mapped.columns(q, own).reshape(-1, 4), scalar_first=True)
@@ -156,9 +156,11 @@ def orientation_correlation(q, axis, order=1):
 class Correlations:
     """Functions of the lag.
 
-    ``functions``: name -> (F,), ``lag`` first; ``units``: name -> unit, as text; ``largest_turn`` of a body
-    between two frames, radians: above pi / 2 do not trust ``mean_square_rotation``.  In a mixture there is each function
-    of each of its ``kinds``, such as ``mean_square_displacement_H2O``; ``kinds``: their names, "" if there is one.
+    * ``functions``: name -> (F,), ``lag`` first.  In a mixture there is a function for each kind, such as
+      ``mean_square_displacement_H2O``.
+    * ``units``: name -> unit, as text
+    * ``largest_turn``: of a body between two frames, radians; above pi / 2 ``mean_square_rotation`` is not reliable
+    * ``kinds``: names of the kinds of bodies, "" if there is only one
 
     >>> from gearquat_analysis import Poses, correlations, open_dump
     >>> found = correlations.all_correlations(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
@@ -189,9 +191,15 @@ class Correlations:
 
 
 def turning(poses):
-    """Of the bodies that can turn: q (F, T, 4); their ``linear`` and ``axes`` as Bodies has them, None for a table;
-    and groups of principal axes with equal moments -> directions (N, T, 3) or (3,), only the third axis if one is
-    linear.  Without q and axes if all are points."""
+    """Data of the T bodies that are not points.
+
+    * q (F, T, 4)
+    * their ``linear`` and ``axes`` as in Bodies; None for a table of the fix
+    * dict: group of principal axes with equal moments -> directions (N, T, 3) or (3,); only the third axis if a body is
+      linear
+
+    Returns (None, None, {}) if all bodies are points.
+    """
     q, bodies = poses.results.q, getattr(poses, "bodies", None)
     if bodies is None:
         return q, None, {(k,): axis for k, axis in enumerate(np.eye(3))}
@@ -205,13 +213,13 @@ def turning(poses):
 
 
 def all_correlations(poses, progress=iter):
-    """Correlations with every function above that finished ``Poses`` or ``TablePoses`` have the data for.
+    """Correlations with all functions above that can be computed from finished ``Poses`` or ``TablePoses``.
 
-    Axes 1 to 3 are the principal ones, the largest moment first; with linear bodies only the third, which is the body's
-    own.  Axes whose moments are equal in all bodies, which are arbitrary, have one function, the mean over all
-    directions in their plane or in space (``axes23_order1``).  Points are left out of all that is about rotation; in the
-    table of the fix they cannot be told from other bodies.  Bodies of a mixture are told apart by ``kinds``.  ``progress`` goes over the list of functions, as tqdm does.
-    Raises ValueError if frames are not evenly spaced in time.
+    Axes 1 to 3 are the principal axes, the largest moment first; if bodies are linear, only the third, the axis of the
+    body, is used.  Axes with equal moments in all bodies are arbitrary; they share one function, the mean over all
+    directions in their plane or in space (``axes23_order1``).  Points are excluded from functions of rotation, but not
+    in a table of the fix, which does not mark them.  Mixtures are split by ``kinds``.  ``progress`` wraps the list of
+    functions, as tqdm does.  Raises ValueError if frames are not evenly spaced in time.
     """
     lag = lags(poses.results.time)
     tasks, units, chosen = [], {"lag": poses.unit("lag")}, kinds(poses)
@@ -235,7 +243,7 @@ def _axes_word(group):
 
 
 def _groups(bodies):
-    """Principal axes about which bodies turn, as tuples of those with equal moments; each alone for a table."""
+    """Principal axes with inertia, as tuples of axes with equal moments; for a table of the fix each axis is alone."""
     if bodies is None:
         return [(0,), (1,), (2,)]
     moments = bodies.moments[~bodies.point]
@@ -243,10 +251,10 @@ def _groups(bodies):
 
 
 def axis_autocorrelation(omega, q, axes, group):
-    """Mean of w(t) w(t + lag), (F,), of the component w of angular velocities about a principal axis, radians squared / time squared.
+    """Mean of w(t) w(t + lag), (F,), of the angular velocity w about a principal axis, radians squared / time squared.
 
-    ``omega`` (F, B, 3), in space; ``q`` (F, B, 4); ``axes`` (B, 3, 3) as of Bodies, None for those of the frame; ``group``:
-    numbers of axes with equal moments, whose mean is taken.
+    ``omega`` (F, B, 3), in space; ``q`` (F, B, 4); ``axes`` (B, 3, 3) as in Bodies, or None for the axes of the body
+    frame; ``group``: numbers of the axes to average over, which have equal moments.
     """
     frames, number, power = len(omega), omega.shape[1], 0.0
     for own in portions(q):
@@ -261,7 +269,7 @@ def axis_autocorrelation(omega, q, axes, group):
 def spectrum(lag, function):
     """Frequencies (n,) in 1 / time and the spectrum (n,) of an autocorrelation function (F,), function x time.
 
-    It is twice the cosine transform of the first half of the lags in Hann's window, so its integral over positive
+    It is twice the cosine transform of the first half of the lags with a Hann window; its integral over positive
     frequencies is the function at lag 0.
     """
     kept = len(lag) // 2
@@ -272,7 +280,7 @@ def spectrum(lag, function):
 
 
 def spectra(found):
-    """Frequency and the spectrum of each autocorrelation of velocities in Correlations, name -> (n,)."""
+    """The frequency and, for each velocity autocorrelation in Correlations, its spectrum, name -> (n,)."""
     functions, lag = found.functions, found.functions["lag"]
     named = {name.replace("autocorrelation", "spectrum"): one for name, one in functions.items() if "autocorrelation" in name}
     both = {name: spectrum(lag, one) for name, one in named.items()}
@@ -280,7 +288,7 @@ def spectra(found):
 
 
 def _tasks(poses):
-    """Name, function and its arguments, of every function of bodies of one kind."""
+    """(name, function, arguments) for every correlation of the bodies of one kind."""
     results, bodies = poses.results, getattr(poses, "bodies", None)
     tasks = [("mean_square_displacement", mean_square_displacement, (mapped.own_motion(results),))]
     if "velocity" in results:

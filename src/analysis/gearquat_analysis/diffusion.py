@@ -1,10 +1,9 @@
-"""Diffusion coefficients from the part of the mean-square displacement that is linear, with standard errors.
+"""Diffusion coefficients from the linear part of the mean-square displacement, with standard errors.
 
-A range of lags is from t to 8 t.  The mean-square displacement is fitted from 2 t to 8 t, and its slope there has to be
-that from t to 2 t, where what is left of the motion at short times shows first, and that from 8 t to 16 t.  The
-fit has the weights of the covariance of mean-square displacements of Brownian motion at overlapping lags (J. T.
-Bullerjahn, S. von Buelow, G. Hummer, J. Chem. Phys. 153, 024116 (2020)), and an offset, which motion at short
-times leaves.
+A range of lags extends from t to 8 t.  The mean-square displacement is fitted from 2 t to 8 t.  The range counts as
+linear if this slope agrees with the slopes from t to 2 t, where motion at short times shows first, and from 8 t to 16 t.
+The fit is weighted by the covariance of mean-square displacements of Brownian motion at overlapping lags (J. T.
+Bullerjahn, S. von Buelow, G. Hummer, J. Chem. Phys. 153, 024116 (2020)), and has an offset for motion at short times.
 """
 
 import functools
@@ -17,32 +16,35 @@ from . import mapped
 from .blocks import Estimate, scatter, widening
 from .correlations import portions
 
-#: lags in units of the first of a range; those of the fit, and the one of which the exponent is taken
+#: lags in units of the first lag of a range; the lags of the fit; the lag at which the exponent is taken
 LAGS, FITTED, MIDDLE = np.array([1, 2, 3, 4, 5, 6, 7, 8, 16]), slice(1, 8), 3
-#: a run is at least so many times as long as the first lag of a range, and of one that is only to be linear
+#: least length of a run, in units of the first lag, for a range with a coefficient and for a range that is only tested
 LENGTH, LENGTH_LINEAR = 100, 32
-#: frames between two origins of time are this part of the first lag
+#: number of origins of time per first lag
 ORIGINS = 4
 #: least length of a block of the run, in units of the first lag, and the largest number of blocks
 BLOCK, MOST_BLOCKS = 20, 10
 #: fewest bodies whose scatter is an error
 FEWEST_BODIES = 5
-#: slopes of two parts of a range are the same if they differ by less than this number of standard errors
+#: slopes of two parts of a range agree if they differ by less than this number of standard errors
 SAME = 3.0
 #: d ln(mean square) / d ln(lag) in a range that is linear, and the largest relative error of a coefficient
 EXPONENTS, PRECISION = (0.85, 1.18), 0.2
-#: relative error of a slope that tells nothing about its range; errors so large are not those of a normal distribution
+#: relative error of a slope above which its range counts as linear: the distribution of such errors is not normal
 VAGUE = 0.5
-#: part of a Brownian motion's mean square that confined bodies fall below at late lags
+#: bodies are confined if their mean square at late lags is below this fraction of the mean square of Brownian motion
 CONFINED = 0.4
 
 
 class Fit(NamedTuple):
-    """Diffusion coefficient of a range that begins at a lag of ``frames``, by frames.
+    """Diffusion coefficient of a range whose first lag is ``frames``, in units of frames.
 
-    ``exponent``: d ln(mean square) / d ln(lag) in the range; ``square``: mean square in a direction at 8 times the first
-    lag; ``linear``: whether the range may be linear as far as errors tell; if so, ``known`` is whether they tell enough;
-    ``blocks``: their number; ``together``: how much larger errors are because bodies are not independent.
+    * ``exponent``: d ln(mean square) / d ln(lag) in the range
+    * ``square``: mean square in a direction at 8 times the first lag
+    * ``linear``: True if the range is linear within errors
+    * ``known``: True if it is linear and the errors are small enough
+    * ``blocks``: number of blocks
+    * ``together``: factor by which errors are larger because bodies are not independent
     """
 
     frames: int
@@ -63,11 +65,12 @@ class Fit(NamedTuple):
 def diffusion(time, center, dimensions=3):
     """Estimate of the diffusion coefficient of centers (F, B, 3) of one kind of bodies, length squared / time.
 
-    A sixth (in two ``dimensions`` a fourth) of the slope of the mean-square displacement in the first range of lags from
-    which on it is linear.  The error is the largest of three: the scatter of blocks of the run, that of bodies, and the
-    one that Brownian motion has.  Half of the difference from ranges that begin up to twice as late is added in
-    quadrature.  NaN if no range is linear of which the run has 100 times the first lag, if the error were above
-    a fifth of the coefficient, and if bodies stay where they are.  ``time`` (F,) is evenly spaced.
+    It is a sixth (in two ``dimensions``, a fourth) of the slope of the mean-square displacement.  The slope is taken from
+    the earliest range of lags such that this range and all later ones are linear.  The error is the largest of three: the
+    scatter of blocks of the run, the scatter of bodies, and the error for Brownian motion.  Half of the largest difference
+    from ranges that begin up to twice as late is added in quadrature.  NaN if no range with a first lag below a hundredth
+    of the run is linear, if the error is above a fifth of the coefficient, or if bodies are confined.  ``time`` (F,) is
+    evenly spaced.
 
     >>> import numpy as np
     >>> from gearquat_analysis.diffusion import diffusion
@@ -89,17 +92,17 @@ def diffusion(time, center, dimensions=3):
     if not known and not any(fit.blocks for fit in later):
         return Estimate.missing("the mean-square displacement becomes linear too late for an error")
     if not known:
-        return Estimate.missing("it is not known well enough to tell whether the mean-square displacement is linear")
+        return Estimate.missing("errors are too large to tell whether the mean-square displacement is linear")
     best = known[0]
     if any(fit.square < CONFINED * 2.0 * best.value * 8 * fit.frames for fit in later):
-        return Estimate.missing("bodies do not leave where they are")
+        return Estimate.missing("bodies are confined")
     others = [abs(fit.value - best.value) for fit in known if fit.frames <= 2 * best.frames]
     unit = (time[-1] - time[0]) / (frames - 1)
     return Estimate(best.value / unit, math.hypot(best.error, 0.5 * max(others)) / unit)
 
 
 def _fits(center, dimensions):
-    """Fits of all ranges that the frames of centers (F, B, 3) allow, the earliest first; in units of frames."""
+    """Fits of all ranges for which centers (F, B, 3) have enough frames, the earliest first; in units of frames."""
     number, bodies = center.shape[:2]
     firsts = _first_lags(number)
     of_bodies = {first: np.empty((len(LAGS), bodies)) for first in firsts}
@@ -118,7 +121,7 @@ def _fits(center, dimensions):
 
 
 def _first_lags(frames):
-    """Powers of two and three times these."""
+    """First lags of all ranges: powers of two, and three times powers of two."""
     most = (frames - 1) // LENGTH_LINEAR
     return sorted({first for k in range(most.bit_length()) for first in (2**k, 3 * 2**k) if first <= most})
 
@@ -128,7 +131,7 @@ def _stride(first):
 
 
 def _squares(x, first):
-    """Mean-square displacements (9, b) at lags of a range of x (n, b, 3), and their sums over bodies by block (9, N)."""
+    """Mean-square displacements (9, b) of x (n, b, 3) at the lags of a range, and their sums over bodies in each block (9, N)."""
     length = len(x) - 1
     number = min(MOST_BLOCKS, length // (BLOCK * first)) if length >= LENGTH * first else 0
     ends = np.linspace(0, length, number + 1).astype(int)
@@ -142,11 +145,11 @@ def _squares(x, first):
 
 
 def _fit(first, frames, of_bodies, of_blocks, dimensions, together):
-    """Fit of a range, from mean squares in a direction (9, B) of bodies and (9, N) of blocks."""
+    """Fit of a range, from the mean squares per direction of bodies (9, B) and of blocks (9, N)."""
     stride, blocks = _stride(first), of_blocks.shape[1]
     steps, per_lag = (frames - 1) // stride, first // stride
     weights, mean = _weights(steps, per_lag), of_bodies.mean(axis=1)
-    slope, through = float(weights[0] @ mean), mean[MIDDLE] / LAGS[MIDDLE]  # by the first lag
+    slope, through = float(weights[0] @ mean), mean[MIDDLE] / LAGS[MIDDLE]  # per first lag
     if not through > 0.0:
         return Fit(first, 0.0, math.inf, 0.0, 0.0, False, blocks, together)
     number = of_bodies.shape[1]
@@ -172,8 +175,11 @@ def _fit(first, frames, of_bodies, of_blocks, dimensions, together):
 
 @functools.lru_cache(maxsize=64)
 def _weights(steps, per_lag):
-    """Weights (4, 9) of mean squares at the lags of a range: for the slope of the fit by the first lag t, and for the
-    differences from it of the slopes from t to 2 t and from 8 t to 16 t, and of those from 2 t to 4 t and 4 t to 8 t."""
+    """Weights (4, 9) of mean squares at the lags of a range; slopes are per first lag t.
+
+    Row 0 gives the slope of the fit; rows 1 and 2 the slopes from t to 2 t and from 8 t to 16 t minus the slope of the
+    fit; row 3 the slope from 2 t to 4 t minus the slope from 4 t to 8 t.
+    """
     covariance = brownian_covariance(steps, LAGS * per_lag)
     weights = np.zeros((4, len(LAGS)))
 
@@ -193,7 +199,7 @@ def _weights(steps, per_lag):
 
 @functools.lru_cache(maxsize=64)
 def _brownian_errors(steps, per_lag):
-    """Standard errors (4,) of what ``_weights`` gives for a Brownian motion along a line with a slope of 1."""
+    """Standard errors (4,) of the results of ``_weights`` for a Brownian motion along a line with a slope of 1."""
     weights = _weights(steps, per_lag)
     covariance = brownian_covariance(steps, LAGS * per_lag) / per_lag**2
     return np.sqrt(np.einsum("ai,ij,aj->a", weights, covariance, weights))
@@ -203,12 +209,12 @@ def brownian_covariance(steps, lags):
     """Covariance (L, L) of mean squares of a Brownian motion of ``steps`` at ``lags`` (L,), over all origins of time.
 
     The motion is along a line, and the mean square at a lag of n is n.  Means of products of four Gaussian displacements
-    are those of pairs (L. Isserlis, Biometrika 12, 134 (1918)).
+    follow from means of pairs (L. Isserlis, Biometrika 12, 134 (1918)).
     """
     covariance = np.empty((len(lags), len(lags)))
     for row, p in enumerate(lags):
         for column, q in enumerate(lags):
-            apart = np.arange(-q, p + 1)  # from the origin of p to that of q; other displacements do not overlap
+            apart = np.arange(-q, p + 1)  # distances between the origins at which the displacements overlap
             overlap = np.minimum(p, apart + q) - np.maximum(0, apart)
             pairs = np.minimum(steps + 1 - p, steps + 1 - q - apart) - np.maximum(0, -apart)
             total = 2.0 * np.sum(np.maximum(overlap, 0) ** 2 * np.maximum(pairs, 0))

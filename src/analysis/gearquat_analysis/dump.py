@@ -1,11 +1,11 @@
 """LAMMPS dumps as MDAnalysis universes, in double precision.
 
-``open_dump`` reads ``dump custom`` (a row an atom), ``open_table`` the ``dump local`` of the local data of
-fix gear/quat (a row a body).  Both give a Universe whose residues are the bodies: ``resids`` are the
-IDs of the bodies, and residue 0, if there is one, holds the atoms that are in none.
+``open_dump`` reads a ``dump custom`` (one row per atom), ``open_table`` a ``dump local`` of the local data of
+fix gear/quat (one row per body).  Both return a Universe whose residues are the bodies: ``resids`` are the
+IDs of the bodies, and residue 0, if there is one, contains the atoms outside of bodies.
 
-MDAnalysis keeps positions and boxes in single precision.  ``DumpFrames`` therefore leaves the same numbers
-a second time, in double precision, in ``Timestep.data``; and it reads a frame at once, not atom by atom.
+MDAnalysis stores positions and boxes in single precision.  ``DumpFrames`` therefore also stores them in double
+precision, in ``Timestep.data``.  It reads a whole frame at once, not atom by atom.
 """
 
 import re
@@ -24,7 +24,7 @@ from MDAnalysis.topology.LAMMPSParser import DATAParser
 
 from .bodies import places
 
-#: columns of positions, the most useful first: which way they are unwrapped, scaled or not
+#: columns of positions, the preferred ones first
 POSITIONS = {
     "unwrapped": ("xu", "yu", "zu"),
     "scaled unwrapped": ("xsu", "ysu", "zsu"),
@@ -34,16 +34,16 @@ POSITIONS = {
 VELOCITIES = ("vx", "vy", "vz")
 IMAGES = ("ix", "iy", "iz")
 HEADER_LINES = 9
-#: how files of gzip and bzip2 begin
+#: first bytes of gzip and bzip2 files
 PACKED = b"\x1f\x8b", b"BZh"
-#: column of the fix's table -> name here; each row is one body
+#: column number in the fix's table -> name here
 TABLE = dict(enumerate(["x", "y", "z", "vx", "vy", "vz"], 1))
 TABLE |= dict(enumerate(["ix", "iy", "iz", "q0", "q1", "q2", "q3"], 13))
 TABLE |= dict(enumerate(["wx", "wy", "wz", "lx", "ly", "lz"], 20)) | {28: "id"}
 
 
 class DumpError(ValueError):
-    """A dump that cannot be used; the message says what is required.
+    """Raised for a dump that cannot be used; the message says what is required.
 
     >>> from gearquat_analysis import DumpError, open_dump
     >>> try:
@@ -56,10 +56,10 @@ class DumpError(ValueError):
 
 @dataclass(frozen=True)
 class Header:
-    """What stands before the rows of a frame.
+    """The header of a frame.
 
-    ``units`` and ``time`` are None unless written (``dump_modify units yes``, which is said once in a
-    file, and ``time yes``); ``box`` (3, 3) has the edges as rows; ``kind`` is ATOMS or ENTRIES.
+    ``units`` (``dump_modify units yes``, written once in a file) and ``time`` (``dump_modify time yes``) are None unless
+    written; ``box`` (3, 3) has the edges as rows; ``kind`` is ATOMS or ENTRIES.
     """
 
     step: int
@@ -74,7 +74,7 @@ class Header:
 
 
 def read_header(file, name, line=None):
-    """Header of the frame that begins here, or with a ``line`` that was read.  Raises DumpError if none does."""
+    """Header of the frame that begins here, or with a ``line`` already read.  Raises DumpError if no frame begins here."""
     line, extra = file.readline() if line is None else line, {}
     for item, read in (("units", str.strip), ("time", float)):
         if line == f"ITEM: {item.upper()}\n":
@@ -85,7 +85,7 @@ def read_header(file, name, line=None):
         raise DumpError(f"{name}: the dump ends within the header of a frame; a whole frame is required")
     expected = "ITEM: TIMESTEP", "ITEM: NUMBER OF", "ITEM: BOX BOUNDS"
     if not all(line.startswith(word) for line, word in zip(lines[0:5:2], expected)):
-        raise DumpError(f"{name}: no frame of a LAMMPS dump begins where one should")
+        raise DumpError(f"{name}: the header of a frame of a LAMMPS dump is required")
     kind, *columns = lines[8].split()[1:]
     if kind not in ("ATOMS", "ENTRIES"):
         raise DumpError(f"{name}: a dump custom or dump local is required, not 'ITEM: {kind}'")
@@ -102,10 +102,10 @@ def _box(title, bounds, name):
     except ValueError:
         numbers = np.empty((0, 0))
     if len(periodic) != 3 or numbers.shape not in ((3, 2), (3, 3)):
-        raise DumpError(f"{name}: a box that is not orthogonal or triclinic as LAMMPS restricts it")
+        raise DumpError(f"{name}: an orthogonal or restricted triclinic box is required")
     low, high = numbers[:, 0].copy(), numbers[:, 1].copy()
     xy, xz, yz = numbers[:, 2] if numbers.shape == (3, 3) else (0.0, 0.0, 0.0)
-    # bounds of a triclinic box are those of the box around it (LAMMPS, Howto_triclinic)
+    # the bounds of a triclinic box are the bounds of the orthogonal box around it (LAMMPS, Howto_triclinic)
     low[:2] -= min(0.0, xy, xz, xy + xz), min(0.0, yz)
     high[:2] -= max(0.0, xy, xz, xy + xz), max(0.0, yz)
     box = np.diag(high - low)
@@ -114,7 +114,7 @@ def _box(title, bounds, name):
 
 
 def columns_of(path):
-    """Names of the columns of a dump, and whether it is a ``dump local``."""
+    """Names of the columns of a dump, and True if it is a ``dump local``."""
     if not Path(path).is_file():
         raise DumpError(f"{path}: no such file")
     if not Path(path).stat().st_size:
@@ -123,36 +123,39 @@ def columns_of(path):
         with anyopen(str(path)) as file:
             header = read_header(file, path)
     except UnicodeDecodeError:
-        raise DumpError(f"{path}: a dump of text is required, and this is a binary file") from None
+        raise DumpError(f"{path}: this is a binary file; a text dump is required") from None
     return header.columns, header.kind == "ENTRIES"
 
 
 class DumpFrames(DumpReader):
-    """MDAnalysis' reader of LAMMPS dumps, a frame at once and in double precision.
+    """MDAnalysis' reader of LAMMPS dumps, changed to read a frame at once and in double precision.
 
-    ``Timestep.positions`` are those of MDAnalysis (single precision, box moved to the origin);
-    they are unwrapped where the dump tells how.  ``Timestep.data`` holds besides ``step`` and ``time``
-    (that of the dump if it has one, else the step times ``dt``)
+    ``Timestep.positions`` follow MDAnalysis' convention (single precision, box moved to the origin); they are unwrapped
+    if the dump has the columns for it.  ``Timestep.data`` contains
 
-    * ``x`` (n, 3): positions as LAMMPS counts them, unwrapped by the dump's own columns if it has them
-    * ``whole``: whether that was so, or nothing is periodic
+    * ``step``; ``time``: the time in the dump, or else the step times ``dt``
+    * ``x`` (n, 3): positions in LAMMPS' coordinates, unwrapped if the dump has the columns for it
+    * ``whole``: True if positions are unwrapped or no direction is periodic
     * ``v`` (n, 3): velocities, if the dump has them
     * ``box`` (3, 3): edges as rows; ``origin`` (3,); ``periodic`` (3,)
     * each of ``additional_columns`` (n,)
 
-    ``dt`` is the time between two frames, their mean distance if they are not evenly spaced, and ``totaltime`` that
-    between the first and the last one, both in units of ``Timestep.time``.
+    The attribute ``dt`` is the (mean) time between two frames, and ``totaltime`` the time from the first to the last
+    frame, both in units of ``Timestep.time``.  Further attributes describe the dump:
 
-    Rows are sorted by ID, and columns may be in another order in each frame.  Raises DumpError if IDs are missing,
+    * ``unit_style``: LAMMPS' units or None
+    * ``timed``: True if the dump has times
+    * ``counted``: True if numbers of steps replace times, because neither the dump nor ``dt`` gives them
+    * ``cut_off``: True if the last frame is incomplete; it is left out with a warning
+
+    Rows are sorted by ID; the order of columns may change from frame to frame.  Raises DumpError if IDs are missing,
     occur twice or change, if positions are missing, if the number of rows or the set of the columns that are read
-    changes, or if the first frame is not whole.  ``unit_style``, ``timed``, ``counted`` and ``cut_off`` tell of
-    the dump: LAMMPS' units or None, whether it has times, whether numbers of steps stand for times because neither
-    the dump nor ``dt`` gives them, and whether its last frame is not whole; that one is left out with a warning.
+    changes, or if the first frame is incomplete.
 
-    ``names`` renames columns: of a ``dump local`` those of LAMMPS are ``f_ID[1]`` and so on.
+    ``names`` renames columns; LAMMPS names the columns of a ``dump local`` ``f_ID[1]`` and so on.
     """
 
-    _auxs = {}  # which MDAnalysis closes, also of a reader that was refused
+    _auxs = {}  # MDAnalysis closes these, even if the reader raised an error
 
     def __init__(self, filename, additional_columns=(), names=None, dt=None, **kwargs):
         self._names, self._ids, self._groups = names or {}, None, None
@@ -164,13 +167,13 @@ class DumpFrames(DumpReader):
         super().__init__(filename, additional_columns=list(additional_columns), **kwargs)
 
     def _scan(self, filename):
-        """Where whole frames begin, and what the first one says."""
+        """Find the offsets of complete frames, and take units and times from the headers."""
         with open(filename, "rb") as file:
             self.packed = file.read(3).startswith(PACKED)
         self._offsets, first, self.cut_off = [], None, False
         with anyopen(filename) as file:
             while True:
-                here, line = file.tell(), file.readline()  # without a step back, see _read_frame
+                here, line = file.tell(), file.readline()  # never seek back, see _read_frame
                 if not line:
                     break
                 try:
@@ -180,12 +183,12 @@ class DumpFrames(DumpReader):
                         end = file.readline()
                     self.cut_off = not end.endswith("\n")
                 except (ValueError, IndexError):
-                    # the end of a run that was killed, or no dump
+                    # the run was killed, or the file is not a dump
                     if first is None or file.readline():
                         raise
                     self.cut_off = True
                 if self.cut_off and first:
-                    warnings.warn(f"{filename}: the last frame is not whole, and is left out", stacklevel=2)
+                    warnings.warn(f"{filename}: the last frame is incomplete and is left out", stacklevel=2)
                     break
                 if self.cut_off:
                     raise DumpError(f"{filename}: the dump ends within its first frame; a whole frame is required")
@@ -202,7 +205,7 @@ class DumpFrames(DumpReader):
         super()._reopen()
 
     def _read_frame(self, frame):
-        # a compressed file is unpacked anew from its beginning for each step back, and seek goes back
+        # in a compressed file, avoid seek: it may unpack the file again from its beginning
         if frame < self._next or not self.packed:
             self._file.seek(self._offsets[frame])
         else:
@@ -217,12 +220,12 @@ class DumpFrames(DumpReader):
     totaltime = property(lambda self: self._total)
 
     def _columns(self, header):
-        """Index of each column that is read; the kind of its positions."""
+        """Index of each column that is read, and the kind of positions."""
         where = f"{self.filename}, step {header.step}"
         index = {self._names.get(name, name): k for k, name in enumerate(header.columns)}
         kind = next((k for k, names in POSITIONS.items() if set(names) <= set(index)), None)
         if "id" not in index:
-            raise DumpError(f"{where}: no column id; without it a row cannot be followed from frame to frame")
+            raise DumpError(f"{where}: no column id; it is required to identify atoms in all frames")
         if kind is None:
             raise DumpError(f"{where}: no positions; columns xu yu zu or x y z are required")
         missing = [name for name in self._additional_columns if name not in index]
@@ -244,7 +247,7 @@ class DumpFrames(DumpReader):
         ts.frame += 1
         if ts.frame >= len(self):
             raise EOFError
-        self._next = len(self) + 1  # within a frame, until it is read
+        self._next = len(self) + 1  # the file is within a frame until the frame is read
         header = read_header(self._file, self.filename)
         if header.rows != self.n_atoms:
             raise DumpError(
@@ -252,7 +255,7 @@ class DumpFrames(DumpReader):
                 " frame; the number must not change: dump a group whose atoms stay"
             )
         columns, kind = self._columns(header)
-        # not by iteration: a file that is iterated over cannot tell where it is
+        # readline, not iteration: tell() fails during iteration
         lines = [self._file.readline() for _ in range(header.rows)]
         try:
             table = np.loadtxt(lines, usecols=list(columns.values()), ndmin=2)
@@ -299,18 +302,18 @@ class DumpFrames(DumpReader):
             )
 
     def pop_columns(self, names):
-        """The additional columns with these names, name -> (n,), which are not read from now on."""
+        """Return the additional columns with these names, name -> (n,), and stop reading them."""
         self._additional_columns = [name for name in self._additional_columns if name not in names]
         return {name: self.ts.data.pop(name) for name in names}
 
     @property
     def ids(self):
-        """IDs (n,) of the rows, rising."""
+        """IDs (n,) of the rows, ascending."""
         return self._ids.astype(int)
 
 
 def _names(masses, types):
-    """Names and elements (n,) for viewers, if all masses are those of elements; else T1 ... and None."""
+    """Names and elements (n,) for viewers if all masses are masses of elements; else names T1 ... and None."""
     symbols = np.array(list(MASSES))
     weights = np.array([MASSES[symbol] for symbol in symbols])
     kinds, which = np.unique(masses, return_inverse=True)
@@ -321,7 +324,7 @@ def _names(masses, types):
 
 
 def _universe(reader, bodies, masses, types, charges=None):
-    """A Universe of what ``reader`` reads, whose residues are the bodies."""
+    """A Universe with the trajectory of ``reader``; its residues are the bodies."""
     numbers, residue = np.unique(bodies, return_inverse=True)
     universe = MDAnalysis.Universe.empty(len(residue), len(numbers), atom_resindex=residue)
     names, elements = _names(masses, types)
@@ -341,13 +344,13 @@ def _universe(reader, bodies, masses, types, charges=None):
 
 
 def _from_data_file(data, atom_style, ids, whole):
-    """Masses, bodies (molecule IDs; None if it has none) and types of the atoms ``ids``, from a LAMMPS data file.
+    """Masses, bodies (molecule IDs, or None) and types of the atoms ``ids``, from a LAMMPS data file.
 
-    ``whole``: raise DumpError if it has more atoms of these bodies.
+    ``whole``: raise DumpError if the file has other atoms of these bodies.
     """
     style = {"atom_style": atom_style} if atom_style else {}
     try:
-        # without its velocities, which are not needed, and whose section goes on to the next one that MDAnalysis knows
+        # the topology only: velocities are not needed, and MDAnalysis reads on until a section that it recognizes
         with DATAParser(str(data)) as parser, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             known = MDAnalysis.Universe(parser.parse(**style), to_guess=()).atoms
@@ -360,7 +363,7 @@ def _from_data_file(data, atom_style, ids, whole):
         ) from error
     place = places(known.ids, ids)
     if (place < 0).any():
-        raise DumpError(f"{data}: no atom {ids[place < 0][0]}, which the dump has")
+        raise DumpError(f"{data}: atom {ids[place < 0][0]} of the dump is missing")
     molecules = not atom_style or "resid" in atom_style.split()
     other = np.setdiff1d(np.arange(len(known)), place)
     other = other[np.isin(known.resids[other], np.setdiff1d(known.resids[place], [0]))]
@@ -374,12 +377,12 @@ def _from_data_file(data, atom_style, ids, whole):
 
 
 def _check_same(what, found, dumped, ids):
-    """Raises DumpError if numbers (n,) of a data file are not those of the dump, which may have six digits, or be None."""
+    """Raises DumpError if numbers (n,) of a data file differ from the dump's, which may have only six digits, or be None."""
     other = np.zeros(0, int) if dumped is None else np.flatnonzero(~np.isclose(found, dumped, rtol=1e-5, atol=0.0))
     if len(other):
         k = other[0]
         raise DumpError(
-            f"{what} {found[k]:g} of atom {ids[k]}, which has {dumped[k]:g} in the dump: the data file of the dumped run is"
+            f"{what} {found[k]:g} of atom {ids[k]}, but {dumped[k]:g} in the dump: the data file of the dumped run is"
             " required"
         )
 
@@ -387,15 +390,19 @@ def _check_same(what, found, dumped, ids):
 def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_style=None):
     """Universe of a ``dump custom``.
 
-    The dump needs ``id`` and positions (``xu yu zu``, or ``x y z`` with ``ix iy iz`` in a periodic box; scaled
-    ones as well); for energies ``vx vy vz``; ``mol`` and ``mass`` unless ``data`` names the LAMMPS data
-    file (with ``atom_style`` as MDAnalysis writes it, such as "id type x y z", if not full or molecular).
-    ``dump_modify ... format float %.17g`` keeps all digits.  Atoms may be in any order.
+    The dump needs the columns ``id``, positions (``xu yu zu``, or ``x y z`` with ``ix iy iz`` in a periodic box; scaled
+    ones as well), ``vx vy vz`` for energies, and ``mol`` and ``mass`` unless ``data`` is given.  Atoms may be in any
+    order.  ``dump_modify ... format float %.17g`` keeps all digits.
 
-    ``body`` is the column whose value is the ID of an atom's body (0: in none), such as ``i_body``;
-    ``potential`` one with energies of atoms, such as ``c_energy``; ``timestep`` that of LAMMPS, so that
-    times are in its units (not needed where the dump has times).  Raises DumpError if a column is missing, and for a
-    data file that cannot be read, or has other types or masses than the dump.
+    * ``data``: LAMMPS data file with masses and molecules
+    * ``body``: column with the ID of an atom's body (0: in none), such as ``i_body``
+    * ``potential``: column with energies of atoms, such as ``c_energy``
+    * ``timestep``: LAMMPS' time step; not needed if the dump has times
+    * ``atom_style``: columns of the data file in MDAnalysis' notation, such as "id type x y z", if its atom style is not
+      full or molecular
+
+    Raises DumpError if a column is missing, and for a data file that cannot be read or has other types or masses than
+    the dump.
 
     >>> from gearquat_analysis import open_dump
     >>> universe = open_dump("nitrogen.dump")
@@ -413,7 +420,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     known = reader.pop_columns(extra)
     if data is not None:
         masses, bodies, types = _from_data_file(data, atom_style, reader.ids, body == "mol" and body not in known)
-        if np.char.isdigit(types.astype(str)).all():  # and no labels
+        if np.char.isdigit(types.astype(str)).all():  # not labels
             _check_same(f"{data}: type", types.astype(int), known.get("type"), reader.ids)
         _check_same(f"{data}: mass", masses, known.get("mass"), reader.ids)
     else:
@@ -422,7 +429,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
         raise DumpError(f"{path}: no column mass; dump it, or give a data file (--data)")
     if body not in known and (bodies is None or body != "mol"):
         raise DumpError(
-            f"{path}: no column {body}; it says which atoms make which body: dump it, name another column"
+            f"{path}: no column {body}, which has the IDs of bodies: dump it, name another column"
             " (--body), or give a data file with molecules (--data)"
         )
     bodies = known.get(body, bodies).astype(int)
@@ -431,10 +438,10 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
 
 
 def open_table(path, timestep=None):
-    """Universe of a ``dump local`` of the fix's local data: an atom a body, at its center of mass.
+    """Universe of a ``dump local`` of the fix's local data: one atom per body, at its center of mass.
 
     ``dump ID group local N FILE index f_FIX[1] f_FIX[2] ...`` with at least the columns 1 to 6, 13 to 25 and 28.
-    Masses are not among them.  Raises DumpError if a column is missing.
+    They do not include masses.  Raises DumpError if a column is missing.
 
     >>> from gearquat_analysis import open_table
     >>> len(open_table("nitrogen.table").residues)
@@ -455,9 +462,9 @@ def open_table(path, timestep=None):
 
 
 def open_any(path, timestep=None, **options):
-    """Universe of a dump of either kind, and whether it is a ``dump local`` of the fix.
+    """Universe of a dump of either kind, and True if it is a ``dump local`` of the fix.
 
-    ``options`` are those of ``open_dump``.  Raises DumpError if one is given with a table, which does not need it.
+    ``options`` are passed to ``open_dump``.  Raises DumpError if an option is given with a table of the fix.
 
     >>> from gearquat_analysis import open_any
     >>> [open_any(path)[1] for path in ("nitrogen.dump", "nitrogen.table")]
@@ -467,7 +474,7 @@ def open_any(path, timestep=None, **options):
     unused = [name for name, value in options.items() if value not in (None, "mol")]
     if local and unused:
         raise DumpError(
-            f"{path}: a table of the fix, whose rows are bodies; leave out what is about atoms: {' '.join(unused)}"
+            f"{path}: the rows of a table of the fix are bodies; leave out the options for atoms: {' '.join(unused)}"
         )
     if local:
         return open_table(path, timestep), True

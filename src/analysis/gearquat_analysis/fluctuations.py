@@ -1,6 +1,7 @@
-"""What fluctuations of the volume and of the dipole moment say: compressibility and dielectric constant.
+"""Compressibility and dielectric constant from fluctuations of the volume and of the dipole moment.
 
-Both are averages of a square, whose blocks are much longer than those of a mean.  The error is that of ``of_series``.
+Both are averages of a square and need much longer blocks than the average of the quantity itself.  Errors are from
+``of_series``.
 """
 
 import numpy as np
@@ -11,14 +12,14 @@ from .blocks import Estimate, of_series
 from .superposition import rotate
 from .units import UNITS
 
-#: a body with a charge above this part of its largest one is an ion
+#: a body is an ion if its total charge is above this fraction of the largest charge of a site
 NEUTRAL = 1e-4
 
 
 def compressibility(poses, volume, temperature, weights=None):
     """Estimate of the isothermal compressibility from volumes (F,) at constant pressure, in 1/GPa; with units lj, σ³/ε.
 
-    (<V²> - <V>²) / (kB T <V>), at the ``temperature`` of the bodies.
+    It is (<V²> - <V>²) / (kB T <V>), with the ``temperature`` of the bodies.
     """
     units = UNITS[poses.units or "lj"]
     mean = np.average(volume, weights=weights)
@@ -32,7 +33,8 @@ def compressibility(poses, volume, temperature, weights=None):
 def dipole_moments(poses):
     """Total dipole moment of all bodies in each frame, (F, 3), charge x length, from the sites' ``charges``.
 
-    Raises ValueError if a body has a charge, because the moment of ions depends on the origin, or if there are no charges.
+    Raises ValueError if there are no charges, or if a body has a net charge: the dipole moment of an ion depends on the
+    origin.
     """
     bodies, q = poses.bodies, poses.results.q
     charges = getattr(poses.atoms, "charges", None)
@@ -49,8 +51,9 @@ def dipole_moments(poses):
 def dielectric_constant(poses, temperature, weights=None):
     """Estimate of the static dielectric constant of an isotropic periodic system with Ewald sums or PPPM.
 
-    1 + 4 pi C <M²> / (3 V kB T), with Coulomb's constant C and conducting boundaries (M. Neumann, Mol. Phys. 50, 841
-    (1983), Eq. 21); <M> is taken as zero.  NaN with the reason if there are no charges, ions, or no three periods.
+    It is 1 + 4 pi C <M²> / (3 V kB T), with Coulomb's constant C and conducting boundaries (M. Neumann, Mol. Phys. 50,
+    841 (1983), Eq. 21); <M> is taken as zero.  NaN with the reason if there are no charges, if there are ions, or if a
+    direction is not periodic.
     """
     try:
         moments = dipole_moments(poses)

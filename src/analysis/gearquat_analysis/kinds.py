@@ -1,4 +1,4 @@
-"""Kinds of bodies in a mixture: which bodies are of which, and their names."""
+"""Kinds of bodies in a mixture, and their names."""
 
 from collections import Counter
 from types import SimpleNamespace
@@ -8,15 +8,15 @@ import numpy as np
 
 from .mapped import Part
 
-#: more kinds than these are no mixture of species, but bodies that are all different
+#: largest number of kinds; with more, bodies are taken as all different, not as a mixture of species
 MOST = 8
-#: relative differences of masses and of principal moments that make no other kind; six digits leave moments about 1e-3
-#: uncertain
+#: relative differences of masses and of principal moments within a kind; with six digits, moments are uncertain by about
+#: 1e-3
 SAME_MASS, SAME_MOMENTS = 1e-4, 0.02
 
 
 class Kind(NamedTuple):
-    """Bodies with the same sites: their ``name``, "" if all are of one kind, and their places (b,) among all bodies.
+    """Bodies with the same sites: their ``name``, "" if all are of one kind, and their indices (b,) among all bodies.
 
     >>> from gearquat_analysis import Poses, open_dump
     >>> from gearquat_analysis.kinds import kinds
@@ -29,18 +29,19 @@ class Kind(NamedTuple):
 
 
 class _Results(dict):
-    """Results by their names, as attributes as well."""
+    """A dict of results whose keys are also attributes."""
 
     __getattr__ = dict.__getitem__
 
 
 def kinds(poses):
-    """Kinds of the bodies of ``Poses``, the first one first; a single one without a name if they cannot be told apart.
+    """Kinds of the bodies of ``Poses``, in order of their first bodies; a single Kind without a name if there is only one.
 
-    Bodies are of one kind if their sites have the same types and masses, and if their principal moments are within 2 %.
-    A name is the formula if all masses are those of elements (H2O), and else made of types of atoms: T1(T2)2 has one
-    site of type 1 and two of type 2.  Kinds with the same formula are numbered (C8H10-1).  The fix's table has no masses,
-    so all its bodies are of one kind.  So are those of more than 8 kinds; ``too_many`` tells.
+    Bodies are of one kind if their sites have the same types and masses, and if their principal moments agree within 2 %.
+    The name is the chemical formula if all masses are masses of elements (H2O).  Otherwise it consists of types of
+    atoms: T1(T2)2 has one site of type 1 and two of type 2.  Kinds with the same formula are numbered (C8H10-1).  A table
+    of the fix has no masses, so its bodies are of one kind.  With more than 8 kinds (``too_many``), all bodies are
+    treated as one kind.
     """
     groups = _groups(poses)
     if len(groups) == 1 or len(groups) > MOST:
@@ -54,12 +55,12 @@ def kinds(poses):
 
 
 def too_many(poses):
-    """Whether bodies are of more kinds than are told apart."""
+    """True if there are more kinds of bodies than ``kinds`` distinguishes."""
     return len(_groups(poses)) > MOST
 
 
 def of_kind(poses, kind):
-    """What averages and correlations need of finished ``poses``, for the bodies of one Kind."""
+    """Finished ``poses`` restricted to the bodies of one Kind, with the attributes that averages and correlations need."""
     if not kind.name:
         return poses
     results = _Results(time=poses.results.time)
@@ -74,7 +75,7 @@ def of_kind(poses, kind):
 
 
 def _groups(poses):
-    """Places of the bodies of each kind; not all of them if there are more than MOST."""
+    """Indices of the bodies of each kind; the search stops after more than MOST kinds."""
     bodies, atoms = getattr(poses, "bodies", None), getattr(poses, "atoms", None)
     if bodies is None or atoms is None:
         return [np.arange(1)]
@@ -104,13 +105,13 @@ def _composition(bodies, types):
 
 
 def _name(poses, body):
-    """Formula of the body at this place."""
+    """Formula of the body with this index."""
     bodies, atoms = poses.bodies, poses.atoms
     own = bodies.index[bodies.of == body]
     if not hasattr(atoms, "elements"):
         count = Counter(f"T{kind}" for kind in _types(atoms)[own].tolist())
         return "".join(f"({name}){n}" if n > 1 else name for name, n in sorted(count.items()))
     count = Counter(atoms.elements[own].tolist())
-    # carbon, hydrogen, and the others by their letters (E. A. Hill, J. Am. Chem. Soc. 22, 478 (1900))
+    # carbon, hydrogen, then the others in alphabetical order (E. A. Hill, J. Am. Chem. Soc. 22, 478 (1900))
     order = sorted(count, key=lambda name: ("CH".find(name) % 3 if "C" in count else 0, name))
     return "".join(f"{name}{count[name] if count[name] > 1 else ''}" for name in order)

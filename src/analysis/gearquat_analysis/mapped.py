@@ -1,17 +1,17 @@
-"""Arrays in files that are mapped into memory, of which only a little is to be held."""
+"""Arrays in memory-mapped files, processed with only a few pages in memory."""
 
 import mmap
 
 import numpy as np
 
-#: rows that are gone over before their pages are let go
+#: rows that are processed before their pages are released
 ROWS = 20
-#: rows of which a few columns are read before their pages are let go; each is mapped with its neighbors
+#: rows that are read before their pages are released, if only a few columns are read
 BLOCK = 500
 
 
 def release(array):
-    """Let go of the pages of a mapped file, or of a field of one; the file keeps what was written.
+    """Release the pages of a memory-mapped array, or of a field of one; the file keeps the data.
 
     Does nothing to an array in memory.
     """
@@ -21,7 +21,7 @@ def release(array):
 
 
 def rows(array, begin=0):
-    """Numbers of the rows of an array, in turn, letting go of its pages on the way."""
+    """Iterate over the indices of rows of an array, releasing its pages regularly."""
     for k in range(begin, len(array)):
         yield k
         if k % ROWS == 0:
@@ -30,9 +30,9 @@ def rows(array, begin=0):
 
 
 class Part:
-    """Some columns of an array (F, B, ...), which are read when they are asked for by ``columns``.
+    """Some columns of an array (F, B, ...), which are read on demand by ``columns``.
 
-    ``own`` (b,): their numbers.  Rows are chosen by a slice: ``part[10:20]``.
+    ``own`` (b,): numbers of the columns.  Rows are selected by a slice: ``part[10:20]``.
     """
 
     def __init__(self, array, own):
@@ -48,10 +48,10 @@ class Part:
 
 
 def carried(x, before, after):
-    """Positions x (..., 3) when the box of ``before`` (4, 3), its origin and its edges, becomes that of ``after``.
+    """Positions x (..., 3) after the box changes from ``before`` to ``after`` (4, 3), each an origin and three edges.
 
-    LAMMPS may flip a tilted box, to other edges of the same lattice.  Those edges of that lattice count that are nearest
-    to the ones before.
+    LAMMPS may flip a tilted box to other edges of the same lattice.  The edges used are vectors of the new lattice that
+    are nearest to the edges before.
     """
     nearest = np.rint(before[1:] @ np.linalg.inv(after[1:]))
     edges = nearest @ after[1:] if np.isclose(abs(np.linalg.det(nearest)), 1.0) else after[1:]
@@ -59,9 +59,9 @@ def carried(x, before, after):
 
 
 class OwnMotion:
-    """Centers (F, B, 3), an array or a Part, less what a changing box has carried them since the first frame.
+    """Centers (F, B, 3), an array or a Part, without their displacement by a changing box since the first frame.
 
-    ``cell`` (F, 4, 3): its origins and edges.  Read by ``columns`` as a Part is.
+    ``cell`` (F, 4, 3): origins and edges of the box.  ``columns`` reads it like a Part.
 
     >>> import numpy as np
     >>> from gearquat_analysis.mapped import OwnMotion, columns
@@ -78,14 +78,14 @@ class OwnMotion:
 
 
 def own_motion(results):
-    """Centers (F, B, 3), or OwnMotion of them if the box changes, of results with ``cell`` (F, 4, 3) or without."""
+    """Centers (F, B, 3) of results, or their OwnMotion if results contain ``cell`` (F, 4, 3) and the box changes."""
     center, cell = results.center, results.cell if "cell" in results else None
     same = cell is None or np.allclose(cell[:, 1:], cell[0, 1:], rtol=1e-6, equal_nan=True)
     return center if same else OwnMotion(center, cell)
 
 
 def columns(array, own):
-    """Columns ``own`` (a slice) of all rows of an array (F, B, ...), a Part or OwnMotion, in memory, as floats."""
+    """Read columns ``own`` (a slice) of all rows of an array (F, B, ...), Part or OwnMotion into an array of floats."""
     if isinstance(array, OwnMotion):
         held = columns(array.array, own)
         moved = [x - carried(last, *cells) for x, last, *cells in zip(held[1:], held, array.cell, array.cell[1:])]

@@ -1,4 +1,4 @@
-"""What all commands have in common: types of options, help pages, progress bars, errors that say what to do."""
+"""Common parts of all commands: types of options, help pages, progress bars, clear errors."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +13,7 @@ FILE = cloup.Path(exists=True, dir_okay=False, path_type=Path)
 
 
 def epilog(*examples):
-    """The end of a help page: ``examples`` are lines that can be pasted into a shell in a checkout."""
+    """The end of a help page; ``examples`` are lines to paste into a shell in a checkout."""
     return "\n  ".join(["\b\nExamples, to be run in a checkout of the repository:", *examples])
 
 
@@ -22,14 +22,14 @@ def command(*examples):
 
 
 def out_option(name, holds):
-    """Option --out: the folder for the results; ``holds``: what it gets."""
+    """Option --out: the folder for the results; ``holds`` describes its contents."""
     folder = cloup.Path(file_okay=False, path_type=Path)
     return cloup.option("--out", type=folder, default=Path(name), help=f"Folder for {holds}.")
 
 
 @contextmanager
 def failing_clearly(*errors):
-    """Decorator: ``errors``, which a user can mend, become messages of the command."""
+    """Decorator that turns ``errors`` of the user into messages of the command, without a traceback."""
     try:
         yield
     except errors as error:
@@ -37,5 +37,5 @@ def failing_clearly(*errors):
 
 
 def progress_bar(iterable=None, **options):
-    """tqdm's progress bar, silent where the output is no terminal."""
+    """tqdm's progress bar, disabled if the output is not a terminal."""
     return tqdm(iterable, disable=None, **options)

@@ -1,6 +1,6 @@
-"""The pictures of ``gearquat analyze``, and how all pictures are made.  Nothing is computed here.
+"""The pictures of ``gearquat analyze``, and the common layout of all pictures.  Nothing is computed here.
 
-Each function returns a Figure of matplotlib, and saves it where a path is given.
+Each function returns a matplotlib Figure, and saves it if a path is given.
 """
 
 from contextlib import contextmanager
@@ -14,13 +14,13 @@ from .bodies import axes_named
 from .style import COLOR, STYLE
 
 PRINCIPAL_AXES = ("#0072b2", "#d55e00", "#009e73")
-#: height of a row of a picture of averages, and of what is above and below the rows
+#: in a picture of averages, the height of a row and of the space above and below the rows
 ROW, AROUND = 0.24, 0.75
 
 
 @contextmanager
 def picture(path=None, title="", figsize=None, **layout):
-    """(figure, axes) in the common style, saved at the end; ``layout`` goes to Figure.subplots."""
+    """(figure, axes) in the common style, saved at the end; ``layout`` is passed to Figure.subplots."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=figsize, layout="constrained")
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
@@ -38,7 +38,7 @@ RESIDUALS = {"residual": "sites", "velocity_residual": "velocities"}
 
 
 def draw_totals(poses, totals, path=None):
-    """Energies of all bodies, and how far they are from rigid, against time; ``totals`` are those of ``poses``."""
+    """Energies of all bodies, and their largest deviation from a rigid body, against time; ``totals`` from ``poses.totals()``."""
     residuals = {
         name: named(label, poses.unit(name)) for name, label in RESIDUALS.items() if totals.get(name, np.zeros(1)).any()
     }
@@ -61,9 +61,9 @@ def draw_totals(poses, totals, path=None):
 
 
 def _panels(functions, units, kind, known):
-    """Title -> curves (values, how they look) of the panels of the functions of one kind of bodies; without empty ones.
+    """Title -> curves (values, style) of the nonempty panels with functions of one kind of bodies.
 
-    ``known``: averages by their names.
+    ``known``: averages by name.
     """
     of, ending = (f" of {kind}", f"_{kind}") if kind else ("", "")
     panels = {"mean square": [], "normalized autocorrelation": [], "correlation of the principal axes": []}
@@ -94,13 +94,13 @@ def _panels(functions, units, kind, known):
 
 
 def draw_correlations(correlations, averages=(), path=None):
-    """Mean squares, autocorrelations of velocities and of axes, against the lag on a logarithmic axis.
+    """Mean squares and autocorrelations of velocities and axes against the lag, on a logarithmic axis.
 
-    There is a row of panels for each kind of bodies.  ``averages``: their diffusion coefficient and correlation times go
-    beside the curves they are found from.
+    There is a row of panels for each kind of bodies.  ``averages``: diffusion coefficients and correlation times that are
+    written beside their curves.
     """
     lag = correlations.functions["lag"]
-    # at later lags there are too few origins
+    # later lags have too few origins
     shown = slice(1, max(2, 2 * len(lag) // 3))
     known = {one.name: one for one in averages if one.known}
     rows = [_panels(correlations.of_kind(kind), correlations.units, kind, known) for kind in correlations.kinds]
@@ -121,15 +121,15 @@ def _draw_functions(axis, title, lag, curves):
         axis.plot(lag, values, **look)
     axis.set_title(title, fontsize=10, loc="left")
     axis.set_xscale("log")
-    axis.xaxis.set_minor_formatter(LogFormatter())  # short numbers; only within few decades
+    axis.xaxis.set_minor_formatter(LogFormatter())  # short labels, only if the axis has few decades
     axis.set_yscale("log" if title.startswith("mean square") else "linear")
     axis.legend(fontsize=7)
 
 
 def draw_averages(averages, path=None):
-    """Every Average that is known, with its standard error: temperatures, diffusion, correlation times.
+    """Every known Average with its standard error: temperatures, diffusion coefficients, correlation times.
 
-    None if there is none.
+    Returns None if no Average is known.
 
     >>> from gearquat_analysis import Poses, averages, open_dump, pictures
     >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run())
@@ -162,9 +162,9 @@ def draw_averages(averages, path=None):
 
 
 def draw_motion(poses, body, path=None):
-    """How the center of one body moves, and the paths of its principal axes on the unit sphere.
+    """The path of the center of one body, and the paths of its principal axes on the unit sphere.
 
-    ``body``: its ID.  A dot is the first frame.
+    ``body``: its ID.  A dot marks the first frame.
 
     >>> from gearquat_analysis import Poses, open_dump, pictures
     >>> poses = Poses(open_dump("nitrogen.dump").atoms).run(stop=100)
@@ -186,7 +186,7 @@ def draw_motion(poses, body, path=None):
 
 
 def _draw_sphere(panel, axes):
-    """Paths (F, 3) of axes, by their numbers, on the unit sphere."""
+    """Draw the paths of axes, number -> (F, 3), on the unit sphere."""
     theta, phi = np.mgrid[0 : np.pi : 13j, 0 : 2 * np.pi : 25j]
     sphere = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
     panel.plot_wireframe(*sphere, color="#cccccc", linewidth=0.4, zorder=0)

@@ -1,15 +1,15 @@
 """Pose, velocity, energy and momentum of every body in every frame, as MDAnalysis analyses.
 
-``Poses`` finds them from sites, ``TablePoses`` takes them from the ``dump local`` of the fix's own table.
+``Poses`` computes them from sites, ``TablePoses`` reads them from the ``dump local`` of the fix's own table.
 
     universe = open_dump("water.dump", timestep=1.0)
     poses = Poses(universe.atoms, units="real").run(verbose=True)
     poses.results.center, poses.results.q                    # (F, B, 3), (F, B, 4)
     Poses(universe.atoms).run(backend="multiprocessing", n_workers=2)
-    Poses(universe.atoms, out="poses.npy").run()             # as large as the disk allows
+    Poses(universe.atoms, out="poses.npy").run()             # limited by disk space, not by memory
 
-All frames of all bodies are one structured array, ``results.table`` (F, B).  With ``out`` it is a file
-that is mapped into memory: each frame is written when it is read, and only its pages are held.
+All frames of all bodies are in one structured array, ``results.table`` (F, B).  With ``out`` it is a memory-mapped
+file: each frame is written as soon as it is read, so only a few pages are in memory.
 """
 
 import csv
@@ -40,19 +40,19 @@ MOTION = {
 }
 TABLE_MOTION = ("velocity", "omega_space", "angular_momentum_space", "ke_rotation")
 POTENTIAL = {"potential": ONE}
-#: residuals above this part of a body's size belong to no rigid body, unless coordinates, of which a dump may have six
-#: digits, are rounded more: by up to 5e-6 of them in each direction, of a site and of its center, in two frames
+#: a body is not rigid if its residual is above this fraction of its size and above this fraction of its coordinates, the
+#: largest effect of six digits: 5e-6 of a coordinate in each direction, for a site and its center, in two frames
 NOT_RIGID, ROUNDED = 0.05, 4e-5
 
 
 class _NoResults(Results):
-    """Results before a run."""
+    """Results before a run; any access raises NoDataError."""
 
     def __getattr__(self, name):
         try:
             return super().__getattr__(name)
         except AttributeError:
-            raise NoDataError(f"there is no results.{name} yet: call run() first") from None
+            raise NoDataError(f"results.{name} does not exist yet: call run() first") from None
 
 
 class _FrameTable(AnalysisBase):
@@ -62,13 +62,13 @@ class _FrameTable(AnalysisBase):
 
     @classmethod
     def get_supported_backends(cls):
-        """Serial, and the processes of MDAnalysis' own backends."""
+        """Serial, and MDAnalysis' own backends with processes."""
         return ("serial", "multiprocessing", "dask")
 
     def __init__(self, atoms, ids, fields, units, out, **kwargs):
         trajectory = atoms.universe.trajectory
         if len(np.unique(atoms.ix)) < len(atoms):
-            raise ValueError("an atom is in the group twice; each is required once, as atoms.unique has them")
+            raise ValueError("an atom is in the group twice; each is required once (atoms.unique)")
         self.units = style_of(trajectory, units)
         super().__init__(trajectory, **kwargs)
         self.results = _NoResults()
@@ -80,15 +80,15 @@ class _FrameTable(AnalysisBase):
         self._out = None if out is None else str(out)
 
     def run(self, start=None, stop=None, step=None, frames=None, **kwargs):
-        """As ``AnalysisBase.run`` of MDAnalysis, which see.
+        """Same as MDAnalysis' ``AnalysisBase.run``.
 
-        Raises ValueError if there is no frame.
+        Raises ValueError if no frame is selected.
         """
         number = len(self._trajectory)
         chosen = slice(start, stop, step) if frames is None else frames
         self._row = {frame: row for row, frame in enumerate(np.arange(number)[chosen].tolist())}
         if not self._row:
-            raise ValueError("no frame is left to analyze")
+            raise ValueError("no frame is selected")
         if self._out:
             shape = len(self._row), len(self.ids)
             np.lib.format.open_memmap(self._out, "w+", self._dtype, shape).flush()
@@ -105,7 +105,7 @@ class _FrameTable(AnalysisBase):
         self.results.step[self._frame_index] = self._step()
         self.results.cell[self._frame_index] = self._cell()
         if self._out:
-            # opened anew: no process holds more than the pages of its frame
+            # opened for each frame, so that a process has only the pages of its frame in memory
             table, row = np.load(self._out, mmap_mode="r+"), self._row[self._ts.frame]
         else:
             table, row = self.results.table, self._frame_index
@@ -113,11 +113,11 @@ class _FrameTable(AnalysisBase):
             table[name][row] = values
 
     def _frame(self):
-        """Fields of the frame at hand: name -> (B, ...)."""
+        """Fields of the current frame, name -> (B, ...)."""
         raise NotImplementedError
 
     def _cell(self):
-        """Origin and edges (4, 3) of the box: of a unit box along directions that are not periodic, NaN without one."""
+        """Origin and edges (4, 3) of the box; a unit box along directions that are not periodic; NaN without a box."""
         data, free = self._ts.data, ~self.periodic
         box = data.get("box", self._ts.triclinic_dimensions)
         if box is None:
@@ -130,7 +130,7 @@ class _FrameTable(AnalysisBase):
         return self._ts.data.get("step", self._ts.frame)
 
     def _require_finite(self, name, values, ids):
-        """Raises ValueError that names the first body, of ``ids`` (n,), with values (n, ...) that are not finite."""
+        """Raises ValueError with the ID, from ``ids`` (n,), of the first body whose values (n, ...) are not all finite."""
         bad = np.flatnonzero(~np.isfinite(values).reshape(len(values), -1).all(axis=1))
         if len(bad):
             raise ValueError(
@@ -151,7 +151,7 @@ class _FrameTable(AnalysisBase):
             results[name] = results.table[name]
 
     def _join(self):
-        """Signs of quaternions that do not jump; centers likewise, where only images are known."""
+        """Make signs of quaternions continuous in time, and centers as well if positions are wrapped."""
         q, center, cell = self.results.table["q"], self.results.table["center"], self.results.cell
         periodic = self._images()
         for k in mapped.rows(q, 1):
@@ -162,14 +162,14 @@ class _FrameTable(AnalysisBase):
                 center[k] -= np.round(moved @ np.linalg.inv(cell[k, 1:])) * periodic @ cell[k, 1:]
 
     def _images(self):
-        """Which directions (3,) are periodic, if centers are to be joined from frame to frame, else None."""
+        """The periodic directions (3,) if centers must be unwrapped from frame to frame, else None."""
         return None
 
-    # --- what is done with the table ------------------------------------------------------------
+    # --- uses of the table ------------------------------------------------------------
     def totals(self):
-        """Sums over the bodies, name -> (F,) or (F, 3); of residuals the largest.
+        """Sums over the bodies, name -> (F,) or (F, 3); for residuals, the largest value.
 
-        ``momentum`` and ``angular_momentum_space`` (about the origin) need masses, so a table of sites.
+        ``momentum`` and ``angular_momentum_space`` (about the origin) need masses, which a table of the fix does not have.
         """
         table, mass = self.results.table, getattr(self, "mass", None)
         names, known = table.dtype.names, mass is not None and "velocity" in table.dtype.names
@@ -193,7 +193,7 @@ class _FrameTable(AnalysisBase):
         A linear body has axis 3 only, and a point none.  Raises ValueError if there is no such body.
         """
         if body not in self.ids:
-            raise ValueError(f"no body has the ID {body}; the first is {self.ids[0]}, and the last {self.ids[-1]}")
+            raise ValueError(f"no body has the ID {body}; the first ID is {self.ids[0]}, and the last {self.ids[-1]}")
         place = list(self.ids).index(body)
         own, known = np.eye(3), range(3)
         if bodies := getattr(self, "bodies", None):
@@ -203,15 +203,15 @@ class _FrameTable(AnalysisBase):
         return np.array(self.results.center[:, place]), {k + 1: turn.apply(own[k]) for k in known}
 
     def unit(self, result):
-        """Unit of a result, such as "Å/fs" of ``velocity``; "" without units.
+        """Unit of a result, such as "Å/fs" for ``velocity``; "" without units.
 
-        Times of frames, and what is found from them (lags, diffusion, correlation times), are in steps if the dump tells
-        no more.
+        Times of frames and results from them (lags, diffusion, correlation times) are in steps if neither the dump nor
+        ``timestep`` gives times.
         """
         return unit_of(result, self.units, "step" if self._counted else None)
 
     def to_dataframe(self):
-        """pandas.DataFrame, a row for each frame and body, frame by frame; vectors are columns x, y and z."""
+        """pandas.DataFrame with a row for each frame and body, frame by frame; vectors have columns x, y and z."""
         frames, bodies = self.results.table.shape
         columns = {
             "step": np.repeat(self.results.step, bodies),
@@ -265,51 +265,50 @@ def _require_whole(atoms):
         number = counted(len(left_out.residues), "body", "bodies")
         raise ValueError(
             f"parts of bodies are selected: {counted(len(left_out), 'atom')} of {number} left out, {own} of the"
-            f" {len(body.atoms)} of body {body.resid}; whole bodies are required, which 'same residue as (...)' selects, with"
-            " the selection between the parentheses"
+            f" {len(body.atoms)} of body {body.resid}; whole bodies are required: put the selection between the parentheses of"
+            " 'same residue as (...)'"
         )
 
 
 class Poses(_FrameTable):
     """Poses and motion of rigid bodies from the positions and velocities of their sites.
 
-    * ``atoms``: AtomGroup or Universe.  Residues are the bodies, residue 0 is none; of ``open_dump``, or of any
-      other trajectory (a DCD with a topology; single precision then).
-    * ``reference``: "first", the shape a body has in its first frame; "principal", the same in its principal
-      axes, so that q is that of the fix (not of bodies with equal moments, whose axes are arbitrary); or positions
-      (n_atoms, 3) of all atoms, in their order.
-    * ``units``: style of units of LAMMPS, if the dump does not tell; energies are in its units, without it in
+    * ``atoms``: AtomGroup or Universe from ``open_dump`` or another trajectory (such as a DCD with a topology, in single
+      precision).  Residues are the bodies; residue 0 is not a body.
+    * ``reference``: the body frame.  "first": the pose in the first frame; "principal": the shape of the first frame in its
+      principal axes, so that q agrees with the fix (except for bodies with equal moments, whose axes are arbitrary); or
+      positions (n_atoms, 3) of all atoms, in their order.
+    * ``units``: LAMMPS' style of units, if the dump does not have it; energies are in its units, without it in
       mass x velocity^2.
-    * ``potential``: column with potential energies of atoms that ``open_dump`` was told to read.
+    * ``potential``: column with potential energies of atoms, given to ``open_dump`` as well.
     * ``out``: file (.npy) for the table; without it the table is in memory.
 
-    Results after ``run``, of F frames of B bodies, in units of the run; ``results.table`` has all as one array:
+    Results after ``run``, for F frames and B bodies, in units of the run; ``results.table`` has all as one array:
 
-    * ``step``, ``time`` (F,); ``ids`` (B,); ``cell`` (F, 4, 3): origin and edges of the box, those of a unit box
-      where it is not periodic
+    * ``step``, ``time`` (F,); ``ids`` (B,)
+    * ``cell`` (F, 4, 3): origin and edges of the box; a unit box along directions that are not periodic
     * ``center`` (F, B, 3): center of mass, unwrapped
-    * ``q`` (F, B, 4): quaternion, scalar first, body -> space; its sign is that of the frame before
-    * ``residual`` (F, B): largest distance of a site from where the rigid reference would have it
-    * ``velocity`` (F, B, 3), ``omega_space`` (F, B, 3): motion of a rigid body that fits the velocities of the
-      sites with the least mass-weighted squares; omega in radians per unit of time
+    * ``q`` (F, B, 4): quaternion, scalar first, body -> space; its sign is continuous in time
+    * ``residual`` (F, B): largest distance of a site from its position in the rigid reference
+    * ``velocity`` (F, B, 3), ``omega_space`` (F, B, 3): the rigid motion that fits the velocities of the sites best
+      (mass-weighted least squares); omega in radians per unit of time
     * ``angular_momentum_space`` (F, B, 3): about the center of mass
-    * ``ke_translation``, ``ke_rotation`` (F, B): kinetic energies of that motion
-    * ``velocity_residual`` (F, B): largest deviation of a site's velocity from it
+    * ``ke_translation``, ``ke_rotation`` (F, B): kinetic energies of the rigid motion
+    * ``velocity_residual`` (F, B): largest deviation of a site's velocity from the rigid motion
     * ``potential`` (F, B)
 
-    The six from ``velocity`` on are there if the frames have velocities.  ``bodies`` (Bodies) has masses, shapes
-    and principal moments.  Sites count as points.  About the axis of a linear body no angle is defined: its
-    q is the shortest rotation from the reference, its omega has no part along the axis; of a point q is
-    1 0 0 0 and omega 0.
+    The six results from ``velocity`` to ``velocity_residual`` exist if the frames have velocities.  ``bodies`` (Bodies) has
+    masses, shapes and principal moments.  Sites are treated as points.  The angle about the axis of a linear body is
+    undefined: its q is the shortest rotation from the reference, and its omega has no component along the axis.  A point
+    has q = 1 0 0 0 and omega = 0.
 
-    Where only wrapped positions are known, bodies are made whole by nearest images (right if smaller
-    than half the box) and followed from frame to frame (right if they move less than half the box).
+    If positions are wrapped, bodies are made whole by nearest images (correct if they are smaller than half the box), and
+    centers are unwrapped from frame to frame (correct if they move less than half the box).
 
-    Raises ValueError for parts of bodies, bodies without mass, atoms that are in the group twice, a reference of another shape and
-    coordinates that are not finite.
-    ``run`` warns of bodies that are not rigid: if a residual is above 5 % of the largest distance of a site from the
-    center of mass and above 4e-5 of a coordinate, as six digits round it.  ``results`` of an analysis that has not run
-    raise NoDataError of MDAnalysis.
+    Raises ValueError for parts of bodies, bodies without mass, atoms that are in the group twice, a reference of another
+    shape and coordinates that are not finite.  ``run`` warns of bodies that are not rigid: their residual is above 5 % of
+    the largest distance of a site from the center of mass, and above 4e-5 of a coordinate, the effect of six digits.
+    ``results`` raises MDAnalysis' NoDataError before ``run``.
 
     >>> from gearquat_analysis import Poses, open_dump
     >>> poses = Poses(open_dump("nitrogen.dump").atoms, reference="principal").run(step=100)
@@ -354,7 +353,7 @@ class Poses(_FrameTable):
         self.bodies.set_shape(reference[self.bodies.index])
 
     def _sites(self):
-        """Positions (n, 3), whole, and velocities (n, 3) or None, of the frame at hand."""
+        """Positions (n, 3) of whole bodies, and velocities (n, 3) or None, in the current frame."""
         ts, own = self._ts, self.atoms.ix[self.bodies.index]
         if "x" in ts.data:
             x, v, whole, box = ts.data["x"][own], ts.data.get("v"), ts.data["whole"], ts.data["box"]
@@ -388,8 +387,8 @@ class Poses(_FrameTable):
         if ratio > NOT_RIGID:
             warnings.warn(
                 f"{self._trajectory.filename}: body {self.ids[body]} is not rigid: at step {self.results.step[k]} a site"
-                f" is {residual[k, body]:.2g} away from where the rigid body has it, {ratio:.0%} of the body's size. Are"
-                " these the bodies, and are positions across the box's boundaries unwrapped?",
+                f" deviates by {residual[k, body]:.2g} from the rigid body, {ratio:.0%} of the body's size. Check the IDs of"
+                " bodies, and that positions are unwrapped at the boundaries of the box.",
                 stacklevel=4,
             )
 
@@ -401,7 +400,7 @@ class Poses(_FrameTable):
         q, residual = superpose(bodies, arms)
         fields = {"center": center, "q": q, "residual": residual}
         if v is not None:
-            # of the rigid shape, not of the sites: thin bodies keep their digits
+            # arms of the rigid shape, not of the sites, which would lose digits for thin bodies
             fields |= self._motion(q, rotate(q[bodies.of], bodies.shape), v)
         if self._potential:
             own = self.atoms.ix[bodies.index]
@@ -409,7 +408,7 @@ class Poses(_FrameTable):
         return fields
 
     def _motion(self, q, arms, v):
-        """Velocity, angular velocity and what follows; ``arms`` and ``v`` (n, 3) of the sites."""
+        """Velocity, angular velocity and derived fields; ``arms`` and ``v`` (n, 3) of the sites."""
         bodies = self.bodies
         velocity = bodies.center(v)
         relative = v - velocity[bodies.of]
@@ -428,10 +427,10 @@ class Poses(_FrameTable):
 
 
 class TablePoses(_FrameTable):
-    """The same from the fix's own table, a Universe of ``open_table``: exact, and one row a body.
+    """Poses and motion from the fix's own table, a Universe of ``open_table``: exact, with one row per body.
 
     Results are ``step``, ``time``, ``ids``, ``center``, ``q``, ``velocity``, ``omega_space``,
-    ``angular_momentum_space`` and ``ke_rotation`` as of ``Poses``.  Masses are not in the table.
+    ``angular_momentum_space`` and ``ke_rotation`` as in ``Poses``.  Masses are not in the table.
 
     >>> from gearquat_analysis import TablePoses, open_table
     >>> poses = TablePoses(open_table("nitrogen.table").atoms).run()

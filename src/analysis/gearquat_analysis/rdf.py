@@ -1,4 +1,4 @@
-"""Radial distribution functions of sites of different bodies, by MDAnalysis' InterRDF, with errors from blocks of the run."""
+"""Radial distribution functions of sites of different bodies from MDAnalysis' InterRDF, with errors from blocks of the run."""
 
 import numpy as np
 from MDAnalysis.analysis.rdf import InterRDF
@@ -10,11 +10,11 @@ BLOCKS = 10
 
 
 def radial_distribution(atoms, first, second, frames=slice(None), bins=150, longest=None):
-    """Distance (n,), g(r) (n,) and its standard error (n,), between two selections of sites in words of MDAnalysis.
+    """Distance (n,), g(r) (n,) and its standard error (n,), between two selections of sites in MDAnalysis' syntax.
 
-    Pairs of sites of one body do not count.  ``longest``: end of the range, by default half of the smallest distance of
-    opposite faces of the box.  The error is the scatter of ten blocks of ``frames``; NaN with fewer than ten frames.
-    Raises ValueError if a selection is empty or the box is not periodic.
+    Pairs of sites within a body are excluded.  ``longest``: end of the range, by default half of the smallest distance
+    between opposite faces of the box.  The error is the scatter of ten blocks of ``frames``; NaN with fewer than ten
+    frames.  Raises ValueError if a selection is empty or the box is not periodic in all directions.
     """
     groups = [atoms.select_atoms(words) for words in (first, second)]
     for words, group in zip((first, second), groups):
@@ -40,5 +40,5 @@ def _of_frames(first, second, frames, bins, longest):
 
 
 def _height(box):
-    """Smallest distance of opposite faces of a box (3, 3)."""
+    """Smallest distance between opposite faces of a box (3, 3)."""
     return float(np.min(1.0 / np.linalg.norm(np.linalg.inv(box), axis=0)))

@@ -8,16 +8,16 @@ from .tables import write_columns, write_rows
 
 
 def write_totals(path, poses):
-    """Write sums over all bodies by frame; returns them, name -> (F,) or (F, 3)."""
+    """Write sums over all bodies for each frame, and return them, name -> (F,) or (F, 3)."""
     totals = poses.totals()
     write_columns(path, {"step": poses.results.step, "time": poses.results.time, **totals})
     return totals
 
 
 def write_bodies(path, poses):
-    """Write what each body is: ID, number of sites, whether linear or a point, mass, principal moments, kind in a mixture.
+    """Write a row for each body: ID, number of sites, shape (general, linear, point), mass, principal moments, species.
 
-    Of a table of the fix only the IDs are known.
+    The species is written for mixtures only.  For a table of the fix, only the IDs are known.
     """
     bodies = getattr(poses, "bodies", None)
     if bodies is None:
@@ -35,20 +35,20 @@ def write_bodies(path, poses):
 
 
 def write_stays(path, stays, ids):
-    """Write a row for each stay: body, place (from 1), times of its first and last frame, whether complete."""
+    """Write a row for each stay: body, place (from 1), times of the first and last frame, True if complete."""
     columns = ids[stays.body], stays.place + 1, stays.time[stays.begin]
     rows = zip(*columns, stays.time[stays.end - 1], stays.complete)
     write_rows(path, ["body", "place", "begin", "end", "complete"], rows)
 
 
 def write_averages(path, averages):
-    """Write a row for each Average: name, value, standard error, unit, and why it is left out if it is."""
+    """Write a row for each Average: name, value, standard error, unit, and the reason if it is left out."""
     blank = [[*row[:1], *("" if np.isnan(x) else x for x in row[1:3]), *row[3:]] for row in averages]
     write_rows(path, ["average", "value", "standard error", "unit", "left out because"], blank)
 
 
 def average_lines(averages):
-    """A line for a terminal for each Average that is known, and one for each reason why others are not."""
+    """Text for a terminal: a line for each known Average, and a line for each reason for missing ones."""
     lines, missing = [f"The {one.name} is {one.text()}." for one in averages if one.known], {}
     for one in averages:
         if not one.known:
@@ -59,7 +59,7 @@ def average_lines(averages):
 
 
 def counted(number, noun, many=None):
-    """ "1 frame", "2 frames"; ``many``: the plural if it is not the noun with an s."""
+    """ "1 frame", "2 frames"; ``many``: the plural, by default the noun with an s."""
     return f"{number} {noun if number == 1 else many or noun + 's'}"
 
 
@@ -70,10 +70,10 @@ def summary(poses, totals):
     lines = [f"{many} {'was' if frames == 1 else 'were'} read, from time {time[0]:g} to {time[-1]:g}."]
     if "residual" in totals:
         worst = totals["residual"].max()
-        lines.append(f"Sites are at most {worst:.2g} away from the rigid body of the first frame.")
+        lines.append(f"Sites deviate by at most {worst:.2g} from the rigid reference.")
     if "velocity_residual" in totals:
         worst = totals["velocity_residual"].max()
-        lines.append(f"Velocities of sites differ by at most {worst:.2g} from those of a rigid body.")
+        lines.append(f"Velocities of sites deviate by at most {worst:.2g} from rigid motion.")
     without = "in mass x velocity^2, without --units"
     for name in ("ke_translation", "ke_rotation", "potential"):
         if name in totals:

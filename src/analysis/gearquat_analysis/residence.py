@@ -14,7 +14,7 @@ from .correlations import lags
 class Stays:
     """K uninterrupted stays of B bodies at S places, in F frames.
 
-    ``body``, ``place`` (K,): counted from 0; ``begin``, ``end`` (K,): first frame and the one after the last;
+    ``body``, ``place`` (K,): counted from 0; ``begin``, ``end`` (K,): the first frame, and the frame after the last;
     ``time`` (F,).
 
     >>> from gearquat_analysis import Poses, open_dump, residence
@@ -33,7 +33,7 @@ class Stays:
     places: int
 
     def of(self, bodies):
-        """Stays of some of the bodies, whose numbers (b,) remain as they are."""
+        """Stays of some ``bodies`` (b,), given by their numbers, which do not change."""
         own = np.isin(self.body, bodies)
         each = (values[own] for values in (self.body, self.place, self.begin, self.end))
         return Stays(*each, self.time, len(bodies), self.places)
@@ -44,25 +44,25 @@ class Stays:
 
     @property
     def complete(self):
-        """Whether both begin and end were seen, (K,)."""
+        """True (K,) if both the beginning and the end of a stay are within the trajectory."""
         return (self.begin > 0) & (self.end < len(self.time))
 
     def fraction(self):
-        """Part of the time of all bodies that is spent at each place, (S,); frames count as in averages."""
+        """Fraction (S,) of the time of all bodies that is spent at each place; frames are weighted as in averages."""
         weights = weights_of(self.time)
         passed = np.concatenate([[0.0], np.cumsum(np.ones(len(self.time)) if weights is None else weights)])
         spent = np.bincount(self.place, passed[self.end] - passed[self.begin], self.places)
         return spent / (self.bodies * passed[-1])
 
     def survival(self):
-        """Probability that a body at a place has been there without a break a lag later, (F,).
+        """Probability (F,) that a body at a place stays there without interruption for a lag.
 
-        Over all origins from which the trajectory is long enough; NaN where there is none.  Raises ValueError unless
-        frames are evenly spaced in time.
+        It is a mean over all origins for which the trajectory is long enough, and NaN if there are none.  Raises
+        ValueError unless frames are evenly spaced in time.
         """
         lags(self.time)
         frames = len(self.time)
-        # a stay of n frames lasts a lag from n - lag origins; sums over longer stays, twice
+        # a stay of n frames lasts a lag from n - lag origins: cumulative sums over longer stays, twice
         longer = np.cumsum(np.bincount(self.frames, minlength=frames + 1)[::-1])[::-1]
         lasting = np.cumsum(longer[1:][::-1])[::-1].astype(float)
         change = np.bincount(self.begin, minlength=frames + 1) - np.bincount(self.end, minlength=frames + 1)
@@ -73,8 +73,8 @@ class Stays:
 def stays(center, places, radius, time, progress=iter):
     """Stays of centers (F, B, 3) within ``radius`` of the nearest of ``places`` (S, 3).
 
-    ``time`` (F,); ``progress`` wraps the iteration over frames.  Raises ValueError for a radius that is
-    not above zero and places that are not points.
+    ``time`` (F,); ``progress`` wraps the iteration over frames.  Raises ValueError if the radius is not
+    positive, or if places are not finite points.
     """
     places = np.atleast_2d(np.asarray(places, dtype=float))
     if places.shape[1] != 3 or not np.isfinite(places).all():

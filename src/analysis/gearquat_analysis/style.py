@@ -1,4 +1,4 @@
-"""How all pictures look: colors and matplotlib's settings."""
+"""Colors and matplotlib settings of all pictures."""
 
 COLOR = {
     "potential": "#0072b2",

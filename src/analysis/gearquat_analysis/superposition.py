@@ -1,9 +1,8 @@
-"""Superposition of many bodies at once: the rotation that carries reference shapes onto sites.
+"""Superposition of many bodies at once: the rotations of reference shapes that fit sites best.
 
-The rotation with the least mass-weighted squares follows from a singular value decomposition (W. Kabsch,
-Acta Cryst. A 34, 827 (1978)).  A step of Newton's method follows: two singular values of a thin body are
-small, and the decomposition alone has as many digits less than the positions allow as its width has less
-than its length.
+The mass-weighted least-squares rotation follows from a singular value decomposition (W. Kabsch, Acta Cryst. A 34, 827
+(1978)), refined by one step of Newton's method.  The refinement is needed for thin bodies: two of their singular values
+are small, so the decomposition alone loses as many digits as the ratio of length to width has.
 
 Quaternions (B, 4): scalar first, as in the fix's own array; body -> space.
 """
@@ -18,15 +17,15 @@ def rotate(q, vectors):
 
 
 def shortest_turn(before, after):
-    """Quaternions (B, 4) of the shortest rotation from directions (B, 3) to others, of unit length.
+    """Quaternions (B, 4) of the shortest rotations between unit vectors ``before`` and ``after`` (B, 3).
 
-    Of opposite directions: half a turn about an axis across them.
+    For opposite directions it is half a turn about an axis perpendicular to them.
     """
     scalar = 1.0 + np.einsum("ij,ij->i", before, after)
     vector = np.cross(before, after)
     opposite = scalar < 1e-14
     if opposite.any():
-        # across the direction: its vector product with the axis it is farthest from
+        # perpendicular to the direction: its vector product with the least aligned axis
         far = np.eye(3)[np.argmin(np.abs(before[opposite]), axis=1)]
         vector[opposite], scalar[opposite] = np.cross(before[opposite], far), 0.0
     q = np.column_stack([scalar, vector])
@@ -34,13 +33,13 @@ def shortest_turn(before, after):
 
 
 def superpose(bodies, arms):
-    """Quaternions (B, 4), scalar not negative, of the rotations shape -> arms; and residuals (B,).
+    """Quaternions (B, 4), with nonnegative scalar, of the rotations shape -> arms; and residuals (B,).
 
-    ``bodies``: Bodies, whose shapes are turned; ``arms`` (n, 3): sites from their centers of mass, in the order
-    of ``bodies``.  The residual is the largest distance of a site from where its rigid body would have it.
+    ``bodies``: Bodies with the shapes; ``arms`` (n, 3): sites relative to their centers of mass, in the order of
+    ``bodies``.  The residual is the largest distance of a site from its position in the rotated shape.
 
-    About the axis of a linear body nothing is known: the rotation is the shortest one from the shape.
-    That of a point is none.
+    The angle about the axis of a linear body is undefined; its rotation is the shortest one from the shape.  The rotation
+    of a point is the identity.
     """
     shape, mass = bodies.shape, bodies.masses[:, None]
     s = bodies.sum((mass * shape)[:, :, None] * arms[:, None, :])
@@ -50,7 +49,7 @@ def superpose(bodies, arms):
     linear, point = bodies.linear, bodies.point
     if linear.any():
         axis = bodies.axes[linear, 2]
-        # of all sites, weighted: their mean direction along the axis
+        # the weighted mean direction of all sites along the axis
         along = np.einsum("bij,bi->bj", s[linear], axis)
         q[linear] = shortest_turn(axis, along / np.linalg.norm(along, axis=1, keepdims=True))
     q[point] = [1.0, 0.0, 0.0, 0.0]
@@ -63,8 +62,8 @@ def superpose(bodies, arms):
 def angles(bodies, reference, positions):
     """Angles (..., B) in radians between the poses of bodies at two sets of ``positions`` (..., n, 3).
 
-    ``bodies``: Bodies, whose shapes become those of the last reference.  A linear body has only an
-    axis to turn, a point has no angle.
+    ``bodies``: Bodies; their shapes are set to the last reference.  For a linear body it is the angle between its axes, for
+    a point 0.
     """
     reference, positions = np.broadcast_arrays(reference, positions)
     turned = np.empty((*positions.shape[:-2], len(bodies)))
@@ -77,8 +76,8 @@ def angles(bodies, reference, positions):
 
 
 def _torque(bodies, q, arms):
-    """Sums (B, 3) in space of m turned shape x arms; zero where q fits best."""
-    # taken along principal axes: about a thin body's own axis it is no difference of larger numbers
+    """Sums (B, 3), in space, of m (rotated shape x arms); zero at the best fit."""
+    # along principal axes, so that the component about a thin body's axis is not a difference of large numbers
     axes = bodies.axes_space(q)
     own = np.einsum("nij,nj->ni", bodies.axes[bodies.of], bodies.shape)
     measured = np.einsum("nij,nj->ni", axes[bodies.of], arms)

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def write_rows(path, header, rows):
-    """Rows of numbers and words as CSV; floats keep all their digits."""
+    """Write rows of numbers and words as CSV; floats keep all their digits."""
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(header)
@@ -15,7 +15,7 @@ def write_rows(path, header, rows):
 
 
 def flat(columns):
-    """Columns (n,), (n, 3) or (n, 4) by their names as columns (n,); parts are named by their axes."""
+    """Split ``columns``, name -> (n,), (n, 3) or (n, 4), into columns (n,), named with suffixes x, y, z or 0 to 3."""
     parts = {}
     for name, values in columns.items():
         values = np.asarray(values)
@@ -25,13 +25,13 @@ def flat(columns):
 
 
 def write_columns(path, columns):
-    """Columns of equal length as CSV, as ``flat`` has them."""
+    """Write columns of equal length as CSV, split by ``flat``."""
     columns = flat(columns)
     write_rows(path, columns, zip(*columns.values()))
 
 
 def aligned(header, rows):
-    """Columns of text with blanks between them; ``rows`` are lists of strings."""
+    """Text with aligned columns; ``rows`` are lists of strings."""
     lines = [header, *rows]
     widths = [max(map(len, column)) for column in zip(*lines)]
     return "\n".join(
@@ -40,7 +40,7 @@ def aligned(header, rows):
 
 
 def rounded(value, digits=3):
-    """Text of a number with so many significant digits; powers of ten only where zeros would be many.
+    """Text of a number with ``digits`` significant digits; powers of ten only for very small or large numbers.
 
     >>> rounded(123.4, 2), rounded(0.00123456), rounded(1234567)
     ('120', '0.00123', '1.23e+06')
@@ -49,7 +49,7 @@ def rounded(value, digits=3):
 
 
 def with_error(value, error, unit=""):
-    """Text of a number and its standard error, which has two digits, and the number as many decimals.
+    """Text of a number and its standard error: the error has two digits, and the number has the same decimals.
 
     >>> with_error(86.2, 10.3), with_error(0.3124, 0.0153, "Å"), with_error(2.744e-4, 1.9e-5)
     ('86 ± 10', '0.312 ± 0.015 Å', '(2.74 ± 0.19)e-4')
@@ -60,7 +60,7 @@ def with_error(value, error, unit=""):
 
 
 def error_cells(value, error):
-    """Number and error, as ``with_error`` has them, as two cells of a table.
+    """Number and error as two cells of a table, rounded as in ``with_error``.
 
     >>> error_cells(86.2, 10.3), error_cells(2.744e-4, 1.9e-5), error_cells(1.5, float("nan"))
     (('86', '10'), ('2.74e-4', '0.19e-4'), ('1.5', ''))
@@ -72,7 +72,7 @@ def error_cells(value, error):
 
 
 def _decimals(value, error):
-    """((number, error), power of ten) as text; the number alone, with six digits, if the error is not positive."""
+    """((number, error) as text, power of ten); only the number, with six digits, if the error is not positive."""
     if not (math.isfinite(value) and math.isfinite(error) and error > 0.0):
         return (rounded(value, 6),), 0
     last = _power(error, 2) - 1
@@ -82,5 +82,5 @@ def _decimals(value, error):
 
 
 def _power(value, digits):
-    """The power of ten of the first of so many digits: 0.0996 has -2 with three, and -1 with two."""
+    """The power of ten of the first digit after rounding to ``digits``: for 0.0996, -2 with three and -1 with two."""
     return int(f"{value:.{digits - 1}e}".partition("e")[2])

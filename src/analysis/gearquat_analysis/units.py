@@ -4,9 +4,14 @@ from typing import NamedTuple
 
 
 class Units(NamedTuple):
-    """Names of the units of time and length; what they are in ps and Å; mass x velocity^2 in the unit
-    of energy, and Boltzmann's constant (mvv2e and boltz in LAMMPS' update.cpp); names of the units of mass and energy;
-    the name of that of density, and mass / length^3 in it, if it is another one (mv2d); Coulomb's constant (qqrd2e).
+    """A style of units; names in parentheses are LAMMPS' names in update.cpp.
+
+    * ``time``, ``length``, ``mass_name``, ``energy_name``: names of the units
+    * ``ps``, ``angstrom``: the units of time and length in ps and Å
+    * ``energy``: mass x velocity^2 in the unit of energy (mvv2e)
+    * ``boltzmann``: Boltzmann's constant (boltz)
+    * ``density_name``, ``density``: the unit of density and mass / length^3 in it (mv2d), if it is not mass / length^3
+    * ``coulomb``: Coulomb's constant (qqrd2e)
     """
 
     time: str
@@ -22,7 +27,7 @@ class Units(NamedTuple):
     coulomb: float = 1.0
 
 
-#: units lj have no ps and Å: one unit becomes one of them
+#: units lj have no values in ps and Å, so 1 is used for both
 UNITS = {
     "lj": Units("", "", 1.0, 1.0, 1.0, 1.0, "m", "ε"),
     "real": Units("fs", "Å", 1e-3, 1.0, 48.88821291**2, 0.0019872067, "g/mol", "kcal/mol", "g/cm³", 1.0 / 0.602214129, 332.06371),
@@ -33,8 +38,8 @@ UNITS = {
     "micro": Units("µs", "µm", 1e6, 1e4, 1.0, 1.3806504e-8, "pg", "pg µm²/µs²", coulomb=8.987556e6),
     "nano": Units("ns", "nm", 1e3, 10.0, 1.0, 0.013806504, "ag", "ag nm²/ns²", coulomb=230.7078669),
 }
-#: units of results, from those of mass M, length L, time T, energy E and temperature K; t is the unit of the times of
-#: frames, which are numbers of steps where the dump tells no more, while velocities are always in LAMMPS' units
+#: units of results, composed of units of mass M, length L, time T, energy E and temperature K.  t is the unit of the times
+#: of frames: steps, if neither the dump nor --timestep gives times.  Velocities are always in LAMMPS' units
 OF_RESULTS = {
     "time": "t",
     "lag": "t",
@@ -62,10 +67,10 @@ OF_RESULTS = {
 
 
 def style_of(trajectory, units=None):
-    """Style of units of a trajectory: what its dump says, or else ``units``; None if neither is known.
+    """Style of units of a trajectory: the style in the dump, or else ``units``; None if neither is known.
 
-    Raises ValueError for an unknown style, one that is not that of the dump, and one that is not what MDAnalysis has
-    made of the numbers of another format.
+    Raises ValueError for an unknown style, and for a style that differs from the dump's, or from the units to which
+    MDAnalysis converted another format.
     """
     ours, stated = hasattr(trajectory, "unit_style"), getattr(trajectory, "unit_style", None)
     if units is None:
@@ -74,11 +79,11 @@ def style_of(trajectory, units=None):
         raise ValueError(f"units {units}: one of {', '.join(UNITS)} is required")
     if stated not in (None, units):
         raise ValueError(f"units {units}: the dump says units {stated}")
-    # of several files there is a reader for each
+    # several files have a reader each
     if not ours and any("LAMMPSDUMP" in one.format for one in getattr(trajectory, "readers", [trajectory])):
         raise ValueError(
-            f"units {units}: MDAnalysis' own reader of LAMMPS dumps (LAMMPSDUMP) has times in ps, but velocities as they"
-            " stand in the dump; a universe of gearquat_analysis.open_dump is required"
+            f"units {units}: MDAnalysis' own reader of LAMMPS dumps (LAMMPSDUMP) converts times to ps, but not velocities;"
+            " a universe of gearquat_analysis.open_dump is required"
         )
     if not ours and units != "metal":
         raise ValueError(
@@ -90,7 +95,7 @@ def style_of(trajectory, units=None):
 def unit_of(result, style, time=None):
     """Unit of a result in a style of units of LAMMPS, such as "Å²/fs"; "" for a pure number or without a style.
 
-    ``time``: the unit of the times of frames if it is not that of the style.
+    ``time``: the unit of the times of frames, if it differs from the style's.
     """
     kind = OF_RESULTS.get("omega_space_autocorrelation" if result.startswith("omega_ax") else result, "")
     if style is None:
