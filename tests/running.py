@@ -24,6 +24,8 @@ from pathlib import Path
 
 import pytest
 
+from lammps_gearquat.logs import tables_of
+
 ROOT = Path(__file__).resolve().parents[1]
 #: another one if `tests/run sanitize` or `versions` says so
 TREE_BUILD = ROOT / "build" / os.environ.get("GEARQUAT_TREE", "tree")
@@ -62,23 +64,7 @@ class Result:
     @property
     def thermo(self) -> list[dict[str, list[float]]]:
         """Thermo tables of the log, one a run, as column name -> values."""
-        tables = []
-        table: dict[str, list[float]] | None = None
-        for line in self.log.splitlines():
-            words = line.split()
-            if words[:1] == ["Step"]:
-                table = {word: [] for word in words}
-                tables.append(table)
-            elif line.startswith("Loop time"):
-                table = None
-            elif table is not None and len(words) == len(table):
-                try:
-                    row = [float(word) for word in words]
-                except ValueError:  # a warning between two rows
-                    continue
-                for column, value in zip(table.values(), row):
-                    column.append(value)
-        return tables
+        return [{name: values.tolist() for name, values in table.items()} for table in tables_of(self.log)]
 
 
 def processes_of_session(session: int) -> list[int]:

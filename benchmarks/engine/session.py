@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .logs import Log
+from lammps_gearquat.logs import Log
+
 from .runner import LammpsError
 
 #: a run may take so many seconds, and so many times its expected time, longer: lost atoms can catch

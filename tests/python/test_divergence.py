@@ -7,8 +7,8 @@ import pytest
 from synthetic import line, make
 
 from benchmarks.engine import series
-from benchmarks.engine.logs import Log
 from benchmarks.studies.cases import divergence as dv
+from lammps_gearquat.logs import Log
 
 
 def test_parting_time_is_the_first_sample_beyond_the_threshold():

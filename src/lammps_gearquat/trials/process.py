@@ -17,15 +17,14 @@ from pathlib import Path
 
 import numpy as np
 
+from ..logs import Log
 from . import checkpoint
 from .interpreter import Interpreter
 from .script import DeckError, conserved, kinetic_parts
 from .worker import Outcome, Sites, Situation, TrialError
 
-_STARTED = re.compile(r"Fix gear/quat \S+: start of order (\d+) from (\d+) force evaluations")
 _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
-_LOOP = re.compile(r"^Loop time of (\S+) on", re.MULTILINE)
 SITES = "gearquat_sites"
 BODIES = "gearquat_bodies"
 #: variables with the energy that is conserved, the kinetic one, and those of translation and rotation of the bodies
@@ -208,10 +207,10 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
         lammps.close()
     if rank:
         return Outcome(rank, samples, energies=watched)
-    text = Path(log).read_text(encoding="utf-8", errors="replace")
-    loops = sum(float(loop) for loop in _LOOP.findall(text)[-len(segments) :])
-    evaluations = sum(int(number) for _, number in _STARTED.findall(text))
-    return Outcome(0, samples, loops, max(seconds - loops, 0.0), evaluations, _warnings(text), watched)
+    left = Log(log)
+    loops = sum(run["Loop"] for run in left.timers[-len(segments) :])
+    start = max(seconds - loops, 0.0)
+    return Outcome(0, samples, loops, start, left.start_evaluations, _warnings(left.text), watched)
 
 
 def _warnings(text):
