@@ -13,17 +13,16 @@ from __future__ import annotations
 
 import os
 import re
-import signal
 import subprocess
 import sysconfig
 import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
 
+from lammps_gearquat.launch import started, words_of
 from lammps_gearquat.logs import tables_of
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -65,32 +64,6 @@ class Result:
     def thermo(self) -> list[dict[str, list[float]]]:
         """Thermo tables of the log, one a run, as column name -> values."""
         return [{name: values.tolist() for name, values in table.items()} for table in tables_of(self.log)]
-
-
-def processes_of_session(session: int) -> list[int]:
-    """Numbers of the processes that a run has started."""
-    members = []
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text().rpartition(")")[2].split()
-        except OSError:
-            continue
-        if int(fields[3]) == session:
-            members.append(int(stat.parent.name))
-    return members
-
-
-def end_session(session: int) -> None:
-    """Ends a program and all it started: ``mpirun`` and ``lmp`` leave children in other groups."""
-    for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
-        for process in processes_of_session(session):
-            try:
-                os.kill(process, number)
-            except ProcessLookupError:
-                pass
-        end = time.monotonic() + grace
-        while time.monotonic() < end and processes_of_session(session):
-            time.sleep(0.05)
 
 
 def own_environment() -> dict[str, str]:
@@ -137,37 +110,23 @@ class Lammps:
 
         command = [*self.launcher, str(ranks)] if ranks > 1 else []
         command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite"]
-        for key, value in (variables or {}).items():
-            values = value if isinstance(value, (list, tuple)) else [value]
-            command += ["-var", key, *map(str, values)]
+        listed = {key: value if isinstance(value, (list, tuple)) else [value] for key, value in (variables or {}).items()}
+        command += words_of((key, *values) for key, values in listed.items())
 
         surroundings = {**own_environment(), **self.environment, **(environment or {})}
         out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
+        # files, not pipes: a child that outlives its parent cannot keep us waiting
         with out.open("w") as stdout, err.open("w") as stderr:
-            # files, not pipes: a child that outlives its parent cannot keep us waiting
-            process = subprocess.Popen(
-                command,
-                cwd=where,
-                env=surroundings,
-                stdin=subprocess.DEVNULL,
-                stdout=stdout,
-                stderr=stderr,
-                start_new_session=True,
-            )
             try:
-                if meanwhile:
-                    meanwhile(process.pid)
-                returncode = process.wait(timeout)
+                with started(command, where, surroundings, stdout, stderr) as process:
+                    if meanwhile:
+                        meanwhile(process.pid)
+                    returncode = process.wait(timeout)
             except subprocess.TimeoutExpired:
-                end_session(process.pid)
-                process.wait()
                 text = out.read_text(errors="replace") + err.read_text(errors="replace")
                 raise TimeoutError(
                     f"{' '.join(command)}: still running after {timeout} s\n{text}"
                 ) from None
-            except BaseException:
-                end_session(process.pid)
-                raise
         said = err.read_text(errors="replace")
         if UNDEFINED in said:
             pytest.fail(said, pytrace=False)

@@ -15,9 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
+from lammps_gearquat.launch import LammpsError, open_library
 from lammps_gearquat.logs import Log
-
-from .runner import LammpsError
 
 #: a run may take so many seconds, and so many times its expected time, longer: lost atoms can catch
 #: LAMMPS in an endless loop
@@ -82,15 +81,10 @@ def perform(deck, variables, log, composition=()):
     ``composition``: parts of the step, of any sign, that are steps of their own and make up each step.
     Raises LammpsError if the scene cannot be defined, RunError if its run fails.
     """
-    import lammps
-
     os.chdir(deck.parent)
     log.parent.mkdir(parents=True, exist_ok=True)
-    arguments = ["-log", str(log), "-screen", "none", "-nocite"]
-    # the deck ends before its run
-    for name, value in (variables | {"last": "jump /dev/null"}).items():
-        arguments += ["-var", name, str(value)]
-    with lammps.lammps(cmdargs=arguments) as lmp:
+    ending = {"last": "jump /dev/null"}  # the deck ends before its run
+    with open_library((variables | ending).items(), log) as lmp:
         try:
             lmp.file(deck.name)
         except Exception as error:  # LAMMPS' module raises Exception itself

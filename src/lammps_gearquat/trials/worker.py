@@ -5,7 +5,6 @@ needs that of MPI loaded first.  See ``process`` for what they do.
 """
 
 import os
-import shutil
 import signal
 import socket
 import subprocess
@@ -17,6 +16,7 @@ from pathlib import Path
 
 from gearquat_analysis.tables import rounded
 
+from ..launch import find
 from .script import DeckError
 
 #: seconds that the processes may take to come up
@@ -79,17 +79,6 @@ class Outcome:
     energies: list = field(default_factory=list)
 
 
-def launcher(ranks):
-    """Words in front of a command that make so many ranks of it."""
-    if ranks == 1:
-        return []
-    beside = Path(sys.executable).parent / "mpiexec"
-    program = str(beside) if beside.is_file() else shutil.which("mpiexec")
-    if not program:
-        raise DeckError("--ranks needs the program mpiexec, which is neither beside Python nor on the PATH")
-    return [program, "-n", str(ranks)]
-
-
 def _drain(connection):
     """Close a connection once its other end is closed, which a process does when it ends."""
     with connection:
@@ -134,9 +123,14 @@ class Worker:
             listener.bind(str(address))
             listener.listen(self.ranks)
             listener.settimeout(0.2)
-            command = [*launcher(self.ranks), sys.executable, "-m", "lammps_gearquat.trials.process"]
+            command = [sys.executable, "-m", "lammps_gearquat.trials.process", str(address)]
+            if self.ranks > 1:
+                mpiexec = find("mpiexec")
+                if not mpiexec:
+                    raise DeckError("--ranks needs the program mpiexec, which is neither beside Python nor on the PATH")
+                command = [mpiexec, "-n", str(self.ranks), *command]
             self.process = subprocess.Popen(
-                [*command, str(address)],
+                command,
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=output,
