@@ -17,6 +17,7 @@ import subprocess
 import sysconfig
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -64,6 +65,15 @@ class Result:
     def thermo(self) -> list[dict[str, list[float]]]:
         """Thermo tables of the log, one a run, as column name -> values."""
         return [{name: values.tolist() for name, values in table.items()} for table in tables_of(self.log)]
+
+
+def processes_that_mention(text: str) -> list[str]:
+    """Command lines of all processes of this machine whose words, with spaces between them, have this text."""
+    commands = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        with suppress(OSError):
+            commands.append(path.read_text().replace("\0", " "))
+    return [command for command in commands if text in command]
 
 
 def own_environment() -> dict[str, str]:

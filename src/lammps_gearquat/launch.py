@@ -44,9 +44,10 @@ def open_library(variables=(), log="none", words=()):
 
 @contextmanager
 def started(command, folder, environment, output, errors=subprocess.STDOUT):
-    """A ``subprocess.Popen`` of a command in a folder, with text for output and nothing for input, as a context.
+    """A ``subprocess.Popen`` of a command in a folder (None: the present one), as a context; its output is text.
 
-    It is the leader of a session; at the end of the context no process of this session is left.
+    ``environment``: None for that of this process.  It gets no input.  It is the leader of a session, and at the end of
+    the context no process of this session is left.
     """
     with subprocess.Popen(
         command,

