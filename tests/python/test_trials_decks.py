@@ -459,10 +459,10 @@ def test_a_budget_that_ends_before_the_trials_is_told(monkeypatch, pace, before,
 def test_what_lammps_says_is_told_whatever_the_budget(monkeypatch):
     deck = MadeUpDeck(1e-3, 3.0)
     monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
-    study = cost.Study(deck, cost.Budget(15.0))
+    inquiry = cost.Inquiry(deck, cost.Budget(15.0))
     deck.now += 20.0
-    study.failures["values 7"] = "lost atoms"
-    assert str(study.refusal("it cannot be tried", "values 7")) == "it cannot be tried: lost atoms"
+    inquiry.failures["values 7"] = "lost atoms"
+    assert str(inquiry.refusal("it cannot be tried", "values 7")) == "it cannot be tried: lost atoms"
 
 
 def test_cost_of_a_deck_that_equilibrates(tmp_path):

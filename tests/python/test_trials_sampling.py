@@ -242,13 +242,13 @@ def test_a_run_that_does_not_tell_is_made_longer(monkeypatch, rate, refused):
     """As in test case 1, where 100 time units once left -0.55 +- 0.60 for a step that drifts by -0.27."""
     deck = MadeUpLiquid(lambda keywords, dt: rate, noise=0.04, pace=1e-5)
     monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
-    study = cost.Study(deck, cost.Budget(60.0))
-    study.pace[""] = deck.pace
-    found = drift.of_step(study, "", 2.0, 0.0, 30.0)
+    inquiry = cost.Inquiry(deck, cost.Budget(60.0))
+    inquiry.pace[""] = deck.pace
+    found = drift.of_step(inquiry, "", 2.0, 0.0, 30.0)
     assert found.refused == refused and found.holds != refused and found.time > 2.0 * drift.longest(deck)
     assert abs(found.rate - rate) < 4.0 * found.error and deck.now < 30.0
-    study.pace[""], deck.pace = 1e-4, 1e-4
-    short = drift.of_step(study, "", 2.0, 0.0, 7.0)
+    inquiry.pace[""], deck.pace = 1e-4, 1e-4
+    short = drift.of_step(inquiry, "", 2.0, 0.0, 7.0)
     assert not short.holds and not short.refused and short.time < 1.01 * drift.longest(deck)
 
 

@@ -8,7 +8,7 @@ from gearquat_analysis.superposition import angles
 
 from ..launch import LammpsError
 from . import evaluate
-from .cost import Budget, Study, warnings_of
+from .cost import Budget, Inquiry, warnings_of
 from .explain import explained
 from .script import DeckError
 
@@ -123,9 +123,9 @@ class _Pair:
 
 def affordable(deck, dt_a, dt_b):
     """The time of the deck's run, or what two runs within BUDGET reach."""
-    study = Study(deck, Budget(BUDGET))
-    study.probe()
-    return min(deck.end, BUDGET / (study.pace[None] / dt_a + study.pace[None] / dt_b))
+    inquiry = Inquiry(deck, Budget(BUDGET))
+    inquiry.probe()
+    return min(deck.end, BUDGET / (inquiry.pace[None] / dt_a + inquiry.pace[None] / dt_b))
 
 
 def sampling(time, every, dt):

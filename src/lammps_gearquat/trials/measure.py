@@ -103,7 +103,7 @@ class Scene:
         return [f"{part[0]}:{part[-1]}" for part in np.split(ids, np.flatnonzero(np.diff(ids) > 1) + 1)]
 
     def of_sites(self, parts):
-        """Positions (n, 3) of the sites of the bodies, from the Sites of all ranks."""
+        """Positions (n, 3) of the sites of the bodies, from the Positions of all ranks."""
         ids = np.concatenate([part.ids for part in parts])
         positions = np.concatenate([part.positions for part in parts])
         place = places(ids, self.ids)

