@@ -22,6 +22,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lammps_gearquat.trials.worker import ENDED
+
 from . import scene, styles, thermostat
 from .styles import BOX, CHANCE, COUNT, FORCE, INTEGRATES, MOVES, PASSIVE, RIGID_ONLY, TAKEN, Try
 
@@ -299,7 +301,7 @@ class Campaign:
             (rigid,) = self._answers(run.rigid())
             told = f"{run}: {answer.first_line}"
             first = run == next(iter(answers))
-            if answer.error.startswith("crash") or rigid.error != answer.error or first:
+            if answer.error.startswith(ENDED) or rigid.error != answer.error or first:
                 same = f"with fix rigid: {rigid.first_line}" if rigid.error else "fix rigid runs"
                 outcome.faults.append(f"{told} ({same})")
             else:

@@ -218,7 +218,7 @@ def serve(address):
     os.environ["OMP_NUM_THREADS"] = "1"
     connection = Client(address, "AF_UNIX")
     threading.Thread(target=_end_with_caller, args=(connection.fileno(),), daemon=True).start()
-    sys.path[:] = connection.recv()  # a function may be of any module that the other side can import
+    sys.path += connection.recv()  # a function may be of any module that the other side can import
     while True:
         try:
             function, arguments = connection.recv()

@@ -22,6 +22,8 @@ from .script import DeckError
 PATIENCE = 60.0
 #: how the message begins where an answer comes too late
 NOT_FINISHED = "not finished"
+#: and where the processes have ended
+ENDED = "LAMMPS ended its process"
 
 
 @dataclass
@@ -87,11 +89,14 @@ def _drain(connection):
 class Worker:
     """Processes that run LAMMPS, begun anew when they are gone, until ``end``.
 
+    ``folder``, whose path has to be short, is for a socket.  ``environment``: None for that of this process;
+    ``launcher``: the words before the number of ranks, if not those of the MPI beside Python or on the PATH.
     ``on_news`` is called with what a request tells while it is at work, ``on_wait`` every now and then.
     """
 
-    def __init__(self, folder, ranks=1):
+    def __init__(self, folder, ranks=1, environment=None, launcher=()):
         self.folder, self.ranks = Path(folder), ranks
+        self.environment, self.launcher = environment, launcher
         self.output = self.folder / "output"
         self.process, self.connections, self._running = None, [], ExitStack()
         self.on_news = self.on_wait = None
@@ -113,11 +118,11 @@ class Worker:
             listener.settimeout(0.2)
             command = [sys.executable, "-m", "lammps_gearquat.trials.process", str(address)]
             if self.ranks > 1:
-                mpiexec = find("mpiexec")
-                if not mpiexec:
+                launcher = self.launcher or (find("mpiexec"), "-n")
+                if not launcher[0]:
                     raise DeckError("--ranks needs the program mpiexec, which is neither beside Python nor on the PATH")
-                command = [mpiexec, "-n", str(self.ranks), *command]
-            self.process = self._running.enter_context(started(command, None, None, output))
+                command = [*launcher, str(self.ranks), *command]
+            self.process = self._running.enter_context(started(command, None, self.environment, output))
             end = time.monotonic() + PATIENCE
             while len(self.connections) < self.ranks:
                 try:
@@ -144,7 +149,7 @@ class Worker:
             answers = self._receive(timeout)
         except (EOFError, OSError) as error:
             self.end()
-            raise LammpsError("LAMMPS ended its process: " + self._last_words()) from error
+            raise LammpsError(f"{ENDED}: " + self._last_words()) from error
         except BaseException:  # Ctrl-C, or not in time
             self.end()
             raise
