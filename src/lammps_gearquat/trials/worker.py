@@ -8,7 +8,7 @@ import os
 import socket
 import sys
 import time
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -78,12 +78,9 @@ class TrialPart:
 
 def _drain(connection):
     """Close a connection once its other end is closed, which a process does when it ends."""
-    with connection:
+    with connection, suppress(EOFError, OSError):
         while connection.poll(PATIENCE):
-            try:
-                connection.recv_bytes()
-            except (EOFError, OSError):
-                return
+            connection.recv_bytes()
 
 
 class Worker:
