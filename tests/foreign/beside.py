@@ -22,6 +22,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lammps_gearquat.trials.worker import ENDED
+
 from . import scene, styles, thermostat
 from .styles import BOX, CHANCE, COUNT, FORCE, INTEGRATES, MOVES, PASSIVE, RIGID_ONLY, TAKEN, Try
 
@@ -153,7 +155,7 @@ def beyond(ours, coarse, fine, a_try):
 
 # --- one style ------------------------------------------------------------------------------------
 @dataclass
-class Outcome:
+class StyleVerdict:
     """``result``: same, acts, refused, warned, LAMMPS refuses, or DIFFERS."""
 
     kind: str
@@ -169,7 +171,7 @@ class Outcome:
         return f"{self.kind} {self.a_try.group} {self.style}{words}"
 
 
-class Run(NamedTuple):
+class SceneRun(NamedTuple):
     """One run of the scene with that number."""
 
     scene: int
@@ -190,12 +192,12 @@ class Run(NamedTuple):
 
 def variants(n, a_try, ranks):
     """The runs of scene ``n`` that have to agree; the first is what others are compared with."""
-    found, several = [Run(n), Run(n, "before")], [number for number in ranks if number > 1]
+    found, several = [SceneRun(n), SceneRun(n, "before")], [number for number in ranks if number > 1]
     if a_try.kind in (INTEGRATES, BOX, RIGID_ONLY) or not a_try.restarts:
-        return found + [Run(n, ranks=number) for number in several]
-    found += [Run(n, restart=True), Run(n, "before", restart=True)]
+        return found + [SceneRun(n, ranks=number) for number in several]
+    found += [SceneRun(n, restart=True), SceneRun(n, "before", restart=True)]
     for number in several:
-        found += [Run(n, "after", number), Run(n, "before", number, restart=True)]
+        found += [SceneRun(n, "after", number), SceneRun(n, "before", number, restart=True)]
     return found
 
 
@@ -234,20 +236,20 @@ class Campaign:
         if self.temp:
             return []
         # a rigid fix takes its first forces from the fixes that are defined before
-        rigid = Run(n, "after" if a_try.behind else "before").rigid()
+        rigid = SceneRun(n, "after" if a_try.behind else "before").rigid()
         if a_try.kind in (PASSIVE, FORCE, TAKEN):
-            return [Run(n, divide=4), rigid._replace(divide=4), rigid._replace(divide=8)]
-        return [Run(n), rigid] if a_try.kind == COUNT else []
+            return [SceneRun(n, divide=4), rigid._replace(divide=4), rigid._replace(divide=8)]
+        return [SceneRun(n), rigid] if a_try.kind == COUNT else []
 
     def outcomes(self):
         tried = [n for n, (_, style, _) in enumerate(self.scenes) if style]
-        alone = [Run(n) for n, (_, style, _) in enumerate(self.scenes) if not style]
+        alone = [SceneRun(n) for n, (_, style, _) in enumerate(self.scenes) if not style]
         for runs_of in (lambda n: variants(n, self.scenes[n][2], self.ranks), self._references):
             self._answers(*alone, *(run for n in tried for run in runs_of(n)))
         return [self._judge(n) for n in tried]
 
     def _judge(self, n):
-        outcome = Outcome(*self.scenes[n])
+        outcome = StyleVerdict(*self.scenes[n])
         kind, runs = outcome.a_try.kind, variants(n, outcome.a_try, self.ranks)
         answers = dict(zip(runs, self._answers(*runs)))
         another = self.temp and outcome.kind == "fix" and outcome.a_try.group != "free"
@@ -262,7 +264,7 @@ class Campaign:
         if not outcome.faults:
             self._consistent(outcome, answers)
             if kind == PASSIVE or (kind == FORCE and not self.temp):
-                self._beside_none(outcome, answers[Run(n)])
+                self._beside_none(outcome, answers[SceneRun(n)])
             self._like_rigid(outcome, self._answers(*self._references(n)))
             if self.temp:
                 self._counted(outcome, answers)
@@ -299,7 +301,7 @@ class Campaign:
             (rigid,) = self._answers(run.rigid())
             told = f"{run}: {answer.first_line}"
             first = run == next(iter(answers))
-            if answer.error.startswith("crash") or rigid.error != answer.error or first:
+            if answer.error.startswith(ENDED) or rigid.error != answer.error or first:
                 same = f"with fix rigid: {rigid.first_line}" if rigid.error else "fix rigid runs"
                 outcome.faults.append(f"{told} ({same})")
             else:
@@ -330,7 +332,7 @@ class Campaign:
             for n, (_, style, a_try) in enumerate(self.scenes)
             if not style and a_try.atoms == outcome.a_try.atoms
         )
-        wrong = worst(distances(*self._answers(Run(plain)), answer), SAME)
+        wrong = worst(distances(*self._answers(SceneRun(plain)), answer), SAME)
         if outcome.a_try.kind == FORCE and not wrong:
             outcome.faults.append("it has no effect in this scene")
         if outcome.a_try.kind == PASSIVE and wrong:

@@ -124,7 +124,7 @@ def run(lammps, text, folder, patience):
 
 
 @dataclass
-class Verdict:
+class DeckVerdict:
     """Per rigid fix of a deck; ``result``: agrees, refused, NEITHER; "runs", if the deck runs with our
     fix and nothing can be compared; "not run", if the deck as it is does not run here."""
 
@@ -202,14 +202,14 @@ class Deck:
                 return
 
     def left_out(self, reason=""):
-        """A Verdict for each rigid fix of the deck, before anything is run."""
+        """A DeckVerdict for each rigid fix of the deck, before anything is run."""
         rigid = convert.rigid_lines(self.text)
         return [
-            Verdict(self.name, " ".join(line.words[3:]), "not run", reason) for line in rigid
+            DeckVerdict(self.name, " ".join(line.words[3:]), "not run", reason) for line in rigid
         ]
 
     def verdicts(self):
-        """A Verdict for each rigid fix of the deck."""
+        """A DeckVerdict for each rigid fix of the deck."""
         own = self._choose()
         if own:
             found = self.left_out(next(name for pattern, name in CANNOT if re.search(pattern, own)))

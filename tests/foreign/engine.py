@@ -1,16 +1,19 @@
 """LAMMPS for many scenes: a worker process on so many ranks, begun anew where a scene has ended it."""
 
-import pickle
 import re
-import signal
 import subprocess
-import sys
+import tempfile
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from lammps_gearquat.launch import LammpsError
+from lammps_gearquat.trials.worker import Worker
 from running import OPEN_MPI_LAUNCHER, Lammps, make_lmp_wheel, python_environment
 
 from . import scene
+from .worker import Answer, run_job
+
+PATIENCE = 300  # seconds for one job
 
 #: suffix of styles -> package that has them, words of the command line
 SUFFIXES = {
@@ -20,20 +23,6 @@ SUFFIXES = {
 }
 #: for INTEL the pair style, too, has to have a variant
 OTHER_PAIRS = {"intel": {scene.PAIR: "lj/charmm/coul/charmm"}}
-
-
-@dataclass
-class Answer:
-    """What a job has noted under its names, LAMMPS' error or "", and warnings."""
-
-    noted: dict = field(default_factory=dict)
-    error: str = ""
-    warnings: list = field(default_factory=list)
-
-    @property
-    def first_line(self):
-        """First line of the error."""
-        return self.error.strip().partition("\n")[0]
 
 
 @dataclass
@@ -59,25 +48,17 @@ class Engine(Lammps):
     def answers(self, jobs, folder, ranks=1):
         """Answers of ``jobs``, a dictionary name -> list of lines, under the same names."""
         folder.mkdir(parents=True, exist_ok=True)
-        waiting, answers = dict(enumerate(map(self._with_pairs, jobs.values()))), {}
-        while waiting:
-            for path in folder.glob("answers*"):
-                path.unlink()
-            (folder / "jobs").write_bytes(pickle.dumps(list(waiting.items())))
-            command = [sys.executable, "-m", "foreign.worker", "jobs", "answers", *self.words]
-            if ranks > 1:
-                command = [*self.launcher, str(ranks), *command]
-            done = subprocess.run(
-                command, cwd=folder, env=self.environment, capture_output=True, text=True
-            )
-            for number, *answer in _pickles(folder / "answers"):
-                answers[number] = Answer(*answer)
-            if done.returncode == 0:
-                break
-            answers[int((folder / "answers.now").read_text())] = Answer(error=_end(done, folder))
-            waiting = {number: job for number, job in waiting.items() if number not in answers}
-        return {name: answers[number] for number, name in enumerate(jobs)}
-
+        answers = {}
+        with tempfile.TemporaryDirectory() as own:
+            worker = Worker(own, ranks, self.environment, self.launcher)
+            for name, job in jobs.items():
+                asked = {"job": self._with_pairs(job), "words": self.words, "folder": folder}
+                try:
+                    answers[name] = next(filter(None, worker.ask(run_job, PATIENCE, **asked)))
+                except LammpsError as error:
+                    answers[name] = Answer(error=str(error))
+            worker.end()
+        return answers
 
     def _with_pairs(self, job):
         for pair, other in self.pairs.items():
@@ -95,22 +76,3 @@ def tree(build):
     """LAMMPS built from its source in the folder ``build``."""
     environment = python_environment(build)
     return Engine(build.name, build / "lmp", OPEN_MPI_LAUNCHER, Path(), environment)
-
-
-def _pickles(path):
-    """All that was pickled into a file, one after the other."""
-    if path.exists():
-        with path.open("rb") as file:
-            while file.peek(1):
-                yield pickle.load(file)
-
-
-def _end(done, folder):
-    """What ended a process."""
-    abort, code = folder / "answers.abort", done.returncode
-    if abort.exists():
-        return abort.read_text()
-    # as Python and as a shell tell of a signal
-    if signal.SIGPROF in (-code, code - 128, 128 - code):
-        return "hangs"
-    return f"crash: exit code {code}: {done.stderr[-1500:]}"

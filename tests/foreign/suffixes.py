@@ -107,7 +107,7 @@ def script(name, temp, suffix="", known=False):
 
 
 @dataclass
-class Outcome:
+class VariantVerdict:
     """``start``: what the log says of it."""
 
     name: str
@@ -137,9 +137,9 @@ def start_of(answer):
 
 
 def judge(name, suffix, ranks, ours, plain, known):
-    """Outcome of scene ``name`` from its answers with the suffix, without, and with known forces only."""
+    """VariantVerdict of scene ``name`` from its answers with the suffix, without, and with known forces only."""
     style, temp = name
-    outcome = Outcome(f"{style}{', temp' * temp}, {ranks} rank{'s' * (ranks > 1)}", start_of(ours))
+    outcome = VariantVerdict(f"{style}{', temp' * temp}, {ranks} rank{'s' * (ranks > 1)}", start_of(ours))
     for answer in (ours, plain, known):
         if answer.error:
             outcome.faults.append(answer.first_line)

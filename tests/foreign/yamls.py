@@ -61,7 +61,7 @@ NOT_TRIED = (
 
 
 @dataclass
-class Outcome:
+class YamlVerdict:
     """``result``: agrees, refused, or NEITHER."""
 
     name: str
@@ -100,7 +100,7 @@ def lines_of(test, method, folder, divide=1):
 
 
 def outcomes(source, engine, scratch):
-    """(list of Outcome, {name: reason} of those not tried)."""
+    """(list of YamlVerdict, {name: reason} of those not tried)."""
     folder = source / "unittest" / "force-styles" / "tests"
     tests, reasons = {}, {}
     for path in sorted(folder.glob("fix-timestep-*.yaml")):
@@ -124,7 +124,7 @@ def outcomes(source, engine, scratch):
 
 
 def _judge(name, test, gear, as_listed, coarse, fine):
-    outcome = Outcome(name)
+    outcome = YamlVerdict(name)
     if gear.error or fine.error:
         outcome.notes.append(gear.first_line or fine.first_line)
         if gear.error and beside.REFUSES.search(gear.error):

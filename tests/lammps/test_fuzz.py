@@ -11,17 +11,17 @@ INPUTS = int(os.environ.get("GEARQUAT_FUZZ_INPUTS", 500))
 
 @pytest.mark.parametrize("kind", ["arguments", "infile"])
 def test_nothing_crashes_hangs_or_is_refused_without_a_message(tmp_path, kind):
-    outcome = campaign.run(kind, INPUTS, tmp_path)
+    tally = campaign.run(kind, INPUTS, tmp_path)
     print(
-        f"{kind}: {dict(outcome.counts)}, {len(outcome.faults)} faults, {outcome.seconds:.0f} s, "
-        f"at most {outcome.megabytes:.0f} MB"
+        f"{kind}: {dict(tally.counts)}, {len(tally.faults)} faults, {tally.seconds:.0f} s, "
+        f"at most {tally.megabytes:.0f} MB"
     )
-    assert not outcome.faults, "\n\n".join(
-        f"{text[:600]}\n-> {fault}" for text, fault in outcome.faults
+    assert not tally.faults, "\n\n".join(
+        f"{text[:600]}\n-> {fault}" for text, fault in tally.faults
     )
-    assert outcome.inputs == INPUTS
+    assert tally.inputs == INPUTS
     # inputs of both kinds are there in numbers
-    assert min(outcome.counts["accepted"], outcome.counts["refused"]) > INPUTS / 10
+    assert min(tally.counts["accepted"], tally.counts["refused"]) > INPUTS / 10
 
 
 @pytest.mark.parametrize("module", [arguments, infile])

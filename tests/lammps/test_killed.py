@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from running import processes_of_session
+from life_cycle import Case1, bodies_in, end
 from scenes import restarted
-from life_cycle import bodies_in
-from life_cycle import Case1, end
+
+from lammps_gearquat.launch import processes_of_session
 
 AGAIN = 500  # steps after the restart
 NAMES = ("even", "odd")

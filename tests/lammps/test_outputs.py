@@ -1,11 +1,8 @@
 """The output for every body: the global array and the local data of the fix."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
-from running import python_environment
+from running import run_python
 from scenes import WATER_MASSES, expect, last_frame, restarted, water, water_data
 from scipy.spatial.transform import Rotation
 
@@ -179,9 +176,7 @@ def test_local_data_from_python_before_the_first_run(lmp_wheel):
     """All but the forces, which do not exist yet, are the same as in the first run."""
     data = water_data(lmp_wheel.folder / "data.water")
     (lmp_wheel.folder / "in.deck").write_text(water(data, run="run 0").rpartition("run 0")[0])
-    subprocess.run(
-        [sys.executable, "-c", EARLY], check=True, cwd=lmp_wheel.folder, env=python_environment()
-    )
+    run_python(EARLY, lmp_wheel.folder)
     early, array = np.load(lmp_wheel.folder / "rows.npz").values()
     late = np.load(lmp_wheel.folder / "late.npz")["late"]
     assert early.shape == late.shape == (BODIES, 28)

@@ -1,14 +1,12 @@
 """A refused run has changed nothing, and the run after the correction is the intended one."""
 
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 from scenes import water, water_data
 
-from running import TREE_BUILD, python_environment
+from running import TREE_BUILD, run_python
 
 # words -> {"error": text, "before": state, "after": state, "then": state}; see test_nothing_has_changed
 PROGRAM = """
@@ -52,12 +50,7 @@ def run(folder, spoil="", mend="", fix="gear/quat molecule"):
     if "temp" in fix:
         deck = deck.replace("fix_modify move energy yes", "")
     words = json.dumps([deck, spoil, mend, str(folder)])
-    environment = python_environment(TREE_BUILD)
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM], input=words, text=True, capture_output=True, env=environment
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return json.loads(done.stdout.splitlines()[-1])
+    return json.loads(run_python(PROGRAM, build=TREE_BUILD, told=words).splitlines()[-1])
 
 
 @pytest.fixture(scope="module")

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from pathlib import Path
-
 import pytest
+
+from running import processes_that_mention
 
 DECK = """
 units lj
@@ -22,15 +21,6 @@ thermo 0
 run ${steps}
 run 0
 """
-
-
-def processes_that_mention(text: str) -> list[str]:
-    """Command lines, but for processes that end meanwhile."""
-    commands = []
-    for path in Path("/proc").glob("[0-9]*/cmdline"):
-        with suppress(OSError):
-            commands.append(path.read_text().replace("\0", " "))
-    return [command for command in commands if text in command]
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])

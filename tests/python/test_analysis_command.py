@@ -17,7 +17,7 @@ from lammps_gearquat.cli import main
 from gearquat_analysis.units import UNITS
 from benchmarks.reference import paper_problem, reference_state
 from benchmarks.reference import quaternion as qt
-from benchmarks.reference.lammps_forces import _open_lammps
+from lammps_gearquat.launch import open_library
 from pages import blocks
 from running import EXAMPLES, ROOT, make_lmp_wheel
 
@@ -114,7 +114,7 @@ def test_poses_are_those_of_the_fixs_own_array(water):
 
 def test_units_are_those_of_lammps():
     """The factors are LAMMPS' own."""
-    lmp = _open_lammps(["-screen", "none", "-log", "none"])
+    lmp = open_library()
     try:
         for style, units in UNITS.items():
             lmp.commands_list(["clear", f"units {style}"])

@@ -10,9 +10,9 @@ from click.testing import CliRunner
 from benchmarks import __main__ as command
 from benchmarks.engine import Bars, Curve, Finding, Job, Lab, LammpsError, Measurement, Panel
 from benchmarks.engine import Study, Table, conduct, publish, runner
-from benchmarks.engine.logs import Log
 from benchmarks.engine.store import read_data, write_data
 from benchmarks.studies.accuracy.evaluate import Cost
+from lammps_gearquat.logs import Log
 
 PROGRAM = """#!/bin/sh
 # stands in for lmp: -in DECK -log LOG -nocite; the deck is a shell script

@@ -113,9 +113,9 @@ def test_rotation_of_sites_of_finite_size_is_watched(make_deck, style):
 def test_the_longest_run_that_is_possible_is_measured(make_deck):
     """Bodies that leave the box do not keep a shorter run from being measured."""
     with Deck(make_deck(**FOR_GEAR), [("style", "gear/quat")]) as deck:
-        study = cost.Study(deck, cost.Budget(60.0))
-        study.probe()
-        found = drift.of_step(study, None, 0.004, 1.2, study.budget.left())
+        inquiry = cost.Inquiry(deck, cost.Budget(60.0))
+        inquiry.probe()
+        found = drift.of_step(inquiry, None, 0.004, 1.2, inquiry.budget.left())
     assert not found.fails and bool(found.failure) == (found.time < 50.0)
     assert found.time == pytest.approx(1.2) or found.time > 50.0
     assert not math.isnan(found.rate)

@@ -18,6 +18,7 @@ from lammps_gearquat.commands.cost import cost as cost_command
 from lammps_gearquat.commands.horizon import horizon as horizon_command
 from lammps_gearquat.trials.explain import explained
 from lammps_gearquat.trials.measure import Deck
+from running import processes_that_mention
 
 SMALL = {"region box block -30 30 -30 30 -30 30": "region box block -2 5 -2 5 -2 5"}
 WALLS, FREE = "boundary f f f", "boundary m m m"
@@ -64,16 +65,8 @@ def test_a_step_that_is_too_long_is_told(make_deck):
 
 # --- signals ------------------------------------------------------------------------------------------
 def workers(folder):
-    """Processes of LAMMPS whose socket is in ``folder``."""
-    found = []
-    for path in Path("/proc").glob("[0-9]*/cmdline"):
-        try:
-            words = path.read_bytes().decode(errors="replace")
-        except OSError:
-            continue
-        if "lammps_gearquat.trials.process" in words and str(folder) in words:
-            found.append(int(path.parent.name))
-    return found
+    """Command lines of LAMMPS whose socket is in ``folder``."""
+    return processes_that_mention(f"lammps_gearquat.trials.process {folder}")
 
 
 def wait_until(condition, seconds=60.0):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from fuzz import arguments
 
-from benchmarks.reference.lammps_forces import _open_lammps
+from lammps_gearquat.launch import open_library
 from lammps_gearquat.trials import cost, measure, methods, script
 from lammps_gearquat.trials.script import DeckError
 
@@ -24,7 +24,7 @@ def accepts(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, text in arguments.FILES.items():
         Path(name).write_text(text)
-    lmp = _open_lammps(["-screen", "none", "-log", "none", "-nocite"])
+    lmp = open_library()
     lmp.commands_string(SETUP)
 
     def accepted(command):

@@ -11,10 +11,10 @@ from clumps import FOR_GEAR
 from gearquat_analysis.bodies import Bodies
 from gearquat_analysis.blocks import Estimate
 from gearquat_analysis.units import UNITS
+from lammps_gearquat.launch import LammpsError
 from lammps_gearquat.trials import cost, doubt, drift, measure, methods, sampling, sampling_report
 from lammps_gearquat.trials.drift import Drift
 from lammps_gearquat.trials.measure import Deck
-from lammps_gearquat.trials.worker import TrialError
 
 BODIES = 64
 FREEDOMS = 3 * BODIES - 3, 3 * BODIES
@@ -56,9 +56,9 @@ class MadeUpLiquid:
         seconds = 0.3 + steps * self.pace
         self.now += min(seconds, timeout)
         if seconds > timeout:
-            raise TrialError("not finished after a while")
+            raise LammpsError("not finished after a while")
         if dt >= self.blown and steps * dt > self.lasts:
-            raise TrialError("blow-up in step 7")
+            raise LammpsError("blow-up in step 7")
         return [steps * self.pace], [0.3]
 
     def run_to(self, keywords, end, steps, samples=1, timeout=None):
@@ -242,13 +242,13 @@ def test_a_run_that_does_not_tell_is_made_longer(monkeypatch, rate, refused):
     """As in test case 1, where 100 time units once left -0.55 +- 0.60 for a step that drifts by -0.27."""
     deck = MadeUpLiquid(lambda keywords, dt: rate, noise=0.04, pace=1e-5)
     monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
-    study = cost.Study(deck, cost.Budget(60.0))
-    study.pace[""] = deck.pace
-    found = drift.of_step(study, "", 2.0, 0.0, 30.0)
+    inquiry = cost.Inquiry(deck, cost.Budget(60.0))
+    inquiry.pace[""] = deck.pace
+    found = drift.of_step(inquiry, "", 2.0, 0.0, 30.0)
     assert found.refused == refused and found.holds != refused and found.time > 2.0 * drift.longest(deck)
     assert abs(found.rate - rate) < 4.0 * found.error and deck.now < 30.0
-    study.pace[""], deck.pace = 1e-4, 1e-4
-    short = drift.of_step(study, "", 2.0, 0.0, 7.0)
+    inquiry.pace[""], deck.pace = 1e-4, 1e-4
+    short = drift.of_step(inquiry, "", 2.0, 0.0, 7.0)
     assert not short.holds and not short.refused and short.time < 1.01 * drift.longest(deck)
 
 

@@ -4,15 +4,13 @@ Instructions are counted only inside ``Verlet::run``, and every set-up of a run 
 the second run of a scene contains only its steps.
 """
 
-import os
 import re
 import shutil
-import subprocess
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.engine import LammpsError
+from benchmarks.engine.runner import LammpsError, run
 from .scenes import write_molecules
 
 INSTALL = "install it by\n  sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
@@ -90,10 +88,15 @@ def find_valgrind():
     return program
 
 
-def command_line(lmp, deck, folder, variables=None, parts=True):
-    """Command line that counts the instructions of a deck; output in ``folder``; ``parts``: a part for each set-up of fix gear/quat."""
-    settings = [word for name, value in (variables or {}).items() for word in ("-var", name, str(value))]
-    return [
+def profiled(lmp, deck, folder, variables=None, parts=True):
+    """Run a deck under callgrind; ``folder`` then contains its log and profile files.
+
+    ``parts``: a part for each set-up of fix gear/quat.  Raises LammpsError if the run fails.
+    """
+    folder = folder.resolve()
+    for old in folder.glob("callgrind.*"):
+        old.unlink()
+    command = [
         find_valgrind(),
         "--tool=callgrind",
         "--trace-children=yes",
@@ -101,34 +104,15 @@ def command_line(lmp, deck, folder, variables=None, parts=True):
         *(["--dump-before=LAMMPS_NS::FixGearQuat::setup(int)"] if parts else []),
         "--compress-strings=no",
         "--compress-pos=no",
-        f"--callgrind-out-file={folder.resolve()}/callgrind.%p",
-        *(lmp, "-in", deck.name, "-log", str(folder.resolve() / "log.count"), "-nocite", *settings),
+        f"--callgrind-out-file={folder}/callgrind.%p",
     ]
-
-
-def valgrind(command, folder):
-    """Run a command_line() in the folder of its deck; raises LammpsError if it fails."""
-    done = subprocess.run(
-        command,
-        cwd=folder,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        errors="replace",
-    )
-    if done.returncode != 0:
-        tail = "\n".join((done.stdout + done.stderr).splitlines()[-15:])
-        raise LammpsError(f"counting instructions: exit code {done.returncode}\n{tail}")
+    run(deck, folder / "log.count", variables or {}, lmp, before=command)
 
 
 def whole(folder, deck, variables, lmp):
     """Profile of all steps of a deck, with any fix.  ``folder`` is created for log and profile."""
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.glob("callgrind.*"):
-        old.unlink()
-    valgrind(command_line(lmp, deck, folder, variables, parts=False), deck.parent)
+    profiled(lmp, deck, folder, variables, parts=False)
     profiles = [parse(file.read_text(encoding="utf-8")) for file in folder.glob("callgrind.*")]
     return max(profiles, key=lambda profile: profile.own.total())
 
@@ -151,14 +135,12 @@ def count(folder, scenes, sides, steps, lmp):
     """Profiles of ``steps`` steps: (scene, side) -> Profile.  Deck, log and profiles are written to ``folder``."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.glob("callgrind.*"):
-        old.unlink()
     write_molecules(folder)
     keys = [(scene, side) for scene in scenes for side in sides]
     deck = folder / "in.count"
     text = "clear\n".join(scene.deck(side, steps) for scene, side in keys)
     deck.write_text(text, encoding="utf-8")
-    valgrind(command_line(lmp, deck, folder), folder)
+    profiled(lmp, deck, folder)
     parts = _parts(folder)
     if len(parts) != 2 * len(keys) + 1:
         raise LammpsError(f"{len(parts)} parts of the profile for {len(keys)} scenes; see {folder}")

@@ -6,9 +6,9 @@ import cloup
 
 from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly, out_option
 
+from ..launch import LammpsError
 from ..trials import BOUND, NORMS
 from ..trials.script import DeckError, pairs
-from ..trials.worker import TrialError
 from .common import announce, deck_options, ending_cleanly, shown_progress
 
 
@@ -67,7 +67,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
     cloup.option("--timings", type=COUNT, default=5, help="Timings of each trial that matters, interleaved."),
     out_option("gearquat-cost", "cost.csv, trials.csv and cost.png"),
 )
-@failing_clearly(DeckError, TrialError)
+@failing_clearly(DeckError, LammpsError)
 def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
     """Measure what accuracy costs in the scene of DECK, and print the lines to put into it.
 

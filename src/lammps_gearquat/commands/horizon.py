@@ -4,8 +4,8 @@ import cloup
 
 from gearquat_analysis.options import POSITIVE, command, failing_clearly, out_option
 
+from ..launch import LammpsError
 from ..trials.script import DeckError
-from ..trials.worker import TrialError
 from .common import announce, deck_options, ending_cleanly, shown_progress
 
 
@@ -53,7 +53,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
 @cloup.option_group(
     "What it leaves", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png")
 )
-@failing_clearly(DeckError, TrialError)
+@failing_clearly(DeckError, LammpsError)
 def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
     """Measure until what time the trajectory of DECK can be trusted.
 

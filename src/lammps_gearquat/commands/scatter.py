@@ -7,8 +7,8 @@ import cloup
 
 from gearquat_analysis.options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option
 
+from ..launch import LammpsError
 from ..trials.script import DeckError
-from ..trials.worker import TrialError
 from .common import reading_options
 
 FROM_ZERO = cloup.IntRange(min=0)
@@ -91,7 +91,7 @@ INTERRUPTED = 130
     ),
     out_option("gearquat-scatter", "flights.csv, results.json, deflection.png and convergence.png"),
 )
-@failing_clearly(DeckError, TrialError)
+@failing_clearly(DeckError, LammpsError)
 def scatter(deck, variables, without, which, parts, out, **asked):
     """Cross sections and collision integrals of the two rigid bodies of DECK.
 

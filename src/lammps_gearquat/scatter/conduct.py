@@ -21,7 +21,7 @@ def scatter(scene, asked, numbers, error, most, out, progress):
     """Simulate flights, and write the results into the folder ``out``; returns them as text.
 
     ``scene``: arguments of ``open_pair``; ``asked``: those of ``simulate`` with processes, most_steps and sigma;
-    the others are those of ``simulate``.  Raises DeckError and TrialError.
+    the others are those of ``simulate``.  Raises DeckError and LammpsError.
     """
     with Pool(scene, asked["processes"], asked["most_steps"]) as pool:
         wanted, rows = simulate(pool, asked, numbers, error, most, out, progress)

@@ -3,17 +3,15 @@
 A flight depends on its number only, so the number of processes changes nothing but the time.
 """
 
-import os
-import signal
-import threading
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import active_children, get_context, parent_process
+from queue import LifoQueue
+from tempfile import TemporaryDirectory, mkdtemp
 
 from gearquat_analysis.units import UNITS
 
-from ..trials.worker import TrialError
+from ..launch import LammpsError
+from ..trials.worker import Worker
 from . import cutoff, flights
 from .pair import open_pair
 from .pilots import cells, nearest_thermal
@@ -64,91 +62,71 @@ def facts_of(pair):
     )
 
 
-def _facts():
-    return facts_of(_pair)
-
-
-def _end_with_parent():
-    parent_process().join()
-    os._exit(1)
-
-
-def _begin():
-    os.environ["OMP_NUM_THREADS"] = "1"
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the command to tell
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _ask(scene, function, *arguments):
-    """A request, answered by a process that has opened the pair."""
+def _answer(scene, asked, arguments, tell):
+    """What a Worker is asked: a function of the pair, which is opened by the first request, and of arguments."""
     global _pair
     if _pair is None:
         _pair = open_pair(**scene)
-    return function(*arguments)
-
-
-def _check(scale):
-    cutoff.check(_pair, scale)
-
-
-def _fly(*arguments):
-    return flights.fly(_pair, *arguments)
-
-
-def _fly_pilots(*arguments):
-    return flights.fly_pilots(_pair, *arguments)
-
-
-def _random_numbers():
-    return rotational(_pair)
+    return asked(_pair, *arguments)
 
 
 class Pool:
     """Processes that fly the pair of a deck; use it in a with statement.
 
     ``scene`` holds the arguments of ``open_pair``; ``most_steps``, after which a flight is given up.
-    ``facts`` are the Facts.  Raises DeckError for decks that cannot be used.
+    ``facts`` are the Facts.  Raises DeckError for decks that cannot be used, and LammpsError.
     """
 
     def __init__(self, scene, processes, most_steps):
-        self.scene, self.most_steps = scene, most_steps
-        self._executor = ProcessPoolExecutor(processes, get_context("spawn"), _begin)
+        self.scene, self.most_steps, self._interrupted = scene, most_steps, False
+        self._folder, self._idle = TemporaryDirectory(prefix="gearquat-"), LifoQueue()
+        self._threads = ThreadPoolExecutor(processes)
+        self._workers = [Worker(mkdtemp(prefix="", dir=self._folder.name)) for _ in range(processes)]
+        for worker in self._workers:
+            worker.on_wait = self._heed
+            self._idle.put(worker)
 
     def __enter__(self):
         try:
-            self.facts = self._results([self._submit(_facts)])[0]
-        except BaseException:
-            self.__exit__()
+            self.facts = self._submit(facts_of).result()
+        except BaseException as error:
+            self.__exit__(type(error))
             raise
         return self
 
     def __exit__(self, kind=None, *_):
-        if kind is KeyboardInterrupt:
-            for process in active_children():  # a block of flights can take long
-                process.kill()
-        self._executor.shutdown(cancel_futures=True)
+        self._interrupted = kind is KeyboardInterrupt
+        self._threads.shutdown(cancel_futures=True)
+        for worker in self._workers:
+            worker.end()
+        self._folder.cleanup()
+
+    def _heed(self):
+        """End what a process is at work on after Ctrl-C: a block of flights can take long."""
+        if self._interrupted:
+            raise LammpsError("interrupted")
+
+    def _ask(self, function, *arguments):
+        worker = self._idle.get()
+        try:
+            return worker.ask(_answer, scene=self.scene, asked=function, arguments=arguments)[0]
+        finally:
+            self._idle.put(worker)
 
     def _submit(self, function, *arguments):
-        return self._executor.submit(_ask, self.scene, function, *arguments)
-
-    @staticmethod
-    def _results(futures):
-        try:
-            return [future.result() for future in futures]
-        except BrokenProcessPool as error:
-            raise TrialError("LAMMPS ended its process; lmp -in DECK may say why") from error
+        return self._threads.submit(self._ask, function, *arguments)
 
     def check(self, scale):
         """Raise DeckError if forces do not vanish smoothly, for flights with energies of about ``scale``."""
-        self._results([self._submit(_check, scale)])
+        self._submit(cutoff.check, scale).result()
 
     def fly(self, plan, numbers):
         """Flights with these ``numbers``, a range, in lists of up to BLOCK, in their order."""
         blocks = [numbers[k : k + BLOCK] for k in range(0, len(numbers), BLOCK)]
-        futures = [self._submit(_fly, plan, block, self.most_steps) for block in blocks]
+        futures = [self._submit(flights.fly, plan, block, self.most_steps) for block in blocks]
         try:
             for future in futures:
-                yield self._results([future])[0]
+                yield future.result()
         finally:
             for future in futures:
                 future.cancel()
@@ -156,17 +134,17 @@ class Pool:
     def pilots(self, plan, advance):
         """(Cells, columns) of the pilots of a Plan; ``advance(n)`` is told when n more of them have ended."""
         boltzmann = UNITS[self.facts.style].boltzmann
-        places = cells(plan, self.facts.cutoff, boltzmann, self._results([self._submit(_random_numbers)])[0])
+        places = cells(plan, self.facts.cutoff, boltzmann, self._submit(rotational).result())
         b, energy = places.b.ravel(), places.energy.ravel()
         thermal = nearest_thermal(plan, boltzmann, energy)
         blocks = [slice(k, k + BLOCK) for k in range(0, places.number, BLOCK)]
         futures = [
-            self._submit(_fly_pilots, b[own], energy[own], thermal[own], places.random[own], self.most_steps)
+            self._submit(flights.fly_pilots, b[own], energy[own], thermal[own], places.random[own], self.most_steps)
             for own in blocks
         ]
         rows = []
         for future in futures:
-            some = self._results([future])[0]
+            some = future.result()
             rows += [flights.row(flight) for flight in some]
             advance(len(some))
         return places, flights.columns(rows)

@@ -3,8 +3,8 @@
 script          what the commands of a deck say: text in, text out
 interpreter     the deck's flow of commands, up to the run that moves its bodies
 checkpoint      the state that a run has led to, saved and restored
-process         a process that follows a deck, then replays it with other fix lines and steps
-worker          that process, or several ranks of it, as the caller sees it
+process         what is done in a process of LAMMPS: it follows a deck, then replays it with other fix lines and steps
+worker          that process, or several ranks of it, as the caller sees it; gearquat scatter has several
 measure         trials of one deck: where its bodies are, and what it cost to bring them there
 evaluate        prices, trends and growth: arrays in, numbers out
 methods         the keywords of the fix that are tried

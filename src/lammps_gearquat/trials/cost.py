@@ -22,13 +22,14 @@ import numpy as np
 from gearquat_analysis.superposition import angles
 from gearquat_analysis.tables import rounded
 
+from ..launch import LammpsError
 from . import BOUND, drift, evaluate, sampling
 from .budget import Budget
 from .doubt import MANY, MARGIN, chaotic, cut_to, diverging, known_until
 from .explain import explained
 from .methods import methods, named, stated
 from .script import DeckError
-from .worker import NOT_FINISHED, TrialError
+from .worker import NOT_FINISHED
 
 CONFIRMATION = "formulation first values 6 compensate yes"
 #: default errors, in powers of ten of the size of the bodies
@@ -124,7 +125,7 @@ class Costs:
         return points
 
 
-class Study:
+class Inquiry:
     """The trials of one question about ``deck``.
 
     ``pace``, seconds per step by keywords; ``overhead``, seconds that a trial takes beside its steps;
@@ -144,7 +145,7 @@ class Study:
         begin = clock.monotonic()
         try:
             trial = self.deck.run_to(keywords, end, steps, samples, max(timeout, 0.0))
-        except TrialError as error:
+        except LammpsError as error:
             self.failures[keywords] = str(error)
             return None
         finally:
@@ -385,37 +386,37 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
     unit = evaluate.decade(deck.size) if norm < 2 else 1.0
     many = len(deck.scene.bodies) >= MANY and not (errors or time)
     errors = sorted(errors or [unit * decade for decade in DECADES], reverse=True)
-    study = Study(deck, budget, timings, norm)
-    study.probe()
-    study.check(tries)
-    whole, reason = (time, "") if time else study.affordable_end()
-    reference, confirmation = study.find_reference(whole, min(errors), max(errors) if many else math.inf)
+    inquiry = Inquiry(deck, budget, timings, norm)
+    inquiry.probe()
+    inquiry.check(tries)
+    whole, reason = (time, "") if time else inquiry.affordable_end()
+    reference, confirmation = inquiry.find_reference(whole, min(errors), max(errors) if many else math.inf)
     parted = confirmation is None
     if not parted:
-        doubt = np.maximum(study.gap(reference, confirmation), study.rounding(reference))
+        doubt = np.maximum(inquiry.gap(reference, confirmation), inquiry.rounding(reference))
         parted = many and diverging(reference.time, doubt, deck.end, max(errors))
     if parted:
-        return sampling.measure(study, tries, bound)
+        return sampling.measure(inquiry, tries, bound)
     last, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
     end = whole * (last + 1) / SAMPLES
-    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=study.before, bound=bound)
+    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=inquiry.before, bound=bound)
     costs.notes += deck.notes
     if reason:
         costs.notes.append(f"{reason} allows trials until t = {whole:g}, and the run ends at {deck.end:g}")
     costs.notes += [cut] if cut else []
-    study.truth = reference.positions[last], reference.center[last]
+    inquiry.truth = reference.positions[last], reference.center[last]
     judged = [error for error in errors if error > costs.doubt_limit]
     wanted = judged or errors[:1]
-    study.climb_all(costs, wanted, tries)
+    inquiry.climb_all(costs, wanted, tries)
     if not costs.trials:
         raise DeckError(
-            f"a step takes {rounded(study.pace[None], 2)} s, so {budget.seconds:g} s are too few to compare methods:"
-            f" try --budget {study.enough()}"
+            f"a step takes {rounded(inquiry.pace[None], 2)} s, so {budget.seconds:g} s are too few to compare methods:"
+            f" try --budget {inquiry.enough()}"
         )
-    study.refine(costs, wanted)
+    inquiry.refine(costs, wanted)
     for _ in range(ATTEMPTS):  # other methods may matter when times are known better
-        study.repeat(worth_timing(costs, wanted))
-    study.choose(costs, errors)
+        inquiry.repeat(worth_timing(costs, wanted))
+    inquiry.choose(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
     return costs

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from gearquat_analysis.blocks import Estimate, of_series
 from gearquat_analysis.units import UNITS
 
+from ..launch import LammpsError
 from . import BOUND, evaluate
 from .explain import explained, left_the_box
-from .worker import NOT_FINISHED, TrialError
+from .worker import NOT_FINISHED
 
 #: the part of the temperature by which those of translation and rotation may differ
 BALANCE = 0.01
@@ -105,12 +106,12 @@ def of_trial(trial, nanosecond, freedoms=None, boltzmann=1.0, bound=BOUND):
     return replace(found, difference=of_series(translation - rotation), temperature=mean)
 
 
-def run(study, keywords, dt, steps, timeout, bound=BOUND, balance=False):
+def run(inquiry, keywords, dt, steps, timeout, bound=BOUND, balance=False):
     """Drift in a run of about so many ``steps``; NaN, with a reason, where it was not finished or ended with an error.
 
     ``balance``: whether the temperatures of translation and rotation are compared, as in a liquid in equilibrium.
     """
-    deck = study.deck
+    deck = inquiry.deck
     if deck.partial and deck.others:
         reason = "LAMMPS does not print the whole kinetic energy of these bodies and of the other atoms"
         return Drift(reason=reason, bound=bound)
@@ -118,38 +119,38 @@ def run(study, keywords, dt, steps, timeout, bound=BOUND, balance=False):
     samples = int(steps) // stride
     if samples < evaluate.FEWEST:
         return Drift(reason="no run was long enough", bound=bound)
-    study.budget.say(f"drift of {keywords or ('own fix' if keywords is None else 'no keyword')}, step {dt:g}")
+    inquiry.budget.say(f"drift of {keywords or ('own fix' if keywords is None else 'no keyword')}, step {dt:g}")
     try:
         trial = deck.run(keywords, [stride] * samples, dt, timeout, energies=True)
-    except TrialError as error:
+    except LammpsError as error:
         said = str(error)
         if said.startswith(NOT_FINISHED):
             return Drift(reason=f"a run was {said}", bound=bound)
         return Drift(failure=explained(said, deck, dt), gone=left_the_box(said, deck), bound=bound)
     finally:
-        study.budget.spent()
-    study.pace[keywords] = trial.seconds[0] / trial.steps
+        inquiry.budget.spent()
+    inquiry.pace[keywords] = trial.seconds[0] / trial.steps
     freedoms = deck.freedoms if balance else None
     return of_trial(trial, nanosecond(deck), freedoms, UNITS[deck.units].boltzmann, bound)
 
 
-def of_step(study, keywords, dt, end, seconds, bound=BOUND):
+def of_step(inquiry, keywords, dt, end, seconds, bound=BOUND):
     """Drift at a step, from a run that takes so many seconds at most, up to ``longest``, or longer if that does not tell.
 
     Where that ends with an error a run to ``end``, for which the step is recommended, is made as well.
     """
-    affordable = (seconds - study.overhead) / (1.2 * study.pace[keywords])
-    whole, judged = (int(min(time / dt, affordable)) for time in (longest(study.deck, end), end))
+    affordable = (seconds - inquiry.overhead) / (1.2 * inquiry.pace[keywords])
+    whole, judged = (int(min(time / dt, affordable)) for time in (longest(inquiry.deck, end), end))
     found = Drift(reason="no run was long enough", bound=bound)
     for steps in dict.fromkeys(filter(None, (whole, judged))):
-        timeout = max(min(2.0 * seconds, study.budget.left()), 0.0)
-        latest = run(study, keywords, dt, steps, timeout, bound)
+        timeout = max(min(2.0 * seconds, inquiry.budget.left()), 0.0)
+        latest = run(inquiry, keywords, dt, steps, timeout, bound)
         if latest.known or not found.failure:
             found = replace(latest, failure=latest.failure or found.failure, gone=latest.gone or found.gone)
         if latest.known or latest.fails:
             break
     while found.known and not (found.holds or found.refused) and MORE * found.time / dt < SHARE_MORE * affordable:
-        longer = run(study, keywords, dt, MORE * found.time / dt, max(min(2.0 * seconds, study.budget.left()), 0.0), bound)
+        longer = run(inquiry, keywords, dt, MORE * found.time / dt, max(min(2.0 * seconds, inquiry.budget.left()), 0.0), bound)
         if not longer.known:
             break
         found = longer

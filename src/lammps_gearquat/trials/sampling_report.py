@@ -33,7 +33,7 @@ def _kelvin(deck):
 
 
 def verdict(run):
-    """What a Run says of its step, in a few words."""
+    """What a LongRun says of its step, in a few words."""
     found = run.drift
     if found.fails:
         return "ends with an error"

@@ -5,32 +5,29 @@ needs that of MPI loaded first.  See ``process`` for what they do.
 """
 
 import os
-import shutil
-import signal
 import socket
-import subprocess
 import sys
 import time
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 from gearquat_analysis.tables import rounded
 
+from ..launch import LammpsError, find, started
 from .script import DeckError
 
 #: seconds that the processes may take to come up
 PATIENCE = 60.0
 #: how the message begins where an answer comes too late
 NOT_FINISHED = "not finished"
-
-
-class TrialError(RuntimeError):
-    """LAMMPS ended a trial with an error, or not in time."""
+#: and where the processes have ended
+ENDED = "LAMMPS ended its process"
 
 
 @dataclass
-class Sites:
+class Positions:
     """Atoms of one rank or of all: ``ids`` (n,), ``positions`` (n, 3), unwrapped."""
 
     ids: object
@@ -41,7 +38,7 @@ class Sites:
 class Situation:
     """What a deck has set up when its bodies begin to move, as one rank sees it; units of the deck.
 
-    ``start``, a Start; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
+    ``start``, a LeadIn; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
     by ID; ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
     ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``flat``, whether all is in two
     dimensions; ``periodic``, in how many directions the box is; ``continued``, the sites ``test_steps`` steps later.
@@ -51,19 +48,19 @@ class Situation:
     dt: float
     units: str
     map_missing: bool
-    sites: Sites
+    sites: Positions
     labels: object
     masses: object
     rotating: bool
     flat: bool = False
     periodic: int = 3
     test_steps: int = 0
-    continued: Sites = None
+    continued: Positions = None
 
 
 @dataclass
-class Outcome:
-    """What one trial left on one rank: ``samples``, a list of Sites, and ``energies``, as in Trial; on rank 0
+class TrialPart:
+    """What one trial left on one rank: ``samples``, a list of Positions, and ``energies``, as in Trial; on rank 0
 
     ``seconds``, wall time of the steps; ``start_seconds``, of the set-up and of the start of the
     fix; ``start_evaluations``, evaluations of the forces that the start of fix gear/quat took;
@@ -79,52 +76,34 @@ class Outcome:
     energies: list = field(default_factory=list)
 
 
-def launcher(ranks):
-    """Words in front of a command that make so many ranks of it."""
-    if ranks == 1:
-        return []
-    beside = Path(sys.executable).parent / "mpiexec"
-    program = str(beside) if beside.is_file() else shutil.which("mpiexec")
-    if not program:
-        raise DeckError("--ranks needs the program mpiexec, which is neither beside Python nor on the PATH")
-    return [program, "-n", str(ranks)]
-
-
 def _drain(connection):
     """Close a connection once its other end is closed, which a process does when it ends."""
-    with connection:
+    with connection, suppress(EOFError, OSError):
         while connection.poll(PATIENCE):
-            try:
-                connection.recv_bytes()
-            except (EOFError, OSError):
-                return
+            connection.recv_bytes()
 
 
 class Worker:
     """Processes that run LAMMPS, begun anew when they are gone, until ``end``.
 
+    ``folder``, whose path has to be short, is for a socket.  ``environment``: None for that of this process;
+    ``launcher``: the words before the number of ranks, if not those of the MPI beside Python or on the PATH.
     ``on_news`` is called with what a request tells while it is at work, ``on_wait`` every now and then.
     """
 
-    def __init__(self, folder, ranks=1):
+    def __init__(self, folder, ranks=1, environment=None, launcher=()):
         self.folder, self.ranks = Path(folder), ranks
+        self.environment, self.launcher = environment, launcher
         self.output = self.folder / "output"
-        self.process, self.connections, self.pids = None, [], []
+        self.process, self.connections, self._running = None, [], ExitStack()
         self.on_news = self.on_wait = None
 
     def end(self):
         """End all processes, and return when they have ended."""
-        for pid in self.pids:
-            try:
-                os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
-        if self.process:
-            self.process.kill()
-            self.process.wait()
+        self._running.close()
         for connection in self.connections:
             _drain(connection)
-        self.process, self.connections, self.pids = None, [], []
+        self.process, self.connections = None, []
 
     def _begin(self):
         """Start the processes and wait until all of them have connected themselves."""
@@ -134,14 +113,13 @@ class Worker:
             listener.bind(str(address))
             listener.listen(self.ranks)
             listener.settimeout(0.2)
-            command = [*launcher(self.ranks), sys.executable, "-m", "lammps_gearquat.trials.process"]
-            self.process = subprocess.Popen(
-                [*command, str(address)],
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=output,
-                start_new_session=True,
-            )
+            command = [sys.executable, "-m", "lammps_gearquat.trials.process", str(address)]
+            if self.ranks > 1:
+                launcher = self.launcher or (find("mpiexec"), "-n")
+                if not launcher[0]:
+                    raise DeckError("--ranks needs the program mpiexec, which is neither beside Python nor on the PATH")
+                command = [*launcher, str(self.ranks), *command]
+            self.process = self._running.enter_context(started(command, None, self.environment, output))
             end = time.monotonic() + PATIENCE
             while len(self.connections) < self.ranks:
                 try:
@@ -152,19 +130,23 @@ class Worker:
                     continue
                 link.setblocking(True)
                 self.connections.append(Connection(link.detach()))
-        self.pids = [connection.recv() for connection in self.connections]
+        for connection in self.connections:
+            connection.send([os.path.abspath(folder) for folder in sys.path])
 
-    def ask(self, name, timeout=None, **arguments):
-        """The answers of all ranks to a request; raises DeckError or TrialError, also after ``timeout`` s."""
+    def ask(self, function, timeout=None, **arguments):
+        """What all ranks answer: a function of these arguments and of ``tell``, which passes what it gets to ``on_news``.
+
+        Raises DeckError or LammpsError, also after ``timeout`` s.
+        """
         try:
             if not self.process:
                 self._begin()
             for connection in self.connections:
-                connection.send((name, arguments))
+                connection.send((function, arguments))
             answers = self._receive(timeout)
         except (EOFError, OSError) as error:
             self.end()
-            raise TrialError("LAMMPS ended its process: " + self._last_words()) from error
+            raise LammpsError(f"{ENDED}: " + self._last_words()) from error
         except BaseException:  # Ctrl-C, or not in time
             self.end()
             raise
@@ -194,7 +176,7 @@ class Worker:
             if failed and not ready:
                 break
             if end is not None and time.monotonic() > end and not failed:
-                raise TrialError(f"{NOT_FINISHED} after {rounded(timeout)} s")
+                raise LammpsError(f"{NOT_FINISHED} after {rounded(timeout)} s")
         return answers
 
     def _last_words(self):

