@@ -48,7 +48,7 @@ def imported(distribution):
     """Names of the modules that a package imports, in lower case, without the standard library and its own."""
     folder = PACKAGES[distribution]
     sources = "\n".join(source.read_text() for source in folder.rglob("*.py"))
-    names = set(re.findall(r"^\s*(?:import|from) (\w+)", sources, re.M))
+    names = set(re.findall(r"^\s*(?:import (?=[\w.]+(?: as \w+)?$)|from (?=[\w.]+ import))(\w+)", sources, re.M))
     return {name.lower() for name in names - {*sys.stdlib_module_names, folder.name}}
 
 
