@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.engine import EXAMPLES, Job, provenance
-from benchmarks.studies.liquids.runs import equilibrate
+from benchmarks.engine import Job, provenance
+from benchmarks.studies.liquids.runs import equilibrate, template
 from benchmarks.studies.liquids.plan import Plan as Starts
 
-from .plan import MODELS, OURS, QUICK, ROUND, SHAKE, TEMPERATURE, Plan, Series
+from .plan import METHODS, MODELS, OURS, QUICK, ROUND, TEMPERATURE, Plan, Series
 
 FOLDER = Path(__file__).parent
 SAMPLES = FOLDER / "samples.csv"
@@ -108,21 +108,26 @@ def _sample(thermo, series, origin):
     return Sample(*astuple(series), *origin, ps, len(turn), *numbers, float(np.polyfit(time, thermo["Econserve"], 1)[0]))
 
 
-def trajectory(lab, method):
-    """Identifier of a method's trajectory: a potential energy after a few steps.
+def trajectories(lab):
+    """Method -> identifier of its trajectories: a potential energy after a few steps from a lattice.
 
-    It has the digits on which machines agree.
+    It has as many digits as machines agree on, and does not depend on data that a machine has equilibrated.
     """
-    variables = {"method": method, "dt": 2.0, "steps": TOLD_AFTER, "every": TOLD_AFTER}
-    found = lab.many({f"told_{method}": Job(EXAMPLES / "water_npt" / "in.water_npt", variables, TOLD_AFTER)})
-    return f"{found[f'told_{method}'].thermo['PotEng'][-1]:.6f}"
+    liquid = MODELS["tip4p"]
+    variables = {"liquid": liquid.key, "pair": liquid.pair, "kspace": liquid.kspace, "temperature": TEMPERATURE}
+    lab.many({"lattice": Job(FOLDER / "in.lattice", variables | {"template": template(liquid), "seed": 4711}, 1, plugin=False)})
+    data = lab.dump("lattice").with_suffix(".data").resolve()
+    variables |= {"data": data, "pressure": 1.0, "dt": 2.0, "settle": 0, "steps": TOLD_AFTER, "every": TOLD_AFTER, "seed": 0}
+    jobs = {method: Job(FOLDER / "in.water", variables | {"method": method}, TOLD_AFTER) for method in METHODS}
+    found = lab.many({f"told_{method}": job for method, job in jobs.items()})
+    return {method: f"{found[f'told_{method}'].thermo['PotEng'][-1]:.6f}" for method in METHODS}
 
 
 def measure(lab, plan=None):
     """List of all samples with the same trajectory, samples of earlier calls first."""
     plan = plan or (QUICK if lab.quick else Plan(hours=lab.hours))
     kept = [] if lab.quick else read_samples(SAMPLES)
-    told = {method: trajectory(lab, method) for method in (OURS, SHAKE)}
+    told = trajectories(lab)
     samples = [sample for sample in kept if sample.trajectory == told[sample.method]]
     commit, begun = provenance.commit("src", "benchmarks/studies/water"), time.monotonic()
     first = 1 + max((sample.start for sample in samples), default=0)
