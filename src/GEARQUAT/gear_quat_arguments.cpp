@@ -324,7 +324,7 @@ void Arguments::check_coupling() const
   for (int k = 1; k < 3; ++k) {
     const int first = p.tied[k];
     if (first == k || (domain->dimension == 2 && k == 2)) continue;
-    if (p.on[k] != p.on[first] || p.start[k] != p.start[first] || p.stop[k] != p.stop[first] ||
+    if (!p.on[k] || !p.on[first] || p.start[k] != p.start[first] || p.stop[k] != p.stop[first] ||
         p.period[k] != p.period[first])
       error->all(FLERR,
                  "Fix gear/quat couple: directions {} and {} need keywords with the same Pstart, "

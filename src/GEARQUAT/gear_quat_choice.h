@@ -130,6 +130,10 @@ struct ChoiceOfValues {
   static constexpr double EDGE_OF_NINE = 0.25, TURN_OF_NINE = 0.4;
   static constexpr double LONGEST_EDGE = 0.6, LONGEST_TURN = 0.5;
   static constexpr double ADVISED_EDGE = 0.5, ADVISED_TURN = 0.4;
+
+  // the same for turns in the first formulation, with eight values
+  static constexpr double FIRST_LONGEST_TURN = 0.25, FIRST_ADVISED_TURN = 0.2;
+
   static constexpr double BAND = 1.3;
 
   /// Largest accepted error due to the friction of forces, for motion driven by random forces and
@@ -163,15 +167,12 @@ struct ChoiceOfValues {
     return choice;
   }
 
-  /// True if a step is too long for any number of values; only with tuned coefficients of the
-  /// second formulation.
-  bool too_long(const Scheme &scheme) const
-  {
-    return !scheme.first() && scheme.tuned && (shakes() || turn > LONGEST_TURN);
-  }
+  /// True if a step is too long for any number of values; only with tuned coefficients.
+  bool too_long(const Scheme &scheme) const { return scheme.tuned && advised_part(scheme) < 1.0; }
   /// A step that is not too long, as a part of the present one.
-  double advised_part() const
+  double advised_part(const Scheme &scheme) const
   {
+    if (scheme.first()) return turn > FIRST_LONGEST_TURN ? FIRST_ADVISED_TURN / turn : 1.0;
     return std::min(shakes() ? ADVISED_EDGE / edge : 1.0,
                     turn > LONGEST_TURN ? ADVISED_TURN / turn : 1.0);
   }

@@ -102,7 +102,7 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
         "than any number of values can follow for long; use a time step of {:g} or shorter, or, if "
         "atoms overlap, begin with a run with keywords tolerance and temp",
         fix->id, scene.edge, scene.turn,
-        rounded_down(std::fabs(step.length()) * scene.advised_part()));
+        rounded_down(std::fabs(step.length()) * scene.advised_part(choice.scheme)));
 }
 
 /// Measures the damping of momenta by forces in a step.  f: the forces of all fixes.  Collective.

@@ -160,8 +160,8 @@ class Tolerance : protected Pointers {
   bigint announced = -1;       ///< the last step of announce_output()
   Record record = {};
   struct Settled {
-    double steps = 0.0, time = 0.0, squares = 0.0;
-  } settled;    ///< of this run, without its start: number, sum and sum of squares
+    double steps = 0.0, time = 0.0, squares = 0.0, largest = 0.0;
+  } settled;    ///< of this run, without its start: number, sum, sum of squares; largest error / eps
 
   void set_values(int values);
   void change_values(int values);

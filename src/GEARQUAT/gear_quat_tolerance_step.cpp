@@ -45,7 +45,7 @@ static constexpr int MOST_TRIES = 40;
 // steps that belong to the start; a rarely shorter step, in relative standard deviations below the
 // mean; and the smallest excess of fixed steps of that length with which the control pays
 
-static constexpr double UNSETTLED = 100.0, SPREADS = 2.0, LITTLE_GAIN = 0.6;
+static constexpr double UNSETTLED = 100.0, SPREADS = 2.0, LITTLE_GAIN = 0.6, NEAR_EPS = 0.1;
 
 // a smaller part of a step counts as no time
 
@@ -324,6 +324,7 @@ void Tolerance::note_step(double size, int values)
   settled.steps += 1.0;
   settled.time += size;
   settled.squares += size * size;
+  settled.largest = std::max(settled.largest, step_error() / control.eps);
 }
 
 void Tolerance::end_run()
@@ -332,7 +333,8 @@ void Tolerance::end_run()
   const double spread = std::sqrt(std::max(0.0, settled.squares / n - mean * mean)) / mean;
   const double shortest = mean * std::exp(-SPREADS * spread);
   const double more = mean / shortest - 1.0;
-  if (n > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
+  const bool by_error = settled.largest > NEAR_EPS;    // not by the skin, dtmax or Tdamp
+  if (by_error && n > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
     utils::logmesg(lmp,
                    "Fix gear/quat tolerance: the step has changed little, and step control gains "
                    "little here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "

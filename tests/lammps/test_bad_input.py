@@ -144,6 +144,7 @@ ARGUMENTS = {
     "molecule x 1 1 1 y 1 1 2 couple xy": "couple: directions x and y need keywords with the same Pstart, Pstop and Pdamp",
     "molecule x 1 1 1 y 1 2 1 couple xy": "couple: directions x and y need keywords with the same",
     "molecule y 1 1 1 couple yz": "couple: directions y and z need keywords with the same",
+    "molecule z 1 1 1 couple xy": "couple: directions x and y need keywords with the same",
     "molecule couple xy": "keyword couple requires a keyword of constant pressure",
     "molecule pchain 3": "keyword pchain requires a keyword of constant pressure, such as iso",
     "molecule ptemp 1.0": "keyword ptemp requires a keyword of constant pressure",

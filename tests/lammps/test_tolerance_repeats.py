@@ -283,6 +283,8 @@ def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
     halted = deck.replace("run 500", UNTIL.format(300.0))
     assert halted != deck and lmp_tree.succeed(halted).output.count(said) == 1
     assert said not in lmp_tree.succeed(scene("1e-8")).output
+    # nor where the skin determines the step
+    assert said not in lmp_tree.succeed(water(data, "gear/quat molecule tolerance 1e-3", dt=1.0, steps=500, skin=0.01)).output
 
 
 def test_a_tolerance_far_below_rounding(lmp_tree):

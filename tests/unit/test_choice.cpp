@@ -223,12 +223,15 @@ TEST(Choice, LongStepsAreTold)
   EXPECT_FALSE(told(0.61, 0.0, false, Noise::NONE, SECOND));
   EXPECT_FALSE(told(0.61, 0.0, true, Noise::RANDOM, SECOND));
   EXPECT_TRUE(told(0.0, 0.51, false, Noise::RANDOM, SECOND));
-  EXPECT_FALSE(told(0.61, 0.51, true, Noise::NONE, FIRST));
+  EXPECT_FALSE(told(0.61, 0.24, true, Noise::NONE, FIRST));
+  EXPECT_TRUE(told(0.0, 0.26, false, Noise::NONE, FIRST));
   ChoiceOfValues both = scene(1.0, 1.0);
   both.exact = true;
-  EXPECT_DOUBLE_EQ(both.advised_part(), 0.4);
+  EXPECT_DOUBLE_EQ(both.advised_part(automatic(SECOND)), 0.4);
+  EXPECT_DOUBLE_EQ(both.advised_part(automatic(FIRST)), 0.2);
   both.turn = 0.1;
-  EXPECT_DOUBLE_EQ(both.advised_part(), 0.5);
+  EXPECT_DOUBLE_EQ(both.advised_part(automatic(SECOND)), 0.5);
+  EXPECT_DOUBLE_EQ(both.advised_part(automatic(FIRST)), 1.0);
 }
 
 // --- is it the better choice?
