@@ -51,7 +51,7 @@ class Finished:
 
 
 def _is_result(error, may_fail):
-    """Whether a run with this error, "" for none, counts; None: there is no run.  See Lab.many."""
+    """True if a run with this error, "" for none, counts; None: there is no run.  See Lab.many."""
     if not error:
         return error is not None
     return may_fail(error) if callable(may_fail) else may_fail

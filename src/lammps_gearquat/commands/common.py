@@ -1,4 +1,4 @@
-"""What the commands that run LAMMPS have in common: the options that say how a deck is read."""
+"""Options of the commands that run LAMMPS: how a deck is read."""
 
 import functools
 import signal
@@ -71,7 +71,7 @@ def announce(path, progress):
 
 
 class _Log:
-    """A file for a progress bar: of what is written to it, ``stream`` gets a line every EVERY seconds.
+    """A file for a progress bar that passes one line to ``stream`` every EVERY seconds.
 
     It has no method isatty, so that the bar is not left out.
     """

@@ -12,9 +12,9 @@ from ..trials.script import DeckError
 from .common import reading_options
 
 FROM_ZERO = cloup.IntRange(min=0)
-#: what flights need, and parts that are merged have
+#: options for new flights; merged parts have them already
 OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count", "replay")
-#: what determines the flights of a folder, one of which is replayed
+#: options that determine the flights of a folder; --replay takes one of these flights
 OF_FOLDERS = ("temperature", "energy", "rotation", "largest", "sigma", "first", "count")
 #: the largest ratio of two temperatures that follow each other, of several
 GAP = 3.0
@@ -73,7 +73,7 @@ INTERRUPTED = 130
 )
 @reading_options()
 @cloup.option_group(
-    "What it leaves",
+    "Output",
     cloup.option("--sigma", type=POSITIVE, help="Also divide by the integrals of rigid spheres of this diameter."),
     cloup.option(
         "--merge",
@@ -81,7 +81,7 @@ INTERRUPTED = 130
         type=cloup.Path(exists=True, file_okay=False, path_type=Path),
         multiple=True,
         metavar="FOLDER",
-        help="Instead of new flights, join those of this folder with those of others; repeatable.",
+        help="Instead of simulating, join the flights of this folder with others; repeatable.",
     ),
     cloup.option(
         "--replay",

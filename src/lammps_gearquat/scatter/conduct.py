@@ -72,7 +72,7 @@ def _settle(pool, asked, error, out, progress):
 
 
 def _reachable(farthest, error, given):
-    """Raise DeckError if the error that is asked for cannot be reached because of what --largest leaves out."""
+    """Raise DeckError if the error that is asked for cannot be reached because --largest leaves out too much."""
     left = max((one["momentum"] or 0.0) for one in farthest.left)
     left = max(left, *((one["viscosity"] or 0.0) for one in farthest.left))
     if given and left >= error:

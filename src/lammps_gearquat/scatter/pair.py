@@ -1,7 +1,7 @@
 """The two bodies of a deck, and one flight of them in LAMMPS.
 
-Lengths, times and energies are in the units of the deck, angular momenta in mass x length^2 / time.  Arrays
-of both bodies have the first one, that with the smaller ID, first.  Poses are rotations of the pose that
+Lengths, times and energies are in the units of the deck, angular momenta in mass x length^2 / time.  In arrays of
+both bodies, the body with the smaller ID comes first.  Poses are rotations of the pose that
 a body has in the deck.
 """
 
@@ -59,9 +59,9 @@ class Start:
 
 @dataclass(frozen=True)
 class End(Start):
-    """The bodies after a flight, and what it was like.
+    """The bodies after a flight, and a summary of the flight.
 
-    ``time`` since the start; ``steps`` and ``repeats``, numbers of them; ``turnings``, how often the
+    ``time`` since the start; numbers of ``steps`` and ``repeats``; ``turnings``, how often the
     radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py;
     ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
     flight with ``message``.
@@ -85,7 +85,7 @@ def cross(a, b):
 def open_pair(path, variables=(), without=(), which=None, say=lambda text: None):
     """The Pair of a deck, to be used in a with statement.
 
-    ``variables``, ``without`` and ``which`` are those of ``trials.measure.Deck``.  Raises DeckError.
+    ``variables``, ``without`` and ``which`` as in ``trials.measure.Deck``.  Raises DeckError.
     """
     return Pair(path, variables, without, which, say)
 
@@ -93,7 +93,7 @@ def open_pair(path, variables=(), without=(), which=None, say=lambda text: None)
 class Pair:
     """Two rigid bodies of a deck in a LAMMPS of this process.
 
-    ``bodies``, a Bodies whose body frame is that of the deck; ``cutoff``, the largest distance at which two
+    ``bodies``, a Bodies in the body frame of the deck; ``cutoff``, the largest distance at which two
     sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the
     distance of the centers at which flights begin and end; ``units``, a row of UNITS, and ``style``, its name;
     ``freedoms`` (2,), of rotation; ``turning``, whether bodies have more than one site; ``charge`` (2,) if atoms
@@ -143,7 +143,7 @@ class Pair:
                 os.chdir(here)
 
     def _check(self, start):
-        """Refuse decks whose flights would not be those of two bodies alone; sets ``line``, their fix."""
+        """Refuse decks in which anything else acts on the two bodies; sets ``line``, their fix."""
         movers = [command.mover for command in start.commands if command.mover]
         if len(movers) != 1 or movers[0].style != "gear/quat":
             found = ", ".join(f"{line.id} {line.style}" for line in movers)
@@ -189,7 +189,7 @@ class Pair:
             )
 
     def _bodies(self):
-        """Sets ``bodies`` and what follows from them."""
+        """Set ``bodies`` and the members derived from them."""
         lammps = self.lammps
         labels = process.body_labels(lammps, [self.line])
         if (labels[:, 0] < 0).any():
@@ -222,7 +222,7 @@ class Pair:
 
     @property
     def identical(self):
-        """Whether both bodies are the same, so that the pair is that of a gas of one kind."""
+        """True if both bodies are the same, so that the pair represents a gas of one species."""
         mass, moments = self.bodies.mass, self.bodies.moments
         first, second = (sorted(self._kinds[self.bodies.of == k].tolist()) for k in range(2))
         same = np.allclose(mass[0], mass[1], rtol=1e-9) and np.allclose(moments[0], moments[1], rtol=1e-6)

@@ -119,7 +119,8 @@ def _strata(random, shape):
 
 
 def nearest_thermal(plan, boltzmann, energy):
-    """kT (n,) of the rotation of pilots with energies (n,), of several temperatures that at which they are common."""
+    """kT (n,) of the rotation of pilots with energies (n,); of several temperatures, the one at which the energy is
+    common."""
     if plan.rotation is not None or plan.energy is not None:
         return np.full(len(energy), boltzmann * (plan.rotation or 0.0))
     scales = np.array(plan.scales(boltzmann))
@@ -174,7 +175,7 @@ def losses(columns, scale, balanced, turning):
 
 
 def beyond(places, lost, scale, cutoff):
-    """Part (D + 1, 3) of every loss beyond each edge, with what the cutoff takes away; inf if that is not known.
+    """Part (D + 1, 3) of every loss beyond each edge, with the part removed by the cutoff; inf if it is unknown.
 
     ``lost`` (D, L, A, 3); ``scale``, kT.
     """

@@ -1,4 +1,4 @@
-"""What a run prints while it lasts: a bar in a terminal, and lines in the log of a batch job."""
+"""Progress of a run: a bar in a terminal, and lines in the log of a batch job."""
 
 import sys
 import time

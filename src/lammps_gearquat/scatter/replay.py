@@ -9,7 +9,7 @@ from .pool import facts_of
 def replay(scene, out, number):
     """Write flight ``number`` of the folder ``out`` as a dump into it; returns what to say.
 
-    ``scene``: arguments of ``open_pair``, those of the flights.  Raises DeckError if the folder has no such flight, or
+    ``scene``: arguments of ``open_pair``, as for the flights.  Raises DeckError if the folder has no such flight, or
     flights of another deck.
     """
     settings = store.read_settings(out)

@@ -25,7 +25,7 @@ def quantity(name, estimate, style):
 
 
 def text(facts, plan, farthest, found):
-    """What the command prints."""
+    """The printed report of the command."""
     units, counts = UNITS[facts.style], found.counts
     lines = [f"{facts.name}, {_conditions(plan, facts.style)}: {counts['flights']} flights", ""]
     for answer in found.answers:

@@ -21,7 +21,7 @@ ERRORS = {"error_energy": "energy", "error_momentum": "momentum", "error_angular
 
 @dataclass(frozen=True)
 class Answer:
-    """What flights say at one ``temperature``, None for one energy.
+    """Results of flights at one ``temperature``, None for one energy.
 
     ``estimates``: name -> Estimate; ``aims``, names of those that --error is about; ``correlations`` (k, k) of
     the errors of ``correlated`` (k,); ``unfinished``, the largest part of an aim that comes from flights that have not
@@ -63,8 +63,8 @@ class Results:
 
 
 def results(columns, plan, facts, sigma=None, left=None):
-    """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by; ``left``, that
-    of ``pilots.Largest``.  Raises DeckError if no flight has parted, or if one has not kept its
+    """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by; ``left`` as in
+    ``pilots.Largest``.  Raises DeckError if no flight has parted, or if one has not kept its
     energy."""
     fate = columns["fate"]
     message = next(iter(columns["message"][fate == "lost"].tolist()), "")
@@ -94,7 +94,7 @@ def _answer(columns, plan, facts, temperature, sigma, left):
 
 
 def counts(columns):
-    """Numbers of flights, of those with a repeated step, of orbiting ones, and of those that have not parted."""
+    """Numbers of all flights, of flights with a repeated step, of orbiting and of unparted ones."""
     fate = columns["fate"]
     return {
         "flights": len(fate),

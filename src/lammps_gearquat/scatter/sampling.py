@@ -65,11 +65,11 @@ class Plan:
         return density_of(self.scales(boltzmann), single, s0, self.s1, self.power, self.largest)
 
     def mixes_rotation(self, freedoms):
-        """Whether rotation has that temperature of several with which a flight is drawn."""
+        """True if rotation has that temperature of several with which a flight is drawn."""
         return self.energy is None and self.rotation is None and len(self.temperature) > 1 and any(freedoms)
 
     def balanced(self, freedoms):
-        """Whether rotation, if there is any, has the temperature of translation, so that detailed balance holds."""
+        """True if rotation, if there is any, has the temperature of translation, so that detailed balance holds."""
         return self.energy is None and (self.rotation is None or not any(freedoms))
 
     def drawn(self, points, boltzmann):

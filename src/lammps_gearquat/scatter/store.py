@@ -1,7 +1,7 @@
-"""The folder of results: settings.json, what is flown; flights.csv, what has been flown; and parts joined.
+"""The folder of results: settings.json, the plan; flights.csv, the finished flights; and joined parts.
 
-A run that was ended goes on after the last whole line, and lines are written in the order of the flights, so
-the file is the same as that of a run that was not.
+An interrupted run continues after the last whole line.  Lines are written in the order of the flights, so an
+interruption does not change the file.
 """
 
 import csv
@@ -16,7 +16,7 @@ from .pilots import Largest
 from .pool import Facts
 from .sampling import Plan
 
-#: of the way in which flights are drawn: those of releases before 0.4 have none
+#: version of the way in which flights are drawn; settings of releases before 0.4 have none
 SAMPLING = 2
 #: gaps between flights that are named at most
 NAMED = 10
@@ -24,7 +24,7 @@ SETTINGS, FLIGHTS, RESULTS = "settings.json", "flights.csv", "results.json"
 
 
 def settings(facts, plan, largest, most_steps):
-    """What determines every flight, ready for JSON."""
+    """Settings that determine every flight, ready for JSON."""
     found = {"sampling": SAMPLING, "pair": pair_of(facts), "plan": asdict(plan), "largest": asdict(largest)}
     return json.loads(json.dumps(found | {"most_steps": most_steps}))
 
@@ -43,8 +43,8 @@ def facts_of(settings):
 
 
 def read_settings(folder):
-    """Settings of a folder of results.  Raises DeckError if it has none, or those of a release whose flights
-    have another density."""
+    """Settings of a folder of results.  Raises DeckError if it has none, or if they come from a release whose
+    flights have another density."""
     path = Path(folder) / SETTINGS
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
@@ -67,7 +67,7 @@ def write_json(path, value):
 
 
 def begin(folder, wanted):
-    """Make ``folder`` that of these settings.  Raises DeckError if it has flights of others."""
+    """Write these settings to ``folder``.  Raises DeckError if it has flights of others."""
     folder.mkdir(parents=True, exist_ok=True)
     if (folder / SETTINGS).exists():
         _same(folder, read_settings(folder), wanted)
@@ -112,7 +112,7 @@ def _same(folder, known, wanted, required="another --out is required"):
 
 
 def same_pair(folder, known, facts):
-    """Raise DeckError if the flights of ``folder``, with the settings ``known``, are not those of the Facts."""
+    """Raise DeckError if the flights of ``folder``, with the settings ``known``, do not match the Facts."""
     _same(folder, known, {**known, "pair": pair_of(facts)}, "the same deck is required")
 
 

@@ -14,7 +14,7 @@ _BASIS = BPoly.from_derivatives([0.0, 1.0], np.eye(6).reshape(2, 3, 6))(_BETWEEN
 class Track:
     """``turnings``, how often the radial velocity has changed its sign, and ``closest``, the smallest distance.
 
-    Between the two looks around a turning point the distance is that of the polynomial of fifth order through
+    Between the two samples around a turning point, the distance follows the fifth-order polynomial through
     positions, velocities and accelerations.
     """
 

@@ -62,7 +62,7 @@ class Row:
 
     @property
     def keep(self):
-        """Whether the deck's own fix is as fast as any."""
+        """True if the deck's own fix is as fast as any."""
         if self.own is None or self.own.kind == "extrapolated":
             return False
         return self.best is None or self.own.seconds < WORTHWHILE * self.best.seconds
@@ -159,7 +159,7 @@ class Inquiry:
         return self.overhead + steps * pace
 
     def affords(self, keywords, steps, reserve=0.0, runs=1.0):
-        """Whether so many ``runs`` of this length leave ``reserve`` seconds of the budget."""
+        """True if so many ``runs`` of this length leave ``reserve`` seconds of the budget."""
         return runs * self.expected(keywords, steps) < self.budget.left() - reserve
 
     def enough(self):

@@ -50,7 +50,7 @@ def cut_to(time, doubt, errors):
 
 
 def diverging(time, doubt, end, error):
-    """Whether the trajectory cannot be followed to ``end``.
+    """True if the trajectory cannot be followed to ``end``.
 
     That is so if two trials of high accuracy that differ by ``doubt`` (S,) at the times (S,) will differ by
     too much for the largest ``error`` of interest then, at the latest.  Later than the last time the difference grows by
@@ -63,7 +63,7 @@ def diverging(time, doubt, end, error):
 
 
 def chaotic(time, difference, end, error):
-    """Whether a ``difference`` (S,) of two trials at the times (S,) would be larger than ``error`` at ``end`` if it grew
+    """True if a ``difference`` (S,) of two trials at the times (S,) would be larger than ``error`` at ``end`` if it grew
     exponentially, as that of many bodies does, at the rate of the second half.
     """
     largest = np.maximum.accumulate(difference)

@@ -54,27 +54,27 @@ class Drift:
 
     @property
     def drifts(self):
-        """Whether the drift is beyond the bound for sure."""
+        """True if the drift is beyond the bound for sure."""
         return abs(self.rate) - SURE * self.error > self.bound
 
     @property
     def unbalanced(self):
-        """Whether the temperatures of translation and rotation differ by more than BALANCE of them for sure."""
+        """True if the temperatures of translation and rotation differ by more than BALANCE of them for sure."""
         return abs(self.difference.value) - SURE * self.difference.error > BALANCE * self.temperature
 
     @property
     def fails(self):
-        """Whether a run ended with an error that the step is to be blamed for."""
+        """True if a run ended with an error that the step is to be blamed for."""
         return bool(self.failure) and not self.gone
 
     @property
     def refused(self):
-        """Whether the step is not to be recommended."""
+        """True if the step is not to be recommended."""
         return self.drifts or self.unbalanced or self.fails
 
     @property
     def holds(self):
-        """Whether the drift is within the bound for sure, and nothing else speaks against the step."""
+        """True if the drift is within the bound for sure, and nothing else speaks against the step."""
         return abs(self.rate) + SURE * self.error < self.bound and not self.refused
 
 

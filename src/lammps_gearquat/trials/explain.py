@@ -39,7 +39,7 @@ def explained(message, deck, dt, reached=None):
 
 
 def left_the_box(message, deck):
-    """Whether an error means that bodies left a box whose boundary is fixed, whatever the step is."""
+    """True if an error means that bodies left a box whose boundary is fixed, whatever the step is."""
     return bool(_GONE.search(message) and _fixed_boundary(deck))
 
 

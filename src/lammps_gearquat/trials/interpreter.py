@@ -374,7 +374,7 @@ class Interpreter:
         self._pass_and_move(line)
 
     def _is_to_be_measured(self):
-        """Whether the run at hand is the one that ``which`` means.  Raises DeckError if none can be."""
+        """True if the run at hand is the one that ``which`` means.  Raises DeckError if none can be."""
         if self.which not in (None, self.runs):
             return False
         try:

@@ -210,7 +210,7 @@ class Deck:
 
     @property
     def partial(self):
-        """Whether the kinetic energy in thermodynamic output is only a part of that of the bodies."""
+        """True if the kinetic energy in thermodynamic output is only a part of that of the bodies."""
         return self._situation.rotating or any("infile" in dict(line.keywords) for line in self.lines)
 
     @property
@@ -225,7 +225,7 @@ class Deck:
 
     @property
     def map_missing(self):
-        """Whether the deck lacks the atom map that fix gear/quat needs."""
+        """True if the deck lacks the atom map that fix gear/quat needs."""
         return self._situation.map_missing
 
     @property
@@ -233,7 +233,7 @@ class Deck:
         return self.start.steps * self.dt
 
     def takes(self, keywords):
-        """Whether these keywords of fix gear/quat can go with what the deck says of its bodies."""
+        """True if these keywords of fix gear/quat can go with what the deck says of its bodies."""
         return all(line.takes(keywords) for line in self.base)
 
     @property

@@ -196,7 +196,7 @@ class Search:
         return (first or [min(prices, key=prices.get)])[0]
 
     def hopeless(self, found):
-        """Whether a longer run could hardly show that this drift is within its bound."""
+        """True if a longer run could hardly show that this drift is within its bound."""
         beyond = abs(found.rate) - found.bound
         return found.known and (beyond > found.error or found.error < 0.25 * found.bound and beyond > -found.error)
 

@@ -174,16 +174,16 @@ class FixLine:
 
     @property
     def has_chains(self):
-        """Whether a thermostat or a box moves with the bodies of this line, of fix gear/quat."""
+        """True if a thermostat or a box moves with the bodies of this line, of fix gear/quat."""
         return bool({"temp", *PRESSURES, "tri", "xy", "xz", "yz"} & set(dict(self.keywords)))
 
     @property
     def isokinetic(self):
-        """Whether the kinetic energy is held constant."""
+        """True if the kinetic energy is held constant."""
         return dict(self.keywords).get("isokinetic", ("none",)) != ("none",)
 
     def takes(self, text):
-        """Whether the keywords in ``text`` can go with those that say what moves."""
+        """True if the keywords in ``text`` can go with those that say what moves."""
         return not self.isokinetic or dict(pairs(text)).get("formulation") == ("first",)
 
     def with_numerics(self, text):
@@ -255,7 +255,7 @@ def _with_coefficients(numerics):
 
 
 def moves_bodies(style):
-    """Whether a fix of this style moves rigid bodies, by whatever method."""
+    """True if a fix of this style moves rigid bodies, by whatever method."""
     return style == "gear/quat" or base_style(style).split("/")[0] == "rigid"
 
 
