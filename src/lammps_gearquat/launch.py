@@ -47,9 +47,8 @@ def open_library(variables=(), log="none", words=()):
 def started(command, folder, environment, output, errors=subprocess.STDOUT):
     """A ``subprocess.Popen`` of a command in a folder (None: the present one), as a context; its output is text.
 
-    ``environment``: None: the environment of this process.  It gets no input.  It is the leader of a session, and at
-    the end of
-    the context no process of this session is left.
+    ``environment``: None for the environment of this process.  The process gets no input.  It leads a session; at the
+    end of the context, no process of this session is left.
     """
     with subprocess.Popen(
         command,
@@ -69,7 +68,7 @@ def started(command, folder, environment, output, errors=subprocess.STDOUT):
 
 
 def processes_of_session(session):
-    """The numbers of the processes, a list, that run in the session of a program: its own and what it has started."""
+    """IDs of the processes in the session of a program, a list: the program and all that it started."""
     members = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):

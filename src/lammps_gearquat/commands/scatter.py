@@ -165,6 +165,6 @@ def _settled(asked):
     if energy is not None:
         asked |= {"temperature": None, "rotation": rotation or 0.0}
     elif temperatures == (rotation,):
-        asked["rotation"] = None  # that of translation
+        asked["rotation"] = None  # the temperature of translation
     asked["processes"] = asked["processes"] or len(os.sched_getaffinity(0))
     return asked

@@ -64,7 +64,7 @@ def reduced(facts, temperature, sigma):
     """Collision integrals divided by the integrals of rigid spheres of diameter ``sigma``, HCB (8.2-8), as ratios."""
     sphere = thermal_speed(facts, temperature) * np.pi * sigma**2
     spheres = {"Omega(1,1)": sphere, "Omega(2,2)": 2.0 * sphere, "Omega(1,2)": 3.0 * sphere}
-    about = "by that of rigid spheres"
+    about = "by the integral of rigid spheres"
     return {
         f"{name}*": (lambda means, name=name, whole=whole: means[name] / whole, "", f"{name} {about}")
         for name, whole in spheres.items()

@@ -132,7 +132,7 @@ def read_lines(folder):
         path.write_bytes(whole)
     lines = whole.decode("utf-8").splitlines()
     if lines and lines[0] != ",".join(flights.HEADER):
-        raise DeckError(f"{path}: its columns are not those of gearquat scatter: another --out is required")
+        raise DeckError(f"{path}: its columns do not match gearquat scatter: another --out is required")
     return lines[1:]
 
 
@@ -190,7 +190,8 @@ def merge(folders, out):
             again += number in lines
             if lines.setdefault(number, line) != line:
                 raise DeckError(
-                    f"{folder}: flight {number} differs from that in another part: parts of one run are required"
+                    f"{folder}: flight {number} differs from the same flight in another part:"
+                    " parts of one run are required"
                 )
     begin(out, wanted)
     ordered = [lines[number] for number in sorted(lines)]

@@ -1,14 +1,14 @@
-"""What an error costs in the scene of a deck: short trials over steps and orders.
+"""The cost of an error in the simulation of a deck: short trials over steps and orders.
 
 1. A reference: fix gear/quat of high order at finer and finer steps, until two of them agree far
-   better than required, and a second one of the other formulation that confirms it.  Where these two
-   part, nothing can be said about smaller errors; the time measured is cut so that the smallest
-   error can be judged, if that leaves a tenth of it.
+   better than required, and a second one of the other formulation that confirms it.  Smaller errors than the
+   difference of these two cannot be judged; the time of the trials is cut until the smallest error can be judged, but
+   not below a tenth.
 2. Every method from coarse to fine steps, to the same time.
-3. Those that matter at the steps that interpolation promises: what is recommended has been tried.
-4. Those again and again, interleaved, for their wall time: the smallest counts.
-5. What is recommended for as long as the budget allows, for the drift of its energy.  Where that is beyond
-   its bound, the next cheapest is tried.
+3. The relevant methods at interpolated steps, so that every recommended step has been tried.
+4. The same trials several times, interleaved, for their wall time: the smallest counts.
+5. The recommended trial for as long as the budget allows, for its energy drift.  If the drift is above
+   its bound, the next cheapest trial follows.
 
 Where trajectories diverge before the end of the deck's run, ``sampling`` takes the place of all but the first.
 """
@@ -51,9 +51,9 @@ WORTHWHILE = 1.05
 
 @dataclass(frozen=True)
 class Row:
-    """What one error costs: ``own``, Price with the deck's fix, and ``best``, that of fix gear/quat.
+    """The cost of one error: ``own``, Price with the deck's fix, and ``best``, Price with fix gear/quat.
 
-    Either is None if the error cannot be had, or not be judged.
+    Either is None if the error cannot be reached or cannot be judged.
     """
 
     error: float
@@ -69,7 +69,7 @@ class Row:
 
     @property
     def choice(self):
-        """The Price of what is recommended, or None."""
+        """The recommended Price, or None."""
         return self.own if self.keep else self.best
 
     @property
@@ -84,9 +84,9 @@ class Costs:
 
     ``end``, the time of the trials; ``doubt``, how far the two best trials are apart there;
     ``trials``, list of (Trial, errors) with one error for each of NORMS; ``norm``, the index of the
-    one that was chosen; ``rows``, list of Row; ``before``, seconds that following the deck took;
-    ``drifts``, dictionary (keywords, step), as in Row.recommended, -> drift.Drift, also of what is not recommended
-    for its sake; ``bound``, what a drift may be.
+    chosen norm; ``rows``, list of Row; ``before``, seconds spent following the deck.
+    ``drifts``, dictionary (keywords, step), as in Row.recommended, -> drift.Drift, also of steps rejected for their
+    drift; ``bound``, the largest acceptable drift.
     """
 
     end: float
@@ -214,7 +214,7 @@ class Inquiry:
     def find_reference(self, end, target, largest=math.inf):
         """(accurate trial, trial with CONFIRMATION), as fine as the budget allows.
 
-        Of the former's halvings of the step it is the one that changes least.  The latter is None where trajectories of
+        The first is the halving of the step that changes the result least.  The second is None where trajectories of
         many bodies diverge, so that not even an error of ``largest`` can be judged at the end of the deck's run.
         """
         many = largest < math.inf
@@ -256,7 +256,7 @@ class Inquiry:
         return self.errors(*frames)[self.norm]
 
     def rounding(self, trial):
-        """What rounding of the positions alone can make of the error."""
+        """The error that rounding of the positions alone can cause."""
         scale = np.abs(trial.center).max() if self.norm < 2 else 1.0
         return float(np.finfo(float).eps * scale)
 
@@ -333,7 +333,7 @@ class Inquiry:
         reserve, methods = (SHARE_TIMING / 2 + drift.SHARE) * self.budget.seconds, list(costs.points())
         for error in ATTEMPTS * list(errors):
             for keywords, price in evaluate.candidates(costs.points(), error).items():
-                # not finer than what is recommended if this trial holds the error
+                # no finer than the step recommended if this trial meets the error
                 steps = int(costs.end / evaluate.usable_step(price.aim))
                 loose = price.kind == "at most" and price.aim > evaluate.CLOSE * price.dt
                 if loose and steps and self.affords(keywords, steps, reserve):
@@ -379,8 +379,8 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
 
     ``budget``, a Budget that began before the deck was opened; ``errors`` in units of the deck
     (radians for orientations; none: DECADES of the size of the bodies); ``time``, of the trials;
-    ``tries``, keywords of fix gear/quat to try beside ``methods``; ``bound``, what the energy of a recommended step
-    may drift by, in kT per degree of freedom and ns.  Raises DeckError where nothing can
+    ``tries``, keywords of fix gear/quat to try beside ``methods``; ``bound``, the largest energy drift of a
+    recommended step, in kT per degree of freedom and ns.  Raises DeckError where nothing can
     be measured.
     """
     unit = evaluate.decade(deck.size) if norm < 2 else 1.0
@@ -423,7 +423,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
 
 
 def warnings_of(trials):
-    """What LAMMPS said in trials: list of notes, each once, with the methods it belongs to."""
+    """LAMMPS' warnings in trials: list of notes, each once, with the methods that caused it."""
     methods_of = {}
     for trial in trials:
         for line in trial.warnings:
@@ -436,7 +436,7 @@ def warnings_of(trials):
 
 
 def worth_timing(costs, errors):
-    """Trials that the prices of ``errors`` are those of, or are extrapolated from."""
+    """Trials from which the prices of ``errors`` are taken or extrapolated."""
     chosen, points = {}, costs.points()
     for error in errors:
         for keywords, price in evaluate.candidates(points, error).items():

@@ -11,7 +11,7 @@ from . import BOUND, evaluate
 from .explain import explained, left_the_box
 from .worker import NOT_FINISHED
 
-#: the part of the temperature by which those of translation and rotation may differ
+#: allowed difference of the temperatures of translation and rotation, relative to the temperature
 BALANCE = 0.01
 #: the part of the budget that is kept for these runs beside trials of an error
 SHARE = 0.15

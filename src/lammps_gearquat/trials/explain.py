@@ -1,4 +1,4 @@
-"""Causes of LAMMPS' errors that end a trial, and what to write then."""
+"""Causes of LAMMPS' errors that end a trial, and the message for each."""
 
 import re
 

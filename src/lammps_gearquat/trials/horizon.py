@@ -48,7 +48,7 @@ def measure(deck, a=None, b=None, steps=(None, None), time=None, every=None, thr
     """Horizon of a Deck.
 
     ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
-    the deck as it is, and what is accurate there.  ``steps`` are their time steps; None: the deck's
+    the deck as it is, and accurate keywords.  ``steps`` are their time steps; None: the deck's
     own, and half of that where nothing else differs.  ``every`` is the time between samples.
     Raises DeckError if the steps of the deck as it is follow the error.
     """
@@ -129,7 +129,7 @@ def affordable(deck, dt_a, dt_b):
 
 
 def sampling(time, every, dt):
-    """(number of samples, time between them), the latter a multiple of ``dt``."""
+    """(number of samples, time between them); this time is a multiple of ``dt``."""
     stride = max(round((every or time / SAMPLES) / dt), 1)
     segments = int(time / (stride * dt) * (1 + 1e-9))
     if segments < 1:

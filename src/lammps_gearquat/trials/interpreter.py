@@ -1,8 +1,8 @@
 """The flow of commands of an input script, followed up to the run that moves its rigid bodies.
 
-Only what decides which command comes next is done here: include, jump, label, next, if, run.
+Only commands that decide which command comes next are executed here: include, jump, label, next, if, run.
 Everything else, variables among it, is LAMMPS' own: every command is passed on to ``lammps`` with its
-variables substituted.  What only writes or prints is left out, but for the restart and data files that a
+variables substituted.  Commands that only write or print are left out, except for restart and data files that the
 deck reads again.  The commands passed on are kept, so that they can be replayed without any control flow.
 """
 
@@ -57,8 +57,8 @@ class LeadIn:
 
     ``commands`` lead there; those with a ``mover`` define the fixes that move bodies now;
     ``steps`` is the length of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the
-    command that makes the box; ``lost`` is what thermo_modify says of lost atoms and bonds;
-    ``checkpoints``, whether there are saved states, from which a replay is to go on.
+    command that makes the box; ``lost`` holds the thermo_modify settings for lost atoms and bonds;
+    ``checkpoints`` is True if a replay can continue from saved states.
     """
 
     commands: list = field(default_factory=list)
@@ -95,7 +95,7 @@ class _Quit(Exception):
 class Interpreter:
     """Follows one deck.  ``lammps`` needs the methods command, expand and has_id.
 
-    ``folder`` is for files that the deck writes; ``say`` is told of what takes time.
+    ``folder`` is for files that the deck writes; ``say`` is called before slow commands.
 
     ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies, None is
     the first that can be measured; ``variables`` are those that LAMMPS was given, tuples (name, value, ...).
@@ -200,7 +200,7 @@ class Interpreter:
             self._pass(line)
 
     def _lammps(self, method, line, shown=None):
-        """What LAMMPS makes of a line; ``shown`` is what is said of it if LAMMPS refuses."""
+        """LAMMPS' result for a line; ``shown`` describes the line in the message if LAMMPS refuses it."""
         try:
             return getattr(self.lammps, method)(line)
         except Exception as error:  # the only class LAMMPS' module raises
@@ -316,7 +316,7 @@ class Interpreter:
             mover.mover = None
 
     def _do_compute(self, words, line):
-        """One that is made from what was left out is left out as well."""
+        """A definition that depends on an omitted one is omitted as well."""
         used = {word.partition("[")[0] for word in words[3:]}
         if set(words[3:4]) & set(SILENT_COMPUTES) or used & self.silenced:
             self.silenced.add("c_" + words[1])
@@ -330,7 +330,7 @@ class Interpreter:
         self._pass(" ".join(kept))
 
     def _do_thermo_modify(self, words, line):
-        """What a run may end by: lost atoms, and temperatures of less than no degrees of freedom."""
+        """Causes that may end a run: lost atoms, and temperatures with a negative number of degrees of freedom."""
         for before, key, value in zip(words, words[1:], words[2:]):
             if key in RUNS_ON and before not in ("format", "colname"):
                 self._pass(f"thermo_modify {key} {value}")
@@ -374,7 +374,7 @@ class Interpreter:
         self._pass_and_move(line)
 
     def _is_to_be_measured(self):
-        """True if the run at hand is the one that ``which`` means.  Raises DeckError if none can be."""
+        """True if ``which`` selects the present run.  Raises DeckError if none can be."""
         if self.which not in (None, self.runs):
             return False
         try:

@@ -1,4 +1,4 @@
-"""Trials of one deck: where its bodies are at chosen times, and what it cost to bring them there.
+"""Trials of one deck: positions of its bodies at chosen times, and the cost of reaching them.
 
 Positions are unwrapped, lengths and times in the units of the deck.
 """
@@ -31,11 +31,11 @@ class Trial:
 
     ``keywords`` of fix gear/quat, or None for the deck's own line; ``time`` (S,), samples after the
     start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies;
-    ``start_evaluations``, evaluations of the forces before the first step; ``seconds`` and
-    ``start_seconds``, wall times of the steps and of what comes before them, one for each repetition;
-    ``energies`` (S, 4), the conserved and the kinetic energy of the system, and those of translation (without that of
-    all bodies together) and rotation of the bodies; None if they were not asked for, and with them ``positions`` and
-    ``center`` are those at the end only.
+    ``start_evaluations``, evaluations of the forces before the first step.
+    ``seconds`` and ``start_seconds``, wall times of the steps and of the start before them, one for each repetition;
+    ``energies`` (S, 4), the conserved and the kinetic energy of the system, and the kinetic energies
+    of translation (relative to the common center of mass) and of rotation of the bodies.  ``energies`` is None unless
+    asked for; with energies, ``positions`` and ``center`` are given at the end only.
     """
 
     keywords: str
@@ -92,7 +92,7 @@ class Scene:
 
     @property
     def freedoms(self):
-        """Degrees of freedom of translation, without that of all bodies together, and of rotation of sites as points."""
+        """Degrees of freedom of translation, without the common translation, and of rotation of sites as points."""
         count, bodies = len(self.bodies), self.bodies
         return 3 * (count - 1), int(3 * count - bodies.linear.sum() - 3 * bodies.point.sum())
 
@@ -121,9 +121,8 @@ class Deck:
 
     ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to
     leave out; ``which`` counts the runs that move bodies, None is the first that can be measured;
-    ``ranks`` is the number of processes of LAMMPS; ``say`` is called with a line of text when the deck
-    takes time to come there, and ``on_wait`` every now and then while LAMMPS is at work; ``timeout`` in
-    seconds is what it may take.
+    ``ranks`` is the number of LAMMPS processes.  ``say`` is called with a line of text before slow commands of the
+    deck, and ``on_wait`` repeatedly while LAMMPS runs; ``timeout`` is the time limit in seconds.
     Raises DeckError for decks that cannot be used.
     """
 
@@ -189,7 +188,7 @@ class Deck:
         self._continued = [part.continued for part in parts]
 
     def _test_checkpoint(self):
-        """Do without checkpoints where steps from the last one are not those of the deck itself."""
+        """Drop the checkpoints if steps from the last one differ from the deck's own steps."""
         if not self.start.checkpoints or self._anew:
             return
         try:
@@ -210,7 +209,7 @@ class Deck:
 
     @property
     def partial(self):
-        """True if the kinetic energy in thermodynamic output is only a part of that of the bodies."""
+        """True if thermodynamic output counts only a part of the kinetic energy of the bodies."""
         return self._situation.rotating or any("infile" in dict(line.keywords) for line in self.lines)
 
     @property
@@ -233,7 +232,7 @@ class Deck:
         return self.start.steps * self.dt
 
     def takes(self, keywords):
-        """True if these keywords of fix gear/quat can go with what the deck says of its bodies."""
+        """True if these keywords of fix gear/quat are compatible with the bodies of the deck."""
         return all(line.takes(keywords) for line in self.base)
 
     @property

@@ -1,11 +1,11 @@
-"""The longest steps that serve a long run of a scene whose trajectory diverges, as that of a liquid does.
+"""The longest acceptable steps for long runs with diverging trajectories, as in a liquid.
 
-There the error of a trajectory says little.  What counts is that the energy does not drift and that translation and
+There the error of a trajectory means little.  Two criteria count: the energy does not drift, and translation and
 rotation have the same temperature.
 
-1. Short runs of the fix without a keyword, which chooses the number of values itself, of what the user wants to be
-   tried, and of the deck's own fix: from the longest step that is known upwards, until one drifts.
-2. Longer runs of the cheapest step that may hold.  Where it does not, the next shorter one is tried, unless
+1. Short runs of the fix without keywords (it chooses the number of values itself), of the user's own keywords,
+   and of the deck's own fix: from the longest known step upwards, until one drifts.
+2. Longer runs of the cheapest step that may meet the bound.  If it does not, the next shorter step is tried, unless
    another method is cheaper then.
 3. The deck as it is, for as long, to compare with.
 """
@@ -54,7 +54,8 @@ def shorter(dt):
 
 @dataclass(frozen=True)
 class LongRun:
-    """What a run with ``keywords`` (None: the deck's own fix) at a step said: ``seconds`` per unit of time, and a Drift."""
+    """The result of a run with ``keywords`` (None: the deck's own fix) at a step: ``seconds`` per unit of time, and a
+    Drift."""
 
     keywords: str
     dt: float
@@ -66,9 +67,9 @@ class LongRun:
 class Sampling:
     """The answer for a scene whose trajectory diverges; times in units of the deck.
 
-    ``runs``, list of LongRun; ``recommended``, (keywords, step) or None where nothing is known to hold ``bound``;
-    ``enough``, seconds of a budget in which the longest run could be made, or one that shows what holds; NaN if this one was
-    enough, or none is.
+    ``runs``, list of LongRun; ``recommended``, (keywords, step) or None if no step is known to meet ``bound``.
+    ``enough``, the budget in seconds for the longest run, or for one that decides; NaN if this budget was enough, or
+    none is.
     """
 
     bound: float
@@ -223,7 +224,7 @@ class Search:
 
     # --- 3. the deck as it is ---------------------------------------------------------------------------
     def compare(self):
-        """A run of the deck as it is that is as long as that of the recommendation, or as the budget allows."""
+        """A run of the deck as it is, as long as the run of the recommendation or as the budget allows."""
         own, choice = self.answer.own, self.answer.choice
         wanted = choice.drift.time if choice else 0.0
         if own and own.drift.time < 0.9 * wanted and not own.drift.fails:

@@ -1,7 +1,7 @@
-"""What the commands of an input script say: lines, words, fix lines, runs, and what is refused.
+"""The commands of an input script: lines, words, fix lines, runs, and refusals.
 
-Text in, text out; LAMMPS is asked for the list of the fix's keywords only.  The rules for continuation,
-comments and quotes are those of LAMMPS' manual, "Parsing rules for input scripts".
+Text in, text out; LAMMPS is asked for the list of the fix's keywords only.  Continuation, comments and quotes
+follow LAMMPS' manual, "Parsing rules for input scripts".
 """
 
 import re
@@ -11,7 +11,7 @@ from .. import keywords
 
 
 class DeckError(ValueError):
-    """A deck that cannot be used, with the reason and what would help."""
+    """A deck that cannot be used, with the reason and a remedy."""
 
 
 # --- lines and words ----------------------------------------------------------------------------
@@ -107,11 +107,11 @@ def run_steps(words, now=0):
 
 # --- the fix that moves the bodies --------------------------------------------------------------
 RIGID = ("rigid", "rigid/nve", "rigid/small", "rigid/nve/small")
-#: those with a thermostat, a barostat or both
+#: styles with a thermostat, a barostat or both
 RIGID_NH = tuple(f"rigid/{ensemble}{small}" for ensemble in ("nvt", "npt", "nph") for small in ("", "/small"))
 #: length of their chains if tparam or pchain does not say it
 _CHAIN = "10"
-#: keywords that hold a pressure
+#: keywords that set a pressure
 PRESSURES = ("iso", "aniso", "x", "y", "z")
 _SUFFIX = re.compile(r"/(omp|opt|intel|gpu|kk)$")
 #: keywords that may be given many times, and how many words follow each
@@ -168,7 +168,7 @@ class FixLine:
         return " ".join(map(_plain, words))
 
     def only(self, *about):
-        """This line, of fix gear/quat, with those of its keywords that are about these subjects."""
+        """This line of fix gear/quat, with only its keywords about these subjects."""
         names = keywords.names(*about)
         return replace(self, keywords=tuple(pair for pair in self.keywords if pair[0] in names))
 
@@ -200,9 +200,9 @@ class FixLine:
         return replace(kept, keywords=_with_coefficients(pairs(text)) + kept.keywords)
 
     def numerics(self, text):
-        """The keywords about integration of this line as text, changed by those in ``text``.
+        """The keywords about integration of this line as text, updated by the keywords in ``text``.
 
-        What belongs to the other formulation only goes with a change of formulation.
+        A change of formulation drops the keywords that belong to the other one only.
         """
         own, new = dict(self.only("integration").keywords), dict(pairs(text))
         if new.get("formulation", own.get("formulation")) != own.get("formulation"):
@@ -214,7 +214,7 @@ class FixLine:
 def conserved(lines, partial=False):
     """Energies while these FixLines move the bodies, as formulas of LAMMPS: (conserved, kinetic, commands before them).
 
-    ``partial``: the kinetic energy of atoms is not that of the bodies, which are all that moves.
+    ``partial``: the kinetic energy of atoms differs from the kinetic energy of the bodies, and only bodies move.
     """
     own = [line for line in lines if line.style == "gear/quat"]
     heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which econserve does not have
