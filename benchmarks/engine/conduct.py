@@ -56,7 +56,7 @@ def ticking(tick):
 
 
 def measure(study, out, **options):
-    """Measure and keep data and their origin in ``out``; ``options`` are those of Lab."""
+    """Measure and keep data and their origin in ``out``; ``options`` are passed to Lab."""
     out.mkdir(parents=True, exist_ok=True)
     at = provenance.commit("src", "benchmarks", "examples")
     with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar, ticking(bar.refresh):

@@ -148,7 +148,7 @@ class Lab:
         """Run a deck for every combination of ``axes``, a dictionary variable -> values.
 
         ``settings``: further variables, or a function of the combination (a dictionary) that returns
-        them; "steps" must be among all of them.  ``options`` are those of ``many``.  Returns tuple of
+        them; "steps" must be among all of them.  ``options`` as in ``many``.  Returns tuple of
         values -> ``read(finished)``; a tuple of one value is that value.
         """
         jobs, keys = {}, {}

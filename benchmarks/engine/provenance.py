@@ -1,4 +1,4 @@
-"""Where and with what something was measured."""
+"""The machine and the software of a measurement."""
 
 import datetime
 import os

@@ -32,7 +32,7 @@ class RunError(LammpsError):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run left, in the units of the run.
+    """The outcome of a run, in the units of the run.
 
     ``seconds``: wall time of the ``run`` command; ``modify``: LAMMPS' "Modify" time, NaN if its timers
     are off; ``start``: force evaluations of the method's own start; ``ids``, ``masses`` and

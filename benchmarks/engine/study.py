@@ -1,4 +1,4 @@
-"""A study and what it finds."""
+"""A study and its findings."""
 
 import math
 from collections.abc import Callable
@@ -55,7 +55,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Finding:
-    """What a study makes of its data.
+    """The results of a study, derived from its data.
 
     ``measurements``: a sequence of Measurement.  ``tables``: name -> Table; each is left as a CSV file.
     ``pictures``: name -> tuple of Panel (see panels.py), or a function that draws into the path it gets;
