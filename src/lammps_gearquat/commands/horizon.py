@@ -36,7 +36,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
         "--a",
         "first",
         metavar="KEYWORDS",
-        help="First run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as"
+        help="First run: keywords of fix gear/quat that change the deck's.  Default: the deck as"
         " it is.",
     ),
     cloup.option(

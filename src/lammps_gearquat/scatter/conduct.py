@@ -20,8 +20,8 @@ LEFT_OUT = 0.1
 def scatter(scene, asked, numbers, error, most, out, progress):
     """Simulate flights, and write the results into the folder ``out``; returns them as text.
 
-    ``scene``: arguments of ``open_pair``; ``asked``: those of ``simulate`` with processes, most_steps and sigma;
-    the others are those of ``simulate``.  Raises DeckError and LammpsError.
+    ``scene``: arguments of ``open_pair``; ``asked``: as in ``simulate``, with processes, most_steps and sigma; the
+    others as in ``simulate``.  Raises DeckError and LammpsError.
     """
     with Pool(scene, asked["processes"], asked["most_steps"]) as pool:
         wanted, rows = simulate(pool, asked, numbers, error, most, out, progress)

@@ -27,10 +27,10 @@ BITS = 30
 class Plan:
     """The distribution of the flights, in units of the deck.
 
-    ``seed``, a tuple of numbers; ``temperature``, a rising tuple of temperatures of translation, or None and one
-    ``energy`` of it; ``rotation``, its temperature, 0 for none, or None for the temperature of translation;
-    ``largest``, the largest impact parameter; ``s0``, ``s1`` and ``power``, which density.py explains.  If both s0
-    and s1 are 0, impact parameters are uniform over the whole area.
+    ``seed``, a tuple of numbers; ``temperature``, an ascending tuple of temperatures of translation, or None with one
+    ``energy`` of translation; ``rotation``, the temperature of rotation, 0 for none, or None for the temperature of
+    translation; ``largest``, the largest impact parameter; ``s0``, ``s1`` and ``power``, which density.py explains.
+    If both s0 and s1 are 0, impact parameters are uniform over the whole area.
     """
 
     seed: tuple

@@ -29,7 +29,7 @@ def explained(message, deck, dt, reached=None):
             f" box follows them, or end {end} (LAMMPS: {said})"
         )
     if dt > deck.dt:
-        remedy = f"a step of {deck.dt:g}, that of the script, or shorter is required"
+        remedy = f"a step of {deck.dt:g} (as in the script) or shorter is required"
     else:
         remedy = f"lmp -in {deck.path.name} has to reach the time first, with a shorter timestep or from other positions"
     return (
