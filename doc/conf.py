@@ -69,7 +69,7 @@ def read_page(app, docname, source):
 
 
 def lammps_page(app, env, node, content):
-    """Where our page links to other pages of LAMMPS' manual."""
+    """Links of our page to other pages of LAMMPS' manual."""
     if node.get("refdoc") != "src/fix_gear_quat" or node.get("reftype") != "doc":
         return None
     page = node["reftarget"].removeprefix("/src/")

@@ -31,7 +31,7 @@ def all_studies():
 
 @dataclass(frozen=True)
 class Origin:
-    """Where data come from: a sentence for the page, and whether they are the ``whole`` study."""
+    """The origin of data: a sentence for the page, and ``whole``, True if they are the complete study."""
 
     sentence: str
     whole: bool

@@ -57,7 +57,7 @@ def rigid(style, method):
     return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
 
 
-#: what the fix takes for smooth motion unless told: values of each formulation, and passes
+#: defaults of the fix for smooth motion: values of each formulation, and passes
 DEFAULT_VALUES, DEFAULT_PASSES = {"second": 9, "first": 8}, 0
 #: these defaults, and the defaults of version 0.2, which used Gear's coefficients
 DEFAULTS = {f: gear(f, n, passes=DEFAULT_PASSES) for f, n in DEFAULT_VALUES.items()}

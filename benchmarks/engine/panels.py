@@ -11,7 +11,7 @@ import numpy as np  # noqa: E402
 
 from gearquat_analysis.style import COLOR, STYLE  # noqa: E402
 
-#: what pictures of the paper's cases say of the cage
+#: note on the cage in pictures of the paper's cases
 RECONSTRUCTED = "charges of the cage: reconstructed"
 
 

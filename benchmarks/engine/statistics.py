@@ -59,12 +59,13 @@ def deviation(mean, other):
 
 
 def largest_deviation(mean, other, count):
-    """How many standard errors the largest of ``count`` differences of two Means may have."""
+    """The bound, in standard errors, below which the largest of ``count`` differences of two Means is not
+    significant."""
     return allowed(count, mean.freedoms + other.freedoms)
 
 
 def allowed(count, freedoms):
-    """How many standard errors the largest of ``count`` deviations may have.
+    """The bound, in standard errors, below which the largest of ``count`` deviations is not significant.
 
     From Student's t distribution with the degrees of freedom of the errors, and Bonferroni's
     correction.

@@ -31,7 +31,7 @@ NO_INERTIA = 1e-7
 
 @dataclass(frozen=True)
 class State:
-    """Where B bodies are: ``center``, ``velocity`` (B, 3) in space axes, ``q`` (B, 4),
+    """State of B bodies: ``center``, ``velocity`` (B, 3) in space axes, ``q`` (B, 4),
     ``omega_body`` (B, 3) along the principal axes."""
 
     center: np.ndarray

@@ -1,4 +1,4 @@
-"""GEARQUAT for LAMMPS. Imports nothing heavy: Every rank imports this module whenever `lmp` starts."""
+"""GEARQUAT for LAMMPS. Imports nothing heavy: every rank imports this module whenever `lmp` starts."""
 
 import os
 

@@ -49,7 +49,7 @@ class Keyword:
 
     @property
     def arguments(self):
-        """How many words follow the keyword."""
+        """The number of words after the keyword."""
         return len(self.values.split()) if self.kind in ("mask", "numbers") else 1
 
     @property

@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 class LammpsError(RuntimeError):
-    """LAMMPS ended with an error, or not in time, or there is no LAMMPS."""
+    """LAMMPS ended with an error, did not end in time, or is missing."""
 
 
 def find(name, beside=sys.executable):

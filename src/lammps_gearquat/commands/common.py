@@ -19,7 +19,7 @@ INTERRUPTED = 130
 
 
 def reading_options(*more):
-    """The options that say how a deck is read, in a group, and ``more`` of them."""
+    """The group of options about reading a deck, with ``more`` options."""
     return cloup.option_group(
         "The deck",
         cloup.option(
@@ -49,7 +49,7 @@ def reading_options(*more):
 
 
 def deck_options(function):
-    """The argument DECK and the options that say how it is read; they become the argument ``scene``."""
+    """The argument DECK and the options about reading it; they become the argument ``scene``."""
 
     @cloup.argument("deck", type=FILE, help="LAMMPS input script with a fix that moves rigid bodies.")
     @reading_options(
@@ -66,7 +66,7 @@ def deck_options(function):
 
 
 def announce(path, progress):
-    """Function that says what is done with a deck before its trials, above a progress bar."""
+    """Function that prints the actions on a deck before its trials, above a progress bar."""
     return lambda text: progress.write(f"{path.name}: {text}", file=sys.stderr)
 
 
@@ -98,7 +98,7 @@ def shown_progress(**options):
 
 @contextmanager
 def ending_cleanly(out):
-    """Make Ctrl-C and SIGTERM end the command with a message that the folder ``out`` is as it was."""
+    """Make Ctrl-C and SIGTERM end the command with a message that the folder ``out`` is unchanged."""
 
     def stop(*_):
         raise KeyboardInterrupt

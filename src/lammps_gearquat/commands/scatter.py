@@ -138,7 +138,7 @@ def _flights(scene, asked, out, conduct):
 
 
 def _refuse(given, names, why):
-    """Options that ``why`` leaves without meaning."""
+    """Options that have no meaning because of ``why``."""
     for name in names:
         if given[name] not in (None, ()):
             raise DeckError(f"{why}: {name} has to be left out")

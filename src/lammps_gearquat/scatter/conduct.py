@@ -13,7 +13,7 @@ from .sampling import REPLICAS, Plan
 
 #: flights before errors are looked at, which doubles as long as they are too large
 FIRST_ROUND = 32 * REPLICAS
-#: what may be left out beyond the largest impact parameter, by the error that is asked for
+#: allowed loss beyond the largest impact parameter, in units of the requested error
 LEFT_OUT = 0.1
 
 

@@ -24,13 +24,13 @@ from ..trials.script import DeckError
 from .track import STEPS, Track
 
 #: a flight begins and ends so much farther apart than the bodies can feel each other: several first steps, for
-#: the derivatives of the start know nothing of a force that begins within its step
+#: the derivatives at the start do not include a force that sets in within the step
 MARGIN = 1.05
-#: what the first step may be: part of the way to the place of the encounter, and angle in radians
+#: limits of the first step: fraction of the distance to the encounter, and angle in radians
 FIRST_STEP, FIRST_TURN = 0.01, 0.05
 #: parts of the sum of all forces that count as rounding, where the force on a body should be zero
 ROUNDING = 1e-12
-#: keywords of the fix that say where bodies are or what acts on them, which is the command's to say
+#: keywords of the fix for positions of bodies and forces on them, which the command sets itself
 REFUSED_KEYWORDS = ("infile", "mol", "force", "torque")
 #: fixes that neither move atoms nor exert forces
 IDLE = re.compile(r"property/atom|store/.*|dt/reset")

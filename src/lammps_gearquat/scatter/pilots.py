@@ -50,7 +50,8 @@ class Largest:
 
 @dataclass(frozen=True)
 class Cells:
-    """Where pilots are: ``edges`` (D + 1,) of the shells; ``b`` and ``energy`` (D, L, A); ``width``, of a level in the
+    """The grid of the pilots: ``edges`` (D + 1,) of the shells; ``b`` and ``energy`` (D, L, A); ``width``, of a level
+    in the
     logarithm of the energy, 0 for one energy; ``random`` (D L A, m), for what else is drawn."""
 
     edges: np.ndarray
@@ -167,7 +168,7 @@ def _parted(columns):
 def losses(columns, scale, balanced, turning):
     """Array (n, 3): sizes of F_11 and F_22 and the squared gain of rotation, of each pilot; see integrals.py."""
     pairs = Collisions.of(columns, scale, balanced)
-    # what atoms gain is the error of a flight
+    # the energy gained by atoms is the error of a flight
     gain = pairs.gain**2 if turning else np.zeros(len(pairs.x))
     found = np.column_stack([np.abs(pairs.change(0)), np.abs(pairs.f22), gain])
     found[found < NOTHING] = 0.0

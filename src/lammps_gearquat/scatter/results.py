@@ -8,7 +8,7 @@ from ..trials.script import DeckError
 from . import gas
 from .integrals import Averages, estimates, integrands
 
-#: what --error is an error of, by the kind of plan
+#: the quantities that --error refers to, by the kind of plan
 AIMS = {"temperature": ("Omega(1,1)", "Omega(2,2)"), "energy": ("Q(1)", "Q(2)")}
 #: flights that are named at most
 NAMED = 10

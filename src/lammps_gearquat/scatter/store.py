@@ -74,7 +74,7 @@ def begin(folder, wanted):
     write_json(folder / SETTINGS, wanted)
 
 
-#: what the settings that may differ are to the user, by the names in settings.json
+#: descriptions for the user of settings that may differ, by their names in settings.json
 WORDS = {
     "pair text": "the commands of the deck",
     "pair name": "the name of the deck",
@@ -85,7 +85,7 @@ WORDS = {
     "plan largest": "the largest impact parameter",
     "most_steps": "--steps",
 }
-#: what pilot flights find, which differs if anything else does
+#: results of pilot flights, which differ if anything else does
 FOUND = ("plan s0", "plan s1", "plan power")
 
 

@@ -16,7 +16,7 @@ cost, horizon   the two questions
 report          the answers as text and tables; sampling_report, those of sampling
 """
 
-#: what an error is of, over all bodies
+#: quantities that an error can refer to, over all bodies
 NORMS = ("largest position", "rms position", "largest orientation", "rms orientation")
 #: kT per degree of freedom and ns by which the energy may drift at a recommended step
 BOUND = 0.1

@@ -139,7 +139,7 @@ class Inquiry:
         self.before, self.truth = budget.spent(), None
 
     def attempt(self, keywords, end, steps, samples=1):
-        """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
+        """Trial, or None if LAMMPS failed (a step that is too large) or the budget ended."""
         self.budget.say(f"{named(keywords)}, step {rounded(end / steps)}")
         timeout = min(PATIENCE + 3 * self.expected(keywords, steps), self.budget.left())
         begin = clock.monotonic()
@@ -163,12 +163,12 @@ class Inquiry:
         return runs * self.expected(keywords, steps) < self.budget.left() - reserve
 
     def enough(self):
-        """The seconds that a budget should have, as far as trials tell, as text."""
+        """The recommended budget in seconds, estimated from the trials, as text."""
         trial = self.expected(None, SAMPLES) if self.pace else self.budget.spent() - self.before
         return rounded(2 * self.before + RUNS_IN_BUDGET * trial, 2)
 
     def refusal(self, what, keywords):
-        """The DeckError where a trial that is necessary did not come to its end."""
+        """The DeckError for a necessary trial that did not finish."""
         reason = explained(self.failures[keywords], self.deck, self.deck.dt)
         if self.budget.left() > 0 or not reason.startswith(NOT_FINISHED):
             return DeckError(f"{what}: {reason}")
@@ -180,7 +180,7 @@ class Inquiry:
 
     # --- 0. how long ----------------------------------------------------------------------------------
     def probe(self):
-        """Find out what a step costs with the deck's own fix, from a run of a few tenths of a second."""
+        """Measure the cost of a step with the deck's own fix, from a run of a few tenths of a second."""
         steps = PROBE_STEPS
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
@@ -193,7 +193,7 @@ class Inquiry:
             steps = min(4 * steps, self.deck.start.steps)
 
     def check(self, tries):
-        """Raise DeckError for keywords that the fix refuses: a step so short fails for no other reason."""
+        """Raise DeckError for keywords that the fix refuses: so short a step fails for no other reason."""
         for keywords in tries:
             if self.attempt(keywords, 1e-3 * self.deck.dt, 1) is None:
                 raise self.refusal(f"--try '{keywords}'", keywords)
@@ -268,7 +268,7 @@ class Inquiry:
 
     # --- 2. the methods -------------------------------------------------------------------------------
     def add(self, costs, keywords, steps):
-        """A trial into ``costs``; returns the largest error that it may have, None where it did not end."""
+        """Add a trial to ``costs``; returns its largest possible error, or None if it did not finish."""
         trial = self.attempt(keywords, costs.end, steps)
         if trial is None:
             return None
@@ -309,7 +309,7 @@ class Inquiry:
         return {steps: error for steps, error in rungs.items() if error is not None}
 
     def climb_all(self, costs, errors, tries):
-        """Trials of all methods into ``costs``."""
+        """Add trials of all methods to ``costs``."""
         tried = [None, *dict.fromkeys([*filter(self.deck.takes, methods()), *tries])]
         middle = math.log(errors[0] * errors[-1]) / 2
         own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
@@ -329,7 +329,7 @@ class Inquiry:
 
     # --- 3. the steps between -------------------------------------------------------------------------
     def refine(self, costs, errors):
-        """Further trials into ``costs``, at the steps that interpolation promises, as scripts have them."""
+        """Add further trials to ``costs``, at interpolated steps, rounded as in scripts."""
         reserve, methods = (SHARE_TIMING / 2 + drift.SHARE) * self.budget.seconds, list(costs.points())
         for error in ATTEMPTS * list(errors):
             for keywords, price in evaluate.candidates(costs.points(), error).items():
@@ -355,7 +355,7 @@ class Inquiry:
 
     # --- 5. the drift -----------------------------------------------------------------------------------
     def choose(self, costs, errors):
-        """Rows of ``costs`` whose recommended steps were run for the drift of their energy, and not refused for it.
+        """Rows of ``costs`` whose recommended steps were tested for energy drift and not rejected.
 
         Short runs come first, and each refusal makes another choice.  Then what is left of the budget is shared by long runs.
         """
@@ -447,7 +447,7 @@ def worth_timing(costs, errors):
 
 
 def rows_of(costs, errors):
-    """One Row for each error: what it costs with the deck's own method, and at best.
+    """One Row for each error: its cost with the deck's own method, and at best.
 
     A smaller error that was measured as cheaper serves a larger one as well: times are noisy.
     """

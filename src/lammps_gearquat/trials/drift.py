@@ -1,4 +1,4 @@
-"""How the energy drifts at a step, and whether translation and rotation have the same temperature."""
+"""Energy drift at a step, and the difference between the temperatures of translation and rotation."""
 
 import math
 from dataclasses import dataclass, replace
@@ -54,27 +54,27 @@ class Drift:
 
     @property
     def drifts(self):
-        """True if the drift is beyond the bound for sure."""
+        """True if the drift certainly exceeds the bound."""
         return abs(self.rate) - SURE * self.error > self.bound
 
     @property
     def unbalanced(self):
-        """True if the temperatures of translation and rotation differ by more than BALANCE of them for sure."""
+        """True if the temperatures of translation and rotation certainly differ by more than the fraction BALANCE."""
         return abs(self.difference.value) - SURE * self.difference.error > BALANCE * self.temperature
 
     @property
     def fails(self):
-        """True if a run ended with an error that the step is to be blamed for."""
+        """True if a run ended with an error caused by the step."""
         return bool(self.failure) and not self.gone
 
     @property
     def refused(self):
-        """True if the step is not to be recommended."""
+        """True if the step must not be recommended."""
         return self.drifts or self.unbalanced or self.fails
 
     @property
     def holds(self):
-        """True if the drift is within the bound for sure, and nothing else speaks against the step."""
+        """True if the drift is certainly within the bound, and nothing else rules out the step."""
         return abs(self.rate) + SURE * self.error < self.bound and not self.refused
 
 
@@ -135,7 +135,8 @@ def run(inquiry, keywords, dt, steps, timeout, bound=BOUND, balance=False):
 
 
 def of_step(inquiry, keywords, dt, end, seconds, bound=BOUND):
-    """Drift at a step, from a run that takes so many seconds at most, up to ``longest``, or longer if that does not tell.
+    """Drift at a step, from a run of at most so many seconds, up to ``longest``, or longer if the drift is not
+    resolved.
 
     Where that ends with an error a run to ``end``, for which the step is recommended, is made as well.
     """

@@ -1,4 +1,4 @@
-"""Errors of bodies, what an error costs, how the energy drifts, and how a difference grows.  Arrays in, numbers out."""
+"""Errors of bodies, cost of an error, energy drift, and growth of a difference.  Arrays in, numbers out."""
 
 import math
 from dataclasses import dataclass

@@ -39,12 +39,12 @@ def explained(message, deck, dt, reached=None):
 
 
 def left_the_box(message, deck):
-    """True if an error means that bodies left a box whose boundary is fixed, whatever the step is."""
+    """True if an error means that bodies left a box with fixed boundaries, so that no step would help."""
     return bool(_GONE.search(message) and _fixed_boundary(deck))
 
 
 def _fixed_boundary(deck):
-    """The command of the deck that makes a boundary fixed, or ""."""
+    """The deck's command that makes a boundary fixed, or ""."""
     commands = [command.text.split() for command in deck.start.commands]
     last = next((words for words in reversed(commands) if words[:1] == ["boundary"]), [])
     return " ".join(last) if any("f" in word for word in last[1:]) else ""

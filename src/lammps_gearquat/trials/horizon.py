@@ -1,4 +1,4 @@
-"""Until what time a trajectory can be trusted: one scene at two accuracies, side by side."""
+"""The time until which a trajectory can be trusted: one scene at two accuracies, side by side."""
 
 from dataclasses import dataclass, field
 
@@ -122,7 +122,7 @@ class _Pair:
 
 
 def affordable(deck, dt_a, dt_b):
-    """The time of the deck's run, or what two runs within BUDGET reach."""
+    """The time of the deck's run, or the time that two runs reach within BUDGET."""
     inquiry = Inquiry(deck, Budget(BUDGET))
     inquiry.probe()
     return min(deck.end, BUDGET / (inquiry.pace[None] / dt_a + inquiry.pace[None] / dt_b))

@@ -56,7 +56,7 @@ class Trial:
 
     @property
     def fastest(self):
-        """The smallest of ``seconds``: what else the machine does can only add to it."""
+        """The smallest of ``seconds``: other load on the machine can only add to it."""
         return min(self.seconds)
 
     @property
@@ -183,7 +183,7 @@ class Deck:
         self.size = self.scene.size
         self.units = self._situation.units
         self.time_unit, self.length_unit, *_ = UNITS[self.units]
-        #: whether atoms move that are in no body
+        #: True if atoms move that are in no body
         self.others = sum(len(part.sites.ids) for part in parts) > len(self.scene.ids)
         self._continued = [part.continued for part in parts]
 
@@ -214,8 +214,8 @@ class Deck:
 
     @property
     def freedoms(self):
-        """Scene.freedoms, or None where they are others: bodies are held, their sites or three dimensions do not tell,
-        or the total angular momentum is conserved, too, as in a box that is not periodic in two directions.
+        """Scene.freedoms, or None if they are unknown: bodies are held, their sites or dimensions do not determine
+        them, or the total angular momentum is conserved, too, as in a box that is not periodic in two directions.
         """
         held = any(key in script.MASKS for line in self.lines for key, _ in line.keywords)
         alone = self._situation.flat or self._situation.periodic < 2
@@ -237,7 +237,7 @@ class Deck:
 
     @property
     def accurate(self):
-        """Those of ACCURATE that the deck allows."""
+        """The keywords of ACCURATE that the deck allows."""
         return next(filter(self.takes, ACCURATE))
 
     def fix_lines_of(self, keywords):
@@ -251,7 +251,7 @@ class Deck:
         return [line.text() for line in self.fix_lines_of(keywords)]
 
     def run(self, keywords, segments, dt, timeout=None, energies=False):
-        """Trial over segments of these numbers of steps, perhaps with energies.  Raises LammpsError if LAMMPS does."""
+        """Trial over segments of these numbers of steps, perhaps with energies.  Raises LammpsError if LAMMPS fails."""
         new = self._anew if keywords is None else {b.id: b for b in self.fix_lines_of(keywords)}
         watched = {"partial": self.partial, "ids": self.scene.ranges, "unit": UNITS[self.units].energy}
         outcomes = self._ask(

@@ -30,7 +30,7 @@ BODIES = "gearquat_bodies"
 #: variables for the conserved energy, the kinetic energy, and the kinetic energies of translation and rotation of the
 #: bodies
 ENERGIES = ("gearquat_conserved", "gearquat_kinetic", "gearquat_translation", "gearquat_rotation")
-#: what atoms have that rotate by themselves
+#: properties of atoms that rotate by themselves
 ROTATING = ("omega_flag", "angmom_flag")
 COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
 #: steps that are run beyond the point where a deck has been followed to, to test the checkpoint
@@ -79,7 +79,7 @@ def _sites(lammps):
 
 # --- the requests ---------------------------------------------------------------------------------
 def follow(deck, variables, without, which, log, tell):
-    """Situation of a deck.  ``tell`` is called with a line of text before what takes time."""
+    """Situation of a deck.  ``tell`` is called with a line of text before slow commands."""
     lammps = open_lammps(deck, variables, log)
     folder = Path(log).parent
     try:
@@ -199,7 +199,7 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
 
 
 def _warnings(text):
-    """Lines of a log that matter to who reads the answer."""
+    """Lines of a log that matter to the reader of the answer."""
     warnings = _LIMITED.findall(text)
     if any(int(number) for number in _DANGEROUS.findall(text)):
         warnings.append("neighbor lists were built too late: neigh_modify delay 0 every 1 check yes")

@@ -190,12 +190,12 @@ def _script_lines(deck, costs):
 
 
 def _refused(costs):
-    """Those of the drifts for whose sake a step is not recommended."""
+    """The drifts because of which a step is not recommended."""
     return {pair: found for pair, found in costs.drifts.items() if found.refused}
 
 
 def _nothing_holds(deck, costs, rows):
-    """That the steps which reach the errors of these rows drift, and by how much at least."""
+    """Note that the steps which reach the errors of these rows drift, with a lower bound of the drift."""
     refused = _refused(costs)
     if not rows or not refused:
         return []

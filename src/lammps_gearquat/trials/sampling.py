@@ -27,9 +27,9 @@ FEWEST = 200
 BALANCED = 0.1
 #: the shortest step that is tried, as a part of the deck's own
 SHORTEST = 1.0 / 16.0
-#: what the run of a recommended step takes of the time that is left, and a first, shorter try before it
+#: fractions of the remaining time for the run of a recommended step, and for a shorter first try before it
 SHARE_LONG, FIRST_TRY = 0.75, 0.15
-#: the part of the budget that is left for the run of a recommendation if two steps were tried
+#: the fraction of the budget left for the run of a recommendation if two steps were tried
 SHARE_LAST = (1.0 - SHARE_SHORT) * (1.0 - FIRST_TRY) ** 2 * SHARE_LONG
 #: a run may take longer than expected by this factor
 SLACK = 1.2
@@ -40,7 +40,7 @@ WORTHWHILE = 1.1
 
 
 def neighbor(dt, shift):
-    """The step of STEPS times a power of ten that is ``shift`` places from the longest one not above ``dt``."""
+    """The step (STEPS times a power of ten) that is ``shift`` places from the longest one not above ``dt``."""
     power = math.floor(math.log10(dt) + 1e-9)
     place = max(k for k, step in enumerate(STEPS) if step <= dt / 10.0**power * (1 + 1e-6)) + shift
     decade, place = divmod(place, len(STEPS))
@@ -123,7 +123,7 @@ class Search:
         self.end, self.shortest = drift.longest(inquiry.deck), SHORTEST * inquiry.deck.dt
 
     def seconds_per_step(self, keywords):
-        """The smallest that is known: what else the machine does can only add to it."""
+        """The smallest known time: other load on the machine can only add to it."""
         known = [run.seconds * run.dt for run in self.answer.runs if run.keywords == keywords and run.drift.known]
         return min(known, default=max(self.inquiry.pace.values()))
 
@@ -147,7 +147,8 @@ class Search:
         return not found.refused, found.known or found.fails
 
     def climb(self, keywords, good, dt, least):
-        """The longest step that may hold: from ``dt`` on upwards, or else downwards to ``least``, or ``good``, which is known."""
+        """The longest step that may meet the bound: searched from ``dt`` upwards, or else downwards to ``least``, or
+        the known ``good``."""
         budget, said = self.inquiry.budget, True
         while said and budget.left() > self.until:
             holds, said = self.may_hold(keywords, dt)
@@ -165,7 +166,7 @@ class Search:
         return good
 
     def short_runs(self, tries):
-        """Dictionary keywords -> the longest step that may hold, for every method for which there is time."""
+        """Dictionary keywords -> the longest step that may meet the bound, for every method for which there is time."""
         deck, budget, best = self.inquiry.deck, self.inquiry.budget, 0.0
         self.until = (1.0 - SHARE_SHORT) * budget.left()
         self.short = (budget.left() - self.until) / SHORT_RUNS
@@ -202,7 +203,7 @@ class Search:
         return found.known and (beyond > found.error or found.error < 0.25 * found.bound and beyond > -found.error)
 
     def long_runs(self, steps):
-        """Lengthen runs of the cheapest steps until one is known to hold: (keywords, step), or None."""
+        """Lengthen runs of the cheapest steps until one is known to meet the bound: (keywords, step), or None."""
         budget = self.inquiry.budget
         while steps:
             keywords = self.cheapest(steps)
@@ -235,7 +236,8 @@ class Search:
 
 
     def enough(self):
-        """Sampling.enough: for the longest run of the choice, or else for an error of half the bound where a step may hold."""
+        """Sampling.enough: for the longest run of the choice, or else for an error of half the bound if a step may
+        meet it."""
         choice = self.answer.choice
         if choice and choice.drift.time > 0.9 * self.end:
             return math.nan

@@ -122,7 +122,7 @@ RIGID_KEYWORDS = dict.fromkeys(MASKS, _MASK_WORDS) | {"langevin": 4}
 RIGID_KEYWORDS |= dict.fromkeys(("temp", *PRESSURES, "tparam"), 3)
 RIGID_KEYWORDS |= dict.fromkeys(("couple", "pchain", "dilate", "infile", "reinit", "mol"), 1)
 RIGID_KEYWORDS |= {"gravity": 1}
-#: what the keywords of fix gear/quat are about that say what moves, and how it does by nature
+#: subjects of the keywords of fix gear/quat that define bodies and equations of motion
 _PHYSICAL = ("bodies", "physics")
 _REFUSED_KEYWORDS = {
     "langevin": "its forces are random, so there is no trajectory to compare: leave it"
@@ -143,7 +143,7 @@ def base_style(style):
 
 
 def _plain(word):
-    """A word as a script has it, in quotes if need be."""
+    """A word in the form of a script, in quotes if necessary."""
     return word if re.fullmatch(r"[^\s\"'#&$]+", word) else quote(word)
 
 
@@ -183,11 +183,12 @@ class FixLine:
         return dict(self.keywords).get("isokinetic", ("none",)) != ("none",)
 
     def takes(self, text):
-        """True if the keywords in ``text`` can go with those that say what moves."""
+        """True if the keywords in ``text`` are compatible with the keywords that define bodies and equations of
+        motion."""
         return not self.isokinetic or dict(pairs(text)).get("formulation") == ("first",)
 
     def with_numerics(self, text):
-        """This line with the keywords in ``text`` instead of all those that say how to integrate.
+        """This line with its keywords about integration replaced by ``text``.
 
         Raises DeckError for text that is not pairs of a keyword and a value, or does not fit.
         """
@@ -260,7 +261,7 @@ def moves_bodies(style):
 
 
 def parse_fix(words):
-    """FixLine of the words of a fix command for which ``moves_bodies`` holds."""
+    """FixLine of the words of a fix command for which ``moves_bodies`` is true."""
     id_, group, style, *rest = words[1:]
     who = f"fix {id_} {style}"
     length = {"single": 1, "molecule": 1, "custom": 2}.get(rest[0] if rest else "", 0)
@@ -379,7 +380,7 @@ _RANDOM_PAIR = re.compile(r"^(dpd|[emt]dpd|brownian)(/|$)")
 
 
 def check_scene(fixes, pair_style):
-    """Refuse what has no trajectory: ``fixes`` is a dictionary ID -> style, ``pair_style`` words."""
+    """Refuse decks without a deterministic trajectory: ``fixes`` is a dictionary ID -> style, ``pair_style`` words."""
     faults = []
     for id_, style in fixes.items():
         reasons = [why for pattern, why in _UNUSABLE if re.fullmatch(pattern, base_style(style))]

@@ -77,7 +77,7 @@ class TrialPart:
 
 
 def _drain(connection):
-    """Close a connection once its other end is closed, which a process does when it ends."""
+    """Close a connection once its other end is closed; a process closes it when it ends."""
     with connection, suppress(EOFError, OSError):
         while connection.poll(PATIENCE):
             connection.recv_bytes()
@@ -106,7 +106,7 @@ class Worker:
         self.process, self.connections = None, []
 
     def _begin(self):
-        """Start the processes and wait until all of them have connected themselves."""
+        """Start the processes and wait until all of them have connected."""
         address = self.folder / "socket"
         address.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX) as listener, self.output.open("ab") as output:
