@@ -83,7 +83,7 @@ def _reachable(farthest, error, given):
 
 
 def rounds(most):
-    """Numbers of flights after which errors are looked at."""
+    """Numbers of flights after which errors are checked."""
     number = min(FIRST_ROUND, most)
     while number < most:
         yield number
@@ -118,7 +118,7 @@ def _until(pool, plan, farthest, numbers, error, most, out, progress):
 
 
 def _finished(found, error):
-    """Raise DeckError if flights that have not parted do not let errors become as small as asked for."""
+    """Raise DeckError if unparted flights keep the errors above the requested ones."""
     if found.guessed > error:
         raise DeckError(
             f"{report.unfinished(found)}; they are {found.guessed:.1e} of the averages, more than --error {error:g}, and no"

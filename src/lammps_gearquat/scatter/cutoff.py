@@ -45,7 +45,7 @@ def check(pair, scale):
 
 
 def _scanned(pair, pose, highest):
-    """Distances (n,), from outside inwards up to the energy ``highest``, and forces (n,) there."""
+    """Distances (n,), descending until the energy reaches ``highest``, and forces (n,) there."""
     far, found = pair.interaction(pose, pair.reach)[0], []
     for distance in np.linspace(1.0, NEAREST, DISTANCES) * pair.reach:
         energy, force = pair.interaction(pose, distance)

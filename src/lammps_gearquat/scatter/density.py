@@ -72,7 +72,7 @@ class Density:
     # --- energies -------------------------------------------------------------------------------
     @cached_property
     def shares(self):
-        """Parts (m,) of the mixture that the temperatures have."""
+        """Weights (m,) of the temperatures in the mixture."""
         return shares_of(len(self.scales))
 
     @cached_property
@@ -108,7 +108,7 @@ class Density:
         return self._mixed(self.densities(energy))
 
     def cumulative(self, energy):
-        """Part (n,) of the energies that is below ``energy`` (n,)."""
+        """Fraction (n,) of the energies below ``energy`` (n,)."""
         return self._mixed(self._sum(gammainc, energy))
 
     def _mixed(self, values):
@@ -117,7 +117,7 @@ class Density:
 
     @cached_property
     def _table(self):
-        """Logarithms of energies, and the parts below them, rising."""
+        """Logarithms of energies, and the fractions below them, ascending."""
         grid = np.geomspace(LOWEST * self.scales[0], HIGHEST * self.scales[-1], ENTRIES)
         below = self.cumulative(grid)
         rising = np.concatenate([[True], np.diff(below) > 0.0])

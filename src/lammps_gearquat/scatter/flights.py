@@ -66,7 +66,8 @@ def fly(pair, plan, numbers, most_steps):
 
 
 def fly_pilots(pair, b, energy, thermal, random, most_steps):
-    """List of Flights with impact parameters, energies and kT of rotation (n,); ``random`` (n, m), what else is drawn."""
+    """List of Flights with impact parameters, energies and kT of rotation (n,); ``random`` (n, m), the other random
+    numbers."""
     planned = starts_of(pair, b, energy, thermal, random)
     return [judge(pair, 0, one, pair.fly(one[2], most_steps)) for one in planned]
 

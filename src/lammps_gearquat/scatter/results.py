@@ -1,4 +1,4 @@
-"""All that flights say, as Estimates, counts and how the estimates have converged."""
+"""The results of flights: Estimates, counts, and the convergence of the estimates."""
 
 from dataclasses import dataclass
 
@@ -58,7 +58,7 @@ class Results:
 
     @property
     def guessed(self):
-        """The largest part of any aim that comes from flights that have not parted."""
+        """The largest fraction of any aim that comes from unparted flights."""
         return max(answer.unfinished for answer in self.answers)
 
 

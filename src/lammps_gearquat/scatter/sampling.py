@@ -65,7 +65,7 @@ class Plan:
         return density_of(self.scales(boltzmann), single, s0, self.s1, self.power, self.largest)
 
     def mixes_rotation(self, freedoms):
-        """True if rotation has that temperature of several with which a flight is drawn."""
+        """True if rotation has the temperature, one of several, with which a flight is drawn."""
         return self.energy is None and self.rotation is None and len(self.temperature) > 1 and any(freedoms)
 
     def balanced(self, freedoms):

@@ -60,14 +60,14 @@ def read_settings(folder):
 
 
 def write_json(path, value):
-    """Written whole or not at all."""
+    """Write the whole file or nothing."""
     draft = path.with_suffix(".tmp")
     draft.write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     draft.replace(path)
 
 
 def begin(folder, wanted):
-    """Write these settings to ``folder``.  Raises DeckError if it has flights of others."""
+    """Write these settings to ``folder``.  Raises DeckError if it has flights of other settings."""
     folder.mkdir(parents=True, exist_ok=True)
     if (folder / SETTINGS).exists():
         _same(folder, read_settings(folder), wanted)
@@ -90,7 +90,7 @@ FOUND = ("plan s0", "plan s1", "plan power")
 
 
 def _differing(known, wanted):
-    """Words for what differs between settings, "" for nothing."""
+    """Words for the differences between settings, "" for none."""
     names = [
         f"{part} {name}" if isinstance(wanted[part], dict) else part
         for part in wanted
@@ -105,7 +105,7 @@ def _differing(known, wanted):
 
 
 def _same(folder, known, wanted, required="another --out is required"):
-    """Raise DeckError if settings differ, naming what does."""
+    """Raise DeckError if settings differ, and name the differences."""
     differing = _differing(known, wanted)
     if differing:
         raise DeckError(f"{folder} has flights of other settings ({differing}): {required}")
@@ -122,7 +122,7 @@ def _get(settings, part, name):
 
 
 def read_lines(folder):
-    """Whole lines of flights.csv, without its header; what is after the last whole line is cut off."""
+    """Whole lines of flights.csv, without its header; an incomplete last line is cut off."""
     path = Path(folder) / FLIGHTS
     if not path.exists():
         return []
