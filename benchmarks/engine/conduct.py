@@ -76,7 +76,7 @@ def results(study, out):
 
 
 def write(study, out, finding, origin):
-    """Leave tables, pictures and the page in ``out``."""
+    """Write tables, pictures and the page to ``out``."""
     rows = [(m.what, m.value, m.error, m.unit, m.remark) for m in finding.measurements]
     header = ("measurement", "value", "standard error", "unit", "remark")
     write_csv(out / "measurements.csv", header, rows)
@@ -93,7 +93,7 @@ def write(study, out, finding, origin):
 
 
 def conduct(study, out, render_only=False, publish_it=False, **options):
-    """Do all of it; returns the Finding."""
+    """Do all these steps; returns the Finding."""
     out = Path(out).resolve()
     if publish_it:
         if options.get("quick") or options.get("parts"):

@@ -1,4 +1,4 @@
-"""Pictures made of panels: a study says what is in them, and draw() draws them all alike."""
+"""Pictures made of panels: a study defines their contents, and draw() draws all of them in the same way."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Bars:
-    """Horizontal bars: ``names`` from top to bottom, what was ``below`` in gray, and ``more`` on top."""
+    """Horizontal bars: ``names`` from top to bottom, ``below`` in gray, and ``more`` on top."""
 
     names: tuple
     below: np.ndarray

@@ -13,7 +13,7 @@ ANY_BEGIN, END = "<!-- begin: ", "<!-- end -->"
 
 
 class PublishError(RuntimeError):
-    """A page lacks the place to write to."""
+    """A page lacks the markers to write between."""
 
 
 def begin(command):

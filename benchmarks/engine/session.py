@@ -76,7 +76,7 @@ def _run(lmp, variables, composition):
 
 
 def perform(deck, variables, log, composition, tell):
-    """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion; what a Worker is asked.
+    """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion; a request to a Worker.
 
     ``composition``: parts of the step, of any sign, that are steps of their own and make up each step.
     Raises LammpsError if the scene cannot be defined, RunError if its run fails.

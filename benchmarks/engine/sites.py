@@ -1,4 +1,4 @@
-"""Sites of a dump, all frames at once, and how far bodies are from where they should be."""
+"""Sites of a dump, all frames at once, and errors of the poses of bodies."""
 
 from dataclasses import dataclass
 

@@ -72,7 +72,7 @@ class Finding:
 
 @dataclass
 class Study:
-    """A study: how it measures, how it judges, and where its results are shown.
+    """A study: its measurement, its judgment, and the pages that show its results.
 
     ``key``: its name on the command line.  ``title``: the heading of its page.  ``seconds``: duration on
     two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``page``: the page
