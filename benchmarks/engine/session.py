@@ -35,7 +35,7 @@ class Outcome:
     """The outcome of a run, in the units of the run.
 
     ``seconds``: wall time of the ``run`` command; ``modify``: LAMMPS' "Modify" time, NaN if its timers
-    are off; ``start``: force evaluations of the method's own start; ``ids``, ``masses`` and
+    are off; ``start``: force evaluations of the method's own start.  ``ids``, ``masses`` and
     ``molecules`` (n,), ``before`` and ``after`` (n, 3): unwrapped positions of all atoms, sorted by ID,
     before and after the run; ``thermo``: column -> samples.
     """

@@ -1,9 +1,9 @@
 """One step of the methods for the linear test equation as a matrix, and their largest stable steps.
 
-Test equation: x'' = -omega^2 x, one force evaluation a step, at the predicted position.  One step is
-a linear map of the history y_j = h^j x^(j) / j!, and counts as stable while no spurious root, which is
-an eigenvalue farther than OWN from exp(+-i omega h), lies outside of the unit circle.  The oscillation
-itself may grow or decay, which is error, not instability.  Source of the analysis: C. W. Gear,
+Test equation: x'' = -omega^2 x, one force evaluation a step, at the predicted position.  One step is a linear map of
+the history y_j = h^j x^(j) / j!.  Spurious roots are eigenvalues farther than OWN from exp(+-i omega h).  A step
+counts as stable if no spurious root lies outside of the unit circle.  The oscillation itself may grow or decay, which
+is error, not instability.  Source of the analysis: C. W. Gear,
 "Numerical Initial Value Problems in Ordinary Differential Equations" (1971).
 
 Gear's coefficients, for N values (rows j = 0 ... N-1), from the polynomial P_n(s) = (1+s)(1+s/2)...(1+s/n):

@@ -17,7 +17,7 @@ class Flight:
 
     ``flight``, its number; ``b``, impact parameter; ``energy``, of the relative translation, and
     ``rotation_1``, ``rotation_2``, of the rotation of both bodies, before and ``_after``; ``angle``, by which the
-    relative velocity has turned, in radians; ``time``, ``closest``, ``turnings``, ``steps``, ``repeats``, ``fate``
+    relative velocity has turned, in radians.  ``time``, ``closest``, ``turnings``, ``steps``, ``repeats``, ``fate``
     and ``message`` as in ``pair.End``.  Errors are changes from the start to the end: ``error_energy`` by the
     energy at the start, ``error_momentum`` by the momentum of one body, ``error_angular`` by this momentum times
     ``closest``.  Of flights that have not parted, what is ``_after`` and the angle are not a number.

@@ -62,9 +62,8 @@ class End(Start):
     """The bodies after a flight, and a summary of the flight.
 
     ``time`` since the start; numbers of ``steps`` and ``repeats``; ``turnings``, how often the
-    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py;
-    ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
-    flight with ``message``.
+    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py.  ``fate`` is "parted", or
+    "unparted" after the allowed number of steps, or "lost" if LAMMPS ended the flight with ``message``.
     """
 
     time: float
@@ -94,8 +93,8 @@ class Pair:
     """Two rigid bodies of a deck in a LAMMPS of this process.
 
     ``bodies``, a Bodies in the body frame of the deck; ``cutoff``, the largest distance at which two
-    sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the
-    distance of the centers at which flights begin and end; ``units``, a row of UNITS, and ``style``, its name;
+    sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the distance
+    of the centers at which flights begin and end. ``units``, a row of UNITS, and ``style``, its name;
     ``freedoms`` (2,), of rotation; ``turning``, whether bodies have more than one site; ``charge`` (2,) if atoms
     have one, else None; ``text``, the commands that lead to the run.
     """

@@ -28,8 +28,8 @@ class Plan:
     """The distribution of the flights, in units of the deck.
 
     ``seed``, a tuple of numbers; ``temperature``, an ascending tuple of temperatures of translation, or None with one
-    ``energy`` of translation; ``rotation``, the temperature of rotation, 0 for none, or None for the temperature of
-    translation; ``largest``, the largest impact parameter; ``s0``, ``s1`` and ``power``, which density.py explains.
+    ``energy`` of translation. ``rotation``, the temperature of rotation, 0 for none, or None for the temperature of
+    translation.  ``largest``, the largest impact parameter; ``s0``, ``s1`` and ``power``, which density.py explains.
     If both s0 and s1 are 0, impact parameters are uniform over the whole area.
     """
 

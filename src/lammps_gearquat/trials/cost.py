@@ -82,11 +82,10 @@ class Row:
 class Costs:
     """The answer; times, lengths in units of the deck.
 
-    ``end``, the time of the trials; ``doubt``, how far the two best trials are apart there;
-    ``trials``, list of (Trial, errors) with one error for each of NORMS; ``norm``, the index of the
-    chosen norm; ``rows``, list of Row; ``before``, seconds spent following the deck.
-    ``drifts``, dictionary (keywords, step), as in Row.recommended, -> drift.Drift, also of steps rejected for their
-    drift; ``bound``, the largest acceptable drift.
+    ``end``, the time of the trials; ``doubt``, the difference of the two best trials there.  ``trials``, list of
+    (Trial, errors) with one error for each of NORMS; ``norm``, the index of the chosen norm; ``rows``, list of Row;
+    ``before``, seconds spent following the deck. ``drifts``, dictionary (keywords, step), as in Row.recommended, ->
+    drift.Drift, also of steps rejected for their drift; ``bound``, the largest acceptable drift.
     """
 
     end: float

@@ -25,8 +25,8 @@ class Horizon:
     """Two trials of one scene, B bodies, S samples; units of the deck.
 
     ``largest`` and ``rms``, distances of the centers of mass of bodies, and ``angle``, the largest
-    angle between orientations (radians), all (S,); ``parting``, list of (threshold, time), infinite
-    if not reached; ``growth``, an evaluate.Growth or None, and then ``no_growth`` says why.
+    angle between orientations (radians), all (S,).  ``parting``, list of (threshold, time), infinite if not reached;
+    ``growth``, an evaluate.Growth, or None with the reason in ``no_growth``.
     """
 
     trials: tuple

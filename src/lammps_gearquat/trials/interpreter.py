@@ -55,10 +55,10 @@ class Command:
 class LeadIn:
     """The state of a deck at the run that moves its bodies.
 
-    ``commands`` lead there; those with a ``mover`` define the fixes that move bodies now;
-    ``steps`` is the length of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the
-    command that makes the box; ``lost`` holds the thermo_modify settings for lost atoms and bonds;
-    ``checkpoints`` is True if a replay can continue from saved states.
+    ``commands`` lead there; commands with a ``mover`` define the fixes that move bodies now.  ``steps`` is the length
+    of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the command that makes the box; ``lost`` holds
+    the thermo_modify settings for lost atoms and bonds; ``checkpoints`` is True if a replay can continue from saved
+    states.
     """
 
     commands: list = field(default_factory=list)

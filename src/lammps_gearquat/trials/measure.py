@@ -30,12 +30,12 @@ class Trial:
     """One way to move the bodies of a deck, from its start to ``time[-1]``.
 
     ``keywords`` of fix gear/quat, or None for the deck's own line; ``time`` (S,), samples after the
-    start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies;
-    ``start_evaluations``, evaluations of the forces before the first step.
-    ``seconds`` and ``start_seconds``, wall times of the steps and of the start before them, one for each repetition;
-    ``energies`` (S, 4), the conserved and the kinetic energy of the system, and the kinetic energies
-    of translation (relative to the common center of mass) and of rotation of the bodies.  ``energies`` is None unless
-    asked for; with energies, ``positions`` and ``center`` are given at the end only.
+    start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies.  ``start_evaluations``,
+    evaluations of the forces before the first step. ``seconds`` and ``start_seconds``, wall times of the steps and of
+    the start before them, one for each repetition.  ``energies`` (S, 4), the conserved and the kinetic energy of the
+    system, and the kinetic energies of translation (relative to the common center of mass) and of rotation of the
+    bodies.  ``energies`` is None unless asked for; with energies, ``positions`` and ``center`` are given at the end
+    only.
     """
 
     keywords: str
@@ -68,8 +68,8 @@ class Scene:
     """The rigid bodies of a deck when they begin to move: B bodies of n sites.
 
     ``ids`` (n,), rising within a body; ``bodies`` (Bodies), which has them in this order;
-    ``positions`` (n, 3), unwrapped; ``size``, the median over bodies of more than one site of the
-    largest distance of a site from the center of mass.
+    ``positions`` (n, 3), unwrapped.  ``size``: the largest distance of a site from its center of mass, as the median
+    over bodies of more than one site.
     """
 
     def __init__(self, situations):
@@ -119,11 +119,10 @@ class Scene:
 class Deck:
     """An input script, followed up to the run that moves its bodies; use it in a with statement.
 
-    ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to
-    leave out; ``which`` counts the runs that move bodies, None is the first that can be measured;
-    ``ranks`` is the number of LAMMPS processes.  ``say`` is called with a line of text before slow commands of the
-    deck, and ``on_wait`` repeatedly while LAMMPS runs; ``timeout`` is the time limit in seconds.
-    Raises DeckError for decks that cannot be used.
+    ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to leave out.  ``which``
+    counts the runs that move bodies; None is the first that can be measured.  ``ranks`` is the number of LAMMPS
+    processes.  ``say`` is called with a line of text before slow commands of the deck, and ``on_wait`` repeatedly
+    while LAMMPS runs; ``timeout`` is the time limit in seconds. Raises DeckError for decks that cannot be used.
     """
 
     def __init__(self, path, variables=(), without=(), which=None, ranks=1, say=None, on_wait=None, timeout=None):

@@ -40,8 +40,8 @@ class Situation:
 
     ``start``, a LeadIn; ``dt``, the deck's time step; ``map_missing``, True if atoms cannot be found by ID.
     ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
-    ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``flat``, whether all is in two
-    dimensions; ``periodic``, in how many directions the box is; ``continued``, the sites ``test_steps`` steps later.
+    ``masses`` (n,).  ``rotating``: atoms have their own rotations; ``flat``: the system is
+    two-dimensional; ``periodic``, the number of periodic directions; ``continued``, the sites ``test_steps`` steps later.
     """
 
     start: object
