@@ -62,8 +62,8 @@ class End(Start):
     """The bodies after a flight, and a summary of the flight.
 
     ``time`` since the start; numbers of ``steps`` and ``repeats``; ``turnings``, how often the
-    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py.  ``fate`` is "parted", or
-    "unparted" after the allowed number of steps, or "lost" if LAMMPS ended the flight with ``message``.
+    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py.
+    ``fate`` is "parted", or "unparted" after the allowed number of steps, or "lost" if LAMMPS ended the flight with ``message``.
     """
 
     time: float

@@ -41,7 +41,8 @@ class Situation:
     ``start``, a LeadIn; ``dt``, the deck's time step; ``map_missing``, True if atoms cannot be found by ID.
     ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
     ``masses`` (n,).  ``rotating``: atoms have their own rotations; ``flat``: the system is
-    two-dimensional; ``periodic``, the number of periodic directions; ``continued``, the sites ``test_steps`` steps later.
+    two-dimensional; ``periodic``, the number of periodic directions; ``continued``, the sites
+    ``test_steps`` steps later.
     """
 
     start: object
